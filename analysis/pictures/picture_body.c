@@ -69,7 +69,8 @@ static bool take_fragments(const struct columns *c, struct picture_body *body) {
 }
 
 static bool take_cells(const struct columns *c, struct picture_body *body) {
-  if (!c->point || !c->offset || !c->id || !c->fragment || c->fragments == 0 || c->offsets != c->fragments + 1)
+  const bool there = c->point && c->offset && c->id && c->fragment;
+  if (!there || c->fragments == 0 || c->offsets != c->fragments + 1)
     return false;
 
   body->cells = c->fragments;
@@ -82,12 +83,12 @@ static bool take_cells(const struct columns *c, struct picture_body *body) {
   return take_first_vertices(c, body) && take_vertices(c, body) && take_fragments(c, body);
 }
 
-/* Broken beams whose two grains are still in one fragment. cell[grain]: the cell that is the grain's outline,
- * UINT32_MAX for none; `grains` of them. */
+/* Broken beams whose two grains are still in one fragment. */
 static void take_broken_beams(const struct columns *c, const uint32_t *cell, size_t grains, struct picture_body *body) {
   for (size_t i = 0; i < c->beams; i++) {
-    double a = c->beam[2 * i], b = c->beam[2 * i + 1], end = (double)grains;
-    if (c->alive[i] != 0 || !(a >= 0 && a < end && b >= 0 && b < end))
+    const double a = c->beam[2 * i], b = c->beam[2 * i + 1], end = (double)grains;
+    const bool known = a >= 0 && a < end && b >= 0 && b < end;
+    if (c->alive[i] != 0 || !known)
       continue;
     uint32_t first = cell[(size_t)a], second = cell[(size_t)b];
     if (first == UINT32_MAX || second == UINT32_MAX || body->fragment[first] != body->fragment[second])
@@ -97,29 +98,40 @@ static void take_broken_beams(const struct columns *c, const uint32_t *cell, siz
   }
 }
 
-/* Beams name grains, and cells name the grain whose outline they are. A file without beams has no cracks. */
-static bool take_cracks(const struct columns *c, struct picture_body *body) {
-  if (!c->beam || !c->alive || !c->grain || c->beams != c->alives || c->grains != body->cells)
-    return true;
-
+static int64_t last_grain(const struct columns *c) {
   int64_t last = -1;
   for (size_t i = 0; i < c->grains; i++)
     last = c->grain[i] > last ? c->grain[i] : last;
+  return last;
+}
+
+/* The cell of each grain, UINT32_MAX for none; malloc'd. */
+static uint32_t *cells_by_grain(const struct columns *c, size_t grains) {
+  uint32_t *cell = malloc(grains * sizeof *cell);
+  if (!cell)
+    return NULL;
+  memset(cell, 0xFF, grains * sizeof *cell);
+  for (size_t i = 0; i < c->grains; i++)
+    if (c->grain[i] >= 0)
+      cell[c->grain[i]] = (uint32_t)i;
+  return cell;
+}
+
+/* Beams name grains, and cells name the grain whose outline they are. A file without beams has no cracks. */
+static bool take_cracks(const struct columns *c, struct picture_body *body) {
+  const bool there = c->beam && c->alive && c->grain;
+  if (!there || c->beams != c->alives || c->grains != body->cells)
+    return true;
+
+  const int64_t last = last_grain(c);
   if (last < 0 || last > SNAPSHOT_READ_LARGEST)
     return false;
-
-  size_t grains = (size_t)last + 1;
-  uint32_t *cell = malloc(grains * sizeof *cell);
+  const size_t grains = (size_t)last + 1;
+  uint32_t *cell = cells_by_grain(c, grains);
   body->crack = malloc((c->beams + 1) * sizeof *body->crack);
-  if (cell && body->crack) {
-    memset(cell, 0xFF, grains * sizeof *cell);
-    for (size_t i = 0; i < c->grains; i++)
-      if (c->grain[i] >= 0)
-        cell[c->grain[i]] = (uint32_t)i;
+  const bool good = cell && body->crack;
+  if (good)
     take_broken_beams(c, cell, grains, body);
-  }
-
-  bool good = cell && body->crack;
   free(cell);
   return good;
 }

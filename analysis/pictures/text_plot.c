@@ -33,38 +33,54 @@ static double complete_from(const struct pooled_form *form, const struct picture
   return spectrum_size_of(&form->size, series->complete_mass);
 }
 
+typedef unsigned char plot_line[MOST_PLOT]; /* of enum mark */
+
+static void mark_error(const struct scale *scale, const struct pooled_bin *bin, plot_line line) {
+  const double below = bin->value - bin->half_width;
+  const int left = below > 0 ? place(scale, log10(below)) : 0;
+  const int right = place(scale, log10(bin->value + bin->half_width));
+  for (int i = left; i <= right; i++)
+    line[i] = ERROR_BAR;
+  if (below > 0)
+    line[left] = ERROR_LEFT;
+  line[right] = ERROR_RIGHT;
+}
+
+static void mark_fit(const struct scale *scale, const struct pooled_form *form, const struct pooled_bin *bin,
+                     const struct picture_fit *fit, plot_line line) {
+  const double middle = form->cumulative ? bin->lower : sqrt(bin->lower * bin->upper);
+  const double fitted = log10(picture_spectrum_fit(fit, form, middle));
+  if (fitted >= scale->low && fitted <= scale->high)
+    line[place(scale, fitted)] = FIT;
+}
+
+/* A line has no trailing blanks. */
+static void write_line(FILE *out, int columns, const plot_line line, bool unicode) {
+  while (columns > 0 && line[columns - 1] == BLANK)
+    columns--;
+  for (int i = 0; i < columns; i++)
+    fputs(glyph((enum mark)line[i], unicode), out);
+  fputc('\n', out);
+}
+
+/* Later marks hide earlier ones. */
 static void row(FILE *out, const struct scale *scale, bool unicode, const struct pooled_form *form,
                 const struct pooled_bin *bin, const struct picture_series *series) {
-  const struct picture_fit *fit = series->fits ? &series->fit[0] : NULL;
-  unsigned char line[MOST_PLOT] = {0};
+  plot_line line = {0};
   for (int decade = (int)ceil(scale->low); decade <= scale->high; decade++)
     line[place(scale, decade)] = GRID;
-  const double middle = form->cumulative ? bin->lower : sqrt(bin->lower * bin->upper);
-  const double fitted = fit ? log10(picture_spectrum_fit(fit, form, middle)) : (double)NAN;
-  int point = place(scale, log10(bin->value));
-  if (bin->half_width > 0) {
-    double below = bin->value - bin->half_width;
-    int left = below > 0 ? place(scale, log10(below)) : 0, right = place(scale, log10(bin->value + bin->half_width));
-    for (int i = left; i <= right; i++)
-      line[i] = ERROR_BAR;
-    if (below > 0)
-      line[left] = ERROR_LEFT;
-    line[right] = ERROR_RIGHT;
-  }
-  if (isfinite(fitted) && fitted >= scale->low && fitted <= scale->high)
-    line[place(scale, fitted)] = FIT;
-  line[point] = bin->lower < complete_from(form, series) ? INCOMPLETE : POINT;
+  if (bin->half_width > 0)
+    mark_error(scale, bin, line);
+  if (series->fits)
+    mark_fit(scale, form, bin, &series->fit[0], line);
+  line[place(scale, log10(bin->value))] = bin->lower < complete_from(form, series) ? INCOMPLETE : POINT;
+
   fprintf(out, "%10.3g %8lld %10.3g", bin->lower, (long long)bin->count, bin->value);
   if (isfinite(bin->half_width))
     fprintf(out, " %4.0f%%  ", 100 * bin->half_width / bin->value);
   else
     fprintf(out, " %5s  ", "-");
-  int end = scale->columns; /* a line has no trailing blanks */
-  while (end > 0 && line[end - 1] == BLANK)
-    end--;
-  for (int i = 0; i < end; i++)
-    fputs(glyph((enum mark)line[i], unicode), out);
-  fputc('\n', out);
+  write_line(out, scale->columns, line, unicode);
 }
 
 /* The decades stand over the grid lines, as many as fit. */
@@ -88,18 +104,19 @@ static void heading(FILE *out, const struct scale *scale, const char *mass_unit,
   fprintf(out, "%10s %8s %10s %5s  %s\n", unit, "count", value, "+-95%", line);
 }
 
-/* Without unicode, beta and plus-minus are spelt out. */
+/* Without unicode, beta and plus-minus are spelt out, and other characters beyond ASCII are left out. */
 static void write_label(FILE *out, const char *label, bool unicode) {
+  static const struct { const char *character, *spelt; } known[] = {{"\xce\xb2", "beta"}, {"\xc2\xb1", "+-"}};
+  if (unicode) {
+    fputs(label, out);
+    return;
+  }
   for (const char *c = label; *c; c++) {
-    if (!unicode && strncmp(c, "\xce\xb2", 2) == 0) {
-      fputs("beta", out);
-      c++;
-    } else if (!unicode && strncmp(c, "\xc2\xb1", 2) == 0) {
-      fputs("+-", out);
-      c++;
-    } else if (unicode || (unsigned char)*c < 0x80) {
+    if ((unsigned char)*c < 0x80)
       fputc(*c, out);
-    }
+    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++)
+      if (strncmp(c, known[k].character, 2) == 0)
+        fputs(known[k].spelt, out);
   }
 }
 

@@ -22,31 +22,51 @@ static double welch(const struct sample_moments side[2], double level) {
   return gsl_cdf_tdist_Pinv(0.5 + level / 2, variance * variance / degrees) * sqrt(variance);
 }
 
-struct difference difference_between(size_t first_count, const struct difference_value *first, size_t second_count,
-                                     const struct difference_value *second, double level) {
-  struct sample_moments all[2] = {{0}, {0}}, paired[2] = {{0}, {0}}, differences = {0};
-  const size_t most = first_count > second_count ? first_count : second_count;
-  for (size_t i = 0; i < first_count; i++)
-    sample_add(&all[0], first[i].value);
-  for (size_t j = 0; j < second_count; j++)
-    sample_add(&all[1], second[j].value);
+/* Moments of the first and second values whose seeds both sides have, and of their differences; in order of seeds. */
+static void add_pairs(size_t first_count, const struct difference_value *first, size_t second_count,
+                      const struct difference_value *second, struct sample_moments paired[2],
+                      struct sample_moments *differences) {
   for (size_t i = 0, j = 0; i < first_count && j < second_count;) {
-    if (first[i].seed == second[j].seed) {
+    const int64_t a = first[i].seed, b = second[j].seed;
+    if (a == b) {
       sample_add(&paired[0], first[i].value);
       sample_add(&paired[1], second[j].value);
-      sample_add(&differences, second[j++].value - first[i++].value);
-    } else if (first[i].seed < second[j].seed) {
-      i++;
-    } else {
-      j++;
+      sample_add(differences, second[j].value - first[i].value);
     }
+    i += a <= b;
+    j += b <= a;
   }
-  const bool pairs = differences.n >= 2 && 2 * differences.n >= most;
-  const struct sample_moments *of = pairs ? paired : all;
-  struct difference out = {.n = {first_count, second_count},
-                           .pairs = pairs ? differences.n : 0,
-                           .mean = {of[0].n ? of[0].mean : (double)NAN, of[1].n ? of[1].mean : (double)NAN}};
-  out.difference = pairs ? differences.mean : out.mean[1] - out.mean[0];
-  out.half_width = pairs ? sample_summarise_moments(&differences, level).half_width : welch(all, level);
+}
+
+static struct sample_moments moments_of(size_t count, const struct difference_value *values) {
+  struct sample_moments moments = {0};
+  for (size_t i = 0; i < count; i++)
+    sample_add(&moments, values[i].value);
+  return moments;
+}
+
+static double mean_of(const struct sample_moments *moments) {
+  return moments->n ? moments->mean : (double)NAN;
+}
+
+struct difference difference_between(size_t first_count, const struct difference_value *first, size_t second_count,
+                                     const struct difference_value *second, double level) {
+  struct sample_moments paired[2] = {{0}, {0}}, differences = {0};
+  add_pairs(first_count, first, second_count, second, paired, &differences);
+  const size_t most = first_count > second_count ? first_count : second_count;
+  struct difference out = {.n = {first_count, second_count}};
+  if (differences.n >= 2 && 2 * differences.n >= most) {
+    out.pairs = differences.n;
+    out.mean[0] = mean_of(&paired[0]);
+    out.mean[1] = mean_of(&paired[1]);
+    out.difference = differences.mean;
+    out.half_width = sample_summarise_moments(&differences, level).half_width;
+    return out;
+  }
+  const struct sample_moments all[2] = {moments_of(first_count, first), moments_of(second_count, second)};
+  out.mean[0] = mean_of(&all[0]);
+  out.mean[1] = mean_of(&all[1]);
+  out.difference = out.mean[1] - out.mean[0];
+  out.half_width = welch(all, level);
   return out;
 }

@@ -21,8 +21,8 @@ struct reading {
   const char *path;
   size_t line;
   struct spectrum_size size;
-  int place, number; /* columns; number -1: none */
-  bool by_size;
+  int place, number;   /* columns; number -1: none */
+  bool named, by_size; /* the columns have their names; fragments are given by size */
   enum count_kind kind;
   char unit[CELL], complete[CELL];
   struct row *rows;
@@ -51,10 +51,11 @@ static status take_remark(struct reading *r, char *text, struct error *error) {
   const char *key = trim(text), *value = trim(colon + 1);
   if (strcmp(key, "source") == 0)
     snprintf(r->out->source, sizeof r->out->source, "%s", value);
-  else if (strcmp(key, "complete from") == 0)
+  if (strcmp(key, "complete from") == 0)
     snprintf(r->complete, sizeof r->complete, "%s", value);
-  else if (strcmp(key, "density") == 0 &&
-           (unit_read(value, "kg/m^3", &r->size.density, error) || !(r->size.density > 0)))
+  if (strcmp(key, "density") != 0)
+    return STATUS_OK;
+  if (unit_read(value, "kg/m^3", &r->size.density, error) || !(r->size.density > 0))
     return refuse(r, error, "the density needs a number and a unit, such as 2.7 g/cm^3, not", value);
   return STATUS_OK;
 }
@@ -72,24 +73,49 @@ static int split(char *line, char *cells[], int most) {
   return count;
 }
 
-/* "mass (g)" */
+/* What the names of columns mean. */
+static const struct meaning {
+  const char *name;
+  enum { MASS, SIZE, NUMBER } of;
+  enum count_kind kind;
+} meanings[] = {{"mass", MASS, SINGLE},
+                {"size", SIZE, SINGLE},
+                {"diameter", SIZE, SINGLE},
+                {"count", NUMBER, COUNTS},
+                {"cumulative", NUMBER, CUMULATIVE}};
+
+static const struct meaning *find_meaning(const char *name) {
+  for (size_t k = 0; k < sizeof meanings / sizeof meanings[0]; k++)
+    if (strcmp(name, meanings[k].name) == 0)
+      return &meanings[k];
+  return NULL;
+}
+
+/* "mass (g)" is the name of column i. Of masses and sizes the first column counts. */
+static void take_name(struct reading *r, int i, const char *cell) {
+  char name[CELL], unit[CELL] = "";
+  if (sscanf(cell, "%127[^(](%127[^)])", name, unit) < 1)
+    return;
+  const struct meaning *meaning = find_meaning(trim(name));
+  if (!meaning)
+    return;
+  if (meaning->of == NUMBER) {
+    r->number = i;
+    r->kind = meaning->kind;
+    return;
+  }
+  if (r->place >= 0)
+    return;
+  r->place = i;
+  r->by_size = meaning->of == SIZE;
+  const char *usual = r->by_size ? "m" : "kg";
+  snprintf(r->unit, sizeof r->unit, "%s", *unit ? unit : usual);
+}
+
 static status take_names(struct reading *r, int count, char *const cells[], struct error *error) {
   r->place = r->number = -1;
-  for (int i = 0; i < count; i++) {
-    char name[CELL], unit[CELL] = "";
-    if (sscanf(cells[i], "%127[^(](%127[^)])", name, unit) < 1)
-      continue;
-    const char *word = trim(name);
-    const bool size = strcmp(word, "size") == 0 || strcmp(word, "diameter") == 0;
-    if ((size || strcmp(word, "mass") == 0) && r->place < 0) {
-      r->place = i;
-      r->by_size = size;
-      snprintf(r->unit, sizeof r->unit, "%s", *unit ? unit : size ? "m" : "kg");
-    } else if (strcmp(word, "count") == 0 || strcmp(word, "cumulative") == 0) {
-      r->number = i;
-      r->kind = word[1] == 'o' ? COUNTS : CUMULATIVE;
-    }
-  }
+  for (int i = 0; i < count; i++)
+    take_name(r, i, cells[i]);
   if (r->place < 0)
     return refuse(r, error,
                   "the first line names the columns: mass (g) or size (mm), alone or with count or cumulative; not",
@@ -137,33 +163,38 @@ static status take_row(struct reading *r, int count, char *const cells[], struct
   return STATUS_OK;
 }
 
+/* The first line that is no remark names the columns; the next ones are rows. */
+static status take_line(struct reading *r, char *text, struct error *error) {
+  char *cells[64];
+  if (r->line == 1 && strncmp(text, "\xef\xbb\xbf", 3) == 0)
+    text += 3;
+  text = trim(text);
+  if (*text == '\0')
+    return STATUS_OK;
+  if (*text == '#')
+    return take_remark(r, text + 1, error);
+  const int count = split(text, cells, 64);
+  if (r->named)
+    return take_row(r, count, cells, error);
+  r->named = true;
+  return take_names(r, count, cells, error);
+}
+
 static status read_lines(struct reading *r, FILE *file, struct error *error) {
-  char line[LINE], *cells[64];
-  bool named = false;
-  status code = STATUS_OK;
-  while (code == STATUS_OK && fgets(line, sizeof line, file)) {
+  char line[LINE];
+  while (fgets(line, sizeof line, file)) {
     r->line++;
     if (strlen(line) == sizeof line - 1)
       return status_fail(error, STATUS_CONTENT, "%s:%zu: the line is too long", r->path, r->line);
-    char *text = line;
-    if (r->line == 1 && strncmp(text, "\xef\xbb\xbf", 3) == 0)
-      text += 3;
-    text = trim(text);
-    if (*text == '\0')
-      continue;
-    if (*text == '#') {
-      code = take_remark(r, text + 1, error);
-      continue;
-    }
-    const int count = split(text, cells, 64);
-    code = named ? take_row(r, count, cells, error) : take_names(r, count, cells, error);
-    named = true;
+    const status code = take_line(r, line, error);
+    if (code)
+      return code;
   }
-  if (code == STATUS_OK && ferror(file))
+  if (ferror(file))
     return status_fail(error, STATUS_IO, "%s: cannot be read: %s", r->path, strerror(errno));
-  if (code == STATUS_OK && r->count == 0)
+  if (r->count == 0)
     return status_fail(error, STATUS_CONTENT, "%s: there is no row with a fragment", r->path);
-  return code;
+  return STATUS_OK;
 }
 
 static int ascending(const void *a, const void *b) {
@@ -191,9 +222,10 @@ static status take_rows(struct reading *r, struct error *error) {
     out->mass[i] = r->rows[i].mass;
     out->above[i] = above;
   }
-  if (!(above > 0) || !isfinite(above))
-    return status_fail(error, STATUS_CONTENT, "%s: there %s in it", r->path,
-                       above > 0 ? "are more fragments than a number can hold" : "is no fragment");
+  if (!(above > 0))
+    return status_fail(error, STATUS_CONTENT, "%s: there is no fragment in it", r->path);
+  if (!isfinite(above))
+    return status_fail(error, STATUS_CONTENT, "%s: there are more fragments than a number can hold in it", r->path);
   return STATUS_OK;
 }
 
@@ -205,9 +237,8 @@ status measured_read(const char *path, const struct spectrum_size *size, struct 
     return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "%s: %s", path, strerror(errno));
   status code = read_lines(&r, file, error);
   fclose(file);
-  if (code == STATUS_OK && *r.complete) {
+  if (code == STATUS_OK && *r.complete)
     code = read_mass(&r, r.complete, "", &out->complete, error);
-  }
   if (code == STATUS_OK)
     code = take_rows(&r, error);
   free(r.rows);

@@ -197,6 +197,10 @@ static status leave_out(struct prepared *p, size_t groups, size_t each, double *
   return STATUS_OK;
 }
 
+static status no_memory(const struct pooled_runs *runs, struct error *error) {
+  return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu runs", runs->count);
+}
+
 static status check(const struct pooled_runs *runs, double lower, struct error *error) {
   if (!(lower > 0) || isinf(lower))
     return status_fail(error, STATUS_USAGE, "exponent: a window from %g kg: expected a positive mass", lower);
@@ -224,46 +228,49 @@ static size_t count_runs(const struct prepared *p, const struct pooled_runs *run
   return count;
 }
 
-/* Fits all runs, then all but one group after another: theta, where there is a beta. */
-static status fit_all(struct prepared *p, const struct pooled_runs *runs, double lower, size_t groups, size_t each,
-                      struct exponent *fit, double *theta) {
-  const status code = prepare(p, runs, lower);
-  if (code)
-    return code;
-
-  if (p->groups)
-    fit_groups(p, fit);
-  else
-    fit_bins(p, 0, 0, fit);
-  return isfinite(fit->beta) ? leave_out(p, groups, each, theta) : STATUS_OK;
-}
-
 static status check_method(enum exponent_method method, struct error *error) {
   if (method == EXPONENT_LEAST_SQUARES || method == EXPONENT_BINNED || method == EXPONENT_MASSES)
     return STATUS_OK;
   return status_fail(error, STATUS_USAGE, "exponent: method number %d does not pool runs", (int)method);
 }
 
-status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
-                       struct pooled_exponent *out, struct error *error) {
-  *out = (struct pooled_exponent){.fit = exponent_unknown(method, (struct exponent_window){lower, HUGE_VAL}),
-                                  .interval = {NAN, NAN, NAN}};
+/* Checks what is asked for, fits all runs, then all but one group after another: theta, where there is a beta. After an
+ * error p is empty. */
+static status fit_all(struct prepared *p, const struct pooled_runs *runs, enum exponent_method method, double lower,
+                      size_t groups, size_t each, struct exponent *fit, double *theta, struct error *error) {
+  *p = (struct prepared){.method = method, .runs = runs->count};
+  *fit = exponent_unknown(method, (struct exponent_window){lower, HUGE_VAL});
   status code = check_method(method, error);
-  if (!code)
-    code = check(runs, lower, error);
   if (code)
     return code;
+  code = check(runs, lower, error);
+  if (code)
+    return code;
+  code = prepare(p, runs, lower);
+  if (!code) {
+    if (p->groups)
+      fit_groups(p, fit);
+    else
+      fit_bins(p, 0, 0, fit);
+  }
+  if (!code && isfinite(fit->beta))
+    code = leave_out(p, groups, each, theta);
+  if (!code)
+    return STATUS_OK;
+  forget(p);
+  return no_memory(runs, error);
+}
 
-  struct prepared p = {.method = method, .runs = runs->count};
-  double theta[SAMPLE_GROUPS];
+status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
+                       struct pooled_exponent *out, struct error *error) {
+  struct prepared p;
+  double theta[SAMPLE_GROUPS], upper;
   size_t each;
   const size_t groups = sample_groups(runs->count, &each);
-  code = fit_all(&p, runs, lower, groups, each, &out->fit, theta);
-  if (code) {
-    forget(&p);
-    return status_fail(error, code, "exponent: no memory for %zu runs", runs->count);
-  }
-  double upper;
+  *out = (struct pooled_exponent){.interval = {NAN, NAN, NAN}};
+  const status code = fit_all(&p, runs, method, lower, groups, each, &out->fit, theta, error);
+  if (code)
+    return code;
   out->runs = count_runs(&p, runs, lower, &upper);
   if (upper > 0 && method != EXPONENT_LEAST_SQUARES)
     out->fit.upper = upper;
@@ -283,23 +290,45 @@ static void values_of_runs(size_t n, double beta, const double *theta, double *v
 
 status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,
                                double *values, struct error *error) {
-  status code = check_method(method, error);
-  if (!code)
-    code = check(runs, lower, error);
-  if (code)
-    return code;
-
-  struct prepared p = {.method = method, .runs = runs->count};
-  struct exponent fit = exponent_unknown(method, (struct exponent_window){lower, HUGE_VAL});
+  struct prepared p;
+  struct exponent fit;
   double *theta = malloc((runs->count + 1) * sizeof *theta);
-  for (size_t r = 0; theta && r < runs->count; r++)
+  if (!theta)
+    return no_memory(runs, error);
+  for (size_t r = 0; r < runs->count; r++)
     theta[r] = NAN;
-  code = theta ? fit_all(&p, runs, lower, runs->count, 1, &fit, theta) : STATUS_MEMORY;
-  if (!code)
+  const status code = fit_all(&p, runs, method, lower, runs->count, 1, &fit, theta, error);
+  if (!code) {
     values_of_runs(runs->count, fit.beta, theta, values);
-  forget(&p);
+    forget(&p);
+  }
   free(theta);
-  return code ? status_fail(error, code, "exponent: no memory for %zu runs", runs->count) : STATUS_OK;
+  return code;
+}
+
+/* Fits the pure power law's rivals to all runs at once. STATUS_MEMORY. */
+static status fit_rival(const struct pooled_runs *runs, double lower, enum tempered_kind kind,
+                        struct tempered_group *groups, struct tempered *fit) {
+  for (size_t r = 0; r < runs->count; r++)
+    if (tempered_group_of(runs, r, lower, kind, &groups[r]))
+      return STATUS_MEMORY;
+  *fit = tempered_fit(kind, runs->count, groups);
+  return STATUS_OK;
+}
+
+static status fit_rivals(const struct pooled_runs *runs, double lower, double log_likelihood,
+                         struct tempered_group *groups, struct pooled_rivals *out) {
+  struct tempered cutoff, lognormal;
+  if (fit_rival(runs, lower, TEMPERED_CUTOFF, groups, &cutoff) ||
+      fit_rival(runs, lower, TEMPERED_LOGNORMAL, groups, &lognormal))
+    return STATUS_MEMORY;
+  out->cutoff_beta = cutoff.beta;
+  out->cutoff_mass = cutoff.rate > 0 ? lower / cutoff.rate : HUGE_VAL;
+  out->cutoff_ratio = tempered_ratio(&cutoff, log_likelihood);
+  out->cutoff_p = tempered_p_value(out->cutoff_ratio);
+  out->lognormal_ratio = tempered_ratio(&lognormal, log_likelihood);
+  out->lognormal_p = tempered_p_value(out->lognormal_ratio);
+  return STATUS_OK;
 }
 
 status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled_rivals *out, struct error *error) {
@@ -310,7 +339,7 @@ status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled
   struct power_law_group *plain = malloc((runs->count + 1) * sizeof *plain);
   struct tempered_group *groups = malloc((runs->count + 1) * sizeof *groups);
   if (!plain || !groups) {
-    code = status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu runs", runs->count);
+    code = no_memory(runs, error);
     goto cleanup;
   }
   for (size_t r = 0; r < runs->count; r++)
@@ -318,27 +347,10 @@ status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled
   out->n = (int64_t)total_weight(runs->count, plain);
   if (out->n < EXPONENT_LEAST_FRAGMENTS)
     goto cleanup;
-  struct power_law pure = power_law_fit(runs->count, plain, 0);
+  const struct power_law pure = power_law_fit(runs->count, plain, 0);
   out->beta = pure.beta;
-  for (int kind = 0; kind < 2 && isfinite(pure.beta); kind++) {
-    for (size_t r = 0; r < runs->count && !code; r++)
-      code = tempered_group_of(runs, r, lower, (enum tempered_kind)kind, &groups[r]);
-    if (code) {
-      status_fail(error, code, "exponent: no memory for the masses of a run");
-      goto cleanup;
-    }
-    struct tempered fit = tempered_fit((enum tempered_kind)kind, runs->count, groups);
-    double ratio = tempered_ratio(&fit, pure.log_likelihood);
-    if (kind == TEMPERED_CUTOFF) {
-      out->cutoff_beta = fit.beta;
-      out->cutoff_mass = fit.rate > 0 ? lower / fit.rate : HUGE_VAL;
-      out->cutoff_ratio = ratio;
-      out->cutoff_p = tempered_p_value(ratio);
-    } else {
-      out->lognormal_ratio = ratio;
-      out->lognormal_p = tempered_p_value(ratio);
-    }
-  }
+  if (isfinite(pure.beta) && fit_rivals(runs, lower, pure.log_likelihood, groups, out))
+    code = no_memory(runs, error);
 cleanup:
   free(plain);
   free(groups);

@@ -67,8 +67,7 @@ static void apply_stiffness(const struct dem_system *s, const double *u, double 
 /* Returns the Rayleigh quotient u.K u / u.M u from f = K u. Then f = M^-1 K u and *largest its largest component. */
 static double quotient(const struct dem_system *s, const double *u, double *f, double *largest) {
   const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
-  double top = 0.0, bottom = 0.0;
-  *largest = 0.0;
+  double top = 0.0, bottom = 0.0, most = 0.0;
   for (size_t i = 0; i < s->count; i++)
     for (size_t k = 0; k < 3; k++) {
       const double per_mass = mobility[k][i], v = u[3 * i + k];
@@ -77,8 +76,9 @@ static double quotient(const struct dem_system *s, const double *u, double *f, d
       top += v * f[3 * i + k];
       bottom += v * v / per_mass;
       f[3 * i + k] *= per_mass;
-      *largest = fmax(*largest, fabs(f[3 * i + k]));
+      most = fmax(most, fabs(f[3 * i + k]));
     }
+  *largest = most;
   return bottom > 0.0 ? top / bottom : 0.0;
 }
 
