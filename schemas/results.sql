@@ -334,13 +334,13 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   crater_compaction_share REAL, -- [1] Impact: volume lost by compaction over the sum of that volume and the ejecta's volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.
   energy_kinetic REAL, -- [J] Kinetic energy at the end.
   energy_internal REAL, -- [J] Internal energy at the end, elastic energy included.
-  energy_damped REAL, -- [J] Energy that damped sides removed.
-  energy_work_of_held REAL, -- [J] Work done by grips.
+  energy_damped REAL, -- [J] Energy that the damping layer of a box took out of motion (sides.far: damped); 0 in all other scenes.
+  energy_work_of_held REAL, -- [J] Work done on the body by matter that is held at a given velocity: the grips of a stretch, the piston; 0 in all other scenes.
   energy_clamped REAL, -- [J] Energy added where internal energy would have become negative.
-  energy_input REAL, -- [J] Energy put in: kinetic energy at the start plus the absolute work of grips.
+  energy_input REAL, -- [J] Energy put in: kinetic energy at the start plus the absolute value of energy.work_of_held.
   clamped_share REAL, -- [1] energy.clamped over energy_input. energy_error does not subtract it.
   density_held_share REAL, -- [1] Share of all particle steps that held the density at its lower limit. Such a step adds no energy.
-  angular_momentum_error REAL, -- [1] Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target's extent. Only axes count across which nothing is periodic.
+  angular_momentum_error REAL, -- [1] Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target's extent. Only axes count across which nothing is periodic.
   limited_courant REAL, -- [1] Share of the steps limited by the speed of sound and viscosity, or by a damped side.
   limited_force REAL, -- [1] Share of the steps limited by the acceleration.
   limited_energy REAL, -- [1] Share of the steps limited by the change of internal energy.
@@ -1078,7 +1078,7 @@ INSERT INTO column_doc VALUES ('result_dem', 'upright_share', '1', 'Compression:
 
 INSERT INTO column_doc VALUES ('result_dem', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'angular_momentum_error', '1', 'Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'angular_momentum_error', '1', 'Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'cease_time', 's', 'Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture has not ceased.', 1);
 
@@ -1110,15 +1110,15 @@ INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum', 'kg m/s', 'Impac
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_clamped', 'J', 'Energy added where internal energy would have become negative.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'energy_damped', 'J', 'Energy that damped sides removed.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'energy_damped', 'J', 'Energy that the damping layer of a box took out of motion (sides.far: damped); 0 in all other scenes.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'energy_input', 'J', 'Energy put in: kinetic energy at the start plus the absolute work of grips.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'energy_input', 'J', 'Energy put in: kinetic energy at the start plus the absolute value of energy.work_of_held.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_internal', 'J', 'Internal energy at the end, elastic energy included.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_kinetic', 'J', 'Kinetic energy at the end.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'energy_work_of_held', 'J', 'Work done by grips.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'energy_work_of_held', 'J', 'Work done on the body by matter that is held at a given velocity: the grips of a stretch, the piston; 0 in all other scenes.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'first_damage', 's', 'Time when damage of a body with flaws began; off without damage.', 1);
 
@@ -1286,7 +1286,7 @@ INSERT INTO column_doc VALUES ('run', 'wall_time', 's', 'elapsed time of the suc
 
 INSERT INTO column_doc VALUES ('run', 'warnings', NULL, 'Doubts about a usable run, as words; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 1);
 
-INSERT INTO column_doc VALUES ('runs', 'angular_momentum_error', '1', 'Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 0);
+INSERT INTO column_doc VALUES ('runs', 'angular_momentum_error', '1', 'Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
 
@@ -1346,7 +1346,7 @@ INSERT INTO column_doc VALUES ('runs', 'energy_clamped', 'J', 'Energy added wher
 
 INSERT INTO column_doc VALUES ('runs', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_damped', 'J', 'Energy that damped sides removed.', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_damped', 'J', 'Energy that the damping layer of a box took out of motion (sides.far: damped); 0 in all other scenes.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_damping', 'J/m', 'Energy taken by damping.', 0);
 
@@ -1360,7 +1360,7 @@ INSERT INTO column_doc VALUES ('runs', 'energy_internal', 'J', 'Internal energy 
 
 INSERT INTO column_doc VALUES ('runs', 'energy_vibration', 'J/m', 'Part of the kinetic energy that is motion inside fragments: neither their translation nor their rotation. Without damping it does not decay, and breaks more beams.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_work_of_held', 'J', 'Work done by grips.', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_work_of_held', 'J', 'Work done on the body by matter that is held at a given velocity: the grips of a stretch, the piston; 0 in all other scenes.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'engine', NULL, 'name of the engine', 0);
 
@@ -1484,7 +1484,7 @@ INSERT INTO column_doc VALUES ('runs', 'result_dem_energy_kinetic', 'J/m', 'Kine
 
 INSERT INTO column_doc VALUES ('runs', 'result_dem_stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, strain, failure, fault', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'result_sph_energy_input', 'J', 'Energy put in: kinetic energy at the start plus the absolute work of grips.', 0);
+INSERT INTO column_doc VALUES ('runs', 'result_sph_energy_input', 'J', 'Energy put in: kinetic energy at the start plus the absolute value of energy.work_of_held.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'result_sph_energy_kinetic', 'J', 'Kinetic energy at the end.', 0);
 

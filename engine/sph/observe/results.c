@@ -81,17 +81,23 @@ static const struct field rows[] = {
         .source = "Jutzi & Benz, section 3.1"),
     REAL(energy.kinetic, "J", 0, .doc = "Kinetic energy at the end."),
     REAL(energy.internal, "J", 0, .doc = "Internal energy at the end, elastic energy included."),
-    REAL(energy.damped, "J", -HUGE_VAL, .doc = "Energy that damped sides removed."),
-    REAL(energy.work_of_held, "J", -HUGE_VAL, .doc = "Work done by grips."),
+    REAL(energy.damped, "J", -HUGE_VAL,
+         .doc =
+             "Energy that the damping layer of a box took out of motion (sides.far: damped); 0 in all other scenes."),
+    REAL(energy.work_of_held, "J", -HUGE_VAL,
+         .doc = "Work done on the body by matter that is held at a given velocity: the grips of a stretch, the piston; "
+                "0 in all other scenes."),
     REAL(energy.clamped, "J", -HUGE_VAL, .doc = "Energy added where internal energy would have become negative."),
-    REAL(energy_input, "J", 0, .doc = "Energy put in: kinetic energy at the start plus the absolute work of grips."),
+    REAL(energy_input, "J", 0,
+         .doc = "Energy put in: kinetic energy at the start plus the absolute value of energy.work_of_held."),
     REAL(clamped_share, "1", 0, .doc = "energy.clamped over energy_input. energy_error does not subtract it."),
     SHARE(density_held_share,
           .doc = "Share of all particle steps that held the density at its lower limit. Such a step adds no energy."),
     REAL(angular_momentum_error, "1", 0,
-         .doc = "Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the "
-                "angular momentum at the start and the sum of momenta (the larger of start and end) times the target's "
-                "extent. Only axes count across which nothing is periodic."),
+         .doc =
+             "Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the "
+             "larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times "
+             "the target's extent. Only axes count across which nothing is periodic."),
 #define TIME_STEP_LIMIT(NAME, member, doc_) SHARE(limited.member, .doc = "Share of the steps limited by " doc_ "."),
 #include "engine/sph/modules/declarations.h"
     REAL(neighbours, "1", 0, .doc = "Mean number of neighbours within 2h at the end."),
