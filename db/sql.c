@@ -26,8 +26,7 @@ static const char *remedy(int code) {
   case SQLITE_IOERR:
     return "Reading or writing failed (disk full, quota, file size limit, or a disk or network file system in "
            "trouble). What was committed is safe; mend that and give the same command again.";
-  case SQLITE_CORRUPT:
-    return "The file is damaged. Restore a copy, or save what can be saved with `sqlite3 FILE .recover`.";
+  case SQLITE_CORRUPT: return "The file is damaged. Restore a copy, or recover a part with `sqlite3 FILE .recover`.";
   case SQLITE_CONSTRAINT:
     return "A row breaks a rule of the store's tables: a file is damaged, or another program has changed it. `clast "
            "check` tells more.";

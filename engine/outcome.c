@@ -25,16 +25,16 @@ static const struct field rows[] = {
         .doc = "How the run ended: with a usable result (completed, end-time), or without one."),
     ROW(message, FIELD_TEXT, NULL, .text = "", .doc = "What went wrong, in words; empty when nothing did."),
     ROW(warnings, FIELD_TEXT, NULL, .text = "",
-        .doc = "Doubts about a usable run, as words; empty when there are none." WARNINGS(WARNING_DOC)),
+        .doc = "Doubts about a usable run, a word for each; empty when there are none." WARNINGS(WARNING_DOC)),
     COUNT(steps, .label = "time steps", .doc = "Time steps taken."),
     REAL(time, "s", 0, .label = "simulated time", .doc = "Simulated time at the end."),
     REAL(time_step, "s", 0, .doc = "The smallest time step used."),
     REAL(total_mass, "kg", 0, .doc = "Mass of the body at the end (two dimensions: per metre of thickness)."),
     REAL(energy_error, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
-         .doc = "Energy that errors of the computation made or lost, as a share of the energy put in."),
+         .doc = "Energy gained or lost by numerical errors, as a share of the energy put in."),
     REAL(momentum_error, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
-         .doc = "Change of total momentum that no outer force explains, as a share of the sum of the momenta of all "
-                "grains or particles."),
+         .doc = "Change of total momentum minus the impulse of external forces, as a share of the sum of the momenta "
+                "of all grains or particles."),
     COUNT(fragment_count, .main_rank = 3, .label = "number of fragments",
           .doc = "Fragments of any size, single grains (dust) included."),
     COUNT(single_count, .label = "number of single grains or particles",
@@ -43,7 +43,7 @@ static const struct field rows[] = {
         .doc = "Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or "
                "single grains (dem)."),
     REAL(complete_mass, "kg", 0, .label = "least mass with a complete spectrum",
-         .doc = "Mass from which the spectrum of fragments is complete: 10 particles (sph: 9.5 mean ones) or 2 "
+         .doc = "The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 mean ones) or 2 "
                 "grains (dem: 1.5 mean ones). Exponents use heavier fragments only."),
     ROW(largest_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .main_rank = 1,
         .label = "mass share of the largest fragment M₁/M",

@@ -14,7 +14,7 @@
 static const char magic[8] = "CLASTRUN";
 /* 4: the build stands in the file. */
 enum { VERSION = 4 };
-#define NO_RESTART_FILE "'%s' is no restart file: name another one, or move it away to start the run afresh"
+#define NO_RESTART_FILE "'%s' is no restart file: name another one, or move it away to start the run again"
 enum { STATE, SAMPLES, SYSTEM, PARTS };
 
 struct part {
@@ -180,11 +180,10 @@ status restart_peek(const char *path, uint64_t *seed, struct error *error) {
 }
 
 static status refuse(const char *path, struct error *error) {
-  return status_fail(
-      error, STATUS_CONTENT,
-      "the restart file '%s' was written by another build of clast, and only that one can go on from it: finish "
-      "the run with that one, or start it afresh",
-      path);
+  return status_fail(error, STATUS_CONTENT,
+                     "the restart file '%s' was written by another build of clast, and only that build can continue "
+                     "it: finish the run with that build, or start it again",
+                     path);
 }
 
 /* Reads the magic and checks the sum over the file. */
@@ -195,7 +194,7 @@ static status read_seal(struct bytes *b, const char *path, struct error *error) 
     return status_fail(error, STATUS_CONTENT, NO_RESTART_FILE, path);
   memcpy(&sum, b->at + b->size - 8, 8);
   if (sum != text_hash(TEXT_HASH_START, b->at, b->size - 8))
-    return status_fail(error, STATUS_CONTENT, "the restart file '%s' is damaged or cut short: start the run afresh",
+    return status_fail(error, STATUS_CONTENT, "the restart file '%s' is damaged or cut short: start the run again",
                        path);
   return STATUS_OK;
 }
@@ -205,7 +204,7 @@ static status other_class(enum cpu_class class, const char *path, struct error *
   return status_fail(
       error, STATUS_CONTENT,
       "the restart file '%s' is of CPU class %s, this run of %s, and bits are the same within one class only: "
-      "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run afresh",
+      "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run again",
       path, name, cpu_class_name(cpu_class_choose()), name);
 }
 
@@ -224,7 +223,7 @@ static status read_head(struct bytes *b, const char *identity, const char *path,
   const bool whole = get(b, &length, 8) && length <= b->size - b->used;
   if (!whole || length != strlen(identity) || memcmp(b->at + b->used, identity, length) != 0)
     return status_fail(error, STATUS_CONTENT,
-                       "the restart file '%s' belongs to another scene: name another one, or start the run afresh",
+                       "the restart file '%s' belongs to another scene: name another one, or start the run again",
                        path);
   b->used += length;
   return STATUS_OK;

@@ -47,7 +47,7 @@ status document_change_put(struct document *document, const char *const keys[2],
     document->origin = strdup(origin);
   document_node *into = keys[1] ? section_at(document, keys[0]) : document->root;
   if (into && into->kind != DOCUMENT_MAPPING)
-    return status_fail(error, STATUS_CONTENT, "%s: `%s` is no mapping, so that `%.100s` of %s cannot be put into it",
+    return status_fail(error, STATUS_CONTENT, "%s: `%s` is no mapping, so it cannot hold `%.100s` of %s",
                        document->name, keys[0], keys[1], origin);
   document_node *scalar = create(document, DOCUMENT_SCALAR, value);
   const char *key = keys[1] ? keys[1] : keys[0];

@@ -88,17 +88,17 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   digest BLOB CHECK (length(digest) = 16), -- changes when any bit changes of what the run determined: results, masses, estimates, seed, identity
   state TEXT, -- How the run ended: with a usable result (completed, end-time), or without one. One of: completed, end-time, not-finite, time-step, energy, invalid
   message TEXT, -- What went wrong, in words; empty when nothing did.
-  warnings TEXT, -- Doubts about a usable run, as words; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene's fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).
+  warnings TEXT, -- Doubts about a usable run, a word for each; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene's fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).
   steps INTEGER, -- [1] Time steps taken.
   time REAL, -- [s] Simulated time at the end.
   time_step REAL, -- [s] The smallest time step used.
   total_mass REAL, -- [kg] Mass of the body at the end (two dimensions: per metre of thickness).
-  energy_error REAL, -- [1] Energy that errors of the computation made or lost, as a share of the energy put in.
-  momentum_error REAL, -- [1] Change of total momentum that no outer force explains, as a share of the sum of the momenta of all grains or particles.
+  energy_error REAL, -- [1] Energy gained or lost by numerical errors, as a share of the energy put in.
+  momentum_error REAL, -- [1] Change of total momentum minus the impulse of external forces, as a share of the sum of the momenta of all grains or particles.
   fragment_count INTEGER, -- [1] Fragments of any size, single grains (dust) included.
   single_count INTEGER, -- [1] Fragments of one grain or particle: below the model's resolution.
   dust_fraction REAL, -- [1] Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).
-  complete_mass REAL, -- [kg] Mass from which the spectrum of fragments is complete: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.
+  complete_mass REAL, -- [kg] The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.
   largest_fraction REAL, -- [1] Mass of the largest fragment over the total mass, M_1/M.
   second_fraction REAL, -- [1] Mass of the second largest fragment over the total mass, M_2/M.
   mean_fragment_mass REAL, -- [kg] Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).
@@ -154,7 +154,7 @@ CREATE TABLE estimate ( -- Estimates made from the fragments of one run; they ca
   run_id INTEGER NOT NULL REFERENCES run (run_id), -- the run
   ordinal INTEGER NOT NULL, -- number among the estimates of the run
   window TEXT, -- Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10
-  method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
+  method TEXT, -- Method of the estimate. One of: least_squares, binned, masses, ks, cutoff
   headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
   lower REAL, -- [kg] Lower end of the window used (2D: kg per metre of thickness).
   upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.
@@ -173,7 +173,7 @@ CREATE TABLE point_estimate ( -- Estimates pooled over the runs of a point that 
   results_version INTEGER NOT NULL, -- version of the engine's results it was made from
   ordinal INTEGER NOT NULL, -- number among the estimates of the point
   window TEXT, -- Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10
-  method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
+  method TEXT, -- Method of the estimate. One of: least_squares, binned, masses, ks, cutoff
   headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
   lower REAL, -- [kg] Lower end of the window used (2D: kg per metre of thickness).
   upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.
@@ -270,11 +270,11 @@ CREATE TABLE holder ( -- The process that holds the store for writing, for the m
 CREATE TABLE result_dem ( -- What this engine reports beyond the columns of table run, one to one.
   run_id INTEGER PRIMARY KEY REFERENCES run (run_id), -- the run
   stop_reason TEXT, -- Why the run ended. One of: running, quiet, end-time, strain, failure, fault
-  grains INTEGER, -- [1] Grains, the explosive one left out.
-  beams INTEGER, -- [1] Beams at the start, those of the explosive left out.
+  grains INTEGER, -- [1] Number of grains, without the explosive one.
+  beams INTEGER, -- [1] Number of beams at the start, without those of the explosive grain.
   broken INTEGER, -- [1] Beams broken.
-  broken_stretch INTEGER, -- [1] Beams broken with the stretching term of the breaking rule the larger one.
-  broken_bend INTEGER, -- [1] Beams broken with the bending term the larger one.
+  broken_stretch INTEGER, -- [1] Broken beams for which the stretching term of the breaking rule was the larger one.
+  broken_bend INTEGER, -- [1] Broken beams for which the bending term was the larger one.
   broken_share REAL, -- [1] Broken beams over all beams.
   first_break REAL, -- [s] Time of the first break; off when none broke.
   last_break REAL, -- [s] Time of the last break; off when none broke.
@@ -286,14 +286,14 @@ CREATE TABLE result_dem ( -- What this engine reports beyond the columns of tabl
   overlap_share REAL, -- [1] Neighbour pairs that overlap over all neighbour pairs, at the end.
   passing_share REAL, -- [1] Fastest approach of two near grains that no beam joins and whose paths meet, over the speed at which they pass through each other. Above 1 the model has no answer for them. Off without contacts.
   late_breaks INTEGER, -- [1] Beams broken in the second half of the run's time.
-  largest_loss REAL, -- [1] How final the run is: M_1/M that the largest fragment lost in the second half of the run's time. Expect about as much in the next doubling of the time.
+  largest_loss REAL, -- [1] Loss of M_1/M of the largest fragment in the second half of the run's time; 0 for a final run. Expect about as much in the next doubling of the time.
   energy_kinetic REAL, -- [J/m] Kinetic energy at the end.
   energy_vibration REAL, -- [J/m] Part of the kinetic energy that is motion inside fragments: neither their translation nor their rotation. Without damping it does not decay, and breaks more beams.
   energy_beam REAL, -- [J/m] Energy stored in beams at the end.
-  energy_contact REAL, -- [J/m] Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).
+  energy_contact REAL, -- [J/m] Energy stored in contacts at the end (printed law: work done on contacts, of which only a part can return).
   energy_damping REAL, -- [J/m] Energy taken by damping.
   energy_friction REAL, -- [J/m] Energy taken by friction.
-  energy_broken_beam REAL, -- [J/m] Energy that broken beams held: what the new surfaces cost. With contact.bonded off, less what contacts store that begin with a break.
+  energy_broken_beam REAL, -- [J/m] Energy of the beams when they broke: the energy of the new surfaces. With contact.bonded off, less what contacts store that begin with a break.
   energy_external_work REAL, -- [J/m] Work done by moving boundaries.
   young_modulus REAL, -- [Pa] K: slope of stress against strain under uniaxial load.
   poisson_ratio REAL, -- [1] nu: minus the slope of lateral against axial strain.
@@ -776,7 +776,7 @@ INSERT INTO column_doc VALUES ('estimate', 'log_likelihood', '1', 'Natural logar
 
 INSERT INTO column_doc VALUES ('estimate', 'lower', 'kg', 'Lower end of the window used (2D: kg per metre of thickness).', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'method', NULL, 'How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff', 1);
+INSERT INTO column_doc VALUES ('estimate', 'method', NULL, 'Method of the estimate. One of: least_squares, binned, masses, ks, cutoff', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'n', '1', 'Fragments in the window.', 1);
 
@@ -808,7 +808,7 @@ INSERT INTO column_doc VALUES ('estimates', 'log_likelihood', '1', 'Natural loga
 
 INSERT INTO column_doc VALUES ('estimates', 'lower', 'kg', 'lower edge, inside the bin', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'method', NULL, 'How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff', 0);
+INSERT INTO column_doc VALUES ('estimates', 'method', NULL, 'Method of the estimate. One of: least_squares, binned, masses, ks, cutoff', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'n', '1', 'Fragments in the window.', 0);
 
@@ -870,7 +870,7 @@ INSERT INTO column_doc VALUES ('point_estimate', 'log_likelihood', '1', 'Natural
 
 INSERT INTO column_doc VALUES ('point_estimate', 'lower', 'kg', 'Lower end of the window used (2D: kg per metre of thickness).', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'method', NULL, 'How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'method', NULL, 'Method of the estimate. One of: least_squares, binned, masses, ks, cutoff', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'n', '1', 'Fragments in the window.', 1);
 
@@ -1010,23 +1010,23 @@ INSERT INTO column_doc VALUES ('resolution', 'results_version', NULL, 'version o
 
 INSERT INTO column_doc VALUES ('resolution', 'verdict', NULL, 'known; at least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge', 0);
 
-INSERT INTO column_doc VALUES ('result_dem', 'beams', '1', 'Beams at the start, those of the explosive left out.', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'beams', '1', 'Number of beams at the start, without those of the explosive grain.', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'broken', '1', 'Beams broken.', 1);
 
-INSERT INTO column_doc VALUES ('result_dem', 'broken_bend', '1', 'Beams broken with the bending term the larger one.', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'broken_bend', '1', 'Broken beams for which the bending term was the larger one.', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'broken_share', '1', 'Broken beams over all beams.', 1);
 
-INSERT INTO column_doc VALUES ('result_dem', 'broken_stretch', '1', 'Beams broken with the stretching term of the breaking rule the larger one.', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'broken_stretch', '1', 'Broken beams for which the stretching term of the breaking rule was the larger one.', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'end_triangle_share', '1', 'Compression: share of beams broken inside the two 45-degree triangles on the confined ends, over the same share outside them, up to the largest stress. 0 is intact triangles, 1 no pattern.', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'energy_beam', 'J/m', 'Energy stored in beams at the end.', 1);
 
-INSERT INTO column_doc VALUES ('result_dem', 'energy_broken_beam', 'J/m', 'Energy that broken beams held: what the new surfaces cost. With contact.bonded off, less what contacts store that begin with a break.', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'energy_broken_beam', 'J/m', 'Energy of the beams when they broke: the energy of the new surfaces. With contact.bonded off, less what contacts store that begin with a break.', 1);
 
-INSERT INTO column_doc VALUES ('result_dem', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which only a part can return).', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'energy_damping', 'J/m', 'Energy taken by damping.', 1);
 
@@ -1046,9 +1046,9 @@ INSERT INTO column_doc VALUES ('result_dem', 'final_strain', '1', 'Strain at the
 
 INSERT INTO column_doc VALUES ('result_dem', 'first_break', 's', 'Time of the first break; off when none broke.', 1);
 
-INSERT INTO column_doc VALUES ('result_dem', 'grains', '1', 'Grains, the explosive one left out.', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'grains', '1', 'Number of grains, without the explosive one.', 1);
 
-INSERT INTO column_doc VALUES ('result_dem', 'largest_loss', '1', 'How final the run is: M_1/M that the largest fragment lost in the second half of the run''s time. Expect about as much in the next doubling of the time.', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'largest_loss', '1', 'Loss of M_1/M of the largest fragment in the second half of the run''s time; 0 for a final run. Expect about as much in the next doubling of the time.', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'last_break', 's', 'Time of the last break; off when none broke.', 1);
 
@@ -1216,7 +1216,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'undamaged_fraction', '1', 'Mass sh
 
 INSERT INTO column_doc VALUES ('run', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
 
-INSERT INTO column_doc VALUES ('run', 'complete_mass', 'kg', 'Mass from which the spectrum of fragments is complete: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 1);
+INSERT INTO column_doc VALUES ('run', 'complete_mass', 'kg', 'The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 1);
 
 INSERT INTO column_doc VALUES ('run', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
 
@@ -1226,7 +1226,7 @@ INSERT INTO column_doc VALUES ('run', 'digest', NULL, 'changes when any bit chan
 
 INSERT INTO column_doc VALUES ('run', 'dust_fraction', '1', 'Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 1);
 
-INSERT INTO column_doc VALUES ('run', 'energy_error', '1', 'Energy that errors of the computation made or lost, as a share of the energy put in.', 1);
+INSERT INTO column_doc VALUES ('run', 'energy_error', '1', 'Energy gained or lost by numerical errors, as a share of the energy put in.', 1);
 
 INSERT INTO column_doc VALUES ('run', 'fields_path', NULL, 'HDF5 file with its fields, relative to the store''s folder; NULL when none was kept', 0);
 
@@ -1248,7 +1248,7 @@ INSERT INTO column_doc VALUES ('run', 'mean_fragment_mass_rest', 'kg', 'The same
 
 INSERT INTO column_doc VALUES ('run', 'message', NULL, 'What went wrong, in words; empty when nothing did.', 1);
 
-INSERT INTO column_doc VALUES ('run', 'momentum_error', '1', 'Change of total momentum that no outer force explains, as a share of the sum of the momenta of all grains or particles.', 1);
+INSERT INTO column_doc VALUES ('run', 'momentum_error', '1', 'Change of total momentum minus the impulse of external forces, as a share of the sum of the momenta of all grains or particles.', 1);
 
 INSERT INTO column_doc VALUES ('run', 'peak_memory', 'B', 'largest resident memory of the successful attempt', 0);
 
@@ -1284,21 +1284,21 @@ INSERT INTO column_doc VALUES ('run', 'total_mass', 'kg', 'Mass of the body at t
 
 INSERT INTO column_doc VALUES ('run', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('run', 'warnings', NULL, 'Doubts about a usable run, as words; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 1);
+INSERT INTO column_doc VALUES ('run', 'warnings', NULL, 'Doubts about a usable run, a word for each; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 1);
 
 INSERT INTO column_doc VALUES ('runs', 'angular_momentum_error', '1', 'Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'beams', '1', 'Beams at the start, those of the explosive left out.', 0);
+INSERT INTO column_doc VALUES ('runs', 'beams', '1', 'Number of beams at the start, without those of the explosive grain.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'broken', '1', 'Beams broken.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'broken_bend', '1', 'Beams broken with the bending term the larger one.', 0);
+INSERT INTO column_doc VALUES ('runs', 'broken_bend', '1', 'Broken beams for which the bending term was the larger one.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'broken_share', '1', 'Broken beams over all beams.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'broken_stretch', '1', 'Beams broken with the stretching term of the breaking rule the larger one.', 0);
+INSERT INTO column_doc VALUES ('runs', 'broken_stretch', '1', 'Broken beams for which the stretching term of the breaking rule was the larger one.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'cease_time', 's', 'Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture has not ceased.', 0);
 
@@ -1312,7 +1312,7 @@ INSERT INTO column_doc VALUES ('runs', 'compaction_reach', 'm', 'Impact: largest
 
 INSERT INTO column_doc VALUES ('runs', 'compaction_volume', 'm^3', 'Impact: volume that the retained matter lost as its pores closed; off without pores.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'complete_mass', 'kg', 'Mass from which the spectrum of fragments is complete: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 0);
+INSERT INTO column_doc VALUES ('runs', 'complete_mass', 'kg', 'The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
 
@@ -1340,17 +1340,17 @@ INSERT INTO column_doc VALUES ('runs', 'end_triangle_share', '1', 'Compression: 
 
 INSERT INTO column_doc VALUES ('runs', 'energy_beam', 'J/m', 'Energy stored in beams at the end.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_broken_beam', 'J/m', 'Energy that broken beams held: what the new surfaces cost. With contact.bonded off, less what contacts store that begin with a break.', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_broken_beam', 'J/m', 'Energy of the beams when they broke: the energy of the new surfaces. With contact.bonded off, less what contacts store that begin with a break.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_clamped', 'J', 'Energy added where internal energy would have become negative.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which only a part can return).', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_damped', 'J', 'Energy that the damping layer of a box took out of motion (sides.far: damped); 0 in all other scenes.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_damping', 'J/m', 'Energy taken by damping.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_error', '1', 'Energy that errors of the computation made or lost, as a share of the energy put in.', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_error', '1', 'Energy gained or lost by numerical errors, as a share of the energy put in.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_external_work', 'J/m', 'Work done by moving boundaries.', 0);
 
@@ -1384,7 +1384,7 @@ INSERT INTO column_doc VALUES ('runs', 'fragment_count', '1', 'Fragments of any 
 
 INSERT INTO column_doc VALUES ('runs', 'frequency', '1/s', 'Vibration: frequency of the first mode, from its zero crossings.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'grains', '1', 'Grains, the explosive one left out.', 0);
+INSERT INTO column_doc VALUES ('runs', 'grains', '1', 'Number of grains, without the explosive one.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'host', NULL, 'machine that computed it', 0);
 
@@ -1402,7 +1402,7 @@ INSERT INTO column_doc VALUES ('runs', 'largest_dynamic_fraction', '1', 'M_1/M w
 
 INSERT INTO column_doc VALUES ('runs', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_loss', '1', 'How final the run is: M_1/M that the largest fragment lost in the second half of the run''s time. Expect about as much in the next doubling of the time.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_loss', '1', 'Loss of M_1/M of the largest fragment in the second half of the run''s time; 0 for a final run. Expect about as much in the next doubling of the time.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass. Off when that has fewer than 100 particles.', 0);
 
@@ -1434,7 +1434,7 @@ INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass_rest', 'kg', 'The sam
 
 INSERT INTO column_doc VALUES ('runs', 'message', NULL, 'What went wrong, in words; empty when nothing did.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'momentum_error', '1', 'Change of total momentum that no outer force explains, as a share of the sum of the momenta of all grains or particles.', 0);
+INSERT INTO column_doc VALUES ('runs', 'momentum_error', '1', 'Change of total momentum minus the impulse of external forces, as a share of the sum of the momenta of all grains or particles.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'neighbours', '1', 'Mean number of neighbours within 2h at the end.', 0);
 
@@ -1556,7 +1556,7 @@ INSERT INTO column_doc VALUES ('runs', 'upright_share', '1', 'Compression: broke
 
 INSERT INTO column_doc VALUES ('runs', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'warnings', NULL, 'Doubts about a usable run, as words; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 0);
+INSERT INTO column_doc VALUES ('runs', 'warnings', NULL, 'Doubts about a usable run, a word for each; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 0);
 

@@ -358,7 +358,7 @@ status unit_read(const char *text, const char *expected_unit, double *si, struct
 
   char shifted[512]; /* the powers of ten of number and unit together: one rounding */
   if (number.mantissa > sizeof shifted - 32)
-    return status_fail(error, STATUS_CONTENT, "a number of more than 480 digits is refused");
+    return status_fail(error, STATUS_CONTENT, "a number of more than 480 digits; write fewer");
   snprintf(shifted, sizeof shifted, "%.*se%ld", (int)number.mantissa, text, number.exponent + got.ten);
   const double value = strtod(shifted, NULL) * got.times / got.per;
   if (!isfinite(value))

@@ -139,7 +139,9 @@ static status step(struct ensemble_kalman *e, struct work *w, struct error *erro
   const size_t d = e->outputs;
   find_good(e, w);
   if (w->good < 3)
-    return status_fail(error, STATUS_CONTENT, "only %zu of %zu members of the ensemble have results; three are needed",
+    return status_fail(error, STATUS_CONTENT,
+                       "only %zu of %zu members of the ensemble have results, and a fit needs three: see `clast query "
+                       "STORE --named failures`",
                        w->good, e->members);
   find_covariances(e, w);
   memcpy(w->root, e->gamma, d * d * sizeof(double));

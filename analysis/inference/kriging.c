@@ -150,7 +150,7 @@ status kriging_fit(const struct kriging_data *data, struct kriging **out, struct
   *out = NULL;
   if (data->points < 3 || data->inputs == 0 || data->inputs > KRIGING_INPUTS)
     return status_fail(error, STATUS_CONTENT,
-                       "a surface needs three points or more, and 1 to %d inputs; there are %zu points and %zu inputs",
+                       "kriging needs three points or more, and 1 to %d inputs; there are %zu points and %zu inputs",
                        KRIGING_INPUTS, data->points, data->inputs);
   struct kriging *k = calloc(1, sizeof *k);
   if (!k || !copy(data, k)) {
@@ -159,7 +159,9 @@ status kriging_fit(const struct kriging_data *data, struct kriging **out, struct
   }
   status code = maximise_on_part(k, error);
   if (code == STATUS_OK && !factorise(k))
-    code = status_fail(error, STATUS_INTERNAL, "the covariance of a surface is not positive");
+    code = status_fail(
+        error, STATUS_INTERNAL,
+        "the covariance of a kriging surface is not positive: points are too close together, or have no scatter");
   if (code != STATUS_OK) {
     kriging_free(k);
     return code;

@@ -141,7 +141,9 @@ static status make_grid(const struct posterior_model *model, struct posterior *o
   for (int zoom = 0; zoom < ZOOMS && shrink(model, out, most, side, &box) < 0.5; zoom++)
     most = fill_grid(model, &box, side, out);
   if (most == -HUGE_VAL)
-    return status_fail(error, STATUS_CONTENT, "no inputs of the priors give what was measured any likelihood");
+    return status_fail(
+        error, STATUS_CONTENT,
+        "no inputs within the priors give the measured values: widen the priors (`vary`), or check the measurements");
   normalise(out, most);
   return STATUS_OK;
 }

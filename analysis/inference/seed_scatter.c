@@ -121,10 +121,9 @@ status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, 
                        SEED_SCATTER_INPUTS);
   const double pooled = pooled_variance(runs, &out->freedom);
   if (out->freedom == 0)
-    return status_fail(
-        error, STATUS_CONTENT,
-        "no point has two runs with a value of this output, so that its scatter over seeds is not known: "
-        "more seeds (seeds.per_point), or another quantity");
+    return status_fail(error, STATUS_CONTENT,
+                       "no point has two runs with a value of this output, so its scatter over seeds is not known: "
+                       "give more seeds (seeds.per_point), or another quantity");
   out->constant = pooled > 0 ? log(pooled) : -700; /* an output that no seed moves */
   if (pooled > 0)
     fit_line(runs, pooled, out);

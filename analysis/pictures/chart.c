@@ -199,11 +199,10 @@ static status read_template(const struct picture_page *page, const char *name, c
   snprintf(path, sizeof path, "%s/%s.gp", page->templates, name);
   FILE *in = fopen(path, "r");
   if (!in)
-    return status_fail(
-        error, STATUS_MISSING,
-        "%s: there is no such template. Copy all of them from share/clast/templates of the installation, or from "
-        "analysis/pictures/templates of the source, and change the copies",
-        path);
+    return status_fail(error, STATUS_MISSING,
+                       "%s: there is no such template. Copy all templates from share/clast/templates of the "
+                       "installation, or from analysis/pictures/templates of the source, and change the copies",
+                       path);
   *text = calloc(MOST + 1, 1);
   if (*text)
     (*text)[fread(*text, 1, MOST, in)] = '\0';

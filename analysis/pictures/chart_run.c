@@ -73,8 +73,8 @@ static status run_gnuplot(const struct folder *folder, int *end, struct error *e
   posix_spawn_file_actions_destroy(&actions);
   if (code == ENOENT)
     return status_fail(error, STATUS_MISSING,
-                       "there is no gnuplot on this machine, which draws the charts of clast: `apt-get install "
-                       "gnuplot-nox`. Tables and --plot need none");
+                       "gnuplot draws the charts of clast, and this machine has none: `apt-get install gnuplot-nox`. "
+                       "Tables and --plot do not need it");
   if (code)
     return status_fail(error, STATUS_MEMORY, "gnuplot does not start: %s", strerror(code));
   while (waitpid(child, &state, 0) < 0)

@@ -61,8 +61,8 @@ status picture_curves(const struct picture_page *page, const struct picture_word
   double range[2];
   const char *labels[PICTURE_SERIES];
   if (count > PICTURE_SERIES)
-    return status_fail(error, STATUS_USAGE, "%s: %zu curves are too many to be told apart; at most %d", page->path,
-                       count, PICTURE_SERIES);
+    return status_fail(error, STATUS_USAGE, "%s: %zu curves are too many for one chart; at most %d", page->path, count,
+                       PICTURE_SERIES);
   if (!range_of(count, curve, range))
     return status_fail(error, STATUS_USAGE, "%s: there is nothing to draw", page->path);
   struct chart *chart = chart_new("lines");

@@ -72,7 +72,7 @@ status picture_map(const struct picture_page *page, const struct picture_words *
     return status_fail(error, STATUS_USAGE, "%s: an axis of the map is empty or not finite", page->path);
   for (size_t i = 0; i < count; i++)
     if (!isfinite(points[i][0]) || !isfinite(points[i][1]))
-      return status_fail(error, STATUS_USAGE, "%s: a point of the map has no place on its axes", page->path);
+      return status_fail(error, STATUS_USAGE, "%s: a point of the map is not on its axes", page->path);
   struct axis x = {.values = malloc(count * sizeof *x.values)}, y = {.values = malloc(count * sizeof *y.values)};
   double *value = NULL;
   status code = x.values && y.values ? STATUS_OK : STATUS_MEMORY;

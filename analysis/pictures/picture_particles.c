@@ -211,7 +211,8 @@ static status compose(const char *path, double width, struct picture_scene *s, s
   if (s->discs > 0)
     return draw(path, width, s, error);
   if (s->look->view == PICTURE_CUT)
-    return status_fail(error, STATUS_USAGE, "%s: the plane meets no particle", path);
+    return status_fail(error, STATUS_USAGE, "%s: the plane of the cut meets no particle: choose another --at or --axis",
+                       path);
   return status_fail(error, STATUS_USAGE, "%s: there is no particle to draw", path);
 }
 

@@ -45,7 +45,7 @@ static const struct field rows_of_table[] = {
      .choice_docs = method_docs,
      .minimum = 0,
      .maximum = EXPONENT_METHODS - 1,
-     .doc = "How the exponent was estimated."},
+     .doc = "Method of the estimate."},
     {.path = "headline",
      .kind = FIELD_BOOLEAN,
      .offset = AT(headline),
@@ -172,9 +172,8 @@ status estimates_named(const char *name, bool *is, enum exponent_method *method,
         return STATUS_OK;
       text_append(all, sizeof all, ", %s", known);
     }
-  return status_fail(error, STATUS_USAGE,
-                     "'%s' is no exponent that points have: give beta, or beta_METHOD_WINDOW, which is one of%s", name,
-                     all + 1);
+  return status_fail(error, STATUS_USAGE, "'%s' is no exponent of a point: give beta, or beta_METHOD_WINDOW, one of%s",
+                     name, all + 1);
 }
 
 const char *estimates_short_name(const char *name) {

@@ -111,7 +111,7 @@ static bool is_grid(const struct scatter_table *t) {
 status scatter_split(const struct scatter_table *t, struct scatter_part *parts, struct error *error) {
   if (t->points < 2 || t->runs < 2)
     return status_fail(error, STATUS_USAGE,
-                       "a variance is split over two points and two runs of each at least, not %zu points with %zu",
+                       "splitting a variance needs at least two points with two runs each, not %zu points with %zu",
                        t->points, t->runs);
   double *room = malloc(4 * t->points * sizeof *room);
   uint32_t *all = malloc(t->runs * sizeof *all);

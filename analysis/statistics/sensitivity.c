@@ -136,7 +136,7 @@ static struct sample_interval interval_of(struct asking *a) {
 status sensitivity_sobol(const struct sensitivity_table *t, struct sensitivity_index *index, struct error *error) {
   const size_t n = t->blocks * (t->inputs + 2) * t->seeds, most = t->blocks > t->seeds ? t->blocks : t->seeds;
   if (t->blocks < 2 || t->seeds < 1 || t->inputs < 1)
-    return status_fail(error, STATUS_USAGE, "Sobol indices need two blocks of points with a result at least, not %zu",
+    return status_fail(error, STATUS_USAGE, "Sobol indices need at least two blocks of points with a result, not %zu",
                        t->blocks);
   double *centred = malloc(n * sizeof *centred), mean = 0;
   uint32_t *all = malloc(most * sizeof *all);
@@ -176,7 +176,7 @@ static double mean_absolute(size_t n, const uint32_t *chosen, void *context) {
 status sensitivity_morris(const struct sensitivity_table *t, const size_t *order, const double *step,
                           struct sensitivity_effect *effect, struct error *error) {
   if (t->blocks < 2 || t->seeds < 1)
-    return status_fail(error, STATUS_USAGE, "elementary effects need two trajectories with results at least, not %zu",
+    return status_fail(error, STATUS_USAGE, "elementary effects need at least two trajectories with results, not %zu",
                        t->blocks);
   double *effects = malloc(t->inputs * t->blocks * sizeof *effects);
   if (!effects)

@@ -23,7 +23,7 @@ static bool is_number(const struct query_value *value) {
 static status add(void *context, const struct quantity_row *row, struct error *error) {
   struct map_tiles *map = context;
   if (map->count == MOST_GROUPS)
-    return status_fail(error, STATUS_USAGE, "a map of more than %d points cannot be read", MOST_GROUPS);
+    return status_fail(error, STATUS_USAGE, "a map has at most %d points: choose axes with fewer values", MOST_GROUPS);
   if (!is_number(&row->input[0]) || !is_number(&row->input[1]))
     return STATUS_OK; /* off, or does not apply: it has no place on an axis of numbers */
 

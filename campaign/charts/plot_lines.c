@@ -30,7 +30,7 @@ static status find_line(struct plot_lines *plot, const char *value, int64_t vers
       return STATUS_OK;
   }
   if (plot->count == MOST_LINES)
-    return status_fail(error, STATUS_USAGE, "more than %d lines cannot be told apart: choose a --by with fewer values",
+    return status_fail(error, STATUS_USAGE, "a chart has at most %d lines: choose a --by with fewer values",
                        MOST_LINES);
 
   struct line *line = &plot->line[plot->count];
@@ -48,7 +48,7 @@ static status add(void *context, const struct quantity_row *row, struct error *e
   struct plot_lines *plot = context;
   const struct query_value *x = &row->input[0];
   if (x->kind == QUERY_TEXT)
-    return status_fail(error, STATUS_USAGE, "%s is no number: it can tell lines apart (--by), but is no axis",
+    return status_fail(error, STATUS_USAGE, "%s is no number, so it cannot be an axis: give it to --by",
                        plot->quantity.column[0]);
   if (x->kind == QUERY_NULL)
     return STATUS_OK; /* off, or does not apply: it has no place on an axis of numbers */
@@ -64,12 +64,13 @@ static status add(void *context, const struct quantity_row *row, struct error *e
   if (code)
     return code;
   if (line->count == MOST_MEANS)
-    return status_fail(error, STATUS_USAGE, "a line of more than %d points cannot be read", MOST_MEANS);
+    return status_fail(error, STATUS_USAGE, "a line has at most %d points: choose an axis with fewer values",
+                       MOST_MEANS);
   for (size_t i = 0; plot->quantity.exponent && i < line->count; i++)
     if (line->means[i].x == x->real)
       return status_fail(
           error, STATUS_USAGE,
-          "several points share %s = %g and one line: their exponents are not averaged; tell them apart by --by",
+          "several points share %s = %g and one line, and their exponents cannot be averaged: separate them by --by",
           plot->quantity.column[0], x->real);
   line->means[line->count++] = (struct picture_mean){x->real, row->value, row->lower, row->upper, row->resolution};
   return STATUS_OK;

@@ -72,9 +72,9 @@ const struct command cite_command = {
     .arguments = "SCENE",
     .summary = "the papers behind what a scene switches on",
     .doc =
-        "Prints the sources of a scene (a built-in name or a file) with their DOIs: of its engine, of the inputs that\n"
-        "have an effect, of the values of its materials, and of the results. With --bibtex it prints the papers as\n"
-        "entries for a bibliography. `clast explain SCENE` has the sources of the modules that are on.",
+        "Prints the sources of a scene (a built-in name or a file) with their DOIs: sources of its engine, of the\n"
+        "inputs that have an effect, of the values of its materials, and of the results. With --bibtex it prints the\n"
+        "papers as BibTeX entries. `clast explain SCENE` shows the sources of the modules that are on.",
     .examples = "clast cite disc-explosion\nclast cite basalt-sphere --bibtex > papers.bib",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

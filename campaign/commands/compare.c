@@ -65,10 +65,10 @@ const struct command compare_command = {
     .arguments = "A B",
     .summary = "the difference of a result between points, campaigns or stores",
     .doc =
-        "A and B are each STORE, STORE:POINT (its number) or STORE:CAMPAIGN (its name). Of two points it prints one\n"
-        "row, else a row for each pair of points with the same varied inputs: the means and their difference, b\n"
-        "less a, with the half width of its 95 % interval. Runs with one seed on both sides are compared as pairs,\n"
-        "if at least half of the runs have one; else the sides count as independent (Welch).",
+        "A and B are each STORE, STORE:POINT (its number) or STORE:CAMPAIGN (its name). For two points the command\n"
+        "prints one row, else a row for each pair of points with the same varied inputs: the means and their\n"
+        "difference, b minus a, with the half width of its 95 % interval. If at least half of the runs have the same\n"
+        "seed on both sides, it compares these as pairs; else the sides count as independent (Welch).",
     .examples = "clast compare out.db:1 out.db:2\nclast compare out.db out.db:demo --quantity fragment_count --csv",
     .minimum_arguments = 2,
     .maximum_arguments = 2,

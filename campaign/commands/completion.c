@@ -37,7 +37,7 @@ static status run(const struct command_line *line, struct error *error) {
       shells[i].print(commands_count(), commands_all(), stdout);
       return STATUS_OK;
     }
-  return status_fail(error, STATUS_USAGE, "completion is made for bash, zsh and fish, not for \"%.64s\"",
+  return status_fail(error, STATUS_USAGE, "completion exists for bash, zsh and fish, not for \"%.64s\"",
                      line->arguments[0]);
 }
 
@@ -48,7 +48,7 @@ const struct command completion_command = {
     .summary = "print the completion script of bash, zsh or fish",
     .doc = "Prints a script that lets a shell complete commands, options and file names with the Tab key. `cmake "
            "--install`\n"
-           "puts the scripts of all three where the shells look for them.",
+           "puts all three scripts into the folders of the shells.",
     .examples =
         "source <(clast completion bash)\nclast completion bash > ~/.local/share/bash-completion/completions/clast",
     .minimum_arguments = 1,

@@ -45,8 +45,8 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     OPTION_ROW_LIST("knob", 'k', "NAMES", struct options, request.knobs,
-                    "What is made coarser and finer: names or groups, comma-separated, or NAME=LEVEL,LEVEL... with "
-                    "levels of your own. May be given several times. Default: the groups resolution and settings."),
+                    "Knobs to change: names or groups, comma-separated, or NAME=LEVEL,LEVEL... with levels of your "
+                    "own. May be given several times. Default: the groups resolution and settings."),
     OPTION_ROW_TEXT(
         "quantity", 'q', "NAMES", struct options, request.quantity, NULL,
         "Results to study, comma-separated; beta or beta_METHOD_WINDOW is the exponent of all runs of a level "
@@ -56,7 +56,7 @@ static const struct option_row rows[] = {
                     "Add seeds until the half width of every bias is below this: a number in the quantity's SI unit, a "
                     "share of its value at the finest level (\"5 %\"), or off: one round only."),
     OPTION_ROW_TEXT("seconds", 0, "S", struct options, request.seconds, NULL,
-                    "Stop adding runs after this wall time. Levels whose first runs would not fit are left out."),
+                    "Stop adding runs after this wall time, and leave out levels whose first runs would take longer."),
     OPTION_ROW_INTEGER("seeds", 0, "N", struct options, request.first_seeds, 2, 1000000, "4",
                        "Seeds of the first round."),
     OPTION_ROW_INTEGER("max-seeds", 0, "N", struct options, request.most_seeds, 2, 1000000, "32",
@@ -68,7 +68,8 @@ static const struct option_row rows[] = {
     OPTION_ROW_TEXT("picture", 0, "FILE", struct options, picture, NULL,
                     "Draw the first quantity over the cost of a run, a curve per knob (.png, .svg or .pdf)."),
     OPTION_ROW_TEXT("frontier", 0, "FILE", struct options, frontier, NULL,
-                    "Draw its error over the cost of a run, with the frontier: the levels worth their cost."),
+                    "Draw its error over the cost of a run, with the frontier: no other level has less error at the "
+                    "same or lower cost."),
     OPTION_ROW_FLAG("list", 0, struct options, list, "Print all knobs and stop."),
     LAUNCH_OPTIONS(struct options, launch),
     TABLE_OPTIONS(struct options, launch.table),
@@ -83,9 +84,9 @@ const struct command converge_command = {
         "Runs a scene, or every point of a campaign, with coarser and finer settings (knobs: particles, time step,\n"
         "precision, ...) and the same seeds. For every level it prints the bias against the finest one with its 95 %\n"
         "interval, the scatter between seeds, the processor time, and the correlation with the next finer level. It\n"
-        "measures the order of convergence and extrapolates, or says that differences do not shrink. Seeds are added\n"
-        "until every bias is known (--within) or the time is spent. The runs and the findings stay in the store; the\n"
-        "same command goes on after a stop.",
+        "measures the order of convergence and extrapolates, or says that differences do not shrink. It adds seeds\n"
+        "until every bias is known (--within) or the time is over. The store keeps the runs and the answers; after a\n"
+        "stop the same command continues.",
     .examples = "clast converge disc-explosion --set body.diameter='8 cm' --knob grains,time_step --seconds 20\n"
                 "clast converge basalt-sphere --set particles=3000 --knob particles=1000,3000,9000 --seconds 60",
     .minimum_arguments = 0,

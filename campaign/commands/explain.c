@@ -48,12 +48,13 @@ const struct command explain_command = {
     .arguments = "[PATH|WORD|SCENE]",
     .summary = "what an input or result means; what a scene models and costs",
     .doc =
-        "With a PATH (threshold.strain, or strain if that is unique, or contact for a section, or a key of a\n"
-        "campaign): meaning, unit, range, default and source. Results are known by each of their names\n"
-        "(with dots or underscores, or with _mean behind it). With a word (campaign, results, sph, censored,\n"
-        "interval, a column of the store): what it means. With a SCENE (a built-in name or a file): what is modelled\n"
-        "and why, the expected cost, and every input with its value; with --json or --csv the inputs only. Without\n"
-        "argument: a table of all inputs, results and keys.",
+        "With a PATH (threshold.strain, or strain if that is unique, or contact for a section, or a key of a "
+        "campaign):\n"
+        "meaning, unit, range, default and source. A result may have any of its names (with dots or underscores, or\n"
+        "with _mean at the end). With a WORD (campaign, results, sph, censored, interval, a column of the store): its\n"
+        "meaning. With a SCENE (a built-in name or a file): the modules that are on and why, the expected cost, and\n"
+        "every input with its value; with --json or --csv the inputs only. Without argument: a table of all inputs,\n"
+        "results and keys.",
     .examples = "clast explain threshold.strain\nclast explain disc-explosion --set threshold.strain=5%",
     .maximum_arguments = 1,
     COMMAND_OPTIONS(struct options, rows),

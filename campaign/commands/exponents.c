@@ -41,8 +41,9 @@ static const struct option_row option_rows[] = {
                        "Only this point (point_id in the view points); 0: all."),
     OPTION_ROW_TEXT("where", 'w', "SQL", struct options, where, NULL,
                     "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\"."),
-    OPTION_ROW_INTEGER("draws", 0, "N", struct options, draws, 100, 1000000, "2500",
-                       "Samples of the bootstrap; 2500 give p within 0.01. It ends earlier when p is large."),
+    OPTION_ROW_INTEGER(
+        "draws", 0, "N", struct options, draws, 100, 1000000, "2500",
+        "Samples of the bootstrap; 2500 give p within 0.01. The bootstrap ends earlier when p is large."),
     TABLE_OPTIONS(struct options, table),
 };
 
@@ -54,9 +55,10 @@ const struct command exponents_command = {
     .doc =
         "Prints for every point the exponents of F(m) (fragments per kg), N(>m), F(L) (fragments per m of size) and\n"
         "N(>L): beta, beta - 1, D + 1 and D = d (beta - 1) in d dimensions, by maximum likelihood on masses. p is the\n"
-        "share of samples drawn from the fit that lie farther from their own fits than the runs do from theirs\n"
-        "(Clauset, Shalizi & Newman 2009), by Kolmogorov's distance; below 0.1 a power law does not fit. It takes\n"
-        "the fragments of a run as independent. All cores work on it.",
+        "share of samples drawn from the fit whose Kolmogorov distance to their own fit is larger than that of the "
+        "runs\n"
+        "(Clauset, Shalizi & Newman 2009); below 0.1 a power law does not fit. The test treats the fragments of a run\n"
+        "as independent. It uses all cores.",
     .examples = "clast exponents out.db\nclast exponents out.db --point 1 --draws 10000 --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

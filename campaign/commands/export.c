@@ -75,17 +75,17 @@ static const struct option_row option_rows[] = {
                     "Write a folder of CSV files: runs, points, spectra, estimates, and column_doc with the meaning "
                     "and unit of each column."),
     OPTION_ROW_FLAG("bits", 0, struct options, bits,
-                    "Write every value that does not depend on where and when a run was computed, as text in the order "
-                    "of identities. Two stores of one campaign give the same file, however they were computed."),
+                    "Write every value that does not depend on the place and time of the computation, as text in the "
+                    "order of identities. Two stores of one campaign give the same file."),
     OPTION_ROW_FLAG(
         "cinema", 0, struct options, cinema,
         "Write a Cinema database (specification D) for its viewers: a folder with data.csv, and pictures of "
         "all runs whose fields are kept and of their points' spectra."),
     OPTION_ROW_FLAG("crate", 0, struct options, crate,
                     "Write an RO-Crate (Process Run Crate) for an archive: a folder with the store, the campaigns, "
-                    "tables as CSV, and metadata: which program made them, and when."),
+                    "tables as CSV, and metadata (program and time)."),
     OPTION_ROW_TEXT("license", 0, "URL", struct options, license, NULL,
-                    "Of the crate, such as https://creativecommons.org/licenses/by/4.0/."),
+                    "License of the crate, such as https://creativecommons.org/licenses/by/4.0/."),
     OPTION_ROW_TEXT("author", 0, "NAME", struct options, author, NULL, "Of the crate."),
 };
 
@@ -94,8 +94,9 @@ const struct command export_command = {
     .group = "the store",
     .arguments = "STORE [TARGET]",
     .summary = "one compact file for hand-over, or rows for other programs",
-    .doc = "Writes a compact copy of the store as one SQLite file, also while a campaign is running; or\n"
-           "what the options say. It never overwrites a store. It does overwrite its other files.",
+    .doc = "Writes a compact copy of the store as one SQLite file, also while a campaign is running. Options choose "
+           "other\n"
+           "formats. The command never overwrites a store; it overwrites other files.",
     .examples = "clast export out.db handover.db\nclast export out.db --per point > points.csv",
     .minimum_arguments = 1,
     .maximum_arguments = 2,

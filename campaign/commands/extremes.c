@@ -43,7 +43,7 @@ static status run(const struct command_line *line, struct error *error) {
 static const struct option_row rows[] = {
     OPTION_ROW_TEXT("picture", 'p', "FILE.png", struct options, picture, NULL,
                     "Draw the map: a row of tiles for each varied input, divided into safe, warned and refused runs."),
-    OPTION_ROW_FLAG("why", 0, struct options, why, "With --json or --csv: the reasons instead of the campaigns."),
+    OPTION_ROW_FLAG("why", 0, struct options, why, "With --json or --csv: print the reasons instead of the campaigns."),
     TABLE_OPTIONS(struct options, table),
 };
 
@@ -53,9 +53,10 @@ const struct command extremes_command = {
     .arguments = "STORE",
     .summary = "which runs are safe, warned or refused, and why",
     .doc =
-        "Prints one row per campaign: runs that are safe, runs with words in the result `warnings`, and runs refused\n"
-        "by their state; the largest drift of energy of usable runs, and how many of those drift by more than 1 %\n"
-        "without a word. Then one row per reason, with a message. Made for campaigns over extreme inputs.",
+        "Prints one row per campaign: the numbers of safe runs, of runs with words in the result `warnings`, and of\n"
+        "runs refused by their state; the largest drift of energy of usable runs, and how many of these drift by more\n"
+        "than 1 % without a warning. Then it prints one row per reason, with a message. Use it for campaigns over\n"
+        "extreme inputs.",
     .examples = "clast extremes out.db\nclast extremes out.db --picture map.png",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -14,19 +14,18 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_INTEGER(
-        "rounds", 'r', "N", struct fit_launch_options, rounds, 3, FIT_MOST_ROUNDS, "8",
-        "Rounds at most: all but two move the ensemble, one runs where it has arrived, one at places drawn "
-        "from the posterior."),
+    OPTION_ROW_INTEGER("rounds", 'r', "N", struct fit_launch_options, rounds, 3, FIT_MOST_ROUNDS, "8",
+                       "Maximum number of rounds: all but two move the ensemble, one runs at its last points, one at "
+                       "points drawn from the posterior."),
     OPTION_ROW_INTEGER("check", 0, "N", struct fit_launch_options, check, 0, 100000, "0",
                        "Then fit again by approximate Bayesian computation with N particles (100 or more), each a "
-                       "specimen of its own: for results with two modes. 0: not."),
+                       "specimen of its own: for results with two modes. 0: no check."),
     OPTION_ROW_INTEGER("seed", 0, "N", struct fit_launch_options, seed, 0, INT64_MAX, "1",
-                       "Of what the fit draws. The seeds of the runs are the campaign's."),
+                       "Seed of the fit's random numbers. The seeds of the runs are the campaign's."),
     OPTION_ROW_TEXT("store", 0, "FILE", struct fit_launch_options, store, NULL,
                     "Store of the runs. Default: the campaign's."),
     OPTION_ROW_TEXT("picture", 0, "FILE", struct fit_launch_options, picture, NULL,
-                    "Draw what was measured beside what the fit predicts for one more experiment (.png, .svg, .pdf)."),
+                    "Draw the measurements beside the prediction for one more experiment (.png, .svg, .pdf)."),
     CHART_OPTIONS(struct fit_launch_options, chart),
     LAUNCH_OPTIONS(struct fit_launch_options, launch),
     TABLE_OPTIONS(struct fit_launch_options, launch.table),
@@ -38,10 +37,10 @@ const struct command fit_command = {
     .arguments = "MEASURED.yaml CAMPAIGN.yaml",
     .summary = "which inputs give what was measured, with intervals",
     .doc =
-        "The campaign says what is not known: each law in its `vary` is the prior of an input, its sampled `design` "
+        "The campaign has the unknown inputs: each law in its `vary` is the prior of an input, its sampled `design` "
         "is\n"
-        "the first ensemble (20 to 100 points), and `seeds: {per_point: N}` are the seeds of each point (2 at least).\n"
-        "The other document says what was measured, for example:\n"
+        "the first ensemble (20 to 100 points), and `seeds: {per_point: N}` are the seeds of each point (at least 2).\n"
+        "The other document has the measurements, for example:\n"
         "\n"
         "  name: basalt sphere\n"
         "  source: who measured it, and where it is printed\n"
@@ -53,19 +52,18 @@ const struct command fit_command = {
         "        - {quantity: count_above, share: 0.01, value: 7}\n"
         "    - fragments: {total: 302 g, complete: 0.5 g, masses: [94 g, 31 g, 12 g]}\n"
         "\n"
-        "A quantity is any result of a run, beta or beta_METHOD_WINDOW, count_above: how many fragments are heavier "
-        "than\n"
-        "`share` of the body, or share_above: their share of its mass, which a sieve holds back. `error` is the "
-        "standard\n"
-        "deviation of the measurement, `resolution` that of what a finer resolution would change (else a study by\n"
-        "`clast converge` in the store is asked). `specimens: N` in a shot: its values are means of N. `set` gives a\n"
-        "shot's own inputs. A list of masses becomes the largest fragment and up to four numbers above.\n"
+        "A quantity is any result of a run, beta or beta_METHOD_WINDOW, count_above (number of fragments heavier than\n"
+        "`share` of the body), or share_above (their share of its mass, as a sieve measures it). `error` is the\n"
+        "standard deviation of the measurement, `resolution` that of the error of the resolution (if it is absent, a\n"
+        "study by `clast converge` in the store gives it). `specimens: N` in a shot: its values are means of N. `set`\n"
+        "has the inputs of one shot. A list of masses becomes the largest fragment and the numbers above up to four\n"
+        "masses.\n"
         "\n"
-        "Ensemble Kalman inversion moves the ensemble towards the data, kriging lays surfaces through all means with\n"
-        "the seeds' own scatter, and a posterior follows, on a grid for up to four inputs, sampled for more. The "
-        "report\n"
-        "says which combinations of inputs the data determine and which they cannot tell apart. The runs are ordinary\n"
-        "runs of the store: the same command goes on after a stop, and more seeds or rounds keep what there is.",
+        "Ensemble Kalman inversion moves the ensemble towards the data. Kriging fits surfaces to all means with the\n"
+        "scatter of the seeds. The posterior is on a grid for up to four inputs, and sampled for more. The report "
+        "says\n"
+        "which combinations of inputs the data determine and which they do not. The runs are ordinary runs of the\n"
+        "store: after a stop the same command continues, and more seeds or rounds keep the old runs.",
     .examples = "clast fit measured.yaml campaign.yaml --picture predicted.png\nclast fit measured.yaml campaign.yaml "
                 "--rounds 4 --check 200 --json",
     .minimum_arguments = 2,

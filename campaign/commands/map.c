@@ -33,9 +33,11 @@ const struct command map_command = {
     .group = "results",
     .arguments = "STORE PICTURE.png",
     .summary = "a quantity over two varied inputs as a picture",
-    .doc = "Draws the mean of a result over seeds, or an exponent fitted to the runs of a point, as a tile for every\n"
-           "pair of values of two varied inputs. A pair without a usable run is crossed out. The line under the\n"
-           "title tells the widest 95 % interval. gnuplot draws it; the ending chooses the format: .png, .svg or .pdf.",
+    .doc = "Draws the mean of a result over seeds, or an exponent fitted to the runs of a point, as a tile for every "
+           "pair\n"
+           "of values of two varied inputs. A cross marks a pair without a usable run. The line under the title gives "
+           "the\n"
+           "widest 95 % interval. gnuplot draws the map; the ending chooses the format: .png, .svg or .pdf.",
     .examples = "clast map out.db map.png -x strain -y angle\nclast map out.db beta.svg -x strain -y angle -q beta",
     .minimum_arguments = 2,
     .maximum_arguments = 2,

@@ -79,12 +79,13 @@ const struct command materials_command = {
     .group = "scenes and inputs",
     .arguments = "[NAME|FILE]",
     .summary = "the built-in materials; with a name, its document with sources",
-    .doc =
-        "Lists the materials that a scene of engine sph can name (material: basalt). With a NAME it prints the\n"
-        "document of that material, with a source for each value. Save it, edit it, and give the file to a body\n"
-        "(material: ./my-rock.yaml). With such a FILE it checks the values that stand there, and prints it. A scene\n"
-        "that uses the file names what is missing. A scene can override each value, and a campaign can vary it\n"
-        "(target.material.weibull.m).",
+    .doc = "Lists the materials that a scene of engine sph can name (material: basalt). With a NAME it prints the "
+           "document\n"
+           "of that material, with a source for each value. Save it, edit it, and give the file to a body (material:\n"
+           "./my-rock.yaml). With such a FILE it checks the values in it, and prints it. If a value is missing, the "
+           "scene\n"
+           "that uses the file says which. A scene can override each value, and a campaign can vary it\n"
+           "(target.material.weibull.m).",
     .examples = "clast materials\nclast materials basalt > my-rock.yaml",
     .maximum_arguments = 1,
     COMMAND_OPTIONS(struct options, rows),

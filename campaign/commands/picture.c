@@ -8,10 +8,9 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     OPTION_ROW_TEXT("caption", 0, "TEXT", struct picture_choice, caption, NULL, "Title of the picture."),
-    OPTION_ROW_TEXT(
-        "what", 0, "QUANTITY", struct picture_choice, what, NULL,
-        "Particles: quantity shown by colour: damage (or pressure if nothing can crack), pressure, density, energy, "
-        "distention, flaws..., or fragments."),
+    OPTION_ROW_TEXT("what", 0, "QUANTITY", struct picture_choice, what, NULL,
+                    "Particles: quantity that the colour shows: damage (or pressure if nothing can crack), pressure, "
+                    "density, energy, distention, flaws..., or fragments."),
     OPTION_ROW_TEXT(
         "view", 0, "VIEW", struct picture_choice, view, NULL,
         "Particles: cut (through a plane; the default), outside, apart (fragments side by side; the "

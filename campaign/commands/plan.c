@@ -66,7 +66,7 @@ static status run(const struct command_line *line, struct error *error) {
 static const struct option_row rows[] = {
     CAMPAIGN_OPTION(struct options, campaign),
     OPTION_ROW_INTEGER("slots", 'j', "N", struct options, slots, 0, 1000000, "0",
-                       "Runs at a time, for the expected wall time. 0: one per core of this machine."),
+                       "Simultaneous runs, for the expected wall time. 0: one per core of this machine."),
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL,
                     "Count the runs that this store has, instead of the campaign's store."),
     OPTION_ROW_FLAG("no-trial", 0, struct options, no_trial,
@@ -80,11 +80,11 @@ const struct command plan_command = {
     .arguments = "CAMPAIGN.yaml",
     .summary = "what a campaign would do and cost; stores nothing",
     .doc =
-        "Checks the campaign, counts its points and runs and those that the store has, and times trial runs for up to\n"
-        "5 s: the beginning of the most expensive run, a coarse run that tells when it ends, and other points. Prints\n"
-        "what is modelled and the expected time (of a machine without other work), memory and disk space. Stores\n"
-        "nothing. If the campaign asks for an accuracy, it prints first which settings and seeds reach it, at which\n"
-        "cost.",
+        "Checks the campaign, counts its points and runs and those in the store, and times trial runs for up to 5 s:\n"
+        "the beginning of the most expensive run, a coarse run to its end, and other points. Prints the modules of "
+        "the\n"
+        "model and the expected time (on a machine without other work), memory and disk space. Stores nothing. If the\n"
+        "campaign gives an accuracy, the command first prints which settings and seeds reach it, and their cost.",
     .examples = "clast plan campaign.yaml\nclast plan campaign.yaml --no-trial --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

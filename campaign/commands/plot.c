@@ -35,12 +35,15 @@ const struct command plot_command = {
     .arguments = "STORE PICTURE.png",
     .summary = "a quantity over one varied input as lines with error bars",
     .doc =
-        "Draws the mean of a result over seeds against a varied input, with the 95 % interval of the mean (Student's\n"
-        "t) where there are two runs or more. A second varied input gives one line for each of its values. `clast\n"
-        "stats` prints the same numbers. If other inputs vary as well, the mean is over them too, and the title says\n"
-        "which; the interval then takes the points as units. For an exponent it draws the fit to the runs of each\n"
-        "point, with its 95 % interval. An axis that spans a factor of 20 or more is logarithmic. gnuplot\n"
-        "draws it; the ending chooses the format: .png, .svg or .pdf.",
+        "Draws the mean of a result over seeds against a varied input, with the 95 % interval of the mean (Student's "
+        "t)\n"
+        "where there are two runs or more. A second varied input gives one line for each of its values. `clast stats`\n"
+        "prints the same numbers. If other inputs also vary, the mean is over them, too, and the title names them; "
+        "the\n"
+        "interval is then over points. For an exponent it draws the fit to the runs of each point, with its 95 %\n"
+        "interval. An axis over a factor of 20 or more is logarithmic. gnuplot draws the chart; the ending chooses "
+        "the\n"
+        "format: .png, .svg or .pdf.",
     .examples =
         "clast plot out.db largest.png -x strain --by angle\nclast plot out.db beta.svg -x strain --by angle -q beta",
     .minimum_arguments = 2,

@@ -66,8 +66,8 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows_of_options[] = {
-    OPTION_ROW_FLAG("list", 'l', struct options, list, "List the canned queries (with --json: their SQL too)."),
-    OPTION_ROW_TEXT("named", 'n', "NAME", struct options, named, NULL, "Run a canned query."),
+    OPTION_ROW_FLAG("list", 'l', struct options, list, "List the ready queries (with --json: also their SQL)."),
+    OPTION_ROW_TEXT("named", 'n', "NAME", struct options, named, NULL, "Run a ready query."),
     OPTION_ROW_LIST("with", 'w', "NAME=VALUE", struct options, with,
                     "Value of a parameter :NAME in the SQL. May be given several times."),
     OPTION_ROW_INTEGER("seconds", 0, "S", struct options, seconds, 0, 1000000, "0",
@@ -81,8 +81,8 @@ const struct command query_command = {
     .arguments = "STORE [SQL]",
     .summary = "query the store: SQL that only reads, or a canned query",
     .doc =
-        "Runs one SQL statement that only reads, or a canned query by name, and prints its rows. A campaign may write\n"
-        "to the store meanwhile. Views to start from: runs, points, spectra, estimates. The table column_doc explains\n"
+        "Runs one SQL statement that only reads, or a ready query by name, and prints its rows. Meanwhile a campaign\n"
+        "may write to the store. Begin with the views runs, points, spectra, estimates. The table column_doc explains\n"
         "the columns. Functions besides SQLite's own: stdev(x), median(x), hist_sum(masses).",
     .examples = "clast query out.db \"select replicate, largest_fraction from runs order by 2 limit 5\"\n"
                 "clast query --list",

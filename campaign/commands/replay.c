@@ -89,8 +89,9 @@ const struct command replay_command = {
     .summary = "compute a stored run again and compare every bit",
     .doc =
         "Takes the scene and seed of run RUN (run_id) from the store, computes it again, and compares all results and\n"
-        "fragment masses bit by bit. Prints a table of the differences; exit 65 if there are any. Results that the\n"
-        "program of that time did not store are named and not compared. Does not change the store.",
+        "fragment masses bit by bit. Prints a table of the differences; exit 65 if there are any. It names results "
+        "that\n"
+        "the earlier program did not store, and does not compare them. The store does not change.",
     .examples = "clast replay out.db 17\nclast replay out.db 17 --fields run17.h5",
     .minimum_arguments = 2,
     .maximum_arguments = 2,

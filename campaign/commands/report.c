@@ -59,12 +59,12 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("output", 'o', "PAGE.html", struct options, output, NULL,
-                    "Name of the page; otherwise that of the first store with .html, in the current folder."),
+                    "Name of the page. Default: the name of the first store with .html, in the current folder."),
     OPTION_ROW_FLAG("watch", 0, struct options, watch,
                     "Make the page again while a campaign writes a store, and once more when it ends. An open page "
                     "loads itself again."),
     OPTION_ROW_INTEGER("every", 0, "S", struct options, every, 1, EVERY_MOST, "10",
-                       "With --watch: seconds from one page to the next."),
+                       "With --watch: seconds between two pages."),
 };
 
 const struct command report_command = {
@@ -72,10 +72,12 @@ const struct command report_command = {
     .group = "results",
     .arguments = "STORE...",
     .summary = "a page for a browser: inputs, spectra, seeds, runs, SQL",
-    .doc = "Writes one HTML file that needs no network and no server: what was asked and computed, by which program,\n"
-           "and what failed; maps of any result over the varied inputs, spectra, scatter over seeds and runs of the\n"
-           "points that you choose; a box for SQL. Of large stores it holds a part of the single runs and says which;\n"
-           "statistics are of all runs. Bodies are drawn for runs whose fields are kept. Several stores are compared.",
+    .doc =
+        "Writes one HTML file that needs no network and no server. The page shows the campaign, the program, and what\n"
+        "failed; maps of any result over the varied inputs; spectra, scatter over seeds and runs of the points that "
+        "you\n"
+        "choose; and answers to SQL. For a large store it holds a part of the runs and says which; statistics are of\n"
+        "all runs. It draws the bodies of runs whose fields are kept. With several stores it compares them.",
     .examples = "clast report out.db\nclast report before.db after.db -o both.html\nclast report out.db --watch",
     .minimum_arguments = 1,
     .maximum_arguments = REPORT_STORES,

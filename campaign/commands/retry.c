@@ -70,7 +70,7 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     OPTION_ROW_TEXT("status", 0, "failed", struct options, status, "failed",
-                    "Which runs: failed are those whose every attempt ended by a limit, a crash or a lost worker."),
+                    "Runs to compute again. failed: every attempt ended by a limit, a crash or a lost worker."),
     OPTION_ROW_TEXT("time", 0, "TIME", struct options, time, NULL,
                     "Time limit of an attempt (\"30 min\", off). Default: twice the campaign's."),
     OPTION_ROW_TEXT("memory", 0, "SIZE", struct options, memory, NULL,
@@ -89,8 +89,8 @@ const struct command retry_command = {
     .arguments = "STORE",
     .summary = "try failed runs of a store again, with raised limits",
     .doc =
-        "Takes the campaign from the store and computes the runs that it lacks. Runs that were given up get as many\n"
-        "attempts again, with higher limits. Limits are not part of a run's identity: results do not depend on them.",
+        "Takes the campaign from the store and computes the missing runs. Runs that were given up get the same number\n"
+        "of attempts again, with higher limits. Results do not depend on limits, and a run's identity leaves them out.",
     .examples = "clast retry out.db --status failed --time '1 h'\nclast retry out.db --memory off -j 2",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -53,8 +53,9 @@ const struct command run_command = {
     .summary = "run a campaign, or go on with it; only missing runs are computed",
     .doc =
         "Computes every run that the campaign needs and the store lacks, on all cores of this machine or on the ranks\n"
-        "of mpirun or srun. At the end it prints the estimates of every point. Ctrl-C stops it (exit 75), and the\n"
-        "same command goes on later. A kill loses at most the last second of results.",
+        "of mpirun or srun. At the end it prints the estimates of every point. Ctrl-C stops it (exit 75), and the "
+        "same\n"
+        "command continues later. A kill loses at most the last second of results.",
     .examples = "clast run campaign.yaml -j 4\nclast run campaign.yaml --set contact.friction=0.3 --seeds 50 --store "
                 "other.db\nmpirun -n 3 --oversubscribe clast run campaign.yaml",
     .minimum_arguments = 1,

@@ -62,9 +62,9 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT,
                     "Result: a column of the view runs."),
     OPTION_ROW_TEXT("half-width", 0, "NUMBER", struct options, half_width, NULL,
-                    "Also tell how many runs a mean needs whose 95 % interval is at most this wide to each side."),
+                    "Also print how many runs the mean needs for a 95 % interval of this half width."),
     OPTION_ROW_FLAG("split", 0, struct options, split,
-                    "Split the variance over all points and seeds: every input, all inputs, seeds."),
+                    "Split the variance of all points and seeds into shares: every input, all inputs, seeds."),
     OPTION_ROW_TEXT("picture", 0, "FILE.png", struct options, picture, NULL,
                     "Also draw histograms and distribution functions of the first eight. PNG, SVG or PDF."),
     OPTION_ROW_FLAG("plot", 0, struct options, plot, "Print histograms as text instead of the table."),
@@ -80,9 +80,11 @@ const struct command scatter_command = {
     .summary = "how a result scatters over seeds: quantiles, skewness, two modes, runs needed",
     .doc =
         "Prints for every point mean, standard deviation, skewness and quantiles of a result over its runs, each with\n"
-        "its 95 % interval, and Hartigan's dip with its p: below 0.05 the runs have two modes (a bridge holds, or it\n"
-        "does not), and it prints these and their shares. --split tells what share of the variance of the whole\n"
-        "store comes from each input, from all inputs, and from seeds.",
+        "its 95 % interval, and Hartigan's dip with its p. If p is below 0.05, the runs have two modes (for example: "
+        "a\n"
+        "bridge of rock holds, or breaks), and the command prints both and their shares. --split prints which share "
+        "of\n"
+        "the variance of the whole store comes from each input, from all inputs, and from seeds.",
     .examples = "clast scatter out.db --point 1 --plot\nclast scatter out.db --half-width 0.01 --picture seeds.png\n"
                 "clast scatter out.db --split --quantity fragment_count",
     .minimum_arguments = 1,

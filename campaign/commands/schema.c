@@ -61,7 +61,7 @@ const struct command schema_command = {
     .summary = "JSON Schema of scene or campaign files, for completion in editors",
     .doc =
         "Prints the JSON Schema (draft-07) of scene or campaign documents. An editor with yaml-language-server then\n"
-        "completes names, shows meanings and units, and marks mistakes: put its file's name into the first line,\n"
+        "completes names, shows meanings and units, and marks mistakes: write the file's name into the first line,\n"
         "  # yaml-language-server: $schema=campaign.schema.json",
     .examples = "clast schema campaign > campaign.schema.json\nclast schema scene --engine dem > scene.schema.json",
     .minimum_arguments = 1,

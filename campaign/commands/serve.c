@@ -65,17 +65,19 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_INTEGER("port", 'p', "N", struct options, port, 0, 65535, "4242", "Port to listen at; 0: any free one."),
-    OPTION_ROW_TEXT("listen", 0, "ADDRESS", struct options, address, "127.0.0.1",
-                    "Address to listen at. The default is for this machine alone; 0.0.0.0 is for all others, too."),
+    OPTION_ROW_INTEGER("port", 'p', "N", struct options, port, 0, 65535, "4242",
+                       "Port of the server; 0: any free port."),
+    OPTION_ROW_TEXT(
+        "listen", 0, "ADDRESS", struct options, address, "127.0.0.1",
+        "Address of the server. Only this machine can reach the default; 0.0.0.0 lets all others reach it, too."),
     OPTION_ROW_TEXT(
         "quantity", 'q', "NAMES", struct options, quantity, NULL,
-        "Results to give, comma-separated. Default: the campaign's main quantity. A request may name others."),
+        "Results in the answer, comma-separated. Default: the campaign's main quantity. A request may name others."),
     OPTION_ROW_TEXT(
         "knob", 'k', "NAME[=VALUES]", struct options, knob, NULL,
         "Levels for requests with a level, coarse to fine: grains=1.2cm,0.9cm (see `clast converge --list`)."),
     OPTION_ROW_INTEGER("wait", 0, "S", struct options, wait, 0, 1000000, "3600",
-                       "Answer a request after so many seconds with an error; its runs go on. 0: never."),
+                       "After this many seconds answer a request with an error; its runs continue. 0: never."),
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL, "Write this store instead of the campaign's."),
     OPTION_ROW_INTEGER("slots", 'j', "N", struct options, launch.slots, 0, 4096, "0",
                        "Runs at a time. 0: one per core, or under mpirun or srun one per rank."),
@@ -90,9 +92,9 @@ const struct command serve_command = {
     .summary = "the campaign as a model for UQ packages (UM-Bridge, HTTP)",
     .doc =
         "Answers requests of the UM-Bridge protocol 1.0. A request gives the varied inputs, in SI units and in the\n"
-        "order of `vary`; the answer is means over seeds. Runs of the store are not computed again, new ones are "
-        "kept.\n"
-        "Requests at the same time share the slots. GET / tells names and units. Ctrl-C or SIGTERM ends it (exit 0).",
+        "order of `vary`; the answer has means over seeds. The server computes only runs that the store lacks, and\n"
+        "stores them. Simultaneous requests share the slots. GET / lists names and units. Ctrl-C or SIGTERM ends the\n"
+        "server (exit 0).",
     .examples = "clast serve campaign.yaml --port 4242\nclast serve campaign.yaml -q largest_fraction,fragment_count",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -57,19 +57,17 @@ static const struct option_row rows[] = {
                        "Seed of the run: the same seed gives the same bits."),
     SCENE_OPTION_SET(struct options, set),
     OPTION_ROW_TEXT("picture", 'p', "FILE.png", struct options, run.picture, NULL,
-                    "Draw the body at the end: fragments of grains, or the damage of particles on a cut."),
+                    "Draw the body at the end: the fragments (grains), or the damage on a cut (particles)."),
     OPTION_ROW_TEXT(
         "fields", 0, "FILE.hdf", struct options, run.fields, NULL,
         "Write all grains or particles, fragments, inputs and results at the end as an HDF5 file. ParaView opens it if "
         "its name ends in .hdf."),
     OPTION_ROW_INTEGER("snapshots", 0, "N", struct options, run.snapshots, 0, 100000, "0",
-                       "Write up to N such files during the run, SCENE_000000.hdf and so on, evenly over the longest "
-                       "time that the run "
-                       "may take. SCENE.hdf.series lists them with their times for ParaView."),
-    OPTION_ROW_TEXT(
-        "restart", 0, "FILE", struct options, run.restart, NULL,
-        "Go on from this file if it exists. It is written every five minutes and when the run is interrupted (exit 75; "
-        "the same command goes on, to the same bits). It is removed at the end."),
+                       "Write up to N such files during the run, SCENE_000000.hdf and so on, at equal intervals up to "
+                       "the end time. SCENE.hdf.series lists them with their times for ParaView."),
+    OPTION_ROW_TEXT("restart", 0, "FILE", struct options, run.restart, NULL,
+                    "Continue from this file if it exists. The run writes it every five minutes and at an interruption "
+                    "(exit 75; the same command continues, with the same bits), and removes it at the end."),
     OPTION_ROW_FLAG("quiet", 'q', struct options, run.quiet, "No progress on the terminal."),
     TABLE_OPTIONS(struct options, table),
 };

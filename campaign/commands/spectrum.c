@@ -58,13 +58,15 @@ static const struct option_row option_rows[] = {
         "by", 'b', "AXES", struct options, by, NULL,
         "Pool all points that share these varied inputs (strain,angle); \"\" pools all. Default: by point."),
     OPTION_ROW_FLAG("cumulative", 'c', struct options, cumulative,
-                    "N(>m), the fragments per run of at least a mass, in place of F(m)."),
-    OPTION_ROW_TEXT("size", 0, "DENSITY", struct options, size, NULL,
-                    "Sizes in place of masses: diameters of spheres (dem: discs) of this density, \"2700 kg/m^3\"."),
-    OPTION_ROW_FLAG("runs", 0, struct options, runs, "Every run by itself: in the table, and as thin lines."),
+                    "Print N(>m), the number of fragments per run of at least a mass, instead of F(m)."),
+    OPTION_ROW_TEXT(
+        "size", 0, "DENSITY", struct options, size, NULL,
+        "Print sizes instead of masses: diameters of spheres (dem: discs) of this density, \"2700 kg/m^3\"."),
+    OPTION_ROW_FLAG("runs", 0, struct options, runs,
+                    "Show every run separately: in the table, and as thin lines in the picture."),
     OPTION_ROW_TEXT("with", 0, "FILE.csv", struct options, with, NULL,
                     "Compare with a measured spectrum: columns mass (g) or size (mm), alone or with count or "
-                    "cumulative. Prints distances; --picture draws it, too."),
+                    "cumulative. Prints distances; --picture also draws the measured spectrum."),
     OPTION_ROW_TEXT("picture", 0, "FILE.png", struct options, picture, NULL,
                     "Also draw the first eight spectra with fitted power laws. PNG, SVG or PDF by the ending."),
     OPTION_ROW_FLAG("plot", 0, struct options, plot, "Plot them as text instead of the table."),
@@ -81,8 +83,9 @@ const struct command spectrum_command = {
     .doc =
         "Prints one row per point (or group of --by) and mass bin that has fragments: the fragments of all runs that\n"
         "count, F(m) (fragments per kg and run) or N(>m), and the share of the mass. The 95 % interval is over runs;\n"
-        "where points are pooled, it is over points. F(m) ~ m^-beta means N(>m) ~ m^-(beta - 1), and by size in d\n"
-        "dimensions N(>L) ~ L^-D with D = d (beta - 1).",
+        "where the command pools points, it is over points. F(m) ~ m^-beta means N(>m) ~ m^-(beta - 1), and by size "
+        "in\n"
+        "d dimensions N(>L) ~ L^-D with D = d (beta - 1).",
     .examples = "clast spectrum out.db --point 1 --plot\nclast spectrum out.db --by strain --cumulative --picture "
                 "spectrum.svg\nclast spectrum out.db --with measured.csv --picture both.png",
     .minimum_arguments = 1,

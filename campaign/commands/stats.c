@@ -86,11 +86,13 @@ const struct command stats_command = {
     .arguments = "STORE",
     .summary = "means over seeds with standard deviation, standard error and 95 % interval",
     .doc =
-        "Groups the runs by varied inputs. For each group it prints how many runs count, failed, or reached the hard\n"
-        "end time, and for each quantity the mean, standard deviation, standard error, and half width of the 95 %\n"
-        "interval of the mean over seeds (Student's t). A group of several points pools over other inputs, which it\n"
-        "names: then the points are the units, each with the mean of its runs. Runs of different results versions are\n"
-        "never mixed. No interval holds the error of the resolution.",
+        "Groups the runs by varied inputs. For each group it prints how many runs count, failed, or reached the end\n"
+        "time, and for each quantity the mean, standard deviation, standard error, and half width of the 95 % "
+        "interval\n"
+        "of the mean over seeds (Student's t). A group of several points pools over other inputs, and the command "
+        "names\n"
+        "these: the interval is then over the means of the points. A group never mixes results versions. No interval\n"
+        "holds the error of the resolution.",
     .examples =
         "clast stats out.db --by strain\nclast stats out.db --by strain,angle --quantity largest_fraction --csv",
     .minimum_arguments = 1,

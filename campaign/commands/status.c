@@ -27,11 +27,14 @@ const struct command status_command = {
     .arguments = "STORE",
     .summary = "how far the campaigns of a store are, and what failed",
     .doc =
-        "Prints one row per campaign: its state; its points, the runs stored, and how many of them count in\n"
-        "statistics, are censored (ended at the hard end time), failed, or are surplus; failed attempts, and runs\n"
-        "given up without a result. Works while a campaign is running. States: running; finished; stopped (by Ctrl-C\n"
-        "or a signal; the same command goes on); failed (an error ended it); killed (its process ended without a\n"
-        "word; the same command goes on); not known (of a program that did not note it).",
+        "Prints one row per campaign: its state; its points, the runs stored, and how many of them count in "
+        "statistics,\n"
+        "are censored (ended at the end time), failed, or are surplus; failed attempts, and runs given up without a\n"
+        "result. Works while a campaign is running. States: running; finished; stopped (by Ctrl-C or a signal; the "
+        "same\n"
+        "command continues); failed (an error ended it); killed (its process ended without a message; the same "
+        "command\n"
+        "continues); not known (an older program did not record it).",
     .examples = "clast status out.db\nclast status out.db --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

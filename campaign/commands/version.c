@@ -53,7 +53,7 @@ const struct command version_command = {
     .group = "about clast",
     .arguments = "",
     .summary = "version, commit, compiler and libraries (also: clast --version)",
-    .doc = "Prints what this program was built from and with. The same facts are stored with every campaign.",
+    .doc = "Prints the version, compiler and libraries of this program. Every campaign stores the same facts.",
     .examples = "clast --version\nclast version --json",
     COMMAND_OPTIONS(struct options, rows),
     .run = run,

@@ -252,7 +252,7 @@ static void judge(struct rounds *rounds) {
   else if (study->budget_spent)
     end_ladder(ladder, budget);
   else if (ladder->seeds >= study->rule.most_seeds)
-    end_ladder(ladder, "the most seeds allowed have run");
+    end_ladder(ladder, "the largest number of seeds has run");
 }
 
 /* `outcome`: of the round's session in the store. */

@@ -62,7 +62,7 @@ static status count_sample(struct design *design, uint64_t points, struct error 
     return status_fail(error, STATUS_CONTENT, "design.points: %llu is more than this design has",
                        (unsigned long long)points);
   if (design->free_count == 0)
-    return status_fail(error, STATUS_CONTENT, "vary: nothing is varied, so a sampling design has nothing to sample");
+    return status_fail(error, STATUS_CONTENT, "vary: no input varies, so a sampling design has nothing to sample");
   design->points = points;
   return STATUS_OK;
 }

@@ -20,9 +20,8 @@ static const struct field rows[] = {
     TEXT("scene", scene_reference, .flags = FIELD_REQUIRED,
          .doc = "What is run: a built-in scene (`clast scenes`) or a file, relative to this document's folder."),
     TEXT("quantity", quantity, .text = OUTCOME_DEFAULT,
-         .doc = "The main quantity: shown while running and in the closing table, judged by `keep: {fields: "
-                "extremes}`. Any "
-                "number that a run reports (`clast explain`)."),
+         .doc = "The main quantity: shown while running and in the table at the end, and compared by `keep: {fields: "
+                "extremes}`. Any number that a run reports (`clast explain`)."),
     TEXT("store", store, .text = "",
          .doc = "The results file, relative to the current folder. Default: the name with .db after it."),
     COUNT(
@@ -44,9 +43,8 @@ static const struct field rows[] = {
     ROW("seeds.until.level", until_level, FIELD_REAL, "1", .number = 0.95, .minimum = 0.5, .maximum = 1,
         .flags = FIELD_BELOW_MAXIMUM, .doc = "Confidence level of that interval."),
     COUNT("seeds.until.minimum", until_minimum, 30, 2, 0x1p40,
-          .doc = "Replicates before the first decision: with fewer, intervals of skew or two-humped quantities are too "
-                 "narrow "
-                 "far too often."),
+          .doc = "Replicates before the first decision: with fewer, intervals of skew or bimodal quantities are often "
+                 "too narrow."),
     COUNT("seeds.until.batch", until_batch, 10, 1, 0x1p40, .doc = "Replicates between two decisions."),
     TEXT("accuracy.quantity", accuracy_quantity, .text = "",
          .doc = "The quantity that must be accurate. Default: the main quantity."),
@@ -62,7 +60,7 @@ static const struct field rows[] = {
     COUNT("limits.attempts", attempts, 2, 1, 1000,
           .doc = "Attempts at one run, in all, before it is given up as failed."),
     COUNT("limits.failures", failures, 20, 0, 50,
-          .doc = "The campaign stops when this many of its first 50 runs have failed; 0: it goes on whatever happens."),
+          .doc = "The campaign stops when this many of its first 50 runs have failed; 0: it never stops for failures."),
 };
 const struct field_table
     campaign_table = FIELD_TABLE(rows, struct campaign, "campaign",
@@ -97,7 +95,7 @@ static const struct field design_rows[] = {
      .maximum = 0x1p62,
      .number = 1,
      .when = "kind=random|latin_hypercube|sobol",
-     .doc = "Of the draws, permutations and shifts; the runs' seeds are another matter (`seeds`)."},
+     .doc = "Seed of the draws, permutations and shifts; the runs have other seeds (`seeds`)."},
     {.path = "file",
      .kind = FIELD_TEXT,
      .offset = offsetof(struct campaign_design_keys, file),

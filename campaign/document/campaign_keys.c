@@ -23,7 +23,7 @@ const struct campaign_key campaign_keys[] = {
               "    Laws need a sampling design: clast explain design\n"},
     {.name = "set",
      .words = "",
-     .doc = "Inputs of the scene that get one other value for the whole campaign.",
+     .doc = "Inputs of the scene with another value for the whole campaign.",
      .forms = "    {contact.friction: 0.2, body.diameter: 8 cm}       path of each, or a unique ending of it\n"},
     {.name = "design",
      .words = "grid list random latin_hypercube sobol kind points seed file",

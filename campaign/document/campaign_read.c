@@ -121,7 +121,7 @@ static void check_seeds(document_node *root, struct campaign *campaign) {
   if (!campaign->until_quantity[0])
     memcpy(campaign->until_quantity, campaign->quantity, sizeof campaign->until_quantity);
   if (!key_of(until, "half_width"))
-    document_report(until, "seeds.until", "'half_width' is missing: how narrow must the interval be?");
+    document_report(until, "seeds.until", "'half_width' is missing: give the half width that ends a point");
   if (campaign->until_minimum > campaign->maximum)
     document_report(max ? max : until, "seeds.max",
                     "%lld replicates at most, but the first decision comes after %lld; raise max "
@@ -137,7 +137,7 @@ static void check_accuracy(document_node *root, struct campaign *campaign) {
   if (!accuracy)
     return;
   if (!key_of(accuracy, "within"))
-    document_report(accuracy, "accuracy", "'within' is missing: how far may the result be off?");
+    document_report(accuracy, "accuracy", "'within' is missing: give the largest error of the result");
   if (seeds || key_of(document_key(root, "seeds"), "until"))
     document_report(accuracy, "accuracy",
                     "accuracy finds the number of seeds; leave seeds.per_point and seeds.until "
@@ -180,7 +180,7 @@ static bool read_axes(document_node *root, const char *folder, struct campaign *
   if (!file)
     return campaign_vary_read(vary, campaign);
   if (vary)
-    document_report(vary, "vary", "the columns of design.file are what varies; leave vary out");
+    document_report(vary, "vary", "the columns of design.file are the varied inputs; leave vary out");
   return campaign_points_read(file, folder, campaign) && !vary;
 }
 

@@ -70,7 +70,7 @@ struct reading {
 static struct observed_datum *add_datum(struct reading *r, document_node *node) {
   struct observed *m = r->observed;
   if (m->datum_count == OBSERVED_DATA) {
-    document_report(node, "measured", "more than %d numbers in all: keep those that tell most", OBSERVED_DATA);
+    document_report(node, "measured", "more than %d numbers in all: keep the most important ones", OBSERVED_DATA);
     return NULL;
   }
   struct observed_datum *datum = &m->data[m->datum_count++];
@@ -136,14 +136,14 @@ static void read_datum(struct reading *r, document_node *node) {
   const char *name = quantity ? document_scalar(quantity) : NULL;
   document_unknown_keys(node, "measured", known);
   if (!name)
-    document_report(node, "measured", "'quantity' is missing: which number of a run was measured?");
+    document_report(node, "measured", "'quantity' is missing: name the measured result of a run");
   if (!datum || !name)
     return;
   snprintf(datum->quantity, sizeof datum->quantity, "%.200s", name);
   if (!find_quantity(r, quantity, datum))
     return;
   if (!read_number(node, VALUE, datum, &datum->value) && !document_key(node, "value"))
-    document_report(node, "measured", "'value' is missing: what was measured?");
+    document_report(node, "measured", "'value' is missing: give the measured value");
   read_number(node, ERROR, datum, &datum->error);
   read_number(node, RESOLUTION, datum, &datum->resolution);
   read_share(node, datum);
@@ -237,9 +237,9 @@ static void read_fragments(struct reading *r, document_node *node) {
                               document_key(node, "complete")};
   if (!from.masses || !from.total || !from.complete || document_kind(from.masses) != DOCUMENT_SEQUENCE ||
       document_count(from.masses) == 0) {
-    document_report(node, "fragments",
-                    "expected {total: mass of the body, complete: mass from which on every fragment is in the list, "
-                    "masses: [...]}");
+    document_report(
+        node, "fragments",
+        "expected {total: mass of the body, complete: the list has every fragment from this mass on, masses: [...]}");
     return;
   }
   document_unknown_keys(node, "fragments", known);
@@ -286,7 +286,7 @@ static void read_shot(struct reading *r, document_node *node) {
   field_defaults(&shot_table, shot);
   shot->scene = scene_copy(r->campaign->scene);
   if (!shot->scene || document_kind(node) != DOCUMENT_MAPPING) {
-    document_report(node, "shots", "expected a mapping with `measured` or `fragments`, and what this shot sets");
+    document_report(node, "shots", "expected a mapping with `measured` or `fragments`, and the inputs of this shot");
     return;
   }
   document_read(node, &shot_table, also, shot);
@@ -297,7 +297,7 @@ static void read_shot(struct reading *r, document_node *node) {
   read_data(r, data);
   read_fragments(r, fragments);
   if (!data && !fragments)
-    document_report(node, "shots", "nothing was measured: give `measured` or `fragments`");
+    document_report(node, "shots", "no measurement: give `measured` or `fragments`");
 }
 
 static void read_all(struct reading *r, document_node *root) {
@@ -306,7 +306,7 @@ static void read_all(struct reading *r, document_node *root) {
   document_read(root, &root_table, also, r->observed);
   document_node *shots = document_key(root, "shots");
   if (!shots || document_kind(shots) != DOCUMENT_SEQUENCE || document_count(shots) == 0) {
-    document_report(shots ? shots : root, "shots", "expected a list of shots, each with what was measured");
+    document_report(shots ? shots : root, "shots", "expected a list of shots, each with its measurements");
     return;
   }
   for (size_t i = 0; i < document_count(shots); i++)

@@ -198,7 +198,9 @@ static void stopping(void *context, int signal_number) {
   struct driver *driver = context;
   (void)signal_number;
   store_flush(driver->store, NULL);
-  driver_note(driver, "stopping: no new runs, those that end in a moment are kept; the same command goes on from here");
+  driver_note(
+      driver,
+      "stopping: no new runs start, and runs that end in a moment are kept; the same command goes on from here");
 }
 
 struct farm_manager driver_manager(struct driver *driver) {

@@ -47,11 +47,10 @@ static status judge_failures(struct driver *driver, bool failed, struct error *e
   driver->first_failed += failed;
   if (driver->campaign->failures == 0 || driver->first_failed < driver->campaign->failures)
     return STATUS_OK;
-  return status_fail(
-      error, STATUS_FAILED_RUNS,
-      "stopped: %lld of the first %lld runs failed. What happened is in the store: clast query %s --named failures. "
-      "Mend the campaign, or set limits.failures: 0 to go on regardless",
-      (long long)driver->first_failed, (long long)driver->first_done, driver->options.store_path);
+  return status_fail(error, STATUS_FAILED_RUNS,
+                     "stopped: %lld of the first %lld runs failed. `clast query %s --named failures` says why. Correct "
+                     "the campaign, or set limits.failures: 0 to ignore failures",
+                     (long long)driver->first_failed, (long long)driver->first_done, driver->options.store_path);
 }
 
 /* The machine ended the attempt, which says nothing about the run. It is tried again here, and when that does not help,
@@ -74,7 +73,7 @@ static void stop_without_fields(struct driver *driver, const struct error *why) 
   status_fail(&driver->stop, why->status,
               "%s. The results are stored, these fields are not: free some space, and give the same command again",
               why->message);
-  driver_note(driver, "a fields file cannot be written: no new runs, those that compute are waited for");
+  driver_note(driver, "a fields file cannot be written: no new runs start, and the running ones end first");
 }
 
 /* An attempt that gave no result: the run is tried again, or given up when its attempts are used up. */

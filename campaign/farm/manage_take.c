@@ -71,11 +71,11 @@ static status take_result(struct manager *m, int rank, const struct farm_frame *
                           struct error *error) {
   struct farm_result result;
   if (frame->size < sizeof result)
-    return status_fail(error, STATUS_INTERNAL, "rank %d sent a torn result", rank);
+    return status_fail(error, STATUS_INTERNAL, "rank %d sent a damaged result", rank);
   memcpy(&result, payload, sizeof result);
   const size_t left = frame->size - sizeof result;
   if (result.size > left)
-    return status_fail(error, STATUS_INTERNAL, "rank %d sent a torn result", rank);
+    return status_fail(error, STATUS_INTERNAL, "rank %d sent a damaged result", rank);
 
   const uint8_t *bytes = payload + sizeof result;
   struct farm_job *job = farm_job_table_find(&m->table, frame->handle);

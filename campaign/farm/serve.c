@@ -63,7 +63,7 @@ static status take_end(struct server *server, const struct farm_frame *frame, co
                        struct error *error) {
   struct farm_end end;
   if (frame->size < sizeof end)
-    return status_fail(error, STATUS_INTERNAL, "the manager's last word is torn");
+    return status_fail(error, STATUS_INTERNAL, "the manager's last message is damaged");
   memcpy(&end, payload, sizeof end);
   server->ended = true;
   server->drop = end.drop != 0;

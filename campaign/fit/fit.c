@@ -49,7 +49,7 @@ static status check_campaign(const struct campaign *campaign, struct error *erro
   const int kind = campaign->design.kind;
   if (kind == CAMPAIGN_GRID || kind == CAMPAIGN_LIST)
     return status_fail(error, STATUS_CONTENT,
-                       "a fit begins with points drawn from the priors: give the campaign `design: {kind: "
+                       "a fit begins with random points from the priors: give the campaign `design: {kind: "
                        "latin_hypercube, points: 40}` and laws such as {log_uniform: [a, b]} in `vary`");
   if (campaign->design.points < FIT_FEWEST_MEMBERS)
     return status_fail(error, STATUS_CONTENT,
@@ -81,8 +81,7 @@ static status find_inputs(struct fit *fit, struct error *error) {
   }
   return fit->inputs ? STATUS_OK
                      : status_fail(error, STATUS_CONTENT,
-                                   "the campaign varies nothing: what is unknown stands in "
-                                   "`vary`, with its prior");
+                                   "the campaign varies nothing: give the unknown inputs in `vary`, with their priors");
 }
 
 static void find_data(struct fit *fit) {

@@ -31,7 +31,7 @@ static status split(struct run_cells *cells, struct scatter_part *parts, size_t 
   *runs = run_cells_balance(cells->count, all, &same_seeds);
   free(all);
   if (cells->count < 2 || *runs < 2)
-    return status_fail(error, STATUS_USAGE, "a variance is split over two points at least with two runs each");
+    return status_fail(error, STATUS_USAGE, "splitting a variance needs at least two points with two runs each");
   uint32_t *level = malloc((cells->count * cells->axes + 1) * sizeof *level);
   double *value = malloc(cells->count * *runs * sizeof *value);
   status code = level && value ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory to split a variance");

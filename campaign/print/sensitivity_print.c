@@ -117,8 +117,8 @@ static status read_runs(struct store *store, const char *quantity, struct readin
   find_places(r);
   if (r->whole < 2)
     return status_fail(error, STATUS_USAGE,
-                       "the store has finished runs of %zu of the %zu blocks of this design; two at least are needed: "
-                       "`clast run` it into this store",
+                       "the store has finished runs of %zu of the %zu blocks of this design, and the indices need two: "
+                       "compute it with `clast run` into this store",
                        r->whole, r->blocks);
   return fill_table(r, error);
 }

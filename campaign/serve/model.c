@@ -26,7 +26,7 @@ static status take_inputs(struct serve_model *model, struct error *error) {
                          axis->row->path);
     if (axis->kind == DESIGN_AXIS_LINKED && axis->level_count)
       return status_fail(error, STATUS_CONTENT,
-                         "vary.%s: linked by `values`, which an input of a server has not; link it by `factor`",
+                         "vary.%s: an input of a server cannot be linked by `values`; link it by `factor`",
                          axis->row->path);
     if (axis->kind != DESIGN_AXIS_LINKED)
       model->inputs[model->input_count++] = i;

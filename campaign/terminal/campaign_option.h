@@ -12,10 +12,10 @@ struct campaign_option {
 
 #define CAMPAIGN_OPTION(type_, member_)                                                                                \
   OPTION_ROW_LIST("set", 's', "PATH=VALUE", type_, member_.set,                                                        \
-                  "Another value of an input, as if it stood under `set` of the campaign: contact.friction=0.3. May "  \
-                  "be given several times."),                                                                          \
+                  "Another value of an input, like a line under `set` of the campaign: contact.friction=0.3. May be "  \
+                  "given several times."),                                                                             \
       OPTION_ROW_INTEGER("seeds", 0, "N", type_, member_.seeds, 0, 1000000000000, "0",                                 \
-                         "So many seeds for every point, whatever the campaign says; 0: as it says.")
+                         "Number of seeds for every point, instead of the campaign's; 0: the campaign's.")
 
 /* campaign_load with the changes. STATUS_USAGE when a change is at fault. */
 status campaign_option_load(const char *path, const struct campaign_option *option, struct campaign **campaign,

@@ -15,7 +15,7 @@ struct chart_options {
   OPTION_ROW_FLAG("keep-script", 0, type_, member_.keep_script,                                                        \
                   "Leave NAME.gp and NAME.dat beside the chart NAME.png: change them, and gnuplot draws it again."),   \
   OPTION_ROW_TEXT("templates", 0, "FOLDER", type_, member_.templates, NULL,                                            \
-                  "Draw by the gnuplot templates in this folder, changed copies of share/clast/templates.")
+                  "Draw with the gnuplot templates of this folder: your changed copies of share/clast/templates.")
 /* clang-format on */
 
 /* A page of the usual width. */

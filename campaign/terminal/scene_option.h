@@ -9,7 +9,7 @@
   OPTION_ROW_LIST(                                                                                                     \
       "set", 's', "PATH=VALUE", type_, member_,                                                                        \
       "Override an input of the scene: threshold.strain=3%, impact.speed='50 m/s'. May be given several times. "       \
-      "Inputs of the scene that have no effect any more are dropped.")
+      "clast drops inputs of the scene that no longer have an effect.")
 
 /* Loads the scene `name` (built-in or a file), sets each PATH=VALUE of `set`, and checks it. *scene is the caller's to
  * free, also on errors. STATUS_USAGE, STATUS_CONTENT, what scene_load returns. */

@@ -124,6 +124,6 @@ const struct query_canned *ask_canned_find(const char *name, struct error *error
     size_t used = strlen(known);
     snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", queries[i].name);
   }
-  status_fail(error, STATUS_USAGE, "There is no canned query '%.60s'. Known are: %s.", name, known);
+  status_fail(error, STATUS_USAGE, "There is no ready query '%.60s'. Ready queries are: %s.", name, known);
   return NULL;
 }

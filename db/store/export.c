@@ -11,7 +11,7 @@ static status keep_paths(const struct store *store, const char *copy, struct err
   sqlite3 *db = NULL;
   char *way = paths_between(copy, store->path);
   if (!way)
-    return status_fail(error, STATUS_IO, "%s: its folder cannot be followed", copy);
+    return status_fail(error, STATUS_IO, "%s: the path of its folder cannot be resolved", copy);
   status result = STATUS_OK;
   int code = *way ? sqlite3_open_v2(copy, &db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_EXRESCODE, NULL) : SQLITE_OK;
   if (code != SQLITE_OK)

@@ -350,13 +350,11 @@ status guard_schema(sqlite3 *db, const char *path, int version, struct error *er
   if (fclose(guard.out) != 0 || !names || guard.out_of_memory)
     result = status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   else if (result == STATUS_OK && guard.strangers > 0)
-    result =
-        status_fail(error, STATUS_CONTENT,
-                    "%s is not as clast makes its stores: %.6000s%s. Nothing of it was run and nothing was "
-                    "changed. Take what you added yourself out again (`sqlite3 FILE`, then DROP ...; keep views of "
-                    "your own in another file that attaches this one). Do not use the file if you do not know "
-                    "where that comes from.",
-                    path, names, guard.strangers > 50 ? " and more" : "");
+    result = status_fail(error, STATUS_CONTENT,
+                         "%s is not as clast makes its stores: %.6000s%s. clast ran and changed nothing. Remove your "
+                         "own additions (`sqlite3 FILE`, then DROP ...; keep views of your own in another file that "
+                         "attaches this one). Do not use the file if you do not know where that comes from.",
+                         path, names, guard.strangers > 50 ? " and more" : "");
   free(names);
   return result;
 }

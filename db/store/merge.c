@@ -271,7 +271,7 @@ static status take_paths(struct store *store, const char *way, struct error *err
 static status merge_paths(struct store *store, const char *source, struct error *error) {
   char *way = paths_between(store->path, source);
   if (!way)
-    return status_fail(error, STATUS_IO, "%s: its folder cannot be followed", source);
+    return status_fail(error, STATUS_IO, "%s: the path of its folder cannot be resolved", source);
   status result = keep_paths(store, way, error);
   if (result == STATUS_OK)
     result = take_paths(store, way, error);

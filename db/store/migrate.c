@@ -28,15 +28,14 @@ status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error
   struct header header;
   status result = read_header(db, &header, error);
   if (result == STATUS_CONTENT && (sqlite3_errcode(db) & 0xff) == SQLITE_NOTADB)
-    return status_fail(error, STATUS_CONTENT,
-                       "%s is no SQLite database, so no store of clast. Name another file; this one was left alone.",
-                       path);
-  if (result == STATUS_CONTENT) /* SQLite compares the file's length with the length in its header */
     return status_fail(
         error, STATUS_CONTENT,
-        "%s is damaged, perhaps cut short: %s. Restore a copy, or save what can be saved with `sqlite3 FILE "
-        ".recover`.",
-        path, sqlite3_errmsg(db));
+        "%s is no SQLite database, so it is no store of clast. Name another file; this file did not change.", path);
+  if (result == STATUS_CONTENT) /* SQLite compares the file's length with the length in its header */
+    return status_fail(error, STATUS_CONTENT,
+                       "%s is damaged, perhaps cut short: %s. Restore a copy, or recover a part with `sqlite3 FILE "
+                       ".recover`.",
+                       path, sqlite3_errmsg(db));
   if (result != STATUS_OK)
     return result;
   if (header.application == 0 && header.version == 0 && header.things == 0) {
@@ -44,17 +43,15 @@ status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error
     return STATUS_OK;
   }
   if (header.application != SCHEMA_APPLICATION_ID)
-    return status_fail(
-        error, STATUS_CONTENT,
-        "%s is a database of another program (application id 0x%08llx), not a store of clast. Name another "
-        "file; this one was left alone.",
-        path, (unsigned long long)header.application);
+    return status_fail(error, STATUS_CONTENT,
+                       "%s is a database of another program (application id 0x%08llx), not a store of clast. Name "
+                       "another file; this file did not change.",
+                       path, (unsigned long long)header.application);
   if (header.version > SCHEMA_VERSION || header.version < 0)
-    return status_fail(
-        error, STATUS_CONTENT,
-        "%s was written by a newer clast (store version %lld; this program knows up to %d). Use that newer "
-        "program; the file was left alone.",
-        path, (long long)header.version, SCHEMA_VERSION);
+    return status_fail(error, STATUS_CONTENT,
+                       "%s was written by a newer clast (store version %lld; this program knows up to %d). Use that "
+                       "newer program; the file did not change.",
+                       path, (long long)header.version, SCHEMA_VERSION);
   *version = (int)header.version;
   return guard_schema(db, path, *version, error);
 }

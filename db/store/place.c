@@ -23,8 +23,8 @@ status place_check(sqlite3 *db, const char *path, struct error *error) {
   if (sqlite3_file_control(db, "main", SQLITE_FCNTL_HAS_MOVED, &moved) != SQLITE_OK || !moved)
     return STATUS_OK;
   return status_fail(error, STATUS_IO,
-                     "%s was moved, removed or replaced while it was written: nothing more is stored. What was "
-                     "committed is in the file that was there. Put it back, and give the same command again.",
+                     "%s was moved, removed or replaced while clast wrote it: clast stores nothing more. The original "
+                     "file has all committed runs. Put it back, and give the same command again.",
                      path);
 }
 

@@ -216,8 +216,8 @@ static status check_version(const struct store *store, int version, struct error
   if (version >= 0)
     return status_fail(
         error, STATUS_CONTENT,
-        "%s was written by an older clast (store version %d, now %d). Run its campaign once more, or `clast "
-        "merge NEW.db` it: opening for writing brings it forward and keeps a copy.",
+        "%s was written by an older clast (store version %d, now %d). Run its campaign once more, or merge it into a "
+        "new store (`clast merge NEW.db FILE`): opening for writing upgrades it and keeps a copy.",
         store->path, version, SCHEMA_VERSION);
   if (store->lacks_wal)
     return status_fail(error, STATUS_CONTENT, "%s %s", store->path, lacks_wal_text);
@@ -240,7 +240,7 @@ status store_open_reader(const char *path, struct store **out, struct error *err
   struct stat file;
   *out = NULL;
   if (access(path, F_OK) != 0)
-    return status_fail(error, STATUS_MISSING, "%s: there is no such store. Look at the name and the current folder.",
+    return status_fail(error, STATUS_MISSING, "%s: there is no such store. Check the name and the current folder.",
                        path);
   if (stat(path, &file) == 0 && S_ISDIR(file.st_mode))
     return status_fail(error, STATUS_IO, "%s is a folder: name the store's file.", path);
@@ -290,11 +290,10 @@ status store_begin(struct store *store, struct error *error) {
   if (!store->writer)
     return status_fail(error, STATUS_INTERNAL, "%s is open for reading only", store->path);
   if (store->broken)
-    return status_fail(
-        error, STATUS_IO,
-        "%s: an earlier write failed, so nothing more is written. What was committed is safe; give the same "
-        "command again to do the rest.",
-        store->path);
+    return status_fail(error, STATUS_IO,
+                       "%s: an earlier write failed, so clast writes nothing more. Committed runs are safe; give the "
+                       "same command again to compute the rest.",
+                       store->path);
   if (store->in_batch)
     return STATUS_OK;
   status result = sql_execute(store->db, "BEGIN IMMEDIATE", "beginning to write", error);

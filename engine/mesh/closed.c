@@ -99,7 +99,7 @@ static status check_edge(const struct mesh_soup *soup, const struct edge *edge, 
   if (edge[0].rises == edge[1].rises)
     return mesh_refuse(soup, line, error,
                        "this face and that of %s %u turn opposite ways, so that one of their normals points inwards: "
-                       "let all point outwards (MeshLab: Re-Orient All Faces Coherently)",
+                       "turn all normals outwards (MeshLab: Re-Orient All Faces Coherently)",
                        soup->numbered ? "number" : "line", soup->line[edge[1].face]);
   return STATUS_OK;
 }

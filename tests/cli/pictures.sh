@@ -195,7 +195,7 @@ expect 0 "$clast" scatter small.db --picture scatter.svg -q fragment_count
 is_svg scatter.svg
 expect 64 "$clast" scatter small.db --half-width none
 expect 64 "$clast" scatter small.db --split --point 1
-says "two points at least"
+says "at least two points"
 expect 64 "$clast" scatter small.db -q nothing
 
 # The four names of an exponent, and the goodness of its fit.

@@ -90,7 +90,7 @@ static void errors_have_a_place(void **state) {
   (void)state;
   bad("name: t\nshots: []\n", "source|m.yaml:2|expected a list of shots");
   bad(HEAD, "expected a list of shots");
-  bad(SHOT "name: s\n", "m.yaml:4|nothing was measured");
+  bad(SHOT "name: s\n", "m.yaml:4|no measurement");
   bad(SHOT "measured: [{quantity: largest_fractoin, value: 1}]\n", "m.yaml:4|largest_fraction");
   bad(SHOT "measured: [{quantity: beta_best, value: 2}]\n", "beta");
   bad(SHOT "measured: [{quantity: largest_fraction}]\n", "'value' is missing");

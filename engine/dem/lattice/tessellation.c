@@ -249,7 +249,7 @@ status dem_tessellation_make(const struct dem_lattice *lattice, struct dem_tesse
                               : (double)lattice->columns * lattice->rows;
   if (!(squares >= 1 && squares < 1e8))
     return status_fail(error, STATUS_CONTENT,
-                       "a body of %.3g grains cannot be made: change its size or the grain spacing", squares);
+                       "a body of %.3g grains is not possible: change its size or the grain spacing", squares);
   status code = dem_lattice_fill(lattice, &b.points, error);
   if (code)
     return code;

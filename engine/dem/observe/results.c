@@ -21,11 +21,11 @@ static const struct field rows[] = {
                        "the stress fell below the scene's residual share of its maximum\n"
                        "a numerical fault: the outcome's state says which",
         .doc = "Why the run ended."),
-    COUNT(grains, "Grains, the explosive one left out."),
-    COUNT(beams, "Beams at the start, those of the explosive left out."),
+    COUNT(grains, "Number of grains, without the explosive one."),
+    COUNT(beams, "Number of beams at the start, without those of the explosive grain."),
     COUNT(broken, "Beams broken."),
-    COUNT(broken_stretch, "Beams broken with the stretching term of the breaking rule the larger one."),
-    COUNT(broken_bend, "Beams broken with the bending term the larger one."),
+    COUNT(broken_stretch, "Broken beams for which the stretching term of the breaking rule was the larger one."),
+    COUNT(broken_bend, "Broken beams for which the bending term was the larger one."),
     REAL(broken_share, "1", 0, .doc = "Broken beams over all beams."),
     REAL(first_break, "s", 0, .doc = "Time of the first break; off when none broke."),
     REAL(last_break, "s", 0, .doc = "Time of the last break; off when none broke."),
@@ -45,22 +45,21 @@ static const struct field rows[] = {
                 "they pass through each other. Above 1 the model has no answer for them. Off without contacts."),
     COUNT(late_breaks, "Beams broken in the second half of the run's time."),
     REAL(largest_loss, "1", 0,
-         .doc = "How final the run is: M_1/M that the largest fragment lost in the second half of the run's time. "
-                "Expect about as much in the next doubling of the time."),
+         .doc = "Loss of M_1/M of the largest fragment in the second half of the run's time; 0 for a final run. Expect "
+                "about as much in the next doubling of the time."),
     REAL(energy.kinetic, "J/m", 0, .doc = "Kinetic energy at the end."),
     REAL(energy.vibration, "J/m", 0,
          .doc = "Part of the kinetic energy that is motion inside fragments: neither their translation nor their "
                 "rotation. Without damping it does not decay, and breaks more beams."),
     REAL(energy.beam, "J/m", -HUGE_VAL, .doc = "Energy stored in beams at the end."),
     REAL(energy.contact, "J/m", -HUGE_VAL,
-         .doc =
-             "Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return)."),
+         .doc = "Energy stored in contacts at the end (printed law: work done on contacts, of which only a part can "
+                "return)."),
     REAL(energy.damping, "J/m", -HUGE_VAL, .doc = "Energy taken by damping."),
     REAL(energy.friction, "J/m", -HUGE_VAL, .doc = "Energy taken by friction."),
     REAL(energy.broken_beam, "J/m", -HUGE_VAL,
-         .doc =
-             "Energy that broken beams held: what the new surfaces cost. With contact.bonded off, less what contacts "
-             "store that begin with a break."),
+         .doc = "Energy of the beams when they broke: the energy of the new surfaces. With contact.bonded off, less "
+                "what contacts store that begin with a break."),
     REAL(energy.external_work, "J/m", -HUGE_VAL, .doc = "Work done by moving boundaries."),
     REAL(young_modulus, "Pa", -HUGE_VAL, .doc = "K: slope of stress against strain under uniaxial load.",
          .source = "K99 section 3.1"),

@@ -35,7 +35,7 @@ static const struct field rows[] = {
                           "a block pulled or pressed between two opposite sides, free to slide sideways: K and nu\n"
                           "a block pressed between confined ends until it fails\n"
                           "two equal discs run into each other",
-           .doc = "The protocol: what is done to the body.", .source = "K99 section 3"),
+           .doc = "Protocol: load or impact on the body.", .source = "K99 section 3"),
 
     REAL(body.diameter, "m", 0.4, 1e-6, 1e6, .when = DISCS, .label = "diameter of the body",
          .doc = "Diameter of the disc.", .source = "K99 table 1"),
@@ -53,8 +53,8 @@ static const struct field rows[] = {
              "disc of 0.4 m.",
          .source = "K99 table 1 (number of polygons)"),
     REAL(grain.disorder, "1", 1, 0, 1,
-         .doc = "a over spacing: each grid square's point is thrown uniformly into the concentric square of side "
-                "a. 0 is a square lattice, 1 uses the whole grid square.",
+         .doc = "a over spacing: each grid square has one random point, uniform in the concentric square of side a. 0 "
+                "is a square lattice, 1 uses the whole grid square.",
          .source = "K99 section 2.1; the paper gives no value for its runs"),
 
     REAL(beam.young_modulus, "Pa", 5e8, 1, 1e15, .label = "Young's modulus of the beams E",
@@ -67,10 +67,10 @@ static const struct field rows[] = {
          .source = "K99 eq. 13"),
     REAL(threshold.angle, "rad", 4 * DEGREE, 1e-9, 1e3, .when = "threshold.breaking=true",
          .label = "threshold of beams in angle t_Θ",
-         .doc = "t_Theta: end rotation at which a hardly stretched beam breaks.", .source = "K99 eq. 13"),
+         .doc = "t_Theta: end rotation at which a beam with almost no stretch breaks.", .source = "K99 eq. 13"),
     REAL(threshold.modulus, "1", NAN, 0.1, 1e6, .flags = FIELD_MAY_BE_OFF, .when = "threshold.breaking=true",
          .label = "Weibull modulus of the thresholds",
-         .doc = "Weibull modulus of thresholds drawn for each beam, with the two thresholds above as the law's scales. "
+         .doc = "Weibull modulus: each beam has random thresholds; the two thresholds above are the scales of the law. "
                 "off: all beams have the same thresholds.",
          .source = "off is K99 section 2.3; the law is an option beyond the paper"),
 
@@ -119,9 +119,8 @@ static const struct field rows[] = {
     REAL(loading.strain_end, "1", 0.01, 0, 0.9, .flags = FIELD_ABOVE_MINIMUM | FIELD_PERCENT, .when = LOADED,
          .doc = "Strain between the held layers at which the run ends."),
     REAL(loading.residual, "1", 0.3, 0, 1, .flags = FIELD_MAY_BE_OFF | FIELD_BELOW_MAXIMUM, .when = "kind=compression",
-         .doc =
-             "The body has failed, and the run ends, once the stress is below this share of its maximum. off: load up "
-             "to strain_end."),
+         .doc = "The run ends when the stress falls below this share of its maximum: the body has then failed. off: "
+                "load up to strain_end."),
 
     REAL(collision.speed, "m/s", 200, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=disc-collision",
          .label = "collision speed",
@@ -139,15 +138,16 @@ static const struct field rows[] = {
                 "fragments go on vibrating, and beams go on breaking, about as many in each doubling of the time; a "
                 "short quiet time says little. The result largest_loss tells how final a run is. 0 is K99's rule.",
          .source = "measured: engine/dem/README.md, how final a run is"),
-    REAL(stop.end_time, "s", 2e-2, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = FREE, .doc = "Hard end of the run."),
+    REAL(stop.end_time, "s", 2e-2, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = FREE,
+         .doc = "End time of the run, also if fracture continues."),
 
     REAL(fidelity.time_step, "s", 1e-6, 1e-15, 1e3,
-         .doc = "Time step; refused where it is above the body's longest stable step: 2/omega_max for `verlet`, "
-                "0.54/omega_max for `gear`.",
+         .doc =
+             "Time step, at most the body's longest stable step: 2/omega_max for `verlet`, 0.54/omega_max for `gear`.",
          .source = "K99 table 1"),
     CHOICE(fidelity.integrator, integrators,
            .choice_docs = "velocity Verlet: the everyday choice\nfifth-order Gear predictor-corrector: the paper's",
-           .doc = "How the equations of motion are integrated.", .source = "K99 section 2.3 for `gear`"),
+           .doc = "Integrator of the equations of motion.", .source = "K99 section 2.3 for `gear`"),
     REAL(fidelity.energy_bound, "1", 0.01, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_PERCENT,
          .doc =
              "The run ends with state `energy` when the closed ledger drifts by more than this share of the energy put "

@@ -117,8 +117,8 @@ status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projecti
                        angle * 180 / M_PI);
   if (!sph_shape_surface(target, outwards, point, normal))
     return status_fail(error, STATUS_CONTENT,
-                       "no place of impact: the line from the target's centre of mass upwards (z) does not meet it. "
-                       "Turn the mesh in its file.");
+                       "no point of impact: the line from the target's centre of mass upwards (z) does not meet the "
+                       "target. Turn the mesh in its file.");
   const int towards = fabs(normal[0]) > cos(0.1) ? 1 : 0;
   for (int k = 0; k < 3; k++)
     aside[k] = (k == towards) - normal[towards] * normal[k];

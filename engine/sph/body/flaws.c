@@ -105,7 +105,10 @@ static status draw_all(struct drawn *d, sph_flaws_owner owner, void *context, ui
     d->without -= d->has[i];
   }
   if (n && !d->without)
-    return status_fail(error, STATUS_CONTENT, "all %zu particles of a body lie where it shall have no flaws.", n);
+    return status_fail(
+        error, STATUS_CONTENT,
+        "all %zu particles of a body lie in its flaw-free ends: shorten stretch.flaw_free or raise fidelity.particles.",
+        n);
 
   if (!most)
     most = 64 * (uint64_t)((double)n * (1 + log((double)n + 1)));

@@ -99,7 +99,8 @@ status sph_plane_shock(const struct sph_material *material, double piston, struc
   const bool follows = fabs(last->velocity - piston) < 1e-6 * piston;
   if (!follows || !(last->speed > piston) || !(last->density > out->first_density))
     return status_fail(error, STATUS_CONTENT,
-                       "no shock wave in this matter moves it at %.6g m/s: give another piston.speed", piston);
+                       "no shock wave in this material gives it a speed of %.6g m/s: give another piston.speed",
+                       piston);
   return STATUS_OK;
 }
 

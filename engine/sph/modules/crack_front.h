@@ -18,10 +18,10 @@ INPUT_CHOICE(fracture, front, SPH_CHOICES("none", "plane"), .flags = FIELD_SILEN
              .choice_docs = "it ends at its particle, and each particle breaks by flaws of its own, as printed: "
                             "strength grows with the number of particles\n"
                             "it runs on in its plane at c_g",
-             .doc = "How far a crack runs that has started at a flaw.", .source = "BA95 for `none`; `plane` is ours")
+             .doc = "Length of a crack that starts at a flaw.", .source = "BA95 for `none`; `plane` is ours")
 INPUT_REAL(fracture, front_arrest, "1", 0.5, 0, 1, .when = "fracture.front=plane",
-           .doc = "A crack runs on where the tension across its plane is at least this share of the one that opens its "
-                  "flaw. 0: any tension will do.",
+           .doc = "A crack continues where the tension across its plane is at least this share of the tension that "
+                  "opens its flaw. 0: any tension will do.",
            .source = "our choice")
 
 COLUMN(front_time)      /* s, when a crack's front reached the particle; infinite: not yet */

@@ -19,7 +19,8 @@ static status check(const struct sph_body_physics *body, const struct sph_partic
                     size_t last, struct error *error) {
   (void)particles;
   if (!(body->strength && body->material.shear_modulus > 0))
-    return status_fail(error, STATUS_CONTENT, "flaws but no strength: only a solid cracks");
+    return status_fail(error, STATUS_CONTENT,
+                       "flaws but no strength: only a solid cracks; set strength: true or fracture: off");
   if (body->flaws->particles != last - first)
     return status_fail(error, STATUS_CONTENT, "%zu particles, but flaws for %zu", last - first, body->flaws->particles);
   return STATUS_OK;

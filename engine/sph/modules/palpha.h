@@ -37,22 +37,21 @@ MATERIAL_CHOICE_VALUE(
 MATERIAL_CHOICE_VALUE(porosity.fraction, "1", NAN, 0, 0.99, SPH_MATERIAL_OFF, POROSITY_ON,
                       "Porosity, 1 - 1/alpha_0: give it or porosity.distention, not both; the other follows.", NULL)
 MATERIAL_CHOICE_VALUE(porosity.elastic_pressure, "Pa", NAN, 0, 1e15, 0, POROSITY_ON,
-                      "P_e: from here on pores are crushed for good.", "Jutzi, Benz & Michel 2008")
+                      "P_e: above this pressure pores close and stay closed.", "Jutzi, Benz & Michel 2008")
 MATERIAL_CHOICE_VALUE(porosity.solid_pressure, "Pa", NAN, 0, 1e15, SPH_MATERIAL_ABOVE, POROSITY_ON,
-                      "P_s: from here on all pores are closed.", "Jutzi, Benz & Michel 2008")
+                      "P_s: above this pressure all pores are closed.", "Jutzi, Benz & Michel 2008")
 MATERIAL_CHOICE_VALUE(porosity.sound_speed, "m/s", NAN, 0, 1e6, SPH_MATERIAL_OFF | SPH_MATERIAL_ABOVE, POROSITY_ON,
                       "c_e: bulk sound speed of the porous body, not above the solid's. off: pores do not give way "
                       "elastically, and the solid's speed is taken.",
                       "Herrmann 1969; Jutzi, Benz & Michel 2008")
-MATERIAL_CHOICE_VALUE(
-    porosity.elastic_distention, "1", NAN, 1, 100, SPH_MATERIAL_ABOVE, POROSITY_TWO_POWER,
-    "alpha_e: where the crush curve begins, at P_e. A body of lower alpha_0 keeps it until it meets the "
-    "curve.",
-    "Jutzi et al. 2009")
+MATERIAL_CHOICE_VALUE(porosity.elastic_distention, "1", NAN, 1, 100, SPH_MATERIAL_ABOVE, POROSITY_TWO_POWER,
+                      "alpha_e: distention at the beginning of the crush curve, at P_e. A body of lower alpha_0 keeps "
+                      "it until it meets the curve.",
+                      "Jutzi et al. 2009")
 MATERIAL_CHOICE_VALUE(porosity.transition_distention, "1", NAN, 1, 100, 0, POROSITY_TWO_POWER,
-                      "alpha_t: below it, and above P_t, the first power law has ended.", "Jutzi et al. 2009")
+                      "alpha_t: distention at the end of the first power law, at P_t.", "Jutzi et al. 2009")
 MATERIAL_CHOICE_VALUE(porosity.transition_pressure, "Pa", NAN, 0, 1e15, SPH_MATERIAL_ABOVE, POROSITY_TWO_POWER,
-                      "P_t: where the first power law ends.", "Jutzi et al. 2009")
+                      "P_t: pressure at the end of the first power law.", "Jutzi et al. 2009")
 MATERIAL_CHOICE_VALUE(porosity.exponent_low, "1", NAN, 1, 100, 0, POROSITY_TWO_POWER,
                       "n1: exponent of the law between P_e and P_t.", "Jutzi et al. 2009")
 MATERIAL_CHOICE_VALUE(porosity.exponent_high, "1", NAN, 1, 100, 0, POROSITY_TWO_POWER,

@@ -18,4 +18,4 @@ INPUT_CHOICE(
     .doc = "The strengths of the flaws.", .source = "BA95 eq. 20 for `ranked`")
 INPUT_CHOICE(fidelity, flaws, SPH_CHOICES("exact", "compact"), .when = "target.fracture=auto|on",
              .choice_docs = "every flaw is kept\nlowest, highest and number of each particle, a power law between",
-             .doc = "How a particle's flaws are stored.")
+             .doc = "Storage of a particle's flaws.")

@@ -80,11 +80,11 @@ static const char *const precisions[] = {"double", "float", NULL};
       REAL(B.radius, "m", shape_, 1e-9, 1e9, .when = #B ".shape=sphere|cylinder",                                      \
            .doc = "Radius of the sphere or cylinder."),                                                                \
       REAL(B.inner_radius, "m", 0, 0, 1e9, .when = #B ".shape=cylinder",                                               \
-           .doc = "Radius of a hole along the cylinder's axis: a ring. 0: a full cylinder."),                          \
+           .doc = "Radius of a hole along the cylinder's axis, which makes a ring. 0: a full cylinder."),              \
       REAL(B.length, "m", 0.04, 1e-9, 1e9, .when = #B ".shape=cylinder",                                               \
-           .doc =                                                                                                      \
-               "Length of the cylinder along its axis: z for a target, the flight for a projectile. In a collision, "  \
-               "where the slab repeats along z, the least length: whole periods of the lattice are made of it."),      \
+           .doc = "Length of the cylinder along its axis: z for a target, the direction of flight for a projectile. "  \
+                  "In a collision, "                                                                                   \
+                  "where the slab repeats along z, the least length: whole periods of the lattice are made of it."),   \
       REAL(B.width, "m", 0.2, 1e-9, 1e9, .when = #B ".shape=box", .doc = "Side of the box along x."),                  \
       REAL(B.depth, "m", 0.2, 1e-9, 1e9, .when = #B ".shape=box",                                                      \
            .doc = "Side of the box along y. Of a plate (kind: piston), which repeats along y and z, the least one: "   \
@@ -126,7 +126,7 @@ static const struct field rows[] = {
                           "two equal cylinders or rings collide, as slabs that repeat along their axes\n"
                           "a piston runs into a plate without strength, a bar that repeats sideways; its shock is "
                           "compared with the exact one",
-           .doc = "The protocol: what is done to the body."),
+           .doc = "Protocol: load or impact on the body."),
 
     CHOICE(target.shape, shapes,
            .doc = "The target's outline, its centre at the origin. An impact takes all of them, a piston a box; "
@@ -138,7 +138,7 @@ static const struct field rows[] = {
            .choice_docs =
                "free surfaces: waves return\na layer inside all sides but the upper one damps motion: it stands for a "
                "half-space",
-           .doc = "The sides of a box that are not hit."),
+           .doc = "The sides of a box, except the side of the impact."),
     REAL(sides.depth, "m", NAN, 1e-9, 1e9, .flags = FIELD_DERIVED, .when = "sides.far=damped",
          .doc = "Thickness of the damping layer; a tenth of the shortest side unless given. A wave that goes through "
                 "it and "
@@ -153,7 +153,7 @@ static const struct field rows[] = {
         CHOICE(impact.projectile, projectile_by, .when = "kind=impact",
                .choice_docs =
                    "projectile.radius and the like\na sphere of impact.mass\na sphere with impact.specific_energy",
-               .doc = "What decides the projectile's size."),
+               .doc = "Input that decides the projectile's size."),
     REAL(impact.mass, "kg", 2e-4, 1e-30, 1e30, .when = "impact.projectile=mass", .label = "mass of the projectile",
          .doc = "Mass of the projectile."),
     REAL(impact.specific_energy, "J/kg", 1000, 1e-12, 1e12, .when = "impact.projectile=specific-energy",
@@ -214,7 +214,7 @@ static const struct field rows[] = {
         .source = "BA95 eq. 18 for off"),
 
     REAL(fragments.static_strength, "Pa", NAN, 0, 1e15, .flags = FIELD_DERIVED | FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
-         .doc = "At the end damaged particles under more tension than this count as broken: their cracks would still "
+         .doc = "At the end, damaged particles under more tension than this count as broken: their cracks would still "
                 "open. Sound particles stay whole, and so does a target that cannot crack. Unless given: Young's "
                 "modulus times the mean strength of the weakest flaw of the whole target. off: no such pass.",
          .source = "BA95 section 4.4; that the particle is damaged is our condition"),
@@ -243,22 +243,21 @@ static const struct field rows[] = {
             "lengths, and gets thinner with more particles. Unless given it is fracture.cell.",
         .source = "our choice; BA95 section 4.4 for 0"),
     REAL(fragments.dust_mass, "kg", NAN, 0, 1e60, .flags = FIELD_DERIVED,
-         .doc = "Lighter fragments are dust, whatever the particles weigh; a thousandth of the target's mass unless "
+         .doc = "Lighter fragments are dust, for any mass of the particles; a thousandth of the target's mass unless "
                 "given. Below complete_mass (10 particles) dust is not resolved: with that default take 10000 "
                 "particles or more.",
          .source = "our choice"),
 
     REAL(crater.ejection_speed, "m/s", 10, 0, 1e6, .when = "kind=impact",
-         .doc = "At the end what moves out of the target (along z, towards where the projectile came from) faster than "
-                "this counts as "
-                "ejecta, all else as retained: there is no gravity to tell. 0: whatever moves outwards.",
+         .doc = "At the end, matter that moves out of the target (along z, against the projectile's flight) faster "
+                "than this counts as ejecta, all else as retained: there is no gravity that could separate them. 0: "
+                "whatever moves outwards.",
          .source = "Jutzi & Benz, section 3.2, for 0"),
-    REAL(
-        stop.end_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
-        .doc =
-            "Hard end of the run; unless given, ten times what a longitudinal wave needs through the target, and the "
-            "time "
-            "until bodies meet. Of a plate: when its first front, by the jump conditions, has gone 0.94 of its width."),
+    REAL(stop.end_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
+         .doc = "End time of the run, also if fracture continues; unless given, ten times the time of a longitudinal "
+                "wave through the target, plus "
+                "the time until the bodies touch. Of a plate: when its first front, by the jump conditions, has gone "
+                "0.94 of its width."),
     REAL(stop.quiet_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
          .when = "target.fracture=auto|on",
          .doc = "Fracture has ceased, and the run is complete, when the mean damage of the body has grown by less than "
@@ -293,7 +292,7 @@ static const struct field rows[] = {
            .choice_docs = "double throughout\nstored relative positions and pair sums are float",
            .doc = "Arithmetic of the pair loop."),
     COUNT(fidelity.threads, 1, 1, 1024,
-          .doc = "Threads of one run, for a big one on an idle machine. The bits do not depend on it."),
+          .doc = "Threads of one run, for a large run on a machine without other work. The bits do not depend on it."),
     REAL(fidelity.energy_bound, "1", 0.01, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_PERCENT,
          .doc = "The run ends with state `energy` when the ledger drifts by more than this share of the energy put in. "
                 "off: it "

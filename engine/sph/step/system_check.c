@@ -49,8 +49,8 @@ static status check_inputs(const struct sph_inputs *inputs, struct error *error)
 static status check_domain(const struct sph_domain *domain, struct error *error) {
   for (int k = 0; k < 3; k++)
     if (domain->periodic[k] <= 0 || isinf(domain->periodic[k]))
-      return status_fail(error, STATUS_CONTENT, "the periodic box is %g m long along %c", domain->periodic[k],
-                         "xyz"[k]);
+      return status_fail(error, STATUS_CONTENT, "the periodic box is %g m long along %c; give a positive length",
+                         domain->periodic[k], "xyz"[k]);
   if (!(domain->spacing_over_h > 0) || isinf(domain->spacing_over_h))
     return status_fail(error, STATUS_CONTENT, "the spacing over h is %g; it must be above 0", domain->spacing_over_h);
   if (domain->largest_time_step <= 0) /* NaN: off */
