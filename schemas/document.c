@@ -10,6 +10,23 @@
 
 #include "schemas/document_tree.h"
 
+/* A document that holds a copy of the text; NULL without memory. */
+static struct document *create(const char *name, const char *text, size_t size) {
+  struct document *document = calloc(1, sizeof *document);
+  if (!document)
+    return NULL;
+  document->name = strdup(name);
+  document->text = malloc(size + 1);
+  document->size = size;
+  if (!document->name || !document->text) {
+    document_free(document);
+    return NULL;
+  }
+  memcpy(document->text, text, size);
+  document->text[size] = 0;
+  return document;
+}
+
 status document_parse(const char *name, const char *text, size_t size, struct document **out, struct error *error) {
   *out = NULL;
   if (size > DOCUMENT_LARGEST)
@@ -19,20 +36,10 @@ status document_parse(const char *name, const char *text, size_t size, struct do
     text += 3;
     size -= 3;
   }
-
-  struct document *document = calloc(1, sizeof *document);
-  if (document) {
-    document->name = strdup(name);
-    document->text = malloc(size + 1);
-    document->size = size;
-  }
-  if (!document || !document->name || !document->text) {
-    document_free(document);
+  struct document *document = create(name, text, size);
+  if (!document)
     return status_fail(error, STATUS_MEMORY, "%s: no memory for %zu bytes", name, size);
-  }
-  memcpy(document->text, text, size);
-  document->text[size] = 0;
-  status code = document_guard(document) ? document_build(document) : STATUS_CONTENT;
+  const status code = document_guard(document) ? document_build(document) : STATUS_CONTENT;
   if (code == STATUS_OK) {
     *out = document;
     return STATUS_OK;
@@ -46,41 +53,45 @@ status document_parse(const char *name, const char *text, size_t size, struct do
   return code;
 }
 
-status document_open(const char *path, struct document **out, struct error *error) {
-  *out = NULL;
-  status code = STATUS_IO;
-  char *text = NULL;
-  int file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
-  if (file < 0) {
-    if (errno == ENOENT || errno == ENOTDIR)
-      return status_fail(error, STATUS_MISSING, "%s: there is no such file", path);
-    return status_fail(error, STATUS_IO, "%s: cannot be opened: %s", path, strerror(errno));
-  }
-  struct stat facts;
-  if (fstat(file, &facts) == 0 && S_ISDIR(facts.st_mode)) {
-    status_fail(error, STATUS_IO, "%s: is a folder; name a file in it", path);
-    goto cleanup;
-  }
-  text = malloc(DOCUMENT_LARGEST + 2);
-  if (!text) {
-    code = status_fail(error, STATUS_MEMORY, "%s: no memory to read it", path);
-    goto cleanup;
-  }
-  size_t size = 0;
-  while (size <= DOCUMENT_LARGEST) {
-    ssize_t got = read(file, text + size, DOCUMENT_LARGEST + 1 - size);
-    if (got < 0 && errno == EINTR)
-      continue;
-    if (got < 0) {
-      status_fail(error, STATUS_IO, "%s: cannot be read: %s", path, strerror(errno));
-      goto cleanup;
-    }
+/* Reads up to one byte more than a document may have. */
+static status read_text(int file, const char *path, char *text, size_t *size, struct error *error) {
+  for (*size = 0; *size <= DOCUMENT_LARGEST;) {
+    const ssize_t got = read(file, text + *size, DOCUMENT_LARGEST + 1 - *size);
     if (got == 0)
       break;
-    size += (size_t)got;
+    if (got > 0)
+      *size += (size_t)got;
+    else if (errno != EINTR)
+      return status_fail(error, STATUS_IO, "%s: cannot be read: %s", path, strerror(errno));
   }
-  code = document_parse(path, text, size, out, error);
-cleanup:
+  return STATUS_OK;
+}
+
+static status open_file(const char *path, int *file, struct error *error) {
+  struct stat facts;
+  *file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+  if (*file < 0 && (errno == ENOENT || errno == ENOTDIR))
+    return status_fail(error, STATUS_MISSING, "%s: there is no such file", path);
+  if (*file < 0)
+    return status_fail(error, STATUS_IO, "%s: cannot be opened: %s", path, strerror(errno));
+  if (fstat(*file, &facts) != 0 || !S_ISDIR(facts.st_mode))
+    return STATUS_OK;
+  close(*file);
+  return status_fail(error, STATUS_IO, "%s: is a folder; name a file in it", path);
+}
+
+status document_open(const char *path, struct document **out, struct error *error) {
+  *out = NULL;
+  int file;
+  size_t size = 0;
+  status code = open_file(path, &file, error);
+  if (code)
+    return code;
+  char *text = malloc(DOCUMENT_LARGEST + 2);
+  code = text ? read_text(file, path, text, &size, error)
+              : status_fail(error, STATUS_MEMORY, "%s: no memory to read it", path);
+  if (!code)
+    code = document_parse(path, text, size, out, error);
   free(text);
   close(file);
   return code;
@@ -107,23 +118,31 @@ void document_free(struct document *document) {
   free(document);
 }
 
+/* "first\nsecond", where either may be NULL; frees both. Without memory the first one alone. */
+static char *join(char *first, char *second) {
+  char *both = NULL;
+  if (!first || !second)
+    return first ? first : second;
+  const size_t size = strlen(first) + strlen(second) + 2;
+  both = malloc(size);
+  if (both)
+    snprintf(both, size, "%s\n%s", first, second);
+  free(second);
+  if (!both)
+    return first;
+  free(first);
+  return both;
+}
+
+static char *own_report(struct document *document) {
+  return document->error_count ? document_report_text(document) : NULL;
+}
+
 /* The reports of a document and of those that it includes, one after the other. */
 static char *whole_report(struct document *document) {
-  char *text = document->error_count ? document_report_text(document) : NULL;
-  for (struct document *other = document->included; other; other = other->next_included) {
-    char *more = other->error_count ? document_report_text(other) : NULL, *both = NULL;
-    if (!more || !text) {
-      text = text ? text : more;
-      continue;
-    }
-    const size_t size = strlen(text) + strlen(more) + 2;
-    both = malloc(size);
-    if (both)
-      snprintf(both, size, "%s\n%s", text, more);
-    free(both ? text : more);
-    free(both ? more : NULL);
-    text = both ? both : text;
-  }
+  char *text = own_report(document);
+  for (struct document *other = document->included; other; other = other->next_included)
+    text = join(text, own_report(other));
   return text;
 }
 
@@ -160,9 +179,7 @@ const char *document_scalar(document_node *node) {
 }
 
 document_node *document_key(document_node *mapping, const char *key) {
-  if (mapping->kind != DOCUMENT_MAPPING)
-    return NULL;
-  for (size_t i = 0; i < mapping->count; i++) {
+  for (size_t i = 0; mapping->kind == DOCUMENT_MAPPING && i < mapping->count; i++) {
     struct document_pair *pair = &mapping->pairs[i];
     if (pair->key->faulty || strcmp(pair->key->text, key) != 0)
       continue;

@@ -61,6 +61,18 @@ struct excerpt {
   bool readable; /* UTF-8. Else the line may hold anything: each byte beyond ASCII is shown as '?', in one column */
 };
 
+/* Cuts a long line to what is shown, between characters. */
+static void cut_line(const char *text, size_t start, struct excerpt *e) {
+  if (start - e->begin > BEFORE)
+    e->from = start - BEFORE;
+  if (e->to - e->from > SHOWN)
+    e->to = e->from + SHOWN;
+  while (e->from < start && continues(text[e->from]))
+    e->from++;
+  while (e->to > start && e->to < e->finish && continues(text[e->to]))
+    e->to--;
+}
+
 static struct excerpt excerpt_around(const struct document *document, size_t start) {
   const char *text = document->text;
   struct excerpt e = {.begin = start, .finish = start};
@@ -68,19 +80,10 @@ static struct excerpt excerpt_around(const struct document *document, size_t sta
     e.begin--;
   while (e.finish < document->size && text[e.finish] != '\n' && text[e.finish] != '\r')
     e.finish++;
-
   e.from = e.begin;
   e.to = e.finish;
-  if (e.finish - e.begin > SHOWN) {
-    if (start - e.begin > BEFORE)
-      e.from = start - BEFORE;
-    if (e.to - e.from > SHOWN)
-      e.to = e.from + SHOWN;
-    while (e.from < start && continues(text[e.from]))
-      e.from++;
-    while (e.to > start && e.to < e.finish && continues(text[e.to]))
-      e.to--;
-  }
+  if (e.finish - e.begin > SHOWN)
+    cut_line(text, start, &e);
   e.readable = document_guard_text(text + e.from, e.to - e.from) == e.to - e.from;
   return e;
 }
@@ -111,9 +114,9 @@ static void write_marker(const char *text, const struct excerpt *e, size_t start
 
 /* One error as text. Columns count characters from 1, as editors do. */
 static void write_error(const struct document *document, const struct document_error *error, FILE *out) {
-  const char *text = document->text;
+  const char *text = document->text, *message = error->message ? error->message : "(no memory for the message)";
   if (error->put) {
-    fprintf(out, "%s: error: %s\n", document->origin, error->message ? error->message : "(no memory for the message)");
+    fprintf(out, "%s: error: %s\n", document->origin, message);
     return;
   }
   const size_t start = error->start < document->size ? error->start : document->size;
@@ -121,8 +124,7 @@ static void write_error(const struct document *document, const struct document_e
   size_t column = 1;
   for (size_t i = e.begin; i < start; i++)
     column += !continues(text[i]);
-  fprintf(out, "%s:%zu:%zu: error: %s\n", document->name, document_report_line(document, start), column,
-          error->message ? error->message : "(no memory for the message)");
+  fprintf(out, "%s:%zu:%zu: error: %s\n", document->name, document_report_line(document, start), column, message);
   if (e.from == e.to)
     return;
   write_line(text, &e, out);

@@ -118,25 +118,23 @@ void field_copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
 
 void field_get(const struct field *row, const void *object, struct field_value *value) {
   const void *from = seat(row, object);
+  bool truth;
+  int index;
   memset(value, 0, sizeof *value);
   value->kind = row->kind;
   switch (row->kind) {
   case FIELD_REAL: memcpy(&value->number, from, sizeof value->number); break;
   case FIELD_INTEGER: memcpy(&value->integer, from, sizeof value->integer); break;
-  case FIELD_BOOLEAN: {
-    bool truth;
+  case FIELD_BOOLEAN:
     memcpy(&truth, from, sizeof truth);
     value->number = truth;
     break;
-  }
-  case FIELD_CHOICE: {
-    int index;
+  case FIELD_CHOICE:
     memcpy(&index, from, sizeof index);
     value->number = index;
     if (index >= 0 && (size_t)index < field_choice_count(row))
       field_copy_text(value->text, row->choices[index]);
     break;
-  }
   case FIELD_TEXT: field_copy_text(value->text, from); break;
   }
 }

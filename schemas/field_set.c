@@ -8,19 +8,13 @@ enum { QUOTE = 60 };
 
 void field_set_unchecked(const struct field *row, void *object, const struct field_value *value) {
   void *to = (char *)object + row->offset;
+  const bool truth = value->number != 0;
+  const int index = row->kind == FIELD_CHOICE ? (int)value->number : 0;
   switch (row->kind) {
   case FIELD_REAL: memcpy(to, &value->number, sizeof value->number); break;
   case FIELD_INTEGER: memcpy(to, &value->integer, sizeof value->integer); break;
-  case FIELD_BOOLEAN: {
-    bool truth = value->number != 0;
-    memcpy(to, &truth, sizeof truth);
-    break;
-  }
-  case FIELD_CHOICE: {
-    int index = (int)value->number;
-    memcpy(to, &index, sizeof index);
-    break;
-  }
+  case FIELD_BOOLEAN: memcpy(to, &truth, sizeof truth); break;
+  case FIELD_CHOICE: memcpy(to, &index, sizeof index); break;
   case FIELD_TEXT: field_copy_text(to, value->text); break;
   }
 }
@@ -80,45 +74,48 @@ static status unknown_choice(const struct field *row, const char *text, struct e
 /* By name; by index when the name is empty. */
 static status set_choice(const struct field *row, const struct field_value *value, struct field_value *out,
                          struct error *error) {
-  size_t index = 0;
-  if (value->kind == FIELD_CHOICE && !value->text[0]) {
-    if (!(value->number >= 0 && value->number < (double)field_choice_count(row)))
-      return status_fail(error, STATUS_CONTENT, "%s: there is no choice number %g", row->path, value->number);
-    index = (size_t)value->number;
-  } else {
-    while (row->choices[index] && strcmp(row->choices[index], value->text) != 0)
-      index++;
-    if (!row->choices[index])
-      return unknown_choice(row, value->text, error);
-  }
+  const size_t count = field_choice_count(row);
+  const bool by_index = value->kind == FIELD_CHOICE && !value->text[0];
+  if (by_index && !(value->number >= 0 && value->number < (double)count))
+    return status_fail(error, STATUS_CONTENT, "%s: there is no choice number %g", row->path, value->number);
+  size_t index = by_index ? (size_t)value->number : 0;
+  while (!by_index && index < count && strcmp(row->choices[index], value->text) != 0)
+    index++;
+  if (index == count)
+    return unknown_choice(row, value->text, error);
   out->number = (double)index;
   field_copy_text(out->text, row->choices[index]);
   return STATUS_OK;
 }
 
+/* Can a value of this kind become one of the row's kind? */
+static bool suits(enum field_kind row, enum field_kind value) {
+  switch (row) {
+  case FIELD_REAL:
+  case FIELD_INTEGER: return value == FIELD_REAL || value == FIELD_INTEGER;
+  case FIELD_CHOICE:
+  case FIELD_TEXT: return value == FIELD_TEXT || value == FIELD_CHOICE;
+  case FIELD_BOOLEAN: break;
+  }
+  return value == FIELD_BOOLEAN;
+}
+
 status field_set_value(const struct field *row, const struct field_value *value, struct field_value *out,
                        struct error *error) {
-  const bool is_number = value->kind == FIELD_REAL || value->kind == FIELD_INTEGER;
-  const bool is_text = value->kind == FIELD_TEXT || value->kind == FIELD_CHOICE;
+  static const char *const kinds[] = {"a number", "a whole number", "true or false", "a choice", "text"};
   memset(out, 0, sizeof *out);
   out->kind = row->kind;
-
-  if (row->kind == FIELD_REAL && is_number)
-    return set_real(row, value, out, error);
-  if (row->kind == FIELD_INTEGER && is_number)
-    return set_integer(row, value, out, error);
-  if (row->kind == FIELD_CHOICE && is_text)
-    return set_choice(row, value, out, error);
-  if (row->kind == FIELD_BOOLEAN && value->kind == FIELD_BOOLEAN) {
-    out->number = value->number != 0;
-    return STATUS_OK;
+  if (!suits(row->kind, value->kind))
+    return status_fail(error, STATUS_CONTENT, "%s: expected %s, got %s", row->path, kinds[row->kind],
+                       kinds[value->kind]);
+  switch (row->kind) {
+  case FIELD_REAL: return set_real(row, value, out, error);
+  case FIELD_INTEGER: return set_integer(row, value, out, error);
+  case FIELD_CHOICE: return set_choice(row, value, out, error);
+  case FIELD_BOOLEAN: out->number = value->number != 0; break;
+  case FIELD_TEXT: field_copy_text(out->text, value->text); break;
   }
-  if (row->kind == FIELD_TEXT && is_text) {
-    field_copy_text(out->text, value->text);
-    return STATUS_OK;
-  }
-  static const char *const kinds[] = {"a number", "a whole number", "true or false", "a choice", "text"};
-  return status_fail(error, STATUS_CONTENT, "%s: expected %s, got %s", row->path, kinds[row->kind], kinds[value->kind]);
+  return STATUS_OK;
 }
 
 status field_set(const struct field *row, void *object, const struct field_value *value, struct error *error) {

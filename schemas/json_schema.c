@@ -47,37 +47,40 @@ static void bare(const struct field *row, FILE *out) {
   fputs("}, ", out);
 }
 
-static void type(const struct field *row, FILE *out) {
-  switch (row->kind) {
-  case FIELD_REAL:
+static void type_real(const struct field *row, FILE *out) {
+  const char *pattern = field_needs_unit(row) ? NUMBER_IN_UNIT : NUMBER_AND_UNIT;
+  fputs("\"anyOf\": [", out);
+  bare(row, out);
+  fprintf(out, "{\"type\": \"string\", \"pattern\": \"%s\"}", pattern);
+  fputs(row->flags & FIELD_MAY_BE_OFF ? ", {\"const\": \"off\"}]" : "]", out);
+}
+
+static void type_integer(const struct field *row, FILE *out) {
+  if (field_needs_unit(row)) {
     fputs("\"anyOf\": [", out);
     bare(row, out);
-    fprintf(out, "{\"type\": \"string\", \"pattern\": \"%s\"}",
-            field_needs_unit(row) ? NUMBER_IN_UNIT : NUMBER_AND_UNIT);
-    if (row->flags & FIELD_MAY_BE_OFF)
-      fputs(", {\"const\": \"off\"}", out);
-    fputc(']', out);
-    break;
-  case FIELD_INTEGER:
-    if (field_needs_unit(row)) {
-      fputs("\"anyOf\": [", out);
-      bare(row, out);
-      fputs("{\"type\": \"string\", \"pattern\": \"" NUMBER_IN_UNIT "\"}]", out);
-      break;
-    }
-    fputs("\"type\": \"integer\"", out);
-    range(row, out);
-    break;
+    fputs("{\"type\": \"string\", \"pattern\": \"" NUMBER_IN_UNIT "\"}]", out);
+    return;
+  }
+  fputs("\"type\": \"integer\"", out);
+  range(row, out);
+}
+
+static void type_choice(const struct field *row, FILE *out) {
+  fputs("\"enum\": [", out);
+  for (size_t i = 0; row->choices[i]; i++) {
+    fputs(i ? ", " : "", out);
+    text_json_string(row->choices[i], out);
+  }
+  fputc(']', out);
+}
+
+static void type(const struct field *row, FILE *out) {
+  switch (row->kind) {
+  case FIELD_REAL: type_real(row, out); break;
+  case FIELD_INTEGER: type_integer(row, out); break;
   case FIELD_BOOLEAN: fputs("\"type\": \"boolean\"", out); break;
-  case FIELD_CHOICE:
-    fputs("\"enum\": [", out);
-    for (size_t i = 0; row->choices[i]; i++) {
-      if (i)
-        fputs(", ", out);
-      text_json_string(row->choices[i], out);
-    }
-    fputc(']', out);
-    break;
+  case FIELD_CHOICE: type_choice(row, out); break;
   case FIELD_TEXT: /* a plain 12 or true is text, too */
     fprintf(out, "\"type\": [\"string\", \"number\", \"boolean\"], %s\"maxLength\": %d",
             row->flags & FIELD_REQUIRED ? "\"minLength\": 1, " : "", FIELD_TEXT_SIZE - 1);
@@ -94,6 +97,31 @@ static void describe_choices(const struct field *row, FILE *out) {
   }
 }
 
+static void describe_number(const struct field *row, FILE *out) {
+  if (row->unit && strcmp(row->unit, "1"))
+    fprintf(out, " With its unit, such as %s.", row->unit);
+  if (row->flags & FIELD_PERCENT)
+    fputs(" In percent: 3 %.", out);
+  if (row->flags & FIELD_MAY_BE_OFF)
+    fputs(" Or `off`.", out);
+}
+
+static void describe(const struct field *row, FILE *out) {
+  if (row->doc)
+    fputs(row->doc, out);
+  if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER)
+    describe_number(row, out);
+  if (row->kind == FIELD_CHOICE)
+    describe_choices(row, out);
+  if (row->when) {
+    fprintf(out, " Only when %.*s is ", (int)strcspn(row->when, "="), row->when);
+    field_describe_condition(row, out);
+    fputc('.', out);
+  }
+  if (row->source)
+    fprintf(out, " Source: %s.", row->source);
+}
+
 /* What an editor shows: the row's doc, unit, choices, condition and source as one text. */
 static void description(const struct field *row, FILE *out) {
   char *text = NULL;
@@ -101,27 +129,8 @@ static void description(const struct field *row, FILE *out) {
   FILE *words = open_memstream(&text, &size);
   if (!words)
     return;
-
-  const bool is_number = row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
-  if (row->doc)
-    fputs(row->doc, words);
-  if (is_number && row->unit && strcmp(row->unit, "1"))
-    fprintf(words, " With its unit, such as %s.", row->unit);
-  if (row->flags & FIELD_PERCENT)
-    fputs(" In percent: 3 %.", words);
-  if (is_number && row->flags & FIELD_MAY_BE_OFF)
-    fputs(" Or `off`.", words);
-  if (row->kind == FIELD_CHOICE)
-    describe_choices(row, words);
-  if (row->when) {
-    fprintf(words, " Only when %.*s is ", (int)strcspn(row->when, "="), row->when);
-    field_describe_condition(row, words);
-    fputc('.', words);
-  }
-  if (row->source)
-    fprintf(words, " Source: %s.", row->source);
-
-  if (fclose(words) == 0)
+  describe(row, words);
+  if (text_close(words, &text))
     text_json_string(*text == ' ' ? text + 1 : text, out);
   free(text);
 }
@@ -145,22 +154,29 @@ static bool same_start(const char *a, const char *b, size_t length) {
   return strncmp(a, b, length) == 0;
 }
 
+/* A required row without a condition, below a prefix of `length` bytes. */
+static bool is_required(const struct field *row, const char *prefix, size_t length) {
+  return row->flags & FIELD_REQUIRED && !row->when && same_start(row->path, prefix, length);
+}
+
+/* Does a required row before row i have the same word, which ends at `end`? */
+static bool named_before(const struct field_table *table, size_t i, size_t end) {
+  for (size_t j = 0; j < i; j++) {
+    const struct field *row = &table->rows[j];
+    if (is_required(row, table->rows[i].path, end) && (row->path[end] == '.' || !row->path[end]))
+      return true;
+  }
+  return false;
+}
+
 /* The words of one level that lead to a required row without a condition. */
 static int required(const struct field_table *table, const char *prefix, size_t length, FILE *out) {
   int count = 0;
   for (size_t i = 0; i < table->count; i++) {
-    const struct field *row = &table->rows[i];
-    if (!(row->flags & FIELD_REQUIRED) || row->when || !same_start(row->path, prefix, length))
-      continue;
-    size_t word = strcspn(row->path + length, ".");
-    bool seen = false;
-    for (size_t j = 0; j < i && !seen; j++)
-      seen = table->rows[j].flags & FIELD_REQUIRED && !table->rows[j].when &&
-             same_start(table->rows[j].path, row->path, length + word) &&
-             strchr(".", table->rows[j].path[length + word]);
-    if (seen)
-      continue;
-    fprintf(out, "%s\"%.*s\"", count++ ? ", " : "", (int)word, row->path + length);
+    const char *path = table->rows[i].path;
+    const size_t word = is_required(&table->rows[i], prefix, length) ? strcspn(path + length, ".") : 0;
+    if (word && !named_before(table, i, length + word))
+      fprintf(out, "%s\"%.*s\"", count++ ? ", " : "", (int)word, path + length);
   }
   return count;
 }
@@ -171,8 +187,7 @@ int json_schema_required(const struct field_table *table, FILE *out) {
 
 static bool requires(const struct field_table *table, const char *prefix, size_t length) {
   for (size_t i = 0; i < table->count; i++)
-    if (table->rows[i].flags & FIELD_REQUIRED && !table->rows[i].when &&
-        same_start(table->rows[i].path, prefix, length))
+    if (is_required(&table->rows[i], prefix, length))
       return true;
   return false;
 }
