@@ -22,11 +22,10 @@ enum cpu_class cpu_class_choose(void) {
   const char *wanted = getenv("CLAST_CPU");
   const enum cpu_class limit = wanted && cpu_class_known(wanted) ? classes[find(wanted)].class : CPU_V4;
   __builtin_cpu_init();
-  const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2") &&
-                  __builtin_cpu_supports("bmi");
-  const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                  __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
-                  __builtin_cpu_supports("avx512vl");
+#define HAS(feature) (__builtin_cpu_supports(feature) != 0)
+  const bool v3 = HAS("avx2") & HAS("fma") & HAS("bmi2") & HAS("bmi");
+  const bool v4 = v3 & HAS("avx512f") & HAS("avx512bw") & HAS("avx512cd") & HAS("avx512dq") & HAS("avx512vl");
+#undef HAS
   if (v4 && limit >= CPU_V4)
     return CPU_V4;
   if (v3 && limit >= CPU_V3)

@@ -92,6 +92,11 @@ bool outcome_counts(const struct outcome *outcome) {
   return true;
 }
 
+/* 0 where there is no mass. */
+static double over(double value, double mass) {
+  return mass > 0 ? value / mass : 0;
+}
+
 void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments,
                        const struct outcome_small *small) {
   double mass = 0, square = 0, dust = 0;
@@ -101,15 +106,15 @@ void outcome_fragments(struct outcome *outcome, size_t count, const struct fragm
     mass += fragments[k].mass;
     square += fragments[k].mass * fragments[k].mass;
     outcome->single_count += fragments[k].count == 1;
-    if (isnan(small->dust) ? fragments[k].count == 1 : fragments[k].mass < small->dust)
-      dust += fragments[k].mass;
+    const bool is_dust = isnan(small->dust) ? fragments[k].count == 1 : fragments[k].mass < small->dust;
+    dust += is_dust ? fragments[k].mass : 0;
   }
-  double largest = count > 0 ? fragments[0].mass : 0, rest = mass - largest;
+  const double largest = count > 0 ? fragments[0].mass : 0;
   outcome->total_mass = mass;
   outcome->complete_mass = small->complete;
-  outcome->dust_fraction = mass > 0 ? dust / mass : 0;
-  outcome->largest_fraction = mass > 0 ? largest / mass : 0;
+  outcome->dust_fraction = over(dust, mass);
+  outcome->largest_fraction = over(largest, mass);
   outcome->second_fraction = count > 1 ? fragments[1].mass / mass : 0;
-  outcome->mean_fragment_mass = mass > 0 ? square / mass : 0;
-  outcome->mean_fragment_mass_rest = count > 1 && rest > 0 ? fmax(square - largest * largest, 0) / rest : 0;
+  outcome->mean_fragment_mass = over(square, mass);
+  outcome->mean_fragment_mass_rest = count > 1 ? over(fmax(square - largest * largest, 0), mass - largest) : 0;
 }

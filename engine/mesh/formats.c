@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "engine/mesh/build.h"
+#include "schemas/text.h"
 
 static const char blanks[] = " \t\r\v\f";
 
@@ -67,31 +68,39 @@ static status read_polygon(struct mesh_soup *soup, size_t line, const char *at, 
   return count < 3 ? mesh_refuse(soup, line, error, "a face has %zu corners: it needs three", count) : STATUS_OK;
 }
 
+static status read_vertex(struct mesh_soup *soup, size_t line, const char *numbers, struct error *error) {
+  double place[3];
+  if (!three_numbers(&numbers, place))
+    return mesh_refuse(soup, line, error, "expected three numbers behind v");
+  return mesh_soup_vertex(soup, line, place, error);
+}
+
+/* One line, whose first word begins at `at`. */
+static status read_obj_line(struct mesh_soup *soup, size_t line, const char *at, struct error *error) {
+  static const char *const ignored[] = {"", "vt", "vn", "vp", "o", "g", "s", "l", "p", "usemtl", "mtllib", NULL};
+  const size_t length = strcspn(at, " \t\r\v\f\n");
+  char word[8] = "";
+  if (length < sizeof word)
+    memcpy(word, at, length);
+  if (strcmp(word, "v") == 0)
+    return read_vertex(soup, line, at + 1, error);
+  if (strcmp(word, "f") == 0)
+    return read_polygon(soup, line, at + 1, error);
+  const bool fits = length < sizeof word;
+  if (*at == '#' || (fits && text_is_one_of(word, ignored)))
+    return STATUS_OK;
+  return mesh_refuse(soup, line, error, "\"%.*s\" begins no line of an OBJ file, and no STL file begins so",
+                     (int)(length < 20 ? length : 20), at);
+}
+
 static status read_obj(struct mesh_soup *soup, const char *text, struct error *error) {
-  static const char *const ignored[] = {"vt", "vn", "vp", "o", "g", "s", "l", "p", "usemtl", "mtllib"};
   size_t line = 1;
-  for (const char *at = text; *at; at += strcspn(at, "\n"), at += *at != 0, line++) {
-    at += strspn(at, blanks);
-    const size_t length = strcspn(at, " \t\r\v\f\n");
-    status code = STATUS_OK;
-    bool known = length == 0 || *at == '#';
-    if (length == 1 && *at == 'v') {
-      double place[3];
-      const char *numbers = at + 1;
-      code = three_numbers(&numbers, place) ? mesh_soup_vertex(soup, line, place, error)
-                                            : mesh_refuse(soup, line, error, "expected three numbers behind v");
-      known = true;
-    } else if (length == 1 && *at == 'f') {
-      code = read_polygon(soup, line, at + 1, error);
-      known = true;
-    }
-    for (size_t i = 0; !known && i < sizeof ignored / sizeof *ignored; i++)
-      known = length == strlen(ignored[i]) && strncmp(at, ignored[i], length) == 0;
-    if (!known)
-      return mesh_refuse(soup, line, error, "\"%.*s\" begins no line of an OBJ file, and no STL file begins so",
-                         (int)(length < 20 ? length : 20), at);
+  for (const char *at = text; *at; line++) {
+    const status code = read_obj_line(soup, line, at + strspn(at, blanks), error);
     if (code)
       return code;
+    at += strcspn(at, "\n");
+    at += *at != 0;
   }
   return STATUS_OK;
 }

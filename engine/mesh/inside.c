@@ -49,30 +49,41 @@ static size_t choose_columns(const struct mesh *m, struct mesh_columns *c) {
   }
 }
 
+static void count_faces(const struct mesh *m, struct mesh_columns *c) {
+  for (size_t f = 0; f < m->faces; f++) {
+    size_t low[2], high[2];
+    columns_of(m, c, f, low, high);
+    for (size_t i = low[0]; i <= high[0]; i++)
+      for (size_t j = low[1]; j <= high[1]; j++)
+        c->first[i * c->count[1] + j + 2]++;
+  }
+}
+
+static void fill_faces(const struct mesh *m, struct mesh_columns *c) {
+  for (size_t f = 0; f < m->faces; f++) {
+    size_t low[2], high[2];
+    columns_of(m, c, f, low, high);
+    for (size_t i = low[0]; i <= high[0]; i++)
+      for (size_t j = low[1]; j <= high[1]; j++)
+        c->face[c->first[i * c->count[1] + j + 1]++] = (uint32_t)f;
+  }
+}
+
+/* Counting sort of the faces by column. Counts stand two places ahead, and become starts one place ahead; filling moves
+ * each start to its own place. */
 status mesh_inside_make(struct mesh *m, struct error *error) {
   struct mesh_columns *c = m->columns = calloc(1, sizeof *c);
-  const size_t total = c ? choose_columns(m, c) : 0;
+  const size_t total = c ? choose_columns(m, c) : 0, columns = c ? c->count[0] * c->count[1] : 0;
   if (c) {
-    c->first = calloc(c->count[0] * c->count[1] + 2, sizeof *c->first);
+    c->first = calloc(columns + 2, sizeof *c->first);
     c->face = malloc((total + 1) * sizeof *c->face);
   }
   if (!c || !c->first || !c->face)
     return status_fail(error, STATUS_MEMORY, "no memory for a mesh of %zu faces", m->faces);
-  for (int pass = 0; pass < 2; pass++) { /* counts, two places ahead; then fills, and the starts move to their places */
-    for (size_t f = 0; f < m->faces; f++) {
-      size_t low[2], high[2];
-      columns_of(m, c, f, low, high);
-      for (size_t i = low[0]; i <= high[0]; i++)
-        for (size_t j = low[1]; j <= high[1]; j++) {
-          size_t *const at = &c->first[i * c->count[1] + j + (pass ? 1 : 2)];
-          if (pass)
-            c->face[*at] = (uint32_t)f;
-          ++*at;
-        }
-    }
-    for (size_t i = 2; !pass && i <= c->count[0] * c->count[1]; i++)
-      c->first[i] += c->first[i - 1];
-  }
+  count_faces(m, c);
+  for (size_t i = 2; i <= columns; i++)
+    c->first[i] += c->first[i - 1];
+  fill_faces(m, c);
   return STATUS_OK;
 }
 

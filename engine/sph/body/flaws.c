@@ -91,14 +91,20 @@ static status draw_rest(struct drawn *d, struct error *error) {
   return STATUS_OK;
 }
 
+static status check_law(const struct sph_flaw_law *law, struct error *error) {
+  const double m = law->weibull.m, k = law->weibull.k, volume = law->volume;
+  if (m > 0 && k > 0 && volume > 0 && isfinite(m + k + volume))
+    return STATUS_OK;
+  return status_fail(error, STATUS_CONTENT,
+                     "flaws need a positive m, k and volume, not m %g, k %g m^-3, volume %g m^3.", m, k, volume);
+}
+
 static status draw_all(struct drawn *d, sph_flaws_owner owner, void *context, uint64_t most, struct error *error) {
   const struct sph_flaw_law *law = d->law;
   const size_t n = d->n;
-  if (!(law->weibull.m > 0 && law->weibull.k > 0 && law->volume > 0) ||
-      !isfinite(law->weibull.m + law->weibull.k + law->volume))
-    return status_fail(error, STATUS_CONTENT,
-                       "flaws need a positive m, k and volume, not m %g, k %g m^-3, volume %g m^3.", law->weibull.m,
-                       law->weibull.k, law->volume);
+  status code = check_law(law, error);
+  if (code)
+    return code;
   d->log_kv = log(law->weibull.k) + log(law->volume);
   for (size_t i = 0; law->exempt && i < n; i++) {
     d->has[i] = law->exempt[i] != 0;
@@ -112,7 +118,7 @@ static status draw_all(struct drawn *d, sph_flaws_owner owner, void *context, ui
 
   if (!most)
     most = 64 * (uint64_t)((double)n * (1 + log((double)n + 1)));
-  const status code = draw(d, owner, context, most, error);
+  code = draw(d, owner, context, most, error);
   if (code)
     return code;
   if (law->number)

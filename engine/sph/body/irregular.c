@@ -7,47 +7,67 @@
 #include "engine/random.h"
 #include "engine/sph/body/hilbert.h"
 #include "engine/sph/body/kd_tree.h"
+#include "engine/sph/body/lattice_cell.h"
 #include "engine/sph/body/particles.h"
 
 static const uint64_t places = (uint64_t)1 << 32; /* number of this file's first draw; those of lattice.c are below */
 
+static status allocate(struct sph_points *points, size_t n, bool graded, struct error *error) {
+  status code = sph_lattice_allocate(points, n, error);
+  if (code || !graded)
+    return code;
+  points->share = malloc(n * sizeof *points->share);
+  return points->share ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the places of %zu particles", n);
+}
+
+/* Volumes over their mean: the cubes of the spacings that the grading wants. */
+static void fill_shares(const struct sph_grading *grading, size_t n, double (*at)[3], double *share) {
+  double total = 0;
+  for (size_t i = 0; i < n; i++) {
+    const double s = sph_relax_spacing(grading, at[i]);
+    share[i] = s * s * s;
+    total += share[i];
+  }
+  for (size_t i = 0; i < n; i++)
+    share[i] *= (double)n / total;
+}
+
+/* Mean distance of nearest neighbours; 0 where there are none. */
+static status find_nearest(const struct sph_points *points, double (*at)[3], double *mean, struct error *error) {
+  struct sph_kd_tree *tree;
+  const status code = sph_kd_tree_create(points->n, points->x, points->y, points->z, &tree, error);
+  if (code)
+    return code;
+  double sum = 0;
+  for (size_t i = 0; i < points->n; i++) {
+    const size_t j = sph_kd_tree_other(tree, at[i], i);
+    if (j < points->n)
+      sum += hypot(hypot(at[i][0] - at[j][0], at[i][1] - at[j][1]), at[i][2] - at[j][2]);
+  }
+  *mean = sum / (double)points->n;
+  sph_kd_tree_free(tree);
+  return STATUS_OK;
+}
+
 /* Fills *points, and finds the mean distance of nearest neighbours. */
 static status store(const struct sph_shape *shape, const struct sph_grading *grading, size_t n, double (*at)[3],
                     struct sph_points *points, struct error *error) {
-  points->n = n;
-  points->x = malloc(n * sizeof *points->x);
-  points->y = malloc(n * sizeof *points->y);
-  points->z = malloc(n * sizeof *points->z);
-  points->share = grading->fine > 0 ? malloc(n * sizeof *points->share) : NULL;
-  if (!points->x || !points->y || !points->z || (grading->fine > 0 && !points->share))
-    return status_fail(error, STATUS_MEMORY, "no memory for the places of %zu particles", n);
-  double total = 0;
+  status code = allocate(points, n, grading->fine > 0, error);
+  if (code)
+    return code;
   for (size_t i = 0; i < n; i++) {
     points->x[i] = at[i][0];
     points->y[i] = at[i][1];
     points->z[i] = at[i][2];
-    if (points->share) {
-      const double s = sph_relax_spacing(grading, at[i]);
-      total += points->share[i] = s * s * s;
-    }
   }
-  for (size_t i = 0; i < n && points->share; i++)
-    points->share[i] *= (double)n / total;
+  if (points->share)
+    fill_shares(grading, n, at, points->share);
   points->spacing = cbrt(sph_shape_volume(shape) / (double)n);
   points->stretch = 1;
-  struct sph_kd_tree *tree;
-  status code = sph_kd_tree_create(n, points->x, points->y, points->z, &tree, error);
-  if (code)
-    return code;
-  double sum = 0;
-  for (size_t i = 0; i < n; i++) {
-    const size_t j = sph_kd_tree_other(tree, at[i], i);
-    if (j < n)
-      sum += hypot(hypot(at[i][0] - at[j][0], at[i][1] - at[j][1]), at[i][2] - at[j][2]);
-  }
-  points->nearest = n > 1 ? sum / (double)n : points->spacing;
-  sph_kd_tree_free(tree);
-  return STATUS_OK;
+  code = find_nearest(points, at, &points->nearest, error);
+  if (!code && n == 1)
+    points->nearest = points->spacing;
+  return code;
 }
 
 /* Uniform points start as the hexagonal lattice, each moved by up to 0.7 spacings per direction. This leaves nothing of

@@ -129,22 +129,27 @@ status sph_materials_open(const char *path, struct sph_material *out, char **tex
   return code || *text ? code : status_fail(error, STATUS_MEMORY, "%s: no memory", path);
 }
 
+/* What stands at a path, or else at the nearest of its sections: "a.b.c", "a.b", "a". NULL: nothing. */
+static document_node *find_section(document_node *sources, const char *path) {
+  char key[FIELD_TEXT_SIZE];
+  field_copy_text(key, path);
+  for (;;) {
+    document_node *found = document_key(sources, key);
+    char *dot = strrchr(key, '.');
+    if (found || !dot)
+      return found;
+    *dot = '\0';
+  }
+}
+
 status sph_materials_source(const char *name, const char *path, char source[FIELD_TEXT_SIZE]) {
   const char *text = sph_materials_text(name);
   struct document *document = NULL;
   source[0] = '\0';
   if (!text || document_parse(name, text, strlen(text), &document, NULL) != STATUS_OK)
     return STATUS_MISSING;
-  document_node *root = document_root(document), *sources = document_key(root, "sources"), *found = NULL;
-  char key[FIELD_TEXT_SIZE];
-  field_copy_text(key, path);
-  for (char *dot = key; dot && sources && !found; dot = strrchr(key, '.')) { /* the value, or its section */
-    if (dot != key)
-      *dot = '\0';
-    found = document_key(sources, key);
-    if (!found && !strchr(key, '.'))
-      break;
-  }
+  document_node *root = document_root(document), *sources = document_key(root, "sources");
+  document_node *found = sources ? find_section(sources, path) : NULL;
   if (!found)
     found = document_key(root, "source");
   field_copy_text(source, found ? document_scalar(found) : NULL);

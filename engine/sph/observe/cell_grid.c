@@ -195,30 +195,35 @@ static void visit_cell(const struct visit *visit, const struct item *item, int n
   visit_buckets(visit, item, number, own, bucket_of(visit->t, number, at), 1);
 }
 
+/* A row of cells along x, from `first` to `last` cells beside home; `own`: the item's own cell is the first of them. */
+static void visit_row(const struct visit *visit, const struct item *item, int number, bool own,
+                      const struct level *level, const int64_t home[3], int first, int last) {
+  const size_t count = (size_t)(last - first + 1);
+  const size_t row = bucket_of(visit->t, number, (int64_t[3]){home[0] + first, home[1], home[2]});
+  const bool in_order = row + count <= visit->t->mask + 1; /* the row of cells is a row of buckets */
+  if (!visit->periodic && !own && in_order) {
+    visit_buckets(visit, item, number, false, row, count);
+    return;
+  }
+  for (int c = first; c <= last; c++)
+    visit_cell(visit, item, number, own && c == 0, level, (const int64_t[3]){home[0] + c, home[1], home[2]});
+}
+
 /* The cells round an item. A pair of two levels is found from its finer item, because the coarser cells hold the reach
  * of both. On the item's own level only the cells that follow its own are visited. */
 static void visit_level(const struct visit *visit, const struct item *item, int number, const struct level *level) {
   int64_t home[3];
-  int low[3], high[3];
+  int reach[3]; /* cells to either side */
   for (int d = 0; d < 3; d++) {
     home[d] = cell_along(level, d, item->at[d]);
-    low[d] = level->wrap[d] == 1 ? 0 : -1;
-    high[d] = level->wrap[d] == 1 ? 0 : 1;
+    reach[d] = level->wrap[d] == 1 ? 0 : 1;
   }
-  bool same = item->level == number;
-  for (int a = same ? 0 : low[2]; a <= high[2]; a++)
-    for (int b = same && a == 0 ? 0 : low[1]; b <= high[1]; b++) {
-      bool own = same && a == 0 && b == 0;
-      int first = own ? 0 : low[0], count = high[0] - first + 1;
-      size_t row = bucket_of(visit->t, number, (int64_t[3]){home[0] + first, home[1] + b, home[2] + a});
-      if (!visit->periodic && !own &&
-          row + (size_t)count <= visit->t->mask + 1) { /* the row of cells is a row of buckets */
-        visit_buckets(visit, item, number, false, row, (size_t)count);
-        continue;
-      }
-      for (int c = first; c <= high[0]; c++)
-        visit_cell(visit, item, number, own && c == 0, level,
-                   (const int64_t[3]){home[0] + c, home[1] + b, home[2] + a});
+  const bool same = item->level == number;
+  for (int a = same ? 0 : -reach[2]; a <= reach[2]; a++)
+    for (int b = same && a == 0 ? 0 : -reach[1]; b <= reach[1]; b++) {
+      const bool own = same && a == 0 && b == 0;
+      const int64_t beside[3] = {home[0], home[1] + b, home[2] + a};
+      visit_row(visit, item, number, own, level, beside, own ? 0 : -reach[0], reach[0]);
     }
 }
 

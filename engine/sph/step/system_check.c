@@ -62,18 +62,25 @@ static status check_domain(const struct sph_domain *domain, struct error *error)
   return STATUS_OK;
 }
 
+/* Does it move within bounds, and has it mass, density, size and no negative energy? */
+static bool is_matter(const struct sph_particles *p, size_t i) {
+  const double motion = fabs(p->x[i]) + fabs(p->y[i]) + fabs(p->z[i]) + fabs(p->vx[i]) + fabs(p->vy[i]) +
+                        fabs(p->vz[i]);
+  const double amount = p->mass[i] + p->density[i] + p->h[i] + p->energy[i];
+  const double least = fmin(p->mass[i], fmin(p->density[i], p->h[i]));
+  return motion < 1e30 && amount < 1e60 && least > 0 && p->energy[i] >= 0;
+}
+
 static status check_particles(const struct sph_particles *p, size_t body_count, struct error *error) {
   if (p->n == 0 || p->n >= UINT32_MAX)
     return status_fail(error, STATUS_CONTENT, "there are %zu particles", p->n);
   for (size_t i = 0; i < p->n; i++) {
-    const double motion = fabs(p->x[i]) + fabs(p->y[i]) + fabs(p->z[i]) + fabs(p->vx[i]) + fabs(p->vy[i]) +
-                          fabs(p->vz[i]);
-    if (!(motion < 1e30) || !(p->mass[i] > 0 && p->density[i] > 0 && p->h[i] > 0 && p->energy[i] >= 0) ||
-        !(p->mass[i] + p->density[i] + p->h[i] + p->energy[i] < 1e60))
+    if (!is_matter(p, i))
       return status_fail(error, STATUS_CONTENT,
                          "particle %zu is no matter: mass %g, density %g, h %g, energy %g, at %g %g %g m", i,
                          p->mass[i], p->density[i], p->h[i], p->energy[i], p->x[i], p->y[i], p->z[i]);
-    if (p->body[i] >= body_count || (i > 0 && p->body[i] < p->body[i - 1]))
+    const bool in_order = i == 0 || p->body[i] >= p->body[i - 1];
+    if (p->body[i] >= body_count || !in_order)
       return status_fail(error, STATUS_CONTENT, "particle %zu belongs to body %u of %zu, or out of order", i,
                          (unsigned)p->body[i], body_count);
   }
