@@ -68,14 +68,26 @@ status sql_execute(sqlite3 *db, const char *sql, const char *doing, struct error
   return code == SQLITE_OK ? STATUS_OK : sql_fail(db, code, doing, error);
 }
 
+static status no_memory(const char *doing, struct error *error) {
+  return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+}
+
 status sql_executef(sqlite3 *db, const char *doing, struct error *error, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   char *sql = sqlite3_vmprintf(format, arguments);
   va_end(arguments);
-  if (!sql)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  status result = sql_execute(db, sql, doing, error);
+  const status result = sql ? sql_execute(db, sql, doing, error) : no_memory(doing, error);
+  sqlite3_free(sql);
+  return result;
+}
+
+status sql_preparef(sqlite3 *db, sqlite3_stmt **out, const char *doing, struct error *error, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  char *sql = sqlite3_vmprintf(format, arguments);
+  va_end(arguments);
+  const status result = sql ? sql_prepare(db, sql, out, doing, error) : no_memory(doing, error);
   sqlite3_free(sql);
   return result;
 }
@@ -124,6 +136,16 @@ status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out
       result = sql_fail(db, code, "reading", error);
   }
   sqlite3_finalize(statement);
+  return result;
+}
+
+status sql_integerf(sqlite3 *db, int64_t *out, struct error *error, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  char *sql = sqlite3_vmprintf(format, arguments);
+  va_end(arguments);
+  const status result = sql ? sql_integer(db, sql, 0, out, error) : no_memory("reading", error);
+  sqlite3_free(sql);
   return result;
 }
 

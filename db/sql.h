@@ -19,6 +19,8 @@ status sql_execute(sqlite3 *db, const char *sql, const char *doing, struct error
 /* The same, with the text made by sqlite3_mprintf: write names and literals that come from outside with %w and %Q. */
 status sql_executef(sqlite3 *db, const char *doing, struct error *error, const char *format, ...);
 status sql_prepare(sqlite3 *db, const char *sql, sqlite3_stmt **out, const char *doing, struct error *error);
+/* The same, with the text made by sqlite3_mprintf. */
+status sql_preparef(sqlite3 *db, sqlite3_stmt **out, const char *doing, struct error *error, const char *format, ...);
 /* The same unless *out is there already: for statements that live as long as the store. */
 status sql_prepare_once(sqlite3 *db, sqlite3_stmt **out, const char *sql, const char *doing, struct error *error);
 /* Steps a statement that gives no rows, and resets it. */
@@ -29,6 +31,8 @@ bool sql_next(sqlite3_stmt *statement, status *result, const char *doing, struct
 const char *sql_text(sqlite3_stmt *statement, int column);
 /* First column of the first row as an integer; `otherwise` when there is no row or it is NULL. */
 status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out, struct error *error);
+/* The same, with 0 otherwise and the text made by sqlite3_mprintf. */
+status sql_integerf(sqlite3 *db, int64_t *out, struct error *error, const char *format, ...);
 /* The first column of all rows, each quoted as a name, with a comma before it; first and second are the texts ?1 and ?2
  * (NULL: there is no ?2). To be freed by sqlite3_free(); NULL when memory is out, empty when the text is no SQL. */
 char *sql_name_list(sqlite3 *db, const char *sql, const char *first, const char *second);

@@ -97,6 +97,14 @@ void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *o
   fputc('\n', out);
 }
 
+bool text_has_word(const char *words, const char *word) {
+  const size_t length = strlen(word);
+  for (const char *at = words; *at; at += strcspn(at, " "), at += *at == ' ')
+    if (strcspn(at, " ") == length && strncmp(at, word, length) == 0)
+      return true;
+  return false;
+}
+
 bool text_is_one_of(const char *text, const char *const *words) {
   for (; words && *words; words++)
     if (strcmp(text, *words) == 0)

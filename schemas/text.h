@@ -27,6 +27,9 @@ void text_append(char *text, size_t size, const char *format, ...) __attribute__
 /* The first sentence of `doc` without its full stop. */
 void text_sentence(const char *doc, char *text, size_t size);
 
+/* Is `word` one of the words of a text, which single spaces separate? */
+bool text_has_word(const char *words, const char *word);
+
 /* Closes the stream that open_memstream made for *text. Returns the text, which the caller frees; NULL (and *text is
  * freed and NULL) when memory ran out. */
 char *text_close(FILE *out, char **text);

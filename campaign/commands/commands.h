@@ -41,4 +41,15 @@ struct campaign_option;
 status commands_plan(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
                      bool no_trial, bool json, struct error *error);
 
+/* Options of several commands: which points and runs a question is about. */
+#define COMMANDS_POINT(type_, member_)                                                                                 \
+  OPTION_ROW_INTEGER("point", 'p', "N", type_, member_, 0, INT64_MAX, "0",                                             \
+                     "Only this point (point_id in the view points); 0: all.")
+#define COMMANDS_WHERE(type_, member_)                                                                                 \
+  OPTION_ROW_TEXT("where", 'w', "SQL", type_, member_, NULL,                                                           \
+                  "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\".")
+#define COMMANDS_BY(type_, member_)                                                                                    \
+  OPTION_ROW_TEXT("by", 'b', "AXES", type_, member_, NULL,                                                             \
+                  "Pool all points that share these varied inputs (strain,angle); \"\" pools all. Default: by point.")
+
 #endif

@@ -26,8 +26,7 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row option_rows[] = {
-    OPTION_ROW_INTEGER("point", 'p', "N", struct options, point, 0, INT64_MAX, "0",
-                       "Only this point (point_id in the view points); 0: all."),
+    COMMANDS_POINT(struct options, point),
     OPTION_ROW_INTEGER("campaign", 0, "N", struct options, campaign, 0, INT64_MAX, "0",
                        "Only the points of this campaign (`clast status` lists them); 0: all."),
     TABLE_OPTIONS(struct options, table),

@@ -37,10 +37,8 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row option_rows[] = {
-    OPTION_ROW_INTEGER("point", 'p', "N", struct options, point, 0, INT64_MAX, "0",
-                       "Only this point (point_id in the view points); 0: all."),
-    OPTION_ROW_TEXT("where", 'w', "SQL", struct options, where, NULL,
-                    "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\"."),
+    COMMANDS_POINT(struct options, point),
+    COMMANDS_WHERE(struct options, where),
     OPTION_ROW_INTEGER(
         "draws", 0, "N", struct options, draws, 100, 1000000, "2500",
         "Samples of the bootstrap; 2500 give p within 0.01. The bootstrap ends earlier when p is large."),

@@ -52,13 +52,9 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row option_rows[] = {
-    OPTION_ROW_INTEGER("point", 'p', "N", struct options, point, 0, INT64_MAX, "0",
-                       "Only this point (point_id in the view points); 0: all."),
-    OPTION_ROW_TEXT("where", 'w', "SQL", struct options, where, NULL,
-                    "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\"."),
-    OPTION_ROW_TEXT(
-        "by", 'b', "AXES", struct options, by, NULL,
-        "Pool all points that share these varied inputs (strain,angle); \"\" pools all. Default: by point."),
+    COMMANDS_POINT(struct options, point),
+    COMMANDS_WHERE(struct options, where),
+    COMMANDS_BY(struct options, by),
     OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT,
                     "Result: a column of the view runs."),
     OPTION_ROW_TEXT("half-width", 0, "NUMBER", struct options, half_width, NULL,

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "campaign/document/campaign.h"
+#include "schemas/text.h"
 
 const struct campaign_key campaign_keys[] = {
     {.name = "vary",
@@ -45,22 +46,14 @@ const struct campaign_key campaign_keys[] = {
 };
 const size_t campaign_keys_count = sizeof campaign_keys / sizeof campaign_keys[0];
 
-static bool has_word(const char *words, const char *word) {
-  const size_t length = strlen(word);
-  for (const char *at = words; *at; at += strcspn(at, " "), at += *at == ' ')
-    if (strcspn(at, " ") == length && strncmp(at, word, length) == 0)
-      return true;
-  return false;
-}
-
 const struct campaign_key *campaign_keys_find(const char *path) {
   const size_t head = strcspn(path, ".");
   for (size_t i = 0; i < campaign_keys_count; i++) {
     const struct campaign_key *key = &campaign_keys[i];
     const bool named = strlen(key->name) == head && strncmp(key->name, path, head) == 0;
-    if (named && (path[head] == '\0' || has_word(key->words, path + head + 1)))
+    if (named && (path[head] == '\0' || text_has_word(key->words, path + head + 1)))
       return key;
-    if (!named && has_word(key->words, path))
+    if (!named && text_has_word(key->words, path))
       return key;
   }
   return NULL;

@@ -6,6 +6,7 @@
 
 #include "analysis/statistics/estimates.h"
 #include "db/store/schema.h"
+#include "schemas/text.h"
 
 static const struct {
   const char *name, *also; /* other words for it, with blanks between */
@@ -70,14 +71,6 @@ static const struct {
     {"flaw", "flaws", "A point of a body where a crack starts at a given strain (Weibull): clast explain weibull"},
 };
 
-static bool has_word(const char *words, const char *word) {
-  const size_t length = strlen(word);
-  for (const char *at = words; *at; at += strcspn(at, " "), at += *at == ' ')
-    if (strcspn(at, " ") == length && strncmp(at, word, length) == 0)
-      return true;
-  return false;
-}
-
 static bool explain_column(const char *word) {
   size_t found = 0;
   for (size_t t = 0; t < schema_tables_count; t++)
@@ -107,7 +100,7 @@ static bool explain_exponent(const char *word) {
 
 bool explain_words(const char *word) {
   for (size_t i = 0; i < sizeof glossary / sizeof glossary[0]; i++) {
-    if (strcmp(glossary[i].name, word) != 0 && !has_word(glossary[i].also, word))
+    if (strcmp(glossary[i].name, word) != 0 && !text_has_word(glossary[i].also, word))
       continue;
     printf("%s\n", word);
     text_wrap(glossary[i].meaning, 0, 4, 96, stdout);

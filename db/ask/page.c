@@ -8,6 +8,7 @@
 #include "db/store/internal.h"
 #include "db/store/paths.h"
 #include "engine/outcome.h"
+#include "schemas/text.h"
 
 static const char doing[] = "making the page";
 
@@ -33,27 +34,34 @@ struct copying {
   sqlite3_stmt *insert;
 };
 
+/* "a", "b", "c"; without names ?, ?, ?. NULL: no memory. */
+static char *write_list(size_t count, const char *const *names) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return NULL;
+  for (size_t i = 0; i < count; i++) {
+    fputs(i ? ", " : "", out);
+    if (names)
+      sql_write_name(names[i], out);
+    else
+      fputc('?', out);
+  }
+  return text_close(out, &text);
+}
+
 static status make_table(void *context, size_t count, const char *const *names, struct error *error) {
   struct copying *copying = context;
-  char *columns = sqlite3_mprintf(""), *marks = sqlite3_mprintf("");
-  for (size_t i = 0; i < count && columns && marks; i++) {
-    char *more = sqlite3_mprintf("%s%s\"%w\"", columns, i ? ", " : "", names[i]);
-    sqlite3_free(columns);
-    columns = more;
-    more = sqlite3_mprintf("%s%s?", marks, i ? ", " : "");
-    sqlite3_free(marks);
-    marks = more;
-  }
+  sqlite3 *db = copying->page->db;
+  char *columns = write_list(count, names), *marks = write_list(count, NULL);
   status code = columns && marks ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the page");
   if (code == STATUS_OK)
-    code = sql_executef(copying->page->db, doing, error, "CREATE TABLE \"%w\" (%s)", copying->table, columns);
-  char *sql = code ? NULL : sqlite3_mprintf("INSERT INTO \"%w\" VALUES (%s)", copying->table, marks);
+    code = sql_executef(db, doing, error, "CREATE TABLE \"%w\" (%s)", copying->table, columns);
   if (code == STATUS_OK)
-    code = sql ? sql_prepare(copying->page->db, sql, &copying->insert, doing, error)
-               : status_fail(error, STATUS_MEMORY, "no memory for the page");
-  sqlite3_free(sql);
-  sqlite3_free(columns);
-  sqlite3_free(marks);
+    code = sql_preparef(db, &copying->insert, doing, error, "INSERT INTO \"%w\" VALUES (%s)", copying->table, marks);
+  free(columns);
+  free(marks);
   return code;
 }
 

@@ -26,11 +26,7 @@ static status name_columns(struct store *store, struct store_kind *kind, struct 
 
 static status has_no_rows(struct store *store, const char *table, bool *none, struct error *error) {
   int64_t filled = 0;
-  char *sql = sqlite3_mprintf("SELECT EXISTS (SELECT 1 FROM \"%w\")", table);
-  if (!sql)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
-  const status result = sql_integer(store->db, sql, 0, &filled, error);
-  sqlite3_free(sql);
+  const status result = sql_integerf(store->db, &filled, error, "SELECT EXISTS (SELECT 1 FROM \"%w\")", table);
   *none = filled == 0;
   return result;
 }

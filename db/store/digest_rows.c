@@ -54,15 +54,14 @@ static status open_table(struct reader *reader, const struct source *source, str
   char *question = sqlite3_mprintf("SELECT name FROM pragma_table_info(?1, 'main') WHERE name NOT IN (%s)",
                                    source->but);
   char *columns = question ? sql_name_list(reader->db, question, source->table, NULL) : NULL;
-  char *sql = columns ? sqlite3_mprintf("SELECT %s%s FROM main.\"%w\" WHERE %s = ?1", source->row, columns,
-                                        source->table, reader->key)
-                      : NULL;
-  struct table *table = &reader->tables[reader->count++];
-  status result = sql ? sql_prepare(reader->db, sql, &table->rows, doing, error)
-                      : status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  sqlite3_free(sql);
-  sqlite3_free(columns);
   sqlite3_free(question);
+  if (!columns)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  struct table *table = &reader->tables[reader->count++];
+  const status result = sql_preparef(reader->db, &table->rows, doing, error,
+                                     "SELECT %s%s FROM main.\"%w\" WHERE %s = ?1", source->row, columns, source->table,
+                                     reader->key);
+  sqlite3_free(columns);
   if (result != STATUS_OK)
     return result;
   const int count = sqlite3_column_count(table->rows);
@@ -119,6 +118,24 @@ static status read_digest(struct reader *reader, int64_t number, uint8_t bytes[1
   return result;
 }
 
+/* The numbers of the rows to look at and, with `more`, further columns: the row `only`, or all that meet the condition.
+ */
+static status prepare_numbers(sqlite3 *db, const struct reader *reader, const char *more, int64_t only,
+                              const char *condition, sqlite3_stmt **numbers, struct error *error) {
+  if (!only)
+    return sql_preparef(db, numbers, doing, error, "SELECT %s%s FROM main.%s WHERE %s", reader->key, more,
+                        reader->table, condition);
+  const status result = sql_preparef(db, numbers, doing, error, "SELECT %s%s FROM main.%s WHERE %s = ?1", reader->key,
+                                     more, reader->table, reader->key);
+  if (result == STATUS_OK)
+    sqlite3_bind_int64(*numbers, 1, only);
+  return result;
+}
+
+static bool holds(sqlite3_stmt *row, int column, const uint8_t digest[16]) {
+  return sqlite3_column_bytes(row, column) == 16 && memcmp(digest, sqlite3_column_blob(row, column), 16) == 0;
+}
+
 status digest_rows_compare(sqlite3 *db, enum digest_kind kind, int64_t only,
                            void (*each)(void *context, int64_t number), void *context, struct error *error) {
   struct reader reader;
@@ -128,56 +145,44 @@ status digest_rows_compare(sqlite3 *db, enum digest_kind kind, int64_t only,
   if (result != STATUS_OK || !has)
     return result;
   result = open_reader(db, kind, &reader, error);
-  char *sql = sqlite3_mprintf("SELECT %s, digest FROM main.%s WHERE %s", reader.key, reader.table,
-                              only ? (kind == DIGEST_RUNS ? "run_id = ?1" : "point_id = ?1") : "true");
   if (result == STATUS_OK)
-    result = sql ? sql_prepare(db, sql, &numbers, doing, error)
-                 : status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  if (only)
-    sqlite3_bind_int64(numbers, 1, only);
+    result = prepare_numbers(db, &reader, ", digest", only, "true", &numbers, error);
   while (sql_next(numbers, &result, doing, error)) {
     uint8_t bytes[16];
     const int64_t number = sqlite3_column_int64(numbers, 0);
     result = read_digest(&reader, number, bytes, error);
-    if (result == STATUS_OK &&
-        (sqlite3_column_bytes(numbers, 1) != 16 || memcmp(bytes, sqlite3_column_blob(numbers, 1), 16) != 0))
+    if (result == STATUS_OK && !holds(numbers, 1, bytes))
       each(context, number);
   }
   sqlite3_finalize(numbers);
-  sqlite3_free(sql);
   close_reader(&reader);
   return result;
+}
+
+static status write_digest(sqlite3_stmt *update, int64_t number, const uint8_t digest[16], struct error *error) {
+  sqlite3_bind_int64(update, 1, number);
+  sqlite3_bind_blob(update, 2, digest, 16, SQLITE_STATIC);
+  return sql_run(update, doing, error);
 }
 
 status digest_rows_fill(sqlite3 *db, enum digest_kind kind, int64_t only, struct error *error) {
   struct reader reader;
   sqlite3_stmt *numbers = NULL, *update = NULL;
   status result = open_reader(db, kind, &reader, error);
-  char *sql = sqlite3_mprintf("SELECT %s FROM main.%s WHERE %s", reader.key, reader.table,
-                              only ? (kind == DIGEST_RUNS ? "run_id = ?1" : "point_id = ?1") : "digest IS NULL");
-  char *change = sqlite3_mprintf("UPDATE main.%s SET digest = ?2 WHERE %s = ?1", reader.table, reader.key);
-  if (result == STATUS_OK && (!sql || !change))
-    result = status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   if (result == STATUS_OK)
-    result = sql_prepare(db, sql, &numbers, doing, error);
+    result = prepare_numbers(db, &reader, "", only, "digest IS NULL", &numbers, error);
   if (result == STATUS_OK)
-    result = sql_prepare(db, change, &update, doing, error);
-  if (only)
-    sqlite3_bind_int64(numbers, 1, only);
+    result = sql_preparef(db, &update, doing, error, "UPDATE main.%s SET digest = ?2 WHERE %s = ?1", reader.table,
+                          reader.key);
   while (sql_next(numbers, &result, doing, error)) {
     uint8_t bytes[16];
     const int64_t number = sqlite3_column_int64(numbers, 0);
     result = read_digest(&reader, number, bytes, error);
-    if (result != STATUS_OK)
-      break;
-    sqlite3_bind_int64(update, 1, number);
-    sqlite3_bind_blob(update, 2, bytes, sizeof bytes, SQLITE_STATIC);
-    result = sql_run(update, doing, error);
+    if (result == STATUS_OK)
+      result = write_digest(update, number, bytes, error);
   }
   sqlite3_finalize(numbers);
   sqlite3_finalize(update);
-  sqlite3_free(sql);
-  sqlite3_free(change);
   close_reader(&reader);
   return result;
 }

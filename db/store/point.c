@@ -39,6 +39,25 @@ static int state_of(const struct field *states, const char *name) {
   return OUTCOME_INVALID;
 }
 
+/* The row of a run as the query of store_point_runs() gives it. */
+static struct store_point_run read_run(const struct store *store, const struct field *states, sqlite3_stmt *statement) {
+  struct store_point_run run = {
+      .replicate = sqlite3_column_int64(statement, 0),
+      .seed = (uint64_t)sqlite3_column_int64(statement, 9),
+      .surplus = sqlite3_column_int(statement, 2) != 0,
+      .state = state_of(states, (const char *)sqlite3_column_text(statement, 3)),
+      .value = sqlite3_column_type(statement, 4) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(statement, 4),
+      .wall_s = sqlite3_column_double(statement, 5),
+      .cpu_s = sqlite3_column_double(statement, 6),
+      .peak_memory = sqlite3_column_int64(statement, 7),
+      .fields_path = (const char *)sqlite3_column_text(statement, 8),
+  };
+  run.fields_missing = run.fields_path && !paths_readable(store->path, run.fields_path);
+  if (sqlite3_column_bytes(statement, 1) == 16)
+    memcpy(run.identity, sqlite3_column_blob(statement, 1), 16);
+  return run;
+}
+
 status store_point_runs(struct store *store, int64_t point_id, const struct engine_kind *kind, const struct field *row,
                         bool of_outcome, void (*each)(void *context, const struct store_point_run *run), void *context,
                         struct error *error) {
@@ -46,41 +65,22 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
   char column[SCHEMA_NAME_SIZE];
   sqlite3_stmt *statement = NULL;
   field_column_name(row->path, column, sizeof column);
-  char *sql = sqlite3_mprintf(
-      "SELECT r.replicate, r.identity, r.surplus, r.state, %s.\"%w\", r.wall_time, r.cpu_time, "
-      "r.peak_memory, r.fields_path, r.seed FROM run r %s%w%s WHERE r.point_id = ?1 AND r.results_version "
-      "= ?2 ORDER BY r.replicate, r.seed",
-      of_outcome ? "r" : "e", column, of_outcome ? "" : "LEFT JOIN result_", of_outcome ? "" : kind->name,
-      of_outcome ? "" : " e ON e.run_id = r.run_id");
-  if (!sql)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  status result = sql_prepare(store->db, sql, &statement, doing, error);
-  sqlite3_free(sql);
+  status result =
+      sql_preparef(store->db, &statement, doing, error,
+                   "SELECT r.replicate, r.identity, r.surplus, r.state, %s.\"%w\", r.wall_time, r.cpu_time, "
+                   "r.peak_memory, r.fields_path, r.seed FROM run r %s%w%s WHERE r.point_id = ?1 AND r.results_version "
+                   "= ?2 ORDER BY r.replicate, r.seed",
+                   of_outcome ? "r" : "e", column, of_outcome ? "" : "LEFT JOIN result_", of_outcome ? "" : kind->name,
+                   of_outcome ? "" : " e ON e.run_id = r.run_id");
   if (result != STATUS_OK)
     return result;
   sqlite3_bind_int64(statement, 1, point_id);
   sqlite3_bind_int(statement, 2, kind->results_version);
   const struct field *states = field_find(&outcome_table, "state", NULL);
-  int code;
-  while ((code = sqlite3_step(statement)) == SQLITE_ROW) {
-    struct store_point_run run = {
-        .replicate = sqlite3_column_int64(statement, 0),
-        .seed = (uint64_t)sqlite3_column_int64(statement, 9),
-        .surplus = sqlite3_column_int(statement, 2) != 0,
-        .state = state_of(states, (const char *)sqlite3_column_text(statement, 3)),
-        .value = sqlite3_column_type(statement, 4) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(statement, 4),
-        .wall_s = sqlite3_column_double(statement, 5),
-        .cpu_s = sqlite3_column_double(statement, 6),
-        .peak_memory = sqlite3_column_int64(statement, 7),
-        .fields_path = (const char *)sqlite3_column_text(statement, 8),
-    };
-    run.fields_missing = run.fields_path && !paths_readable(store->path, run.fields_path);
-    if (sqlite3_column_bytes(statement, 1) == 16)
-      memcpy(run.identity, sqlite3_column_blob(statement, 1), 16);
+  while (sql_next(statement, &result, doing, error)) {
+    const struct store_point_run run = read_run(store, states, statement);
     each(context, &run);
   }
-  if (code != SQLITE_DONE)
-    result = sql_fail(store->db, code, doing, error);
   sqlite3_finalize(statement);
   return result;
 }

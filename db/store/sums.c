@@ -197,7 +197,8 @@ status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error) {
 
 /* Integers must agree; a sum of masses in another order agrees to n units in the last place, with n runs below 1e6. */
 status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error) {
-  char *sql = sqlite3_mprintf(
+  return sql_integerf(
+      db, count, error,
       "SELECT (SELECT count(*) FROM (" TOTALS
       ") a FULL JOIN point_total b USING (point_id, results_version) WHERE (a.runs, "
       "a.censored, a.failed, a.surplus, a.fragments) IS NOT (b.runs, b.censored, b.failed, b.surplus, b.fragments) OR "
@@ -205,11 +206,6 @@ status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error) {
       "(point_id, results_version, bin) WHERE (a.runs, a.count, a.count_squared) IS NOT (b.runs, b.count, "
       "b.count_squared) OR abs(a.mass - b.mass) > 1e-10 * a.mass)",
       "", "");
-  if (!sql)
-    return status_fail(error, STATUS_MEMORY, "checking running sums: memory ran out");
-  status result = sql_integer(db, sql, 0, count, error);
-  sqlite3_free(sql);
-  return result;
 }
 
 status sums_cover_bins(sqlite3 *db, int64_t lowest, int64_t highest, struct error *error) {

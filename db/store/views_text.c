@@ -44,10 +44,7 @@ static void write_axes(struct view *view) {
 /* Does the result table of an engine hold a row? */
 static bool is_filled(sqlite3 *db, const char *table) {
   int64_t filled = 0;
-  char *sql = sqlite3_mprintf("SELECT EXISTS (SELECT 1 FROM main.\"%w\")", table);
-  const bool is = sql && sql_integer(db, sql, 0, &filled, NULL) == STATUS_OK && filled;
-  sqlite3_free(sql);
-  return is;
+  return sql_integerf(db, &filled, NULL, "SELECT EXISTS (SELECT 1 FROM main.\"%w\")", table) == STATUS_OK && filled;
 }
 
 /* The names of the result tables, or of those that hold a row, as the inside of IN (...). NULL: there is none.
