@@ -21,13 +21,29 @@ static bool is_special(const char *path) {
   return stat(path, &there) == 0 && !S_ISREG(there.st_mode) && !S_ISDIR(there.st_mode);
 }
 
+static bool write_whole(FILE *file, const void *bytes, size_t size) {
+  return fwrite(bytes, 1, size, file) == size && fflush(file) == 0;
+}
+
 static status write_special(const char *path, const char *what, const void *bytes, size_t size, struct error *error) {
   FILE *file = fopen(path, "wb");
-  const bool good = file && fwrite(bytes, 1, size, file) == size && fflush(file) == 0;
+  const bool good = file && write_whole(file, bytes, size);
   const int why = errno;
   if (file)
     fclose(file);
   return good ? STATUS_OK : status_fail(error, STATUS_IO, "cannot write the %s '%s': %s", what, path, strerror(why));
+}
+
+/* Is it the file of this name? Its writer may have renamed it since it was opened. */
+static bool is_at(int file, const char *name) {
+  struct stat mine, there;
+  return fstat(file, &mine) == 0 && stat(name, &there) == 0 && mine.st_dev == there.st_dev &&
+         mine.st_ino == there.st_ino;
+}
+
+static bool is_folder(const char *path) {
+  struct stat there;
+  return stat(path, &there) == 0 && S_ISDIR(there.st_mode);
 }
 
 /* Opens a new file beside `path`: FILE.tmp, which its writer locks. A lock dies with its process, so the next writer
@@ -35,11 +51,8 @@ static status write_special(const char *path, const char *what, const void *byte
  * locks, the name is FILE.PID.tmp. `size` is that of the buffer `temporary`. NULL: errno says why. */
 static FILE *begin(const char *path, char *temporary, size_t size) {
   snprintf(temporary, size, "%s.tmp", path);
-  int file = open(temporary, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-  struct stat mine, there;
-  if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0 && fstat(file, &mine) == 0 && stat(temporary, &there) == 0 &&
-      mine.st_dev == there.st_dev && mine.st_ino == there.st_ino && /* not renamed by its writer since it was opened */
-      ftruncate(file, 0) == 0)
+  const int file = open(temporary, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0 && is_at(file, temporary) && ftruncate(file, 0) == 0)
     return fdopen(file, "wb");
   if (file >= 0)
     close(file);
@@ -56,8 +69,7 @@ status atomic_file_write(const char *path, const char *what, const void *bytes, 
     return status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
   status code = STATUS_OK;
   FILE *file = begin(path, temporary, length);
-  bool good = file && fwrite(bytes, 1, size, file) == size && fflush(file) == 0 && fsync(fileno(file)) == 0 &&
-              rename(temporary, path) == 0;
+  const bool good = file && write_whole(file, bytes, size) && fsync(fileno(file)) == 0 && rename(temporary, path) == 0;
   if (!good)
     code = status_fail(error, STATUS_IO, "cannot write the %s '%s': %s", what, path, strerror(errno));
   if (!good && file)
@@ -75,17 +87,15 @@ status atomic_file_try(const char *path, const char *what, struct error *error) 
   char *temporary = malloc(length);
   if (!temporary)
     return status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
-  struct stat there;
-  int why = stat(path, &there) == 0 && S_ISDIR(there.st_mode) ? EISDIR : 0;
-  FILE *file = why ? NULL : begin(path, temporary, length);
-  if (!file && !why)
-    why = errno;
+  const bool folder = is_folder(path);
+  FILE *file = folder ? NULL : begin(path, temporary, length);
+  const int why = folder ? EISDIR : errno;
   if (file) {
     unlink(temporary);
     fclose(file);
   }
   free(temporary);
-  return why ? status_fail(error, STATUS_IO, "cannot write the %s '%s': %s", what, path, strerror(why)) : STATUS_OK;
+  return file ? STATUS_OK : status_fail(error, STATUS_IO, "cannot write the %s '%s': %s", what, path, strerror(why));
 }
 
 status atomic_file_read(const char *path, const char *what, unsigned char **bytes, size_t *size, struct error *error) {

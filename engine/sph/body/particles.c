@@ -51,27 +51,39 @@ static double **column_of(struct sph_particles *p, size_t k) {
   return (double **)(void *)((char *)p + columns[k].offset);
 }
 
+static bool is_wanted(size_t k, int arrays) {
+  return columns[k].array == 0 || arrays & columns[k].array;
+}
+
+/* NULL without memory. */
+static double *make_column(size_t n, double initial) {
+  double *column = calloc(n, sizeof *column);
+  for (size_t i = 0; column && initial != 0 && i < n; i++)
+    column[i] = initial;
+  return column;
+}
+
 static bool allocate(struct sph_particles *p, int arrays) {
   const size_t n = p->n ? p->n : 1;
-  for (size_t k = 0; k < COLUMNS; k++) {
-    if (columns[k].array && !(arrays & columns[k].array))
+  bool enough = true;
+  for (size_t k = 0; k < COLUMNS && enough; k++) {
+    if (!is_wanted(k, arrays))
       continue;
-    *column_of(p, k) = calloc(n, sizeof(double));
-    if (!*column_of(p, k))
-      return false;
-    for (size_t i = 0; columns[k].initial != 0 && i < n; i++)
-      (*column_of(p, k))[i] = columns[k].initial;
+    *column_of(p, k) = make_column(n, columns[k].initial);
+    enough = *column_of(p, k) != NULL;
   }
   p->body = calloc(n, 1);
-  p->held = arrays & SPH_WITH_HELD ? calloc(n, 1) : NULL;
-  return p->body && (p->held || !(arrays & SPH_WITH_HELD));
+  if (!(arrays & SPH_WITH_HELD))
+    return enough && p->body;
+  p->held = calloc(n, 1);
+  return enough && p->body && p->held;
 }
 
 status sph_particles_make(size_t n, int arrays, struct sph_particles **out, struct error *error) {
   *out = NULL;
   size_t bytes = sizeof(double) + 1 + (arrays & SPH_WITH_HELD ? 1 : 0); /* a double to sort by, body, held */
   for (size_t k = 0; k < COLUMNS; k++)
-    bytes += !columns[k].array || (arrays & columns[k].array) ? sizeof(double) : 0;
+    bytes += is_wanted(k, arrays) ? sizeof(double) : 0;
   if (n > sph_particles_memory() / bytes)
     return status_fail(error, STATUS_MEMORY, "%zu particles need %.3g GB; this machine, or the limit set, has %.3g GB.",
                        n, (double)n * (double)bytes / 1e9, (double)sph_particles_memory() / 1e9);

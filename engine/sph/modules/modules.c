@@ -27,8 +27,8 @@ uint64_t sph_modules_of(const struct sph_body_physics *body, const struct sph_in
 
 uint64_t sph_modules_columns(uint64_t modules, const struct sph_body_physics *body) {
   uint64_t columns = 0;
-  for (size_t m = 0; m < SPH_MODULES; m++)
-    for (const struct sph_column_need *c = list[m]->columns; c && c->count && modules >> m & 1; c++)
+  FOR_MODULES(m, modules)
+    for (const struct sph_column_need *c = list[m]->columns; c && c->count; c++)
       if (!c->needed || c->needed(body))
         columns |= ((UINT64_C(1) << c->count) - 1) << c->first;
   return columns;
@@ -37,8 +37,8 @@ uint64_t sph_modules_columns(uint64_t modules, const struct sph_body_physics *bo
 void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_inputs *inputs,
                         struct sph_particles *particles, size_t first, size_t last) {
   const uint64_t modules = sph_modules_of(body, inputs);
-  for (size_t m = 0; m < SPH_MODULES; m++)
-    if (modules >> m & 1 && list[m]->set_up)
+  FOR_MODULES(m, modules)
+    if (list[m]->set_up)
       list[m]->set_up(body, particles, first, last);
 }
 
@@ -57,23 +57,21 @@ void sph_modules_report(const struct sph_run *run, struct sph_results *results) 
   uint64_t modules = 0;
   for (size_t b = 0; b < run->system->body_count; b++)
     modules |= run->system->solid[b].modules;
-  for (size_t m = 0; m < SPH_MODULES; m++)
-    if (modules >> m & 1 && list[m]->report)
+  FOR_MODULES(m, modules)
+    if (list[m]->report)
       list[m]->report(run, results);
 }
 
 size_t sph_modules_bytes_in_pairs(uint64_t modules) {
   size_t bytes = 0;
-  for (size_t m = 0; m < SPH_MODULES; m++)
-    if (modules >> m & 1)
-      bytes += (size_t)list[m]->bytes_in_pairs;
+  FOR_MODULES(m, modules)
+    bytes += (size_t)list[m]->bytes_in_pairs;
   return bytes;
 }
 
 size_t sph_modules_bytes_linked(uint64_t modules) {
   size_t bytes = 0;
-  for (size_t m = 0; m < SPH_MODULES; m++)
-    if (modules >> m & 1)
-      bytes += (size_t)list[m]->bytes_linked;
+  FOR_MODULES(m, modules)
+    bytes += (size_t)list[m]->bytes_linked;
   return bytes;
 }

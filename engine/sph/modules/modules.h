@@ -97,6 +97,14 @@ struct sph_module {
 SPH_MODULE_LIST(SPH_MODULE_EXTERN, SPH_MODULE_EXTERN)
 
 const struct sph_module *sph_modules_at(size_t index); /* by enum sph_module_index */
+
+/* The modules of a set of bits, in their order: FOR_MODULES(m, body->modules). */
+static inline size_t sph_modules_next(uint64_t set, size_t from) {
+  while (from < SPH_MODULES && !(set >> from & 1))
+    from++;
+  return from;
+}
+#define FOR_MODULES(m, set) for (size_t m = sph_modules_next(set, 0); m < SPH_MODULES; m = sph_modules_next(set, m + 1))
 /* The modules that act in a body, a bit each. */
 uint64_t sph_modules_of(const struct sph_body_physics *body, const struct sph_inputs *inputs);
 /* The columns that these modules need in a body, a bit each (SPH_COLUMNS_OF). */

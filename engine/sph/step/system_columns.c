@@ -89,11 +89,21 @@ static size_t count_of(uint64_t columns) {
   return count;
 }
 
+static bool has(const struct sph_system *s, size_t column) {
+  return s->columns >> column & 1;
+}
+
+static void fill_column(struct sph_system *s, size_t column, double value) {
+  double *values = *slot_of(&s->c, column);
+  for (size_t i = 0; i < s->n; i++)
+    values[i] = value;
+}
+
 static void set_initial(struct sph_system *s, size_t module) {
   for (const struct sph_column_need *need = sph_modules_at(module)->columns; need && need->count; need++)
     for (size_t k = need->first; need->initial != 0 && k < need->first + need->count; k++)
-      for (size_t i = 0; s->columns >> k & 1 && i < s->n; i++)
-        (*slot_of(&s->c, k))[i] = need->initial;
+      if (has(s, k))
+        fill_column(s, k, need->initial);
 }
 
 status sph_system_columns_take(struct sph_system *s, const struct sph_particles *p, struct error *error) {
@@ -110,11 +120,12 @@ status sph_system_columns_take(struct sph_system *s, const struct sph_particles 
                        (double)(s->arena_doubles * sizeof(double)) / 1e9);
   memset(s->arena, 0, s->arena_doubles * sizeof(double));
   double *next = s->arena;
-  for (size_t k = 0; k < SPH_COLUMNS; k++)
-    if (s->columns >> k & 1) {
-      *slot_of(&s->c, k) = next;
-      next += s->stride;
-    }
+  for (size_t k = 0; k < SPH_COLUMNS; k++) {
+    if (!has(s, k))
+      continue;
+    *slot_of(&s->c, k) = next;
+    next += s->stride;
+  }
   for (size_t m = 0; m < SPH_MODULES; m++)
     set_initial(s, m);
   return STATUS_OK;
@@ -122,15 +133,15 @@ status sph_system_columns_take(struct sph_system *s, const struct sph_particles 
 
 void sph_system_columns_fill(struct sph_system *s, const struct sph_particles *p) {
   for (size_t k = 0; k < sizeof carried / sizeof *carried; k++)
-    if (carried[k].filled && s->columns >> carried[k].column & 1)
+    if (carried[k].filled && has(s, carried[k].column))
       memcpy(*slot_of(&s->c, carried[k].column), member_of(p, carried[k].member), s->n * sizeof(double));
   if (s->held)
     memcpy(s->held, p->held, s->n);
   for (size_t i = 0; i < s->n; i++)
     s->id[i] = (uint32_t)i;
   for (size_t b = 0; b < s->body_count; b++)
-    for (size_t m = 0; m < SPH_MODULES; m++)
-      if (s->solid[b].modules >> m & 1 && sph_modules_at(m)->fill)
+    FOR_MODULES(m, s->solid[b].modules)
+      if (sph_modules_at(m)->fill)
         sph_modules_at(m)->fill(s, &s->solid[b], p);
 }
 
@@ -150,7 +161,9 @@ double sph_system_columns_wrapped(double x, double length) {
 
 /* One column by particles' ids. */
 static void read_column(const struct sph_system *s, const double *column, double *out, double absent) {
-  for (size_t i = 0; i < s->n && (column || !isnan(absent)); i++)
+  if (!column && isnan(absent))
+    return;
+  for (size_t i = 0; i < s->n; i++)
     out[s->id[i]] = column ? column[i] : absent;
 }
 

@@ -11,22 +11,18 @@ static void add(sph_hook *hooks, size_t *count, sph_hook hook) {
   hooks[(*count)++] = hook;
 }
 
-static bool has_module(const struct sph_solid *b, size_t module) {
-  return b->modules >> module & 1;
-}
-
 static void add_stage(const struct sph_system *s, const struct sph_solid *b, int stage, sph_hook *hooks,
                       size_t *count) {
-  for (size_t m = 0; m < SPH_MODULES; m++) {
+  FOR_MODULES(m, b->modules) {
     const sph_hook *of_module = s->ranges->module[m];
-    if (has_module(b, m) && of_module && of_module[stage])
+    if (of_module && of_module[stage])
       add(hooks, count, of_module[stage]);
   }
 }
 
 static bool has_yield_law(const struct sph_solid *b) {
-  for (size_t m = 0; m < SPH_MODULES; m++)
-    if (has_module(b, m) && sph_modules_at(m)->sets == SPH_SETS_YIELD_LIMIT)
+  FOR_MODULES(m, b->modules)
+    if (sph_modules_at(m)->sets == SPH_SETS_YIELD_LIMIT)
       return true;
   return false;
 }
@@ -60,18 +56,16 @@ static void choose_after(const struct sph_system *s, struct sph_solid *b, bool s
 static void choose_hooks(const struct sph_system *s, struct sph_solid *b) {
   const bool strength = sph_solid_has(b, SPH_COLUMN(stress)), damage = sph_solid_has(b, SPH_COLUMN(damage));
   choose_before(s, b, strength, damage);
-  for (size_t m = 0; m < SPH_MODULES; m++)
-    if (has_module(b, m) && sph_modules_at(m)->meet)
+  FOR_MODULES(m, b->modules)
+    if (sph_modules_at(m)->meet)
       b->meet = sph_modules_at(m)->meet;
   choose_after(s, b, strength, damage);
 }
 
 static status make_body(struct sph_system *s, const struct sph_particles *p, struct sph_solid *b, struct error *error) {
-  for (size_t m = 0; m < SPH_MODULES; m++) {
+  FOR_MODULES(m, b->modules) {
     const struct sph_module *module = sph_modules_at(m);
-    if (!has_module(b, m) || !module->prepare)
-      continue;
-    const status code = module->prepare(&s->in, p, b, error);
+    const status code = module->prepare ? module->prepare(&s->in, p, b, error) : STATUS_OK;
     if (code)
       return code;
   }

@@ -52,8 +52,8 @@ bool sph_system_state_load(struct sph_system *s, const void *bytes, size_t size)
       return false;
     }
   for (size_t b = 0; b < s->body_count; b++)
-    for (size_t m = 0; m < SPH_MODULES; m++)
-      if (s->solid[b].modules >> m & 1 && sph_modules_at(m)->restored)
+    FOR_MODULES(m, s->solid[b].modules)
+      if (sph_modules_at(m)->restored)
         sph_modules_at(m)->restored(s, &s->solid[b]);
   s->fault = SPH_FAULT_NONE;
   s->failure[0] = '\0';
