@@ -1,25 +1,16 @@
 /* Fields files of engine dem say what they hold. */
 #include "tests/support/run_case.h"
 
-#include <hdf5.h>
 #include <unistd.h>
 
 #include "engine/dem/run/run.h"
+#include "tests/support/fields_file.h"
 #include "tests/support/folder.h"
 
 static struct dem_inputs small(bool gear) {
   return DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m", "stop.end_time=1 ms",
                   "contact.normal_damping=1e3 1/s", "contact.tangential_damping=1e3 1/s", "contact.friction=0.5",
                   gear ? "fidelity.integrator=gear" : "fidelity.integrator=verlet", "threshold.modulus=10");
-}
-
-static double scalar(hid_t file, const char *name) {
-  double value = NAN;
-  hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-  assert_true(set >= 0);
-  assert_true(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) >= 0);
-  H5Dclose(set);
-  return value;
 }
 
 static size_t rows(hid_t file, const char *name) {
@@ -31,21 +22,6 @@ static size_t rows(hid_t file, const char *name) {
   H5Sclose(space);
   H5Dclose(set);
   return size[0];
-}
-
-static herr_t described(hid_t at, const char *name, const H5O_info_t *info, void *count) {
-  if (info->type != H5O_TYPE_DATASET || strncmp(name, "VTKHDF", 6) == 0)
-    return 0;
-  hid_t set = H5Dopen2(at, name, H5P_DEFAULT);
-  if (H5Aexists(set, "long_name") <= 0)
-    fail_msg("/%s has no long_name", name);
-  hid_t type = H5Dget_type(set);
-  if (H5Tget_class(type) != H5T_STRING && H5Aexists(set, "units") <= 0)
-    fail_msg("/%s has no units", name);
-  H5Tclose(type);
-  H5Dclose(set);
-  ++*(size_t *)count;
-  return 0;
 }
 
 static void fields_describe_themselves(void **state) {
@@ -73,12 +49,10 @@ static void fields_describe_themselves(void **state) {
     assert_int_equal(rows(file, "VTKHDF/Offsets"), ran.results.dem.grains + 1);
     assert_int_equal(rows(file, "VTKHDF/Types"), ran.results.dem.grains);
     assert_true(H5Lexists(file, "curve", H5P_DEFAULT) == (c == 1));
-    assert_true(scalar(file, "outcome/time") == ran.outcome.time);
-    assert_true(scalar(file, "results/broken_share") == ran.results.dem.broken_share);
-    assert_true(scalar(file, "inputs/grain.density") == 5000);
-    size_t datasets = 0;
-    assert_true(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, described, &datasets, H5O_INFO_BASIC) >= 0);
-    assert_true(datasets > dem_results.count + outcome_table.count);
+    assert_true(fields_file_scalar(file, "outcome/time") == ran.outcome.time);
+    assert_true(fields_file_scalar(file, "results/broken_share") == ran.results.dem.broken_share);
+    assert_true(fields_file_scalar(file, "inputs/grain.density") == 5000);
+    assert_true(fields_file_described(file) > dem_results.count + outcome_table.count);
     /* outlines: their areas are the grains' masses over the density */
     double *point = malloc(3 * rows(file, "VTKHDF/Points") * sizeof *point), *mass = malloc(n * sizeof *mass);
     int64_t *offset = malloc((n + 1) * sizeof *offset);

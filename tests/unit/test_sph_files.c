@@ -1,42 +1,15 @@
 /* Fields files of engine sph explain themselves and hold what the run reports. */
 #include "tests/support/run_case.h"
 
-#include <hdf5.h>
 #include <unistd.h>
 
 #include "analysis/pictures/picture_cloud.h"
 #include "engine/sph/run/run.h"
+#include "tests/support/fields_file.h"
 #include "tests/support/folder.h"
 
 static struct sph_inputs impact(void) {
   return SPH_CASE("basalt-sphere", "fidelity.particles=700", "stop.end_time=25 us");
-}
-
-static herr_t described(hid_t at, const char *name, const H5O_info_t *info, void *count) {
-  const char *const own[] = {"VTKHDF/Connectivity", "VTKHDF/Offsets", "VTKHDF/Types", "VTKHDF/NumberOf"};
-  if (info->type != H5O_TYPE_DATASET)
-    return 0;
-  for (int k = 0; k < 4; k++)
-    if (strncmp(name, own[k], strlen(own[k])) == 0)
-      return 0;
-  hid_t set = H5Dopen2(at, name, H5P_DEFAULT), type = H5Dget_type(set);
-  if (H5Aexists(set, "long_name") <= 0)
-    fail_msg("/%s has no long_name", name);
-  if (H5Tget_class(type) != H5T_STRING && H5Aexists(set, "units") <= 0)
-    fail_msg("/%s has no units", name);
-  H5Tclose(type);
-  H5Dclose(set);
-  ++*(size_t *)count;
-  return 0;
-}
-
-static double scalar(hid_t file, const char *name) {
-  double value = NAN;
-  hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-  assert_true(set >= 0);
-  assert_true(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) >= 0);
-  H5Dclose(set);
-  return value;
 }
 
 static void fields_hold_what_the_run_reports(void **state) {
@@ -54,11 +27,9 @@ static void fields_hold_what_the_run_reports(void **state) {
   if (sph_engine.write_snapshot(run, path, &error))
     fail_msg("%s", error.message);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  size_t datasets = 0;
-  assert_true(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, described, &datasets, H5O_INFO_BASIC) >= 0);
-  assert_true(datasets > sph_results.count / 2 + outcome_table.count + 20);
-  assert_true(scalar(file, "outcome/time") == ran.outcome.time && sph_engine.time(run) == ran.outcome.time);
-  assert_true(scalar(file, "results/largest.veneer_fraction") == ran.results.sph.largest.veneer_fraction);
+  assert_true(fields_file_described(file) > sph_results.count / 2 + outcome_table.count + 20);
+  assert_true(fields_file_scalar(file, "outcome/time") == ran.outcome.time && sph_engine.time(run) == ran.outcome.time);
+  assert_true(fields_file_scalar(file, "results/largest.veneer_fraction") == ran.results.sph.largest.veneer_fraction);
   H5Fclose(file);
   struct picture_cloud cloud;
   if (picture_cloud_read(path, &cloud, &error))

@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "engine/input_rows.h"
+
 static const char *const kinds[] = {"disc-explosion", "block-impact",   "uniaxial",
                                     "compression",    "disc-collision", NULL};
 static const char *const laws[] = {"conservative", "printed", "off", NULL};
@@ -13,14 +15,7 @@ static const char *const integrators[] = {"verlet", "gear", NULL};
 
 #define DEGREE (M_PI / 180)
 
-#define ROW(path_, kind_, unit_, ...)                                                                                  \
-  { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct dem_inputs, path_), __VA_ARGS__ }
-#define REAL(path_, unit_, default_, low, high, ...)                                                                   \
-  ROW(path_, FIELD_REAL, unit_, .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
-#define COUNT(path_, default_, low, high, ...)                                                                         \
-  ROW(path_, FIELD_INTEGER, "1", .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
-#define SWITCH(path_, default_, ...) ROW(path_, FIELD_BOOLEAN, NULL, .number = default_, .maximum = 1, __VA_ARGS__)
-#define CHOICE(path_, choices_, ...) ROW(path_, FIELD_CHOICE, NULL, .choices = choices_, __VA_ARGS__)
+#define INPUTS dem_inputs
 
 #define DISCS    "kind=disc-explosion|disc-collision"
 #define BLOCKS   "kind=block-impact|uniaxial|compression"

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "engine/builtin.h"
+#include "engine/input_rows.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/body/flaws.h"
 #include "engine/sph/material/fracture.h"
@@ -19,14 +20,7 @@ static const char *const projectile_by[] = {"size", "mass", "specific-energy", N
 static const char *const link_h[] = {"initial", "current", NULL};
 static const char *const precisions[] = {"double", "float", NULL};
 
-#define ROW(path_, kind_, unit_, ...)                                                                                  \
-  { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct sph_inputs, path_), __VA_ARGS__ }
-#define REAL(path_, unit_, default_, low, high, ...)                                                                   \
-  ROW(path_, FIELD_REAL, unit_, .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
-#define COUNT(path_, default_, low, high, ...)                                                                         \
-  ROW(path_, FIELD_INTEGER, "1", .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
-#define SWITCH(path_, default_, ...) ROW(path_, FIELD_BOOLEAN, NULL, .number = default_, .maximum = 1, __VA_ARGS__)
-#define CHOICE(path_, choices_, ...) ROW(path_, FIELD_CHOICE, NULL, .choices = choices_, __VA_ARGS__)
+#define INPUTS sph_inputs
 
 /* ---- rows of a body, written once: B is `target` or `projectile`, `exists` the condition under which it is there ----
  */
