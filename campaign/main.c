@@ -29,23 +29,20 @@ static void print_error(const struct error *error) {
           *error->message && error->message[strlen(error->message) - 1] == '\n' ? "" : "\n");
 }
 
-static status run_command_line(int argc, char **argv, struct error *error) {
-  alignas(max_align_t) static char options[OPTION_STRUCT_MAXIMUM];
-  static char version[] = "version";
-  if (argc < 2) {
-    commands_help(stderr);
-    return status_fail(error, STATUS_USAGE, "which command? The list is above");
-  }
-  if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
-    commands_help(stdout);
+static bool is_option(const char *word, const char *name, const char *letter) {
+  return strcmp(word, name) == 0 || strcmp(word, letter) == 0;
+}
+
+static status check_environment(struct error *error) {
+  const char *class = getenv("CLAST_CPU");
+  if (!class || !*class || cpu_class_known(class))
     return STATUS_OK;
-  }
-  argc--, argv++;
-  if (strcmp(argv[0], "--version") == 0 || strcmp(argv[0], "-V") == 0)
-    argv[0] = version;
-  if (argv[0][0] == '-')
-    return status_fail(error, STATUS_USAGE, "expected a command before the option %.64s; `clast help` lists them",
-                       argv[0]);
+  return status_fail(error, STATUS_USAGE, "CLAST_CPU=%.64s is in the environment: expected baseline, v3 or v4", class);
+}
+
+/* argv[0] is the command's name, and stands behind the program's. */
+static status run_named(int argc, char **argv, struct error *error) {
+  alignas(max_align_t) static char options[OPTION_STRUCT_MAXIMUM];
   const struct command *command = commands_find(argv[0], error);
   if (!command)
     return STATUS_USAGE;
@@ -58,11 +55,26 @@ static status run_command_line(int argc, char **argv, struct error *error) {
     option_help(command, stdout);
     return STATUS_OK;
   }
-  const char *class = getenv("CLAST_CPU");
-  if (class && *class && !cpu_class_known(class))
-    return status_fail(error, STATUS_USAGE, "CLAST_CPU=%.64s is in the environment: expected baseline, v3 or v4",
-                       class);
-  return command->run(&line, error);
+  code = check_environment(error);
+  return code ? code : command->run(&line, error);
+}
+
+static status run_command_line(int argc, char **argv, struct error *error) {
+  static char version[] = "version";
+  if (argc < 2) {
+    commands_help(stderr);
+    return status_fail(error, STATUS_USAGE, "which command? The list is above");
+  }
+  if (is_option(argv[1], "--help", "-h")) {
+    commands_help(stdout);
+    return STATUS_OK;
+  }
+  if (is_option(argv[1], "--version", "-V"))
+    argv[1] = version;
+  if (argv[1][0] == '-')
+    return status_fail(error, STATUS_USAGE, "expected a command before the option %.64s; `clast help` lists them",
+                       argv[1]);
+  return run_named(argc - 1, argv + 1, error);
 }
 
 /* Opens /dev/null for standard files that are closed. Else the first file opened, the store, would get the number of

@@ -40,29 +40,37 @@ static status choose_view(const char *name, enum picture_view *view, struct erro
   return status_fail(error, STATUS_USAGE, "--view is cut, outside, apart or profile, not '%s'", name);
 }
 
+/* x, y or z; without it a body is seen from outside askew. */
+static status choose_axis(const char *axis, struct picture_look *look, struct error *error) {
+  if (!axis) {
+    look->axis = look->view == PICTURE_OUTSIDE ? -1 : 1;
+    return STATUS_OK;
+  }
+  if (strlen(axis) != 1 || !strchr("xyz", axis[0]))
+    return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", axis);
+  look->axis = axis[0] - 'x';
+  return STATUS_OK;
+}
+
+static status choose_plane(const char *at, struct picture_look *look, struct error *error) {
+  if (!at)
+    return STATUS_OK;
+  if (look->view != PICTURE_CUT)
+    return status_fail(error, STATUS_USAGE, "--at is the place of a cut: give --view cut, too");
+  return unit_read(at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
+}
+
 /* --what, --view, --axis and --at as a look; `what` NULL: fragments. */
 static status choose_look(const struct picture_choice *options, struct picture_look *look, const char **what,
                           struct error *error) {
   *what = options->what ? options->what : "damage";
   if (strcmp(*what, "fragments") == 0)
     *what = NULL;
-  *look = (struct picture_look){.view = *what ? PICTURE_CUT : PICTURE_APART, .axis = 1, .plane = NAN};
+  *look = (struct picture_look){.view = *what ? PICTURE_CUT : PICTURE_APART, .plane = NAN};
   status code = choose_view(options->view, &look->view, error);
-  if (code)
-    return code;
-
-  const char *axis = options->axis;
-  if (axis && (strlen(axis) != 1 || !strchr("xyz", axis[0])))
-    return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", axis);
-  if (axis)
-    look->axis = axis[0] - 'x';
-  else if (look->view == PICTURE_OUTSIDE)
-    look->axis = -1;
-  if (!options->at)
-    return STATUS_OK;
-  if (look->view != PICTURE_CUT)
-    return status_fail(error, STATUS_USAGE, "--at is the place of a cut: give --view cut, too");
-  return unit_read(options->at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
+  if (!code)
+    code = choose_axis(options->axis, look, error);
+  return code ? code : choose_plane(options->at, look, error);
 }
 
 static void name_look(const struct picture_look *look, const struct picture_cloud *cloud, char *text, size_t size) {
@@ -119,47 +127,61 @@ cleanup:
   return code;
 }
 
+/* One column of a profile, beside its depths. */
+struct panel {
+  double *values;
+  char label[100];
+};
+
+/* STATUS_CONTENT when the column is not as long as that of the depths. */
+static status read_panel(const char *fields, const char *name, size_t count, struct panel *panel, struct error *error) {
+  char unit[32] = "", shown[64];
+  size_t rows = 0;
+  const status code = picture_cloud_read_axis(fields, name, &panel->values, &rows, unit, error);
+  if (code)
+    return code;
+  if (rows != count)
+    return status_fail(error, STATUS_CONTENT, "%s is damaged: the columns of its profile differ in length", fields);
+  field_label_unit(unit, shown, sizeof shown);
+  snprintf(panel->label, sizeof panel->label, *shown ? "%s (%s)" : "%s", name, shown);
+  return STATUS_OK;
+}
+
+static struct picture_profile profile_of(const struct panel *panel, const char *name) {
+  const bool share = strcmp(name, "damage") == 0;
+  return (struct picture_profile){panel->label, panel->values, {share ? 0 : HUGE_VAL, share ? 1 : -HUGE_VAL}};
+}
+
 /* Draws profiles along the axis: --what, or distention and damage. */
 static status draw_profile(const char *fields, const char *picture, const struct picture_choice *options,
                            struct error *error) {
   enum { MOST = 2 };
-  const char *names[MOST] = {options->what ? options->what : "distention", options->what ? NULL : "damage"};
-  struct picture_profile panel[MOST];
+  const char *names[MOST] = {options->what ? options->what : "distention", "damage"};
+  const size_t panels = options->what ? 1 : MOST;
+  struct panel panel[MOST] = {{NULL}};
+  struct picture_profile profile[MOST];
   struct picture_cloud cloud;
-  double *depth = NULL, *values[MOST] = {NULL, NULL};
-  char unit[32] = "", labels[MOST][100], title[FIELD_TEXT_SIZE];
-  size_t count = 0, rows = 0, panels = 0;
+  double *depth = NULL;
+  char unit[32] = "", title[FIELD_TEXT_SIZE];
+  size_t count = 0;
   status code = picture_cloud_read(fields, &cloud, error);
-  if (code)
-    goto cleanup;
-  code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error);
-  if (code)
-    goto cleanup;
-  for (; panels < MOST && names[panels]; panels++) {
-    code = picture_cloud_read_axis(fields, names[panels], &values[panels], &rows, unit, error);
-    if (code)
-      goto cleanup;
-    if (rows != count) {
-      code = status_fail(error, STATUS_CONTENT, "%s is damaged: the columns of its profile differ in length", fields);
-      goto cleanup;
-    }
-    char shown[64];
-    field_label_unit(unit, shown, sizeof shown);
-    snprintf(labels[panels], sizeof labels[panels], *shown ? "%s (%s)" : "%s", names[panels], shown);
-    bool share = !strcmp(names[panels], "damage");
-    panel[panels] = (struct picture_profile){labels[panels],
-                                             values[panels],
-                                             {share ? 0 : HUGE_VAL, share ? 1 : -HUGE_VAL}};
+  if (!code)
+    code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error);
+  for (size_t k = 0; !code && k < panels; k++) {
+    code = read_panel(fields, names[k], count, &panel[k], error);
+    profile[k] = profile_of(&panel[k], names[k]);
   }
+  if (code)
+    goto cleanup;
   name_look(&(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
   const struct picture_page page = chart_option_page(picture, &options->chart);
   const struct picture_words words = {options->caption ? options->caption : title, NULL, "depth at the start (m)",
                                       NULL};
-  code = picture_profile(&page, &words, count, depth, panels, panel, error);
+  code = picture_profile(&page, &words, count, depth, panels, profile, error);
 cleanup:
   free(depth);
   for (size_t k = 0; k < MOST; k++)
-    free(values[k]);
+    free(panel[k].values);
   picture_cloud_clear(&cloud);
   return code;
 }

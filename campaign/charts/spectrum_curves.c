@@ -211,6 +211,28 @@ static void print_plots(const struct curves *curves, bool ascii) {
   }
 }
 
+static status take_curves(struct store *store, struct curves *curves, struct error *error) {
+  const status code = ask_pools(store, &curves->choice->pool, take_pool, curves, error);
+  if (code != STATUS_OK && !(code == STATUS_STOPPED && curves->more))
+    return code;
+  if (curves->count > 0)
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE, "no finished run to draw: the store has none, or none meets --where");
+}
+
+static status draw(struct store *store, const struct curves *curves, const struct spectrum_drawing *drawing,
+                   struct error *error) {
+  const status code = drawing->page ? draw_picture(store, curves, drawing->page, error) : STATUS_OK;
+  if (code)
+    return code;
+  if (drawing->text)
+    print_plots(curves, drawing->ascii);
+  if (curves->more)
+    fprintf(stderr, "clast: only the first %zu spectra are drawn; --point, --where and --by choose others\n",
+            curves->count);
+  return STATUS_OK;
+}
+
 status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice,
                             const struct spectrum_drawing *drawing, struct error *error) {
   struct curves *curves = calloc(1, sizeof *curves);
@@ -219,18 +241,9 @@ status spectrum_curves_draw(struct store *store, const struct spectrum_choice *c
   curves->choice = choice;
   curves->with_rivals = drawing->text;
   curves->most = choice->measured ? PICTURE_SERIES - 1 : PICTURE_SERIES;
-  status code = ask_pools(store, &choice->pool, take_pool, curves, error);
-  if (code == STATUS_STOPPED && curves->more)
-    code = STATUS_OK;
-  if (code == STATUS_OK && curves->count == 0)
-    code = status_fail(error, STATUS_USAGE, "no finished run to draw: the store has none, or none meets --where");
-  if (code == STATUS_OK && drawing->page)
-    code = draw_picture(store, curves, drawing->page, error);
-  if (code == STATUS_OK && drawing->text)
-    print_plots(curves, drawing->ascii);
-  if (code == STATUS_OK && curves->more)
-    fprintf(stderr, "clast: only the first %zu spectra are drawn; --point, --where and --by choose others\n",
-            curves->count);
+  status code = take_curves(store, curves, error);
+  if (code == STATUS_OK)
+    code = draw(store, curves, drawing, error);
   for (size_t i = 0; i < curves->count; i++)
     spectrum_curves_release(&curves->curve[i]);
   free(curves);

@@ -18,6 +18,42 @@ static void headline(const char *text, char *line, size_t size) {
   snprintf(line, size, "%.*s", (int)strcspn(text, "\n"), text);
 }
 
+static status print_document(const char *name, struct error *error) {
+  const char *text = scene_builtin_text(name);
+  if (text) {
+    fputs(text, stdout);
+    return STATUS_OK;
+  }
+  struct scene *scene = NULL;
+  const status code = scene_load(name, NULL, &scene, error); /* names the nearest scene */
+  scene_free(scene);
+  return code ? code : status_fail(error, STATUS_USAGE, "%s is a file, not a built-in scene", name);
+}
+
+static status add_row(struct table *table, const char *name, struct error *error) {
+  struct scene *scene = NULL;
+  char what[256];
+  const status code = scene_load(name, NULL, &scene, error);
+  if (code)
+    return code;
+  headline(scene_builtin_text(name), what, sizeof what);
+  table_text(table, name);
+  table_text(table, scene->kind->name);
+  table_text(table, what);
+  scene_free(scene);
+  return STATUS_OK;
+}
+
+static status print_list(enum table_format format, struct error *error) {
+  struct table *table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"name", "engine", "what", NULL});
+  status code = STATUS_OK;
+  for (size_t i = 0; !code && i < scene_builtin_count(); i++)
+    code = add_row(table, scene_builtin_name(i), error);
+  const status ended = table_end(table, code ? NULL : error);
+  return code ? code : ended;
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
@@ -26,33 +62,7 @@ static status run(const struct command_line *line, struct error *error) {
     code = table_text_only(&options->table, "a scene's document", error);
   if (code)
     return code;
-  if (line->count == 1) {
-    const char *text = scene_builtin_text(line->arguments[0]);
-    if (text) {
-      fputs(text, stdout);
-      return STATUS_OK;
-    }
-    struct scene *scene = NULL;
-    code = scene_load(line->arguments[0], NULL, &scene, error); /* names the nearest scene */
-    scene_free(scene);
-    return code ? code : status_fail(error, STATUS_USAGE, "%s is a file, not a built-in scene", line->arguments[0]);
-  }
-  struct table *table = table_new(format, stdout);
-  table_columns(table, (const char *const[]){"name", "engine", "what", NULL});
-  for (size_t i = 0; !code && i < scene_builtin_count(); i++) {
-    struct scene *scene = NULL;
-    char what[256];
-    code = scene_load(scene_builtin_name(i), NULL, &scene, error);
-    if (code)
-      break;
-    headline(scene_builtin_text(scene_builtin_name(i)), what, sizeof what);
-    table_text(table, scene_builtin_name(i));
-    table_text(table, scene->kind->name);
-    table_text(table, what);
-    scene_free(scene);
-  }
-  status ended = table_end(table, code ? NULL : error);
-  return code ? code : ended;
+  return line->count == 1 ? print_document(line->arguments[0], error) : print_list(format, error);
 }
 
 static const struct option_row rows[] = {TABLE_OPTIONS(struct options, table)};

@@ -237,6 +237,24 @@ static void choose_reference(const struct making *making) {
   ladder->level[reference].reference = true;
 }
 
+/* All levels of a knob that turns inputs, in order, with the reference among them. */
+static status add_all_levels(struct making *making, const char *settings, struct error *error) {
+  status code = find_inputs(making, error);
+  if (code != STATUS_OK)
+    return code;
+  if (settings)
+    code = add_settings(making, settings, error);
+  else
+    code = making->knob->factors[0] > 0 ? add_factors(making, error) : add_choices(making, error);
+  if (code != STATUS_OK)
+    return code;
+  if (making->ladder->count < 2)
+    return status_fail(error, STATUS_CONTENT, "%s has fewer than two levels in this scene", making->knob->name);
+  sort_levels(making);
+  choose_reference(making);
+  return STATUS_OK;
+}
+
 status ladder_make(const struct knob *knob, const struct scene *base, const char *settings, struct ladder *ladder,
                    char **notes, struct error *error) {
   *ladder = (struct ladder){.knob = knob};
@@ -245,30 +263,12 @@ status ladder_make(const struct knob *knob, const struct scene *base, const char
   struct making making = {.knob = knob, .base = base, .ladder = ladder, .notes = open_memstream(notes, &size)};
   if (!making.notes)
     return status_fail(error, STATUS_MEMORY, "no memory for a ladder");
-  if (knob->group == KNOB_SETTINGS) {
-    const status code = add_all_named(&making, settings, error);
-    fclose(making.notes);
-    if (code != STATUS_OK)
-      ladder_clear(ladder);
-    return code;
-  }
-  status code = find_inputs(&making, error);
-  if (code == STATUS_OK && settings)
-    code = add_settings(&making, settings, error);
-  else if (code == STATUS_OK && knob->factors[0] > 0)
-    code = add_factors(&making, error);
-  else if (code == STATUS_OK)
-    code = add_choices(&making, error);
+  const bool named = knob->group == KNOB_SETTINGS;
+  const status code = (named ? add_all_named : add_all_levels)(&making, settings, error);
   fclose(making.notes);
-  if (code == STATUS_OK && ladder->count < 2)
-    code = status_fail(error, STATUS_CONTENT, "%s has fewer than two levels in this scene", knob->name);
-  if (code != STATUS_OK) {
+  if (code != STATUS_OK)
     ladder_clear(ladder);
-    return code;
-  }
-  sort_levels(&making);
-  choose_reference(&making);
-  return STATUS_OK;
+  return code;
 }
 
 status ladder_turn(const struct knob *knob, struct scene *scene, const char *setting, struct error *error) {

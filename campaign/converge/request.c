@@ -24,35 +24,46 @@ static status read_quantities(struct study *study, const char *names, const stru
   return study->quantity_count ? STATUS_OK : status_fail(error, STATUS_USAGE, "--quantity names none");
 }
 
+static status read_seconds(struct study_rule *rule, const char *text, struct error *error) {
+  char *end = NULL;
+  if (!text)
+    return STATUS_OK;
+  rule->seconds = strtod(text, &end);
+  if (*end || !(rule->seconds > 0))
+    return status_fail(error, STATUS_USAGE, "--seconds %s: expected a number of seconds above 0", text);
+  return STATUS_OK;
+}
+
+/* A width, or a share in percent. */
+static status read_within(struct study_rule *rule, const char *text, bool several, struct error *error) {
+  char *end = NULL;
+  if (!text || strcmp(text, "off") == 0)
+    return STATUS_OK;
+  rule->within = strtod(text, &end);
+  rule->relative = strcmp(end + strspn(end, " "), "%") == 0;
+  if ((*end && !rule->relative) || !(rule->within > 0))
+    return status_fail(error, STATUS_USAGE,
+                       "--within %s: expected a width above 0 in the quantity's SI unit, a share of its value such as "
+                       "\"5 %%\", or off",
+                       text);
+  if (!rule->relative && several)
+    return status_fail(error, STATUS_USAGE, "--within %s: several quantities need a share of their values (\"5 %%\")",
+                       text);
+  if (rule->relative)
+    rule->within /= 100;
+  return STATUS_OK;
+}
+
 static status read_rule(struct study *study, const struct request *request, struct error *error) {
   struct study_rule *rule = &study->rule;
-  char *end = NULL;
   *rule = (struct study_rule){.within = NAN,
                               .seconds = HUGE_VAL,
                               .first_seeds = request->first_seeds,
                               .most_seeds = request->most_seeds};
   if (rule->most_seeds < rule->first_seeds)
     rule->most_seeds = rule->first_seeds;
-  if (request->seconds) {
-    rule->seconds = strtod(request->seconds, &end);
-    if (*end || !(rule->seconds > 0))
-      return status_fail(error, STATUS_USAGE, "--seconds %s: expected a number of seconds above 0", request->seconds);
-  }
-  if (!request->within || strcmp(request->within, "off") == 0)
-    return STATUS_OK;
-  rule->within = strtod(request->within, &end);
-  rule->relative = strcmp(end + strspn(end, " "), "%") == 0;
-  if ((*end && !rule->relative) || !(rule->within > 0))
-    return status_fail(error, STATUS_USAGE,
-                       "--within %s: expected a width above 0 in the quantity's SI unit, a share of its value such as "
-                       "\"5 %%\", or off",
-                       request->within);
-  if (!rule->relative && study->quantity_count > 1)
-    return status_fail(error, STATUS_USAGE, "--within %s: several quantities need a share of their values (\"5 %%\")",
-                       request->within);
-  if (rule->relative)
-    rule->within /= 100;
-  return STATUS_OK;
+  const status code = read_seconds(rule, request->seconds, error);
+  return code ? code : read_within(rule, request->within, study->quantity_count > 1, error);
 }
 
 static void note_lines(const char *text, bool quiet) {

@@ -107,30 +107,35 @@ static void want(struct point *point, int64_t r) {
   }
 }
 
-void point_want_fields(struct point *point, const struct campaign *campaign) {
+/* The runs with the least and the greatest value. Ties go to the lower replicate, so that the choice depends on the
+ * results alone. */
+static void want_extremes(struct point *point) {
   int64_t least = -1, most = -1;
+  for (int64_t r = 0; r < point->prefix; r++) {
+    const double value = point->values[r];
+    if (isnan(value))
+      continue;
+    if (least < 0 || value < point->values[least])
+      least = r;
+    if (most < 0 || value > point->values[most])
+      most = r;
+  }
+  if (least < 0)
+    return;
+  want(point, least);
+  want(point, most);
+}
+
+static void want_first(struct point *point, int64_t count) {
+  for (int64_t r = 0; r < point->prefix && r < count; r++)
+    want(point, r);
+}
+
+void point_want_fields(struct point *point, const struct campaign *campaign) {
   switch (campaign->keep) {
-  case CAMPAIGN_KEEP_ALL:
-  case CAMPAIGN_KEEP_FIRST:
-    for (int64_t r = 0; r < point->prefix; r++)
-      if (campaign->keep == CAMPAIGN_KEEP_ALL || r < campaign->keep_first)
-        want(point, r);
-    break;
-  case CAMPAIGN_KEEP_EXTREMES: /* ties go to the lower replicate, so that the choice depends on the results alone */
-    for (int64_t r = 0; r < point->prefix; r++) {
-      double value = point->values[r];
-      if (isnan(value))
-        continue;
-      if (least < 0 || value < point->values[least])
-        least = r;
-      if (most < 0 || value > point->values[most])
-        most = r;
-    }
-    if (least >= 0) {
-      want(point, least);
-      want(point, most);
-    }
-    break;
+  case CAMPAIGN_KEEP_ALL: want_first(point, INT64_MAX); break;
+  case CAMPAIGN_KEEP_FIRST: want_first(point, campaign->keep_first); break;
+  case CAMPAIGN_KEEP_EXTREMES: want_extremes(point); break;
   default: break;
   }
 }

@@ -40,6 +40,23 @@ static struct scene *scene_of(const struct fit *fit, const double *z, struct err
   return scene;
 }
 
+/* Of the shot's data at a point of the store; 0: it has none. */
+static status read_data(const struct fit *fit, struct store *store, const struct scene *scene, int64_t point,
+                        const uint64_t *seeds, size_t count, double *values, size_t stride, struct error *error) {
+  status code = STATUS_OK;
+  for (size_t k = 0; code == STATUS_OK && k < fit->observed->datum_count; k++) {
+    const struct observed_datum *datum = &fit->observed->data[k];
+    if (datum->shot != fit->shot)
+      continue;
+    const struct taking taking = {datum, seeds, values + k * stride, count};
+    for (size_t r = 0; r < count; r++)
+      taking.values[r] = NAN;
+    if (point)
+      code = ask_specimens(store, point, scene->kind, &datum->ask, take, (void *)&taking, error);
+  }
+  return code;
+}
+
 /* Reads `count` replicates of the shot's data at z; the values of datum k begin at values + k * stride. A point that
  * cannot be run has none. */
 static status read_point(const struct fit *fit, struct store *store, const double *z, bool independent, size_t count,
@@ -51,20 +68,12 @@ static status read_point(const struct fit *fit, struct store *store, const doubl
   int64_t point = 0;
   status code = seeds ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a point");
   own.independent = independent;
-  for (size_t r = 0; code == STATUS_OK && scene && r < count; r++)
+  for (size_t r = 0; seeds && scene && r < count; r++)
     seeds[r] = campaign_seed(&own, scene, (int64_t)r);
   if (code == STATUS_OK && scene)
     code = store_point_find(store, scene, &point, error);
-  for (size_t k = 0; code == STATUS_OK && k < fit->observed->datum_count; k++) {
-    const struct observed_datum *datum = &fit->observed->data[k];
-    if (datum->shot != fit->shot)
-      continue;
-    const struct taking taking = {datum, seeds, values + k * stride, count};
-    for (size_t r = 0; r < count; r++)
-      taking.values[r] = NAN;
-    if (point)
-      code = ask_specimens(store, point, scene->kind, &datum->ask, take, (void *)&taking, error);
-  }
+  if (code == STATUS_OK)
+    code = read_data(fit, store, scene, point, seeds, count, values, stride, error);
   free(seeds);
   scene_free(scene);
   return code;

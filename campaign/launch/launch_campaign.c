@@ -30,24 +30,34 @@ static void print_summary(const struct driver_summary *summary, const char *stor
     fputs("stopped; the same command goes on\n", stderr);
 }
 
+static status print_table(struct store *store, const char *path, const struct ask_points_choice *choice,
+                          enum table_format format, bool quiet, struct error *error) {
+  int64_t points = 0;
+  status code = ask_points_count(store, choice, &points, error);
+  if (code)
+    return code;
+  if (format == TABLE_TEXT && points > MANY_POINTS) {
+    fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
+            choice->campaign);
+    return STATUS_OK;
+  }
+  code = estimates_table_print(store, choice, format, stdout, error);
+  if (!code && format == TABLE_TEXT && !quiet) {
+    fflush(stdout); /* the legend comes below the table */
+    estimates_table_explain(store);
+  }
+  return code;
+}
+
 /* Reads the store again, so that it prints what any later reader will find. */
 static status print_estimates(const char *path, int64_t campaign, enum table_format format, bool quiet,
                               struct error *error) {
   struct store *store = NULL;
-  int64_t points = 0;
   const struct ask_points_choice choice = {.campaign = campaign};
   status code = store_open_reader(path, &store, error);
-  if (!code)
-    code = ask_points_count(store, &choice, &points, error);
-  if (!code && format == TABLE_TEXT && points > MANY_POINTS)
-    fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
-            campaign);
-  else if (!code)
-    code = estimates_table_print(store, &choice, format, stdout, error);
-  if (!code && format == TABLE_TEXT && points <= MANY_POINTS && !quiet) {
-    fflush(stdout); /* the legend comes below the table */
-    estimates_table_explain(store);
-  }
+  if (code)
+    return code;
+  code = print_table(store, path, &choice, format, quiet, error);
   store_close(store, NULL);
   return code;
 }
@@ -58,31 +68,36 @@ struct launching {
   enum table_format format;
 };
 
+/* NULL: nothing is shown. */
+static struct progress *make_progress(const struct launch *launch) {
+  if (!launch->manager || launch->notes.quiet)
+    return NULL;
+  const enum progress_style style = progress_style_of(stderr);
+  const char *no_colour = getenv("NO_COLOR");
+  return progress_create(stderr, style, style == PROGRESS_BAR && !(no_colour && *no_colour), 0);
+}
+
 static status run_campaign(void *context, struct launch *launch, struct error *error) {
   const struct launching *launching = context;
-  struct progress *progress = NULL;
   const bool quiet = launch->notes.quiet;
-  if (launch->manager && !quiet) {
-    enum progress_style style = progress_style_of(stderr);
-    const char *no_colour = getenv("NO_COLOR");
-    progress = progress_create(stderr, style, style == PROGRESS_BAR && !(no_colour && *no_colour), 0);
-  }
+  struct progress *progress = make_progress(launch);
   struct driver_summary summary = {0};
   launch->notes.progress = launch->driver.progress = progress;
   launch->driver.store_path = launching->store;
-  status code = driver_run(launching->campaign, launch->farm, &launch->driver, &summary, error);
+  const status code = driver_run(launching->campaign, launch->farm, &launch->driver, &summary, error);
   const double wall_s = clock_s() - launch->begin_s;
   launch->notes.progress = NULL;
   progress_free(progress);
   if (!launch->manager)
     return code;
+
   const bool done = code == STATUS_OK || code == STATUS_FAILED_RUNS;
   if ((done || code == STATUS_STOPPED) && !quiet)
     print_summary(&summary, launching->store, wall_s, code);
   if (!done)
     return code;
-  status printed = print_estimates(launching->store, summary.campaign_id, launching->format, quiet,
-                                   code ? NULL : error);
+  const status printed = print_estimates(launching->store, summary.campaign_id, launching->format, quiet,
+                                         code ? NULL : error);
   return printed ? printed : code;
 }
 

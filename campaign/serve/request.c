@@ -120,6 +120,20 @@ static bool read_key(const struct serve_model *model, const char *key, json_t *v
   return false;
 }
 
+/* One replicate is a value: it has no statistic. A scatter needs two. */
+static bool check_config(const struct serve_config *config, json_t *given, struct serve_answer *answer) {
+  if (config->single && json_object_get(given, "replicates"))
+    return refuse(answer, "config: replicate (one seed) and replicates (how many) exclude each other");
+  if (config->single && json_object_get(given, "statistic"))
+    return refuse(answer, "config: one replicate has no statistic");
+  if (config->single || config->count >= 2)
+    return true;
+  for (size_t i = 0; i < config->statistic_count; i++)
+    if (config->statistics[i] != SERVE_MEAN)
+      return refuse(answer, "config.statistic: a scatter needs two replicates at least");
+  return true;
+}
+
 static bool read_config(const struct serve_model *model, json_t *root, struct serve_config *config,
                         struct serve_answer *answer) {
   json_t *given = json_object_get(root, "config"), *value;
@@ -132,15 +146,10 @@ static bool read_config(const struct serve_model *model, json_t *root, struct se
   if (given && !json_is_object(given) && !json_is_null(given))
     return refuse(answer, "config: expected an object");
   json_object_foreach(given, key, value) if (!read_key(model, key, value, config, answer)) return false;
-  if (config->single && json_object_get(given, "replicates"))
-    return refuse(answer, "config: replicate (one seed) and replicates (how many) exclude each other");
-  if (config->single && json_object_get(given, "statistic"))
-    return refuse(answer, "config: one replicate has no statistic");
+  if (!check_config(config, given, answer))
+    return false;
   if (config->single)
     config->count = 1;
-  for (size_t i = 0; !config->single && i < config->statistic_count; i++)
-    if (config->statistics[i] != SERVE_MEAN && config->count < 2)
-      return refuse(answer, "config.statistic: a scatter needs two replicates at least");
   return true;
 }
 
@@ -233,19 +242,28 @@ static bool read_call(const struct serve_model *model, const struct route *route
   return false;
 }
 
-bool serve_request_read(const struct serve_model *model, const char *method, const char *path, const char *body,
-                        size_t size, struct serve_request *request, struct serve_answer *answer) {
-  const struct route *route = NULL;
-  *request = (struct serve_request){0};
+static const struct route *find_route(const char *path) {
   for (size_t i = 0; i < sizeof routes / sizeof routes[0]; i++)
     if (strcmp(path, routes[i].path) == 0)
-      route = &routes[i];
+      return &routes[i];
+  return NULL;
+}
+
+static bool is_method_of(const struct route *route, const char *method) {
+  if (route->get)
+    return strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
+  return strcmp(method, "POST") == 0;
+}
+
+bool serve_request_read(const struct serve_model *model, const char *method, const char *path, const char *body,
+                        size_t size, struct serve_request *request, struct serve_answer *answer) {
+  const struct route *route = find_route(path);
+  *request = (struct serve_request){0};
   if (!route) {
     *answer = serve_request_error(404, "UnsupportedFeature", "there is no %.100s; see GET /", path);
     return false;
   }
-  const bool get = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
-  if (route->get ? !get : strcmp(method, "POST") != 0) {
+  if (!is_method_of(route, method)) {
     *answer = serve_request_error(405, "InvalidInput", "%s: expected the method %s", path, route->get ? "GET" : "POST");
     return false;
   }
@@ -257,13 +275,14 @@ bool serve_request_read(const struct serve_model *model, const char *method, con
     *answer = answer_json(200, json_pack("{s:f, s:[s]}", "protocolVersion", 1.0, "models", model->campaign->name));
     return false;
   }
+
   json_error_t where;
   json_t *root = json_loadb(body, size, JSON_REJECT_DUPLICATES, &where);
   bool evaluate = false;
-  if (!root)
-    *answer = serve_request_error(400, "InvalidInput", "the body is no JSON: line %d: %s", where.line, where.text);
-  else
+  if (root)
     evaluate = read_call(model, route, root, request, answer);
+  else
+    *answer = serve_request_error(400, "InvalidInput", "the body is no JSON: line %d: %s", where.line, where.text);
   json_decref(root);
   if (!evaluate)
     serve_request_clear(request);

@@ -18,35 +18,39 @@ const char *option_nearest(const char *typed, size_t count, const char *const *n
   return guess.nearest;
 }
 
+static status take_item(const struct option_row *row, const char *text, struct option_list *list, struct error *error) {
+  if (list->count == sizeof list->items / sizeof list->items[0])
+    return status_fail(error, STATUS_USAGE, "--%s is given more than %zu times", row->name, list->count);
+  list->items[list->count++] = text;
+  return STATUS_OK;
+}
+
+static status take_integer(const struct command *command, const struct option_row *row, const char *text, int64_t *out,
+                           struct error *error) {
+  char *end = NULL, range[64];
+  errno = 0;
+  const long long number = strtoll(text, &end, 10);
+  const bool whole = end != text && *end == '\0' && errno != ERANGE;
+  if (whole && number >= row->minimum && number <= row->maximum) {
+    *out = number;
+    return STATUS_OK;
+  }
+  if (row->maximum == INT64_MAX)
+    snprintf(range, sizeof range, "from %" PRId64 " up", row->minimum);
+  else
+    snprintf(range, sizeof range, "from %" PRId64 " to %" PRId64, row->minimum, row->maximum);
+  return status_fail(error, STATUS_USAGE, "--%s expects a whole number %s, got \"%.64s\" (clast %s --help)", row->name,
+                     range, text, command->name);
+}
+
 static status take_value(const struct command *command, const struct option_row *row, const char *text, void *options,
                          struct error *error) {
   void *slot = (char *)options + row->offset;
   switch (row->kind) {
   case OPTION_FLAG: *(bool *)slot = true; return STATUS_OK;
   case OPTION_TEXT: *(const char **)slot = text; return STATUS_OK;
-  case OPTION_LIST: {
-    struct option_list *list = slot;
-    if (list->count == sizeof list->items / sizeof list->items[0])
-      return status_fail(error, STATUS_USAGE, "--%s is given more than %zu times", row->name, list->count);
-    list->items[list->count++] = text;
-    return STATUS_OK;
-  }
-  case OPTION_INTEGER: {
-    char *end = NULL;
-    errno = 0;
-    long long number = strtoll(text, &end, 10);
-    if (end == text || *end != '\0' || errno == ERANGE || number < row->minimum || number > row->maximum) {
-      char range[64];
-      if (row->maximum == INT64_MAX)
-        snprintf(range, sizeof range, "from %" PRId64 " up", row->minimum);
-      else
-        snprintf(range, sizeof range, "from %" PRId64 " to %" PRId64, row->minimum, row->maximum);
-      return status_fail(error, STATUS_USAGE, "--%s expects a whole number %s, got \"%.64s\" (clast %s --help)",
-                         row->name, range, text, command->name);
-    }
-    *(int64_t *)slot = number;
-    return STATUS_OK;
-  }
+  case OPTION_LIST: return take_item(row, text, slot, error);
+  case OPTION_INTEGER: return take_integer(command, row, text, slot, error);
   }
   return status_fail(error, STATUS_INTERNAL, "option --%s has no kind", row->name);
 }
