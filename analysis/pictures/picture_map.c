@@ -43,6 +43,10 @@ static void write_tiles(struct chart *chart, const struct axis *x, const struct 
   }
 }
 
+static status no_memory(const struct picture_page *page, struct error *error) {
+  return status_fail(error, STATUS_MEMORY, "%s: no memory for the map", page->path);
+}
+
 static status draw(const struct picture_page *page, const struct picture_words *words, const char *quantity,
                    const struct axis *x, const struct axis *y, const double *value, struct error *error) {
   double low = HUGE_VAL, high = -HUGE_VAL;
@@ -55,7 +59,7 @@ static status draw(const struct picture_page *page, const struct picture_words *
     return status_fail(error, STATUS_USAGE, "%s: there is no value to draw", page->path);
   struct chart *chart = chart_new("map");
   if (!chart)
-    return status_fail(error, STATUS_MEMORY, "%s: no memory for the map", page->path);
+    return no_memory(page, error);
   chart_words(chart, page, words);
   chart_text(chart, "quantity", quantity);
   chart_number(chart, "columns", (double)x->count);
@@ -66,6 +70,28 @@ static status draw(const struct picture_page *page, const struct picture_words *
   return chart_draw(chart, page, 0.72 * page->width, error);
 }
 
+/* Sorts the points into tiles, a row for each value of y. */
+static status draw_points(const struct picture_page *page, const struct picture_words *words, const char *quantity,
+                          size_t count, const double (*points)[3], struct axis *x, struct axis *y,
+                          struct error *error) {
+  distinct(count, points, 0, x);
+  distinct(count, points, 1, y);
+  const size_t tiles = x->count * y->count;
+  if (tiles > MOST_TILES)
+    return status_fail(error, STATUS_USAGE, "%s: %zu x %zu tiles are too many for a map; choose axes with fewer values",
+                       page->path, x->count, y->count);
+  double *value = malloc(tiles * sizeof *value);
+  if (!value)
+    return no_memory(page, error);
+  for (size_t i = 0; i < tiles; i++)
+    value[i] = NAN;
+  for (size_t i = 0; i < count; i++)
+    value[place(y, points[i][1]) * x->count + place(x, points[i][0])] = points[i][2];
+  const status code = draw(page, words, quantity, x, y, value, error);
+  free(value);
+  return code;
+}
+
 status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
                    size_t count, const double (*points)[3], struct error *error) {
   if (count == 0)
@@ -74,29 +100,9 @@ status picture_map(const struct picture_page *page, const struct picture_words *
     if (!isfinite(points[i][0]) || !isfinite(points[i][1]))
       return status_fail(error, STATUS_USAGE, "%s: a point of the map is not on its axes", page->path);
   struct axis x = {.values = malloc(count * sizeof *x.values)}, y = {.values = malloc(count * sizeof *y.values)};
-  double *value = NULL;
-  status code = x.values && y.values ? STATUS_OK : STATUS_MEMORY;
-  if (code == STATUS_OK) {
-    distinct(count, points, 0, &x);
-    distinct(count, points, 1, &y);
-    if (x.count * y.count > MOST_TILES)
-      code = status_fail(error, STATUS_USAGE,
-                         "%s: %zu x %zu tiles are too many for a map; choose axes with fewer values", page->path,
-                         x.count, y.count);
-    else if (!(value = malloc(x.count * y.count * sizeof *value)))
-      code = STATUS_MEMORY;
-  }
-  if (code == STATUS_OK) {
-    for (size_t i = 0; i < x.count * y.count; i++)
-      value[i] = NAN;
-    for (size_t i = 0; i < count; i++)
-      value[place(&y, points[i][1]) * x.count + place(&x, points[i][0])] = points[i][2];
-    code = draw(page, words, quantity, &x, &y, value, error);
-  } else if (code == STATUS_MEMORY) {
-    status_fail(error, code, "%s: no memory for the map", page->path);
-  }
+  const status code = x.values && y.values ? draw_points(page, words, quantity, count, points, &x, &y, error)
+                                           : no_memory(page, error);
   free(x.values);
   free(y.values);
-  free(value);
   return code;
 }

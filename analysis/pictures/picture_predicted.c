@@ -5,6 +5,20 @@
 
 static const double LETTER = 8.3; /* pixels */
 
+/* A row is drawn over its measured value. */
+static bool can_be_drawn(const struct picture_prediction *row) {
+  return row->measured != 0 && isfinite(row->quantile[0]);
+}
+
+static void widen(const struct picture_prediction *row, double *low, double *high) {
+  for (int q = 0; q < PICTURE_QUANTILES; q++) {
+    *low = fmin(*low, row->quantile[q] / row->measured);
+    *high = fmax(*high, row->quantile[q] / row->measured);
+  }
+  *low = fmin(*low, 1 - row->error / fabs(row->measured));
+  *high = fmax(*high, 1 + row->error / fabs(row->measured));
+}
+
 status picture_predicted(const struct picture_page *page, const struct picture_words *words, size_t count,
                          const struct picture_prediction *row, struct error *error) {
   const char *legend[] = {"90 % of predicted experiments", "50 %", "measured, with its standard deviation", "median"};
@@ -12,16 +26,12 @@ status picture_predicted(const struct picture_page *page, const struct picture_w
   double low = 1, high = 1;
   size_t rows = 0, letters = 0;
   for (size_t k = 0; k < count; k++) {
-    if (row[k].measured == 0 || !isfinite(row[k].quantile[0]) || rows == PICTURE_PREDICTIONS)
+    if (!can_be_drawn(&row[k]) || rows == PICTURE_PREDICTIONS)
       continue;
-    letters = chart_letters(row[k].label) > letters ? chart_letters(row[k].label) : letters;
+    const size_t own = chart_letters(row[k].label);
+    letters = own > letters ? own : letters;
     labels[rows++] = row[k].label;
-    for (int q = 0; q < PICTURE_QUANTILES; q++) {
-      low = fmin(low, row[k].quantile[q] / row[k].measured);
-      high = fmax(high, row[k].quantile[q] / row[k].measured);
-    }
-    low = fmin(low, 1 - row[k].error / fabs(row[k].measured));
-    high = fmax(high, 1 + row[k].error / fabs(row[k].measured));
+    widen(&row[k], &low, &high);
   }
   if (rows == 0)
     return status_fail(error, STATUS_USAGE, "%s: there is nothing to draw", page->path);
@@ -39,7 +49,7 @@ status picture_predicted(const struct picture_page *page, const struct picture_w
   chart_columns(chart, "row, measured, error, quantiles 5 25 50 75 95 %, over the measured value");
   for (size_t k = 0, at = rows; k < count && at > 0; k++) {
     const double m = row[k].measured, *q = row[k].quantile;
-    if (m == 0 || !isfinite(q[0]))
+    if (!can_be_drawn(&row[k]))
       continue;
     at--;
     chart_row(chart, 8,

@@ -198,6 +198,20 @@ static void tempered(size_t n, const double *u, double span, struct exponent *ou
     out->cutoff_mass = fit.rate > 0 ? out->lower / fit.rate : HUGE_VAL;
 }
 
+/* Fits `count` ascending masses from out->lower to `upper`; they become their logarithms. */
+static void fit_sorted(enum exponent_method method, size_t count, double *masses, double upper, struct exponent *out) {
+  out->n = (int64_t)count;
+  if (count < EXPONENT_LEAST_FRAGMENTS)
+    return;
+  const double span = isinf(upper) ? HUGE_VAL : log(upper / out->lower);
+  for (size_t i = 0; i < count; i++)
+    masses[i] = log(masses[i] / out->lower);
+  if (method == EXPONENT_UPPER_CUTOFF)
+    tempered(count, masses, span, out);
+  else
+    pure(count, masses, span, out);
+}
+
 status exponent_fit(enum exponent_method method, size_t n, const double *masses, struct exponent_window window,
                     struct exponent *out, struct error *error) {
   status code = check(method, window, out, error);
@@ -211,22 +225,13 @@ status exponent_fit(enum exponent_method method, size_t n, const double *masses,
   if (!inside)
     return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu masses", n);
   if (method == EXPONENT_KS && count >= EXPONENT_LEAST_FRAGMENTS) {
-    double lower = lower_cutoff(count, inside);
+    const double lower = lower_cutoff(count, inside);
     if (isfinite(lower))
       out->lower = lower;
     while (count > 0 && inside[count - 1] < out->lower)
       count--;
   }
-  out->n = (int64_t)count;
-  if (count >= EXPONENT_LEAST_FRAGMENTS) {
-    double span = isinf(window.upper) ? HUGE_VAL : log(window.upper / out->lower);
-    for (size_t i = 0; i < count; i++)
-      inside[i] = log(inside[i] / out->lower);
-    if (method == EXPONENT_UPPER_CUTOFF)
-      tempered(count, inside, span, out);
-    else
-      pure(count, inside, span, out);
-  }
+  fit_sorted(method, count, inside, window.upper, out);
   free(inside);
   return STATUS_OK;
 }

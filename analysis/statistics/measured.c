@@ -11,10 +11,29 @@ void measured_release(struct measured *measured) {
   *measured = (struct measured){0};
 }
 
+/* The bin of threshold i: N(>= m) there, or the density up to the next threshold. The last class has no upper end, and
+ * so no density. */
+static struct pooled_bin bin_of(const struct measured *measured, const struct pooled_form *form, size_t i) {
+  const bool last = i + 1 == measured->n;
+  const double above = measured->above[i];
+  struct pooled_bin bin = {.lower = spectrum_size_of(&form->size, measured->mass[i]), .half_width = NAN};
+  if (form->cumulative || last) {
+    bin.count = (int64_t)llround(above);
+    bin.upper = form->cumulative ? bin.lower : 0;
+    bin.value = form->cumulative ? above : 0;
+    return bin;
+  }
+  const double inside = above - measured->above[i + 1];
+  bin.count = (int64_t)llround(inside);
+  bin.upper = spectrum_size_of(&form->size, measured->mass[i + 1]);
+  bin.value = inside / (bin.upper - bin.lower);
+  return bin;
+}
+
 /* Single fragments are binned as simulated ones are; thresholds are their own bins. */
 status measured_bins(const struct measured *measured, const struct pooled_form *form, struct pooled_bin **bins,
                      size_t *count, struct error *error) {
-  struct pooled_form one = {.cumulative = form->cumulative, .size = form->size};
+  const struct pooled_form one = {.cumulative = form->cumulative, .size = form->size};
   *count = 0;
   if (measured->single && !form->cumulative) {
     const size_t first[2] = {0, measured->n};
@@ -25,18 +44,9 @@ status measured_bins(const struct measured *measured, const struct pooled_form *
   if (!*bins)
     return status_fail(error, STATUS_MEMORY, "no memory for a measured spectrum");
   for (size_t i = 0; i < measured->n; i++) {
-    const bool last = i + 1 == measured->n;
     if (i > 0 && measured->mass[i] == measured->mass[i - 1])
       continue; /* N(>= m) of equal masses is that of the first */
-    struct pooled_bin bin = {.lower = spectrum_size_of(&form->size, measured->mass[i]), .half_width = NAN};
-    if (form->cumulative) {
-      bin.upper = bin.lower;
-      bin.value = measured->above[i];
-    } else if (!last) { /* a class without an upper end has no density */
-      bin.upper = spectrum_size_of(&form->size, measured->mass[i + 1]);
-      bin.value = (measured->above[i] - measured->above[i + 1]) / (bin.upper - bin.lower);
-    }
-    bin.count = (int64_t)llround(measured->above[i] - (form->cumulative || last ? 0 : measured->above[i + 1]));
+    const struct pooled_bin bin = bin_of(measured, form, i);
     if (bin.value > 0)
       (*bins)[(*count)++] = bin;
   }

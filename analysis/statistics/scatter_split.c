@@ -108,6 +108,34 @@ static bool is_grid(const struct scatter_table *t) {
   return points == (double)t->points;
 }
 
+static struct scatter_part part_of(struct split *s, const uint32_t *all) {
+  const struct sample_interval share = sample_jackknife(s->table->runs, 0.95, share_of, s);
+  return (struct scatter_part){variance_of(s, s->table->runs, all), share.estimate, share.half_width};
+}
+
+/* What each axis explains by itself. */
+static void fill_axes(struct split *s, const uint32_t *all, struct scatter_part *parts) {
+  const bool grid = is_grid(s->table);
+  s->part = SCATTER_INPUTS;
+  for (size_t a = 0; a < s->table->axes; a++) {
+    parts[a] = (struct scatter_part){NAN, NAN, NAN};
+    s->axis = a;
+    s->levels = count_levels(s->table, a);
+    if (grid)
+      parts[a] = part_of(s, all);
+  }
+}
+
+/* What all inputs and the seeds explain; the whole is the sum of both. */
+static void fill_parts(struct split *s, const uint32_t *all, struct scatter_part parts[SCATTER_PARTS]) {
+  s->axis = s->table->axes;
+  s->levels = s->table->points;
+  for (s->part = 0; s->part < SCATTER_PARTS; s->part++)
+    if (s->part != SCATTER_WHOLE)
+      parts[s->part] = part_of(s, all);
+  parts[SCATTER_WHOLE] = (struct scatter_part){parts[SCATTER_INPUTS].variance + parts[SCATTER_SEEDS].variance, 1, NAN};
+}
+
 status scatter_split(const struct scatter_table *t, struct scatter_part *parts, struct error *error) {
   if (t->points < 2 || t->runs < 2)
     return status_fail(error, STATUS_USAGE,
@@ -120,24 +148,11 @@ status scatter_split(const struct scatter_table *t, struct scatter_part *parts, 
     free(all);
     return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
   }
-  const bool grid = is_grid(t);
   for (size_t r = 0; r < t->runs; r++)
     all[r] = (uint32_t)r;
   struct split s = {.table = t, .sum = room, .product = room + 2 * t->points, .weight = room + 3 * t->points};
-  for (size_t i = 0; i < t->axes + SCATTER_PARTS; i++) {
-    parts[i] = (struct scatter_part){NAN, NAN, NAN};
-    s.axis = i < t->axes ? i : t->axes;
-    s.part = i < t->axes ? SCATTER_INPUTS : (int)(i - t->axes);
-    s.levels = i < t->axes ? count_levels(t, i) : t->points;
-    if (i < t->axes && !grid)
-      continue;
-    if (s.part == SCATTER_WHOLE) {
-      parts[i] = (struct scatter_part){parts[t->axes].variance + parts[t->axes + SCATTER_SEEDS].variance, 1, NAN};
-      continue;
-    }
-    const struct sample_interval share = sample_jackknife(t->runs, 0.95, share_of, &s);
-    parts[i] = (struct scatter_part){variance_of(&s, t->runs, all), share.estimate, share.half_width};
-  }
+  fill_axes(&s, all, parts);
+  fill_parts(&s, all, parts + t->axes);
   free(room);
   free(all);
   return STATUS_OK;
