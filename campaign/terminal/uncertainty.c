@@ -34,10 +34,12 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
     snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (`clast converge %s`)", resolution->scene);
     return;
   case ASK_RESOLUTION_KNOWN:
-    used = snprintf(text, UNCERTAINTY_TEXT, "%s+- %.2g (resolution)", up_to, resolution->half_width);
+    used = snprintf(text, UNCERTAINTY_TEXT, "%s+- %.2g (resolution: %s)", up_to, resolution->half_width,
+                    resolution->knobs);
     break;
   case ASK_RESOLUTION_AT_LEAST:
-    used = snprintf(text, UNCERTAINTY_TEXT, "%s+- %.2g or more (resolution)", up_to, resolution->half_width);
+    used = snprintf(text, UNCERTAINTY_TEXT, "%s+- %.2g or more (resolution: %s)", up_to, resolution->half_width,
+                    resolution->knobs);
     break;
   }
   if (resolution->studied < resolution->points)

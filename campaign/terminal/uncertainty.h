@@ -12,9 +12,9 @@ enum { UNCERTAINTY_TEXT = 256 };
  * one digit, or two after a leading 1; the mean has as many decimals. */
 void uncertainty_seeds(double mean, double half_width, char text[UNCERTAINTY_TEXT]);
 
-/* "+- 0.06 (resolution)", "up to +- 0.06 (resolution); studied at 2 of 9 points, `clast converge SCENE` studies
- * others", "+- 0.06 or more (resolution)", "resolution: not studied; `clast converge SCENE` measures it", or
- * "resolution: does not converge (`clast converge SCENE`)". */
+/* "+- 0.06 (resolution: particles)", "up to +- 0.06 (resolution: particles); studied at 2 of 9 points, `clast converge
+ * SCENE` studies others", "+- 0.06 or more (resolution: particles)", "resolution: not studied; `clast converge SCENE`
+ * measures it", or "resolution: does not converge (`clast converge SCENE`)". The knobs are those that were studied. */
 void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]);
 
 /* The same for the cell of a table: "0.06", ">= 0.06", "diverges", or "not studied". */

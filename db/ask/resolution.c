@@ -34,6 +34,21 @@ enum ask_resolution_verdict ask_resolution_verdict(const char *verdict) {
   return ASK_RESOLUTION_NOT_STUDIED;
 }
 
+/* The knobs of the studies that a point belongs to. Only where the view resolution has rows: stores of earlier programs
+ * lack the columns. */
+static const char of_knobs[] =
+    "SELECT group_concat(knob, ', ') FROM (SELECT DISTINCT knob FROM convergence"
+    "   WHERE quantity = :quantity AND (resolution IS NOT NULL OR knob = 'settings')"
+    "   AND base_point_id IN (SELECT base_point_id FROM convergence WHERE :point IN (0, point_id)) ORDER BY knob)";
+
+static status take_knobs(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count, (void)error;
+  struct ask_resolution *out = context;
+  if (values[0].kind == QUERY_TEXT)
+    snprintf(out->knobs, sizeof out->knobs, "%s", values[0].text);
+  return STATUS_OK;
+}
+
 static status take_found(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)count, (void)error;
   struct ask_resolution *out = context;
@@ -61,6 +76,7 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
   snprintf(id, sizeof id, "%lld", (long long)point_id);
   const struct query_parameter parameters[] = {{"point", id}, {"quantity", estimates_short_name(quantity)}};
   const struct query_sink scene = {.context = out, .row = take_scene}, found = {.context = out, .row = take_found};
+  const struct query_sink knobs = {.context = out, .row = take_knobs};
   status code = query_run(store,
                           "SELECT count(DISTINCT scene_name), min(scene_name) FROM point WHERE :point = 0 OR point_id "
                           "= :point",
@@ -68,7 +84,10 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
   if (code != STATUS_OK)
     return code;
 
-  return code == STATUS_OK ? query_run(store, of_points, 2, parameters, 0, &found, error) : code;
+  code = query_run(store, of_points, 2, parameters, 0, &found, error);
+  if (code != STATUS_OK || out->studied == 0)
+    return code;
+  return query_run(store, of_knobs, 2, parameters, 0, &knobs, error);
 }
 
 status ask_resolution_of_exponents(struct store *store, bool *studied, struct error *error) {

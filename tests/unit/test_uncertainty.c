@@ -41,11 +41,12 @@ static void resolution(void **state) {
   assert_string_equal(text, "resolution: not studied; `clast converge basalt-sphere` measures it");
   found.verdict = ASK_RESOLUTION_KNOWN;
   found.half_width = 0.0612;
+  snprintf(found.knobs, sizeof found.knobs, "particles, time_step");
   uncertainty_resolution(&found, text);
-  assert_string_equal(text, "+- 0.061 (resolution)");
+  assert_string_equal(text, "+- 0.061 (resolution: particles, time_step)");
   found.verdict = ASK_RESOLUTION_AT_LEAST;
   uncertainty_resolution(&found, text);
-  assert_string_equal(text, "+- 0.061 or more (resolution)");
+  assert_string_equal(text, "+- 0.061 or more (resolution: particles, time_step)");
   found.verdict = ASK_RESOLUTION_DIVERGES;
   uncertainty_resolution(&found, text);
   assert_string_equal(text, "resolution: does not converge (`clast converge basalt-sphere`)");
@@ -53,8 +54,9 @@ static void resolution(void **state) {
   found.points = 9;
   found.studied = 2;
   uncertainty_resolution(&found, text);
-  assert_string_equal(text, "up to +- 0.061 (resolution); studied at 2 of 9 points, `clast converge basalt-sphere` "
-                            "studies others");
+  assert_string_equal(text,
+                      "up to +- 0.061 (resolution: particles, time_step); studied at 2 of 9 points, `clast converge "
+                      "basalt-sphere` studies others");
 }
 
 static void cells(void **state) {
