@@ -44,6 +44,25 @@ static status find_line(struct plot_lines *plot, const char *value, int64_t vers
   return STATUS_OK;
 }
 
+/* The value of the second axis, which names the line; "" without one. */
+static void line_value(const struct plot_lines *plot, const struct quantity_row *row, char *value, size_t size) {
+  const struct query_value *second = &row->input[1];
+  value[0] = '\0';
+  if (plot->quantity.axes != 2 || second->kind == QUERY_NULL)
+    return;
+  if (second->kind == QUERY_TEXT)
+    snprintf(value, size, "%s", second->text);
+  else
+    snprintf(value, size, "%.6g", second->real);
+}
+
+static bool has_place(const struct line *line, double x) {
+  for (size_t i = 0; i < line->count; i++)
+    if (line->means[i].x == x)
+      return true;
+  return false;
+}
+
 static status add(void *context, const struct quantity_row *row, struct error *error) {
   struct plot_lines *plot = context;
   const struct query_value *x = &row->input[0];
@@ -53,25 +72,20 @@ static status add(void *context, const struct quantity_row *row, struct error *e
   if (x->kind == QUERY_NULL)
     return STATUS_OK; /* off, or does not apply: it has no place on an axis of numbers */
 
-  char value[sizeof plot->line[0].value] = "";
-  if (plot->quantity.axes == 2 && row->input[1].kind == QUERY_TEXT)
-    snprintf(value, sizeof value, "%s", row->input[1].text);
-  else if (plot->quantity.axes == 2 && row->input[1].kind != QUERY_NULL)
-    snprintf(value, sizeof value, "%.6g", row->input[1].real);
-
+  char value[sizeof plot->line[0].value];
   struct line *line = NULL;
-  status code = find_line(plot, value, row->results_version, &line, error);
+  line_value(plot, row, value, sizeof value);
+  const status code = find_line(plot, value, row->results_version, &line, error);
   if (code)
     return code;
   if (line->count == MOST_MEANS)
     return status_fail(error, STATUS_USAGE, "a line has at most %d points: choose an axis with fewer values",
                        MOST_MEANS);
-  for (size_t i = 0; plot->quantity.exponent && i < line->count; i++)
-    if (line->means[i].x == x->real)
-      return status_fail(
-          error, STATUS_USAGE,
-          "several points share %s = %g and one line, and their exponents cannot be averaged: separate them by --by",
-          plot->quantity.column[0], x->real);
+  if (plot->quantity.exponent && has_place(line, x->real))
+    return status_fail(
+        error, STATUS_USAGE,
+        "several points share %s = %g and one line, and their exponents cannot be averaged: separate them by --by",
+        plot->quantity.column[0], x->real);
   line->means[line->count++] = (struct picture_mean){x->real, row->value, row->lower, row->upper, row->resolution};
   return STATUS_OK;
 }

@@ -3,6 +3,16 @@
 
 #include <string.h>
 
+int64_t record_replicate(const struct campaign *campaign, const struct scene *scene,
+                         const struct store_point_run *run) {
+  const int64_t r = campaign->independent ? run->replicate : (int64_t)(run->seed - (uint64_t)campaign->first_seed);
+  if (r < 0 || campaign_seed(campaign, scene, r) != run->seed)
+    return -1;
+  uint8_t identity[16];
+  scene_identity(scene, run->seed, identity);
+  return memcmp(identity, run->identity, sizeof identity) == 0 ? r : -1;
+}
+
 status record_run(struct store *store, const struct record *record, const struct engine_kind *kind,
                   const struct farm_report *report, const struct run_result *result, struct error *error) {
   struct store_run run = {

@@ -2,6 +2,7 @@
 #ifndef CLAST_CAMPAIGN_DRIVER_RECORD_H
 #define CLAST_CAMPAIGN_DRIVER_RECORD_H
 
+#include "campaign/document/campaign.h"
 #include "campaign/driver/run.h"
 #include "campaign/farm/farm.h"
 #include "db/store/store.h"
@@ -14,6 +15,10 @@ struct record { /* which run */
   bool surplus;
   const char *fields_path; /* of the HDF5 file that was kept; NULL: none */
 };
+
+/* Which replicate of the point with this scene a run of the store is: the one whose identity it has. -1: none, as it is
+ * of an older results_version, or of other seeds. */
+int64_t record_replicate(const struct campaign *campaign, const struct scene *scene, const struct store_point_run *run);
 
 /* A run with its results. */
 status record_run(struct store *store, const struct record *record, const struct engine_kind *kind,

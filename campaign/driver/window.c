@@ -1,6 +1,7 @@
 /* The window of points under way: points enter it in the order of the design, with what the store has of them, and
  * leave it when they are over. */
 #include "campaign/driver/private.h"
+#include "campaign/driver/record.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -52,36 +53,35 @@ static void note_missing(struct driver *driver, const struct store_point_run *ru
   driver_note(driver, text);
 }
 
-/* A run that the store has. It is a replicate of the point if its identity is the one that the replicate would have. */
-static void take_stored(void *context, const struct store_point_run *run) {
-  struct resuming *resuming = context;
-  struct point *point = resuming->point;
-  struct driver *driver = resuming->driver;
-  const struct campaign *campaign = driver->campaign;
-  int64_t r = campaign->independent ? run->replicate : (int64_t)(run->seed - (uint64_t)campaign->first_seed);
-  if (r < 0 || r >= campaign_replicates_most(campaign) || campaign_seed(campaign, point->scene, r) != run->seed)
-    return;
-  uint8_t identity[16];
-  scene_identity(point->scene, run->seed, identity);
-  if (memcmp(identity, run->identity, sizeof identity) != 0)
-    return; /* of an older results_version */
-  if (!point_reserve(point, r)) {
-    resuming->out_of_memory = true;
-    return;
-  }
-  bool usable = outcome_is_usable(run->state);
-  point_finish_replicate(point, r, POINT_DONE, usable ? run->value : DRIVER_NOTHING);
-  point->replicates[r].surplus = run->surplus;
-  const bool kept = run->fields_path && !run->fields_missing;
-  point->replicates[r].fields = kept || run->state == OUTCOME_INVALID;
-  if (campaign->keep != CAMPAIGN_KEEP_NONE && run->fields_missing && driver->fields_missing++ == 0)
-    note_missing(driver, run);
-  cost_learn(&driver->cost, &point->cost, run->wall_s);
+static void count_stored(struct driver *driver, const struct store_point_run *run, bool usable) {
   driver->summary.runs_reused++;
   driver->summary.runs_surplus += run->surplus;
   driver->summary.runs_failed += !usable;
   driver->summary.runs_censored += run->state == OUTCOME_END_TIME;
-  sample_add(&driver->moments, usable ? run->value : DRIVER_NOTHING);
+}
+
+/* A run that the store has. */
+static void take_stored(void *context, const struct store_point_run *run) {
+  struct resuming *resuming = context;
+  struct point *point = resuming->point;
+  struct driver *driver = resuming->driver;
+  const int64_t r = record_replicate(driver->campaign, point->scene, run);
+  if (r < 0 || r >= campaign_replicates_most(driver->campaign))
+    return;
+  if (!point_reserve(point, r)) {
+    resuming->out_of_memory = true;
+    return;
+  }
+  const bool usable = outcome_is_usable(run->state), kept = run->fields_path && !run->fields_missing;
+  const double value = usable ? run->value : DRIVER_NOTHING;
+  point_finish_replicate(point, r, POINT_DONE, value);
+  point->replicates[r].surplus = run->surplus;
+  point->replicates[r].fields = kept || run->state == OUTCOME_INVALID;
+  if (driver->campaign->keep != CAMPAIGN_KEEP_NONE && run->fields_missing && driver->fields_missing++ == 0)
+    note_missing(driver, run);
+  cost_learn(&driver->cost, &point->cost, run->wall_s);
+  count_stored(driver, run, usable);
+  sample_add(&driver->moments, value);
 }
 
 /* After the prefix has moved: runs that were computed ahead and lie in it now count from here on. No run that counts is

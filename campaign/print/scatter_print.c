@@ -154,30 +154,42 @@ static status take_sample(void *context, const struct ask_pool *pool, struct err
   return STATUS_OK;
 }
 
+static status take_samples(struct store *store, const struct scatter_choice *choice, struct samples *samples,
+                           struct error *error) {
+  const status code = ask_pool_values(store, &choice->pool, choice->quantity, take_sample, samples, error);
+  if (code != STATUS_OK && !(code == STATUS_STOPPED && samples->more))
+    return code;
+  if (samples->count > 0)
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE, "no finished run has a value of %s", choice->quantity);
+}
+
+static status draw_samples(const struct samples *samples, const char *axis, const struct picture_page *page,
+                           struct error *error) {
+  struct picture_sample sample[PICTURE_SERIES];
+  for (size_t i = 0; i < samples->count; i++)
+    sample[i] = (struct picture_sample){samples->label[i], samples->scatter[i].n, samples->scatter[i].sorted,
+                                        scatter_histogram_of(&samples->scatter[i])};
+  const status code = picture_scatter(page, &(struct picture_words){"Scatter of the runs", NULL, axis, NULL},
+                                      samples->count, sample, error);
+  if (code == STATUS_OK && samples->more)
+    fprintf(stderr, "clast: only the first %d are drawn; --point, --where and --by choose others\n", PICTURE_SERIES);
+  return code;
+}
+
 status scatter_print_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
                              struct error *error) {
-  struct samples *samples = calloc(1, sizeof *samples);
-  struct picture_sample sample[PICTURE_SERIES];
   char column[ASK_GROUP_NAME], axis[CHART_OPTION_LABEL] = "";
+  struct samples *samples = calloc(1, sizeof *samples);
   if (!samples)
     return status_fail(error, STATUS_MEMORY, "no memory for a picture");
   status code = ask_group_quantity(store, choice->quantity, column, error);
   if (code == STATUS_OK)
     code = chart_option_axis(store, column, axis, error);
   if (code == STATUS_OK)
-    code = ask_pool_values(store, &choice->pool, choice->quantity, take_sample, samples, error);
-  if (code == STATUS_STOPPED && samples->more)
-    code = STATUS_OK;
-  for (size_t i = 0; i < samples->count; i++)
-    sample[i] = (struct picture_sample){samples->label[i], samples->scatter[i].n, samples->scatter[i].sorted,
-                                        scatter_histogram_of(&samples->scatter[i])};
-  if (code == STATUS_OK && samples->count == 0)
-    code = status_fail(error, STATUS_USAGE, "no finished run has a value of %s", choice->quantity);
+    code = take_samples(store, choice, samples, error);
   if (code == STATUS_OK)
-    code = picture_scatter(page, &(struct picture_words){"Scatter of the runs", NULL, axis, NULL}, samples->count,
-                           sample, error);
-  if (code == STATUS_OK && samples->more)
-    fprintf(stderr, "clast: only the first %d are drawn; --point, --where and --by choose others\n", PICTURE_SERIES);
+    code = draw_samples(samples, axis, page, error);
   for (size_t i = 0; i < samples->count; i++)
     scatter_release(&samples->scatter[i]);
   free(samples);

@@ -112,15 +112,9 @@ struct reading {
 
 static void take_stored(void *context, const struct store_point_run *run) {
   const struct reading *reading = context;
-  const struct campaign *campaign = reading->jobs->model->campaign;
   const struct serve_config *config = &reading->job->request.config;
-  uint8_t identity[16];
-  const int64_t r = campaign->independent ? run->replicate : (int64_t)(run->seed - (uint64_t)campaign->first_seed);
-  if (r < config->first || r - config->first >= config->count ||
-      campaign_seed(campaign, reading->job->scene, r) != run->seed)
-    return;
-  scene_identity(reading->job->scene, run->seed, identity);
-  if (memcmp(identity, run->identity, sizeof identity) != 0)
+  const int64_t r = record_replicate(reading->jobs->model->campaign, reading->job->scene, run);
+  if (r < config->first || r - config->first >= config->count)
     return;
   if (reading->values)
     reading->values[r - config->first] = outcome_is_usable(run->state) ? run->value : (double)NAN;

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/text.h"
+
 const char schema_sessions_sql[] =
     "UPDATE session SET campaign_id = of.campaign_id FROM (SELECT s.session_id, max(c.campaign_id) AS campaign_id FROM"
     " (SELECT DISTINCT session_id, point_id FROM run) r JOIN session s USING (session_id) JOIN campaign_point p USING"
@@ -58,25 +60,6 @@ void schema_write_counts(const char *not_surplus, FILE *out) {
     fprintf(out, " AND %s IS NOT NULL", row->path);
 }
 
-static void write_column(const char *name, const char *declaration, bool last, const char *unit, FILE *out) {
-  fprintf(out, "  %s %s%s -- %s%s%s", name, declaration, last ? "" : ",", unit ? "[" : "", unit ? unit : "",
-          unit ? "] " : "");
-}
-
-static void write_declaration(const struct schema_column *column, char *text, size_t size) {
-  FILE *out = fmemopen(text, size, "w");
-  text[0] = '\0';
-  if (!out)
-    return;
-  fputs(column->declaration, out);
-  if (strcmp(column->name, "counts") == 0) { /* of table run */
-    fprintf(out, " CHECK (%s = (", column->name);
-    schema_write_counts("surplus = 0", out);
-    fputs("))", out);
-  }
-  fclose(out);
-}
-
 void schema_write_index(const struct schema_index *index, FILE *out) {
   const struct field *row;
   fprintf(out, "CREATE INDEX %s ON %s (%s", index->name, index->table, index->columns);
@@ -85,50 +68,82 @@ void schema_write_index(const struct schema_index *index, FILE *out) {
   fputs(");\n", out);
 }
 
-void schema_write_table(const struct schema_table *table, FILE *out) {
-  size_t fields = table->fields ? table->fields->count : 0;
-  fprintf(out, "CREATE TABLE %s ( -- %s\n", table->name, table->meaning);
-  for (size_t i = 0; i < table->count; i++) {
-    const struct schema_column *column = &table->columns[i];
-    char declaration[1024];
-    write_declaration(column, declaration, sizeof declaration);
-    write_column(column->name, declaration, i + 1 == table->count && fields == 0 && !table->tail, column->unit, out);
-    fprintf(out, "%s\n", column->meaning);
+/* A column of a table: of its own, or one that a field makes. */
+struct column {
+  char name[SCHEMA_NAME_SIZE];
+  const char *source; /* what a developer looks for: the name, or the path of the row */
+  const char *declaration, *unit;
+  const char *meaning;     /* of the table's own */
+  const struct field *row; /* of a field; else NULL */
+};
+
+static size_t column_count(const struct schema_table *table) {
+  return table->count + (table->fields ? table->fields->count : 0);
+}
+
+/* The table's own columns come first. */
+static struct column column_at(const struct schema_table *table, size_t index) {
+  struct column column = {.row = NULL};
+  if (index < table->count) {
+    const struct schema_column *own = &table->columns[index];
+    column.source = own->name;
+    column.declaration = own->declaration;
+    column.unit = own->unit;
+    column.meaning = own->meaning;
+    snprintf(column.name, sizeof column.name, "%s", own->name);
+    return column;
   }
-  for (size_t i = 0; i < fields; i++) {
-    const struct field *row = &table->fields->rows[i];
-    char name[SCHEMA_NAME_SIZE];
-    field_column_name(row->path, name, sizeof name);
-    write_column(name, sql_type(row), i + 1 == fields && !table->tail, row->unit, out);
-    write_meaning(row, out);
-    fputc('\n', out);
+  column.row = &table->fields->rows[index - table->count];
+  column.source = column.row->path;
+  column.declaration = sql_type(column.row);
+  column.unit = column.row->unit;
+  field_column_name(column.row->path, column.name, sizeof column.name);
+  return column;
+}
+
+static void write_column_meaning(const struct column *column, FILE *out) {
+  if (column->row)
+    write_meaning(column->row, out);
+  else
+    fputs(column->meaning, out);
+}
+
+static void write_column(const struct column *column, bool last, FILE *out) {
+  fprintf(out, "  %s %s", column->name, column->declaration);
+  if (strcmp(column->name, "counts") == 0) { /* of table run */
+    fprintf(out, " CHECK (%s = (", column->name);
+    schema_write_counts("surplus = 0", out);
+    fputs("))", out);
+  }
+  fputs(last ? " -- " : ", -- ", out);
+  if (column->unit)
+    fprintf(out, "[%s] ", column->unit);
+  write_column_meaning(column, out);
+  fputc('\n', out);
+}
+
+void schema_write_table(const struct schema_table *table, FILE *out) {
+  const size_t count = column_count(table);
+  fprintf(out, "CREATE TABLE %s ( -- %s\n", table->name, table->meaning);
+  for (size_t i = 0; i < count; i++) {
+    const struct column column = column_at(table, i);
+    write_column(&column, i + 1 == count && !table->tail, out);
   }
   if (table->tail)
     fprintf(out, "  %s\n", table->tail);
   fprintf(out, ") %s;\n", table->options);
 }
 
-/* The index-th column of a table: its own columns come first, then those of its fields. Returns what a developer looks
- * for: the column, or the path of the row that makes it. */
-static const char *column_at(const struct schema_table *table, size_t index, char name[SCHEMA_NAME_SIZE]) {
-  const char *source = index < table->count ? table->columns[index].name
-                                            : table->fields->rows[index - table->count].path;
-  field_column_name(source, name, SCHEMA_NAME_SIZE);
-  return source;
-}
-
 status schema_check_names(const struct schema_table *table, struct error *error) {
-  const size_t count = table->count + (table->fields ? table->fields->count : 0);
-  for (size_t i = 0; i < count; i++) {
-    char name[SCHEMA_NAME_SIZE], other[SCHEMA_NAME_SIZE];
-    const char *source = column_at(table, i, name);
+  for (size_t i = 0; i < column_count(table); i++) {
+    const struct column column = column_at(table, i);
     for (size_t j = 0; j < i; j++) {
-      const char *earlier = column_at(table, j, other);
-      if (sqlite3_stricmp(name, other) == 0)
+      const struct column earlier = column_at(table, j);
+      if (sqlite3_stricmp(column.name, earlier.name) == 0)
         return status_fail(
             error, STATUS_INTERNAL,
-            "'%s' and '%s' would be one column of table %s, %s: give one of them another name in its row", earlier,
-            source, table->name, name);
+            "'%s' and '%s' would be one column of table %s, %s: give one of them another name in its row",
+            earlier.source, column.source, table->name, column.name);
     }
   }
   return STATUS_OK;
@@ -150,25 +165,28 @@ status schema_has_column(sqlite3 *db, const char *table, const char *column, boo
   return result;
 }
 
+/* Results are what determinism is about: the table's own columns may differ from machine to machine. */
+static status write_doc(sqlite3 *db, const char *table, const struct column *column, struct error *error) {
+  char *meaning = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&meaning, &size);
+  if (out)
+    write_column_meaning(column, out);
+  if (!out || !text_close(out, &meaning))
+    return status_fail(error, STATUS_MEMORY, "documenting columns: memory ran out");
+  const status result = sql_executef(db, "documenting columns", error,
+                                     "INSERT OR REPLACE INTO column_doc (table_name, column_name, unit, meaning, "
+                                     "deterministic) VALUES (%Q, %Q, %Q, %Q, %d)",
+                                     table, column->name, column->unit, meaning, column->row != NULL);
+  free(meaning);
+  return result;
+}
+
 static status write_docs(sqlite3 *db, const struct schema_table *table, struct error *error) {
-  static const char insert[] = "INSERT OR REPLACE INTO column_doc (table_name, column_name, unit, meaning, "
-                               "deterministic) VALUES (%Q, %Q, %Q, %Q, %d)";
   status result = STATUS_OK;
-  for (size_t i = 0; result == STATUS_OK && i < table->count; i++)
-    result = sql_executef(db, "documenting columns", error, insert, table->name, table->columns[i].name,
-                          table->columns[i].unit, table->columns[i].meaning, 0);
-  for (size_t i = 0; result == STATUS_OK && table->fields && i < table->fields->count; i++) {
-    const struct field *row = &table->fields->rows[i];
-    char name[SCHEMA_NAME_SIZE], *meaning = NULL;
-    size_t size = 0;
-    field_column_name(row->path, name, sizeof name);
-    FILE *text = open_memstream(&meaning, &size);
-    if (!text)
-      return status_fail(error, STATUS_MEMORY, "documenting columns: memory ran out");
-    write_meaning(row, text);
-    fclose(text);
-    result = sql_executef(db, "documenting columns", error, insert, table->name, name, row->unit, meaning, 1);
-    free(meaning);
+  for (size_t i = 0; result == STATUS_OK && i < column_count(table); i++) {
+    const struct column column = column_at(table, i);
+    result = write_doc(db, table->name, &column, error);
   }
   return result;
 }
@@ -190,38 +208,30 @@ static status create(sqlite3 *db, const struct schema_table *table, struct error
   return result;
 }
 
-static status add_missing(sqlite3 *db, const char *table, const char *column, const char *declaration, bool *grown,
-                          struct error *error) {
-  bool has = false;
-  status result = schema_has_column(db, table, column, &has, error);
-  if (result != STATUS_OK || has)
-    return result;
-  *grown = true;
-  return sql_executef(db, "adding a column", error, "ALTER TABLE \"%w\" ADD COLUMN \"%w\" %s", table, column,
-                      declaration);
+static status add_missing(sqlite3 *db, const struct schema_table *table, bool *grown, struct error *error) {
+  for (size_t i = 0; i < column_count(table); i++) {
+    const struct column column = column_at(table, i);
+    bool has = false;
+    status result = schema_has_column(db, table->name, column.name, &has, error);
+    if (result == STATUS_OK && !has)
+      result = sql_executef(db, "adding a column", error, "ALTER TABLE \"%w\" ADD COLUMN \"%w\" %s", table->name,
+                            column.name, column.declaration);
+    if (result != STATUS_OK)
+      return result;
+    *grown = *grown || !has;
+  }
+  return STATUS_OK;
 }
 
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error) {
-  bool has = false;
+  bool has = false, grown = false;
   status result = schema_check_names(table, error);
+  if (result == STATUS_OK)
+    result = schema_has_column(db, table->name, "", &has, error);
   if (result != STATUS_OK)
     return result;
-  result = schema_has_column(db, table->name, "", &has, error);
-  if (result != STATUS_OK)
-    return result;
-  if (!has) {
-    result = create(db, table, error);
-    return result == STATUS_OK ? write_docs(db, table, error) : result;
-  }
-  bool grown = false;
-  for (size_t i = 0; result == STATUS_OK && i < table->count; i++)
-    result = add_missing(db, table->name, table->columns[i].name, table->columns[i].declaration, &grown, error);
-  for (size_t i = 0; result == STATUS_OK && table->fields && i < table->fields->count; i++) {
-    char name[SCHEMA_NAME_SIZE];
-    field_column_name(table->fields->rows[i].path, name, sizeof name);
-    result = add_missing(db, table->name, name, sql_type(&table->fields->rows[i]), &grown, error);
-  }
-  return result == STATUS_OK && grown ? write_docs(db, table, error) : result;
+  result = has ? add_missing(db, table, &grown, error) : create(db, table, error);
+  return result == STATUS_OK && (grown || !has) ? write_docs(db, table, error) : result;
 }
 
 status schema_complete_all(sqlite3 *db, struct error *error) {
