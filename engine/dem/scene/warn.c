@@ -50,19 +50,21 @@ unsigned dem_warn_inputs(const struct dem_inputs *in, FILE *out) {
   unsigned set = dem_warn_known(in, stable);
   if (passing > 0 && closing > passing)
     set |= WARNINGS_PASSING;
-  if (out && set & WARNINGS_STEP)
+  if (!out)
+    return set;
+  if (set & WARNINGS_STEP)
     fprintf(
         out,
         "step: fidelity.time_step %.3g s is above %g of the longest stable step, about %.2g s here: energy may drift; "
         "give %.2g s\n",
         step, largest_step, stable, 0.1 * stable);
-  if (out && set & WARNINGS_DAMPING)
+  if (set & WARNINGS_DAMPING)
     fprintf(
         out,
         "damping: %.3g /s of contact damping over a time step of %.3g s is above %g: give a time step of %.2g s, or "
         "less damping\n",
         damping, step, largest_damping, largest_damping / damping);
-  if (out && set & WARNINGS_PASSING)
+  if (set & WARNINGS_PASSING)
     fprintf(out,
             "passing: grains meet at about %.3g m/s; above %.3g m/s they pass through each other: lower the speed, or "
             "raise grain.young_modulus\n",

@@ -24,30 +24,40 @@ static const char *name(size_t body, char text[32]) { /* as scenes call them */
   return text;
 }
 
+static status check_body(const struct sph_body *body, struct error *error) {
+  const status code = sph_shape_check(&body->shape, error);
+  if (code)
+    return code;
+  if (!(body->density > 0 && isfinite(body->density)))
+    return status_fail(error, STATUS_CONTENT, "the density of a body is %g kg/m^3: give a positive one.",
+                       body->density);
+  if (body->h_over_spacing <= 0 || isinf(body->h_over_spacing))
+    return status_fail(error, STATUS_CONTENT, "h over spacing is %g: give a positive number (%g is usual).",
+                       body->h_over_spacing, SPH_BODIES_H);
+  return STATUS_OK;
+}
+
+/* Bodies may touch; rounding is allowed for. */
+static status check_overlap(const struct sph_body *bodies, size_t a, size_t b, struct error *error) {
+  char text[2][32];
+  const double gap = sph_shape_gap(&bodies[a].shape, &bodies[b].shape);
+  const double size = cbrt(fmin(sph_shape_volume(&bodies[a].shape), sph_shape_volume(&bodies[b].shape)));
+  if (gap < -1e-9 * size)
+    return status_fail(error, STATUS_CONTENT, "%s and %s overlap by %.4g m: move one of them, or give a gap.",
+                       name(a, text[0]), name(b, text[1]), -gap);
+  return STATUS_OK;
+}
+
 static status check(const struct sph_body *bodies, size_t count, struct error *error) {
   if (!count || count > 255)
     return status_fail(error, STATUS_CONTENT, "%zu bodies: give 1 to 255.", count);
-  for (size_t b = 0; b < count; b++) {
-    status code = sph_shape_check(&bodies[b].shape, error);
-    if (code)
-      return code;
-    if (!(bodies[b].density > 0 && isfinite(bodies[b].density)))
-      return status_fail(error, STATUS_CONTENT, "the density of a body is %g kg/m^3: give a positive one.",
-                         bodies[b].density);
-    if (bodies[b].h_over_spacing <= 0 || isinf(bodies[b].h_over_spacing))
-      return status_fail(error, STATUS_CONTENT, "h over spacing is %g: give a positive number (%g is usual).",
-                         bodies[b].h_over_spacing, SPH_BODIES_H);
-  }
-  char text[2][32];
+  status code = STATUS_OK;
+  for (size_t b = 0; b < count && !code; b++)
+    code = check_body(&bodies[b], error);
   for (size_t b = 0; b < count; b++)
-    for (size_t a = 0; a < b; a++) {
-      const double gap = sph_shape_gap(&bodies[a].shape, &bodies[b].shape);
-      const double size = cbrt(fmin(sph_shape_volume(&bodies[a].shape), sph_shape_volume(&bodies[b].shape)));
-      if (gap < -1e-9 * size) /* bodies may touch; allow for rounding */
-        return status_fail(error, STATUS_CONTENT, "%s and %s overlap by %.4g m: move one of them, or give a gap.",
-                           name(a, text[0]), name(b, text[1]), -gap);
-    }
-  return STATUS_OK;
+    for (size_t a = 0; a < b && !code; a++)
+      code = check_overlap(bodies, a, b, error);
+  return code;
 }
 
 /* The particles of body b, at its points and from the index `first` on. */

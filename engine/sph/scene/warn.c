@@ -38,18 +38,20 @@ unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
     set |= WARNINGS_CONTRAST;
   if (compressed > largest_compression)
     set |= WARNINGS_PISTON;
-  if (out && set & WARNINGS_STEP)
+  if (!out)
+    return set;
+  if (set & WARNINGS_STEP)
     fprintf(out,
             "step: fidelity.cfl %g is above %g with viscosity.alpha %g: energy may drift; give a cfl of %g, or more "
             "viscosity\n",
             in->fidelity.cfl, most, in->viscosity.alpha, most == largest_cfl ? 0.3 : 0.15);
-  if (out && set & WARNINGS_CONTRAST)
+  if (set & WARNINGS_CONTRAST)
     fprintf(
         out,
         "contrast: the densities of target and projectile differ by a factor of %.3g, above %g: energy may drift; set "
         "method.volume_weights: true\n",
         contrast, largest_contrast);
-  if (out && set & WARNINGS_PISTON)
+  if (set & WARNINGS_PISTON)
     fprintf(
         out,
         "piston: the shock compresses the plate %.3g-fold, and above %g-fold matter leaks through the piston: lower "
