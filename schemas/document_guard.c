@@ -1,5 +1,4 @@
 /* Bytes that must not reach libfyaml or a terminal. */
-#include <string.h>
 
 #include "schemas/document_tree.h"
 #include "schemas/text.h"

@@ -1,5 +1,4 @@
 /* Rows as text for people: what `clast explain` prints. */
-#include <math.h>
 #include <string.h>
 
 #include "schemas/field.h"

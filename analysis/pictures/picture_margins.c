@@ -1,7 +1,5 @@
 /* Which values of inputs are safe: a row of tiles per input, each tile divided by the shares of safe, warned and
  * refused runs. */
-#include <math.h>
-#include <stdio.h>
 
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"

@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 void measured_release(struct measured *measured) {
   free(measured->mass);

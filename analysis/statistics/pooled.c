@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "analysis/statistics/power_law.h"
 #include "analysis/statistics/tempered.h"

@@ -1,7 +1,6 @@
 /* Reads the quantity from groups of runs, or fits the exponent of each point. */
 #include "campaign/charts/quantity.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -1,5 +1,4 @@
 /* `clast fit MEASURED CAMPAIGN`: which inputs of a campaign give what was measured. */
-#include <string.h>
 
 #include "campaign/commands/commands.h"
 #include "campaign/fit/fit_launch.h"

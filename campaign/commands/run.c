@@ -1,5 +1,4 @@
 /* `clast run CAMPAIGN`: runs or resumes a campaign, alone or under mpirun and srun. */
-#include <string.h>
 
 #include "campaign/commands/commands.h"
 #include "campaign/converge/accuracy.h"

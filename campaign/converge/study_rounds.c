@@ -1,7 +1,6 @@
 /* The rounds of a study: which levels run next with how many seeds, and the runs of a round as a campaign. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "campaign/converge/study.h"
 #include "campaign/document/campaign_write.h"

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "campaign/document/campaign_walk.h"
 #include "campaign/driver/pilot.h"

@@ -1,7 +1,6 @@
 /* Rank 0: takes tasks from the caller, spreads them over the ranks and reports their results. It never computes, and
  * never blocks but in poll(). */
 #include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/epoll.h>

@@ -2,7 +2,6 @@
 #include "campaign/fit/fit_launch.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "campaign/fit/fit_print.h"

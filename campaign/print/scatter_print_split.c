@@ -1,5 +1,4 @@
 /* The variance of a result over the points and seeds of a store, split into inputs and seeds. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 /* What goes into a page: the stores' data, the names of their columns, and pictures of runs whose fields are kept. */
 #include "campaign/report/report_make.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>

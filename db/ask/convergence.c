@@ -1,7 +1,6 @@
 /* Reads the rows of a study into structs: the columns are those of the field table. */
 #include "db/ask/convergence.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,7 +1,6 @@
 /* Numbers of single runs: from the table run, from their exponents, from their fragment masses. */
 #include "db/ask/specimens.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -1,5 +1,4 @@
 /* From the faces of a file to a closed surface. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

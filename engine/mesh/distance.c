@@ -1,7 +1,6 @@
 /* Distances from a mesh, by a tree of boxes about its faces. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "engine/mesh/build.h"
 #include "engine/vector3.h"

@@ -1,7 +1,6 @@
 /* What is inside a mesh: faces above a point, listed by columns along z. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "engine/mesh/build.h"
 

@@ -2,7 +2,6 @@
  * of polygons; name it .hdf for older ParaViews). */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "engine/dem/dem.h"
 #include "engine/dem/run/run.h"

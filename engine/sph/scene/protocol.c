@@ -1,7 +1,6 @@
 /* Bodies, where they stand and how they move at the start. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "engine/sph/body/flaws.h"
 #include "engine/sph/material/plane_shock.h"

@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "engine/sph/modules/weibull_lists.h"
 #include "engine/sph/step/system_layout.h"
