@@ -21,7 +21,7 @@ status sql_executef(sqlite3 *db, const char *doing, struct error *error, const c
 status sql_prepare(sqlite3 *db, const char *sql, sqlite3_stmt **out, const char *doing, struct error *error);
 /* The same, with the text made by sqlite3_mprintf. */
 status sql_preparef(sqlite3 *db, sqlite3_stmt **out, const char *doing, struct error *error, const char *format, ...);
-/* The same unless *out is there already: for statements that live as long as the store. */
+/* The same, but only if *out is NULL: for statements that are kept as long as the store is open. */
 status sql_prepare_once(sqlite3 *db, sqlite3_stmt **out, const char *sql, const char *doing, struct error *error);
 /* Steps a statement that gives no rows, and resets it. */
 status sql_run(sqlite3_stmt *statement, const char *doing, struct error *error);
@@ -41,7 +41,7 @@ char *sql_name_list(sqlite3 *db, const char *sql, const char *first, const char 
 void sql_write_name(const char *name, FILE *out);
 
 /* Binds the value that `row` describes in *object: NaN as NULL (as the text 'off' with off_as_text), choices by name.
- * Texts are bound by reference: *object must live until the statement has run. */
+ * Texts are bound by reference: *object must stay valid until the statement has run. */
 void sql_bind_field(sqlite3_stmt *statement, int index, const struct field *row, const void *object, bool off_as_text);
 /* A text bound by reference; NULL binds NULL. */
 void sql_bind_text(sqlite3_stmt *statement, int index, const char *text);

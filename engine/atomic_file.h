@@ -12,7 +12,7 @@
  * names the file's purpose in the message ("restart file"). */
 status atomic_file_write(const char *path, const char *what, const void *bytes, size_t size, struct error *error);
 /* Whether `path` could be written now, so that a long run does not fail at its end: STATUS_IO with the system's
- * reason. An existing file is left alone. */
+ * reason. An existing file does not change. */
 status atomic_file_try(const char *path, const char *what, struct error *error);
 /* *bytes is malloc'd. STATUS_MISSING, STATUS_IO, STATUS_MEMORY. */
 status atomic_file_read(const char *path, const char *what, unsigned char **bytes, size_t *size, struct error *error);

@@ -11,7 +11,7 @@ struct restart_run;
 
 struct engine_kind {
   const char *name;                  /* "dem" */
-  const char *doc;                   /* what it models, with sources */
+  const char *doc;                   /* its model, with sources */
   int dimensions;                    /* 2: masses are kg per metre of thickness; else 3 */
   int results_version;               /* part of a run's identity: raised by hand when result bits change on purpose */
   const struct field_table *inputs;  /* the typed scene; includes a `fidelity.` section */

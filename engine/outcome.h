@@ -1,4 +1,4 @@
-/* What every engine reports of a finished run, whatever its physics: the columns of table `run` that are results. */
+/* The results of a finished run that every engine reports: columns of table `run`. */
 #ifndef CLAST_ENGINE_OUTCOME_H
 #define CLAST_ENGINE_OUTCOME_H
 

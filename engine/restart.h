@@ -23,7 +23,8 @@ size_t restart_blocks_size(const struct restart_block *blocks, size_t count); /*
 void restart_blocks_save(const struct restart_block *blocks, size_t count, void *bytes);
 void restart_blocks_load(const struct restart_block *blocks, size_t count, const void *bytes);
 
-/* How restart files see a run; an engine fills it (engine_kind.restart). Everything is borrowed from the run. */
+/* The description of a run for restart files; an engine fills it (engine_kind.restart). Everything is borrowed from the
+ * run. */
 struct restart_run {
   const void *inputs;
   uint64_t seed;

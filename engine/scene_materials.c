@@ -55,7 +55,7 @@ static void take_section(document_node *section, const char *path, const char *f
 static void take_word(document_node *node, const char *path, const char *folder) {
   const char *text = document_scalar(node);
   if (!text || !*text)
-    return; /* the reader says what is wrong */
+    return; /* the reader describes the error */
   char word[4096];
   snprintf(word, sizeof word, "%s", text);
   if (file_name_is_document(word))

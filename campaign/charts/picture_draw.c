@@ -186,7 +186,7 @@ cleanup:
   return code;
 }
 
-/* Grains in the plane have one picture only. An unreadable file is told before that. */
+/* Grains in the plane have one picture only. An unreadable file is reported before that. */
 static status refuse_options(const char *fields, struct error *error) {
   struct picture_body body;
   status code = picture_body_read(fields, &body, error);

@@ -8,7 +8,7 @@
 enum { MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, LABEL = 600 };
 
 struct line {
-  char value[200]; /* of the input that tells the lines apart */
+  char value[200]; /* of the input with one line for each value */
   int64_t version; /* results of another version are another line, they are never mixed */
   char label[LABEL];
   struct picture_mean *means; /* owned; room for MOST_MEANS */
@@ -96,7 +96,7 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* "weibull_k (1/m^3) = 5e+34"; the version is told only where there are several of them. */
+/* "weibull_k (1/m^3) = 5e+34"; the version is given only if there are several. */
 static void label_lines(struct plot_lines *plot, const char *by) {
   bool several = false;
   for (size_t i = 1; i < plot->count; i++)

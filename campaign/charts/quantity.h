@@ -45,7 +45,7 @@ status quantity_read(struct store *store, const struct quantity_choice *choice, 
                      status (*each)(void *context, const struct quantity_row *row, struct error *error), void *context,
                      struct error *error);
 
-/* A line on stderr: what the intervals hold, and what is known of the resolution. pooled: of ask_group. */
+/* A line on stderr: the meaning of the intervals, and the error of the resolution. pooled: of ask_group. */
 void quantity_tell_resolution(struct store *store, const char *name, const char *pooled);
 /* A line for each of several, comma-separated; "main": the default one. */
 void quantity_tell_resolutions(struct store *store, const char *names, const char *pooled);

@@ -148,7 +148,7 @@ static status take_pool(void *context, const struct ask_pool *pool, struct error
   return STATUS_OK;
 }
 
-/* What the axes and the intervals are, and what is known of the resolution. */
+/* The meaning of axes and intervals, and the error of the resolution. */
 static void write_caption(struct store *store, const struct curves *curves, char caption[800]) {
   static const char *const laws[2][2] = {{"F(m) ~ m^-\xce\xb2, N(>m) ~ m^-(\xce\xb2 \xe2\x88\x92 1)",
                                           "N(>m) ~ m^-(\xce\xb2 \xe2\x88\x92 1)"},

@@ -1,4 +1,4 @@
-/* The curves of spectra that `clast spectrum` draws and prints, with their fits and what was measured beside them. */
+/* The curves of spectra that `clast spectrum` draws and prints, with their fits and a measured spectrum. */
 #ifndef CLAST_CAMPAIGN_CHARTS_SPECTRUM_CURVES_H
 #define CLAST_CAMPAIGN_CHARTS_SPECTRUM_CURVES_H
 
@@ -26,7 +26,7 @@ struct spectrum_curve {
   size_t count;
   double complete_mass; /* kg; NaN: not known */
   struct picture_fit fit;
-  struct pooled_rivals rivals; /* n 0: not asked for */
+  struct pooled_rivals rivals; /* n 0: not requested */
   struct picture_thin *thin;   /* of each run; owned with their bins */
   size_t thin_count;
 };
@@ -36,7 +36,7 @@ status spectrum_curves_make(const struct spectrum_choice *choice, bool with_riva
 void spectrum_curves_release(struct spectrum_curve *curve);                       /* a zeroed one is fine */
 struct picture_series spectrum_curves_series(const struct spectrum_curve *curve); /* borrows the curve */
 
-/* The first eight pools, what was measured included. page NULL: no picture. text: a plot on stdout. */
+/* The first eight pools, with the measured spectrum. page NULL: no picture. text: a plot on stdout. */
 struct spectrum_drawing {
   const struct picture_page *page;
   bool text, ascii;

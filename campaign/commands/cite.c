@@ -1,4 +1,4 @@
-/* `clast cite SCENE`: the papers behind what is switched on, from the sources of field tables and materials. */
+/* `clast cite SCENE`: the papers of the modules that are on, from the sources of field tables and materials. */
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/references.h"
 #include "campaign/terminal/scene_option.h"

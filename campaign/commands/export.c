@@ -11,7 +11,7 @@ struct options {
   bool csv, lines, bits, cinema, crate;
 };
 
-/* What cannot be asked for together. */
+/* Options that exclude each other. */
 static status check(const struct options *options, const char *target, struct error *error) {
   const bool other = options->bits || options->cinema || options->crate;
   const struct rule {

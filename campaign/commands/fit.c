@@ -1,4 +1,4 @@
-/* `clast fit MEASURED CAMPAIGN`: which inputs of a campaign give what was measured. */
+/* `clast fit MEASURED CAMPAIGN`: the inputs of a campaign that give the measured values. */
 
 #include "campaign/commands/commands.h"
 #include "campaign/fit/fit_launch.h"

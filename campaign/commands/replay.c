@@ -28,7 +28,7 @@ static status print_differences(struct store *store, int64_t run_id, const struc
   return code ? code : ended;
 }
 
-/* For people: what was compared. */
+/* The table for people: the compared means. */
 static void tell(int64_t run_id, const struct ask_run *stored, const struct replay_compare *comparison,
                  size_t fragments) {
   char build[PROVENANCE_BUILD_SIZE];

@@ -1,4 +1,4 @@
-/* `clast spectrum STORE`: fragment spectra, pooled over seeds or inputs, beside what was measured. */
+/* `clast spectrum STORE`: fragment spectra, pooled over seeds or inputs, beside a measured spectrum. */
 #include "campaign/commands/commands.h"
 #include "campaign/print/spectrum_table.h"
 #include "campaign/terminal/chart_option.h"

@@ -1,4 +1,4 @@
-/* Accuracy on demand: the cheapest settings and number of seeds that reach what a campaign asks for
+/* Accuracy on demand: the cheapest settings and number of seeds that reach the accuracy of a campaign
  * (`accuracy: {quantity, within}`), from a study that `clast converge` has stored. */
 #ifndef CLAST_CAMPAIGN_CONVERGE_ACCURACY_H
 #define CLAST_CAMPAIGN_CONVERGE_ACCURACY_H
@@ -13,7 +13,8 @@ struct accuracy_option {
   bool own;      /* the scene's own settings */
   bool open;     /* no limit is in sight, so that `error` may be too small: never chosen */
   double error;  /* what finer settings would change, all knobs together */
-  int64_t seeds; /* so many that error and the 95 % interval of the mean are within the accuracy; 0: none are enough */
+  int64_t seeds; /* the number of seeds with which error and 95 % interval of the mean are within the accuracy; 0: no
+                    number is enough */
   double run_s;  /* processor time of a run */
   double cpu_s;  /* of one point: seeds runs; NaN when seeds is 0 */
 };
@@ -22,7 +23,7 @@ struct accuracy {
   struct accuracy_option *options; /* owned; by cpu_s, those that do not reach it last, by error */
   size_t count;
   size_t chosen;    /* the cheapest that reaches it; count: none does */
-  size_t reference; /* the smallest error; costs are told against it */
+  size_t reference; /* the smallest error; costs are relative to it */
 };
 
 /* The options of a campaign that asks for an accuracy. Looks for a study of the campaign's scene, then of its points:

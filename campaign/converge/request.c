@@ -1,4 +1,4 @@
-/* Reads what a study is asked for: quantities, when to stop, and knobs with their levels. */
+/* Reads the request of a study: quantities, when to stop, and knobs with their levels. */
 #include "campaign/converge/request.h"
 
 #include <math.h>
@@ -71,7 +71,7 @@ static void note_lines(const char *text, bool quiet) {
     fprintf(stderr, "clast: %.*s\n", (int)strcspn(line, "\n"), line);
 }
 
-/* A knob that does not apply is said and left out when a group was asked for, and refused when it was named. */
+/* A knob that does not apply is left out with a remark if it comes from a group, and refused if it was named. */
 static status add_knob(struct subject *subject, const struct request *request, const struct scene *scene,
                        const struct knob *knob, const char *settings, bool named, struct error *error) {
   struct ladder levels;

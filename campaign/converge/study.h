@@ -64,7 +64,7 @@ void study_clear(struct study *study);
 status study_rounds_run(struct study *study, struct farm *farm, const struct driver_options *options,
                         struct error *error);
 
-/* What a ladder tells of a quantity: one row per level, NaN where runs are missing. */
+/* The results of a ladder for a quantity: one row per level, NaN where runs are missing. */
 struct study_found {
   struct convergence_row rows[KNOB_LEVELS];
   size_t count;

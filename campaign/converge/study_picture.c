@@ -44,7 +44,7 @@ static void end_curve(struct drawing *drawing) {
   drawing->count += drawing->curves[drawing->count].count > 0;
 }
 
-/* A curve for each knob, as many as can be told apart. */
+/* A curve for each knob, up to the number of line styles. */
 static void add_knobs(struct drawing *drawing, size_t most,
                       struct picture_mean (*mark_of)(const struct convergence_row *row)) {
   for (size_t i = 0; i < drawing->knobs && drawing->count < most; i++) {

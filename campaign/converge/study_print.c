@@ -44,7 +44,7 @@ static void print_level(struct table *table, const struct convergence_row *row) 
   table_text(table, row->frontier ? "yes" : "");
 }
 
-/* What the levels of a knob tell together, and why no more of them was run. */
+/* The conclusion from the levels of a knob, and the reason why it has no more runs. */
 static void print_limit(const struct study_ladder *ladder, const struct study_found *found) {
   const struct convergence_limit_row *limit = &found->limit;
   printf("%s: ", limit->knob);

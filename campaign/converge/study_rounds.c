@@ -271,7 +271,7 @@ static status end_round(struct rounds *rounds, const char *outcome, struct error
   if (!rounds->probe)
     rounds->ladder->seeds = rounds->seeds;
   if (code == STATUS_OK)
-    code = store_flush(rounds->store, error); /* exponents are read by queries, which do not see an open batch */
+    code = store_flush(rounds->store, error); /* queries read exponents, and they do not read an open batch */
   if (code == STATUS_OK)
     code = study_read(rounds->study, rounds->ladder, rounds->store, error);
   learn(rounds);

@@ -136,7 +136,7 @@ static void sample(struct design *design, uint64_t i) {
   }
 }
 
-/* Counter-based random numbers: point i is the same whatever the number of points, and a longer design contains the
+/* Counter-based random numbers: point i is the same for any number of points, and a longer design contains the
  * shorter one. */
 double design_random_coordinate(uint64_t seed, uint64_t i, size_t dimension) {
   return random_draw(seed, RANDOM_DESIGN, i, dimension);

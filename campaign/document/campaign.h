@@ -47,7 +47,7 @@ struct campaign {
   double until_level;      /* 0.95 */
   int64_t until_minimum, until_batch;
   char accuracy_quantity[FIELD_TEXT_SIZE];
-  double accuracy_within; /* |error| and interval of the mean together, SI of the quantity; NaN: not asked for */
+  double accuracy_within; /* |error| and interval of the mean together, SI of the quantity; NaN: not given */
   double time_limit;      /* s per attempt, NaN = off */
   double memory_limit;    /* bytes per attempt, NaN = off */
   int64_t attempts;       /* of one run, in all */

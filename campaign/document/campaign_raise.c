@@ -26,6 +26,6 @@ status campaign_raise(struct campaign *campaign, const char *time, const char *m
   if (code)
     return code;
   campaign->attempts += attempts;
-  campaign->failures = 0; /* the user knows of these failures already */
+  campaign->failures = 0; /* the user was told of these failures before */
   return STATUS_OK;
 }

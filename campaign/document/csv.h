@@ -17,7 +17,8 @@ struct csv { /* set text and end; line to 1 */
 
 /* True when there is another record; csv->line is its line. */
 bool csv_record(struct csv *csv);
-/* The next cell of the record, without spaces around it. *last: it ends the record. False: csv->wrong tells why. */
+/* The next cell of the record, without spaces around it. *last: it ends the record. False: csv->wrong has the reason.
+ */
 bool csv_cell(struct csv *csv, char cell[CSV_CELL], bool *last);
 
 #endif

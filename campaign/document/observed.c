@@ -1,4 +1,4 @@
-/* Reads what was measured. */
+/* Reads the measurements. */
 #include "campaign/document/observed.h"
 
 #include <math.h>

@@ -107,7 +107,7 @@ status sensitivity_design_write(const char *path, const char *output, enum desig
     code = design_sensitivity_create(kind, campaign->axis_count, blocks, seed, &design, error);
   if (code == STATUS_OK)
     code = write_files(campaign, design, output, points, error);
-  if (code == STATUS_OK) { /* what was written must be what is run */
+  if (code == STATUS_OK) { /* the file must be the campaign that runs */
     code = campaign_load(output, &written, error);
     if (code) {
       remove(output);

@@ -192,7 +192,7 @@ static status tick(void *context, int running, struct error *error) {
   return store_tick(driver->store, error);
 }
 
-/* Commits what is there first: mpirun may kill in a second. */
+/* Commits first: mpirun may kill this process within a second. */
 static void stopping(void *context, int signal_number) {
   struct driver *driver = context;
   (void)signal_number;

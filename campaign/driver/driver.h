@@ -43,7 +43,7 @@ struct driver_summary {
   double cpu_s;                                     /* of the runs computed now */
 };
 
-/* Copies the campaign's time and memory limits into *options. The other options are left alone. */
+/* Copies the campaign's time and memory limits into *options. The other options do not change. */
 void driver_farm_options(const struct campaign *campaign, struct farm_options *options);
 
 /* STATUS_OK; STATUS_FAILED_RUNS: finished with failed runs, or stopped because too many of the first failed;

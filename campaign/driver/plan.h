@@ -15,7 +15,7 @@ struct plan_options {
 struct plan {
   uint64_t points, points_looked_at; /* costs are averaged over those looked at (at most 4096) */
   uint64_t runs_least, runs_most;    /* differ with `until` */
-  uint64_t runs_there;               /* of the points looked at, already in the store */
+  uint64_t runs_there;               /* of the sampled points, already in the store */
   bool store_exists;
   bool trial_made, trial_finished; /* finished: the trial is a whole run, not an extrapolation */
   bool trial_whole;                /* times are of whole runs, timed or told by a coarse run; else upper bounds */
@@ -28,7 +28,7 @@ struct plan {
   double memory_most;               /* bytes of one run, the largest */
   double disk_bytes;                /* store growth for runs_most; NaN without trial */
   double fields_bytes;              /* HDF5 files to keep; NaN when not known */
-  char *model;                      /* owned: kind->describe() of the point looked at */
+  char *model;                      /* owned: kind->describe() of the sampled point */
   char *alternatives;               /* owned: JSON array of the settings that an accuracy was chosen from, or NULL */
 };
 

@@ -54,13 +54,13 @@ struct driver {
   int64_t fields_missing; /* files of stored runs that are not there any more */
   int64_t wanted;         /* runs to complete in points met */
   struct error error;     /* of a callback that cannot return one */
-  struct error stop;      /* why no more runs go out: those that compute are still taken in */
+  struct error stop;      /* why no new runs start; results of running ones are still stored */
 };
 
 void driver_note(struct driver *driver, const char *text);
 /* The run has used up its attempts. */
 void driver_give_up(struct driver *driver, struct point *point, int64_t replicate);
-/* Does this run write its fields at once? Extremes are known only afterwards and are replayed. */
+/* Does this run write its fields itself? Extremes are known only afterwards and are replayed. */
 bool driver_writes_fields(const struct driver *driver, const struct flight *flight);
 /* Path of a run's fields: "results.db" gives "results-fields/<identity>.h5". It is relative to the store's folder, or
  * with `folder` begins with that folder. */

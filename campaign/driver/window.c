@@ -15,7 +15,7 @@ struct driver_seen {
   UT_hash_handle hh;
 };
 
-/* True when the id was not there. Without memory a duplicate is looked at twice, which does no harm. */
+/* True when the id was not there. Without memory a duplicate is checked twice, which does no harm. */
 static bool remember(struct driver *driver, int64_t id) {
   struct driver_seen *seen = NULL;
   HASH_FIND(hh, driver->seen, &id, sizeof id, seen);

@@ -30,7 +30,7 @@ int farm_launched(void) {
   return 1;
 }
 
-/* A launcher without a common PMI starts programs that do not know of each other. All would write one store: one would
+/* A launcher without a common PMI starts programs without a connection. All would write one store: one would
  * work, and the others' errors would hide how it ended. */
 static status refuse_singletons(const struct farm *farm, struct error *error) {
   const int launched = farm_launched();

@@ -46,7 +46,7 @@ void farm_frame_trim(struct farm_bytes *bytes) {
     farm_frame_free(bytes);
 }
 
-/* Not cryptographic: it must see torn, shifted and foreign bytes, at memory speed. */
+/* Not cryptographic: it must detect damaged, shifted and foreign bytes, at memory speed. */
 static uint64_t mix(uint64_t hash, const uint8_t *bytes, size_t size) {
   while (size > 0) {
     uint64_t word = 0;

@@ -1,4 +1,4 @@
-/* Does a power law fit the fragments of a point? As `clast exponents` tells it. */
+/* Does a power law fit the fragments of a point? The answer of `clast exponents`. */
 #include <math.h>
 
 #include "db/ask/page_private.h"

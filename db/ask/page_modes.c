@@ -1,4 +1,4 @@
-/* Results whose runs have two modes at a point, as `clast scatter` tells them. */
+/* Results whose runs have two modes at a point, by the rule of `clast scatter`. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -12,7 +12,7 @@ enum {
   ASK_PAGE_MEANS = 40000,        /* rows of the table means */
   ASK_PAGE_SPECTRUM = 12000,     /* rows of the table spectra */
   ASK_PAGE_QUANTILES = 200,      /* points with quantiles */
-  ASK_PAGE_JUDGED_RUNS = 100000, /* of a point, by which two modes are told: its first ones */
+  ASK_PAGE_JUDGED_RUNS = 100000, /* runs of a point that the test for two modes uses: the first ones */
   ASK_PAGE_JUDGED = 20000,       /* fragments of points whose fit is judged: some 5 s of a core */
   ASK_PAGE_DRAWS = 1000,         /* samples for that; they give p within 0.016 */
   ASK_PAGE_ATTEMPTS = 500,       /* failed attempts, and failed runs */

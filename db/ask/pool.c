@@ -54,7 +54,7 @@ static void write_axes(FILE *sql, const struct members *members, bool first) {
   }
 }
 
-/* The points with runs, ordered by their inputs. With a condition, the runs themselves are asked. */
+/* The points with runs, ordered by their inputs. With a condition, the query reads the runs themselves. */
 static status find_members(struct store *store, struct members *members, struct error *error) {
   const struct ask_pool_choice *choice = members->choice;
   const struct query_sink sink = {members, NULL, take_member};

@@ -82,7 +82,7 @@ struct ask_group_twins {
 };
 status ask_group_twins(struct store *store, struct ask_group_twins *twins, struct error *error);
 
-/* Canned queries: a name, what it answers in a sentence, its SQL, the names of its parameters. */
+/* Ready queries: a name, its question in a sentence, its SQL, the names of its parameters. */
 struct query_canned {
   const char *name, *doc, *sql;
   const char *parameters; /* comma-separated, "" for none */

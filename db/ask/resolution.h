@@ -16,7 +16,7 @@ struct ask_resolution {
   enum ask_resolution_verdict verdict;
   double half_width; /* 95 % bound on how far a finer resolution may move the quantity, in its unit: the largest of the
                         points; NaN: not known */
-  int64_t points, studied; /* points with runs that were asked for, and how many of them were studied */
+  int64_t points, studied; /* requested points with runs, and how many of them were studied */
   char knobs[128];         /* what was studied: "particles, time_step"; other settings may move the quantity, too */
   char scene[128];         /* whose study answers, or is missing; "SCENE" when the store has several scenes */
 };

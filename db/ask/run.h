@@ -1,4 +1,4 @@
-/* One stored run: what it was computed from, its results and its fragment masses; and how long runs take. */
+/* One stored run: its inputs and seed, its results and its fragment masses; and the time that runs take. */
 #ifndef CLAST_DB_ASK_RUN_H
 #define CLAST_DB_ASK_RUN_H
 

@@ -51,7 +51,7 @@ static const char *const questions[] = {
     "' that is not there' FROM pragma_foreign_key_check",
     "SELECT 'run ' || run_id || ' has no fragment masses' FROM run WHERE run_id NOT IN (SELECT run_id FROM "
     "fragment_mass)",
-    /* SQLite looks at no CHECK of a file that is only read. */
+    /* SQLite evaluates no CHECK of a file that is only read. */
     "SELECT 'point ' || point_id || ': its scene is no JSON' FROM point WHERE NOT json_valid(scene)",
     "SELECT 'session ' || session_id || ': its facts are no JSON' FROM session WHERE NOT json_valid(facts)",
     "SELECT 'point ' || point_id || ' has no inputs' FROM point WHERE point_id NOT IN (SELECT point_id FROM "
@@ -187,7 +187,7 @@ struct mass_list { /* grows to the longest run */
   size_t count, capacity; /* bytes */
 };
 
-/* The masses of column 1 of a row; the blob's own length counts, whatever other columns say. */
+/* The masses of column 1 of a row; the length is that of the blob, not of other columns. */
 static status read_masses(struct mass_list *list, sqlite3_stmt *run, struct error *error) {
   const unsigned char *bytes = sqlite3_column_blob(run, 1);
   const size_t size = (size_t)sqlite3_column_bytes(run, 1);

@@ -1,4 +1,4 @@
-/* Digests of what is stored, from the rows. */
+/* Digests of stored rows. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* Compares what is in a store with what programs of clast put there. */
+/* Compares the schema of a store with the schemas that programs of clast make. */
 #include "db/store/guard.h"
 
 #include <ctype.h>

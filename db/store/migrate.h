@@ -1,4 +1,4 @@
-/* Is this file a store of clast, and of which version? Older stores are brought forward; other files are left alone. */
+/* Is this file a store of clast, and of which version? Older stores are upgraded; other files do not change. */
 #ifndef CLAST_DB_STORE_MIGRATE_H
 #define CLAST_DB_STORE_MIGRATE_H
 

@@ -152,7 +152,7 @@ static void remove_empty(const char *path) {
     unlink(path);
 }
 
-/* What a person should know of a store that could be opened: "" for nothing. */
+/* A warning about a store that could be opened; "" if there is none. */
 static void write_warning(const struct store *store, char *warning, size_t size) {
   const char *network = lock_network_file_system(store->lock);
   if (size == 0)

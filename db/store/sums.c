@@ -25,7 +25,7 @@ struct sums_entry {
 };
 
 enum { BLOCK = 1024 };
-struct sums_block { /* entries are handed out in order, and all come back at once */
+struct sums_block { /* entries are given out in order, and all are returned together */
   struct sums_block *next;
   struct sums_entry entries[BLOCK];
 };

@@ -167,7 +167,7 @@ double mesh_distance(const struct mesh *m, const double p[3], double normal[3]) 
     if (box->count)
       continue;
     const bool second = squares_to(&tree->box[box->first + 1], p) < squares_to(&tree->box[box->first], p);
-    stack[count++] = box->first + !second; /* the nearer one is looked at first */
+    stack[count++] = box->first + !second; /* the search visits the nearer one first */
     stack[count++] = box->first + second;
   }
   const bool inside = mesh_inside(m, p);

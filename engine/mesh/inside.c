@@ -95,7 +95,7 @@ void mesh_inside_free(struct mesh_columns *columns) {
 }
 
 /* +1 or -1: the edge from vertex a to b crosses, up or down along y, the ray from p along x. Both faces of an edge do
- * the same sum, so that they agree whatever the rounding. */
+ * the same sum, so that they agree for any rounding. */
 static int crossing(const struct mesh *m, uint32_t a, uint32_t b, const double p[2]) {
   const double *from = m->vertex[a], *to = m->vertex[b];
   const bool rises = to[1] > p[1];

@@ -53,7 +53,7 @@ void dem_run_free(struct dem_run *run); /* NULL is fine */
 /* At most max_steps, independent of how they are split over calls. */
 void dem_run_advance(struct dem_run *run, uint64_t max_steps);
 /* The monitor: ends the run when its energy drifts or a grain is too fast. Called every DEM_RUN_LOOKS steps and at the
- * end; a look costs about a step. That all is finite is seen at every step. */
+ * end; a look costs about a step. Every step checks that all values are finite. */
 enum { DEM_RUN_LOOKS = 100 };
 void dem_run_look(struct dem_run *run);
 double dem_run_closed(const struct dem_ledger *ledger); /* the sum that must stay constant, J/m */
@@ -63,7 +63,7 @@ void dem_run_momentum(const struct dem_run *run, double momentum[2], double *mag
 void dem_run_end(struct dem_run *run, int stop, int outcome_state, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* protocol.c: the body, and what is done to it at the start. */
+/* protocol.c: the body, and the load or impact at the start. */
 status dem_protocol_body(const struct dem_inputs *inputs, uint64_t seed, struct dem_tessellation **out,
                          struct error *error);
 status dem_protocol_start(struct dem_run *run, struct error *error);

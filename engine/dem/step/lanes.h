@@ -1,6 +1,6 @@
 /* Several doubles at a time, with GCC's vector extension: one source for every CPU class.
  *
- * The including file sets LANES to its class's register width (2, 4 or 8). Data lie in blocks of eight whatever the
+ * The including file sets LANES to its class's register width (2, 4 or 8). Data lie in blocks of eight for any
  * class, and running sums are kept per block lane, so that their order is the same everywhere. Products and sums may
  * contract to FMA where the class has it; that is why the class is recorded with a run. */
 #ifndef CLAST_ENGINE_DEM_STEP_LANES_H

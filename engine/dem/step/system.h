@@ -52,7 +52,7 @@ struct dem_grain {
 struct dem_grain dem_system_grain(const struct dem_system *system, uint32_t grain);
 /* Force on a grain at the last evaluation (without the reaction of its holds). */
 void dem_system_force(const struct dem_system *system, uint32_t grain, double *fx, double *fy, double *torque);
-/* Beams: alive or not, their strain now. */
+/* Beams: whether they hold, and their strain now. */
 bool dem_system_beam_alive(const struct dem_system *system, size_t beam);
 double dem_system_beam_strain(const struct dem_system *system, size_t beam);
 size_t dem_system_breaks(const struct dem_system *system, const struct dem_break **log);

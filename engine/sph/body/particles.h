@@ -12,7 +12,7 @@
 enum sph_freedom { /* bits of `held` */
                    SPH_HELD_X = 1,
                    SPH_HELD_Y = 2,
-                   SPH_HELD_Z = 4, /* keeps its velocity whatever the forces are (grips, pistons) */
+                   SPH_HELD_Z = 4, /* keeps its velocity under any forces (grips, pistons) */
 };
 
 enum sph_array { /* what modules declare has its flag behind these four */

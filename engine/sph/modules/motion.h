@@ -235,8 +235,9 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
     const double c2 = c[i] * c[i], fast = strength ? sqrt(c2 + shear * left / before) : c[i];
     const double inverse = 1 / size;
     /* Debris without neighbours (signal < 0) sends no waves; hot, it would halve the step of all particles. It must
-     * only not fly past others. A body much faster than sound must not leap into another one, because it feels it only
-     * in contact: no particle flies farther than h/2 in a step (this binds above about three times the speed of sound).
+     * only not fly past others. A body much faster than sound must not jump into another one, because it interacts with
+     * it only in contact: no particle flies farther than h/2 in a step (this binds above about three times the speed of
+     * sound).
      */
     const double wx = vx[i] - drift_x, wy = vy[i] - drift_y, wz = vz[i] - drift_z;
     const double flight = sqrt(wx * wx + wy * wy + wz * wz);

@@ -290,7 +290,7 @@ static void fill_outcome(const struct sph_run *run, const struct sph_ledger *led
   outcome->momentum_error = closed(run) ? sph_results_share(norm(change), momentum_scale(run, ledger)) : (double)NAN;
 }
 
-/* The words of doubts. Whether the piston leaks is seen, not told from the inputs. */
+/* The words of doubts. A leaking piston shows in the state only, not in the inputs. */
 static void warn(const struct sph_run *run, const struct sph_results *results, struct outcome *outcome) {
   unsigned set = sph_warn_inputs(&run->inputs, NULL) & ~(unsigned)WARNINGS_PISTON;
   if (outcome->energy_error > WARNINGS_LARGEST_DRIFT)

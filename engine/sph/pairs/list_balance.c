@@ -43,7 +43,7 @@ static size_t pass_doubles(const uint32_t *from, uint32_t *to, size_t count, siz
   for (uint32_t k = 0, before = UINT32_MAX, its; k < count; k++, before = its) {
     its = from[k];
     const uint32_t number = its & SPH_NUMBER;
-    const uint32_t next = k + 1 < count ? from[k + 1] : UINT32_MAX; /* shares a list with nobody */
+    const uint32_t next = k + 1 < count ? from[k + 1] : UINT32_MAX; /* has no partner for a list */
     const bool first = share_list(its, next), last = share_list(its, before);
     const uint32_t whose = (its | (first ? next : 0) | (last ? before : 0)) >> SPH_TAGS;
     const bool go = (first | last) & (number >= low + MOST) & (number < own) & (whose != BOTH);

@@ -63,7 +63,7 @@ struct sph_pair_sums {
   double *signal;
 };
 
-enum { SPH_PIECE = 512 }; /* particles whose sums are delivered at once */
+enum { SPH_PIECE = 512 }; /* number of particles whose sums are delivered together */
 
 struct sph_pairs; /* opaque: lists and records */
 

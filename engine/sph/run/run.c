@@ -12,7 +12,7 @@
 #include "engine/sph/step/system_layout.h"
 #include "engine/warnings.h"
 
-enum { LOOK_INTERVAL = 8 }; /* steps between looks at the damage */
+enum { LOOK_INTERVAL = 8 }; /* steps between two checks of the damage */
 
 double sph_run_closed(const struct sph_ledger *l) {
   return l->kinetic + l->internal + l->damped - l->work_of_held;

@@ -60,7 +60,8 @@ struct sph_run {
 
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error);
 void sph_run_free(struct sph_run *run); /* NULL is fine */
-/* Steps between looks at the energy, each a pass over all particles. That all is finite is seen at every step. */
+/* Steps between two checks of the energy; a check is a pass over all particles. Every step checks that all values are
+ * finite. */
 enum { SPH_RUN_LOOKS = 64 };
 /* At most max_steps. The result does not depend on how steps are split over calls. STATUS_MEMORY: this is no result,
  * and the run cannot go on. */

@@ -7,7 +7,7 @@
 #include "engine/mesh/files.h"
 #include "engine/sph/body/bodies.h"
 
-enum { PISTON_LAYERS = 4 }; /* thicker than a support: the plate does not feel the piston's back */
+enum { PISTON_LAYERS = 4 }; /* thicker than a support: no pair joins the plate and the piston's back */
 
 double sph_derived_wave_speed(const struct sph_body_inputs *b) {
   return sph_derived_longitudinal_speed(&b->material, b->strength);

@@ -1,4 +1,4 @@
-/* A moving system as a whole: what it holds, and what it reports between steps. */
+/* A moving system: its memory, and its state between steps. */
 #include "engine/sph/step/system.h"
 
 #include <math.h>
