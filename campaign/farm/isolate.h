@@ -1,4 +1,4 @@
-/* One run in its own child process, with limits and a deadline. Nothing that the run does can hurt the slot. */
+/* One run in its own child process, with limits and a deadline. No error of the run can affect the slot. */
 #ifndef CLAST_CAMPAIGN_FARM_ISOLATE_H
 #define CLAST_CAMPAIGN_FARM_ISOLATE_H
 

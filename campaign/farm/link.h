@@ -1,8 +1,8 @@
 /* Frames between the ranks, by MPI point to point and never blocking.
  *
  * Frames to one rank are collected and leave together as one message at farm_link_flush. Sends are MPI_Isend of a
- * buffer of their own, receives MPI_Iprobe + MPI_Irecv, as blocking calls spin and hang for ever on a dead or frozen
- * partner as soon as the message is above the eager limit (4 kB in shared memory). Frames of one rank arrive in order.
+ * buffer of their own, receives MPI_Iprobe + MPI_Irecv, because a blocking call waits for ever for a dead or stopped
+ * partner if the message is above the eager limit (4 kB in shared memory). Frames of one rank arrive in order.
  */
 #ifndef CLAST_CAMPAIGN_FARM_LINK_H
 #define CLAST_CAMPAIGN_FARM_LINK_H
@@ -15,7 +15,7 @@
 struct farm_link;
 
 /* Can this MPI library talk to a launcher that has the older PMI-1 or PMI-2 alone (srun --mpi=pmi2)? Debian's Open MPI
- * cannot, and its MPI_Init would end the process with a page of advice. */
+ * cannot, and its MPI_Init would end the process with a long message. */
 bool farm_link_knows_pmi(void);
 /* MPI_Init. Signals must be blocked before, as MPI starts threads. */
 status farm_link_open(struct farm_link **out, struct error *error);

@@ -1,4 +1,4 @@
-/* Rare changes to single lanes of the bond blocks, outside of the vector loops. */
+/* Rare changes of single lanes of the bond blocks, outside the vector loops. */
 #ifndef CLAST_ENGINE_DEM_BEAMS_BREAKING_H
 #define CLAST_ENGINE_DEM_BEAMS_BREAKING_H
 

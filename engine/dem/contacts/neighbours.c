@@ -253,8 +253,8 @@ static void pad_near(struct dem_system *s) {
   }
 }
 
-/* Looks through the list that was just made. A grain makes a new list before it leaves its skin: it meets no grain that
- * was not in a list with it. */
+/* Searches the new list. A grain makes a new list before it leaves its skin, so it touches no grain that is not in a
+ * list with it. */
 static void see_approaches(struct dem_system *s) {
   for (size_t k = 0; k < s->now.near_count; k++) {
     const struct dem_near_pair *near = &s->near_pair[k];

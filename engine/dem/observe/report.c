@@ -100,7 +100,7 @@ status dem_report_fragments(const struct dem_run *run, uint32_t *label, struct f
   return fragments_of(run, HUGE_VAL, label, fragments, count, error);
 }
 
-/* How final the run is: what broke in the second half of its time. */
+/* How final the run is: breaks and loss of mass in the second half of its time. */
 static status fill_finality(const struct dem_run *run, const struct outcome *outcome, struct dem_results *results,
                             struct error *error) {
   const double half = 0.5 * dem_system_time(run->system);

@@ -53,7 +53,7 @@ void dem_run_free(struct dem_run *run); /* NULL is fine */
 /* At most max_steps, independent of how they are split over calls. */
 void dem_run_advance(struct dem_run *run, uint64_t max_steps);
 /* The monitor: ends the run when its energy drifts or a grain is too fast. Called every DEM_RUN_LOOKS steps and at the
- * end; a look costs about a step. Every step checks that all values are finite. */
+ * end; a check costs about a step. Every step checks that all values are finite. */
 enum { DEM_RUN_LOOKS = 100 };
 void dem_run_look(struct dem_run *run);
 double dem_run_closed(const struct dem_ledger *ledger); /* the sum that must stay constant, J/m */

@@ -1,4 +1,4 @@
-/* Text for `clast explain` and `clast plan`: what a scene models and why, and how its numbers compare. */
+/* Text for `clast explain` and `clast plan`: the model of a scene with reasons, and its numbers beside others. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -10,8 +10,7 @@
  *   crack_cell          after fracture, whose R_s it sets for cells of particles
  *   crack_front         after fracture, whose thresholds, rates and caps it changes for the next step
  *   the rest            options of the pair loop, without loops here
- *
- * motion.h is no module: it has what every body has.
+ * motion.h is no module: it has the loops of every body.
  *
  * To add a module: NAME.c with its descriptor, NAME.h with what it declares and its loops, and a line in each of the
  * two lists below. */

@@ -1,9 +1,9 @@
 /* Positions, velocities, density, energy and h: predictor, corrector and the limits of the time step.
  *
  * One evaluation a step: q* = q + dt q'(t), then, with the rates at the predicted state, q = q* + dt/2 (q'* - q');
- * positions x* = x + dt v + dt^2/2 a are not corrected. That is velocity Verlet for forces of positions alone and
- * second order for all. h keeps h^3 rho: h <- h (rho_old/rho_new)^(1/3), the integral of dh/dt = -(h/3) (drho/dt)/rho,
- * within bounds. */
+ * positions x* = x + dt v + dt^2/2 a are not corrected. The scheme is of second order; if forces depend on positions
+ * alone, it is velocity Verlet. h keeps h^3 rho: h <- h (rho_old/rho_new)^(1/3), the integral of dh/dt = -(h/3)
+ * (drho/dt)/rho, within bounds. */
 
 TIME_STEP_LIMIT(COURANT, courant, "the speed of sound and viscosity, or by a damped side")
 TIME_STEP_LIMIT(FORCE, force, "the acceleration")
@@ -197,9 +197,8 @@ RANGE_INLINE void motion_find_lost(const struct sph_system *s, struct sph_block 
 
 /* Corrects v, rho and h by half the change of rates, clamps, and finds the limits of the next step:
  *   Courant   cfl h / (c_L + 0.6 (alpha c + beta max mu))    Monaghan 1992; c_L^2 = c^2 + 4/3 mu (1-D)/rho
- *             (D that scales S) and h / (2 |w|), w: velocity in the frame of the centre of mass at the start: nobody
- *             leaps into another body; and 0.9 over the rate of a damped side (motion_hold)
- *   force     cfl sqrt(h/|a|)
+ *             (D that scales S) and h / (2 |w|), w: velocity in the frame of the centre of mass at the start: no
+ * particle jumps into another body; and 0.9 over the rate of a damped side (motion_hold) force     cfl sqrt(h/|a|)
  *   energy    a fifth of (u + c^2/100)/|du/dt|
  *   density   a tenth of 1/|div v|
  *   damage    damage_step over the rate of D^(1/3) */
@@ -234,9 +233,9 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
     const double left = damaged ? 1 - d[i] * d[i] * d[i] : 1;
     const double c2 = c[i] * c[i], fast = strength ? sqrt(c2 + shear * left / before) : c[i];
     const double inverse = 1 / size;
-    /* Debris without neighbours (signal < 0) sends no waves; hot, it would halve the step of all particles. It must
-     * only not fly past others. A body much faster than sound must not jump into another one, because it interacts with
-     * it only in contact: no particle flies farther than h/2 in a step (this binds above about three times the speed of
+    /* Debris without neighbours (signal < 0) sends no waves; hot, it would halve the step of all particles. But it must
+     * not fly past others. A body much faster than sound must not jump into another one, because it interacts with it
+     * only in contact: no particle flies farther than h/2 in a step (this binds above about three times the speed of
      * sound).
      */
     const double wx = vx[i] - drift_x, wy = vy[i] - drift_y, wz = vz[i] - drift_z;

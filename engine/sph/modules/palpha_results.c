@@ -21,7 +21,7 @@ static double mean_distention(const struct sph_run *run) {
 }
 
 /* By the distention at P = 0. Fractured matter is under (undamaged) tension, which opens the pores of the elastic
- * branch again; at rest only the pores that are closed for good count. */
+ * branch again; at rest only permanently closed pores count. */
 void sph_palpha_results_compaction(const struct sph_particles *start, const struct sph_particles *now,
                                    const struct sph_crater_options *o, double initial, struct sph_results *results) {
   const double top = sph_crater_top(start, o, 2);

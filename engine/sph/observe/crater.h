@@ -5,7 +5,7 @@
  * other particles are retained. A map divides the target's outline into columns of two spacings. The surface in a
  * column is the highest retained particle. The crater is the connected region round the axis where the surface lies at
  * least one spacing deeper than at the start. Two processes make a crater: ejecta leave, and matter is compacted
- * for good, which is for the modules that compact it to measure. */
+ * permanently, which the modules that compact it measure. */
 #ifndef CLAST_ENGINE_SPH_OBSERVE_CRATER_H
 #define CLAST_ENGINE_SPH_OBSERVE_CRATER_H
 

@@ -1,5 +1,5 @@
-/* What one run of engine `sph` shows: what a protocol records along the way, results and fragments at the end, and its
- * fields files. For this folder, run/ and sph.c. */
+/* The output of one run of engine `sph`: the record of a protocol during the run, results and fragments at the end, and
+ * its fields files. For this folder, run/ and sph.c. */
 #ifndef CLAST_ENGINE_SPH_OBSERVE_OBSERVE_H
 #define CLAST_ENGINE_SPH_OBSERVE_OBSERVE_H
 

@@ -110,8 +110,9 @@ static double shock_width(const struct sph_run *run) {
   return 2 * (place_of(run, ahead + rise / 4) - place_of(run, ahead + rise * 3 / 4));
 }
 
-/* Three layers between two places where pressure changes least: what is flat between two fronts. The precursor's rise
- * takes most of its way to a shock that is nearly as fast. NaN: there are no three layers. */
+/* The three layers between two places where pressure changes least: the flat part between two fronts. If the shock is
+ * nearly as fast as the precursor, the precursor's rise fills most of the distance between them. NaN: there are no
+ * three layers. */
 static void find_flat(const struct sph_run *run, double from, double to, double region[2]) {
   double least = HUGE_VAL;
   region[0] = region[1] = NAN;
@@ -142,7 +143,8 @@ struct sph_plate_regions sph_plate_regions(const struct sph_run *run) {
     regions.shock[0] = piston + length / 4;
     regions.shock[1] = piston + fmin(flat, length * 3 / 4);
   }
-  const double begin = run->exact.has_shock ? shock : piston + (precursor - piston) / 4; /* it rings at the piston */
+  const double begin = run->exact.has_shock ? shock
+                                            : piston + (precursor - piston) / 4; /* it oscillates at the piston */
   find_flat(run, begin, precursor, regions.precursor);
   return regions;
 }

@@ -3,7 +3,7 @@
  *
  *   1. Static strength: a damaged particle breaks whose largest tension (principal value of the damaged stress,
  * pressure in it) exceeds the static strength of its body. This anticipates the end state, in which the last cracks
- * open slowly. Sound matter (D = 0) has no crack that could open, and stays whole; BA95 does not ask for damage.
+ * open slowly. Undamaged matter (D = 0) has no crack that could open, and does not break; BA95 does not require damage.
  *   2. Cores: friends of friends over unbroken particles (damage below a threshold). Two are friends within link_length
  *      (h_i + h_j)/2.
  *   3. Damaged layer: a broken particle within a link, or a given length, of a core joins the fragment of its nearest
@@ -45,13 +45,13 @@ struct sph_fragments_options {
 };
 struct sph_fragments_options sph_fragments_default(void); /* D < 1, one mean h, layer, open, current h */
 
-/* Of so many particles on a fragment has a shape, a spin and a speed of its own. A sphere cut from the lattice reads
- * 0.93 for shortest over longest axis at 100 particles, 0.69 at 10. */
+/* A fragment has a shape, a spin and a speed of its own from this number of particles on. The ratio of shortest to
+ * longest axis of a sphere cut from the lattice is 0.93 at 100 particles, 0.69 at 10. */
 enum { SPH_FRAGMENTS_MEASURED = 100 };
 
-/* From so many particles on a spectrum is complete. A core of one particle with its damaged layer weighs 5 to 13. In
- * the scene `disruption` 10 000 and 40 000 particles give 9.7 and 9.3 fragments above the mass of 10 of the coarser
- * particles, 19.3 and 16.0 above that of 5 (means of 3 seeds). */
+/* A spectrum is complete from this number of particles on. A core of one particle with its damaged layer has the mass
+ * of 5 to 13. In the scene `disruption` 10 000 and 40 000 particles give 9.7 and 9.3 fragments above the mass of 10 of
+ * the coarser particles, 19.3 and 16.0 above that of 5 (means of 3 seeds). */
 enum { SPH_FRAGMENTS_COMPLETE = 10 };
 
 enum sph_fragments_part { SPH_FRAGMENTS_CORE, SPH_FRAGMENTS_LAYER, SPH_FRAGMENTS_SINGLE, SPH_FRAGMENTS_LEFT_OUT };

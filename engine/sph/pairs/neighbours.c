@@ -104,7 +104,7 @@ static size_t take_leaf(const struct sph_neighbours *s, size_t first, size_t las
   return end;
 }
 
-/* The box round some bounds, enlarged by rounding errors. A box beyond all measure is near everything. */
+/* The box round some bounds, enlarged by rounding errors. An infinite box is near everything. */
 static struct sph_near_box make_box(const struct bounds *b) {
   struct sph_near_box box = {.reach = b->reach * (1 + 1e-12)};
   for (int d = 0; d < 3; d++) {

@@ -1,4 +1,4 @@
-/* The pair loop's life, and its lists: when they are stale, and making them. The sums are in pairs_sum.c. */
+/* Making and freeing a pair loop, and its lists: when they are stale, and new ones. The sums are in pairs_sum.c. */
 #include "engine/sph/pairs/pairs.h"
 
 #include <math.h>

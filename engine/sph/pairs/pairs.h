@@ -1,4 +1,4 @@
-/* The pair loop: all that two particles do to each other, once a step. Particles are sorted in space (hilbert.h), so
+/* The pair loop: all forces and rates between two particles, once a step. Particles are sorted in space (hilbert.h), so
  * that neighbours are near in memory. Each pair i < j is visited once: particle i has a list of neighbours j with a
  * skin, and the lists are used for many steps.
  *
@@ -74,7 +74,8 @@ void sph_pairs_free(struct sph_pairs *pairs); /* NULL is fine */
 size_t sph_pairs_bytes(const struct sph_pairs *pairs);
 
 /* The smallest remaining slack (m) of the particles low .. high - 1. Slack shrinks as a particle moves and as its h
- * grows. Negative: the lists may miss pairs; so it is, too, when a position is not finite or there are no lists yet. */
+ * grows. Negative: the lists may miss pairs; it is also negative when a position is not finite or there are no lists
+ * yet. */
 double sph_pairs_slack(const struct sph_pairs *pairs, size_t low, size_t high, const double *x, const double *y,
                        const double *z, const double *h);
 /* Makes new lists for particles in sorted order: all pairs with r < h_i + h_j + slack_i + slack_j. `slack` (m) is how
@@ -90,8 +91,8 @@ status sph_pairs_relist(struct sph_pairs *pairs, struct error *error);
  * changed and are gone afterwards. */
 typedef void sph_pairs_take(void *context, size_t first, size_t count, const struct sph_pair_sums *sums);
 /* A pass over all pairs. Sums are delivered to `take` piece by piece, as soon as they are complete, while they are in
- * the cache. The fields of those particles are not read any more and may be changed. Several threads call `take` at the
- * same time. */
+ * the cache. The pass no longer reads the fields of those particles, so they may be changed. Several threads call
+ * `take` at the same time. */
 void sph_pairs_sum(struct sph_pairs *pairs, size_t n, const struct sph_pair_fields *fields, sph_pairs_take *take,
                    void *context);
 /* Mean number of neighbours in the lists (each pair counts for both): the time of a pass is proportional to it. */

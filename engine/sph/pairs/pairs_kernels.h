@@ -2,8 +2,8 @@
  * what this means for bits), in double and in float.
  *
  * All that a pair needs of a particle is one record: a row of numbers, so that a neighbour costs two cache lines. A
- * kernel loads the records of as many neighbours as a vector register has lanes and transposes them in registers. What
- * the neighbours get is transposed back and added to their records of sums. */
+ * kernel loads the records of as many neighbours as a vector register has lanes and transposes them in registers. The
+ * sums of the neighbours are transposed back and added to their records of sums. */
 #ifndef CLAST_ENGINE_SPH_PAIRS_PAIRS_KERNELS_H
 #define CLAST_ENGINE_SPH_PAIRS_PAIRS_KERNELS_H
 

@@ -1,6 +1,6 @@
-/* The pair loop in one precision: all that the particles of a chunk do to each other and to the foreign particles in
- * their lists (pairs.h has the equations). Particles are summed in groups of GROUP that share a list, the neighbours in
- * batches of LANES. A pair is visited once: the member's sums stay in registers until its list ends, the neighbours'
+/* The pair loop in one precision: all sums of the particles of a chunk, among each other and with the foreign particles
+ * in their lists (pairs.h has the equations). Particles are summed in groups of GROUP that share a list, the neighbours
+ * in batches of LANES. A pair is visited once: the member's sums stay in registers until its list ends, the neighbours'
  * sums are added to their records batch by batch.
  *
  * A batch goes through these phases, each for all members of the group before the next one, so that the members' chains

@@ -57,8 +57,8 @@ static inline size_t sph_pairs_lag(const struct sph_pairs *p) {
 /* Chooses the units of float records. As powers of two they change no bit of a result, so they need not be the same
  * after a restart. */
 void sph_pairs_columns_units(struct sph_pairs *pairs, size_t n, const struct sph_pair_fields *fields);
-/* What a pass needs: how columns become records, the constants of the sums, a piece's sums in its buffer, and how
- * records of sums become these columns. */
+/* The data of a pass: sources of records, constants of the sums, the sums of a piece in its buffer, and the columns
+ * that records of sums become. */
 struct sph_pair_source sph_pairs_columns_source(const struct sph_pairs *pairs, const struct sph_pair_fields *fields);
 struct sph_pair_constants sph_pairs_columns_constants(const struct sph_pairs *pairs);
 struct sph_pair_sums sph_pairs_columns_sums(const struct sph_pairs *pairs, double *buffer);

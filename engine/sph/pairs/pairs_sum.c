@@ -8,8 +8,8 @@
  *
  * A halo belongs to later chunks only. So when a chunk and all chunks before it are summed, its own sums are complete:
  * the sums that earlier chunks keep for it are added, always in the order of the chunks, and everything is unpacked to
- * columns and delivered. Bits therefore depend neither on the number of threads nor on their timing, and nobody reads
- * the chunk's fields any more. */
+ * columns and delivered. Bits therefore depend neither on the number of threads nor on their timing, and the pass no
+ * longer reads the chunk's fields. */
 #include <math.h>
 #include <sched.h>
 #include <stdatomic.h>

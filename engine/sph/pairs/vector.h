@@ -1,6 +1,6 @@
 /* The vocabulary of the SIMD kernels, in one precision and for registers of WIDTH bytes (templates_on.h): each
  * operation has one name here and one definition per instruction set. GCC's vector extension does the arithmetic (a +
- * b, a * b); what it cannot say, or says in more than one instruction, has a function.
+ * b, a * b); operations that it lacks, or compiles to more than one instruction, have a function.
  *
  * A register is seen as quarters of 16 bytes, each of them QUARTER numbers: shuffles within quarters are cheap. */
 #include <stdbool.h>

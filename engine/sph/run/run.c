@@ -1,4 +1,4 @@
-/* Making a run, advancing it step by step, and judging when it ends. */
+/* Making a run, advancing it step by step, and ending it. */
 #include "engine/sph/run/run.h"
 
 #include <math.h>
@@ -167,7 +167,7 @@ static size_t fastest_particle(struct sph_run *run, double *speed) {
   return fastest;
 }
 
-/* What helps against a drift, by its cause. */
+/* The remedy against a drift, by its cause. */
 static const char *remedy_of_drift(const struct sph_run *run, const struct sph_ledger *ledger, double drift) {
   if (sph_warn_inputs(&run->inputs, NULL) & WARNINGS_CONTRAST)
     return "bodies differ much in density: set method.volume_weights: true";

@@ -31,7 +31,7 @@ struct sph_state {
   uint64_t limited[SPH_LIMITS];               /* steps that each limiter set */
   uint64_t samples;                           /* of the curve */
   double peak_stress, peak_strain, peak_time; /* stretch */
-  double mode_before, mode_time;              /* vibration: amplitude at the last look */
+  double mode_before, mode_time;              /* vibration: amplitude at the last check */
   double crossing_first, crossing_last;       /* s, interpolated zero crossings of the mode */
   uint64_t crossings;
 };

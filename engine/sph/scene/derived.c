@@ -1,4 +1,4 @@
-/* What follows from the inputs of a scene alone. */
+/* Values that follow from the inputs of a scene alone. */
 #include "engine/sph/scene/derived.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* Text for `clast explain` and `plan`: what a scene models and why, its memory and time, and numbers to compare. */
+/* Text for `clast explain` and `plan`: the model of a scene with reasons, its memory and time, and numbers to compare.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

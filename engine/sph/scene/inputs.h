@@ -9,7 +9,7 @@
 enum sph_kind {
   SPH_IMPACT,    /* a projectile into a target */
   SPH_STRETCH,   /* a cylinder pulled by its ends at a constant rate */
-  SPH_VIBRATION, /* a free cylinder ringing along its axis in its first mode */
+  SPH_VIBRATION, /* a free cylinder that vibrates along its axis in its first mode */
   SPH_COLLISION, /* two equal cylinders or rings, thin slabs that repeat along their axes */
   SPH_PISTON,    /* a plate, a bar along x that repeats sideways, with a piston running into its end */
 };
