@@ -47,7 +47,9 @@ enum digest_kind { DIGEST_RUNS, DIGEST_POINTS };
  * 1 has no digests, and gives none. */
 status digest_rows_compare(sqlite3 *db, enum digest_kind kind, int64_t only,
                            void (*each)(void *context, int64_t number), void *context, struct error *error);
-/* Writes the digest of the row `only`; 0: of all rows that have none. Within the caller's transaction. */
-status digest_rows_fill(sqlite3 *db, enum digest_kind kind, int64_t only, struct error *error);
+/* Writes the digest of one row. Within the caller's transaction. */
+status digest_rows_fill(sqlite3 *db, enum digest_kind kind, int64_t number, struct error *error);
+/* The same for all rows from number `first` on that have none. */
+status digest_rows_fill_missing(sqlite3 *db, enum digest_kind kind, int64_t first, struct error *error);
 
 #endif

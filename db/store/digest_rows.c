@@ -165,12 +165,13 @@ static status write_digest(sqlite3_stmt *update, int64_t number, const uint8_t d
   return sql_run(update, doing, error);
 }
 
-status digest_rows_fill(sqlite3 *db, enum digest_kind kind, int64_t only, struct error *error) {
+/* Writes the digests of the rows of prepare_numbers(). */
+static status fill(sqlite3 *db, enum digest_kind kind, int64_t only, const char *condition, struct error *error) {
   struct reader reader;
   sqlite3_stmt *numbers = NULL, *update = NULL;
   status result = open_reader(db, kind, &reader, error);
   if (result == STATUS_OK)
-    result = prepare_numbers(db, &reader, "", only, "digest IS NULL", &numbers, error);
+    result = prepare_numbers(db, &reader, "", only, condition, &numbers, error);
   if (result == STATUS_OK)
     result = sql_preparef(db, &update, doing, error, "UPDATE main.%s SET digest = ?2 WHERE %s = ?1", reader.table,
                           reader.key);
@@ -185,4 +186,15 @@ status digest_rows_fill(sqlite3 *db, enum digest_kind kind, int64_t only, struct
   sqlite3_finalize(update);
   close_reader(&reader);
   return result;
+}
+
+status digest_rows_fill(sqlite3 *db, enum digest_kind kind, int64_t number, struct error *error) {
+  return fill(db, kind, number, "", error);
+}
+
+status digest_rows_fill_missing(sqlite3 *db, enum digest_kind kind, int64_t first, struct error *error) {
+  char condition[80];
+  snprintf(condition, sizeof condition, "%s >= %lld AND digest IS NULL", kind == DIGEST_RUNS ? "run_id" : "point_id",
+           (long long)first);
+  return fill(db, kind, 0, condition, error);
 }

@@ -12,6 +12,12 @@
 
 static const char doing[] = "merging";
 
+struct merged {
+  int64_t last;   /* number of the last run before */
+  int64_t added;  /* runs */
+  int64_t common; /* runs that both stores have */
+};
+
 /* The columns of a table that both stores have, without the column `but`, each with a comma before it. sqlite3_free()
  * it. */
 static char *common_columns(sqlite3 *db, const char *table, const char *but) {
@@ -57,9 +63,25 @@ static status map_parents(sqlite3 *db, struct error *error) {
       doing, error);
 }
 
-/* Copies the runs that are missing here, with numbers from the last one on. Numbers rise in both stores, so that the
- * order of theirs is that of ours and nothing has to be sorted. */
-static status copy_runs(sqlite3 *db, int64_t *added, struct error *error) {
+/* Lists the runs that are missing here in the temporary table merge_run, with numbers from the last one on. Numbers
+ * rise in both stores, so that the order of theirs is that of ours and nothing has to be sorted. */
+static status find_runs(sqlite3 *db, struct merged *merged, struct error *error) {
+  status result = sql_integer(db, "SELECT max(run_id) FROM main.run", 0, &merged->last, error);
+  if (result == STATUS_OK)
+    result = sql_executef(db, doing, error,
+                          "CREATE TEMP TABLE merge_run (ours INTEGER PRIMARY KEY, theirs INTEGER NOT NULL);"
+                          "INSERT OR FAIL INTO merge_run SELECT %lld + row_number() OVER (ORDER BY b.run_id), b.run_id "
+                          "FROM other.run b WHERE b.identity NOT IN (SELECT identity FROM main.run);",
+                          (long long)merged->last);
+  if (result == STATUS_OK)
+    result = sql_integer(db, "SELECT count(*) FROM merge_run", 0, &merged->added, error);
+  if (result == STATUS_OK)
+    result = sql_integer(db, "SELECT count(*) FROM other.run", 0, &merged->common, error);
+  merged->common -= merged->added;
+  return result;
+}
+
+static status copy_runs(sqlite3 *db, struct error *error) {
   char
       *columns = sql_name_list(db,
                                "SELECT a.name FROM pragma_table_info(?1, 'main') a JOIN pragma_table_info(?1, 'other') "
@@ -67,21 +89,14 @@ static status copy_runs(sqlite3 *db, int64_t *added, struct error *error) {
                                "run", NULL);
   if (!columns)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  status result = sql_execute(db,
-                              "CREATE TEMP TABLE merge_run (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
-                              "INSERT INTO merge_run SELECT b.run_id, (SELECT ifnull(max(run_id), 0) FROM main.run) + "
-                              "row_number() OVER (ORDER BY "
-                              "b.run_id) FROM other.run b WHERE b.identity NOT IN (SELECT identity FROM main.run);",
-                              doing, error);
-  if (result == STATUS_OK)
-    result = sql_executef(
-        db, doing, error,
-        "INSERT INTO main.run (run_id, point_id, session_id%s) SELECT m.ours, (SELECT ours FROM merge_point p WHERE "
-        "p.theirs = o.point_id), (SELECT ours FROM merge_session s WHERE s.theirs = o.session_id)%s FROM merge_run m "
-        "CROSS JOIN other.run o ON o.run_id = m.theirs ORDER BY m.theirs",
-        columns, columns);
+  status result = sql_executef(
+      db, doing, error,
+      "INSERT OR FAIL INTO main.run (run_id, point_id, session_id%s) SELECT m.ours, (SELECT ours FROM merge_point p "
+      "WHERE p.theirs = o.point_id), (SELECT ours FROM merge_session s WHERE s.theirs = o.session_id)%s FROM merge_run "
+      "m CROSS JOIN other.run o ON o.run_id = m.theirs ORDER BY m.ours",
+      columns, columns);
   sqlite3_free(columns);
-  return result == STATUS_OK ? sql_integer(db, "SELECT count(*) FROM merge_run", 0, added, error) : result;
+  return result;
 }
 
 /* Rows of a table that belong to the runs that were copied. */
@@ -89,11 +104,10 @@ static status copy_of_runs(sqlite3 *db, const char *table, struct error *error) 
   char *columns = common_columns(db, table, "run_id");
   if (!columns)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  status result =
-      sql_executef(db, doing, error,
-                   "INSERT INTO main.\"%w\" (run_id%s) SELECT m.ours%s FROM merge_run m CROSS JOIN other.\"%w\" "
-                   "o ON o.run_id = m.theirs ORDER BY m.theirs",
-                   table, columns, columns, table);
+  status result = sql_executef(db, doing, error,
+                               "INSERT OR FAIL INTO main.\"%w\" (run_id%s) SELECT m.ours%s FROM merge_run m CROSS JOIN "
+                               "other.\"%w\" o ON o.run_id = m.theirs ORDER BY m.ours",
+                               table, columns, columns, table);
   sqlite3_free(columns);
   return result;
 }
@@ -144,7 +158,7 @@ static status make_tables(sqlite3 *db, struct error *error) {
 }
 
 static status copy_results(sqlite3 *db, struct error *error) {
-  static const char *const tables[] = {"fragment_mass", "spectrum", "estimate"};
+  static const char *const tables[] = {"fragment_mass", "estimate"};
   sqlite3_stmt *statement = NULL;
   status result = STATUS_OK;
   for (size_t i = 0; result == STATUS_OK && i < sizeof tables / sizeof tables[0]; i++)
@@ -158,7 +172,6 @@ static status copy_results(sqlite3 *db, struct error *error) {
   return result;
 }
 
-/* Tables, then rows in the order of their references. */
 /* The campaigns of the sessions that were copied. A source of an older version does not name them: they are found by
  * their runs. */
 static status copy_campaigns_of_sessions(sqlite3 *db, struct error *error) {
@@ -189,17 +202,21 @@ static status copy_written_units(sqlite3 *db, struct error *error) {
                      doing, error);
 }
 
-static status copy_all(sqlite3 *db, int64_t *added, struct error *error) {
+/* Tables, then rows in the order of their references. */
+static status copy_all(struct store *store, struct merged *merged, struct error *error) {
+  sqlite3 *db = store->db;
   status result = make_tables(db, error);
   if (result != STATUS_OK)
     return result;
   result = map_parents(db, error);
   if (result != STATUS_OK)
     return result;
-  result = copy_runs(db, added, error);
+  result = copy_runs(db, error);
   if (result != STATUS_OK)
     return result;
   result = copy_results(db, error);
+  if (result == STATUS_OK) /* pooled estimates of these points go: they are stale */
+    result = sums_runs_copy(&store->sums, db, merged->last + 1, merged->last + merged->added, error);
   if (result == STATUS_OK)
     result = copy_attempts(db, error);
   if (result == STATUS_OK)
@@ -209,18 +226,13 @@ static status copy_all(sqlite3 *db, int64_t *added, struct error *error) {
   return result == STATUS_OK ? copy_written_units(db, error) : result;
 }
 
-static status merge(struct store *store, int64_t *added, struct error *error) {
+static status merge(struct store *store, struct merged *merged, struct error *error) {
   sqlite3 *db = store->db;
-  int64_t last = 0;
-  status result = sql_integer(db, "SELECT max(run_id) FROM main.run", 0, &last, error);
+  status result = copy_all(store, merged, error);
   if (result == STATUS_OK)
-    result = copy_all(db, added, error);
+    result = digest_rows_fill_missing(db, DIGEST_POINTS, 0, error);
   if (result == STATUS_OK)
-    result = digest_rows_fill(db, DIGEST_POINTS, 0, error);
-  if (result == STATUS_OK)
-    result = digest_rows_fill(db, DIGEST_RUNS, 0, error); /* of a source without digests */
-  if (result == STATUS_OK && *added > 0)
-    result = sums_runs_add(&store->sums, db, last + 1, error); /* pooled estimates of these points go: they are stale */
+    result = digest_rows_fill_missing(db, DIGEST_RUNS, merged->last + 1, error); /* of a source without digests */
   return result == STATUS_OK ? views_regenerate(db, error) : result;
 }
 
@@ -228,7 +240,7 @@ static status merge(struct store *store, int64_t *added, struct error *error) {
 static status count_differing(sqlite3 *db, int64_t *differing, struct error *error) {
   return sql_integer(
       db,
-      "SELECT count(*) FROM main.run a JOIN other.run b USING (identity) WHERE a.state IS NOT b.state OR "
+      "SELECT count(*) FROM other.run b CROSS JOIN main.run a USING (identity) WHERE a.state IS NOT b.state OR "
       "(SELECT masses FROM main.fragment_mass m WHERE m.run_id = a.run_id) IS NOT "
       "(SELECT masses FROM other.fragment_mass m WHERE m.run_id = b.run_id)",
       0, differing, error);
@@ -245,11 +257,12 @@ static status keep_paths(struct store *store, const char *way, struct error *err
 /* Of a run that both stores have, the fields file may be in the other one only, or be missing here and not there. */
 static status take_paths(struct store *store, const char *way, struct error *error) {
   sqlite3_stmt *pairs = NULL, *update = NULL;
-  status result = sql_prepare(store->db,
-                              "SELECT a.run_id, a.fields_path, iif(b.fields_path LIKE '/%', '', ?1) || b.fields_path "
-                              "FROM other.run b JOIN main.run a USING (identity) WHERE b.fields_path IS NOT NULL AND "
-                              "a.run_id NOT IN (SELECT ours FROM merge_run) ORDER BY a.run_id",
-                              &pairs, doing, error);
+  status result =
+      sql_prepare(store->db,
+                  "SELECT a.run_id, a.fields_path, iif(b.fields_path LIKE '/%', '', ?1) || b.fields_path "
+                  "FROM other.run b CROSS JOIN main.run a USING (identity) WHERE b.fields_path IS NOT NULL AND "
+                  "a.run_id NOT IN (SELECT ours FROM merge_run) ORDER BY a.run_id",
+                  &pairs, doing, error);
   if (result == STATUS_OK)
     result = sql_prepare(store->db, "UPDATE main.run SET fields_path = ?2 WHERE run_id = ?1", &update, doing, error);
   if (result == STATUS_OK)
@@ -268,12 +281,12 @@ static status take_paths(struct store *store, const char *way, struct error *err
   return result;
 }
 
-static status merge_paths(struct store *store, const char *source, struct error *error) {
+static status merge_paths(struct store *store, const char *source, const struct merged *merged, struct error *error) {
   char *way = paths_between(store->path, source);
   if (!way)
     return status_fail(error, STATUS_IO, "%s: the path of its folder cannot be resolved", source);
   status result = keep_paths(store, way, error);
-  if (result == STATUS_OK)
+  if (result == STATUS_OK && merged->common)
     result = take_paths(store, way, error);
   free(way);
   return result;
@@ -281,21 +294,25 @@ static status merge_paths(struct store *store, const char *source, struct error 
 
 static status merge_attached(struct store *store, const char *source, int64_t *added, int64_t *differing,
                              struct error *error) {
+  struct merged merged = {0};
   /* The sums of a million runs are sorted in files, not in memory. */
   status result = sql_execute(store->db, "PRAGMA temp_store = FILE; BEGIN IMMEDIATE", doing, error);
   if (result != STATUS_OK)
     return result;
-  result = count_differing(store->db, differing, error);
+  result = find_runs(store->db, &merged, error);
+  if (result == STATUS_OK && merged.common)
+    result = count_differing(store->db, differing, error);
   if (result == STATUS_OK)
-    result = merge(store, added, error);
+    result = merge(store, &merged, error);
   if (result == STATUS_OK)
-    result = merge_paths(store, source, error);
+    result = merge_paths(store, source, &merged, error);
   if (result == STATUS_OK)
     result = sql_execute(store->db, "COMMIT", doing, error);
-  if (result == STATUS_OK)
+  if (result == STATUS_OK) {
+    *added = merged.added;
     return STATUS_OK;
+  }
   sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
-  *added = 0;
   return result;
 }
 
@@ -318,16 +335,25 @@ static status refuse_damaged(const char *source, const char *what, const struct 
                            source, what, (long long)damage->first, (long long)damage->count);
 }
 
-/* All pages, the types of all rows, and the digests. */
-static status read_through(struct store *other, const char *source, struct error *error) {
-  struct damage runs = {0}, points = {0};
-  sqlite3_stmt *statement = NULL;
-  status result = sql_prepare(other->db, "PRAGMA quick_check(1)", &statement, doing, error);
-  if (sql_next(statement, &result, doing, error) && strcmp(sql_text(statement, 0), "ok") != 0)
+/* All pages and the types of all rows. Of table spectrum, the longest, each row is compared when it is copied. */
+static status check_pages(struct store *other, const char *source, struct error *error) {
+  sqlite3_stmt *rows = NULL;
+  status result = sql_prepare(other->db,
+                              "SELECT c.quick_check FROM main.sqlite_schema s JOIN pragma_quick_check(s.name) c WHERE "
+                              "s.type = 'table' AND s.name <> 'spectrum' AND c.quick_check <> 'ok' LIMIT 1",
+                              &rows, doing, error);
+  if (sql_next(rows, &result, doing, error))
     result = status_fail(error, STATUS_CONTENT,
                          "%s is damaged: %.500s. Nothing was taken from it; `clast check` tells more. Restore a copy.",
-                         source, sql_text(statement, 0));
-  sqlite3_finalize(statement);
+                         source, sql_text(rows, 0));
+  sqlite3_finalize(rows);
+  return result;
+}
+
+/* Pages, types, and digests. */
+static status read_through(struct store *other, const char *source, struct error *error) {
+  struct damage runs = {0}, points = {0};
+  status result = check_pages(other, source, error);
   if (result == STATUS_OK)
     result = digest_rows_compare(other->db, DIGEST_RUNS, 0, take_damage, &runs, error);
   if (result == STATUS_OK)

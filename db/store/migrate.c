@@ -79,8 +79,8 @@ static status drop_empty_motion(sqlite3 *db, struct error *error) {
 
 /* Version 1 had no digests. They vouch for the rows from now on, not for what happened to them before. */
 static status to_version_2(sqlite3 *db, struct error *error) {
-  status result = digest_rows_fill(db, DIGEST_RUNS, 0, error);
-  return result == STATUS_OK ? digest_rows_fill(db, DIGEST_POINTS, 0, error) : result;
+  status result = digest_rows_fill_missing(db, DIGEST_RUNS, 0, error);
+  return result == STATUS_OK ? digest_rows_fill_missing(db, DIGEST_POINTS, 0, error) : result;
 }
 
 /* Version 2 did not say which campaign a session computed. */

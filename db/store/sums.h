@@ -37,10 +37,11 @@ status sums_write(struct sums *sums, sqlite3 *db, struct error *error);
 void sums_forget(struct sums *sums); /* what was gathered, after a rollback */
 void sums_clear(struct sums *sums);  /* everything, statements too */
 
-/* Adds the runs from number `first` on, which are stored and in no sum yet, and covers their bins. Runs of any number
- * pass through memory for some thousand sums. Within the caller's transaction. STATUS_CONTENT: no spectrum is like
- * that. */
-status sums_runs_add(struct sums *sums, sqlite3 *db, int64_t first, struct error *error);
+/* For a merge, within its transaction: the runs first..last are copied, and their masses; table temp.merge_run maps
+ * their numbers (ours) to those in the attached store `other` (theirs). Copies their spectra, adds them to the sums and
+ * covers their bins, with a bounded number of sums in memory. STATUS_CONTENT: a spectrum is not that of the
+ * masses. */
+status sums_runs_copy(struct sums *sums, sqlite3 *db, int64_t first, int64_t last, struct error *error);
 /* Makes the sums of one point (0: of all) anew from the rows of run and spectrum. Within the caller's transaction. */
 status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error);
 /* Rows in which the running sums differ from the rows they sum (doubles: by more than their rounding). */

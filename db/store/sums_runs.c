@@ -1,15 +1,16 @@
-/* Running sums of runs that are stored already: a merge copies rows by the million, and sums what it copied. (Making
- * all sums anew sorts the spectra of all runs: three quarters of the time of a merge.) Digests vouch for the masses,
- * and a spectrum must be that of its masses: a changed one is refused here. */
+/* The spectra of runs that a merge copies, and their running sums. Digests vouch for the masses, and a spectrum must be
+ * that of its masses: a changed one is refused here. Each row of the source is read once: the INSERT that copies it
+ * asks a function of ours whether it is right. (Making all sums anew sorts the spectra of all runs: three quarters of
+ * the time of a merge.) */
 #include "db/store/sums.h"
 
 #include <endian.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char doing[] = "adding to running sums";
+static const char doing[] = "copying spectra";
 
-enum { MOST_AT_ONCE = 50000, MOST_BINS = 512 };
+enum { RUNS_AT_ONCE = 1000, SUMS_AT_ONCE = 200000, MOST_BINS = 512 };
 
 static status refuse(int64_t run_id, struct error *error) {
   return status_fail(error, STATUS_CONTENT,
@@ -17,31 +18,31 @@ static status refuse(int64_t run_id, struct error *error) {
                      doing, (long long)run_id);
 }
 
-/* Two questions side by side, both in the order of run_id: a join of them would read the long row of a run again for
- * each of its bins, and take twice as long. */
 static const char of_runs[] = "SELECT run_id, point_id, results_version, counts, state = 'end-time', surplus, masses "
                               "FROM main.run LEFT JOIN main.fragment_mass USING (run_id) WHERE run_id >= ?1 ORDER BY "
                               "run_id";
 enum { RUN, POINT, VERSION, COUNTS, CENSORED, SURPLUS, MASSES };
-static const char of_bins[] = "SELECT run_id, bin, count, mass FROM main.spectrum WHERE run_id >= ?1 ORDER BY run_id, "
-                              "bin";
-enum { BIN = 1, COUNT, MASS };
+/* OR FAIL: the merge rolls back as a whole, so that no statement has to be undone by itself. */
+static const char copy_rows[] = "INSERT OR FAIL INTO main.spectrum (run_id, bin, count, mass) SELECT m.ours, o.bin, "
+                                "o.count, o.mass FROM temp.merge_run m CROSS JOIN other.spectrum o ON o.run_id = "
+                                "m.theirs WHERE m.ours BETWEEN ?1 AND ?2 AND is_of_masses(m.ours, o.bin, o.count, "
+                                "o.mass) ORDER BY m.ours, o.bin";
 
-struct adding {
+struct copying {
   struct sums *sums;
-  sqlite3_stmt *runs, *bins;
-  bool more;               /* bins stands on a row */
-  double *masses;          /* of a run */
-  size_t capacity;         /* bytes of them */
-  int64_t lowest, highest; /* bins; lowest > highest: none */
-  size_t gathered;
+  sqlite3_stmt *runs, *rows;
+  int64_t last;           /* run that `runs` stands on; 0: before the first one */
+  bool counts;            /* is it part of the statistics? */
+  struct sums_row *total; /* of its point */
+  double *masses;         /* of it */
+  size_t capacity;        /* bytes of them */
+  struct spectrum_bin_row bins[MOST_BINS];
+  size_t count, seen;      /* bins of its masses; rows of it that came */
+  size_t gathered;         /* since sums were written; no more of them are in memory */
+  int64_t lowest, highest; /* bins of all runs; lowest > highest: none */
+  status result;           /* of is_of_masses() */
+  struct error error;      /* of it */
 };
-
-static status next_bin(struct adding *adding, struct error *error) {
-  status result = STATUS_OK;
-  adding->more = sql_next(adding->bins, &result, doing, error);
-  return result;
-}
 
 static struct sums_row *add_run(struct sums *sums, sqlite3_stmt *run) {
   const bool counts = sqlite3_column_int(run, COUNTS) != 0, surplus = sqlite3_column_int(run, SURPLUS) != 0;
@@ -56,39 +57,31 @@ static struct sums_row *add_run(struct sums *sums, sqlite3_stmt *run) {
   return total;
 }
 
-/* The spectrum that the masses of the run have: *count bins. */
-static status make_bins(struct adding *adding, struct spectrum_bin_row bins[MOST_BINS], size_t *count,
-                        struct error *error) {
-  const void *bytes = sqlite3_column_blob(adding->runs, MASSES);
-  const size_t size = (size_t)sqlite3_column_bytes(adding->runs, MASSES);
-  if (size > adding->capacity) {
-    free(adding->masses);
-    adding->capacity = 0;
-    adding->masses = malloc(2 * size);
-    if (!adding->masses)
+/* The spectrum that the masses of the run have. */
+static status make_bins(struct copying *copying, struct error *error) {
+  const void *bytes = sqlite3_column_blob(copying->runs, MASSES);
+  const size_t size = (size_t)sqlite3_column_bytes(copying->runs, MASSES);
+  if (size > copying->capacity) {
+    free(copying->masses);
+    copying->capacity = 0;
+    copying->masses = malloc(2 * size);
+    if (!copying->masses)
       return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-    adding->capacity = 2 * size;
+    copying->capacity = 2 * size;
   }
   for (size_t i = 0; i < size / 8; i++) {
     uint64_t word;
     memcpy(&word, (const char *)bytes + 8 * i, sizeof word);
     word = le64toh(word);
-    memcpy(&adding->masses[i], &word, sizeof word);
+    memcpy(&copying->masses[i], &word, sizeof word);
   }
-  *count = spectrum_fill(size / 8, adding->masses, bins, MOST_BINS);
-  return STATUS_OK;
+  copying->count = spectrum_fill(size / 8, copying->masses, copying->bins, MOST_BINS);
+  return copying->count > MOST_BINS ? refuse(copying->last, error) : STATUS_OK;
 }
 
-/* Does `bins` stand on this row? */
-static bool is_row(const struct adding *adding, int64_t run, const struct spectrum_bin_row *bin) {
-  sqlite3_stmt *row = adding->bins;
-  return adding->more && sqlite3_column_int64(row, RUN) == run && sqlite3_column_int64(row, BIN) == bin->bin &&
-         sqlite3_column_int64(row, COUNT) == bin->count && sqlite3_column_double(row, MASS) == bin->mass;
-}
-
-static status add_bin(struct adding *adding, struct sums_row *total, const struct spectrum_bin_row *bin,
-                      struct error *error) {
-  struct sums_row *row = sums_at(adding->sums, total->key.point_id, total->key.results_version, bin->bin);
+static status add_bin(struct copying *copying, const struct spectrum_bin_row *bin, struct error *error) {
+  struct sums_row *total = copying->total;
+  struct sums_row *row = sums_at(copying->sums, total->key.point_id, total->key.results_version, bin->bin);
   if (!row)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   row->runs++;
@@ -100,92 +93,114 @@ static status add_bin(struct adding *adding, struct sums_row *total, const struc
   return STATUS_OK;
 }
 
-/* Compares the row that `bins` stands on with this bin of the run, adds it to the sums (total NULL: the run does not
- * count), and goes to the next row. */
-static status take_bin(struct adding *adding, int64_t run, const struct spectrum_bin_row *bin, struct sums_row *total,
-                       struct error *error) {
-  if (!is_row(adding, run, bin))
-    return refuse(run, error);
-  const status result = total ? add_bin(adding, total, bin, error) : STATUS_OK;
-  return result == STATUS_OK ? next_bin(adding, error) : result;
-}
-
-/* Rows of runs that are not there are passed over. */
-static status skip_to(struct adding *adding, int64_t run, struct error *error) {
-  status result = STATUS_OK;
-  while (result == STATUS_OK && adding->more && sqlite3_column_int64(adding->bins, RUN) < run)
-    result = next_bin(adding, error);
-  return result;
-}
-
-static void widen(struct adding *adding, const struct spectrum_bin_row *first, const struct spectrum_bin_row *last) {
-  if (first->bin < adding->lowest)
-    adding->lowest = first->bin;
-  if (last->bin > adding->highest)
-    adding->highest = last->bin;
-}
-
-/* Compares the rows of the run with its bins, and adds these. */
-static status take_bins(struct adding *adding, int64_t run, struct sums_row *total, struct error *error) {
-  struct spectrum_bin_row bins[MOST_BINS];
-  size_t count = 0;
-  status result = make_bins(adding, bins, &count, error);
-  if (result == STATUS_OK)
-    result = skip_to(adding, run, error);
-  if (result != STATUS_OK)
+/* The run that `runs` stands on: adds its bins to the sums. */
+static status take_run(struct copying *copying, struct error *error) {
+  copying->last = sqlite3_column_int64(copying->runs, RUN);
+  copying->counts = sqlite3_column_int(copying->runs, COUNTS) != 0;
+  copying->seen = 0;
+  copying->total = add_run(copying->sums, copying->runs);
+  if (!copying->total)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  status result = make_bins(copying, error);
+  copying->gathered += 1 + copying->count;
+  for (size_t i = 0; result == STATUS_OK && copying->counts && i < copying->count; i++)
+    result = add_bin(copying, &copying->bins[i], error);
+  if (result != STATUS_OK || copying->count == 0)
     return result;
-  if (count > MOST_BINS)
-    return refuse(run, error);
-
-  const bool counts = sqlite3_column_int(adding->runs, COUNTS) != 0;
-  for (size_t i = 0; result == STATUS_OK && i < count; i++)
-    result = take_bin(adding, run, &bins[i], counts ? total : NULL, error);
-  if (result != STATUS_OK)
-    return result;
-  if (adding->more && sqlite3_column_int64(adding->bins, RUN) == run)
-    return refuse(run, error);
-  if (count > 0)
-    widen(adding, &bins[0], &bins[count - 1]);
-  adding->gathered += count;
+  if (copying->bins[0].bin < copying->lowest)
+    copying->lowest = copying->bins[0].bin;
+  if (copying->bins[copying->count - 1].bin > copying->highest)
+    copying->highest = copying->bins[copying->count - 1].bin;
   return STATUS_OK;
 }
 
-/* The run that `runs` stands on, with its bins. */
-static status take_run(struct adding *adding, struct error *error) {
-  struct sums_row *total = add_run(adding->sums, adding->runs);
-  if (!total)
+/* Takes the runs up to this one. Those before it must have had all their rows. */
+static status go_to(struct copying *copying, int64_t run, struct error *error) {
+  status result = STATUS_OK;
+  while (result == STATUS_OK && copying->last < run) {
+    if (copying->seen < copying->count)
+      return refuse(copying->last, error);
+    if (!sql_next(copying->runs, &result, doing, error))
+      return result;
+    result = take_run(copying, error);
+  }
+  return result;
+}
+
+/* is_of_masses(run_id, bin, count, mass): is this the next row of the run's spectrum? Fails otherwise. */
+static void is_of_masses(sqlite3_context *context, int count, sqlite3_value **values) {
+  struct copying *copying = sqlite3_user_data(context);
+  const int64_t run = sqlite3_value_int64(values[0]);
+  (void)count;
+  if (run != copying->last)
+    copying->result = go_to(copying, run, &copying->error);
+  const struct spectrum_bin_row *bin = &copying->bins[copying->seen];
+  if (copying->result == STATUS_OK &&
+      (run != copying->last || copying->seen >= copying->count || sqlite3_value_int64(values[1]) != bin->bin ||
+       sqlite3_value_int64(values[2]) != bin->count || sqlite3_value_double(values[3]) != bin->mass))
+    copying->result = refuse(run, &copying->error);
+  copying->seen++;
+  if (copying->result == STATUS_OK)
+    sqlite3_result_int(context, 1);
+  else
+    sqlite3_result_error_code(context, SQLITE_ABORT);
+}
+
+/* The runs first..last and their spectra. */
+static status copy_some(struct copying *copying, int64_t first, int64_t last, struct error *error) {
+  sqlite3_bind_int64(copying->rows, 1, first);
+  sqlite3_bind_int64(copying->rows, 2, last);
+  status result = sql_run(copying->rows, doing, error);
+  if (copying->result != STATUS_OK && error)
+    *error = copying->error;
+  if (copying->result != STATUS_OK)
+    return copying->result;
+  if (result == STATUS_OK)
+    result = go_to(copying, last, error);
+  if (result == STATUS_OK && copying->seen < copying->count)
+    return refuse(copying->last, error);
+  if (result != STATUS_OK || copying->gathered < SUMS_AT_ONCE)
+    return result;
+  copying->gathered = 0;
+  return sums_write(copying->sums, sqlite3_db_handle(copying->runs), error);
+}
+
+static status begin(struct copying *copying, sqlite3 *db, int64_t first, struct error *error) {
+  const int code = sqlite3_create_function(db, "is_of_masses", 4, SQLITE_UTF8 | SQLITE_DIRECTONLY, copying,
+                                           is_of_masses, NULL, NULL);
+  if (code != SQLITE_OK)
+    return sql_fail(db, code, doing, error);
+  status result = sql_prepare(db, of_runs, &copying->runs, doing, error);
+  if (result == STATUS_OK)
+    result = sql_prepare(db, copy_rows, &copying->rows, doing, error);
+  sqlite3_bind_int64(copying->runs, 1, first);
+  return result;
+}
+
+static status copy_all(struct copying *copying, sqlite3 *db, int64_t first, int64_t last, struct error *error) {
+  status result = begin(copying, db, first, error);
+  for (; result == STATUS_OK && first <= last; first += RUNS_AT_ONCE)
+    result = copy_some(copying, first, last - first < RUNS_AT_ONCE ? last : first + RUNS_AT_ONCE - 1, error);
+  if (result == STATUS_OK)
+    result = sums_write(copying->sums, db, error);
+  sqlite3_finalize(copying->runs);
+  sqlite3_finalize(copying->rows);
+  sqlite3_create_function(db, "is_of_masses", 4, SQLITE_UTF8, NULL, NULL, NULL, NULL);
+  free(copying->masses);
+  if (result == STATUS_OK && copying->lowest <= copying->highest)
+    return sums_cover_bins(db, copying->lowest, copying->highest, error);
+  return result;
+}
+
+status sums_runs_copy(struct sums *sums, sqlite3 *db, int64_t first, int64_t last, struct error *error) {
+  struct copying *copying = calloc(1, sizeof *copying);
+  if (!copying)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  const status result = take_bins(adding, sqlite3_column_int64(adding->runs, RUN), total, error);
-  adding->gathered++;
-  if (result != STATUS_OK || adding->gathered < MOST_AT_ONCE)
-    return result;
-  adding->gathered = 0;
-  return sums_write(adding->sums, sqlite3_db_handle(adding->runs), error);
-}
-
-static status begin(struct adding *adding, sqlite3 *db, int64_t first, struct error *error) {
-  status result = sql_prepare(db, of_runs, &adding->runs, doing, error);
-  if (result == STATUS_OK)
-    result = sql_prepare(db, of_bins, &adding->bins, doing, error);
-  if (result != STATUS_OK)
-    return result;
-  sqlite3_bind_int64(adding->runs, 1, first);
-  sqlite3_bind_int64(adding->bins, 1, first);
-  return next_bin(adding, error);
-}
-
-status sums_runs_add(struct sums *sums, sqlite3 *db, int64_t first, struct error *error) {
-  struct adding adding = {.sums = sums, .lowest = INT64_MAX, .highest = INT64_MIN};
-  status result = begin(&adding, db, first, error);
-  while (sql_next(adding.runs, &result, doing, error))
-    result = take_run(&adding, error);
-  sqlite3_finalize(adding.runs);
-  sqlite3_finalize(adding.bins);
-  free(adding.masses);
-  if (result == STATUS_OK)
-    result = sums_write(sums, db, error);
-  if (result == STATUS_OK && adding.lowest <= adding.highest)
-    result = sums_cover_bins(db, adding.lowest, adding.highest, error);
+  copying->sums = sums;
+  copying->lowest = INT64_MAX;
+  copying->highest = INT64_MIN;
+  const status result = copy_all(copying, db, first, last, error);
+  free(copying);
   if (result != STATUS_OK)
     sums_forget(sums);
   return result;
