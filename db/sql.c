@@ -9,6 +9,10 @@
 #include "schemas/text.h"
 
 static const char *remedy(int code) {
+  if (code == SQLITE_READONLY_ROLLBACK)
+    return "A file with -journal after the store's name lies beside it: another program ended while it wrote the "
+           "store, or the journal is another store's. Open the store with that program once more; or, if it is "
+           "another store's, move it away.";
   switch (code & 0xff) {
   case SQLITE_FULL:
     return "The disk is full (or a quota or file size limit is reached). What was committed is safe; free some space "

@@ -9,9 +9,9 @@
 #include "db/store/sums.h"
 #include "db/store/views.h"
 
-/* The file's application id, version, and how many tables, indexes and views it has. */
+/* The file's application id, version, how many tables, indexes and views it has, and whether its texts are UTF-8. */
 struct header {
-  int64_t application, version, things;
+  int64_t application, version, things, utf8;
 };
 
 static status read_header(sqlite3 *db, struct header *header, struct error *error) {
@@ -19,6 +19,9 @@ static status read_header(sqlite3 *db, struct header *header, struct error *erro
   if (result != STATUS_OK)
     return result;
   result = sql_integer(db, "PRAGMA user_version", 0, &header->version, error);
+  if (result != STATUS_OK)
+    return result;
+  result = sql_integer(db, "SELECT encoding = 'UTF-8' FROM pragma_encoding", 0, &header->utf8, error);
   if (result != STATUS_OK)
     return result;
   return sql_integer(db, "SELECT count(*) FROM sqlite_schema", 0, &header->things, error);
@@ -52,6 +55,12 @@ status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error
                        "%s was written by a newer clast (store version %lld; this program knows up to %d). Use that "
                        "newer program; the file did not change.",
                        path, (long long)header.version, SCHEMA_VERSION);
+  if (!header.utf8)
+    return status_fail(
+        error, STATUS_CONTENT,
+        "%s keeps its texts in UTF-16, but stores of clast are in UTF-8: another program made or changed "
+        "this file. It did not change now.",
+        path);
   *version = (int)header.version;
   return guard_schema(db, path, *version, error);
 }

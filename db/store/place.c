@@ -18,6 +18,15 @@ const char *place_refused(const char *path) {
   return NULL;
 }
 
+status place_is_file(const char *path, struct error *error) {
+  struct stat file;
+  if (stat(path, &file) != 0 || S_ISREG(file.st_mode))
+    return STATUS_OK;
+  if (S_ISDIR(file.st_mode))
+    return status_fail(error, STATUS_IO, "%s is a folder: name the store's file.", path);
+  return status_fail(error, STATUS_IO, "%s is a pipe, socket or device: name the store's file.", path);
+}
+
 status place_check(sqlite3 *db, const char *path, struct error *error) {
   int moved = 0;
   if (sqlite3_file_control(db, "main", SQLITE_FCNTL_HAS_MOVED, &moved) != SQLITE_OK || !moved)

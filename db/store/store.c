@@ -177,13 +177,16 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
     warning[0] = '\0';
   if (place_refused(path))
     return status_fail(error, STATUS_USAGE, "%s: %s", path, place_refused(path));
+  status result = place_is_file(path, error);
+  if (result != STATUS_OK)
+    return result;
   struct store *store = allocate(path);
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   store->writer = true;
   const bool existed = access(path, F_OK) == 0;
   store->lacks_wal = place_lacks_wal(path);
-  status result = lock_take(path, &store->lock, &held, error);
+  result = lock_take(path, &store->lock, &held, error);
   if (result != STATUS_OK) {
     release(store);
     return held ? refuse_held(path, error) : result;
@@ -236,18 +239,18 @@ static status open_readable(struct store *store, struct error *error) {
 }
 
 status store_open_reader(const char *path, struct store **out, struct error *error) {
-  struct stat file;
   *out = NULL;
   if (access(path, F_OK) != 0)
     return status_fail(error, STATUS_MISSING, "%s: there is no such store. Check the name and the current folder.",
                        path);
-  if (stat(path, &file) == 0 && S_ISDIR(file.st_mode))
-    return status_fail(error, STATUS_IO, "%s is a folder: name the store's file.", path);
+  status result = place_is_file(path, error);
+  if (result != STATUS_OK)
+    return result;
   struct store *store = allocate(path);
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   store->lacks_wal = place_lacks_wal(path);
-  const status result = open_readable(store, error);
+  result = open_readable(store, error);
   if (result == STATUS_OK)
     *out = store;
   else

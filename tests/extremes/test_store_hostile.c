@@ -9,7 +9,10 @@
 
 #include <sqlite3.h>
 
+#include <sys/stat.h>
+
 #include "db/store/internal.h"
+#include "db/store/schema.h"
 #include "tests/support/store_checks.h"
 
 /* Changes a store as any program could; writable_schema lets SQL replace the text of a table, as an editor of bytes
@@ -164,6 +167,64 @@ static void index_expressions_are_refused(void **state) {
   refused(path, "once");
 }
 
+/* SQLite cannot attach a file of another encoding: a merge from it, and into it, would fail in the middle. */
+static void utf16_is_refused(void **state) {
+  (void)state;
+  char path[64], text[200];
+  sqlite3 *db = NULL;
+  snprintf(text, sizeof text,
+           "PRAGMA encoding = 'UTF-16le'; CREATE TABLE a (b); DROP TABLE a; PRAGMA application_id = %d; PRAGMA "
+           "user_version = %d",
+           SCHEMA_APPLICATION_ID, SCHEMA_VERSION);
+  assert_int_equal(sqlite3_open(fixture_path(path, "hostile-utf16"), &db), SQLITE_OK);
+  assert_int_equal(sqlite3_exec(db, text, NULL, NULL, NULL), SQLITE_OK);
+  sqlite3_close(db);
+  refused(path, "UTF-16");
+}
+
+/* To open a pipe waits until somebody writes to it. */
+static void pipes_and_devices_are_no_stores(void **state) {
+  (void)state;
+  char pipe[64];
+  struct store *store = NULL;
+  assert_int_equal(mkfifo(fixture_path(pipe, "hostile-pipe"), 0600), 0);
+  const char *const paths[] = {pipe, "/dev/null"};
+  for (int i = 0; i < 2; i++) {
+    assert_int_equal(store_open_reader(paths[i], &store, &error), STATUS_IO);
+    assert_non_null(strstr(error.message, "is a pipe, socket or device"));
+    assert_int_equal(store_open_writer(paths[i], &store, NULL, 0, &error), STATUS_IO);
+    assert_non_null(strstr(error.message, "is a pipe, socket or device"));
+  }
+  unlink(pipe);
+}
+
+/* The journal of another store is not read into this one; the message says why it cannot be read. */
+static void journal_of_another_store_is_named(void **state) {
+  (void)state;
+  char path[64], other[64], text[300];
+  struct store *store = NULL;
+  sqlite3 *db = NULL;
+  populated(path, "hostile-journal");
+  populated(other, "hostile-other");
+  assert_int_equal(sqlite3_open(other, &db), SQLITE_OK);
+  assert_int_equal(sqlite3_exec(db,
+                                "PRAGMA journal_mode = DELETE; PRAGMA cache_size = 2; BEGIN; UPDATE run SET rank = 9; "
+                                "UPDATE spectrum SET count = 9; UPDATE point_spectrum SET runs = 9",
+                                NULL, NULL, NULL),
+                   SQLITE_OK);
+  sqlite3_db_cacheflush(db);
+  snprintf(text, sizeof text, "cp %s-journal %s-journal", other, path);
+  assert_int_equal(system(text), 0);
+  sqlite3_close(db);
+  assert_int_equal(store_open_reader(path, &store, &error), STATUS_IO);
+  assert_non_null(strstr(error.message, "lies beside it"));
+  snprintf(text, sizeof text, "%s-journal", path);
+  unlink(text);
+  OK(store_open_reader(path, &store, &error));
+  OK(store_check(store, NULL, NULL, &error));
+  OK(store_close(store, &error));
+}
+
 static void collect(void *context, const char *text) {
   char *all = context;
   snprintf(all + strlen(all), 8000 - strlen(all), "%.300s\n", text);
@@ -299,6 +360,9 @@ int main(void) {
       cmocka_unit_test(names_are_names),
       cmocka_unit_test(generated_columns_are_refused),
       cmocka_unit_test(index_expressions_are_refused),
+      cmocka_unit_test(utf16_is_refused),
+      cmocka_unit_test(pipes_and_devices_are_no_stores),
+      cmocka_unit_test(journal_of_another_store_is_named),
       cmocka_unit_test(huge_and_odd_rows_are_found),
       cmocka_unit_test(corrupt_pages_are_errors),
   };
