@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The fuzz targets: documents, units, stores, fields files, measured spectra, measurements of a fit, shape files. Short form: many
-# variations of the seed corpus, in this build. Long form (CLAST_FULL=1): libFuzzer with sanitizers, a minute each, in a build of its own.
+# The fuzz targets: documents, units, stores, fields files, measured spectra, measurements of a fit, shape files. Short
+# form: many variations of the seed corpus, in this build. Long form (CLAST_FULL=1): libFuzzer with sanitizers, a minute
+# each, in a build of its own.
 set -euo pipefail
 build=$1 source=$2
 declare -A variations=([document]=1000 [unit]=1000 [store]=60 [fields]=1000 [measured]=2000 [observed]=1000 [shape]=1000)
