@@ -33,6 +33,7 @@ struct engine_kind {
   char *(*describe)(const void *inputs);
   size_t (*memory)(const void *inputs); /* bytes a run will need, before anything is allocated */
   double (*work)(const void *inputs); /* a-priori cost in arbitrary units (grain- or particle-steps), for scheduling */
+  int64_t *(*threads)(void *inputs);  /* the input that says how many threads one run takes. NULL: always one */
 
   /* Builds the initial state; inputs are copied. On failure *run is NULL. STATUS_MEMORY or STATUS_CONTENT. */
   status (*prepare)(const void *inputs, uint64_t seed, void **run, struct error *error);

@@ -41,6 +41,15 @@ static status step(const struct engine_kind *kind, void *state, double until, st
   return code;
 }
 
+/* The scene on one thread: the processor time of several holds the time that they wait for each other. Owned. NULL: no
+ * memory. */
+static struct scene *on_one_thread(const struct scene *scene) {
+  struct scene *copy = scene_copy(scene);
+  if (copy && copy->kind->threads)
+    *copy->kind->threads(copy->inputs) = 1;
+  return copy;
+}
+
 status pilot_try(const struct scene *scene, uint64_t seed, double seconds, struct pilot_run *run, struct error *error) {
   const struct engine_kind *kind = scene->kind;
   void *state = NULL, *result = NULL;
@@ -48,7 +57,11 @@ status pilot_try(const struct scene *scene, uint64_t seed, double seconds, struc
   struct outcome outcome;
   const double begin = clock_cpu_s();
   *run = (struct pilot_run){0};
-  status code = kind->prepare(scene->inputs, seed, &state, error);
+  struct scene *alone = on_one_thread(scene);
+  if (!alone)
+    return status_fail(error, STATUS_MEMORY, "no memory for the trial's scene");
+  status code = kind->prepare(alone->inputs, seed, &state, error);
+  scene_free(alone);
   if (code != STATUS_OK)
     return code;
   run->prepare_s = clock_cpu_s() - begin;

@@ -18,7 +18,7 @@ struct pilot_run {
   size_t marks;
 };
 
-/* Runs for at most `seconds`. A run that cannot be prepared is an error. */
+/* Runs for at most `seconds`, on one thread. A run that cannot be prepared is an error. */
 status pilot_try(const struct scene *scene, uint64_t seed, double seconds, struct pilot_run *run, struct error *error);
 
 /* Processor time of the whole run that `piece` is the beginning of, s, from a whole run of a coarser scene: both take

@@ -150,6 +150,8 @@ static status try_run(const struct campaign *campaign, const struct looking *loo
   if (code != STATUS_OK)
     goto cleanup;
   plan->trial_made = true;
+  if (looking->costliest->kind->threads)
+    plan->threads = (double)*looking->costliest->kind->threads(looking->costliest->inputs);
   plan->trial_finished = plan->trial_whole = run->finished;
   plan->trial_progress = run->finished ? 1 : run->progress;
   *fragments = run->fragments;
@@ -201,15 +203,20 @@ static void add_up(const struct campaign *campaign, const struct plan_options *o
   }
   plan->cpu_s_least = (double)(plan->runs_least - plan->runs_there) * (plan->run_s_mean + SLOT_S + MANAGER_S);
   plan->cpu_s_most = (double)(plan->runs_most - plan->runs_there) * (plan->run_s_mean + SLOT_S + MANAGER_S);
-  plan->wall_s_least = wall_time(plan->runs_least - plan->runs_there, plan->run_s_mean, options->slots);
-  plan->wall_s_most = wall_time(plan->runs_most - plan->runs_there, plan->run_s_mean, options->slots);
+  const double run_wall_s = plan->run_s_mean / plan->threads;
+  plan->wall_s_least = wall_time(plan->runs_least - plan->runs_there, run_wall_s, options->slots);
+  plan->wall_s_most = wall_time(plan->runs_most - plan->runs_there, run_wall_s, options->slots);
   double kept = kept_runs(campaign, plan);
   plan->fields_bytes = kept > 0 ? kept * plan->memory_most : 0;
 }
 
 status plan_make(const struct campaign *campaign, const struct plan_options *options, struct plan *plan,
                  struct error *error) {
-  *plan = (struct plan){.run_s_mean = NOTHING, .run_s_most = NOTHING, .disk_bytes = NOTHING, .share_of_most = NOTHING};
+  *plan = (struct plan){.threads = 1,
+                        .run_s_mean = NOTHING,
+                        .run_s_most = NOTHING,
+                        .disk_bytes = NOTHING,
+                        .share_of_most = NOTHING};
   struct looking looking = {0};
   struct store *store = NULL;
   struct error ignored = {0};

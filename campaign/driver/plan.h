@@ -25,6 +25,7 @@ struct plan {
       run_s_most; /* per run; NaN without trial and without finished runs. An upper bound unless finished */
   double cpu_s_least, cpu_s_most;   /* of what is still to do */
   double wall_s_least, wall_s_most; /* the same over the slots */
+  double threads;                   /* that share the time of a run: of the most expensive point. 1 without trial */
   double memory_most;               /* bytes of one run, the largest */
   double disk_bytes;                /* store growth for runs_most; NaN without trial */
   double fields_bytes;              /* HDF5 files to keep; NaN when not known */

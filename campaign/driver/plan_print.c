@@ -63,7 +63,10 @@ static void print_times(const struct plan *plan, int slots, FILE *out) {
   if (plan->runs_most != plan->runs_least)
     fprintf(out, " to %s", b);
   progress_duration(plan->cpu_s_most, a, sizeof a);
-  fprintf(out, " on %d slot%s (%s of processor time)\n", slots, slots == 1 ? "" : "s", a);
+  fprintf(out, " on %d slot%s", slots, slots == 1 ? "" : "s");
+  if (plan->threads > 1)
+    fprintf(out, " of %.0f threads", plan->threads);
+  fprintf(out, " (%s of processor time)\n", a);
 }
 
 static void print_bytes(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {

@@ -33,6 +33,10 @@ static double work(const void *inputs) {
   return sph_describe_work(inputs);
 }
 
+static int64_t *threads(void *inputs) {
+  return &((struct sph_inputs *)inputs)->fidelity.threads;
+}
+
 static status prepare(const void *inputs, uint64_t seed, void **run, struct error *error) {
   struct sph_run *made;
   status code = sph_run_create(inputs, seed, &made, error);
@@ -111,6 +115,7 @@ const struct engine_kind sph_engine = {
     .describe = describe,
     .memory = memory,
     .work = work,
+    .threads = threads,
     .prepare = prepare,
     .step = step,
     .progress = progress,

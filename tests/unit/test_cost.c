@@ -11,6 +11,7 @@
 #include "analysis/analysis.h"
 #include "campaign/driver/cost.h"
 #include "campaign/driver/pilot.h"
+#include "campaign/driver/plan.h"
 
 #define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
@@ -91,9 +92,33 @@ static void a_run_told_by_its_beginning(void **state) {
   scene_free(scene);
 }
 
+/* A run of two threads takes half of its processor time; the trial itself runs on one. */
+static void threads_share_the_time(void **state) {
+  (void)state;
+  static const char
+      text[] = "name: threads\nscene: basalt-sphere\nset: {fidelity.particles: 300, fidelity.threads: 2}\n"
+               "seeds: {per_point: 1}\n";
+  struct campaign *campaign = NULL;
+  struct plan plan;
+  struct error error = {0};
+  FILE *file = fopen("threads.yaml", "w");
+  assert_non_null(file);
+  assert_true(fputs(text, file) >= 0);
+  assert_int_equal(fclose(file), 0);
+  assert_int_equal(campaign_load("threads.yaml", &campaign, &error), STATUS_OK);
+  const struct plan_options options = {.store_path = "no-such-store.db", .slots = 1};
+  assert_int_equal(plan_make(campaign, &options, &plan, &error), STATUS_OK);
+  NEAR(plan.threads, 2, 0);
+  assert_true(plan.wall_s_least > 0.49 * plan.cpu_s_least && plan.wall_s_least < 0.6 * plan.cpu_s_least);
+  plan_clear(&plan);
+  campaign_free(campaign);
+  remove("threads.yaml");
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(time_left), cmocka_unit_test(whole_runs),
-                                     cmocka_unit_test(a_run_told_by_its_beginning)};
+                                     cmocka_unit_test(a_run_told_by_its_beginning),
+                                     cmocka_unit_test(threads_share_the_time)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
