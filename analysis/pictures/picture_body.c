@@ -145,8 +145,7 @@ status picture_body_read(const char *path, struct picture_body *body, struct err
 
   struct columns columns = {0};
   read_columns(file, &columns);
-  snapshot_read_close(file);
-  bool good = take_cells(&columns, body) && take_cracks(&columns, body);
+  bool good = snapshot_read_close(file) && take_cells(&columns, body) && take_cracks(&columns, body);
   free_columns(&columns);
   if (good)
     return STATUS_OK;

@@ -75,7 +75,8 @@ status picture_cloud_read(const char *path, struct picture_cloud *cloud, struct 
   snapshot_read_integer(file, "run", "seed", &cloud->seed);
   if (!snapshot_read_real(file, "run", "time", &cloud->time))
     cloud->time = NAN;
-  snapshot_read_close(file);
+  if (!snapshot_read_close(file))
+    why = "HDF5 crashes on it";
   if (!why)
     return STATUS_OK;
 
@@ -86,6 +87,17 @@ status picture_cloud_read(const char *path, struct picture_cloud *cloud, struct 
 /* A name is one link: it leads to no other group. */
 static bool is_name(const char *name) {
   return strlen(name) < 40 && !strpbrk(name, "/.");
+}
+
+/* Closes the file after one column was read. */
+static status close_column(struct snapshot_read *file, const char *path, double **values, status code,
+                           struct error *error) {
+  if (snapshot_read_close(file))
+    return code;
+
+  free(*values);
+  *values = NULL;
+  return snapshot_read_refuse(path, error);
 }
 
 static status refuse_column(struct snapshot_read *file, const char *path, const char *name, struct error *error) {
@@ -118,8 +130,7 @@ status picture_cloud_read_column(const char *path, const struct picture_cloud *c
     free(read);
     code = refuse_column(file, path, name, error);
   }
-  snapshot_read_close(file);
-  return code;
+  return close_column(file, path, values, code, error);
 }
 
 status picture_cloud_read_axis(const char *path, const char *name, double **values, size_t *rows, char unit[32],
@@ -143,8 +154,7 @@ status picture_cloud_read_axis(const char *path, const char *name, double **valu
   else
     code = status_fail(error, STATUS_CONTENT,
                        "%s has no '%s' along the axis; it has distention, damage, pressure, velocity", path, name);
-  snapshot_read_close(file);
-  return code;
+  return close_column(file, path, values, code, error);
 }
 
 void picture_cloud_clear(struct picture_cloud *cloud) {

@@ -1,50 +1,165 @@
-/* Reading fields files with HDF5. */
+/* Reading fields files: a process of its own calls HDF5 and answers questions. If it dies, the file is damaged. */
 #include "analysis/pictures/snapshot_read.h"
 
 #include <errno.h>
-#include <hdf5.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_COMPRESSED = 1100 }; /* deflate's limit is 1032 : 1 */
+#include "analysis/pictures/snapshot_hdf5.h"
 
-struct snapshot_read {
-  hid_t file;
-  double bytes; /* the most that the file can hold if it is compressed */
-  H5E_auto2_t printing;
-  void *printing_to;
+enum { NAME_SIZE = 128 };
+
+enum what { HAS, ROWS, TEXT, REAL, INTEGER };
+
+struct question {
+  enum what what;
+  enum snapshot_read_kind kind;
+  size_t width;
+  char at[NAME_SIZE], name[NAME_SIZE];
 };
 
+/* The rows themselves come after it. */
+struct answer {
+  bool good;
+  size_t rows;
+  double real;
+  long long integer;
+  char text[SNAPSHOT_READ_TEXT];
+};
+
+struct snapshot_read {
+  pid_t child;
+  int line; /* a socket to the child */
+  bool lost;
+};
+
+/* ---- both sides */
+
+static bool put(int line, const void *bytes, size_t size) {
+  for (size_t done = 0; done < size;) {
+    ssize_t step = send(line, (const char *)bytes + done, size - done, MSG_NOSIGNAL);
+    if (step < 0 && errno != EINTR)
+      return false;
+    done += step > 0 ? (size_t)step : 0;
+  }
+  return true;
+}
+
+static bool get(int line, void *bytes, size_t size) {
+  for (size_t done = 0; done < size;) {
+    ssize_t step = recv(line, (char *)bytes + done, size - done, 0);
+    if (step == 0 || (step < 0 && errno != EINTR))
+      return false;
+    done += step > 0 ? (size_t)step : 0;
+  }
+  return true;
+}
+
+static size_t size_of_rows(size_t rows, size_t width) {
+  return rows * (width ? width : 1) * 8; /* double, int64_t */
+}
+
+/* ---- the child */
+
+static bool reply(int line, struct snapshot_hdf5 *file, const struct question *q) {
+  struct answer a = {0};
+  void *values = NULL;
+  switch (q->what) {
+  case HAS: a.good = snapshot_hdf5_has(file, q->at); break;
+  case ROWS:
+    values = snapshot_hdf5_rows(file, q->at, q->width, q->kind, &a.rows);
+    a.good = values;
+    break;
+  case TEXT: a.good = snapshot_hdf5_text(file, q->at, q->name, a.text, sizeof a.text); break;
+  case REAL: a.good = snapshot_hdf5_real(file, q->at, q->name, &a.real); break;
+  case INTEGER: a.good = snapshot_hdf5_integer(file, q->at, q->name, &a.integer); break;
+  }
+  bool sent = put(line, &a, sizeof a) && (!values || put(line, values, size_of_rows(a.rows, q->width)));
+  free(values);
+  return sent;
+}
+
+/* Answers until the parent closes its end. A crash ends this process at once, without the parent's handlers. */
+static _Noreturn void serve(int line, const char *path) {
+  const int crashes[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL};
+  for (size_t k = 0; k < sizeof crashes / sizeof *crashes; k++)
+    signal(crashes[k], SIG_DFL);
+  struct snapshot_hdf5 *file = snapshot_hdf5_open(path);
+  struct question question;
+  const struct answer opened = {.good = file};
+  bool going = put(line, &opened, sizeof opened) && file;
+  while (going && get(line, &question, sizeof question))
+    going = reply(line, file, &question);
+  _exit(0);
+}
+
+/* ---- the parent */
+
+/* False: the child is gone. Then all later questions get the same answer. */
+static bool listen_to(struct snapshot_read *f, void *bytes, size_t size) {
+  f->lost = f->lost || !get(f->line, bytes, size);
+  return !f->lost;
+}
+
+static bool ask(struct snapshot_read *f, struct question *q, const char *at, const char *name, struct answer *a) {
+  if (f->lost || strlen(at) >= sizeof q->at || strlen(name) >= sizeof q->name)
+    return false;
+  memcpy(q->at, at, strlen(at) + 1);
+  memcpy(q->name, name, strlen(name) + 1);
+  f->lost = !put(f->line, q, sizeof *q);
+  return listen_to(f, a, sizeof *a) && a->good;
+}
+
+static struct snapshot_read *start(const char *path) {
+  int ends[2];
+  struct snapshot_read *f = calloc(1, sizeof *f);
+  if (!f || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends)) {
+    free(f);
+    return NULL;
+  }
+  f->line = ends[0];
+  f->child = fork();
+  if (f->child == 0) {
+    close(ends[0]);
+    serve(ends[1], path);
+  }
+  close(ends[1]);
+  if (f->child > 0)
+    return f;
+  close(ends[0]);
+  free(f);
+  return NULL;
+}
+
 status snapshot_read_open(const char *path, struct snapshot_read **out, struct error *error) {
-  hsize_t size = 0;
+  struct answer opened;
   *out = NULL;
   if (access(path, R_OK))
     return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "cannot read %s: %s", path,
                        strerror(errno));
-  struct snapshot_read *f = calloc(1, sizeof *f);
+  struct snapshot_read *f = start(path);
   if (!f)
-    return status_fail(error, STATUS_MEMORY, "no memory to read %s", path);
-  H5dont_atexit(); /* its own exit handler prints when a damaged file could not be closed */
-  H5Eget_auto2(H5E_DEFAULT, &f->printing, &f->printing_to);
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 prints nothing: the status tells the error */
-  f->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (f->file < 0 || H5Fget_filesize(f->file, &size) < 0) {
+    return status_fail(error, STATUS_MEMORY, "no memory or no process to read %s", path);
+  if (!listen_to(f, &opened, sizeof opened) || !opened.good) {
     snapshot_read_close(f);
     return snapshot_read_refuse(path, error);
   }
-  f->bytes = (double)size * MOST_COMPRESSED;
   *out = f;
   return STATUS_OK;
 }
 
-void snapshot_read_close(struct snapshot_read *f) {
-  if (!f)
-    return;
-  if (f->file >= 0)
-    H5Fclose(f->file);
-  H5Eset_auto2(H5E_DEFAULT, f->printing, f->printing_to);
+bool snapshot_read_close(struct snapshot_read *f) {
+  bool whole = !f->lost;
+  shutdown(f->line, SHUT_RDWR); /* also where another child holds a copy of this end */
+  close(f->line);
+  while (waitpid(f->child, NULL, 0) < 0 && errno == EINTR)
+    ;
   free(f);
+  return whole;
 }
 
 status snapshot_read_refuse(const char *path, struct error *error) {
@@ -55,120 +170,50 @@ status snapshot_read_refuse(const char *path, struct error *error) {
 }
 
 bool snapshot_read_has(struct snapshot_read *f, const char *name) {
-  return H5Lexists(f->file, name, H5P_DEFAULT) > 0;
-}
-
-/* Only numbers stored in this very file: no links to other files, no external or virtual storage. */
-static bool plain(hid_t set) {
-  hid_t type = H5Dget_type(set), layout = H5Dget_create_plist(set);
-  H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
-  bool good = (class == H5T_INTEGER || class == H5T_FLOAT) && H5Tget_size(type) <= 8 && layout >= 0 &&
-              H5Pget_external_count(layout) == 0 && H5Pget_layout(layout) != H5D_VIRTUAL;
-  if (layout >= 0)
-    H5Pclose(layout);
-  if (type >= 0)
-    H5Tclose(type);
-  return good;
-}
-
-/* Rows of a data set that is plain numbers of the wanted shape; -1: it is not, or it has too many. */
-static int64_t count_rows(hid_t set, size_t width) {
-  hsize_t size[2] = {0, 0};
-  hid_t space = H5Dget_space(set);
-  if (space < 0)
-    return -1;
-  int rank = width ? 2 : 1;
-  bool good = plain(set) && H5Sget_simple_extent_ndims(space) == rank &&
-              H5Sget_simple_extent_dims(space, size, NULL) == rank && size[0] <= SNAPSHOT_READ_LARGEST &&
-              (!width || size[1] == width);
-  H5Sclose(space);
-  return good ? (int64_t)size[0] : -1;
-}
-
-static void *read_rows(const struct snapshot_read *f, hid_t set, enum snapshot_read_kind kind, size_t count) {
-  if ((double)count > f->bytes)
-    return NULL;
-  void *values = malloc((count ? count : 1) * 8);
-  if (!values || count == 0)
-    return values;
-  hid_t type = kind == SNAPSHOT_READ_REAL ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
-  if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0)
-    return values;
-  free(values);
-  return NULL;
+  struct answer a;
+  return ask(f, &(struct question){.what = HAS}, name, "", &a);
 }
 
 void *snapshot_read_rows(struct snapshot_read *f, const char *name, size_t width, enum snapshot_read_kind kind,
                          size_t *rows) {
+  struct answer a;
   *rows = 0;
-  H5L_info_t link;
-  if (H5Lget_info(f->file, name, &link, H5P_DEFAULT) < 0 || link.type == H5L_TYPE_EXTERNAL)
+  if (!ask(f, &(struct question){.what = ROWS, .width = width, .kind = kind}, name, "", &a))
     return NULL;
-  hid_t set = H5Dopen2(f->file, name, H5P_DEFAULT);
-  if (set < 0)
+  void *values = a.rows <= SNAPSHOT_READ_LARGEST ? malloc(size_of_rows(a.rows, width) + 1) : NULL;
+  if (!values || !listen_to(f, values, size_of_rows(a.rows, width))) {
+    f->lost = true; /* what comes next on the line is no answer */
+    free(values);
     return NULL;
-  int64_t count = count_rows(set, width);
-  void *values = count < 0 ? NULL : read_rows(f, set, kind, (size_t)count * (width ? width : 1));
-  if (values)
-    *rows = (size_t)count;
-  H5Dclose(set);
+  }
+  *rows = a.rows;
   return values;
 }
 
-/* The attribute when it is a scalar of this class and of at most `most` bytes; else -1. */
-static hid_t open_attribute(struct snapshot_read *f, const char *at, const char *name, H5T_class_t class, size_t most) {
-  if (H5Lexists(f->file, at, H5P_DEFAULT) <= 0)
-    return -1;
-  hid_t id = H5Aopen_by_name(f->file, at, name, H5P_DEFAULT, H5P_DEFAULT);
-  if (id < 0)
-    return -1;
-  hid_t type = H5Aget_type(id), space = H5Aget_space(id);
-  bool good = type >= 0 && space >= 0 && H5Tget_class(type) == class && H5Tget_size(type) <= most &&
-              H5Sget_simple_extent_npoints(space) == 1 && (class != H5T_STRING || H5Tis_variable_str(type) == 0);
-  if (space >= 0)
-    H5Sclose(space);
-  if (type >= 0)
-    H5Tclose(type);
-  if (good)
-    return id;
-  H5Aclose(id);
-  return -1;
-}
-
 bool snapshot_read_text(struct snapshot_read *f, const char *at, const char *name, char *text, size_t size) {
-  enum { LONGEST = 65536 };
+  struct answer a;
   text[0] = 0;
-  hid_t id = open_attribute(f, at, name, H5T_STRING, LONGEST);
-  if (id < 0)
+  if (!ask(f, &(struct question){.what = TEXT}, at, name, &a))
     return false;
-  hid_t type = H5Aget_type(id);
-  size_t length = H5Tget_size(type);
-  char *whole = calloc(length + 1, 1);
-  bool good = whole && H5Aread(id, type, whole) >= 0;
-  if (good) {
-    size_t kept = strlen(whole) < size ? strlen(whole) : size - 1;
-    memcpy(text, whole, kept);
-    text[kept] = 0;
-  }
-  free(whole);
-  H5Tclose(type);
-  H5Aclose(id);
-  return good;
-}
-
-static bool number(struct snapshot_read *f, const char *at, const char *name, H5T_class_t class, hid_t type,
-                   void *value) {
-  hid_t id = open_attribute(f, at, name, class, 8);
-  bool good = id >= 0 && H5Aread(id, type, value) >= 0;
-  if (id >= 0)
-    H5Aclose(id);
-  return good;
+  size_t length = strnlen(a.text, sizeof a.text);
+  size_t kept = length < size ? length : size - 1;
+  memcpy(text, a.text, kept);
+  text[kept] = 0;
+  return true;
 }
 
 bool snapshot_read_real(struct snapshot_read *f, const char *at, const char *name, double *value) {
-  return number(f, at, name, H5T_FLOAT, H5T_NATIVE_DOUBLE, value);
+  struct answer a;
+  if (!ask(f, &(struct question){.what = REAL}, at, name, &a))
+    return false;
+  *value = a.real;
+  return true;
 }
 
 bool snapshot_read_integer(struct snapshot_read *f, const char *at, const char *name, long long *value) {
-  return number(f, at, name, H5T_INTEGER, H5T_NATIVE_LLONG, value);
+  struct answer a;
+  if (!ask(f, &(struct question){.what = INTEGER}, at, name, &a))
+    return false;
+  *value = a.integer;
+  return true;
 }
