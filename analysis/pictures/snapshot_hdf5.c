@@ -18,6 +18,7 @@ struct snapshot_hdf5 *snapshot_hdf5_open(const char *path) {
   if (!f)
     return NULL;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 prints nothing: the answer tells the error */
+  H5PLset_loading_state(0);              /* a file does not choose libraries to load: its unknown filters are errors */
   f->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (f->file >= 0 && H5Fget_filesize(f->file, &size) >= 0) {
     f->bytes = (double)size * MOST_COMPRESSED;
