@@ -19,6 +19,8 @@ static const char lacks_wal_text[] =
     "was copied without its -wal file while it was being written: what that file held is missing here. Copy both "
     "files, or make a copy with `clast export`.";
 
+enum { EMPTY_STORE = 4096 }; /* bytes: SQLite's head of a file, in its first page, without any table */
+
 static struct store *allocate(const char *path) {
   struct store *store = calloc(1, sizeof *store);
   if (!store)
@@ -105,23 +107,6 @@ static bool is_partial_copy(const struct store *store, int version) {
   return sql_integer(store->db, "SELECT count(*) FROM holder", 0, &holders, NULL) == STATUS_OK && holders > 0;
 }
 
-static status use_wal(struct store *store, struct error *error) {
-  return sql_execute(store->db, "PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 4000", "opening for writing",
-                     error);
-}
-
-/* Tables first: a file in WAL mode that has none is taken for a copy without its -wal file. */
-static status create_tables(struct store *store, struct error *error) {
-  const status result = migrate_bring_forward(store->db, store->path, -1, error);
-  return result == STATUS_OK ? use_wal(store, error) : result;
-}
-
-/* WAL mode first: readers never meet a journal that a kill left behind, which they could not undo. */
-static status bring_forward(struct store *store, int version, struct error *error) {
-  const status result = use_wal(store, error);
-  return result == STATUS_OK ? migrate_bring_forward(store->db, store->path, version, error) : result;
-}
-
 /* The file is locked: opens it, brings it forward and reads what a writer must know. */
 static status open_locked(struct store *store, struct error *error) {
   int version = -1;
@@ -133,22 +118,25 @@ static status open_locked(struct store *store, struct error *error) {
     return result;
   store->lacks_wal = is_partial_copy(store, version);
   result = sql_execute(store->db,
-                       "PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA temp_store = MEMORY; "
-                       "PRAGMA cache_size = -32768",
+                       "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; "
+                       "PRAGMA temp_store = MEMORY; PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
                        "opening for writing", error);
   if (result != STATUS_OK)
     return result;
-  result = version < 0 ? create_tables(store, error) : bring_forward(store, version, error);
-  if (result != STATUS_OK)
-    return result;
-  result = write_holder(store, error);
+  result = migrate_bring_forward(store->db, store->path, version, error);
+  if (result == STATUS_OK)
+    result = write_holder(store, error);
   return result == STATUS_OK ? identities_load(store, error) : result;
 }
 
-/* A call that failed leaves no file that it made and that has no table. */
-static void remove_empty(const char *path) {
+/* A call that failed leaves the place as it was if it made no table: no file, or an empty one. A file in WAL mode
+ * without a table would be taken for a copy without its -wal file. `before`: bytes of the file, -1 if there was none.
+ */
+static void leave_empty(const char *path, off_t before) {
   struct stat file;
-  if (stat(path, &file) == 0 && file.st_size == 0)
+  if (before > 0 || stat(path, &file) != 0 || file.st_size > EMPTY_STORE)
+    return;
+  if (before < 0 || truncate(path, 0) != 0)
     unlink(path);
 }
 
@@ -184,7 +172,8 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   store->writer = true;
-  const bool existed = access(path, F_OK) == 0;
+  struct stat file;
+  const off_t before = stat(path, &file) == 0 ? file.st_size : -1;
   store->lacks_wal = place_lacks_wal(path);
   result = lock_take(path, &store->lock, &held, error);
   if (result != STATUS_OK) {
@@ -196,8 +185,7 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   write_warning(store, warning, warning_size);
   if (result != STATUS_OK) {
     release(store);
-    if (!existed)
-      remove_empty(path);
+    leave_empty(path, before);
     return result;
   }
   *out = store;
