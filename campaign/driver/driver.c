@@ -122,7 +122,7 @@ void driver_fields_path(const struct driver *driver, const uint8_t identity[16],
   snprintf(path, size, "%.*s%.*s-fields/%s.h5", folder ? (int)(base - store) : 0, store, stem, base, hex);
 }
 
-/* Adds what the runs on slots have had, and what the longest of them still needs. */
+/* Adds the time that the runs on slots have used, and the longest time that one of them still needs. */
 static void look_at_flights(const struct driver *driver, double now, struct cost_left *left) {
   for (size_t i = 0; i < driver->flight_count; i++) {
     const struct flight *flight = &driver->flights[i];
@@ -134,7 +134,8 @@ static void look_at_flights(const struct driver *driver, double now, struct cost
   }
 }
 
-/* Seconds left, from the runs that the points met lack and the mean of the others. Once a second is enough. */
+/* Estimates the seconds left from the missing runs of the points in the window and a mean for later points. It is
+ * updated once a second. */
 static double time_left(struct driver *driver, double now) {
   if (now - driver->last_left < 1 && !isnan(driver->seconds_left))
     return driver->seconds_left;
@@ -313,7 +314,7 @@ status driver_run(const struct campaign *campaign, struct farm *farm, const stru
     driver_release_ranks(farm);
   driver_free(driver);
 
-  /* What was committed stays. An error on closing is the last word only when all else went well. */
+  /* Committed results are kept. An error on closing is returned only if there was no earlier error. */
   struct error closing = {0};
   status closed = store_close(store, &closing);
   if (closed == STATUS_OK || (code != STATUS_OK && code != STATUS_FAILED_RUNS))

@@ -1,5 +1,6 @@
-/* Drives one campaign through farm and store: design points out as runs, results in as rows, until every point has its
- * replicates. Resume is free: a run is known by its identity, and what the store has is not computed again.
+/* Drives one campaign through farm and store: sends design points out as runs and stores their results as rows, until
+ * every point has its replicates. Each run has an identity, so that a resumed campaign does not compute stored runs
+ * again.
  *
  *     campaign_load(path, &campaign, &error);                 // every rank
  *     driver_farm_options(campaign, &farm_options);           // limits of the document
@@ -9,8 +10,8 @@
  *
  * A point's statistics use a fixed prefix of replicate numbers 0..n-1. With `seeds: until` the prefix grows batch by
  * batch and the decision looks at complete prefixes only, never at "the first n that finished" (which is biased towards
- * quick runs). Slots that would idle compute ahead; such runs are stored with surplus = 1 and counted only if the
- * prefix comes to cover them. */
+ * quick runs). Idle slots compute runs beyond the prefix; these are stored with surplus = 1 and counted only if the
+ * prefix grows to include them. */
 #ifndef CLAST_CAMPAIGN_DRIVER_DRIVER_H
 #define CLAST_CAMPAIGN_DRIVER_DRIVER_H
 
@@ -25,22 +26,22 @@ struct driver_options {
   struct progress *progress;                     /* NULL: silent. Borrowed */
   void (*note)(void *context, const char *text); /* warnings and notes for a person, one line each; may be NULL */
   void *note_context;
-  int slots; /* for the time left; driver_run asks the farm */
+  int slots; /* number of slots for the estimate of the time left; driver_run takes it from the farm */
 };
 
 struct driver_summary {
   int64_t campaign_id, session_id;
-  uint64_t points, points_done;   /* different ones; those whose replicates are complete */
-  uint64_t points_invalid;        /* values that the engine cannot run together: no runs, counted as failures */
+  uint64_t points, points_done;   /* different points; points whose replicates are complete */
+  uint64_t points_invalid;        /* points with invalid combinations of values: no runs, counted as failures */
   int64_t runs_reused, runs_done; /* found in the store; computed now */
-  int64_t runs_failed;            /* given up after their attempts, or ended in a failed state; includes reused ones */
-  int64_t runs_left;       /* lost to the machine as often as limits.attempts says: the same command tries again */
-  int64_t runs_censored;   /* ended at the hard end time: usable, but fragments may still have been breaking */
+  int64_t runs_failed;            /* all attempts failed, or the run ended in a failed state; includes reused runs */
+  int64_t runs_left;       /* the machine ended limits.attempts attempts: the same command tries these runs again */
+  int64_t runs_censored;   /* ended at the hard end time: usable, but fragmentation may be incomplete */
   int64_t runs_surplus;    /* in the store, but left out of statistics */
   int64_t fields_written;  /* HDF5 files kept */
-  int64_t attempts_failed; /* of this invocation */
+  int64_t attempts_failed; /* attempts that failed in this invocation */
   uint64_t points_interval_met, points_cap_reached; /* with `until` */
-  double cpu_s;                                     /* of the runs computed now */
+  double cpu_s;                                     /* processor time of the runs computed now */
 };
 
 /* Copies the campaign's time and memory limits into *options. The other options do not change. */
@@ -53,7 +54,7 @@ void driver_farm_options(const struct campaign *campaign, struct farm_options *o
 status driver_run(const struct campaign *campaign, struct farm *farm, const struct driver_options *options,
                   struct driver_summary *summary, struct error *error);
 
-/* When the manager cannot begin: the other ranks wait for it, and end with a farm that has no task. */
+/* For a manager that cannot begin: ends the other ranks, which wait for it, by a farm run without tasks. */
 void driver_release_ranks(struct farm *farm);
 
 /* The parts of driver_run, for tests that take the farm's place and for studies that run one campaign after another. */

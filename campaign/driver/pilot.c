@@ -41,8 +41,8 @@ static status step(const struct engine_kind *kind, void *state, double until, st
   return code;
 }
 
-/* The scene on one thread: the processor time of several holds the time that they wait for each other. Owned. NULL: no
- * memory. */
+/* Copy of the scene with one thread: the processor time of several threads includes their waiting. Owned by the caller.
+ * NULL: no memory. */
 static struct scene *on_one_thread(const struct scene *scene) {
   struct scene *copy = scene_copy(scene);
   if (copy && copy->kind->threads)
@@ -83,7 +83,7 @@ cleanup:
   return code;
 }
 
-/* Steps that the run had made at this progress. NaN: it has not got there. */
+/* Number of steps that the run had made at this progress. NaN: the run did not reach it. */
 static double steps_at(const struct pilot_run *run, double progress) {
   double steps = 0, before = 0;
   for (size_t i = 0; i < run->marks; i++) {

@@ -14,13 +14,13 @@
 enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000, SAMPLED = 8 };
 #define NOTHING ((double)NAN)
 
-/* Bytes of a run's rows besides its masses: run and result row, eleven estimates, some twenty bins of its spectrum.
- * Measured on stores of thousands of runs; good to a factor of 1.5. */
+/* Bytes of a run's rows without its masses: run and result row, eleven estimates, about twenty bins of its spectrum.
+ * Measured on stores of thousands of runs; accurate to a factor of 1.5. */
 #define BYTES_PER_RUN      3500.0
 #define BYTES_PER_FRAGMENT 8.0
 
-/* What a run costs besides itself, in s: its process (twice: of the slot, and pages of the child that the run touches),
- * and the manager's part, which one process does for all slots. Measured with 4500 runs of 0.3 ms and 70 fragments. */
+/* Overhead of a run, s: its process (in the slot, and for the memory pages that the child writes), and the manager's
+ * work, which one process does for all slots. Measured with 4500 runs of 0.3 ms and 70 fragments. */
 #define SLOT_S    0.7e-3
 #define MANAGER_S 0.8e-3
 
@@ -32,7 +32,7 @@ struct looking {
   uint64_t asked, there;   /* runs looked up in the store */
 };
 
-/* Looks the point's runs up in the store, up to ASKED of them in all. */
+/* Looks up the point's runs in the store, at most ASKED runs for all points together. */
 static void ask(const struct campaign *campaign, const struct scene *scene, struct store *store,
                 struct looking *looking) {
   for (int64_t r = 0; store && r < campaign_replicates_least(campaign) && looking->asked < ASKED; r++) {
@@ -43,7 +43,8 @@ static void ask(const struct campaign *campaign, const struct scene *scene, stru
   }
 }
 
-/* Counts a point in, and keeps a copy of it as a sample and the point itself when it is the costliest. Takes it. */
+/* Counts a point. Keeps a copy of it as a sample, and the point itself if it is the most expensive one. Takes ownership
+ * of the scene. */
 static void take_point(struct plan *plan, struct looking *looking, struct scene *scene, bool sample) {
   const double work = scene->kind->work ? scene->kind->work(scene->inputs) : 1;
   const double memory = scene->kind->memory ? (double)scene->kind->memory(scene->inputs) : 0;
@@ -62,7 +63,7 @@ static void take_point(struct plan *plan, struct looking *looking, struct scene 
   looking->work_most = work;
 }
 
-/* Looks at points evenly spread over the design, as far as it can be walked in a moment. */
+/* Samples points evenly spread over the part of the design that can be generated in a short time. */
 static status look(const struct campaign *campaign, struct store *store, struct plan *plan, struct looking *looking,
                    struct error *error) {
   struct campaign_walk walk;
@@ -91,9 +92,8 @@ static double whole_s(const struct pilot_run *run) {
   return run->prepare_s + run->step_s + run->finish_s;
 }
 
-/* A run's time over the whole design, from sampled points: whole runs, or with a setting coarse ones, as long as there
- * is time. `one`: such a run of the most expensive point. Returns the mean over points divided by that. NaN: no point.
- */
+/* Mean time of a run over the sampled points divided by `one`, the time of such a run of the most expensive point.
+ * Times whole runs, or coarse ones if a setting is given, until the time is used up. NaN: no point was timed. */
 static double time_points(const struct campaign *campaign, const struct looking *looking, const char *setting,
                           double one, double until) {
   double sum = 0;
@@ -116,7 +116,8 @@ static double time_points(const struct campaign *campaign, const struct looking 
   return count ? sum / (double)count / one : (double)NAN;
 }
 
-/* The trial did not end: how long the whole run would take, and the setting and time of a coarse run that did. */
+/* For a trial that did not end: estimates the time of the whole run, and gives the setting and time of a coarse run
+ * that ended. */
 static void extrapolate(const struct looking *looking, uint64_t seed, double seconds, const struct pilot_run *run,
                         struct plan *plan, char setting[64], double *one) {
   struct error ignored;
@@ -135,9 +136,9 @@ static void extrapolate(const struct looking *looking, uint64_t seed, double sec
   free(coarse_run);
 }
 
-/* Steps the most expensive point for half of the time. If it does not end, a coarse run of the same point tells which
- * share of the steps that was; if there is none, the time is extrapolated to the hard end, which most runs do not
- * reach. The rest of the time tells how other points differ. */
+/* Runs the most expensive point for half of the time. If the run does not end, a coarse run of the same point tells
+ * which share of the steps was made. Without a coarse run the time is extrapolated to the hard end, which most runs do
+ * not reach. The rest of the time is used for runs of other points. */
 static status try_run(const struct campaign *campaign, const struct looking *looking, double seconds, struct plan *plan,
                       size_t *fragments, struct error *error) {
   const uint64_t seed = campaign_seed(campaign, looking->costliest, 0);
@@ -177,7 +178,7 @@ static double kept_runs(const struct campaign *campaign, const struct plan *plan
   }
 }
 
-/* No sooner than one run alone, however many slots, and no faster than the one manager. */
+/* Wall time on the slots: at least that of one run, and at least the manager's work for all runs. */
 static double wall_time(uint64_t runs, double run_s, int slots) {
   if (runs == 0)
     return 0;

@@ -107,8 +107,8 @@ static void want(struct point *point, int64_t r) {
   }
 }
 
-/* The runs with the least and the greatest value. Ties go to the lower replicate, so that the choice depends on the
- * results alone. */
+/* Marks the runs with the least and the greatest value. Of equal values the lowest replicate is taken, so that the
+ * choice depends on the results alone. */
 static void want_extremes(struct point *point) {
   int64_t least = -1, most = -1;
   for (int64_t r = 0; r < point->prefix; r++) {

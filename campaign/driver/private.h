@@ -12,8 +12,8 @@
 
 #define DRIVER_NOTHING ((double)NAN)
 
-/* Points considered together. Runs start in order of cost, most expensive first, exactly for campaigns of up to this
- * many points; a larger campaign makes its points as they are needed. Filling the window may delay the first run by
+/* Most points in the window. Campaigns of up to this many points start all runs in order of cost, most expensive first;
+ * a larger campaign orders only the points in the window. Filling the window may delay the first run by
  * DRIVER_FILL_S. */
 enum { DRIVER_WINDOW = 1024 };
 #define DRIVER_FILL_S 0.05
@@ -32,10 +32,10 @@ struct driver {
   const struct campaign *campaign;
   struct store *store;
   struct driver_options options;   /* with a store_path */
-  double time_limit, memory_limit; /* of an attempt: s and bytes, 0 = none */
+  double time_limit, memory_limit; /* limits of an attempt, s and bytes; 0 = none */
   struct driver_summary summary;
   struct campaign_walk walk;
-  const char **paths;      /* of the axes, for the store */
+  const char **paths;      /* paths of the axes, for the store */
   const struct field *row; /* main quantity */
   bool row_of_outcome;
   struct point **points; /* the window */
@@ -48,19 +48,20 @@ struct driver {
   struct cost_model cost;
   struct sample_moments moments;    /* of the main quantity */
   int64_t first_done, first_failed; /* of the first CAMPAIGN_FIRST_RUNS of this invocation */
-  int64_t started_done;             /* runs finished now, for the rate */
+  int64_t started_done;             /* runs finished in this invocation, for the rate */
   double finished_s;                /* their wall time */
   double begin, last_left, seconds_left;
-  int64_t fields_missing; /* files of stored runs that are not there any more */
-  int64_t wanted;         /* runs to complete in points met */
-  struct error error;     /* of a callback that cannot return one */
-  struct error stop;      /* why no new runs start; results of running ones are still stored */
+  int64_t fields_missing; /* fields files of stored runs that no longer exist */
+  int64_t wanted;         /* runs that the points met so far need */
+  struct error error;     /* error of a callback that cannot return one */
+  struct error stop;      /* reason why no new runs start; results of running ones are still stored */
 };
 
 void driver_note(struct driver *driver, const char *text);
 /* The run has used up its attempts. */
 void driver_give_up(struct driver *driver, struct point *point, int64_t replicate);
-/* Does this run write its fields itself? Extremes are known only afterwards and are replayed. */
+/* True when the run writes its fields itself. Runs with extreme values are known only afterwards; they are computed
+ * again. */
 bool driver_writes_fields(const struct driver *driver, const struct flight *flight);
 /* Path of a run's fields: "results.db" gives "results-fields/<identity>.h5". It is relative to the store's folder, or
  * with `folder` begins with that folder. */
@@ -72,10 +73,11 @@ status driver_receive(void *context, const struct farm_report *report, struct er
 
 /* ---- the window: window.c ---- */
 
-/* Takes the next design point into the window, with what the store has of it. False: the window is full, the design has
- * no more, or an error (see *code). */
+/* Takes the next design point and its stored runs into the window. False: the window is full, the design has no more
+ * points, or an error (see *code). */
 bool driver_window_expand(struct driver *driver, status *code, struct error *error);
-/* Judges the point's prefixes; moves the store's; marks the fields it wants once it is decided. */
+/* Judges the point's prefixes and updates the prefix in the store. When the point is decided, marks the runs whose
+ * fields are wanted. */
 status driver_window_judge(struct driver *driver, struct point *point, struct error *error);
 void driver_window_drop(struct driver *driver, struct point *point); /* frees it */
 void driver_window_forget(struct driver *driver);                    /* frees the ids of the points met */

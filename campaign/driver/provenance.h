@@ -7,8 +7,8 @@
 /* A JSON object, malloc'd; NULL when memory is out. argv may be NULL. */
 char *provenance_json(int ranks, int slots, int argc, char *const *argv);
 
-/* Names a program that is another build than this one, with the facts of a session: "clast 0.9, commit abc, gcc 12".
- * Writes "" when it is this build, or when the facts ("") do not tell. */
+/* Names the build that computed a session, from the session's facts: "clast 0.9, commit abc, gcc 12". Writes "" for
+ * this build, or when the facts are empty or do not name a build. */
 enum { PROVENANCE_BUILD_SIZE = 320 };
 void provenance_other_build(const char *version, const char *commit, const char *compiler,
                             char text[PROVENANCE_BUILD_SIZE]);

@@ -1,4 +1,4 @@
-/* Results in: stores what a run or an attempt gave, and updates its point. */
+/* Stores the result of a run or an attempt, and updates its point. */
 #include <stdio.h>
 #include <string.h>
 
@@ -53,8 +53,8 @@ static status judge_failures(struct driver *driver, bool failed, struct error *e
                      (long long)driver->first_failed, (long long)driver->first_done, driver->options.store_path);
 }
 
-/* The machine ended the attempt, which says nothing about the run. It is tried again here, and when that does not help,
- * by the next invocation. It is never given up. */
+/* The machine ended the attempt, which says nothing about the run. This invocation tries the run again, up to
+ * limits.attempts times; then the next invocation does. The run never counts as failed. */
 static void finish_lost(struct driver *driver, const struct flight *flight) {
   struct point_replicate *replicate = &flight->point->replicates[flight->replicate];
   if (++replicate->lost < driver->campaign->attempts) {
@@ -65,8 +65,7 @@ static void finish_lost(struct driver *driver, const struct flight *flight) {
   driver->summary.runs_left++;
 }
 
-/* No more runs go out; those that compute are taken in. The results are kept, the fields are for the next invocation.
- */
+/* Starts no more runs; results of running ones are still stored. The next invocation writes the missing fields. */
 static void stop_without_fields(struct driver *driver, const struct error *why) {
   if (driver->stop.status != STATUS_OK)
     return;
@@ -76,7 +75,7 @@ static void stop_without_fields(struct driver *driver, const struct error *why) 
   driver_note(driver, "a fields file cannot be written: no new runs start, and the running ones end first");
 }
 
-/* An attempt that gave no result: the run is tried again, or given up when its attempts are used up. */
+/* Handles an attempt without a result: the run is tried again, or counts as failed when its attempts are used up. */
 static status finish_attempt(struct driver *driver, const struct flight *flight, const struct farm_report *report,
                              struct error *error) {
   status code = store_failure(driver, flight, report, error);

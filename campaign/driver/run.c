@@ -49,7 +49,7 @@ static status invalid(const struct engine_kind *kind, struct run_result *result,
   return STATUS_OK;
 }
 
-/* Goes on from the request's restart file. *run is NULL when it names none, or the file is not there. */
+/* Goes on from the request's restart file. *run is NULL when the request names none or the file does not exist. */
 static status resume(const struct run_request *request, void **run, struct error *error) {
   uint64_t seed = 0;
   *run = NULL;
@@ -80,7 +80,7 @@ static status step_to_end(const struct engine_kind *kind, void *run, run_watch w
   }
 }
 
-/* Results and estimates of a run that has come to its end. On an error the caller clears *result. */
+/* Makes results and estimates of a run that has ended. On an error the caller clears *result. */
 static status finish(const struct engine_kind *kind, void *run, struct run_result *result, struct error *error) {
   result->result = calloc(1, kind->results->size);
   if (!result->result)
@@ -148,7 +148,7 @@ static void put_object(struct writer *writer, const struct field_table *table, c
   writer->size += size;
 }
 
-/* Reads bytes. Anything missing or unexpected turns `good` off, and everything read after that is zero. */
+/* Reads bytes. Missing or unexpected bytes set `good` to false, and all later reads give zero. */
 struct reader {
   const uint8_t *bytes;
   size_t left;
@@ -242,7 +242,7 @@ static uint8_t *encode_result(const struct engine_kind *kind, const struct run_r
   return writer.bytes;
 }
 
-/* How many structs of this size follow: the other process must have the same size, and no more than `most`. */
+/* Reads how many structs follow. The other process must have the same struct size, and send at most `most`. */
 static size_t take_array_count(struct reader *reader, size_t size, size_t most) {
   const uint64_t their_size = take_count(reader), count = take_count(reader);
   if (their_size != size || count > most)
@@ -297,7 +297,7 @@ status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, s
                      "a worker's answer cannot be read: it was damaged, or comes from another version of clast");
 }
 
-/* The files of the inputs, into the list of this process. */
+/* Reads the files of the inputs into the list of this process. */
 static status take_files(struct reader *reader, struct error *error) {
   for (uint64_t left = take_count(reader); left > 0 && reader->good; left--) {
     const uint64_t size = take_count(reader);
@@ -310,7 +310,7 @@ static status take_files(struct reader *reader, struct error *error) {
   return STATUS_OK;
 }
 
-/* Reads a task; the inputs are the caller's to free. */
+/* Reads a task; the caller frees the inputs. */
 static status decode_task(run_find find, const uint8_t *task, size_t size, struct run_request *request, void **inputs,
                           char *fields_path, size_t path_size, struct error *error) {
   struct reader reader = {task, size, true};

@@ -1,6 +1,6 @@
-/* One run from bytes to bytes: what a slot of the farm does with a task, the same code in process, in children, over
- * MPI and in `clast simulate`. A task names the engine, its encoded inputs, the seed and what to keep; the answer is
- * one versioned encoding of outcome, engine results, fragments and estimates, made from the field tables. */
+/* Computes one task of the farm: the same code in process, in children, over MPI and in `clast simulate`. A task holds
+ * the engine's name, its encoded inputs, the seed and the files to keep. The answer is one versioned encoding of
+ * outcome, engine results, fragments and estimates, made from the field tables. */
 #ifndef CLAST_CAMPAIGN_DRIVER_RUN_H
 #define CLAST_CAMPAIGN_DRIVER_RUN_H
 
@@ -12,7 +12,7 @@ struct run_request {
   const void *inputs; /* kind->inputs->size bytes */
   uint64_t seed;
   const char *fields_path;  /* HDF5 file to write at the end, or NULL */
-  const char *restart_path; /* in process only: a restart file; if it exists, the run goes on from it. Or NULL */
+  const char *restart_path; /* restart file, in process only; if it exists, the run goes on from it. Or NULL */
 };
 
 struct run_result {
@@ -22,18 +22,19 @@ struct run_result {
   size_t fragment_count;
   struct estimate estimates[ESTIMATES_COUNT];
   size_t estimate_count;  /* 0 for a run without fragments */
-  struct error unwritten; /* of run_execute: why the fields file could not be written; STATUS_OK: it was, or is not
-                             asked for */
+  struct error unwritten; /* from run_execute: why the fields file could not be written; STATUS_OK: it was written, or
+                             was not requested */
 };
 
-/* Called before the first step and after each block of steps: snapshots, a progress line. Anything but STATUS_OK ends
- * the run with it. */
+/* Called before the first step and after each block of steps, for snapshots or a progress line. A status other than
+ * STATUS_OK ends the run with that status. */
 typedef status (*run_watch)(void *context, const struct engine_kind *kind, void *run, struct error *error);
 
-/* prepare, step to the end, finish, estimates. `watch` may be NULL; else it is called every `block` steps. Inputs that
- * the engine cannot run together (STATUS_CONTENT of prepare) are a result, OUTCOME_INVALID, not an error: the same seed
- * would fail the same way again. main() has called analysis_init(). On an error *result is empty, but for a fields file
- * that could not be written: the results are there then (result->result is not NULL) and to be cleared. */
+/* Prepares a run, steps it to its end, and makes results and estimates. `watch` may be NULL; else it is called every
+ * `block` steps. An invalid combination of inputs (STATUS_CONTENT of prepare) is a result, OUTCOME_INVALID, not an
+ * error: the same seed would fail the same way again. main() has called analysis_init(). On an error *result is empty,
+ * except when only the fields file could not be written: then it holds the results (result->result is not NULL), and
+ * the caller must clear it. */
 status run_simulate(const struct run_request *request, run_watch watch, void *context, uint64_t block,
                     struct run_result *result, struct error *error);
 void run_result_clear(struct run_result *result);
@@ -46,7 +47,7 @@ status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, s
 
 /* Finds an engine by name (engine_find, or a test's). */
 typedef const struct engine_kind *(*run_find)(const char *name, struct error *error);
-/* Results of a run whose fields file cannot be written are encoded all the same, with the reason in `unwritten`. */
+/* If the fields file cannot be written, the results are still encoded, with the reason in `unwritten`. */
 status run_execute(run_find find, const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size,
                    struct error *error);
 /* The farm_work of clast: run_execute with engine_find. */

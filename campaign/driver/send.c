@@ -1,4 +1,4 @@
-/* Runs out: chooses the next run of the campaign and makes the farm's task from it. */
+/* Chooses the next run of the campaign and makes the farm's task from it. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,7 +6,8 @@
 #include "campaign/driver/run.h"
 #include "schemas/clock.h"
 
-/* The most expensive point with a run to send out: runs of its prefix, or with `ahead` runs beyond it. */
+/* The most expensive point that has a run to send out. The run is in the point's prefix, or with `ahead` may be beyond
+ * it. */
 static struct point *choose(struct driver *driver, bool ahead, int64_t *replicate) {
   struct point *best = NULL;
   double highest = -1;
@@ -47,8 +48,9 @@ static status fill_window(struct driver *driver, double deadline) {
   return code;
 }
 
-/* The next run or replay without regard to earlier failures: first runs of the prefixes, then, so that no slot idles,
- * runs ahead of them, then replays. Before it computes ahead it looks at all of the design. NULL: nothing to do. */
+/* The next run or replay, regardless of earlier failures: first runs of the prefixes, then runs beyond them, so that no
+ * slot idles, then replays. Runs beyond a prefix start only when no further point can enter the window. NULL: nothing
+ * to do. */
 static struct point *choose_any(struct driver *driver, double deadline, struct flight *flight, status *code) {
   do {
     *code = fill_window(driver, deadline);
@@ -69,7 +71,8 @@ static struct point *choose_any(struct driver *driver, double deadline, struct f
   return point;
 }
 
-/* The next run whose attempts are not used up. Those that are, here or in an earlier invocation, are given up. */
+/* The next run whose attempts are not used up. Runs that used up their attempts, now or in an earlier invocation, count
+ * as failed. */
 static struct point *next_run(struct driver *driver, struct flight *flight, status *code) {
   const double deadline = clock_s() + DRIVER_FILL_S;
   for (;;) {

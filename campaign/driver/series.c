@@ -9,12 +9,12 @@ struct running {
   const struct driver_options *options;
   struct store *store;
   struct series_summary *summary;
-  struct campaign *campaign; /* owned; NULL between two */
-  struct driver *driver;     /* the same */
-  struct farm_manager calls; /* of the driver */
+  struct campaign *campaign; /* owned; NULL between two campaigns */
+  struct driver *driver;     /* owned; NULL between two campaigns */
+  struct farm_manager calls; /* the driver's callbacks */
   int out;                   /* tasks on slots */
   bool finished;             /* no campaign is left */
-  struct error error;        /* of a callback that cannot return one */
+  struct error error;        /* error of a callback that cannot return one */
 };
 
 static status begin(struct running *running, struct error *error) {
@@ -29,7 +29,7 @@ static status begin(struct running *running, struct error *error) {
   return code;
 }
 
-/* `outcome`: of the campaign's session in the store. */
+/* `outcome`: outcome of the campaign's session in the store. */
 static status end(struct running *running, const char *outcome, struct error *error) {
   struct driver_summary summary;
   status code = driver_end(running->driver, error);

@@ -1,6 +1,6 @@
-/* Campaigns one after the other through one farm and one store, where what comes next depends on what was found: the
- * rounds of a fit. Each is an ordinary campaign of the store. What the store has is not computed again, so that a
- * series that was stopped goes on where it was. */
+/* Runs campaigns one after the other through one farm and one store, where each depends on earlier results: the rounds
+ * of a fit. Each is an ordinary campaign of the store. Stored runs are not computed again, so that a stopped series
+ * goes on where it was. */
 #ifndef CLAST_CAMPAIGN_DRIVER_SERIES_H
 #define CLAST_CAMPAIGN_DRIVER_SERIES_H
 
@@ -8,9 +8,9 @@
 
 struct series {
   void *context;
-  /* The next campaign, owned by the series from then on; NULL: there is none, or an error. */
+  /* Returns the next campaign, which the series then owns; NULL: there is none, or an error. */
   struct campaign *(*next)(void *context, struct store *store, struct error *error);
-  /* All its runs are in the store. */
+  /* Called when all runs of the campaign are in the store. */
   status (*done)(void *context, struct store *store, struct error *error);
 };
 
@@ -19,9 +19,9 @@ struct series_summary {
   double cpu_s;
 };
 
-/* Every rank calls it; only rank 0 opens the store, and all callbacks are its. STATUS_STOPPED after a signal, or when
- * so many of a campaign's first runs failed that it ended (limits.failures); *error says which. Single failed runs are
- * no error: `done` finds them missing. */
+/* Every rank calls it; only rank 0 opens the store and calls the callbacks. STATUS_STOPPED after a signal, or when too
+ * many of a campaign's first runs failed (limits.failures); *error says which. Single failed runs are no error: they
+ * have no result when `done` is called. */
 status series_run(const struct series *series, struct farm *farm, const struct driver_options *options,
                   struct series_summary *summary, struct error *error);
 

@@ -1,5 +1,5 @@
-/* The window of points under way: points enter it in the order of the design, with what the store has of them, and
- * leave it when they are over. */
+/* The window of points being computed: points enter it with their stored runs in the order of the design, and leave it
+ * when they are finished. */
 #include "campaign/driver/private.h"
 #include "campaign/driver/record.h"
 
@@ -15,7 +15,7 @@ struct driver_seen {
   UT_hash_handle hh;
 };
 
-/* True when the id was not there. Without memory a duplicate is checked twice, which does no harm. */
+/* True when the id is new. When memory is out a duplicate point is checked twice, which does no harm. */
 static bool remember(struct driver *driver, int64_t id) {
   struct driver_seen *seen = NULL;
   HASH_FIND(hh, driver->seen, &id, sizeof id, seen);
@@ -43,7 +43,7 @@ struct resuming {
   bool out_of_memory;
 };
 
-/* For the first one. */
+/* Writes a note about the first missing fields file. */
 static void note_missing(struct driver *driver, const struct store_point_run *run) {
   char text[4400];
   snprintf(text, sizeof text,
@@ -60,7 +60,7 @@ static void count_stored(struct driver *driver, const struct store_point_run *ru
   driver->summary.runs_censored += run->state == OUTCOME_END_TIME;
 }
 
-/* A run that the store has. */
+/* Takes over a stored run. */
 static void take_stored(void *context, const struct store_point_run *run) {
   struct resuming *resuming = context;
   struct point *point = resuming->point;
@@ -84,8 +84,8 @@ static void take_stored(void *context, const struct store_point_run *run) {
   sample_add(&driver->moments, value);
 }
 
-/* After the prefix has moved: runs that were computed ahead and lie in it now count from here on. No run that counts is
- * taken out again, so that a point shared with another campaign keeps that campaign's decision. */
+/* Called after the prefix has grown: surplus runs inside it count from now on. A run that counts is never excluded
+ * again, so that a point shared with another campaign keeps that campaign's decision. */
 static status admit(struct driver *driver, struct point *point, struct error *error) {
   bool any = false;
   int64_t prefix = point->prefix;
@@ -118,7 +118,7 @@ status driver_window_judge(struct driver *driver, struct point *point, struct er
   return admit(driver, point, error);
 }
 
-/* Values that cannot be run together are counted; a note is written for the first few. */
+/* Counts a point with an invalid combination of values, and writes a note for the first few. */
 static void skip_invalid(struct driver *driver, const struct error *why) {
   if (++driver->summary.points_invalid > 5)
     return;
@@ -182,7 +182,7 @@ bool driver_window_expand(struct driver *driver, status *code, struct error *err
 void driver_window_drop(struct driver *driver, struct point *point) {
   for (size_t i = 0; i < driver->point_count; i++)
     if (driver->points[i] == point) {
-      /* The order stays: points of equal cost go in the order of the design. */
+      /* Keeps the order: points of equal cost start in the order of the design. */
       memmove(&driver->points[i], &driver->points[i + 1], (driver->point_count - i - 1) * sizeof *driver->points);
       driver->point_count--;
       break;
