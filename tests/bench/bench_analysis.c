@@ -1,4 +1,4 @@
-/* Cost of what every run pays for its estimates, and of a pooled exponent with its interval. Prints `name value unit`.
+/* Cost of the estimates that every run computes, and of a pooled exponent with its interval. Prints `name value unit`.
  */
 #include <math.h>
 #include <stdio.h>
@@ -36,7 +36,7 @@ static int pooled(void) {
       return 70;
     printf("analysis_pooled_%s_200_runs_ms %.1f ms\n", exponent_method_names[method], 1e3 * (seconds() - start));
   }
-  runs.count = 13; /* about 1000 fragments: less than 2 s a core is asked for */
+  runs.count = 13; /* about 1000 fragments: the limit is 2 s on one core */
   struct pooled_goodness goodness;
   const double start = seconds();
   if (pooled_goodness(&runs, 1, 2500, &goodness, NULL))

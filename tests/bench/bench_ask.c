@@ -1,7 +1,7 @@
-/* Speed of the questions that people wait for, on a store of 1e5 runs of 100 points with 30 to 300 fragments each.
- * Prints `name value unit`; wall and processor times, the best of three. Issue: statistics over two axes below 1 s, the
- * pooled spectrum of a point below 0.2 s, a comparison below 1 s. Usage: bench_ask [runs [folder]]; the store stays in
- * the folder as bench-ask.db if the folder is given, and is used again. */
+/* Speed of interactive queries on a store of 1e5 runs of 100 points with 30 to 300 fragments each. Prints `name value
+ * unit`; wall and processor times, the best of three. Targets: statistics over two axes below 1 s, the pooled spectrum
+ * of a point below 0.2 s, a comparison below 1 s. Usage: bench_ask [runs [folder]]; with a folder, the store is kept
+ * there as bench-ask.db and used again. */
 #include <time.h>
 
 #include "analysis/analysis.h"
@@ -112,7 +112,7 @@ static status count_value(void *context, const struct ask_values_row *row, struc
   return STATUS_OK;
 }
 
-/* Both sides of a comparison are read like this. */
+/* A comparison reads both of its sides with this function. */
 static void compare(struct store *store, size_t *rows) {
   const struct ask_values_choice all = {0};
   for (int side = 0; side < 2; side++)

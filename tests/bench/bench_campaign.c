@@ -1,6 +1,6 @@
-/* What driving costs apart from computing: no-op runs through design, driver, encodings and store, played without a
- * farm (so that this is an upper bound of what a farm can be fed); and how soon a design of a million points gives its
- * first run. Prints `name value unit`. */
+/* Cost of driving a campaign without the computing: no-op runs pass through design, driver, encodings and store,
+ * without a farm. The rate is therefore an upper bound for a farm. Also the time until a design of a million points
+ * gives its first run. Prints `name value unit`. */
 #include <time.h>
 
 #include "analysis/analysis.h"

@@ -1,8 +1,9 @@
 /* Speed of the discrete elements on one core, in double: `name value unit` per line.
  *
- * Discs of K99's grains ringing after the charge (the same energy per mass), unbroken, contact on all pairs, averaged
- * over 2 ms; and a whole explosion. The frozen plain C version of the model (reference_dem.c) runs in turns with the
- * first disc, from its state; ratios are taken to that. An argument runs one of 1100, 10000, explosion alone. */
+ * First: discs of K99's grains that vibrate after the charge (the same energy per mass), unbroken, with contact on all
+ * pairs, averaged over 2 ms. Then a whole explosion. The frozen plain C version of the model (reference_dem.c)
+ * alternates with the first disc and starts from its state; the ratios refer to this version. An argument selects one
+ * part: 1100, 10000 or explosion. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +24,7 @@ static double now(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* The reference from the state of `system`, a few steps: seconds, and the energies must agree. */
+/* Runs the reference for a few steps from the state of `system`. Returns the seconds; the energies must agree. */
 static double reference_steps(struct reference_dem *reference, struct dem_system *system, int steps) {
   reference_dem_state(reference, system);
   const struct dem_ledger l = dem_system_ledger(system);

@@ -1,13 +1,12 @@
-/* How much of the machine the farm lets the runs have, side by side with other drivers doing the same work.
+/* Share of the machine that reaches the runs under the farm, beside other drivers doing the same work.
  *
  * Utilisation = sum of the tasks' nominal CPU seconds over slots x wall from first dispatch to last report (others:
- * their whole wall). A task burns CPU time of its thread, so the work is the same under any noise; but on a shared
- * machine wall grows, and every utilisation falls. Two figures beside each tell that from the farm's own doing:
- * `..._of_given` leaves out of slots x wall the time for which a task was ready and the kernel ran something else
- * (schedstat); and `ideal` is the same work in equal halves in two bare processes.
+ * their whole wall). A task burns CPU time of its thread, so other load does not change the work; but on a shared
+ * machine the wall time grows and every utilisation falls. Two more figures separate this effect from losses in the
+ * farm: `..._of_given` leaves out of slots x wall the time for which a task was ready and the kernel ran something else
+ * (schedstat); and `ideal` is the same work in equal halves in two plain processes.
  *
- *     bench_farm [rounds [farm]]     best of so many (default 1); `farm`: without the other drivers
- */
+ *     bench_farm [rounds [farm]]     best of so many (default 1); `farm`: without the other drivers */
 #include <math.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -33,7 +32,7 @@ static int costliest_first(const void *a, const void *b) {
   return x < y ? 1 : x > y ? -1 : 0;
 }
 
-/* Lognormal of this mean and sigma 1 (Box and Muller), the same list every time. */
+/* The same list every time: lognormal with this mean and sigma 1 (Box and Muller). */
 static double fill(double *list, int count, double mean, uint64_t seed) {
   double sum = 0;
   for (int i = 0; i < count; i++) {
@@ -56,7 +55,7 @@ static double since(int64_t start_ns) {
   return 1e-9 * (double)(clock_ns() - start_ns);
 }
 
-/* Two bare processes with half of the work each: what the machine gives at this moment. */
+/* Two plain processes with half of the work each: the capacity of the machine at this moment. */
 static double ideal(double sum) {
   const int64_t start = clock_ns();
   pid_t pids[SLOTS];
@@ -91,7 +90,7 @@ static struct measured farm_over(const double *cost, int count, bool in_process,
     own.report = manager->report;
     own.tick = manager->tick;
     own.context = manager->context;
-    *(struct task_list **)manager->context = &list; /* what report() of the store's bench needs first */
+    *(struct task_list **)manager->context = &list; /* report() of the store's bench needs this first */
     own.next = manager->next;
   }
   status code = farm_start(&(struct farm_options){.slots = SLOTS, .in_process = in_process}, task_work, &farm, &error);
@@ -100,7 +99,7 @@ static struct measured farm_over(const double *cost, int count, bool in_process,
   if (code == STATUS_OK)
     measured.usage = farm_usage(farm);
   farm_stop(farm, NULL);
-  if (code != STATUS_OK) { /* a signal, or a fault: figures of the rest would be worth nothing */
+  if (code != STATUS_OK) { /* a signal or a fault: figures of the remaining parts would be meaningless */
     fprintf(stderr, "bench_farm: %s\n", error.message);
     unlink(burn_program);
     exit((int)code);
@@ -111,7 +110,7 @@ static struct measured farm_over(const double *cost, int count, bool in_process,
   return measured;
 }
 
-/* ---- others ---- */
+/* ---- other drivers ---- */
 
 static bool have(const char *program) {
   char command[256];
@@ -142,7 +141,7 @@ static const char python[] = "import sys, time\n"
                              "        list(pool.map(burn, costs))\n"
                              "        print(time.monotonic() - start)\n";
 
-/* Its own wall without start-up, as for ours. */
+/* Wall time without start-up, as for the farm. */
 static double mpi4py(const double *cost, int count) {
   char path[] = "/tmp/bench_farm_XXXXXX", costs_path[64], command[256];
   const int file = mkstemp(path);

@@ -1,5 +1,5 @@
-/* What pores cost: the same impact with and without them, side by side; time per particle-step and bytes per particle.
- * Prints `name value unit`. */
+/* Cost of porosity: the same impact with and without pores; time per particle-step and bytes per particle. Prints `name
+ * value unit`. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,8 +59,8 @@ static struct sph_system *make(const struct sph_material *material, bool pores, 
   return s;
 }
 
-/* The loop that pores add (or replace: Tillotson's) alone, on the state that the run has come to, standing still; it
- * changes nothing there. */
+/* Time of the loop of the pores alone (or of Tillotson's loop, which it replaces) on the current state of the run. The
+ * loop does not change this state. */
 static double loop(struct sph_system *s, sph_hook hook) {
   static double none[SPH_BLOCK];
   struct sph_pair_sums still = {0};
@@ -104,7 +104,7 @@ int main(void) {
         sph_hook hook = s->ranges->module[pores ? SPH_MODULE_palpha : SPH_MODULE_tillotson][SPH_RESPOND];
         for (size_t k = 0; pores && k < s->block_count; k++)
           if (!(s->solid[s->block[k].body].modules >> SPH_MODULE_palpha & 1))
-            s->block[k].high = s->block[k].low; /* the projectile has none */
+            s->block[k].high = s->block[k].low; /* the projectile has no pores */
         loops[pores] = fmin(loops[pores], loop(s, hook));
         if (pores)
           limit = fmin(limit, loop(s, s->ranges->module[SPH_MODULE_palpha][SPH_RATES]));

@@ -1,9 +1,8 @@
-/* How many slots one manager can feed, for runs of a given length: ranks whose slots sleep, so that two cores do for
- * 1024 of them. Of each case: the share of the slots that were busy, and the processor time of rank 0 for one run. The
- * share falls when other programs use the machine, the processor time hardly.
+/* How many slots one manager can supply with runs of a given length. The slots sleep, so that two cores are enough for
+ * 1024 of them. For each case: the share of slots that were busy, and the processor time of rank 0 per run. The share
+ * falls when other programs use the machine, the processor time hardly changes.
  *
- *     bench_slots [rounds]     best of so many (default 1)
- */
+ *     bench_slots [rounds]     best of so many (default 1) */
 #include <math.h>
 
 #include "schemas/clock.h"
@@ -14,8 +13,8 @@ static void best(double *so_far, double now) {
     *so_far = now;
 }
 
-/* Under mpirun: this program again as `bench_slots sleepers slots tasks seconds store`; store: 1, or 0 for none.
- * Threads, as 1024 processes are the kernel's business and not the manager's. */
+/* Under mpirun: this program again as `bench_slots sleepers slots tasks seconds store`; store: 1, or 0 for none. The
+ * sleepers are threads: 1024 processes would load the kernel, not the manager. */
 static int sleepers_main(char **argv) {
   struct task_list list;
   struct error error = {0};
@@ -47,12 +46,12 @@ static int sleepers_main(char **argv) {
 }
 
 struct many {
-  int ranks, slots, runs; /* slots of each rank, runs of each slot */
+  int ranks, slots, runs; /* ranks, slots of each rank, runs of each slot */
   double seconds;
   bool store;
 };
 
-/* Prints the share of the slots that were busy, and the processor time of rank 0 for one run. */
+/* Prints the share of the slots that were busy, and the processor time of rank 0 per run. */
 static void print_many(const char *self, const struct many *m, int rounds) {
   const int slots = m->ranks * m->slots, tasks = slots * m->runs;
   double utilisation = NAN, manager = NAN;

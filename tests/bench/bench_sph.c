@@ -1,10 +1,10 @@
 /* Speed of the SPH solid on one core: `name value unit` per line.
  *
  * First the pair loop alone, on a resting sphere of basalt with drawn velocities and stresses: time per particle, pairs
- * and flops per second against what the core's multiply-add units can do, the frozen plain C loop beside it
+ * and flops per second against the peak rate of the core's multiply-add units, the frozen plain C loop
  * (reference_sph.c), float against double, threads. Then whole steps and whole runs (sph_whole_runs.h). An argument
- * runs one of pairs, sizes, modules, threads, run, 10000, 100000 alone; everything takes about a quarter of an hour on
- * one core. */
+ * selects one part: pairs, sizes, modules, threads, run, 10000 or 100000; all parts together take about a quarter of an
+ * hour on one core. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,13 +40,14 @@ static double now(void) {
 
 struct cloud {
   size_t n;
-  double *column[COLUMNS], *sum[SUMS], *slack, *other[SUMS], *acting[6]; /* acting: S/rho^2, what the reference takes */
+  /* acting: S/rho^2, the input of the reference */
+  double *column[COLUMNS], *sum[SUMS], *slack, *other[SUMS], *acting[6];
   struct sph_pair_fields fields;
   struct sph_pair_sums sums;
 };
 
 static double *column(size_t n) {
-  double *a = calloc(n + 7, sizeof *a); /* neighbours.h reads that far */
+  double *a = calloc(n + 7, sizeof *a); /* neighbours.h reads up to 7 elements beyond n */
   if (!a)
     fail("memory", NULL);
   return a;
@@ -116,7 +117,7 @@ static const struct sph_pair_options usual = {.viscosity = {.alpha = 1.5, .beta 
                                               .periodic = {NAN, NAN, NAN},
                                               .fidelity.threads = 1};
 
-/* Best seconds of a pass over a few; *listing likewise of making the lists. */
+/* Shortest time of one pass, s; *listing: shortest time of making the lists, s. */
 static double pass(struct cloud *c, const struct sph_pair_options *options, clockid_t clock, double *listing,
                    double *neighbours, size_t *bytes) {
   struct sph_pairs *pairs = NULL;
@@ -170,7 +171,7 @@ static double reference(const struct cloud *c) {
   return best;
 }
 
-/* Root mean square difference over root mean square value, of accelerations. */
+/* Root mean square difference of accelerations over their root mean square value. */
 static double difference(const struct cloud *c) {
   double square = 0, scale = 0;
   for (int k = 0; k < 3; k++)
@@ -181,7 +182,7 @@ static double difference(const struct cloud *c) {
   return sqrt(square / scale);
 }
 
-/* Multiply-adds of independent registers: what the core can do, flop/s. */
+/* Peak rate of the core, flop/s: multiply-adds of independent registers. */
 #if defined(__x86_64__) && defined(__GNUC__)
 #define PEAK(name, level, real, bytes)                                                                                 \
   __attribute__((target("arch=x86-64-" level))) static double name(void) {                                             \

@@ -1,4 +1,4 @@
-/* How long finding the fragments takes: half-shattered spheres on a hexagonal lattice, as at the end of an impact. */
+/* Time to find the fragments: half-shattered spheres on a hexagonal lattice, as at the end of an impact. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -28,7 +28,7 @@ int main(void) {
       fprintf(stderr, "%s\n", error.message);
       return 1;
     }
-    for (size_t i = 0; i < p->n; i++) { /* a core, spalls round it, all else broken */
+    for (size_t i = 0; i < p->n; i++) { /* a core with spalls round it; everything else is broken */
       double r = sqrt(p->x[i] * p->x[i] + p->y[i] * p->y[i] + p->z[i] * p->z[i]) / 0.03;
       double wave = sin(500 * p->x[i]) * sin(500 * p->y[i]) * sin(500 * p->z[i]);
       p->damage_cbrt[i] = r > 0.7 && wave < 0.3 + 0.2 * random_draw(1, 900, i, 0);

@@ -1,5 +1,5 @@
-/* Speed of the store on 1e5 runs with 30 non-empty bins each, 100 points: what issue and design promise. Prints `name
- * value unit`; times are the best of several. Usage: bench_store [runs [folder]]. */
+/* Speed of the store on 1e5 runs with 30 non-empty bins each, 100 points, against the promises of the design. Prints
+ * `name value unit`; times are the best of several. Usage: bench_store [runs [folder]]. */
 #include <time.h>
 
 #include "analysis/statistics/estimates.h"
@@ -31,8 +31,8 @@ static double processor(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Seconds spent in the store: adding, committing, closing. Runs come point by point in turn, the hardest order for
- * sums. */
+/* Seconds spent in the store: adding, committing, closing. Successive runs belong to different points, the hardest
+ * order for the sums. */
 static double load(const char *path, int64_t runs, size_t estimates, double *cpu) {
   static struct fixture_run variants[VARIANTS];
   struct fixture_inputs inputs;

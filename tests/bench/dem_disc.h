@@ -1,4 +1,4 @@
-/* K99's disc and its charge, for the bench: cells round the central one fly off it with v = c S/m, their energy E_o. */
+/* K99's disc and its charge, for the bench: the cells round the central one leave it with v = c S/m and energy E_o. */
 #ifndef CLAST_TESTS_BENCH_DEM_DISC_H
 #define CLAST_TESTS_BENCH_DEM_DISC_H
 

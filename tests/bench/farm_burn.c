@@ -1,5 +1,5 @@
-/* What xargs and GNU parallel start in bench_farm: burns the seconds of thread CPU time given, nothing else linked in.
- * Compiled by the bench, so that the comparison does not pay for loading our libraries. */
+/* The program that xargs and GNU parallel start in bench_farm. It uses the given seconds of thread CPU time and links
+ * no other library. Compiled by the bench, so that the comparison does not pay for loading our libraries. */
 #include <stdlib.h>
 #include <time.h>
 

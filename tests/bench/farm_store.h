@@ -1,6 +1,5 @@
-/* Synthetic tasks whose reports go into a store as runs of one point: what the manager of a campaign does, without
- * physics.
- */
+/* Synthetic tasks whose reports go into a store as runs of one point: the work of a campaign's manager, without
+ * physics. */
 #ifndef CLAST_TESTS_BENCH_FARM_STORE_H
 #define CLAST_TESTS_BENCH_FARM_STORE_H
 
@@ -33,7 +32,7 @@ static inline status store_ticking(void *context, int running, struct error *err
   return store_tick(((struct storing *)context)->store, error);
 }
 
-/* A store with a campaign of one point, for runs of so many fragments. s->run and s->store are the caller's to free. */
+/* A store with a campaign of one point, for runs of `fragments` fragments. The caller frees s->run and s->store. */
 static inline status storing_begin(struct storing *s, size_t fragments, struct error *error) {
   struct fixture_inputs inputs;
   char path[64];

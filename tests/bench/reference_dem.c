@@ -1,4 +1,4 @@
-/* The frozen plain C version of the grains: the yardstick of bench_dem. */
+/* The frozen plain C version of the grains: the reference speed of bench_dem. */
 #include "tests/bench/reference_dem.h"
 
 #include <math.h>
@@ -93,7 +93,7 @@ static void beam(struct reference_dem *r, struct bond *b) {
   r->energy += 0.5 * b->alpha * stretch * stretch + 0.5 * b->diagonal * (t1 - t2) * (t1 - t2) + b->cross * t1 * t2;
 }
 
-/* All corners of b outside some side of a? */
+/* True if all corners of b lie outside one side of a. */
 static int separates(const struct body *a, const struct body *b) {
   for (int k = 0; k < a->count; ++k) {
     const struct dem_point p = a->world[k], q = a->world[(k + 1) % a->count];

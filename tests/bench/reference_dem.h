@@ -1,5 +1,5 @@
-/* A plain C version of the same model: the yardstick that bench_dem's ratios are taken against. FROZEN: never
- * optimised, never changed, so that a ratio means the same on every machine and in every year. */
+/* A plain C version of the same model: bench_dem's ratios refer to its speed. FROZEN: it is never optimised or changed,
+ * so that a ratio means the same on every machine and in every year. */
 #ifndef CLAST_TESTS_BENCH_REFERENCE_DEM_H
 #define CLAST_TESTS_BENCH_REFERENCE_DEM_H
 

@@ -1,4 +1,5 @@
-/* A plain solid step, never changed: bench_sph compares with it, and unit tests use it as their oracle. */
+/* A plain solid step, never changed: bench_sph compares its speed with it, and unit tests compare their results with
+ * it. */
 #include "tests/bench/reference_sph.h"
 
 #include <math.h>
@@ -70,7 +71,7 @@ void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, con
     }
 }
 
-/* Appends one chunk's lists; false when they are not as they should be. */
+/* Appends one chunk's lists; false when they break the rules of neighbours.h. */
 static bool append(const struct sph_neighbour_lists *lists, size_t first, size_t own, size_t *used,
                    struct reference_sph_lists *out) {
   bool good = lists->start[0] == 0;
@@ -123,7 +124,7 @@ void reference_sph_lists_free(struct reference_sph_lists *lists) {
   *lists = (struct reference_sph_lists){0};
 }
 
-/* Jacobi's rotations: a (symmetric, 3 x 3) becomes diagonal, the columns of v its axes. */
+/* Jacobi's rotations: a (symmetric, 3 x 3) becomes diagonal; the columns of v become its axes. */
 static void diagonalise(double a[3][3], double v[3][3]) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
@@ -162,7 +163,7 @@ void reference_sph_opposed(double epsilon, const double stress[6], double artifi
   const double radius[3] = {fabs(stress[1]) + fabs(stress[2]), fabs(stress[1]) + fabs(stress[4]),
                             fabs(stress[2]) + fabs(stress[4])};
   if (a[0][0] + radius[0] <= 0 && a[1][1] + radius[1] <= 0 && a[2][2] + radius[2] <= 0)
-    return; /* pressed all round */
+    return; /* compression along all axes */
   diagonalise(a, v);
   for (int axis = 0; axis < 3; axis++)
     if (a[axis][axis] > 0)

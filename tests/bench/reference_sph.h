@@ -1,5 +1,5 @@
-/* The pair loop in plain C: the frozen yardstick of bench_sph, and what the unit tests hold the fast kernels to. It
- * takes no part in the program. */
+/* The pair loop in plain C: the frozen reference of bench_sph, with which unit tests compare the fast kernels. It is no
+ * part of the program. */
 #ifndef CLAST_TESTS_BENCH_REFERENCE_SPH_H
 #define CLAST_TESTS_BENCH_REFERENCE_SPH_H
 
@@ -12,15 +12,15 @@ struct reference_sph_lists {
   uint32_t *count, *j;
 };
 
-/* Those lists from what sph_neighbours_list gives for chunks of `chunk` particles; arguments as for
- * sph_neighbours_find. Lists that are no lists as neighbours.h says are an error. */
+/* Makes those lists from the result of sph_neighbours_list for chunks of `chunk` particles; arguments as for
+ * sph_neighbours_find. Lists that break the rules of neighbours.h are an error. */
 status reference_sph_lists_make(size_t n, size_t chunk, const double *const at[3], const double *reach,
                                 const double periodic[3], int threads, struct reference_sph_lists *out,
                                 struct error *error);
 void reference_sph_lists_free(struct reference_sph_lists *lists);
 
-/* No correction of the gradient. `stress` and `artificial` are six columns of n: what acts of the deviator, over rho^2
- * (read with strength only), and R, which may be NULL. */
+/* No correction of the gradient. `stress` and `artificial` are six columns of n: the acting part of the deviator over
+ * rho^2 (read with strength only), and R, which may be NULL. */
 void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, const uint32_t *j,
                        const struct sph_pair_options *options, const struct sph_pair_fields *fields,
                        const double *const *stress, const double *const *artificial, const struct sph_pair_sums *sums);

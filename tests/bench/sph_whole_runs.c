@@ -44,8 +44,8 @@ static void leave(void *context, size_t first, size_t count, const struct sph_pa
   (void)context, (void)first, (void)count, (void)sums;
 }
 
-/* Seconds that a pass of the pair loop, a test of the lists and a listing take on the state as it stands. All three
- * leave it as it is. */
+/* Seconds of a pass of the pair loop, of a test of the lists and of making new lists, on the current state. None of the
+ * three changes it. */
 struct phases {
   double pairs, stale, listing;
 };
@@ -126,7 +126,7 @@ void sph_whole_runs_figures(const char *name, const char *particles) {
   printf("sph_float_error_of_undamaged_fraction_%s %.2e 1\n", name, f.undamaged - d.undamaged);
 }
 
-/* To the end of the step that makes new lists for the `count`-th time from now on. */
+/* Runs to the end of the step that makes new lists for the `count`-th time from now on. */
 static void to_listing(struct scene *scene, struct sph_run *run, uint64_t count) {
   struct error error = {0};
   bool finished = false;
@@ -138,10 +138,10 @@ static void to_listing(struct scene *scene, struct sph_run *run, uint64_t count)
     fail("a run ended early:", &error);
 }
 
-enum { LISTINGS = 8 }; /* for one of so many particles are sorted: system_list.c */
+enum { LISTINGS = 8 }; /* particles are sorted once in this many list rebuilds: system_list.c */
 
-/* Seconds per particle-step near the start, best of `tries`: over so many listings that a step has its share of them
- * and of the sorting, whatever the size; without the first one, with its allocations. */
+/* Seconds per particle-step near the start, best of `tries`. The run covers enough list rebuilds that every size
+ * includes its share of rebuilding and sorting. The first rebuild is left out because it allocates. */
 static double steps_of(const char *particles, const struct setting *set, clockid_t clock, int tries, double *bytes) {
   double best = INFINITY;
   for (int k = 0; k < tries; k++) {
@@ -197,7 +197,7 @@ void sph_whole_runs_modules(void) {
                 {"float", shorter, none}};
   for (size_t k = 0; k < sizeof module / sizeof *module; k++) {
     double with_bytes, without_bytes, with = INFINITY, without = INFINITY;
-    for (int round = 0; round < 4; round++) { /* in turn: what else the machine does is the same for both */
+    for (int round = 0; round < 4; round++) { /* alternately, so that other load on the machine affects both alike */
       with = fmin(with, steps_of("10000", module[k].with, CLOCK_PROCESS_CPUTIME_ID, 1, &with_bytes));
       without = fmin(without, steps_of("10000", module[k].without, CLOCK_PROCESS_CPUTIME_ID, 1, &without_bytes));
     }

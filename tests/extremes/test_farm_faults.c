@@ -1,4 +1,5 @@
-/* Faults and signals on one machine: kill -9 of anything at any instant leaves no process behind and ends clearly. */
+/* Faults and signals on one machine: after kill -9 of any process at any instant, no process is left behind and the
+ * program ends with a clear status. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,7 +13,7 @@ static const char *program;
 
 #define ALONE .slots = 2, .special = -1
 
-/* Who dies: depth under the program. In isolation: program - server - slot - child. */
+/* Depth of the killed process under the program. In isolation: program - server - slot - child. */
 enum { MANAGER = -1, SERVER = 0, SLOT = 1, CHILD = 2 };
 
 static void kill_anything(void **state) {
@@ -26,7 +27,7 @@ static void kill_anything(void **state) {
         const struct running it = launch(program, (struct launch){ALONE, .in_process = in_process, .count = 100,
                                                                   .kind = TASK_SLEEP, .amount = 0.01});
         assert_true(await_journal(&it, 3));
-        task_sleep(1e-3 * (double)((round * 37 + who * 11 + 13) % 40)); /* an instant that differs each time */
+        task_sleep(1e-3 * (double)((round * 37 + who * 11 + 13) % 40)); /* an instant that differs in each round */
         const pid_t victim = who == MANAGER ? it.pid : await_descendant(&it, it.pid, who, round % 2 && who == SLOT);
         assert_true(victim > 0);
         kill(victim, SIGKILL);
@@ -39,7 +40,7 @@ static void kill_anything(void **state) {
           assert_int_equal(out.exit_code, STATUS_STOPPED);
           assert_int_equal(out.twice, 0);
         } else {
-          /* One run at most is hurt (the victim may have ended by itself just before); all are reported. */
+          /* At most one run is lost (the victim may have ended normally just before); all are reported. */
           assert_int_equal(out.exit_code, STATUS_OK);
           assert_int_equal(out.reported, 100);
           assert_int_equal(lines, 100);
@@ -59,7 +60,7 @@ static void signals_drain(void **state) {
     const struct running it = launch(program, (struct launch){ALONE, .in_process = i % 2, .count = 1000,
                                                               .kind = TASK_SLEEP, .amount = 0.05});
     assert_true(await_journal(&it, 4));
-    killpg(it.pid, signals[i]); /* as a terminal does: to slots and children too, who must not mind */
+    killpg(it.pid, signals[i]); /* as a terminal does: slots and children get the signal too and must ignore it */
     assert_true(ended(&it, 5, &out));
     assert_int_equal(orphans(&it, 1), 0);
     assert_int_equal(out.exit_code, STATUS_STOPPED);
@@ -70,7 +71,7 @@ static void signals_drain(void **state) {
   }
 }
 
-/* What does not end within the grace is dropped; a second signal does not wait for the grace. */
+/* Tasks that do not end within the grace period are dropped; a second signal ends the grace period at once. */
 static void long_runs_are_dropped(void **state) {
   (void)state;
   for (int second = 0; second < 2; second++) {
@@ -78,7 +79,7 @@ static void long_runs_are_dropped(void **state) {
     const struct running it = launch(program, (struct launch){ALONE, .count = 10, .kind = TASK_SLEEP, .amount = 30});
     assert_true(await_descendant(&it, it.pid, CHILD, 1) > 0);
     const int64_t start = clock_ns();
-    kill(it.pid, second ? SIGUSR1 : SIGTERM); /* a drain would take two minutes, the grace two seconds */
+    kill(it.pid, second ? SIGUSR1 : SIGTERM); /* draining would take two minutes, the grace period is two seconds */
     if (second) {
       task_sleep(0.3);
       kill(it.pid, SIGTERM);
@@ -89,13 +90,13 @@ static void long_runs_are_dropped(void **state) {
     assert_int_equal(out.exit_code, STATUS_STOPPED);
     assert_int_equal(out.reported, 0);
     if (second)
-      assert_true(took < 1.9); /* less than the grace of 2 s */
+      assert_true(took < 1.9); /* less than the grace period of 2 s */
     else
       assert_true(took > 1.9);
   }
 }
 
-/* Slots that a crash storm kills again and again come back; the storm ends. */
+/* Slots that tasks crash again and again are restarted; the series of crashes ends. */
 static void crash_storm(void **state) {
   (void)state;
   for (int in_process = 0; in_process < 2; in_process++) {

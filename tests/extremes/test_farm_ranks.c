@@ -1,4 +1,5 @@
-/* The farm over MPI ranks, started by mpirun as a user does: same answers, no busy wait, and every way to die. */
+/* The farm over MPI ranks, started by mpirun as a user does: same answers, no busy wait, and every way in which a
+ * process can be killed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -77,12 +78,13 @@ static void idle_ranks_sleep(void **state) {
   assert_int_equal(orphans(&it, 2), 0);
   assert_int_equal(out.exit_code, STATUS_OK);
   /* Two percent of a core each. The aim is half a percent, which bench_farm measures; on a loaded machine each waking
-   * costs up to three times as much. Waiting in MPI_Recv would be 100 %, looking every 50 us about 20 %. */
+   * costs up to three times as much. Waiting in MPI_Recv would be 100 %, polling every 50 us about 20 %. */
   assert_true(out.manager_cpu_s < 0.02 * out.wall_s);
   assert_true(out.waiting_cpu_s / 2 < 0.02 * out.wall_s);
 }
 
-/* A dead rank ends the job in Open MPI 4.1. The manager hears SIGTERM and is called to commit; nothing is left over. */
+/* A dead rank ends the job in Open MPI 4.1. The manager receives SIGTERM and is called to commit; no process is left
+ * over. */
 static void a_killed_rank_ends_the_job(void **state) {
   (void)state;
   const int rounds = getenv("CLAST_FULL") ? 10 : 1;
@@ -102,7 +104,7 @@ static void a_killed_rank_ends_the_job(void **state) {
       kill(pid, SIGKILL);
       assert_true(ended(&it, 10, &out));
       assert_int_equal(orphans(&it, 5), 0);
-      assert_true(out.exit_code != 0); /* whatever mpirun says, it is no success */
+      assert_true(out.exit_code != 0); /* whatever mpirun reports, the exit code is not success */
     }
   }
 }
@@ -122,7 +124,7 @@ static void signals_to_mpirun(void **state) {
     kill(it.pid, signals[i]);
     assert_true(ended(&it, 10, &out));
     assert_int_equal(orphans(&it, 3), 0);
-    assert_true(out.summary); /* the manager came to its end in time */
+    assert_true(out.summary); /* the manager ended in time */
     assert_int_equal(out.status, STATUS_STOPPED);
     assert_int_equal(out.stopping, 1);
     assert_int_equal(out.twice + out.wrong, 0);
@@ -130,13 +132,14 @@ static void signals_to_mpirun(void **state) {
       assert_int_equal(out.exit_code, STATUS_STOPPED);
       assert_int_equal(out.lost, 0);
     } else {
-      assert_true(out.exit_code != 0); /* mpirun returns 1 whatever the ranks do: the store tells */
+      /* mpirun returns 1 whatever the ranks do: the test reads the result from the store */
+      assert_true(out.exit_code != 0);
     }
   }
 }
 
-/* A rank that freezes is noticed; its run is lost, the others finish, and the end is MPI_Abort, as Finalize would hang.
- */
+/* A rank that freezes is noticed; its run is lost, the others finish, and the program ends with MPI_Abort because
+ * MPI_Finalize would hang. */
 static void a_frozen_rank_is_left_behind(void **state) {
   (void)state;
   struct outcome_of out;
@@ -158,7 +161,7 @@ static void a_frozen_rank_is_left_behind(void **state) {
   assert_int_equal(out.reported, 60);
   assert_int_equal(out.twice, 0);
   assert_int_equal(out.done, 59);
-  assert_int_equal(out.lost, 1); /* the one it was computing; what it held ahead went to the others */
+  assert_int_equal(out.lost, 1); /* the run it was computing; the tasks queued on it went to other ranks */
 }
 
 int main(int argc, char **argv) {

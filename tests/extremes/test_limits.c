@@ -1,4 +1,4 @@
-/* Limits with exact answers, on small bodies: nothing breaks, everything breaks, all flaws alike, no pores left, no
+/* Limits with exact answers, on small bodies: nothing breaks, everything breaks, all flaws are equal, no pores, no
  * speed. */
 #include "tests/support/run_case.h"
 
@@ -12,7 +12,7 @@ static void release(struct ran *ran) {
   SPH_CASE("basalt-sphere", "fidelity.particles=300", "fidelity.projectile_spacing=0.6", "stop.end_time=30 us",        \
            "fragments.static_strength=off", __VA_ARGS__)
 
-/* Grains and mass stay in one piece; energy and momenta are conserved. */
+/* Without breaking, the body stays one piece with all its grains and mass; energy and momenta are conserved. */
 static void one_piece(const struct ran *ran, double energy, double momentum) {
   assert_int_equal(ran->outcome.state, OUTCOME_COMPLETED);
   assert_true(ran->outcome.largest_fraction == 1 && ran->outcome.second_fraction == 0);
@@ -39,7 +39,7 @@ static void grains_that_cannot_part_stay_one_body(void **state) {
   }
 }
 
-/* Beams that bear nothing: each grain is a fragment, and the largest fragment is the largest grain. */
+/* Beams without strength: each grain is a fragment, and the largest fragment is the largest grain. */
 static void beams_of_no_strength_leave_dust(void **state) {
   (void)state;
   const struct dem_inputs inputs = DISC("threshold.strain=1e-7 %", "threshold.angle=1e-6 deg");
@@ -52,17 +52,17 @@ static void beams_of_no_strength_leave_dust(void **state) {
   release(&ran);
 }
 
-/* m to infinity: thresholds drawn by a law of one value are the thresholds themselves. */
+/* m to infinity: thresholds drawn from a law with a single value equal that value. */
 static void thresholds_of_large_modulus_are_all_alike(void **state) {
   (void)state;
   const struct dem_inputs cases[] = {DISC("threshold.modulus=off"), DISC("threshold.modulus=1e6")};
   struct ran all = run_case_run(&dem_engine, &cases[0], 3), drawn = run_case_run(&dem_engine, &cases[1], 3);
-  assert_true(all.results.dem.broken > 20); /* else the comparison says nothing */
+  assert_true(all.results.dem.broken > 20); /* otherwise the comparison tests nothing */
   assert_int_equal(all.results.dem.broken, drawn.results.dem.broken);
   assert_int_equal(all.count, drawn.count);
   for (size_t k = 0; k < all.count; k++)
     assert_true(all.fragments[k].mass == drawn.fragments[k].mass && all.fragments[k].first == drawn.fragments[k].first);
-  /* Thresholds differ by 1e-5 at most, and so does the time of the first break, to a time step. */
+  /* Thresholds differ by 1e-5 at most, so the time of the first break differs by at most a time step. */
   assert_true(fabs(all.results.dem.first_break - drawn.results.dem.first_break) < 1.5e-6);
   release(&all);
   release(&drawn);
@@ -82,7 +82,7 @@ static void solids_without_flaws_stay_whole(void **state) {
   }
 }
 
-/* Flaws that open at no strain: nothing is left of the target. */
+/* Flaws that open at zero strain: the target breaks completely. */
 static void solids_of_no_strength_become_dust(void **state) {
   (void)state;
   const struct sph_inputs inputs = IMPACT("target.material.weibull.k=1e200 1/m^3", "target.material.weibull.m=8.5",
@@ -95,8 +95,7 @@ static void solids_of_no_strength_become_dust(void **state) {
   release(&ran);
 }
 
-/* alpha_0 to 1 from above: a sphere with ever fewer pores becomes the solid one, and at 1 it is the solid to the bit.
- */
+/* alpha_0 to 1 from above: a sphere with ever fewer pores approaches the solid one; at 1 it equals it bit by bit. */
 static void pores_that_vanish_leave_the_solid(void **state) {
   (void)state;
 #define POROUS(alpha)                                                                                                  \
@@ -121,7 +120,7 @@ static void pores_that_vanish_leave_the_solid(void **state) {
   release(&same);
 }
 
-/* Nothing moves: no energy, no damage, no step too short. */
+/* Nothing moves: no energy, no damage, no time step that is too short. */
 static void no_speed_changes_nothing(void **state) {
   (void)state;
   const struct sph_inputs inputs = IMPACT("impact.speed=0 m/s", "impact.gap=0");

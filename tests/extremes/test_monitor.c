@@ -1,5 +1,5 @@
-/* The monitor of a run: faults planted into the moving system end the run at most 100 steps later, with a message that
- * names the quantity, the grain or particle, the time and what to do. What it costs. */
+/* The monitor of a run: faults put into the moving system end the run at most 100 steps later. The message names the
+ * quantity, the grain or particle, the time and the remedy. Also the cost of the monitor. */
 #include "engine/dem/run/run.h"
 #include "engine/dem/step/system_layout.h"
 #include "engine/sph/run/run.h"
@@ -43,7 +43,7 @@ static void dem_ends(struct dem_run *run, int state, const char *const *words) {
 static void energy_from_nowhere_ends_a_run_of_grains(void **state) {
   (void)state;
   struct dem_run *run = disc("threshold.breaking=true");
-  run->system->c.vx[VICTIM] += 400; /* a grain is hit by nothing */
+  run->system->c.vx[VICTIM] += 400; /* a grain gets a velocity without any impact */
   dem_ends(run, OUTCOME_ENERGY,
            (const char *const[]){"energy ledger has drifted", "is the fastest", " s ", "fidelity.time_step", NULL});
 }
@@ -63,7 +63,7 @@ static void grains_too_fast_for_the_step_end_a_run(void **state) {
   dem_ends(run, OUTCOME_TIME_STEP, (const char *const[]){"grain 7 moves by", "grain diameters", " s ", "below", NULL});
 }
 
-/* A time step that the run was not checked for: what is stable at the start need not stay so. */
+/* The run was checked for another time step: the step may become unstable after the start. */
 static void a_step_beyond_stability_ends_a_run(void **state) {
   (void)state;
   for (int gear = 0; gear < 2; gear++) {
@@ -124,12 +124,12 @@ static void steps_that_collapse_end_a_run(void **state) {
   (void)state;
   struct sph_run *run = sphere("fidelity.energy_bound=off");
   char particle[60];
-  run->system->c.energy[VICTIM] = 1e28; /* hotter than anything: its sound speed allows no step */
+  run->system->c.energy[VICTIM] = 1e28; /* far above any real energy: the resulting sound speed allows no step */
   snprintf(particle, sizeof particle, "Particle %u is the hottest", (unsigned)run->system->id[VICTIM]);
   sph_ends(run, OUTCOME_TIME_STEP, (const char *const[]){"time step fell to", particle, " s", "fidelity.cfl", NULL});
 }
 
-/* ---- doubts ---- */
+/* ---- warnings ---- */
 
 static struct ran finished(const struct engine_kind *kind, const void *inputs) {
   struct ran ran = run_case_run(kind, inputs, 3);
@@ -158,7 +158,7 @@ static void doubts_are_in_the_result(void **state) {
   assert_int_equal(sph_engine.warn(&plate, NULL), WARNINGS_PISTON);
 }
 
-/* A drift of 1.2 % within a bound of 2 % counts, and says so. */
+/* A drift of 1.2 % within a bound of 2 % is accepted, and reported. */
 static void drift_within_a_wide_bound_is_flagged(void **state) {
   (void)state;
   struct dem_run *run = disc("fidelity.energy_bound=50 %");
@@ -175,7 +175,8 @@ static void drift_within_a_wide_bound_is_flagged(void **state) {
   dem_run_free(run);
 }
 
-/* Wide densities: the heavy body's particles are too strong for the light one's step, and volume weights cure it. */
+/* Bodies of very different density: the heavy particles' forces are too strong for the time step of the light ones;
+ * volume weights remove the problem. */
 static void bodies_of_unlike_density_need_volume_weights(void **state) {
   (void)state;
 #define LIGHT(...)                                                                                                     \
@@ -195,7 +196,7 @@ static void bodies_of_unlike_density_need_volume_weights(void **state) {
 
 /* ---- cost ---- */
 
-/* Processor time of the looks at the ledger over that of the steps. */
+/* Processor time of the checks of the energy balance, over that of the steps. */
 static void the_monitor_is_cheap(void **state) {
   (void)state;
   const int steps = run_case_full() ? 3000 : 1000;

@@ -1,5 +1,6 @@
-/* The store under kill -9, full disks, missing permissions and readers that stay: whatever happens, what was committed
- * is whole, and the same command finishes the rest to the same bits. CLAST_FULL=1 kills ten times as often. */
+/* The store under kill -9, full disks, missing permissions and readers that keep it open: in each case the committed
+ * runs are complete, and the same command computes the rest with the same bits. CLAST_FULL=1 kills ten times as often.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -37,7 +38,7 @@ static void line(void *context, const char *text) {
   print_error("%s\n", text);
 }
 
-/* Opened by a reader, whole; how many runs. */
+/* Opens the store as a reader and checks it. Returns the number of runs. */
 static double whole(const char *path) {
   struct store *store = NULL;
   OK(store_open_reader(path, &store, &error));
@@ -80,8 +81,8 @@ static void killed_writer_loses_at_most_its_batch(void **state) {
           *added += new;
         }
     }
-    /* After so many more runs, up to three batches, and a moment more; every fifth while the store is being made or
-     * opened. */
+    /* Kills after a random number of further runs, up to three batches, and a short delay; every fifth kill falls into
+     * making or opening the store. */
     int64_t enough = (int64_t)(before + 1500 * fixture_random(11, (uint64_t)i));
     double start = clock_s();
     while (i % 5 && *(volatile int64_t *)added < enough && clock_s() - start < 20)
@@ -90,7 +91,7 @@ static void killed_writer_loses_at_most_its_batch(void **state) {
     kill(pid, SIGKILL);
     int ending;
     waitpid(pid, &ending, 0);
-    assert_true(WIFSIGNALED(ending)); /* it did not fail by itself */
+    assert_true(WIFSIGNALED(ending)); /* it did not fail before the kill */
     struct store *store = NULL;
     status result = store_open_reader(path, &store, &error);
     store_close(store, NULL);
@@ -107,7 +108,7 @@ static void killed_writer_loses_at_most_its_batch(void **state) {
     before = after;
   }
   munmap(added, sizeof *added);
-  assert_true(in_the_middle >= 3); /* the kills did fall into the writing */
+  assert_true(in_the_middle >= 3); /* enough kills did happen during writing */
   int64_t runs = (int64_t)before / (M * K) + 50;
   OK(fill(path, runs, &error));
   assert_near(whole(path), (double)(M * K * runs), 0);
@@ -118,7 +119,7 @@ static void killed_writer_loses_at_most_its_batch(void **state) {
   free(b);
 }
 
-/* What a full disk does to a writer, then the same with room. */
+/* A writer meets a full disk; then the same command with enough space. */
 static void run_out_of_room(const char *path, void (*narrow)(void), void (*widen)(void)) {
   narrow();
   pid_t pid = fork();
@@ -136,7 +137,7 @@ static void run_out_of_room(const char *path, void (*narrow)(void), void (*widen
   assert_true(WIFEXITED(ending));
   assert_int_equal(WEXITSTATUS(ending), 0);
   double kept = whole(path);
-  assert_true(kept >= 500 && kept < M * K * RUNS); /* it did run out, after some batches */
+  assert_true(kept >= 500 && kept < M * K * RUNS); /* the disk did become full, after some batches */
   OK(fill(path, RUNS, &error));
   assert_near(whole(path), M * K * RUNS, 0);
 }
@@ -157,7 +158,7 @@ static void file_size_limit_loses_nothing_committed(void **state) {
   run_out_of_room(fixture_path(path, "narrow"), narrow_files, widen_files);
 }
 
-/* Not even the tables fit. What is left must not look like a store that was copied without its -wal file. */
+/* Not even the tables fit. The remaining file must not look like a store that was copied without its -wal file. */
 static void no_room_for_a_table_leaves_no_file(void **state) {
   (void)state;
   char path[64];
@@ -232,8 +233,8 @@ static void without_permission(void **state) {
   assert_int_equal(WEXITSTATUS(ending), 0);
 }
 
-/* A reader in the middle of a query for the whole time: the writer neither waits nor fails, the reader sees its moment.
- */
+/* A reader is in the middle of a query all the time: the writer neither waits nor fails, and the reader sees the state
+ * at the query's start. */
 static void reader_never_blocks_the_writer(void **state) {
   (void)state;
   char path[64];
@@ -257,13 +258,14 @@ static void reader_never_blocks_the_writer(void **state) {
   if (spent > 30)
     fail_msg("the writer waited: %g s", spent); /* 6000 runs take half a second; a wait would take 10 s each */
   assert_int_equal(sqlite3_step(half), SQLITE_ROW);
-  OK(store_close(writer, &error)); /* cannot leave WAL mode now, and that is no error */
+  OK(store_close(writer, &error)); /* leaving WAL mode is impossible now; this is no error */
   sqlite3_finalize(half);
   store_close(reader, NULL);
   assert_near(whole(path), M * K * RUNS, 0);
 }
 
-/* After a write failed, the store takes nothing more and says so; the identities of the lost batch are not "stored". */
+/* After a failed write, the store refuses further runs with an error; the runs of the lost batch do not count as
+ * stored. */
 static void after_a_failure_nothing_is_pretended(void **state) {
   (void)state;
   char path[64];

@@ -1,5 +1,5 @@
-/* One flipped bit anywhere in a store: `check` finds it, or nothing that a run determined has changed. CLAST_FULL=1
- * flips forty times as many. */
+/* One flipped bit anywhere in a store: `check` finds it, or no result of a run has changed. CLAST_FULL=1 flips forty
+ * times as many. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -42,7 +42,7 @@ static void write_file(const char *path, const struct file *file) {
   assert_int_equal(fclose(out), 0);
 }
 
-/* What came with the attempt, or what stopping rules change. */
+/* Columns that depend on the attempt, or that stopping rules change. */
 static bool is_of_the_attempt(const char *column) {
   static const char *const names[] = {"session_id",  "surplus", "counts", "attempt", "wall_time",   "cpu_time",
                                       "peak_memory", "host",    "rank",   "digest",  "finished_at", "fields_path"};
@@ -66,7 +66,7 @@ static void print_value(FILE *out, sqlite3_stmt *row, int column) {
   }
 }
 
-/* All rows that runs determined, and their points, as text. */
+/* All rows determined by runs, and their points, as text. */
 static char *content(const char *path) {
   static const char *const questions[] = {
       "SELECT * FROM run NOT INDEXED ORDER BY run_id",     "SELECT * FROM result_fake ORDER BY run_id",
@@ -136,7 +136,7 @@ static void every_flipped_bit_is_found(void **state) {
   free(file.bytes);
 }
 
-/* The same in the rows alone: each value of a run, one bit changed by SQL. */
+/* The same for the rows alone: SQL changes one bit of each value of a run. */
 static void every_value_of_a_run_is_found(void **state) {
   (void)state;
   static const char *const changes[] = {
@@ -172,7 +172,7 @@ static void every_value_of_a_run_is_found(void **state) {
   free(file.bytes);
 }
 
-/* Nothing of a source with a damaged run is taken. */
+/* A merge takes nothing from a source with a damaged run. */
 static void merge_refuses(const char *change) {
   char path[64], target[64];
   struct file file = whole_store(path);

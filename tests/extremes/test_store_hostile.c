@@ -1,5 +1,5 @@
-/* Stores that someone else has prepared: whatever stands in them is data. Each is refused with the names of what does
- * not belong there, and nothing of it is run: not when it is read, written on or merged. */
+/* Stores prepared by an attacker: their contents are only data. Each is refused, the message names the foreign objects,
+ * and none of their SQL is run when the store is read, written or merged. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,8 +15,7 @@
 #include "db/store/schema.h"
 #include "tests/support/store_checks.h"
 
-/* Changes a store as any program could; writable_schema lets SQL replace the text of a table, as an editor of bytes
- * would. */
+/* Changes a store as any program could. writable_schema lets SQL replace the text of a table, like a binary editor. */
 static void change(const char *path, const char *text) {
   sqlite3 *db = NULL;
   char *message = NULL;
@@ -43,7 +42,7 @@ static void said(status code, const char *how, const char *name) {
     fail_msg("%s does not name %s: %s", how, name, error.message);
 }
 
-/* Reading, writing and merging all refuse the store and name what is wrong. */
+/* Reading, writing and merging all refuse the store and name the foreign object. */
 static void refused(const char *path, const char *name) {
   char target[64];
   struct store *store = NULL;
@@ -58,21 +57,21 @@ static void refused(const char *path, const char *name) {
   OK(store_close(store, &error));
 }
 
-/* A trigger that swallows every run: a campaign would compute and keep nothing. */
+/* A trigger that deletes every run: a campaign would compute and store nothing. */
 static void triggers_are_refused(void **state) {
   (void)state;
   char path[64];
   change(populated(path, "hostile-trigger"),
          "CREATE TRIGGER swallow AFTER INSERT ON run BEGIN DELETE FROM run WHERE run_id = new.run_id; END");
   refused(path, "swallow");
-  /* ... and behind the name of a view, where its text alone says what it is */
+  /* a trigger under the name of a view, recognisable only by its text */
   change(populated(path, "hostile-trigger"),
          "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = 'CREATE TRIGGER points AFTER INSERT ON run BEGIN "
          "DELETE FROM run; END' WHERE name = 'points'");
   refused(path, "points");
 }
 
-/* A view of another name is refused. Our own names are never run from the file: the reader makes its own views. */
+/* A view of another name is refused. The file's versions of our own views are never run: the reader makes its own. */
 static void views_are_refused_or_replaced(void **state) {
   (void)state;
   char path[64];
@@ -88,7 +87,7 @@ static void views_are_refused_or_replaced(void **state) {
   assert_near(number(store, "SELECT count(*) FROM runs"), 40, 0);
   OK(store_close(store, &error));
   sqlite3 *db = NULL;
-  assert_int_equal(sqlite3_open(path, &db), SQLITE_OK); /* other programs see the view that the writer made anew */
+  assert_int_equal(sqlite3_open(path, &db), SQLITE_OK); /* other programs see the view that the writer made again */
   assert_int_equal(sqlite3_exec(db, "SELECT run_id, identity FROM runs", NULL, NULL, NULL), SQLITE_OK);
   sqlite3_close(db);
 }
@@ -100,8 +99,8 @@ static void virtual_tables_are_refused(void **state) {
   refused(path, "result_x");
 }
 
-/* The text of a table holds a second statement: SQLite reads the first alone; a program that runs the text runs both.
- */
+/* The text of a table holds a second statement: SQLite reads only the first; a program that executes the text executes
+ * both. */
 static void second_statement_is_never_run(void **state) {
   (void)state;
   char path[64], victim[64];
@@ -125,7 +124,7 @@ static void second_statement_is_never_run(void **state) {
   refused(path, "result_x");
 }
 
-/* Names that end a quotation: of a table, of a column, of an axis. */
+/* Names of a table, a column and an axis that contain a closing quotation mark. */
 static void names_are_names(void **state) {
   (void)state;
   char path[64];
@@ -148,7 +147,7 @@ static void generated_columns_are_refused(void **state) {
   refused(path, "late");
   change(populated(path, "hostile-generated"), "ALTER TABLE run ADD COLUMN filled REAL DEFAULT 7");
   refused(path, "filled");
-  /* a rule that no run can meet */
+  /* a rule that no run can satisfy */
   change(populated(path, "hostile-generated"),
          "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = replace(sql, '''completed''', '''nothing''') "
          "WHERE name = 'run'");
@@ -182,7 +181,7 @@ static void utf16_is_refused(void **state) {
   refused(path, "UTF-16");
 }
 
-/* To open a pipe waits until somebody writes to it. */
+/* Opening a pipe blocks until another process writes to it. */
 static void pipes_and_devices_are_no_stores(void **state) {
   (void)state;
   char pipe[64];
@@ -243,9 +242,9 @@ static void huge_and_odd_rows_are_found(void **state) {
       "UPDATE run SET state = NULL, identity = NULL, replicate = 'x' WHERE run_id = 5",
       "UPDATE bin SET lower = NULL",
       "UPDATE spectrum SET bin = 9223372036854775807 WHERE run_id = 4 AND bin = -4",
-      "UPDATE spectrum SET bin = 3000000000 WHERE run_id = 4 AND bin = -4", /* no 32 bits */
+      "UPDATE spectrum SET bin = 3000000000 WHERE run_id = 4 AND bin = -4", /* does not fit 32 bits */
       "UPDATE spectrum SET count = -5 WHERE run_id = 4 AND bin = -4",
-      "UPDATE spectrum SET count = 4000000000 WHERE run_id = 4 AND bin = -4", /* its square has no 64 bits */
+      "UPDATE spectrum SET count = 4000000000 WHERE run_id = 4 AND bin = -4", /* its square does not fit 64 bits */
       "UPDATE point SET scene = (WITH RECURSIVE n (i, t) AS (SELECT 1, '[' UNION ALL SELECT i + 1, t || t FROM n WHERE "
       "i < 21) SELECT max(t) FROM n)" /* a million brackets deep */
   };
@@ -254,7 +253,7 @@ static void huge_and_odd_rows_are_found(void **state) {
     struct store *store = NULL;
     int64_t added = 0, differing = 0, point = 1;
     populated(path, "hostile-rows");
-    /* Without STRICT, NOT NULL and CHECK any row goes in; the text is put back behind it. */
+    /* Without STRICT, NOT NULL and CHECK any row can be inserted; afterwards the text is restored. */
     snprintf(
         sql, sizeof sql,
         "CREATE TABLE kept AS SELECT name, sql FROM sqlite_schema WHERE name IN ('fragment_mass', 'point', 'run', "
@@ -310,8 +309,8 @@ static void spoil(const char *path, uint64_t round) {
   fclose(file);
 }
 
-/* Pages of noise: an error or a problem, never a crash. Only where check finds nothing, because the noise lies where no
- * row is, may the rows go into another store, and these are the right ones. */
+/* Pages of noise: an error or a problem, never a crash. Rows may go into another store only if check finds nothing
+ * because the noise hit no row; these rows are then correct. */
 static void corrupt_pages_are_errors(void **state) {
   (void)state;
   char path[64], target[64];

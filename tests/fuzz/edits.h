@@ -1,6 +1,6 @@
-/* A file for fuzz targets: a whole one, changed by a list of edits. Random bytes alone would not get past the first
- * look at a file of many pages. An edit is 6 bytes: where (3), whether at the beginning of a block of 4096 bytes (1),
- * the change (1), how many bytes (1). The count 255 cuts the file off there. */
+/* A file for fuzz targets: a complete one, changed by a list of edits. A reader would refuse random bytes at the first
+ * check. An edit is 6 bytes: where (3), whether at the beginning of a block of 4096 bytes (1), the change (1), how many
+ * bytes (1). The count 255 cuts the file off there. */
 #ifndef CLAST_TESTS_FUZZ_EDITS_H
 #define CLAST_TESTS_FUZZ_EDITS_H
 
@@ -31,7 +31,7 @@ static inline struct edits_file edits_read(const char *path) {
   return file;
 }
 
-/* Writes the file with the edits to `path`. False: the edits change nothing. */
+/* Writes the file with the edits to `path`. Returns false if the edits change nothing. */
 static inline bool edits_write(const struct edits_file *whole, const uint8_t *edits, size_t size, const char *path) {
   size_t length = whole->size;
   uint8_t *bytes = malloc(length);

@@ -1,5 +1,6 @@
-/* Fuzz target: any bytes as a document, read through a table of every kind of row, walked, reported, and what was read
- * sent through JSON, identity and bytes. What must hold whatever came is asserted by aborting. */
+/* Fuzz target: any bytes as a document, read through a table of every kind of row, walked and reported; the values read
+ * are converted to JSON, identity and bytes. Invariants that must hold for every input are checked; a failed check
+ * aborts. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +10,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 /* libfyaml 0.7.12 loses the buffer of an unfinished quoted text with many escapes when the document then turns out to
- * be no YAML (quotes-leak.yaml): 1 kB per refused document. Our own use of it is held leak-free by test_document. */
+ * be no YAML (quotes-leak.yaml): 1 kB per refused document. test_document checks that our own use of it does not leak.
+ */
 __attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void) {
   return "leak:libfyaml\n";
@@ -105,7 +107,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     char *first = field_identity(&table, &thing), *second = field_identity(&table, &back),
          *json = field_json(&table, &thing);
     must(first && second && json && strcmp(first, second) == 0);
-    /* What was read and written as JSON is a document (YAML 1.2 holds JSON) in SI that reads the same. */
+    /* A document written as JSON after reading is itself a document (YAML 1.2 includes JSON), in SI, with the same
+     * values. */
     struct document *again;
     must(document_parse("json", json, strlen(json), &again, &error) == STATUS_OK);
     document_take_si(again);

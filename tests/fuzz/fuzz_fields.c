@@ -1,5 +1,5 @@
-/* Fuzz target: a fields file (HDF5) with some bytes changed is read as pictures read it. Nothing crashes, and no more
- * rows come back than there is memory for. */
+/* Fuzz target: a fields file (HDF5) with some bytes changed is read as the pictures do. Nothing crashes, and the number
+ * of rows returned fits into memory. */
 #include <unistd.h>
 
 #include "analysis/pictures/snapshot_read.h"
@@ -9,13 +9,14 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
-/* HDF5 loses memory where a damaged file ends in an error (seen with 1.10.8). */
+/* HDF5 leaks memory when a damaged file causes an error (seen with 1.10.8). */
 __attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void) {
   return "leak:libhdf5\n";
 }
 
-/* HDF5 takes sizes from a damaged file and asks for exabytes. That must fail as it does without a sanitizer. */
+/* HDF5 takes sizes from a damaged file and requests exabytes. This allocation must fail as it does without a sanitizer.
+ */
 __attribute__((visibility("default"))) const char *__asan_default_options(void);
 const char *__asan_default_options(void) {
   return "allocator_may_return_null=1:max_allocation_size_mb=1000";

@@ -1,5 +1,5 @@
-/* Fuzz target: any bytes as the CSV file of a measured spectrum (`clast spectrum --with`). What is read has ascending
- * masses and numbers that fall, and can be drawn and compared with runs. */
+/* Fuzz target: any bytes as the CSV file of a measured spectrum (`clast spectrum --with`). An accepted file has
+ * ascending masses and decreasing numbers, and can be drawn and compared with runs. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* Fuzz target: any bytes as the document of measurements (`clast fit MEASURED.yaml ...`). What is read has known
- * quantities, finite numbers, and shots that can be run. */
+/* Fuzz target: any bytes as the document of measurements (`clast fit MEASURED.yaml ...`). An accepted document has
+ * known quantities, finite numbers, and shots that can be run. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Fuzz target: any bytes as a shape file. What is accepted is a body with a volume, an inside and distances. */
+/* Fuzz target: any bytes as a shape file. An accepted shape is a body with a volume, an inside and distances. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
-/* Fuzz target: a store with some bytes changed is read, checked, written on and merged. Every call says what is wrong;
- * nothing crashes, and what a damaged store leaves in another one is whole. */
+/* Fuzz target: a store with some bytes changed is read, checked, written and merged. Every failed call gives a message;
+ * nothing crashes, and rows merged from a damaged store are complete. */
 #include "db/ask/points.h"
 #include "tests/fuzz/edits.h"
 #include "tests/support/store_fixture.h"
@@ -29,7 +29,7 @@ static void put_away(void) {
   rmdir(folder);
 }
 
-/* The whole store, and the names of the others, in memory if the machine has a place for that. */
+/* Path of the complete store and of the others: in memory if the machine has a memory file system. */
 static struct edits_file seed(void) {
   struct store *store = NULL;
   struct error error;

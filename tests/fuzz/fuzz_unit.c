@@ -34,7 +34,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
   struct unit unit;
   if (unit_parse(text, &unit, &error) == STATUS_OK) {
     must(isfinite(unit.factor) && unit.factor > 0 && unit_same_dimension(&unit, &unit));
-    if (size < 200) { /* what parses alone parses behind a number, and its reciprocal undoes it */
+    if (size < 200) { /* a unit that parses alone parses after a number, and its reciprocal cancels it */
       char joined[300];
       struct unit product;
       snprintf(joined, sizeof joined, "(%s)/(%s)", text, text);

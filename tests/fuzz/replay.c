@@ -1,5 +1,5 @@
-/* Gives the files of the folders named on the command line to a fuzz target: the seed corpus and every input that once
- * broke something, in any build. With a number as first argument, also that many variations of each file. */
+/* Gives the files of the folders named on the command line to a fuzz target, in any build: the seed corpus and every
+ * input that once caused a failure. With a number as first argument, also that many variations of each file. */
 #include <dirent.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -45,7 +45,8 @@ static void vary(const uint8_t *bytes, size_t size, int variations) {
         length += added;
       }
     }
-    uint8_t *exact = malloc(length + 1); /* its own block: the address sanitizer sees one byte too far */
+    /* a block of exactly this length: the address sanitizer then detects a read one byte beyond it */
+    uint8_t *exact = malloc(length + 1);
     if (!exact)
       break;
     memcpy(exact, copy, length);

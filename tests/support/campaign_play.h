@@ -1,5 +1,5 @@
-/* A farm played by the test: tasks are taken from a driver, computed by a small stand-in for engine `dem` (its tables,
- * no physics: fragments drawn from inputs and seed) and reported in an order of the test's choosing. */
+/* A farm played by the test: tasks are taken from a driver, computed by a small substitute for engine `dem` (its
+ * tables, no physics: fragments drawn from inputs and seed) and reported in an order that the test chooses. */
 #ifndef CLAST_TESTS_CAMPAIGN_PLAY_H
 #define CLAST_TESTS_CAMPAIGN_PLAY_H
 
@@ -115,7 +115,7 @@ static inline struct field_value play_real(double x) {
   return (struct field_value){.kind = FIELD_REAL, .number = x};
 }
 
-/* strain x angle, as a document would give it. */
+/* strain x angle, as in a document. */
 static struct campaign *play_campaign(size_t strains, size_t angles, int64_t per_point) {
   struct error error;
   struct campaign *campaign = calloc(1, sizeof *campaign);
@@ -150,9 +150,9 @@ static struct campaign *play_campaign(size_t strains, size_t angles, int64_t per
 enum play_fate { PLAY_RUN, PLAY_CRASH, PLAY_SLOW, PLAY_LOST, PLAY_STOP };
 struct play {
   int slots;
-  uint64_t order; /* seed of the order in which runs finish; 0 = as they were given out */
-  int stop_after; /* reports, then everything out is dropped; 0 = never */
-  enum play_fate (*fate)(uint64_t seed, int attempt); /* NULL: all run */
+  uint64_t order; /* seed of the order in which runs finish; 0 = the order in which they were started */
+  int stop_after; /* number of reports after which all runs in progress are dropped; 0 = never */
+  enum play_fate (*fate)(uint64_t seed, int attempt); /* NULL: every task is PLAY_RUN */
   int reports;
   char *says; /* message of the status that ended it, malloc'd */
 };
@@ -239,7 +239,7 @@ static status play_once(struct play *play, const struct campaign *campaign, cons
   return code;
 }
 
-/* What counts in a store, as text; malloc'd. */
+/* The result of store_dump as text; malloc'd. */
 static inline char *play_dump(const char *path) {
   struct error error = {0};
   struct store *store = NULL;

@@ -1,5 +1,4 @@
-/* What a moving solid of a test reads beside its bodies: the inputs at the defaults of their rows, and an open space.
- */
+/* Parameters of a moving solid in a test, beside its bodies: inputs at the defaults of their rows, in open space. */
 #ifndef CLAST_TESTS_CASE_PARAMETERS_H
 #define CLAST_TESTS_CASE_PARAMETERS_H
 

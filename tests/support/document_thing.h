@@ -80,7 +80,7 @@ static const struct field rows[] = {
 };
 static const struct field_table table = FIELD_TABLE(rows, struct thing, "thing", "A thing for tests.");
 
-/* Read a text; the report (malloc'd) or NULL when it was good. */
+/* Reads a text. Returns the report (malloc'd), or NULL if the text was good. */
 static char *report_of(const char *text, size_t size, struct thing *thing) {
   struct document *document;
   struct error error = {0};

@@ -1,8 +1,8 @@
-/* For tests that kill things: a program that farms tasks (the test itself, called again as `program work ...`), started
- * alone or under mpirun, watched and killed from outside, and proof that no process of it is left.
+/* For tests that kill processes: a program that farms tasks (the test itself, called again as `program work ...`),
+ * started alone or under mpirun, watched and killed from outside, with a check that no process of it is left.
  *
- * Every process of a launch carries the same tag in its environment, so that /proc tells which still live, whoever
- * their parent is by then. */
+ * Every process of a launch carries the same tag in its environment, so that /proc shows which are still alive,
+ * whatever their parent process is by then. */
 #ifndef CLAST_TESTS_FARM_PROCESS_H
 #define CLAST_TESTS_FARM_PROCESS_H
 
@@ -28,7 +28,7 @@ struct outcome_of {
   int status, reported, twice, wrong, done, lost, stopping, slots_total;
   double manager_cpu_s, waiting_cpu_s, wall_s;
   unsigned long long sum;
-  bool summary; /* it lived to write one */
+  bool summary; /* the program reached the end and wrote a summary */
 };
 
 /* ---- the program ---- */
@@ -94,7 +94,7 @@ static inline int program_work(char **argv) {
   return (int)result;
 }
 
-/* ---- the watcher ---- */
+/* ---- the test's side ---- */
 
 struct running {
   pid_t pid;
@@ -121,12 +121,12 @@ static inline struct running launch(const char *program, struct launch it) {
     setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
 #ifdef __SANITIZE_ADDRESS__
     if (it.ranks)
-      setenv("ASAN_OPTIONS", "detect_leaks=0", 1); /* Open MPI's own; alone, our leaks are looked for */
+      setenv("ASAN_OPTIONS", "detect_leaks=0", 1); /* Open MPI itself leaks; without it, our leaks are checked */
 #endif
     const int nothing = open("/dev/null", O_RDWR);
     dup2(nothing, STDIN_FILENO);
     if (!getenv("CLAST_FARM_TEST_LOUD"))
-      dup2(nothing, STDERR_FILENO); /* mpirun's long farewells */
+      dup2(nothing, STDERR_FILENO); /* mpirun prints long messages at the end */
     if (it.ranks)
       execlp("mpirun", "mpirun", "--oversubscribe", "-n", ranks, program, "work", text, (char *)NULL);
     else
@@ -136,7 +136,7 @@ static inline struct running launch(const char *program, struct launch it) {
   return running;
 }
 
-/* Processes of the launch, zombies left out. `which`: part of what must stand in the pid's place in the family. */
+/* Processes of the launch, zombies left out. */
 static inline int family(const struct running *running, pid_t *pids, int most) {
   int count = 0;
   DIR *directory = opendir("/proc");
@@ -184,7 +184,7 @@ static inline pid_t parent_of(pid_t pid) {
   return parent;
 }
 
-/* A process at this depth under `top` (0 = its children), the `nth` of them by pid; 0 when there is none. */
+/* The pid of the `nth` process at this depth under `top` (0 = its children), ordered by pid; 0 when there is none. */
 static inline pid_t descendant(const struct running *running, pid_t top, int depth, int nth) {
   pid_t pids[128];
   const int count = family(running, pids, 128);
@@ -216,7 +216,7 @@ static inline pid_t await_descendant(const struct running *running, pid_t top, i
   return 0;
 }
 
-/* Lines in the journal so far. */
+/* Number of lines in the journal so far. */
 static inline int journal_lines(const struct running *running) {
   FILE *file = fopen(running->journal, "r");
   int lines = 0;
@@ -236,7 +236,7 @@ static inline bool await_journal(const struct running *running, int lines) {
   return false;
 }
 
-/* Waits for the end of the launched process; false if it does not come in `seconds`. Then nothing of it may live. */
+/* Waits for the end of the launched process; false if it has not ended after `seconds`. */
 static inline bool ended(const struct running *running, double seconds, struct outcome_of *out) {
   *out = (struct outcome_of){0};
   int value = 0;
@@ -263,7 +263,7 @@ static inline bool ended(const struct running *running, double seconds, struct o
   return true;
 }
 
-/* Processes of the launch still alive after `seconds` at most (0 is what a test wants); they are then killed. */
+/* Number of processes of the launch still alive after at most `seconds` (tests expect 0); they are then killed. */
 static inline int orphans(const struct running *running, double seconds) {
   pid_t pids[128];
   int count = 0;

@@ -1,4 +1,4 @@
-/* Synthetic tasks for the farm's tests and bench: each does one thing that a run may do, good or bad. */
+/* Synthetic tasks for the farm's tests and bench: each shows one correct or faulty behaviour of a run. */
 #ifndef CLAST_TESTS_FARM_TASKS_H
 #define CLAST_TESTS_FARM_TASKS_H
 
@@ -38,7 +38,7 @@ struct task_answer {
   double kept_waiting_s; /* burning tasks: ready to run, but the machine ran something else */
 };
 
-/* Seconds this process has been ready and not running (Linux: second number of schedstat). */
+/* Seconds for which this process was ready but not running (Linux: second number of schedstat). */
 static inline double task_kept_waiting(void) {
   char text[128] = "";
   unsigned long long ran = 0, waited = 0;
@@ -55,8 +55,8 @@ static inline uint64_t task_value(uint64_t id) {
   return (id + 1) * UINT64_C(0x9e3779b97f4a7c15);
 }
 
-/* Burns this much CPU time of the thread, so that what else runs on the machine does not change the work. The price: on
- * a machine shared with others, wall time grows and utilisation falls with it; that is then not the farm's doing. */
+/* Uses this much CPU time of the thread, s, so that other programs on the machine do not change the work. On a shared
+ * machine, however, wall time grows and utilisation falls; the farm is not the cause. */
 static inline void task_burn(double seconds) {
   struct timespec now;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -113,7 +113,7 @@ static inline status task_work(const uint8_t *bytes, size_t size, uint8_t **resu
     printf("polluted\n");
     fflush(stdout);
     break;
-  case TASK_WILD: /* writes into every file it can find, then crashes: a torn stream */
+  case TASK_WILD: /* writes into every file that it can open, then crashes: an incomplete stream */
     for (int file = 3; file < 64; file++)
       if (write(file, "CLF1 nonsense nonsense nonsense nonsense nonsense", 49) < 0)
         continue;
@@ -130,7 +130,7 @@ static inline status task_work(const uint8_t *bytes, size_t size, uint8_t **resu
   return STATUS_OK;
 }
 
-/* A list of tasks and what became of each. */
+/* A list of tasks and their results. */
 struct task_list {
   struct task *tasks;
   size_t count, given;
@@ -141,9 +141,9 @@ struct task_list {
   int64_t *peaks;
   char (*messages)[160];
   double kept_waiting_s;
-  uint64_t sum; /* of the answers of those done: independent of order */
+  uint64_t sum; /* sum over the answers of completed tasks: independent of order */
   size_t reported, wrong;
-  size_t stop_after; /* report() says `stop_with` after so many, 0 = never */
+  size_t stop_after; /* report() returns `stop_with` after this many reports, 0 = never */
   status stop_with;
   int stopping; /* calls of stopping() */
   int ticks;

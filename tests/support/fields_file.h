@@ -1,4 +1,4 @@
-/* Reading fields files with HDF5 from a test. Everything fails the test by itself. */
+/* Reads fields files with HDF5 in a test. Any error fails the test. */
 #ifndef CLAST_TESTS_FIELDS_FILE_H
 #define CLAST_TESTS_FIELDS_FILE_H
 
@@ -33,7 +33,7 @@ static herr_t fields_file_look(hid_t at, const char *name, const H5O_info_t *inf
   return 0;
 }
 
-/* Every data set but VTK's own bookkeeping says its meaning, and numbers their unit. Returns how many there are. */
+/* Checks that every data set except VTK's own states its meaning, and every number its unit. Returns their count. */
 UNUSED static size_t fields_file_described(hid_t file) {
   size_t count = 0;
   assert_true(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, fields_file_look, &count, H5O_INFO_BASIC) >= 0);

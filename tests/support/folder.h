@@ -1,4 +1,4 @@
-/* A folder of its own for a test program: make_folder and remove_folder are the set-up and tear-down of its group. */
+/* A separate folder for a test program: make_folder and remove_folder are the set-up and tear-down of its group. */
 #ifndef CLAST_TESTS_FOLDER_H
 #define CLAST_TESTS_FOLDER_H
 
@@ -8,7 +8,7 @@
 
 static char folder[] = "/tmp/clast_test_XXXXXX";
 
-/* The path of a file in it, until the next call. */
+/* The path of a file in the folder; valid until the next call. */
 static inline const char *in_folder(const char *name) {
   static char path[200];
   snprintf(path, sizeof path, "%s/%.100s", folder, name);

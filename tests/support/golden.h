@@ -1,7 +1,7 @@
 /* Result bits change only on purpose: a few small runs of each engine under the baseline CPU class have pinned hashes.
- * When such a test fails and the change was meant, raise the engine's .results_version and put its number and the
- * printed hashes into the test; when it was not meant, the change has a fault. glibc's own CPU variants are masked, so
- * that any x86-64 machine gives the same bits. */
+ * If such a test fails and the change was intended, raise the engine's .results_version and put its number and the
+ * printed hashes into the test. Otherwise the change has a fault. The CPU variants of glibc are masked, so that every
+ * x86-64 machine gives the same bits. */
 #ifndef CLAST_TESTS_GOLDEN_H
 #define CLAST_TESTS_GOLDEN_H
 
@@ -10,7 +10,8 @@
 #include "engine/blake2s.h"
 #include "tests/support/run_case.h"
 
-/* Call first in main. The tunables are read before main: the program starts again with them. False when that failed. */
+/* Call this first in main. glibc reads its tunables before main, so the program restarts itself with them. False if
+ * that failed. */
 static bool golden_start(char **arguments) {
   if (getenv("CLAST_GOLDEN"))
     return true;
@@ -26,8 +27,8 @@ static void golden_version(const struct engine_kind *kind, int pinned) {
     fail_msg("results_version of %s is %d now: pin its hashes here", kind->name, kind->results_version);
 }
 
-/* 1 with a line about it when the hash of a run is not the pinned one, else 0. `own`: numbers of the engine's own that
- * are part of it. Frees the fragments. */
+/* Returns 1 and prints a line if the hash of a run is not the pinned one, else 0. `own`: the engine's own numbers that
+ * are part of the hash. Frees the fragments. */
 static int golden_changed(const struct engine_kind *kind, const char *name, struct ran ran, const double *own,
                           size_t count, const char *pinned) {
   const size_t size = (3 + count + ran.count * 12) * sizeof(double);

@@ -1,12 +1,12 @@
-/* The law of damage of one particle in plain C, from the flaws as they were drawn: what the engine's loops
- * (fracture.h) must give. */
+/* The law of damage of one particle in plain C, from the flaws as they were drawn. The engine's loops (fracture.h) must
+ * give the same. */
 #ifndef CLAST_TESTS_GRADY_KIPP_H
 #define CLAST_TESTS_GRADY_KIPP_H
 
 #include "engine/sph/body/flaws.h"
 #include "engine/sph/material/fracture.h"
 
-/* How many of particle i's flaws are open at ln(strain). */
+/* Number of particle i's flaws that are open at this ln(strain). */
 static inline size_t grady_kipp_open(const struct sph_flaws *flaws, size_t i, double log_strain) {
   size_t low = flaws->first[i], high = flaws->first[i + 1];
   while (low < high) { /* first flaw stronger than the strain */

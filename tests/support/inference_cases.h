@@ -1,5 +1,5 @@
-/* Synthetic models for the tests of inference: cheap functions of the inputs with a scatter over seeds, in the place of
- * an engine, and the rounds of a fit around them. */
+/* Synthetic models for the tests of inference: cheap functions of the inputs with a scatter over seeds replace an
+ * engine; also the rounds of a fit with them. */
 #ifndef CLAST_TESTS_SUPPORT_INFERENCE_CASES_H
 #define CLAST_TESTS_SUPPORT_INFERENCE_CASES_H
 
@@ -13,7 +13,7 @@
 #include "analysis/inference/surfaces.h"
 #include "engine/random.h"
 
-/* Standard normal numbers of a test: purpose 100 is no purpose of the program. */
+/* Standard normal numbers of a test. The program does not use purpose 100. */
 static inline double case_normal(uint64_t seed, uint64_t item, uint64_t draw) {
   return gsl_cdf_ugaussian_Pinv(fmax(random_draw(seed, 100, item, draw), 0x1p-54));
 }
@@ -38,7 +38,7 @@ static inline void case_quantiles(size_t inputs, const double *z, double *u) {
 }
 
 static inline struct surfaces_runs case_runs(const struct case_fit *fit, double *packed) {
-  /* `values` has room for all points; surfaces_runs wants those that there are. */
+  /* `values` has room for all points; surfaces_runs expects only the existing ones. */
   for (size_t k = 0; k < fit->outputs; k++)
     memcpy(packed + k * fit->points * CASE_REPLICATES, fit->values + k * CASE_POINTS * CASE_REPLICATES,
            fit->points * CASE_REPLICATES * sizeof *packed);
@@ -63,7 +63,8 @@ static inline void case_run(struct case_fit *fit, case_model model, const double
   }
 }
 
-/* A whole fit: rounds of the ensemble until the data are taken in, one more round there, surfaces, posterior. */
+/* A whole fit: rounds of the ensemble until the data are fully assimilated, one more round there, surfaces, posterior.
+ */
 static inline status case_solve(struct case_fit *fit, case_model model, const struct posterior_datum *data,
                                 const bool *bounded, uint64_t seed, struct error *error) {
   const size_t p = fit->inputs, d = fit->outputs;
@@ -72,7 +73,7 @@ static inline status case_solve(struct case_fit *fit, case_model model, const st
   double gamma[POSTERIOR_OUTPUTS * POSTERIOR_OUTPUTS];
   struct ensemble_kalman e =
       {.members = CASE_MEMBERS, .inputs = p, .outputs = d, .z = members, .g = g, .y = y, .gamma = gamma, .seed = seed};
-  for (size_t i = 0; i < p; i++) /* a Latin hypercube: stratum j of input i goes to one member */
+  for (size_t i = 0; i < p; i++) /* a Latin hypercube: each stratum j of input i is given to one member */
     for (size_t j = 0; j < CASE_MEMBERS; j++) {
       const size_t place = (j * (2 * i + 1) * 5 + i) % CASE_MEMBERS;
       members[place * p + i] = gsl_cdf_ugaussian_Pinv(((double)j + 0.5) / CASE_MEMBERS);

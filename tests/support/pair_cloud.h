@@ -1,4 +1,5 @@
-/* Particles with all that the pair loop reads, drawn from a seed, for its tests. Includes cmocka: after its headers. */
+/* Particles with all fields that the pair loop reads, drawn from a seed, for its tests. Uses cmocka: include it after
+ * cmocka's headers. */
 #ifndef CLAST_TESTS_PAIR_CLOUD_H
 #define CLAST_TESTS_PAIR_CLOUD_H
 
@@ -8,7 +9,7 @@
 #include "engine/sph/pairs/pairs.h"
 #include "tests/support/noise.h"
 
-enum { SIDE = 22, LARGE = 36, MOST = LARGE * LARGE * LARGE, COLUMNS = 11 }; /* three chunks, twelve */
+enum { SIDE = 22, LARGE = 36, MOST = LARGE * LARGE * LARGE, COLUMNS = 11 }; /* SIDE: three chunks; LARGE: twelve */
 
 struct cloud {
   double a[COLUMNS][MOST], stress[5][MOST], factor[MOST], slack[MOST]; /* a: x y z h vx vy vz m rho c p */

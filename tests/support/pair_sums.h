@@ -1,4 +1,4 @@
-/* Sums of the pair loop in arrays of all particles, for tests and benchmarks: engine/sph/pairs/pairs.h hands them over
+/* Sums of the pair loop in arrays of all particles, for tests and benchmarks: engine/sph/pairs/pairs.h delivers them
  * piece by piece. */
 #ifndef CLAST_TESTS_PAIR_SUMS_H
 #define CLAST_TESTS_PAIR_SUMS_H
@@ -12,7 +12,7 @@ static inline void pair_sums_copy(double *to, size_t first, size_t count, const 
     memcpy(to + first, from, count * sizeof *to);
 }
 
-/* A sph_pairs_take; `context` is a struct sph_pair_sums of the whole arrays. */
+/* A sph_pairs_take; `context` is a struct sph_pair_sums with the complete arrays. */
 static inline void pair_sums_keep(void *context, size_t first, size_t count, const struct sph_pair_sums *sums) {
   struct sph_pair_sums *all = context;
   pair_sums_copy(all->ax, first, count, sums->ax);

@@ -1,5 +1,4 @@
-/* Running a built-in scene of any engine, changed by a few overrides, from a test. Everything fails the test by itself.
- */
+/* Runs a built-in scene of any engine, with a few overrides, in a test. Any error fails the test. */
 #ifndef CLAST_TESTS_RUN_CASE_H
 #define CLAST_TESTS_RUN_CASE_H
 
@@ -59,7 +58,7 @@ struct ran {
   size_t count;
 };
 
-/* What is left of a run, to its end, `chunk` steps at a time; 0: chunks of 1 to 23 steps. */
+/* Runs to the end, `chunk` steps at a time; 0: chunks of 1 to 23 steps. */
 UNUSED static struct ran run_case_end(const struct engine_kind *kind, void *run, uint64_t chunk) {
   struct ran ran = {0};
   struct error error = {0};
@@ -89,7 +88,7 @@ UNUSED static void run_case_same_rows(const struct field_table *table, const voi
   assert_memory_equal(bytes[0], bytes[1], size);
 }
 
-/* The same bits in everything; frees the fragments of `b`. */
+/* Fails unless both results are equal bit by bit; frees the fragments of `b`. */
 UNUSED static void run_case_same(const struct engine_kind *kind, const struct ran *a, struct ran b) {
   run_case_same_rows(&outcome_table, &a->outcome, &b.outcome);
   run_case_same_rows(kind->results, &a->results, &b.results);
@@ -103,7 +102,7 @@ UNUSED static bool run_case_full(void) {
   return full && strcmp(full, "1") == 0;
 }
 
-/* Number of seeds: CLAST_SEEDS, or the form's own. */
+/* Number of seeds: CLAST_SEEDS, or the default of the quick or long form. */
 UNUSED static size_t run_case_seeds(size_t quick, size_t full) {
   const char *asked = getenv("CLAST_SEEDS");
   size_t n = asked ? strtoul(asked, NULL, 10) : 0;

@@ -1,4 +1,4 @@
-/* Small solids for the tests of the moving system: cubic blocks, basalt, and a few measures. */
+/* Small solids for the tests of the moving system: cubic blocks, basalt, and a few measured quantities. */
 #ifndef CLAST_TESTS_SPH_CASE_H
 #define CLAST_TESTS_SPH_CASE_H
 
@@ -93,8 +93,8 @@ struct case_loop {
   int module, stage; /* enum sph_module_index, enum sph_stage */
 };
 
-/* Runs these loops over all blocks, with the same terms; those of rates find simple shear, dv_x/dy = 1/s. Loops of
- * bodies that do not have the module are run, too, unless `only_on`. */
+/* Runs these loops over all blocks, with the same terms; loops of rates see simple shear, dv_x/dy = 1/s. Bodies without
+ * the module are included unless `only_on`. */
 static CASE_UNUSED void case_loops(struct sph_system *s, const struct case_loop *loops, size_t count, bool only_on) {
   double zero[SPH_BLOCK] = {0}, one[SPH_BLOCK];
   for (size_t i = 0; i < SPH_BLOCK; i++)

@@ -1,13 +1,12 @@
-/* Moving solids for tests, through engine/sph/body/bodies.h and engine/sph/step/system.h alone. Everything fails the
- * test by itself.
+/* Moving solids for tests, through engine/sph/body/bodies.h and engine/sph/step/system.h alone. Any error fails the
+ * test.
  *
  *   struct solid_case c = solid_make(1);      parameters at their defaults, bodies empty
  *   c.body[0].shape = ...; c.physics[0].material = solid_basalt(); c.physics[0].strength = true;
  *   solid_build(&c, SPH_WITH_STRESS);       particles at rest in c.particles, to be changed at will
  *   solid_start(&c);                        the system
  *   solid_until(&c, t); solid_read(&c);  c.particles at time t
- *   solid_end(&c);
- */
+ *   solid_end(&c); */
 #ifndef CLAST_TESTS_SPH_SOLID_H
 #define CLAST_TESTS_SPH_SOLID_H
 
@@ -75,8 +74,8 @@ struct solid_jump {
   double shock, density, pressure, energy;
 };
 
-/* Behind a shock that brings matter at rest to the velocity up: rho0 Us = rho (Us - up), P = rho0 Us up, u = up^2/2. Us
- * between the bulk sound speed and 5 up + c by bisection. */
+/* State behind a shock that accelerates matter at rest to the velocity up: rho0 Us = rho (Us - up), P = rho0 Us up, u =
+ * up^2/2. Us between the bulk sound speed and 5 up + c by bisection. */
 UNUSED static struct solid_jump solid_hugoniot(const struct sph_material *m, double up) {
   double low = up * (1 + 1e-9), high = 5 * up + sqrt(m->tillotson.A / m->density);
   struct solid_jump j = {0};
@@ -86,7 +85,7 @@ UNUSED static struct solid_jump solid_hugoniot(const struct sph_material *m, dou
     j.energy = up * up / 2;
     j.pressure = m->density * j.shock * up;
     if (sph_tillotson(&m->tillotson, m->density, j.density, j.energy).pressure > j.pressure)
-      low = j.shock; /* too much squeezed: the shock runs faster */
+      low = j.shock; /* compressed too much: the shock is faster */
     else
       high = j.shock;
   }
@@ -98,7 +97,7 @@ UNUSED static bool solid_full(void) {
   return full && strcmp(full, "1") == 0;
 }
 
-/* Under the sanitizers a run costs twenty times as much: tests keep their coarsest form there. */
+/* Under the sanitizers a run takes twenty times as long: tests keep their coarsest form there. */
 #ifdef __SANITIZE_ADDRESS__
 enum { SOLID_SLOW = 1 };
 #else
@@ -152,14 +151,15 @@ UNUSED static void solid_end(struct solid_case *c) {
   c->particles = NULL;
 }
 
-/* Energy that came from nowhere, J: nothing booked apart (clamps) is credited. `start` is the ledger at time 0. */
+/* Energy error, J: energy added by clamps, which the ledger lists separately, counts as error. `start` is the ledger at
+ * time 0. */
 UNUSED static double solid_energy_error(struct solid_case *c, struct sph_ledger start) {
   struct sph_ledger now = sph_system_ledger(c->system);
   return now.kinetic + now.internal + now.damped - now.work_of_held - start.kinetic - start.internal;
 }
 
 /* A bar along direction 0-2, `length` long, that is one block of an endless solid across: the thinnest cross-section in
- * which no particle meets its own image. The lattice is h-ready and periodic across, along too if `endless`. */
+ * which no particle meets its own image. The lattice is periodic across the bar, and also along it if `endless`. */
 UNUSED static void solid_bar(struct solid_case *c, int kind, int along, double length, double spacing, bool endless) {
   struct sph_body *b = &c->body[0];
   double reach = 4 * SPH_BODIES_H * spacing * (1 + c->parameters.in.fidelity.skin) * 1.05;
@@ -181,12 +181,13 @@ UNUSED static double *solid_velocity(struct sph_particles *p, int d) {
   return d == 0 ? p->vx : d == 1 ? p->vy : p->vz;
 }
 
-/* Order of convergence from three values whose resolutions stand 1 : ratio : ratio^2, without knowing the limit. */
+/* Order of convergence from three values with resolutions in the ratio 1 : ratio : ratio^2; the limit need not be
+ * known. */
 UNUSED static double solid_order(double coarse, double middle, double fine, double ratio) {
   return log(fabs((coarse - middle) / (middle - fine))) / log(ratio);
 }
 
-/* Follows an amplitude that swings from its maximum: times of zero crossings and the extremes between them. */
+/* Follows an oscillating amplitude from its maximum: times of zero crossings and the extremes between them. */
 struct solid_swing {
   double time, value; /* of the last sample */
   double start;       /* the first value */
@@ -211,7 +212,7 @@ UNUSED static double solid_swing_period(const struct solid_swing *s) {
 }
 
 /* A cube of about 4000 basalt particles in equilibrium under tension along z alone, at this strain; its ends along z
- * are held. The system is not made yet. */
+ * are held. The caller makes the system. */
 UNUSED static struct solid_case solid_pulled_cube(double side, double strain) {
   struct solid_case c = solid_make(1);
   c.physics[0].material = solid_basalt();
@@ -242,7 +243,7 @@ UNUSED static unsigned char *solid_state(const struct sph_system *system, size_t
   return bytes;
 }
 
-/* Makes the system of `c` anew and gives it the state of another one, as a restart does. */
+/* Makes the system of `c` again and gives it the state of another one, as a restart does. */
 UNUSED static void solid_resume(struct solid_case *c, const struct sph_system *from) {
   size_t size;
   unsigned char *state = solid_state(from, &size);

@@ -1,4 +1,4 @@
-/* What the tests of the store share: calls that must succeed, and one number of a query. Include cmocka first. */
+/* Common parts of the store's tests: calls that must succeed, and one number of a query. Include cmocka first. */
 #ifndef CLAST_TESTS_STORE_CHECKS_H
 #define CLAST_TESTS_STORE_CHECKS_H
 

@@ -1,5 +1,5 @@
-/* A small engine of made-up numbers and ways to fill a store with it, for the tests and the bench of the store. It has
- * what real engines have: an input that may be off, one that depends on another, choices, a result table of its own. */
+/* A small engine of invented numbers and functions that fill a store with it, for the tests and the bench of the store.
+ * Like real engines it has an input that may be off, one that depends on another, choices, and its own result table. */
 #ifndef CLAST_TESTS_STORE_FIXTURE_H
 #define CLAST_TESTS_STORE_FIXTURE_H
 
@@ -117,7 +117,7 @@ static inline double fixture_random(uint64_t a, uint64_t b) {
 }
 
 enum { FIXTURE_FRAGMENTS = 60 };
-struct fixture_run { /* keeps what a store_run points to */
+struct fixture_run { /* owns the memory that a store_run points to */
   struct outcome outcome;
   struct fixture_result result;
   struct estimate estimates[2];
@@ -185,7 +185,7 @@ static inline void fixture_fill(struct fixture_run *f, const struct scene *scene
 
 static const char *const fixture_axes[] = {"material.m", "material.k"};
 
-/* points_m x points_k points with `replicates` runs each: point after point, or the last replicate of every point
+/* Adds points_m x points_k points with `replicates` runs each: point after point, or the last replicate of every point
  * first. */
 static inline status fixture_populate(struct store *store, int points_m, int points_k, int64_t replicates,
                                       bool by_replicate, struct error *error) {
@@ -212,7 +212,7 @@ static inline status fixture_populate(struct store *store, int points_m, int poi
   return result;
 }
 
-/* A fresh name in the current folder, nothing there. */
+/* A new path in the current folder; no file has it. */
 static inline const char *fixture_path(char path[64], const char *name) {
   static const char *const ends[] = {"", "-wal", "-shm", "-journal", ".version0", ".version1", ".out"};
   snprintf(path, 64, "test-store-%s.db", name);

@@ -1,4 +1,4 @@
-/* A test's own folder goes when the test ends, passed or failed. */
+/* Removes a test's folder when the test ends, passed or failed. */
 #ifndef CLAST_TESTS_SWEEP_H
 #define CLAST_TESTS_SWEEP_H
 
@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Removes the folder and the files in it, and says which there were; how many. */
+/* Removes the folder and the files in it, and prints their names. Returns their number. */
 static inline int sweep(const char *folder) {
   int left = 0;
   DIR *list = opendir(folder);
