@@ -179,7 +179,7 @@ status farm_start(const struct farm_options *options, farm_work work, struct far
 cleanup:
   if (farm->ranks == 1)
     farm_link_close(farm->link, true, 0); /* no other rank waits */
-  farm->link = NULL; /* else MPI stays open, so that the caller can report why; mpirun ends the other ranks */
+  farm->link = NULL; /* MPI stays open, so that the caller can report the error; mpirun ends the other ranks */
   farm_stop(farm, NULL);
   return result;
 }
@@ -220,8 +220,8 @@ static status finalize(void *context, int rank, const struct farm_frame *frame, 
   return STATUS_OK;
 }
 
-/* MPI_Finalize spins while it waits for the others. So the ranks first wait here, asleep: the manager may have a store
- * to close. */
+/* MPI_Finalize uses processor time while it waits for other ranks. So the ranks first sleep here, because the manager
+ * may have a store to close. */
 static bool agree_to_finalize(struct farm *farm) {
   int count;
   if (farm->broken)
@@ -256,7 +256,7 @@ status farm_stop(struct farm *farm, struct error *error) {
     farm_link_close(farm->link, agree_to_finalize(farm), farm->last);
   if (farm->signals >= 0) {
     close(farm->signals);
-    if (!farm->stopped) /* else the program ends, and another signal must not change its exit code */
+    if (!farm->stopped) /* after a stop the program ends, and another signal must not change its exit code */
       sigprocmask(SIG_SETMASK, &farm->mask_before, NULL);
   }
   free(farm->peers);

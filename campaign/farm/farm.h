@@ -1,16 +1,16 @@
-/* The farm: tasks (byte strings) out, results (byte strings) back, over slots on this machine and over MPI ranks.
- * It knows nothing of physics, scenes or stores, so that it can be tested and timed with synthetic tasks.
+/* The farm sends tasks (byte strings) to slots on this machine and on MPI ranks, and returns their results (byte
+ * strings). It contains no physics, scenes or stores, so that synthetic tasks can test and time it.
  *
- * There is one pool of slots everywhere. farm_start() forks a fork server before MPI_Init, any thread and HDF5. The
- * server forks the slots. A slot forks one child per run (isolated), or computes the run itself (in process, for very
- * short runs). `-j N` alone drives N slots; under mpirun or srun every rank is such a pool, and MPI links the pools to
- * rank 0. Messages and code are the same in both cases. No process busy-waits.
+ * Every process uses the same kind of pool of slots. farm_start() forks a fork server before MPI_Init, any thread and
+ * HDF5. The server forks the slots. A slot forks one child per run (isolated), or computes the run itself (in process,
+ * for very short runs). Without MPI, `-j N` uses one pool of N slots; under mpirun or srun every rank has such a pool,
+ * and MPI links the pools to rank 0. Messages and code are the same in both cases. No process busy-waits.
  *
  * Measured by bench_farm on two cores shared with other work (400 tasks, lognormal, mean 50 ms), as a share of the
- * time that the kernel gave: 0.975-0.982 in process, 0.954-0.975 isolated, 0.992-0.997 at a mean of 1 s with the most
- * expensive first. Empty runs without a store: 640 000-970 000/s in process, 3 200-4 000/s isolated, because a fork
- * costs half a millisecond of a slot. So isolated is the default, and in process is better for runs below some 10 ms.
- */
+ * processor time that the kernel granted: 0.975-0.982 in process, 0.954-0.975 isolated, 0.992-0.997 at a mean of 1 s
+ * with the most expensive first. Empty runs without a store: 640 000-970 000/s in process, 3 200-4 000/s isolated,
+ * because a fork costs half a millisecond of a slot. So isolated is the default; in process is better for runs below
+ * about 10 ms. */
 #ifndef CLAST_CAMPAIGN_FARM_FARM_H
 #define CLAST_CAMPAIGN_FARM_FARM_H
 
@@ -21,22 +21,23 @@
 #include "schemas/status.h"
 
 /* Computes one task in a slot or its child: task bytes in, malloc'd result bytes out. Neither MPI nor the store is open
- * here. A status other than STATUS_OK, with *error filled, is an attempt that failed in order (reason "exit"). */
+ * here. A status other than STATUS_OK, with *error filled, is a failed attempt whose process did not crash (reason
+ * "exit"). */
 typedef status (*farm_work)(const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size,
                             struct error *error);
 
 struct farm_options {
-  int slots;           /* per rank; 0: one per core that this process may use (under MPI: one) */
+  int slots;           /* slots per rank; 0: one per core that this process may use (under MPI: one) */
   bool in_process;     /* runs are computed in the slot's process: no fork per run, but a crash ends the slot as well */
-  double time_limit_s; /* wall time of an attempt, 0: none. Then SIGKILL */
-  size_t memory_limit; /* bytes of an attempt beyond those of the slot (RLIMIT_AS), 0: none */
-  bool use_mpi;        /* decided by farm_under_mpi() */
-  /* Zero means the default in all of these. */
-  double grace_s; /* time that running tasks get after SIGINT, SIGTERM or SIGHUP; 2, under MPI 0.5, because mpirun kills
-                     after 1 */
-  double drain_s; /* the same after SIGUSR1, which a batch system sends early, and after report() returned
-                     STATUS_STOPPED; 120 */
-  double lost_after_s; /* a rank is lost when it has sent nothing for so long (it sends something every 2 s); 60 */
+  double time_limit_s; /* limit of an attempt's wall time, after which it gets SIGKILL; 0: no limit */
+  size_t memory_limit; /* limit of an attempt's memory beyond that of the slot (RLIMIT_AS), bytes; 0: no limit */
+  bool use_mpi;        /* set from farm_under_mpi() */
+  /* In the following members zero means the default. */
+  double grace_s;      /* time that running tasks get after SIGINT, SIGTERM or SIGHUP. Default 2; under MPI 0.5, because
+                          mpirun kills after 1 s */
+  double drain_s;      /* the same after SIGUSR1, which a batch system sends early, and after report() returned
+                          STATUS_STOPPED. Default 120 */
+  double lost_after_s; /* a rank that sends nothing for this time is lost (it sends a message every 2 s). Default 60 */
 };
 
 struct farm;
@@ -45,9 +46,8 @@ struct farm;
  */
 bool farm_under_mpi(void);
 
-/* How many programs the launcher says it started side by side; 1: one, or it says nothing. Looks at the environment
- * only.
- */
+/* Number of programs that the launcher started side by side, from the environment; 1 if the environment does not
+ * tell. */
 int farm_launched(void);
 
 /* Forks the server and the slots. STATUS_USAGE when the launcher started several programs that MPI does not connect.
@@ -55,7 +55,7 @@ int farm_launched(void);
 status farm_start(const struct farm_options *options, farm_work work, struct farm **out, struct error *error);
 int farm_rank(const struct farm *farm); /* 0 = manager */
 int farm_ranks(const struct farm *farm);
-int farm_slots_total(const struct farm *farm); /* over all ranks */
+int farm_slots_total(const struct farm *farm); /* slots of all ranks */
 
 /* FARM_LOST says nothing about the task: a signal from outside ended it, a rank or slot went away, or the machine had
  * no memory, process or disk for it. Tasks ignore SIGINT, SIGTERM, SIGHUP and SIGUSR1, which a terminal or batch system
@@ -63,7 +63,7 @@ int farm_slots_total(const struct farm *farm); /* over all ranks */
 enum farm_ending { FARM_DONE, FARM_FAILED, FARM_TIME_LIMIT, FARM_MEMORY_LIMIT, FARM_CRASHED, FARM_LOST };
 
 struct farm_task {
-  uint64_t id;          /* the caller's */
+  uint64_t id;          /* chosen by the caller */
   const uint8_t *bytes; /* copied by the farm when it takes the task */
   size_t size;
 };
@@ -71,40 +71,40 @@ struct farm_task {
 struct farm_report {
   uint64_t id;
   enum farm_ending ending;
-  const uint8_t *bytes; /* result, borrowed for the call */
+  const uint8_t *bytes; /* result bytes, borrowed for the call */
   size_t size;
   int exit_code, signal;
   double wall_s, cpu_s;
   int64_t peak_memory;
   int rank, slot;
   const char *host;
-  const char *message; /* what happened, for every ending but FARM_DONE ("" there) */
+  const char *message; /* description of every ending except FARM_DONE ("" there) */
 };
 
 /* The manager's callbacks, called from farm_run on rank 0 only. */
 struct farm_manager {
   void *context;
-  /* Gives the next task (true), or says that there is none at the moment (false). The farm asks again after every
-   * report. */
+  /* Gives the next task (true), or returns false when there is none now. The farm calls it again after every report. */
   bool (*next)(void *context, struct farm_task *task);
-  /* A task has ended. Called exactly once per task; not for tasks that were taken back, unbegun, because the farm
-   * stops. STATUS_OK goes on. STATUS_STOPPED drains: no new tasks go out, and running ones have drain_s to finish and
-   * are reported. Any other status ends the farm at once, without further reports. */
+  /* A task has ended. Called exactly once per task, but not for tasks that had not begun when the farm stopped.
+   * STATUS_OK: the farm goes on. STATUS_STOPPED: no new tasks start, and running ones have drain_s to finish and are
+   * reported. Any other status ends the farm immediately, without further reports. */
   status (*report)(void *context, const struct farm_report *report, struct error *error);
-  /* Every 100 ms at most, also while nothing happens: for a progress line and store_tick. `running`: tasks on slots. */
+  /* Called at most every 100 ms, also while no task ends: for a progress line and store_tick. `running`: tasks on
+   * slots. */
   status (*tick)(void *context, int running, struct error *error);
-  /* The first stop signal has come, or the launcher or a rank has died. Commit at once: mpirun may kill in a second.
-   * Reports of tasks that still finish in time follow. May be NULL. */
+  /* The first stop signal has come, or the launcher or a rank has died. Commit immediately: mpirun may kill this
+   * process within a second. Reports of tasks that still finish in time follow. May be NULL. */
   void (*stopping)(void *context, int signal_number);
-  /* For a manager that takes orders from outside: a file that is readable when there may be some. Then tick() is called
-   * at once, and next() is asked again. The farm goes on while there is no task, until a signal or a status ends it.
-   * 0: there are no orders, and the farm ends when next() gives nothing and no task is out. */
+  /* File descriptor, readable when outside requests may be waiting. The farm then calls tick() immediately, and next()
+   * again. It goes on without tasks until a signal or a status ends it. 0: no outside requests; the farm ends when
+   * next() gives no task and no task is out. */
   int orders;
 };
 
-/* Runs until next() gives nothing and no task is out. Rank 0 manages; the others serve until it ends them, and return
- * its final status. After the first SIGINT, SIGTERM, SIGHUP or SIGUSR1 no new tasks go out, running ones get a while to
- * finish, and the status is STATUS_STOPPED. A second signal ends the farm at once. */
+/* Runs until next() gives no task and no task is out. Rank 0 manages; the other ranks serve until it ends them, and
+ * return its final status. After the first SIGINT, SIGTERM, SIGHUP or SIGUSR1 no new tasks start, running ones get
+ * grace_s or drain_s to finish, and the status is STATUS_STOPPED. A second signal ends the farm immediately. */
 status farm_run(struct farm *farm, const struct farm_manager *manager, struct error *error);
 
 /* Utilisation of the last farm_run: sum of task CPU over slots x wall from first dispatch to last report. */

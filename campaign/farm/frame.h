@@ -1,8 +1,9 @@
-/* The one message format: between manager, slots, children (pipes and sockets) and ranks (MPI).
+/* The message format between manager, slots, children (pipes and sockets) and ranks (MPI).
  *
  * A frame is a 32-byte head and a payload padded to 16 bytes, so that payloads stay aligned in a buffer of frames. The
- * head's magic carries the version; the check covers head and payload: a torn or foreign frame is an error that is
- * seen, never a crash. Byte order is the machine's: all ranks run the same program on the same kind of machine. */
+ * head's magic number holds the version. The check covers head and payload, so that a damaged or foreign frame is
+ * reported and never crashes the program. Byte order is the machine's: all ranks run the same program on the same kind
+ * of machine. */
 #ifndef CLAST_CAMPAIGN_FARM_FRAME_H
 #define CLAST_CAMPAIGN_FARM_FRAME_H
 
@@ -13,28 +14,28 @@
 
 /* "CLF1"; the digit is the version: raise it when any payload changes. */
 #define FARM_FRAME_MAGIC UINT32_C(0x31464c43)
-/* Bytes of payload. MPI counts are int, and a larger size is a torn frame. */
+/* Most bytes of payload, because MPI counts are int. A larger size means a damaged frame. */
 #define FARM_FRAME_LARGEST ((size_t)1 << 30)
 
 enum farm_frame_kind {
   FARM_FRAME_TASK = 1, /* manager -> slot or rank: the task's bytes */
-  FARM_FRAME_RESULT,   /* back: struct farm_result, result bytes, message */
+  FARM_FRAME_RESULT,   /* slot or rank -> manager: struct farm_result, result bytes, message */
   FARM_FRAME_ANSWER,   /* child -> its slot: int64 status, result bytes or message */
   FARM_FRAME_HELLO,    /* rank -> manager: struct farm_hello */
   FARM_FRAME_ALIVE,    /* rank -> manager: heartbeat; handle = slots alive */
   FARM_FRAME_SIGNAL,   /* rank -> manager: handle = signal number */
   FARM_FRAME_RECALL,   /* manager -> rank: give back up to `handle` tasks that have not begun */
-  FARM_FRAME_RETURNED, /* rank -> manager: this task has not begun and is yours again */
+  FARM_FRAME_RETURNED, /* rank -> manager: this task had not begun and is given back */
   FARM_FRAME_RECALLED, /* rank -> manager: the recall is answered */
   FARM_FRAME_END,      /* manager -> rank: struct farm_end, message */
-  FARM_FRAME_BYE,      /* rank -> manager: double CPU seconds of its main process in this run */
-  FARM_FRAME_FINALIZE, /* manager -> rank: now MPI_Finalize */
+  FARM_FRAME_BYE,      /* rank -> manager: double, CPU seconds of the rank's main process in this run */
+  FARM_FRAME_FINALIZE, /* manager -> rank: call MPI_Finalize now */
 };
 
 struct farm_frame {
   uint32_t magic;
   uint16_t kind, ticket; /* ticket: see slot.h */
-  uint64_t handle;       /* which task; other meanings above */
+  uint64_t handle;       /* identifies the task; other meanings above */
   uint64_t size;         /* of the payload without padding */
   uint64_t check;
 };
@@ -64,10 +65,10 @@ void farm_frame_trim(struct farm_bytes *bytes);
  * large. */
 bool farm_frame_append(struct farm_bytes *bytes, enum farm_frame_kind kind, uint16_t ticket, uint64_t handle, int parts,
                        const struct iovec *part);
-/* Takes the first frame out of the queue. 1: found, its payload is borrowed until the next reserve or append. 0: not
- * all of it has arrived. -1: torn. */
+/* Takes the first frame out of the queue. 1: found; its payload is borrowed until the next reserve or append. 0: the
+ * frame is incomplete. -1: damaged. */
 int farm_frame_next(struct farm_bytes *bytes, struct farm_frame *frame, const uint8_t **payload);
-/* Bytes to reserve before reading: those that the first, unfinished frame lacks, at least `minimum`. */
+/* Bytes to reserve before reading: the missing bytes of the first, incomplete frame, at least `minimum`. */
 size_t farm_frame_missing(const struct farm_bytes *bytes, size_t minimum);
 
 #endif

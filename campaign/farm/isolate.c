@@ -145,7 +145,7 @@ static bool has_ended(const struct farm_isolate *isolate, pid_t child, int *wait
   return ended == child;
 }
 
-/* Waits for the child's end; false: it was ended at its deadline. */
+/* Waits for the child's end; false: it was killed at its deadline. */
 static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit_ns, int *wait_status,
                         struct rusage *usage) {
   bool in_time = true;
@@ -158,7 +158,7 @@ static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit
     const int64_t before = clock_ns();
     if (poll(fds, 3, asked_ms) <= 0)
       fds[0].revents = fds[1].revents = fds[2].revents = 0;
-    if (asked_ms >= 0) { /* time during which all was stopped (Ctrl-Z) does not count for the run */
+    if (asked_ms >= 0) { /* time during which all processes were stopped (Ctrl-Z) does not count for the run */
       const int64_t late = clock_ns() - before - asked_ms * CLOCK_MS;
       if (late > CLOCK_S)
         until += late;
@@ -181,7 +181,7 @@ static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit
   return in_time;
 }
 
-/* The frame of a run without a result: why, in words. */
+/* Appends the frame of a run without a result: the reason in words. */
 static bool append_failure(struct farm_bytes *out, uint64_t handle, const struct farm_result *head, const char *text) {
   return farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2,
                            (struct iovec[]){{(void *)head, sizeof *head}, {(void *)text, strlen(text)}});
@@ -223,7 +223,7 @@ enum farm_ending farm_isolate_ending_by(int signal_number) {
   return FARM_LOST;
 }
 
-/* The child ended without an answer: why. */
+/* Finds out why the child ended without an answer. */
 static void judge_end(struct farm_result *head, bool in_time, int ended, double limit_s, char *text, size_t size) {
   if (!in_time) {
     head->ending = FARM_TIME_LIMIT;

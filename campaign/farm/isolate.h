@@ -17,10 +17,10 @@ bool farm_isolate_open(struct farm_isolate *isolate, int channel);
 bool farm_isolate_run(struct farm_isolate *isolate, const struct farm_slot_setup *setup, int slot, uint64_t handle,
                       const uint8_t *task, size_t size, struct farm_bytes *out);
 
-/* How a run ended whose work returned `verdict`. A lack of memory or disk is the machine's, unless a memory limit of
- * the campaign was set (`limited`). */
+/* Ending of a run whose work returned `verdict`. A lack of memory or disk counts as a fault of the machine, unless the
+ * campaign has a memory limit (`limited`). */
 enum farm_ending farm_isolate_ending(int64_t verdict, bool limited);
-/* How a run ended whose process was killed by this signal. The run itself raises only the signals of a crash (SIGSEGV,
+/* Ending of a run whose process was killed by this signal. The run itself raises only the signals of a crash (SIGSEGV,
  * SIGABRT and the like). All others come from outside: from a user, a batch system, or the kernel out of memory. */
 enum farm_ending farm_isolate_ending_by(int signal_number);
 

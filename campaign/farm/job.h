@@ -10,10 +10,10 @@
 #include <uthash.h>
 
 struct farm_job {
-  struct farm_job *next; /* in whatever queue it stands */
-  uint64_t handle;       /* the farm's, never used twice */
-  uint64_t id;           /* the caller's */
-  int rank;              /* where it was sent (manager only) */
+  struct farm_job *next; /* next job in the same queue */
+  uint64_t handle;       /* set by the farm, never used twice */
+  uint64_t id;           /* the caller's number of the task */
+  int rank;              /* rank that it was sent to (manager only) */
   uint16_t ticket;       /* while it is in a slot */
   UT_hash_handle hh;     /* in the manager's table */
   size_t size;
@@ -30,7 +30,7 @@ struct farm_job_queue {
 void farm_job_push(struct farm_job_queue *queue, struct farm_job *job);
 void farm_job_push_front(struct farm_job_queue *queue, struct farm_job *job);
 struct farm_job *farm_job_pop(struct farm_job_queue *queue); /* NULL when empty */
-/* Takes out the one with this handle, NULL when there is none. Searches from the front: slots answer in order. */
+/* Takes out the job with this handle; NULL: there is none. Searches from the front, because slots answer in order. */
 struct farm_job *farm_job_take(struct farm_job_queue *queue, uint64_t handle);
 void farm_job_clear(struct farm_job_queue *queue);
 

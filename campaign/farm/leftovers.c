@@ -57,7 +57,7 @@ static void mark_mapped(struct leftovers *found, const char *path) {
     found->mapped[i] = found->mapped[i] || strcmp(found->names[i], path) == 0;
 }
 
-/* A process that does not show what it has mapped has more rights than we, or other ones: it is no rank of ours. */
+/* A process whose mappings are not readable has other rights than this one: it is not one of our ranks. */
 static void look_into(const char *process, struct leftovers *found) {
   char path[300], line[4096 + 200];
   snprintf(path, sizeof path, "/proc/%s/maps", process);

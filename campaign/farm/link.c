@@ -27,7 +27,7 @@ struct farm_link {
 };
 
 #ifdef OPEN_MPI
-/* Has a folder parts of Open MPI that speak PMIx, and none for PMI-1 (s1) or PMI-2 (s2)? */
+/* True when a folder has Open MPI components for PMIx, but none for PMI-1 (s1) or PMI-2 (s2). */
 static bool lacks_pmi(const char *folder) {
   char pmix[4096], s1[4200], s2[4200];
   glob_t found;
@@ -52,7 +52,7 @@ bool farm_link_knows_pmi(void) {
     if (lacks_pmi(folder))
       return false;
   }
-  return true; /* or its parts are in one file: not known */
+  return true; /* if the components are in one file, this is not known */
 }
 #else
 bool farm_link_knows_pmi(void) {

@@ -1,5 +1,5 @@
 /* Rank 0: takes tasks from the caller, spreads them over the ranks and reports their results. It never computes, and
- * never blocks but in poll(). */
+ * blocks only in poll(). */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,9 +9,10 @@
 #include "campaign/farm/manage.h"
 #include "schemas/clock.h"
 
-#define TICK_NS          (100 * CLOCK_MS)
-#define SECOND_SIGNAL_NS (100 * CLOCK_MS) /* a closer one is a copy: `timeout` and shells signal child and group */
-#define LAST_ANSWER_NS   (10 * CLOCK_S)   /* for the other ranks' last answer */
+#define TICK_NS (100 * CLOCK_MS)
+#define SECOND_SIGNAL_NS                                                                                               \
+  (100 * CLOCK_MS)                    /* a signal this soon is a copy: `timeout` and shells signal child and group */
+#define LAST_ANSWER_NS (10 * CLOCK_S) /* longest wait for the last answer of the other ranks */
 
 void farm_manage_drain(struct manager *m, status reason, double grace_s) {
   if (m->final == STATUS_OK)
@@ -65,8 +66,8 @@ static void take_own_signals(struct manager *m) {
   }
 }
 
-/* Finds ranks that are lost, and the end of the farm when no slot is left. `late_ns` is how long this rank itself did
- * not listen. */
+/* Finds lost ranks, and ends the farm when no slot is left. `late_ns`: time during which this rank itself did not
+ * listen. */
 static void watch_ranks(struct manager *m, int64_t now, int64_t late_ns) {
   const int64_t limit = clock_from_s(m->farm->options.lost_after_s);
   struct farm_peer *peers = m->farm->peers;
@@ -104,7 +105,7 @@ static bool finished(const struct manager *m) {
   return !m->returned.first && (m->draining || (m->dry && !m->calls->orders));
 }
 
-/* Ends the own pool with all that it computes. Its jobs are its own to free. */
+/* Ends this rank's pool and its running tasks. The pool frees its jobs. */
 static void drop_pool(struct manager *m) {
   for (struct farm_job *job; (job = farm_job_table_oldest(&m->table, 0));)
     farm_job_table_remove(&m->table, job->handle);
@@ -156,7 +157,7 @@ static void end_ranks(struct manager *m) {
   }
 }
 
-/* With orders, one file stands for the signals and for them. */
+/* With outside requests, one file descriptor reports both signals and requests. */
 static void watch(struct manager *m) {
   m->watched = m->farm->signals;
   if (!m->calls->orders)
@@ -179,7 +180,7 @@ static void begin(struct manager *m) {
   }
 }
 
-/* Everything that goes out. */
+/* Sends all outgoing messages and jobs. */
 static void send_all(struct manager *m) {
   take_own_signals(m);
   farm_manage_send(m);
@@ -191,8 +192,8 @@ static void send_all(struct manager *m) {
     m->dropping = true;
 }
 
-/* Sleeps until the next tick, or until something comes in, and takes it in. Nobody can wake a sleeper under MPI: with
- * other ranks the sleep is short, and longer only in a longer silence. */
+/* Sleeps until the next tick or until a message comes, and takes the messages in. An MPI message does not wake a
+ * sleeping process: with other ranks the sleep is short, and grows only while no message comes. */
 static void receive_all(struct manager *m) {
   struct farm *const farm = m->farm;
   int64_t timeout_ns = m->ticked_ns + TICK_NS - clock_ns();
@@ -203,11 +204,11 @@ static void receive_all(struct manager *m) {
   if (farm->ranks > 1)
     farm_manage_fail(m, farm_link_drain(farm->link, farm_manage_take, m, &count, farm_manage_error(m)));
   if (heard && m->calls->orders)
-    m->ticked_ns -= TICK_NS; /* the orders may be what was heard */
+    m->ticked_ns -= TICK_NS; /* the event may be an outside request: tick at once */
   m->sleep_ns = heard || count > 0 ? FARM_SLEEP_LEAST_NS : farm_sleep_longer(m->sleep_ns);
 }
 
-/* Ten times a second the caller is asked whether all is well, and for tasks again if it had none. */
+/* Ten times a second: calls the caller's tick(), and asks for tasks again if there was none. */
 static void tick(struct manager *m, int64_t now) {
   if (now - m->ticked_ns < TICK_NS)
     return;

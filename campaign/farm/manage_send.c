@@ -1,5 +1,5 @@
-/* The manager's tasks out: spreads them over the ranks, and takes back what a rank has not begun, for idle slots at the
- * end and when the farm stops. */
+/* Spreads the manager's tasks over the ranks. Takes back tasks that a rank has not begun: for idle slots at the end,
+ * and when the farm stops. */
 #include <stdlib.h>
 
 #include "campaign/farm/manage.h"
@@ -13,7 +13,7 @@ static void send(struct manager *m, int rank, enum farm_frame_kind kind, uint64_
   farm_manage_fail(m, farm_link_send(m->farm->link, rank, kind, handle, parts, part, farm_manage_error(m)));
 }
 
-/* Jobs that a rank takes in all: those that it computes, and as many ahead that it never waits. */
+/* Most jobs sent to a rank: the running ones, and enough waiting ones that it never idles. */
 static size_t capacity(const struct manager *m, int rank) {
   const struct farm_peer *peer = &m->farm->peers[rank];
   if (peer->lost || peer->slots <= 0)
@@ -53,7 +53,7 @@ static void assign(struct manager *m, int rank, struct farm_job *job) {
     send(m, rank, FARM_FRAME_TASK, job->handle, 1, &(struct iovec){job->bytes, job->size});
 }
 
-/* The next task as a job: one that came back, or a new one of the caller. NULL: there is none, or an error. */
+/* The next task as a job: a returned job, or a new task of the caller. NULL: there is none, or an error. */
 static struct farm_job *next_job(struct manager *m) {
   struct farm_job *job = farm_job_pop(&m->returned);
   struct farm_task task = {0};

@@ -1,4 +1,4 @@
-/* The manager's results in: what ranks and the own pool say, signals among it. */
+/* Takes results, signals and other messages from the ranks and from the manager's own pool. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,8 +44,8 @@ void farm_manage_take_own(void *context, struct farm_job *job, const struct farm
   report(context, job, result, bytes, message, message_size);
 }
 
-/* The rank does not answer any more. Which of its jobs it was computing is not known: as many as it has slots, the
- * oldest, are reported as lost, the others go elsewhere. */
+/* Handles a rank that no longer answers. It is unknown which of its jobs were running: the oldest ones, as many as the
+ * rank has slots, are reported as lost; the others go to other ranks. */
 void farm_manage_take_loss(struct manager *m, int rank) {
   struct farm_peer *const peer = &m->farm->peers[rank];
   const struct farm_result lost = {.ending = FARM_LOST};
@@ -94,7 +94,7 @@ static void take_alive(struct manager *m, int rank, int slots) {
   peer->slots = slots;
 }
 
-/* A signal of another rank alone, or of the whole group: then this rank gets it as well. */
+/* Handles a stop signal that another rank received. If the whole group was signalled, this rank receives it as well. */
 static void take_signal(struct manager *m, int rank, int number) {
   if (m->draining)
     return;

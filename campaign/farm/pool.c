@@ -1,4 +1,4 @@
-/* Sends jobs to slots, and takes back what they have not begun. pool_listen.c hears what comes from them. */
+/* Sends jobs to slots, and takes back jobs that they have not begun. pool_listen.c reads the slots' messages. */
 #include "campaign/farm/pool_private.h"
 
 #include <errno.h>
@@ -81,8 +81,8 @@ void farm_pool_flush(struct slot *slot) {
     if (n < 0 && errno == EINTR)
       continue;
     if (n <= 0)
-      return; /* either the channel is full, and poll reports when it is not; or the slot has ended, and the server
-                 reports that */
+      return; /* either the channel is full, and poll reports when it has space again; or the slot has ended, and the
+                 server reports that */
     slot->out.begin += (size_t)n;
   }
   if (slot->out.begin == slot->out.end)
@@ -134,7 +134,7 @@ static int slot_with(const struct farm_pool *pool, bool most) {
   return best;
 }
 
-/* To the slots with the fewest jobs, until every slot has enough. */
+/* Sends waiting jobs to the slots with the fewest jobs, until every slot has enough. */
 static void send_waiting(struct farm_pool *pool) {
   const size_t deep = depth(pool);
   while (pool->queue.first) {
@@ -149,7 +149,7 @@ static void send_waiting(struct farm_pool *pool) {
   }
 }
 
-/* Jobs that wait at a slot go to idle ones, when no job waits in the pool. */
+/* Moves jobs that wait at one slot to idle slots, when no job waits in the pool. */
 static void relieve_slots(struct farm_pool *pool) {
   while (!pool->queue.first) {
     const int idle = slot_with(pool, false);

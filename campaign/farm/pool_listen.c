@@ -1,4 +1,4 @@
-/* Takes in results, replaces slots that end, keeps deadlines of runs in process. */
+/* Reads results, replaces slots that end, enforces deadlines of runs in process. */
 #include "campaign/farm/pool_private.h"
 
 #include <errno.h>
@@ -13,7 +13,7 @@
 #include "campaign/farm/isolate.h"
 #include "schemas/clock.h"
 
-enum { IDLE_ENDS = 5 }; /* of a slot in a row without a task: it is given up */
+enum { IDLE_ENDS = 5 }; /* a slot that ends this many times in a row without a task is not replaced */
 
 static void ended(struct farm_pool *pool, struct farm_job *job, const struct farm_result *result, const uint8_t *bytes,
                   const char *message, size_t message_size) {
@@ -21,7 +21,7 @@ static void ended(struct farm_pool *pool, struct farm_job *job, const struct far
   pool->sink.ended(pool->sink.context, job, result, bytes, message, message_size);
 }
 
-/* Reads what the slot has written, as far as it has come. False: its channel is closed. */
+/* Reads the bytes that the slot has written so far. False: its channel is closed. */
 static bool read_slot(struct slot *slot) {
   for (;;) {
     if (!farm_frame_reserve(&slot->in, farm_frame_missing(&slot->in, 16384)))
@@ -40,7 +40,7 @@ static bool read_slot(struct slot *slot) {
   }
 }
 
-/* One result from the slot's buffer: 1, no whole one there: 0, nonsense: -1. */
+/* Takes one result from the slot's buffer. 1: taken; 0: none is complete; -1: invalid data. */
 static int take_result(struct farm_pool *pool, struct slot *slot) {
   struct farm_frame frame;
   struct farm_result result;
@@ -64,7 +64,7 @@ static int take_result(struct farm_pool *pool, struct slot *slot) {
   return 1;
 }
 
-/* Takes in what the slot has written. False: its channel is closed, or it wrote nonsense. */
+/* Takes the results that the slot has written. False: its channel is closed, or it wrote invalid data. */
 static bool listen_to(struct farm_pool *pool, struct slot *slot) {
   const bool open = read_slot(slot);
   int got;
@@ -83,11 +83,11 @@ static struct farm_job *take_running(struct slot *slot, struct farm_slot_record 
   struct farm_job *job = running ? farm_job_take(&slot->jobs, running) : NULL;
   if (!job || atomic_load(&record->ticket[job->ticket]) != running)
     return job;
-  farm_job_push_front(&slot->jobs, job); /* its ticket is still there: it had not quite begun */
+  farm_job_push_front(&slot->jobs, job); /* the ticket was not yet taken: the slot had not begun the job */
   return NULL;
 }
 
-/* All jobs of the slot to the head of the pool's queue, in their order. */
+/* Puts all jobs of the slot at the head of the pool's queue, in their order. */
 static void queue_again(struct farm_pool *pool, struct slot *slot) {
   struct farm_job_queue back = {0};
   for (struct farm_job *job; (job = farm_job_pop(&slot->jobs));)
@@ -133,7 +133,7 @@ static void slot_ended(struct farm_pool *pool, int index, const struct farm_resu
   ended(pool, job, &result, NULL, text, strlen(text));
 }
 
-/* The fork server says that a slot's process has ended, or could not be made. A new one is asked for. */
+/* The fork server reports that a slot's process has ended, or could not be made. Requests a new one. */
 static void hear_slot_ended(struct farm_pool *pool, const struct farm_server_message *message) {
   struct slot *const slot = &pool->slots[message->slot];
   const int value = message->value;
@@ -195,8 +195,8 @@ static void hear_server(struct farm_pool *pool) {
   }
 }
 
-/* When the slot's running job is to be killed; it is killed if that time has come. `late` is how long nobody looked.
- * INT64_MAX: there is nothing to look for. */
+/* Returns the deadline of the slot's running job, and kills the slot if the deadline has passed. `late`: time since the
+ * last check, ns. INT64_MAX: no deadline to wait for. */
 static int64_t keep_deadline(struct farm_pool *pool, int index, int64_t now, int64_t late) {
   struct slot *const slot = &pool->slots[index];
   const uint64_t running = atomic_load(&pool->setup.records[index].running);
@@ -205,8 +205,8 @@ static int64_t keep_deadline(struct farm_pool *pool, int index, int64_t now, int
   if (slot->channel < 0 || slot->jobs.count == 0 || !running || slot->killed == running)
     return INT64_MAX;
 
-  /* The main process looks every second at least. If it did not, all of them were stopped (Ctrl-Z), which is not the
-   * run's fault. */
+  /* The main process checks at least once a second. A longer gap means that all processes were stopped (Ctrl-Z); this
+   * time does not count for the run. */
   if (late > 2 * CLOCK_S) {
     slot->forgiven_ns = (slot->forgiven == running ? slot->forgiven_ns : 0) + late;
     slot->forgiven = running;
@@ -219,8 +219,8 @@ static int64_t keep_deadline(struct farm_pool *pool, int index, int64_t now, int
   return INT64_MAX;
 }
 
-/* Returns when to look again. Runs in the slot's own process have their deadline here, because the slot is busy; a slot
- * that isolates its runs keeps their deadlines itself. */
+/* Returns the time of the next check. The main process enforces the deadline of a run in the slot's own process,
+ * because the slot is busy; a slot with isolated runs enforces their deadlines itself. */
 static int64_t keep_deadlines(struct farm_pool *pool) {
   const int64_t now = clock_ns(), late = now - pool->looked_ns;
   pool->looked_ns = now;
@@ -235,7 +235,7 @@ static int64_t keep_deadlines(struct farm_pool *pool) {
   return next;
 }
 
-/* What is waited for: the channel of each slot, the server, and the signals. */
+/* Lists the files to wait for: the channel of each slot, the server, and the signals. */
 static void watch_files(struct farm_pool *pool, int signals) {
   const int slots = pool->setup.options.slots;
   for (int i = 0; i < slots; i++) {
@@ -248,7 +248,7 @@ static void watch_files(struct farm_pool *pool, int signals) {
   pool->fds[slots + 1] = (struct pollfd){.fd = signals, .events = POLLIN};
 }
 
-/* Up to a second, and no longer than to the next deadline. */
+/* Time to sleep: at most a second, and at most until the next deadline. */
 static struct timespec sleep_time(struct farm_pool *pool, int64_t timeout_ns) {
   const int64_t deadline = pool->control >= 0 ? keep_deadlines(pool) : INT64_MAX, now = clock_ns();
   if (timeout_ns > CLOCK_S)
@@ -258,7 +258,8 @@ static struct timespec sleep_time(struct farm_pool *pool, int64_t timeout_ns) {
   return (struct timespec){timeout_ns / CLOCK_S, (long)(timeout_ns % CLOCK_S)};
 }
 
-/* Closed: the slot has ended, and the server reports why. Nonsense: the slot is killed, and the server reports that. */
+/* Closed channel: the slot has ended, and the server reports why. Invalid data: the slot is killed, and the server
+ * reports that. */
 static void close_slot(struct farm_pool *pool, int index) {
   struct slot *const slot = &pool->slots[index];
   if (pool->control >= 0)

@@ -9,14 +9,14 @@
 #include "campaign/farm/server.h"
 
 struct slot {
-  int channel; /* -1: none now */
+  int channel; /* -1: none at present */
   pid_t pid;
   bool given_up;
   int idle_ends;
-  uint64_t killed;   /* handle of the task it was killed for */
-  uint64_t forgiven; /* handle whose deadline was moved, and by how much */
+  uint64_t killed;   /* handle of the task at whose deadline the slot was killed */
+  uint64_t forgiven; /* handle of the task whose deadline was moved by forgiven_ns */
   int64_t forgiven_ns;
-  struct farm_job_queue jobs; /* sent to it, in order */
+  struct farm_job_queue jobs; /* jobs sent to the slot, in order */
   struct farm_bytes in, out;
 };
 
@@ -30,11 +30,11 @@ struct farm_pool {
   struct farm_job_queue queue;
   struct farm_pool_sink sink;
   size_t count;
-  double mean_wall_s; /* of recent tasks */
+  double mean_wall_s; /* mean wall time of recent tasks */
   int64_t looked_ns;
 };
 
-/* Writes to the slot what waits for it, as far as its channel takes it. */
+/* Writes the bytes that wait for the slot, as far as its channel accepts them. */
 void farm_pool_flush(struct slot *slot);
 
 #endif

@@ -12,9 +12,9 @@
 
 #define FARM_HOST_SIZE 64
 
-/* Under MPI nobody can wake a sleeper: look, and when nothing came, sleep twice as long as before, up to 5 ms. In a
- * longer silence the sleep creeps on to 10 ms within half a second: at 5 ms an idle rank was measured at 0.3 % of a
- * core on a quiet machine but 0.6 % on a loaded one, and who has heard nothing for so long loses nothing by it. */
+/* An MPI message does not wake a sleeping process: check, and when no message came, sleep twice as long as before, up
+ * to 5 ms. If no message comes for longer, the sleep grows to 10 ms within half a second: with 5 ms an idle rank used
+ * 0.3 % of a core on a quiet machine but 0.6 % on a loaded one. The longer sleep costs nothing after such a pause. */
 #define FARM_SLEEP_LEAST_NS (50 * INT64_C(1000))
 #define FARM_SLEEP_USUAL_NS (5 * INT64_C(1000000))
 #define FARM_SLEEP_MOST_NS  (10 * INT64_C(1000000))
@@ -30,13 +30,13 @@ struct farm_hello {
 };
 
 struct farm_end {
-  int64_t status, drop; /* drop: kill what runs */
+  int64_t status, drop; /* drop: kill running tasks */
 };
 
-/* What the manager knows of a rank; [0] is its own pool. */
+/* The manager's record of a rank; [0] is its own pool. */
 struct farm_peer {
   int slots, started_with;
-  size_t out; /* tasks it has */
+  size_t out; /* number of tasks that it has */
   double mean_wall_s;
   int64_t heard_ns;
   bool lost, recalling, bye;
@@ -47,17 +47,17 @@ struct farm_peer {
 struct farm {
   struct farm_options options;
   struct farm_pool *pool; /* NULL once dropped */
-  struct farm_link *link; /* NULL: alone */
+  struct farm_link *link; /* NULL: no other ranks */
   int rank, ranks;
   struct farm_peer *peers; /* manager: one per rank */
   struct farm_usage usage;
   /* Stop signals, read from a file: no handler and no global is needed. */
   int signals;
-  bool stopped; /* one has come */
+  bool stopped; /* a stop signal has come */
   sigset_t mask_before;
   pid_t launcher; /* parent at the start; if it changes under MPI, mpirun has died */
   bool broken;    /* a rank is lost or does not answer: MPI_Finalize would hang */
-  status last;    /* of the last run */
+  status last;    /* status of the last run */
 };
 
 status farm_manage(struct farm *farm, const struct farm_manager *manager, struct error *error);

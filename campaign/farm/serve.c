@@ -11,12 +11,12 @@
 struct server {
   struct farm *farm;
   struct error *error;
-  status failed; /* of a callback that cannot return one */
+  status failed; /* error of a callback that cannot return one */
   bool ended, drop;
   status final;
   struct error final_error;
   int64_t said_ns, looked_ns;
-  int64_t leave_ns; /* this rank ends by itself then; 0: no reason to */
+  int64_t leave_ns; /* time at which this rank ends without the manager; 0: it does not */
   bool empty_said;
 };
 
@@ -86,8 +86,8 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
   }
 }
 
-/* Passes signals on to the manager, now and then. True: the launcher has died and the manager has not ended this rank
- * in 2 s, so that the rank ends by itself. */
+/* Passes signals on to the manager, at most every 50 ms unless a message came. True: the launcher has died and the
+ * manager has not ended this rank within 2 s, so that the rank must end without it. */
 static bool leave_alone(struct server *server, int64_t now, bool heard) {
   if (!heard && now - server->looked_ns <= 50 * CLOCK_MS)
     return false;
@@ -100,7 +100,7 @@ static bool leave_alone(struct server *server, int64_t now, bool heard) {
   return server->leave_ns != 0 && clock_ns() > server->leave_ns;
 }
 
-/* The manager hears of this rank every ALIVE_EVERY_NS, and at once when its last slot is gone. */
+/* Sends the heartbeat to the manager: every ALIVE_EVERY_NS, and immediately when the last slot is gone. */
 static void say_alive(struct server *server, int64_t now) {
   const int slots = farm_pool_slots(server->farm->pool);
   if (now - server->said_ns <= ALIVE_EVERY_NS && (slots > 0 || server->empty_said))
@@ -109,7 +109,7 @@ static void say_alive(struct server *server, int64_t now) {
   say(server, FARM_FRAME_ALIVE, (uint64_t)slots, 0, NULL);
 }
 
-/* Until the manager ends this rank. An error is kept in server->failed. */
+/* Serves until the manager ends this rank. An error is kept in server->failed. */
 static void serve(struct server *server) {
   struct farm *const farm = server->farm;
   int64_t sleep_ns = FARM_SLEEP_LEAST_NS;

@@ -20,7 +20,7 @@
 struct server {
   const struct farm_slot_setup *setup;
   int control, child_signal;
-  pid_t *pids; /* 0 = no such slot now */
+  pid_t *pids; /* 0 = the slot has no process now */
 };
 
 static bool tell(int control, const struct farm_server_message *message, int channel) {
@@ -105,7 +105,7 @@ static _Noreturn void end(struct server *server) {
 }
 
 /* mpirun binds a rank to one core when there are two ranks or fewer, and what it forks inherits that. Slots that would
- * share cores get all cores instead; the kernel cuts this down to the job's cpuset. */
+ * share cores get all cores instead; the kernel limits them to the job's cpuset. */
 static void spread(int slots) {
   cpu_set_t set;
   if (sched_getaffinity(0, sizeof set, &set) != 0 || CPU_COUNT(&set) >= slots)
@@ -131,7 +131,8 @@ static void detach(void) {
     close(nothing);
 }
 
-/* One message of the main process. Nonsense, or the end of `control`, ends the server and its slots. */
+/* Handles one message of the main process. An invalid message, or the end of `control`, ends the server and its
+ * slots. */
 static void obey(struct server *server) {
   struct farm_server_message message;
   const ssize_t n = recv(server->control, &message, sizeof message, 0);
@@ -176,8 +177,8 @@ status farm_server_start(const struct farm_slot_setup *setup, pid_t *server, int
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
     return status_fail(error, STATUS_MEMORY, "cannot make a socket pair for the fork server: %s", strerror(errno));
-  malloc_trim(0); /* each run is forked from here on: it would copy the pages' table of freed memory, too */
-  fflush(NULL);   /* or the children would print what is still buffered once more */
+  malloc_trim(0); /* returns freed memory to the system: every later fork would copy its page table */
+  fflush(NULL);   /* otherwise the children would print the buffered text again */
   const pid_t self = getpid();
   const pid_t pid = fork();
   if (pid == 0) {

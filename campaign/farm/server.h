@@ -1,8 +1,8 @@
-/* The fork server: a small clean process (no threads, no MPI, no HDF5) that makes slots and buries them.
+/* The fork server: a small process without threads, MPI and HDF5 that forks slots and collects their exit status.
  *
- * It is forked first of all, so that slots can be replaced at any time later, when the main process itself can no
- * longer fork safely. It does nothing on its own: the main process asks over `control` (a SOCK_SEQPACKET pair: one
- * message, one packet), and the closing of `control` ends it and every slot. */
+ * It is forked first, so that slots can be replaced later, when the main process itself can no longer fork safely. It
+ * acts only on requests of the main process over `control` (a SOCK_SEQPACKET pair: one message, one packet). Closing
+ * `control` ends it and every slot. */
 #ifndef CLAST_CAMPAIGN_FARM_SERVER_H
 #define CLAST_CAMPAIGN_FARM_SERVER_H
 
@@ -10,8 +10,8 @@
 
 enum farm_server_verb {
   FARM_SERVER_SPAWN = 1, /* -> server: make this slot */
-  FARM_SERVER_KILL,      /* -> server: SIGKILL this slot if it still is this pid */
-  FARM_SERVER_SPAWNED,   /* <- server: here is its pid, and the main end of its channel as SCM_RIGHTS */
+  FARM_SERVER_KILL,      /* -> server: SIGKILL this slot if it still has this pid */
+  FARM_SERVER_SPAWNED,   /* <- server: the slot's pid, and the main process's end of its channel as SCM_RIGHTS */
   FARM_SERVER_DIED,      /* <- server: wait status; pid 0: it could not be made, value = errno */
 };
 

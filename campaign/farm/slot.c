@@ -1,4 +1,4 @@
-/* The loop of a slot: takes tasks, computes them or has them computed in a child, sends results in batches. */
+/* The loop of a slot: takes tasks, computes them in its own process or in a child, sends results in batches. */
 #include "campaign/farm/slot.h"
 
 #include <errno.h>
@@ -15,7 +15,7 @@
 #include "campaign/farm/isolate.h"
 #include "schemas/clock.h"
 
-/* Results of short tasks are sent together: when this old, this many, or when there is nothing else to do. */
+/* Results of short tasks are sent together: after this time, at this number, or when no task waits. */
 #define FLUSH_AFTER_NS (200 * CLOCK_MS / 1000)
 #define FLUSH_AT_BYTES 32768
 
@@ -31,19 +31,19 @@ static void flush(int channel, struct farm_bytes *out) {
     if (n < 0 && errno == EINTR)
       continue;
     if (n <= 0)
-      _exit(STATUS_OK); /* the main process is gone */
+      _exit(STATUS_OK); /* the main process has ended */
     out->begin += (size_t)n;
   }
   farm_frame_trim(out);
 }
 
-/* Peak memory in process is the high-water mark of the slot. It is put back after a task that raised it (where the
- * kernel lets us), so that a task does not inherit a larger predecessor's. */
+/* Peak memory in process is the high-water mark of the slot. It is reset after a task that raised it (where the kernel
+ * permits this), so that a task does not inherit the peak of a larger predecessor. */
 static int64_t peak_memory(int64_t *floor) {
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   const int64_t peak = (int64_t)usage.ru_maxrss * 1024;
-  if (*floor == 0) { /* the slot before its first task */
+  if (*floor == 0) { /* peak of the slot before its first task */
     *floor = peak;
     return peak;
   }
@@ -99,7 +99,8 @@ static bool run_here(const struct farm_slot_setup *setup, int slot, uint64_t han
 
 static bool claim(struct farm_slot_record *record, const struct farm_frame *frame) {
   uint64_t expected = frame->handle;
-  /* `running` first: a death between the two lines blames a task that main then finds still offered, and runs again. */
+  /* `running` is set first: if the slot dies between these lines, the main process finds the task's ticket not taken
+   * and runs the task again. */
   atomic_store(&record->started_ns, clock_ns());
   atomic_store(&record->running, frame->handle);
   if (frame->ticket < FARM_SLOT_TICKETS && atomic_compare_exchange_strong(&record->ticket[frame->ticket], &expected, 0))
@@ -108,8 +109,8 @@ static bool claim(struct farm_slot_record *record, const struct farm_frame *fram
   return false;
 }
 
-/* If the machine runs out of memory, the kernel shall end a run and not the manager. Every process may raise its score.
- */
+/* If the machine runs out of memory, the kernel should kill a run and not the manager. A process may always raise its
+ * own OOM score. */
 static void offer_to_oom_killer(void) {
   const int score = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
   if (score < 0)

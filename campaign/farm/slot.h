@@ -1,8 +1,8 @@
 /* A slot: a process that takes tasks from its channel and gives results back, one at a time.
  *
- * Tasks may be sent ahead. What has been sent can still be taken back exactly: each sent task holds a ticket in memory
- * shared with the main process, and whoever swaps the ticket out owns the task: the slot to run it, the main process to
- * give it to somebody idle. So prefetching never makes the last tasks of a campaign wait behind a long one. */
+ * Tasks may be sent before the slot is free, and can still be taken back: each sent task has a ticket in memory shared
+ * with the main process. The process that swaps the ticket out owns the task: the slot runs it, or the main process
+ * gives it to an idle slot. So the last tasks of a campaign never wait behind a long one. */
 #ifndef CLAST_CAMPAIGN_FARM_SLOT_H
 #define CLAST_CAMPAIGN_FARM_SLOT_H
 
@@ -15,9 +15,10 @@
 #define FARM_SLOT_TICKETS 64
 
 struct farm_slot_record {
-  _Atomic uint64_t running;   /* handle of the task being computed, 0 = none: who is to blame for a crash */
-  _Atomic int64_t started_ns; /* of `running` */
-  _Atomic uint64_t ticket[FARM_SLOT_TICKETS]; /* handle offered, 0 = taken by either side */
+  _Atomic uint64_t running;   /* handle of the running task, 0 = none: the task that a crash is counted for */
+  _Atomic int64_t started_ns; /* start time of `running` */
+  _Atomic uint64_t
+      ticket[FARM_SLOT_TICKETS]; /* handle of the waiting task, 0 = taken by the slot or the main process */
 };
 
 struct farm_slot_setup {
@@ -26,10 +27,10 @@ struct farm_slot_setup {
   struct farm_slot_record *records; /* one per slot, shared */
 };
 
-/* Body of a slot process whose parent is `parent`; serves until the channel closes. */
+/* Main function of a slot process whose parent is `parent`; serves until the channel closes. */
 _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, int channel, pid_t parent);
 
-/* This process dies with `parent`: asked of the kernel, then checked, as the parent may have died before the asking. */
+/* Makes the kernel kill this process when `parent` dies. Then checks `parent`, which may have died before the call. */
 void farm_slot_die_with(pid_t parent);
 
 #endif
