@@ -1,4 +1,4 @@
-/* Files that exist whole or not at all. */
+/* Writes and reads whole files. */
 #include "engine/atomic_file.h"
 
 #include <errno.h>
@@ -15,7 +15,7 @@
 
 enum { BLOCK = 1 << 16 }; /* bytes read at a time, at least */
 
-/* A pipe or a device, such as /dev/stdout: it is written itself, and never replaced. */
+/* Is it a pipe or a device, such as /dev/stdout? These are written directly and never replaced. */
 static bool is_special(const char *path) {
   struct stat there;
   return stat(path, &there) == 0 && !S_ISREG(there.st_mode) && !S_ISDIR(there.st_mode);
@@ -34,7 +34,7 @@ static status write_special(const char *path, const char *what, const void *byte
   return good ? STATUS_OK : status_fail(error, STATUS_IO, "cannot write the %s '%s': %s", what, path, strerror(why));
 }
 
-/* Is it the file of this name? Its writer may have renamed it since it was opened. */
+/* Does the open file still have this name? Its writer may have renamed it. */
 static bool is_at(int file, const char *name) {
   struct stat mine, there;
   return fstat(file, &mine) == 0 && stat(name, &there) == 0 && mine.st_dev == there.st_dev &&

@@ -6,8 +6,8 @@
 struct builtin_document {
   const char *name, *text;
 };
-/* Sorted by name, closed by NULL; of materials the names alone, too (choices of a field table), with `custom` at the
- * end. */
+/* Sorted by name, ended by NULL. The names of materials are also a list of their own (choices of a field table), with
+ * `custom` last. */
 extern const struct builtin_document builtin_scene_list[], builtin_material_list[];
 extern const char *const builtin_material_names[];
 

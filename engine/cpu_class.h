@@ -1,6 +1,7 @@
-/* The x86-64 microarchitecture level that the hot loops run on: they are compiled for each, and chosen at run time.
+/* The x86-64 microarchitecture level of the hot loops. They are compiled for each level; the level is chosen at run
+ * time.
  *
- * Bits are promised within one class, because contraction to FMA differs; so the class is recorded with a run. The
+ * Results are bit-identical only within one class, because contraction to FMA differs. So a run records its class. The
  * environment variable CLAST_CPU=baseline|v3|v4 limits the class. A class that the machine lacks is replaced by the
  * best one below it. */
 #ifndef CLAST_ENGINE_CPU_CLASS_H
@@ -11,7 +12,7 @@
 enum cpu_class { CPU_BASELINE = 1, CPU_V3 = 3 /* AVX2, FMA */, CPU_V4 = 4 /* AVX-512 */ };
 
 enum cpu_class cpu_class_choose(void);
-bool cpu_class_known(const char *name);           /* whether CLAST_CPU may be that */
+bool cpu_class_known(const char *name);           /* whether `name` is a value of CLAST_CPU */
 const char *cpu_class_name(enum cpu_class class); /* "baseline", "v3", "v4" */
 
 #endif

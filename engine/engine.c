@@ -6,7 +6,7 @@
 #include "engine/dem/dem.h"
 #include "engine/sph/sph.h"
 
-/* The registry: one line per engine, closed by NULL. */
+/* The registry: one line per engine, ended by NULL. */
 static const struct engine_kind *const kinds[] = {
     &dem_engine,
     &sph_engine,

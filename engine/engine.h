@@ -17,17 +17,16 @@ struct engine_kind {
   const struct field_table *inputs;  /* the typed scene; includes a `fidelity.` section */
   const struct field_table *results; /* what this engine reports beyond struct outcome; table result_<engine> */
 
-  /* Fills inputs that were not given (one flag per input row) and follow from others: values of a named material, a
-   * time that scales with a size. A pure function of the given ones, called again after every change. NULL: there are
-   * none. */
+  /* Fills inputs that were not given (one flag per input row) and follow from others, such as the values of a named
+   * material. The result depends only on the given inputs. Called again after every change. NULL: no such inputs. */
   void (*complete)(void *inputs, const bool *given);
-  /* Refuses what must be given (one flag per input row) although it has a default or may be off. STATUS_CONTENT. NULL:
-   * there is no such input. */
+  /* STATUS_CONTENT when an input is missing (one flag per input row) that must be given although it has a default or
+   * may be off. NULL: no such input. */
   status (*check_given)(const void *inputs, const bool *given, struct error *error);
   /* Checks conditions across fields (a charge energy needs a disc...). STATUS_CONTENT with a remedy. */
   status (*check)(const void *inputs, struct error *error);
-  /* Doubts that the inputs raise before the run: the set of enum warnings_bits, and to `out` (NULL: none wanted) a line
-   * for people per doubt, with its remedy. NULL: it has none. */
+  /* Returns the warnings that follow from the inputs alone, a set of enum warnings_bits. Prints a line per warning with
+   * its remedy to `out` (NULL: prints nothing). NULL: the engine has none. */
   unsigned (*warn)(const void *inputs, FILE *out);
   /* What is modelled and why, memory, expected cost: text for `clast explain scene` and `plan`. malloc'd. */
   char *(*describe)(const void *inputs);
@@ -37,20 +36,20 @@ struct engine_kind {
 
   /* Builds the initial state; inputs are copied. On failure *run is NULL. STATUS_MEMORY or STATUS_CONTENT. */
   status (*prepare)(const void *inputs, uint64_t seed, void **run, struct error *error);
-  /* Advances by at most max_steps; *finished after the scene's stop rule, its end or a failure. A numerical failure
-   * (NaN, collapse) is no error status: the run is finished and says so in its outcome. STATUS_MEMORY is one: the
-   * machine's, not the run's, so that no result is made of it. */
+  /* Advances by at most max_steps; Sets *finished after the scene's stop rule, its end or a failure. A numerical
+   * failure (NaN, collapse) is not an error status: the run is finished, and its outcome names the failure.
+   * STATUS_MEMORY is an error status, because the machine failed and not the run; then there is no result. */
   status (*step)(void *run, uint64_t max_steps, bool *finished, struct error *error);
   double (*progress)(const void *run); /* 0..1, simulated time over the hard end */
-  double (*time)(const void *run);     /* s simulated so far: what snapshots are labelled by */
+  double (*time)(const void *run);     /* s simulated so far; the label of snapshots */
   /* Results: *outcome, the engine's own *result (results->size bytes), and the fragments by descending mass (malloc'd,
    * owned by the caller from then on). May be called before the run is finished (a snapshot of results). */
   status (*finish)(void *run, struct outcome *outcome, void *result, struct fragment **fragments,
                    size_t *fragment_count, struct error *error);
   /* Big fields (grains, beams, break log, curves; particles) as one self-describing HDF5 file, written to a temporary
-   * name and renamed. Also what pictures are drawn from. */
+   * name and renamed. Pictures are drawn from it, too. */
   status (*write_snapshot)(void *run, const char *path, struct error *error);
-  /* What a restart file holds (engine/restart.h): the run as it stands, and its moving system as bytes.
+  /* The parts of a restart file (engine/restart.h): the state of the run, and its moving system as bytes.
    * load_system: STATUS_CONTENT when the bytes fit no system of this run, STATUS_MEMORY. */
   struct restart_run (*restart)(void *run);
   void (*save_system)(const void *run, void *bytes);

@@ -4,11 +4,12 @@
 
 #include <stdbool.h>
 
-/* Does a word name a document's file, and not something built in? It has a slash, or ends in .yaml, .yml or .json. */
+/* Is the word the name of a document file, and not of a built-in document? It has a slash, or ends in .yaml, .yml or
+ * .json. */
 bool file_name_is_document(const char *word);
 
-/* The name of a file that stands in a folder, malloc'd; NULL without memory. An absolute name stays as it is, and so
- * does any name without a folder (NULL or empty: the current one). */
+/* Joins a folder and a file name; malloc'd, NULL without memory. An absolute name does not change, nor does any name
+ * when `folder` is NULL or empty (the current folder). */
 char *file_name_in(const char *folder, const char *name);
 
 #endif

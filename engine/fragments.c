@@ -1,4 +1,4 @@
-/* Connected components, and what moves with them: mass, centre, velocity, spin. */
+/* Connected components and their mass, centre, velocity and spin. */
 #include "engine/fragments.h"
 
 #include <math.h>
@@ -76,7 +76,7 @@ static status no_memory(size_t n, struct error *error) {
   return status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains or particles", n);
 }
 
-/* The part that plane and space share: labels, masses, centres of mass, velocities, kinetic energies, counts. */
+/* Quantities common to 2D and 3D: labels, masses, centres of mass, velocities, kinetic energies, counts. */
 static status gather(size_t n, const struct fragment_member *members, size_t link_count, const uint32_t (*links)[2],
                      uint32_t *label, struct fragment **out, size_t *count, struct error *error) {
   double *mass = malloc(n * sizeof *mass);
@@ -164,7 +164,7 @@ void fragments_principal(const double tensor[6], double value[3], double axis[3]
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       axis[i][j] = i == j;
-  for (int sweep = 0; sweep < 12; sweep++) { /* convergence is quadratic: five are enough in double precision */
+  for (int sweep = 0; sweep < 12; sweep++) { /* convergence is quadratic: five sweeps are enough in double precision */
     rotate(a, axis, 0, 1);
     rotate(a, axis, 0, 2);
     rotate(a, axis, 1, 2);
@@ -222,7 +222,7 @@ static status turn_in_space(size_t n, const struct fragment_member *members, con
   for (size_t i = 0; i < n; i++) {
     const struct fragment *f = &fragments[label[i]];
     if (f->count == 1 && members[i].moment_of_inertia == 0)
-      continue; /* dust, most of a shattered body: it lies at its own centre */
+      continue; /* a single particle lies at the centre of its fragment */
     add_turning(&turning[label[i]], f, &members[i]);
   }
   for (size_t k = 0; k < count; k++) {

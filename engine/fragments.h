@@ -1,5 +1,5 @@
-/* Fragments: connected components of grains or particles over links that hold. Public pure functions: an engine calls
- * them at the end of a run, analysis may call them again on a snapshot. */
+/* Fragments: connected components of grains or particles joined by intact links. Pure functions: an engine calls them
+ * at the end of a run; analysis may call them again on a snapshot. */
 #ifndef CLAST_ENGINE_FRAGMENTS_H
 #define CLAST_ENGINE_FRAGMENTS_H
 
@@ -32,13 +32,13 @@ struct fragment_member {
   double moment_of_inertia;        /* kg m^2 about its own centre (particles: 0) */
 };
 
-/* Finds and measures fragments in the plane: spin and moment of inertia are about z. *out has *count fragments by
+/* Finds and measures fragments in 2D: spin and moment of inertia are about z. *out has *count fragments by
  * descending mass (malloc'd, owned by the caller; NULL when n is 0); `label` (n entries) may be NULL. STATUS_MEMORY. */
 status fragments_find_plane(size_t n, const struct fragment_member *members, size_t link_count,
                             const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
                             struct error *error);
 
-/* The same in space. Spin is I^-1 L with the full inertia tensor I about the centre of mass: the angular velocity of a
+/* The same in 3D. Spin is I^-1 L with the full inertia tensor I about the centre of mass: the angular velocity of a
  * rigidly turning fragment of any shape. About an axis without inertia (one particle, particles in a line) it is 0.
  * moment_of_inertia is trace(I)/3. A member's own moment is that of a sphere, its own spin is about z. */
 status fragments_find_space(size_t n, const struct fragment_member *members, size_t link_count,
@@ -49,7 +49,7 @@ status fragments_find_space(size_t n, const struct fragment_member *members, siz
  * Jacobi's rotations: exact to rounding for every finite tensor. */
 void fragments_principal(const double tensor[6], double value[3], double axis[3][3]);
 
-/* The parts of union-find: set parent[i] = i at first. The root is the lowest index of the set. */
+/* Steps of union-find. The caller first sets parent[i] = i. The root is the lowest index of the set. */
 uint32_t fragments_root(uint32_t *parent, uint32_t i);
 /* Joins two sets. True when a and b were in different ones. */
 bool fragments_join(uint32_t *parent, uint32_t a, uint32_t b);

@@ -1,4 +1,4 @@
-/* The rows of what every engine reports of a run. */
+/* Field rows of the results that every engine reports. */
 #include "engine/outcome.h"
 
 #include <math.h>
@@ -92,7 +92,7 @@ bool outcome_counts(const struct outcome *outcome) {
   return true;
 }
 
-/* 0 where there is no mass. */
+/* value/mass; 0 where there is no mass. */
 static double over(double value, double mass) {
   return mass > 0 ? value / mass : 0;
 }

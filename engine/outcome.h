@@ -5,7 +5,7 @@
 #include "engine/fragments.h"
 #include "schemas/field.h"
 
-/* A run's own verdict (a result, part of the deterministic record), not a lost attempt. */
+/* How a run ended. This is a deterministic result; it is not the failure of an attempt. */
 enum outcome_state {
   OUTCOME_COMPLETED,  /* fracture had ceased by the scene's declared rule */
   OUTCOME_END_TIME,   /* the hard end came first: fragments may still be breaking */
@@ -18,7 +18,7 @@ enum outcome_state {
 struct outcome {
   int state;                      /* enum outcome_state, a FIELD_CHOICE */
   char message[FIELD_TEXT_SIZE];  /* diagnostics for a person; empty when all is well */
-  char warnings[FIELD_TEXT_SIZE]; /* words of doubts (engine/warnings.h); empty when there are none */
+  char warnings[FIELD_TEXT_SIZE]; /* words of warnings (engine/warnings.h); empty when there are none */
   int64_t steps;
   double time;                    /* s simulated */
   double time_step;               /* s, the smallest used */
@@ -28,7 +28,7 @@ struct outcome {
   int64_t fragment_count;         /* all, single grains (dust) included */
   int64_t single_count;           /* fragments of one grain: unresolved */
   double dust_fraction;           /* mass share of fragments lighter than dust (outcome_small) */
-  double complete_mass;           /* kg or kg/m: from here on the spectrum of fragments is complete */
+  double complete_mass;           /* kg or kg/m: the fragment spectrum is complete above this mass */
   double largest_fraction;        /* M_1 / M */
   double second_fraction;         /* M_2 / M */
   double mean_fragment_mass;      /* second moment over first of all fragment masses, kg */
@@ -37,7 +37,7 @@ struct outcome {
 };
 
 extern const struct field_table outcome_table;
-#define OUTCOME_DEFAULT "largest_fraction" /* the quantity that commands and campaigns take when none is named */
+#define OUTCOME_DEFAULT "largest_fraction" /* the default quantity of commands and campaigns */
 
 /* The index-th main result by field.main_rank, NULL past the last one. The store's views, index and checks follow from
  * these rows. */
@@ -47,15 +47,15 @@ const struct field *outcome_main(size_t index);
 const char *outcome_name(size_t offset);
 #define OUTCOME_NAME(member) outcome_name(offsetof(struct outcome, member))
 
-/* Did a run of this state give results: completed, or ended at its time? */
+/* True if a run of this state gives results: completed, or stopped at its end time. */
 bool outcome_is_usable(int state);
 /* Does a run count in statistics? Its state is usable and every main result is a number. (A surplus run does not count
  * whatever its results.) */
 bool outcome_counts(const struct outcome *outcome);
 
-/* What small fragments are to an engine. */
+/* An engine's mass limits of small fragments. */
 struct outcome_small {
-  double dust;     /* kg or kg/m: lighter fragments are dust; NaN: single grains are */
+  double dust;     /* kg or kg/m: lighter fragments are dust; NaN: single grains are dust */
   double complete; /* kg or kg/m: complete_mass */
 };
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Random123's headers are not -Wconversion clean; ours is. */
+/* Random123's headers raise -Wconversion warnings. */
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wsign-conversion"

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-enum random_purpose { /* never changed: they are part of what a seed means */
+enum random_purpose { /* values never change: they are part of the meaning of a seed */
                       RANDOM_LATTICE = 1,
                       RANDOM_THRESHOLD = 2,
                       RANDOM_FLAW_STRENGTH = 3,

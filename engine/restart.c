@@ -12,7 +12,7 @@
 #include "schemas/text.h"
 
 static const char magic[8] = "CLASTRUN";
-/* 4: the build stands in the file. */
+/* 4: the file records the build. */
 enum { VERSION = 4 };
 #define NO_RESTART_FILE "'%s' is no restart file: name another one, or move it away to start the run again"
 enum { STATE, SAMPLES, SYSTEM, PARTS };
@@ -66,8 +66,8 @@ static int add_notes(struct dl_phdr_info *program, size_t size, void *hash) {
   return 1;
 }
 
-/* Structs and columns are saved as they stand in memory. Another build may have them in another order of the same size,
- * and would read one for the other. */
+/* Structs and columns are saved as raw memory. Another build may have them in another order of the same size and would
+ * mix them up. */
 static uint64_t build_hash(void) {
   uint64_t sum = TEXT_HASH_START;
   dl_iterate_phdr(add_notes, &sum);

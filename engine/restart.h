@@ -1,5 +1,5 @@
-/* Restart files of any engine: what the next step of a run depends on, for the same binary on the same CPU class. A
- * file is written under a temporary name and renamed.
+/* Restart files of any engine: all data that the next step of a run depends on, for the same binary on the same CPU
+ * class. A file is written under a temporary name and renamed.
  *
  *   "CLASTRUN", u64 version, u64 seed, u64 CPU class, u64 build, u64 length + identity (engine, results_version, all
  * inputs), u64 number of parts, each u64 size + bytes, u64 FNV-1a of all before it.
@@ -13,12 +13,12 @@
 
 #include "engine/engine.h"
 
-/* Memory that is saved and loaded as it stands. */
+/* Memory that is saved and loaded as raw bytes. */
 struct restart_block {
   void *at;
   size_t size; /* bytes */
 };
-size_t restart_blocks_size(const struct restart_block *blocks, size_t count); /* bytes of all */
+size_t restart_blocks_size(const struct restart_block *blocks, size_t count); /* total bytes */
 /* `bytes` holds all blocks one after the other. */
 void restart_blocks_save(const struct restart_block *blocks, size_t count, void *bytes);
 void restart_blocks_load(const struct restart_block *blocks, size_t count, const void *bytes);
@@ -29,7 +29,7 @@ struct restart_run {
   const void *inputs;
   uint64_t seed;
   struct restart_block state;
-  const uint64_t *samples; /* within the state: how many samples there are */
+  const uint64_t *samples; /* number of samples; points into the state */
   void *sample;            /* sample_capacity of them, sample_size bytes each */
   size_t sample_size, sample_capacity;
   size_t system_size; /* bytes that save_system writes */
@@ -37,13 +37,12 @@ struct restart_run {
 
 /* STATUS_IO, STATUS_MEMORY. */
 status restart_save(const struct engine_kind *kind, void *run, const char *path, struct error *error);
-/* Creates the run that a file was saved of; the same bits follow. *run is NULL on failure. STATUS_MISSING, STATUS_IO,
- * STATUS_MEMORY; STATUS_CONTENT: no restart file, damaged, of another CPU class, another build or other inputs. */
+/* Creates a run from its restart file; it continues bit-identically. *run is NULL on failure. STATUS_MISSING,
+ * STATUS_IO, STATUS_MEMORY; STATUS_CONTENT: not a restart file, damaged, or of another CPU class, build or inputs. */
 status restart_load(const struct engine_kind *kind, const void *inputs, const char *path, void **run,
                     struct error *error);
 
-/* The seed of the run that a file was saved of, without reading the rest. STATUS_MISSING, STATUS_IO; STATUS_CONTENT: no
- * restart file. */
+/* Reads only the seed from a restart file. STATUS_MISSING, STATUS_IO; STATUS_CONTENT: not a restart file. */
 status restart_peek(const char *path, uint64_t *seed, struct error *error);
 
 #endif

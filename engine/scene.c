@@ -144,7 +144,7 @@ static status read_document(struct document *document, const char *folder, const
   return code;
 }
 
-/* A scene's file. Names in it are relative to its own folder; without a name of its own the scene is called as it. */
+/* Loads a scene file. File names in it are relative to its folder. A scene without a name gets the name of its file. */
 static status load_file(const char *path, struct scene **out, struct error *error) {
   const char *slash = strrchr(path, '/');
   const size_t length = slash ? (size_t)(slash - path) : 0;
@@ -277,7 +277,7 @@ status scene_set_text(struct scene *scene, const char *path, const char *text, s
   return code ? code : scene_set(scene, row->path, &value, error);
 }
 
-/* Undoes a line of the document that has no effect because of an override: the row gets its default again. */
+/* Resets a row to its default when an override makes its line in the document ineffective. */
 static status set_back(struct scene *scene, size_t row, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
   void *untouched = calloc(1, table->size);

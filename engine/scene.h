@@ -23,12 +23,12 @@ const char *scene_builtin_name(size_t index);
 const char *scene_builtin_text(const char *name); /* the document, or NULL */
 
 /* `reference` is a built-in name or a path (a path when it holds '/' or ends in .yaml/.yml/.json), relative to `folder`
- * (NULL: the current one). `@NAME` behind it chooses named settings (engine/scene_settings.h): basalt-sphere@draft.
- * *error gets all errors of the document at once.
+ * (NULL: the current one). `@NAME` after it chooses named settings (engine/scene_settings.h): basalt-sphere@draft.
+ * *error lists all errors of the document.
  * STATUS_MISSING (with nearest built-in name), STATUS_CONTENT, STATUS_IO. */
 status scene_load(const char *reference, const char *folder, struct scene **out, struct error *error);
 status scene_parse(const char *name, const char *text, struct scene **out, struct error *error);
-/* The JSON of scene_json, as stores keep it: its numbers are SI. */
+/* Reads JSON that scene_json wrote, as kept in stores. Its numbers are in SI units. */
 status scene_parse_json(const char *name, const char *json, struct scene **out, struct error *error);
 struct scene *scene_copy(const struct scene *scene);
 void scene_free(struct scene *scene);

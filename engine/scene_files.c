@@ -29,7 +29,7 @@ static void take(document_node *section, document_node *node, const char *key, c
   if (find(text, folder, &file, &error)) {
     document_report(node, path, "%s", error.message);
     document_graft_drop(section, key);
-    (void)document_graft_word(section, key, "none"); /* nothing more is said about it */
+    (void)document_graft_word(section, key, "none"); /* prevents further errors about it */
     return;
   }
   document_graft_drop(section, key);

@@ -33,7 +33,7 @@ static void include(document_node *section, document_node *place, const char *pa
     document_report(place, path, "%s", error.message);
   else if (!document_graft(section, other, scene_materials_words) || !document_graft_word(section, "name", "custom"))
     document_report(place, path, "no memory for %s", file);
-  (void)document_graft_word(section, "name", "custom"); /* after an error: nothing more is said about the section */
+  (void)document_graft_word(section, "name", "custom"); /* after an error: prevents further errors about the section */
   free(whole);
 }
 

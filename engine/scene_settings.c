@@ -1,4 +1,4 @@
-/* Reads named settings of a scene, and gives a scene their inputs. */
+/* Reads the named settings of a scene and applies them. */
 #include "engine/scene_settings.h"
 
 #include <ctype.h>

@@ -3,7 +3,7 @@
  *     settings:
  *       draft: {fidelity.particles: 3000, fidelity.precision: float}
  *       reference: {fidelity.particles: 90000}
- * `NAME@draft` is the scene NAME with them. The scene as written is called standard. */
+ * `NAME@draft` is the scene NAME with the settings draft. The scene as written is called standard. */
 #ifndef CLAST_ENGINE_SCENE_SETTINGS_H
 #define CLAST_ENGINE_SCENE_SETTINGS_H
 
@@ -18,7 +18,7 @@ struct scene_settings {
   char name[SCENE_SETTINGS_NAME];
   size_t count;
   struct {
-    size_t row; /* of the engine's inputs */
+    size_t row; /* index into the engine's inputs */
     struct field_value value;
   } item[SCENE_SETTINGS_ITEMS];
 };
@@ -29,8 +29,8 @@ void scene_settings_read(document_node *node, struct scene *scene);
 /* The settings of this name, or NULL. */
 const struct scene_settings *scene_settings_find(const struct scene *scene, const char *name);
 
-/* Gives the scene these inputs, as if its document had them. "standard" changes nothing. STATUS_MISSING names the
- * settings that there are. STATUS_CONTENT: the scene refuses a value. */
+/* Applies settings, as if the document gave their inputs. "standard" changes nothing. STATUS_MISSING: unknown name; the
+ * message lists the known ones. STATUS_CONTENT: the scene refuses a value. */
 status scene_settings_use(struct scene *scene, const char *name, struct error *error);
 
 #endif

@@ -12,7 +12,7 @@ enum { COMPRESSED_FROM = 4096, CHUNK = 16384 }; /* rows */
 
 struct snapshot_file {
   hid_t file, access;
-  bool failed, memory; /* HDF5 refused a call; memory was out. save() reports both */
+  bool failed, memory; /* an HDF5 call failed; memory ran out. save() reports both */
   H5E_auto2_t printing;
   void *printing_to;
 };
@@ -71,7 +71,7 @@ static void data(struct snapshot_file *f, const char *name, hid_t type, bool com
   hid_t space = checked(f, H5Screate_simple(width ? 2 : 1, size, NULL));
   hid_t links = checked(f, H5Pcreate(H5P_LINK_CREATE)), layout = checked(f, H5Pcreate(H5P_DATASET_CREATE));
   f->failed |= H5Pset_create_intermediate_group(links, 1) < 0;
-  f->failed |= H5Pset_obj_track_times(layout, 0) < 0; /* the same run is the same file, whenever it is written */
+  f->failed |= H5Pset_obj_track_times(layout, 0) < 0; /* without times, the same run always gives the same file */
   if (compress && rows >= COMPRESSED_FROM)
     f->failed |= H5Pset_chunk(layout, width ? 2 : 1, chunk) < 0 || H5Pset_shuffle(layout) < 0 ||
                  H5Pset_deflate(layout, 1) < 0;
@@ -185,7 +185,7 @@ status snapshot_file_open(const char *engine, const char *doc, int results_versi
   *out = NULL;
   if (!f)
     return status_fail(error, STATUS_MEMORY, "no memory for a fields file");
-  H5dont_atexit(); /* its own exit handler prints when a damaged file could not be closed */
+  H5dont_atexit(); /* HDF5's exit handler prints when a damaged file could not be closed */
   H5Eget_auto2(H5E_DEFAULT, &f->printing, &f->printing_to);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   f->file = -1;

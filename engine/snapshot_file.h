@@ -3,7 +3,7 @@
  * ParaView open as it is.
  *
  * The file is made in memory and written whole: a full disk or a forbidden folder is one clean error. Calls between
- * open and save return nothing: save reports what HDF5 refused. */
+ * open and save return nothing: save reports errors of HDF5. */
 #ifndef CLAST_ENGINE_SNAPSHOT_FILE_H
 #define CLAST_ENGINE_SNAPSHOT_FILE_H
 
@@ -23,7 +23,7 @@ status snapshot_file_open(const char *engine, const char *doc, int results_versi
 void snapshot_file_close(struct snapshot_file *file); /* NULL is fine */
 /* STATUS_IO with the system's reason: no file is left behind. STATUS_INTERNAL, STATUS_MEMORY. */
 status snapshot_file_save(struct snapshot_file *file, const char *path, struct error *error);
-/* Tells that the caller found no memory for its data: save returns STATUS_MEMORY. */
+/* Records that the caller had no memory for its data: save then returns STATUS_MEMORY. */
 void snapshot_file_fail(struct snapshot_file *file);
 
 /* An attribute of a group or data set that exists. */
@@ -31,8 +31,8 @@ void snapshot_file_real(struct snapshot_file *file, const char *at, const char *
 
 /* double, int64_t, unsigned char */
 enum snapshot_file_kind { SNAPSHOT_FILE_REAL, SNAPSHOT_FILE_INTEGER, SNAPSHOT_FILE_BYTE };
-/* rows x width values; width 0: rows values in one dimension. Integers and bytes of many rows are compressed. The
- * groups of the path are made. units and long_name may be NULL (VTK's own bookkeeping). */
+/* rows x width values; width 0: rows values in one dimension. Integers and bytes of many rows are compressed. Missing
+ * groups of the path are created. units and long_name may be NULL (VTK's own bookkeeping). */
 void snapshot_file_data(struct snapshot_file *file, const char *name, enum snapshot_file_kind kind, size_t rows,
                         size_t width, const void *values, const char *units, const char *long_name);
 /* Every active row of a field table as a scalar under `group`, with its unit and documentation. */

@@ -1,5 +1,5 @@
-/* Vectors of three components: what the geometry of shapes and meshes needs. The order of the sums is part of the
- * results' bits. */
+/* Vectors of three components, for the geometry of shapes and meshes. The order of the sums affects the bits of
+ * results. */
 #ifndef CLAST_ENGINE_VECTOR3_H
 #define CLAST_ENGINE_VECTOR3_H
 

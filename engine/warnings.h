@@ -1,11 +1,11 @@
-/* Doubts about a run that is no failure: a word each, in the result column `warnings`. Some are known from the inputs,
- * before the run; others only from what happened. */
+/* Warnings about a run that did not fail: one word each, in the result column `warnings`. Some follow from the inputs
+ * before the run, others only from the run itself. */
 #ifndef CLAST_ENGINE_WARNINGS_H
 #define CLAST_ENGINE_WARNINGS_H
 
 #include <stddef.h>
 
-/* Name, word, what it means. The limits stand below, or in the engine that judges. */
+/* Name, word, meaning. The limits are below or in the engines. */
 #define WARNINGS(X)                                                                                                    \
   X(DRIFT, "drift", "the energy ledger drifted by more than 1 %, which the scene's fidelity.energy_bound allows")      \
   X(PASSING, "passing",                                                                                                \
@@ -29,7 +29,7 @@ enum warnings_place { WARNINGS(WARNINGS_BIT) WARNINGS_COUNT };
 enum warnings_bits { WARNINGS(WARNINGS_MASK) };
 #undef WARNINGS_MASK
 
-/* Drift of the energy ledger over the energy put in, above which a run is warned of. */
+/* Drift of the energy ledger, divided by the energy put in, above which a run gets a warning. */
 #define WARNINGS_LARGEST_DRIFT 0.01
 
 /* The words of a set, "passing, step"; empty for none. */

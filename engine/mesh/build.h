@@ -1,10 +1,10 @@
-/* Making a mesh from its file: inside engine/mesh only. */
+/* Makes a mesh from its file; used inside engine/mesh only. */
 #ifndef CLAST_ENGINE_MESH_BUILD_H
 #define CLAST_ENGINE_MESH_BUILD_H
 
 #include "engine/mesh/mesh.h"
 
-/* Faces as they stand in a file. */
+/* Vertices and faces as read from a file. */
 struct mesh_soup {
   const char *name;
   bool numbered; /* `line` holds numbers of faces, as a binary file has no lines */
@@ -14,7 +14,7 @@ struct mesh_soup {
   uint32_t *line; /* of each face */
 };
 
-/* Text becomes an error with the place in the file. line 0: none. Returns STATUS_CONTENT. */
+/* Makes an error message with the place in the file (line 0: no place). Returns STATUS_CONTENT. */
 status mesh_refuse(const struct mesh_soup *soup, size_t line, struct error *error, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 /* STATUS_CONTENT: not finite, or too many faces; STATUS_MEMORY. */
@@ -24,10 +24,11 @@ status mesh_soup_face(struct mesh_soup *soup, size_t line, const uint32_t corner
 /* formats.c: reads a file into the soup. `text` ends with a NUL behind its `size` bytes. */
 status mesh_formats_read(struct mesh_soup *soup, const char *text, size_t size, struct error *error);
 
-/* closed.c: one vertex for all that are equal; every edge has two faces that turn opposite ways; faces are no lines. */
+/* closed.c: merges equal vertices, and checks that every edge has two faces that turn opposite ways and every face an
+ * area. */
 status mesh_closed_make(struct mesh_soup *soup, struct error *error);
 
-/* inside.c: the lists of faces by column, and whether one enters and leaves the solid in turn. */
+/* inside.c: lists the faces by column, and checks that lines enter and leave the solid in turn. */
 status mesh_inside_make(struct mesh *mesh, struct error *error);
 void mesh_inside_free(struct mesh_columns *columns);
 status mesh_inside_check(const struct mesh *mesh, const struct mesh_soup *soup, struct error *error);

@@ -14,7 +14,7 @@ struct entry {
   struct mesh_file file;
 };
 
-static struct entry *entries; /* never changed but at its head: found files stay where they are */
+static struct entry *entries; /* entries are only added at the head: pointers to files stay valid */
 
 const struct mesh_file *mesh_files_find(const char *hash) {
   for (const struct entry *e = entries; e; e = e->next)
@@ -23,7 +23,7 @@ const struct mesh_file *mesh_files_find(const char *hash) {
   return NULL;
 }
 
-/* Takes the bytes. */
+/* Takes ownership of the bytes. */
 static status add(const char *name, unsigned char *bytes, size_t size, const struct mesh_file **out,
                   struct error *error) {
   char hash[MESH_HASH_SIZE];
@@ -64,7 +64,7 @@ status mesh_files_add(const char *name, const void *bytes, size_t size, const st
 static status look(const char *path, struct error *error) {
   struct stat about;
   if (stat(path, &about) != 0)
-    return STATUS_OK; /* opening it says why */
+    return STATUS_OK; /* opening it reports the reason */
   if (!S_ISREG(about.st_mode))
     return status_fail(error, STATUS_IO, "%.3000s: is no regular file: name a shape file (STL or OBJ)", path);
   if (about.st_size > MESH_MOST_BYTES)

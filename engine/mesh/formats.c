@@ -9,7 +9,7 @@
 
 static const char blanks[] = " \t\r\v\f";
 
-/* A number and what is behind it; false: there is none. */
+/* Reads a number and moves *at behind it. False: there is none. */
 static bool number(const char **at, double *value) {
   char *end;
   *value = strtod(*at, &end);

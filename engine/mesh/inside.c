@@ -1,10 +1,10 @@
-/* What is inside a mesh: faces above a point, listed by columns along z. */
+/* Tests whether a point is inside a mesh, by the faces above it, which are listed by columns along z. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "engine/mesh/build.h"
 
-/* Squares of the plane of x and y, and the faces above or below each. */
+/* Squares in the x-y plane, and the faces above or below each. */
 struct mesh_columns {
   size_t count[2];
   double low[2], wide[2];
@@ -27,7 +27,7 @@ static void columns_of(const struct mesh *m, const struct mesh_columns *c, size_
   }
 }
 
-/* As many columns as faces see from above, fewer where large faces would be listed in too many of them. */
+/* About as many columns as faces; fewer where large faces would be in the lists of too many columns. */
 static size_t choose_columns(const struct mesh *m, struct mesh_columns *c) {
   const double x = m->high[0] - m->low[0], y = m->high[1] - m->low[1];
   for (double wide = sqrt(x * y / (double)(m->faces + 1));; wide *= 2) {
@@ -154,7 +154,7 @@ static int compare_meetings(const void *a, const void *b) {
   return p->z < q->z ? 1 : p->z > q->z ? -1 : p->turn - q->turn;
 }
 
-/* Comes from above along the line through p, and is outside and inside in turn. Faces that meet, within rounding, count
+/* Follows the line through p from above: it must be outside and inside in turn. Faces that meet, within rounding, count
  * together. */
 static bool in_turn(const struct mesh *m, const double p[2], struct meeting *meetings) {
   const struct mesh_columns *c = m->columns;

@@ -1,4 +1,5 @@
-/* A mesh from its file: the order of checks, volume, centre of mass; its extent, and where a line leaves it. */
+/* Makes a mesh from its file, with all checks in order. Volume, centre of mass, extent, and the point where a line
+ * leaves the mesh. */
 #include "engine/mesh/mesh.h"
 
 #include <math.h>
@@ -11,7 +12,8 @@
 #include "engine/mesh/build.h"
 #include "engine/vector3.h"
 
-/* A body whose box is this much larger than it is: points could hardly be drawn from it. */
+/* Least share of its box that a body fills (drawing points from a smaller one takes too long); largest coordinate, in
+ * units of the file. */
 static const double least_share = 1e-3, largest_coordinate = 1e15;
 
 status mesh_refuse(const struct mesh_soup *soup, size_t line, struct error *error, const char *format, ...) {

@@ -1,10 +1,10 @@
 /* A closed surface of triangles from a shape file (STL or OBJ), and the solid inside it.
  *
  * Lengths are in units of the file. Places are relative to the centre of mass of the solid (uniform density). A mesh is
- * checked when it is read: every edge has two faces that turn opposite ways, and along lines through all faces one
- * enters and leaves the solid in turn. So cavities and several parts are fine; holes and faces that cut others are not.
+ * checked when it is read: every edge has two faces that turn opposite ways, and lines through all faces enter and
+ * leave the solid in turn. So cavities and several parts are fine; holes and faces that cut others are not.
  *
- * Files come from anyone: they are data, and limits hold for their size. */
+ * Files are untrusted data, and their size is limited. */
 #ifndef CLAST_ENGINE_MESH_MESH_H
 #define CLAST_ENGINE_MESH_MESH_H
 
@@ -35,9 +35,9 @@ struct mesh {
 status mesh_read(const char *name, const void *bytes, size_t size, struct mesh **out, struct error *error);
 void mesh_free(struct mesh *mesh); /* NULL is fine */
 
-/* The number of times that the surface goes round the point, 1 inside and 0 outside, is summed over the faces above it.
- * An edge gives the same answer in its two faces, so no line can slip through between them; only points within rounding
- * of the surface are undecided. */
+/* Sums the winding number of the surface about the point (1 inside, 0 outside) over the faces above it. An edge gives
+ * the same answer in its two faces, so no line passes between them. Only points within rounding of the surface are
+ * undecided. */
 bool mesh_inside(const struct mesh *mesh, const double point[3]);
 /* The distance to the nearest face, negative inside. `normal` (NULL is fine) points outwards there. */
 double mesh_distance(const struct mesh *mesh, const double point[3], double normal[3]);

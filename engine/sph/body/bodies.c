@@ -14,7 +14,7 @@ static double unit(const double a[3], double out[3]) {
   return length;
 }
 
-static const char *name(size_t body, char text[32]) { /* as scenes call them */
+static const char *name(size_t body, char text[32]) { /* names of bodies as in scenes */
   if (body < 2)
     return body ? "the projectile" : "the target";
   const char digits[3] = {(char)('0' + body / 100 % 10), (char)('0' + body / 10 % 10), (char)('0' + body % 10)};

@@ -56,7 +56,7 @@ void sph_bodies_stretch(struct sph_particles *particles, struct sph_range range,
 void sph_bodies_spin(struct sph_particles *particles, struct sph_range range, const double centre[3],
                      const double spin[3]);
 
-/* The middle of a body, |(r - centre) . axis| <= half. The rest of it are its two ends. */
+/* The middle of a body, |(r - centre) . axis| <= half. The rest of the body is its two ends. */
 struct sph_middle {
   double centre[3]; /* m */
   double axis[3];   /* of any length but 0 */
@@ -67,8 +67,8 @@ bool sph_bodies_beyond(const struct sph_middle *middle, const double point[3]);
 size_t sph_bodies_hold(struct sph_particles *particles, struct sph_range range, const struct sph_middle *middle,
                        int freedoms);
 
-/* Damping at the far sides of a box, so that waves leave it. It (1/s) grows as the square of the depth from 0 at
- * `margin` (m) from a damped side to `rate` at the side; the largest of the sides counts. */
+/* Damping at the far sides of a box, so that waves leave it. The damping rate (1/s) grows as the square of the depth
+ * from 0 at `margin` (m) from a damped side to `rate` at the side; the largest of the sides counts. */
 enum sph_side {
   SPH_SIDE_X0 = 1,
   SPH_SIDE_X1 = 2,

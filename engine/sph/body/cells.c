@@ -1,4 +1,4 @@
-/* Deals the particles of a body into the cubes of a turned grid. */
+/* Sorts the particles of a body into the cubes of a turned grid. */
 #include "engine/sph/body/cells.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ static int by_cube(const void *a, const void *b) {
   return (p->particle > q->particle) - (p->particle < q->particle);
 }
 
-/* The cubes in which the particles stand. `shift`: in widths. */
+/* Finds the cube of each particle. `shift` is in cube widths. */
 static void find_cubes(const struct sph_particles *p, struct sph_range range, const double frame[3][3], double width,
                        const double shift[3], struct place *place) {
   for (size_t i = 0; i < range.n; i++) {

@@ -10,11 +10,11 @@
 #include "schemas/status.h"
 
 struct sph_cells {
-  size_t particles, count; /* of the body; of its cells, each of one particle at least */
+  size_t particles, count; /* number of particles; number of cells that have a particle */
   uint32_t *of;            /* by particle of the body: its cell */
 };
 
-/* Deals the particles of a body, as they stand at the start, into cells of this width (m). Drawn from (seed,
+/* Sorts the particles of a body, at their initial places, into cells of this width (m). Drawn from (seed,
  * RANDOM_CELL, body). STATUS_MEMORY. */
 status sph_cells_make(uint64_t seed, uint64_t body, double width, const struct sph_particles *particles,
                       struct sph_range range, struct sph_cells **out, struct error *error);

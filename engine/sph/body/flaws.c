@@ -172,7 +172,7 @@ struct places {
 void sph_flaws_point(uint64_t seed, uint64_t body, uint64_t flaw, const struct sph_shape *shape, double point[3]) {
   uint64_t bits[4], draw = 0;
   double uniform[3];
-  do { /* more than one draw for meshes only: they fill a thousandth of their box, or more */
+  do { /* repeats for meshes only: a mesh fills at least a thousandth of its box */
     random_bits(seed, RANDOM_FLAW_PLACE, body, flaw + (draw++ << 40), bits);
     for (int k = 0; k < 3; k++)
       uniform[k] = random_uniform(bits[k]);
@@ -191,7 +191,7 @@ static size_t nearest_particle(void *context, uint64_t flaw) {
   return places->cells ? places->cells->of[i] : i;
 }
 
-/* Which particles are in the ends of the body. NULL without memory. */
+/* Marks the particles in the ends of the body. NULL without memory. */
 static unsigned char *find_ends(const struct sph_particles *p, struct sph_range range,
                                 const struct sph_middle *middle) {
   unsigned char *exempt = malloc(range.n);
@@ -229,11 +229,11 @@ static unsigned char *exempt_cells(const struct sph_cells *cells, const unsigned
   return out;
 }
 
-/* Who may own flaws, with what share of the volume. */
+/* The owners of flaws, and their shares of the volume. */
 struct owners {
   struct sph_cells *cells;   /* NULL: particles */
   unsigned char *ends;       /* by particle: in the ends of the body; NULL: none is */
-  unsigned char *ends_cells; /* by cell: all of its particles are */
+  unsigned char *ends_cells; /* by cell: all of its particles are in the ends */
   double *share;             /* by owner; NULL: equal */
   struct sph_kd_tree *nearest;
 };

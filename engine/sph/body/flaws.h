@@ -25,7 +25,7 @@ enum sph_flaw_draw { SPH_FLAWS_RANKED, SPH_FLAWS_POISSON };
 struct sph_flaw_law {
   struct sph_weibull weibull;
   double volume;      /* m^3, of solid matter */
-  double solid_ratio; /* sph_flaws_place: density of the solid over that of the body; 0: 1 */
+  double solid_ratio; /* sph_flaws_place: density of the solid over that of the body; 0 counts as 1 */
   int draw;           /* enum sph_flaw_draw */
   uint64_t seed;
   uint64_t body; /* bodies of one seed have different flaws */
@@ -48,8 +48,8 @@ struct sph_flaws {
   struct sph_cells *cells; /* NULL: particles own flaws */
 };
 
-/* Which of n particles owns the place of flaw `flaw` (0, 1, ...); SPH_FLAWS_NOBODY when the place is outside. Places
- * are drawn from (seed, RANDOM_FLAW_PLACE, body, flaw). */
+/* The index of the particle (of n) that owns the place of flaw `flaw` (0, 1, ...); SPH_FLAWS_NOBODY when the place is
+ * outside. Places are drawn from (seed, RANDOM_FLAW_PLACE, body, flaw). */
 typedef size_t (*sph_flaws_owner)(void *context, uint64_t flaw);
 #define SPH_FLAWS_NOBODY ((size_t)-1)
 

@@ -9,7 +9,7 @@ struct key {
   uint32_t id;
 };
 
-enum { BITS = 62 }; /* of a coordinate: cells of a millimetre across 1e15 m */
+enum { BITS = 62 }; /* bits per coordinate: cells of a millimetre across 1e15 m */
 
 /* Turns coordinates into Hilbert's index: its bits are the bits of axis 0, 1, 2 in turn (Skilling 2004, AIP Conf. Proc.
  * 707, 381). */

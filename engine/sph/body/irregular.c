@@ -20,7 +20,7 @@ static status allocate(struct sph_points *points, size_t n, bool graded, struct 
   return points->share ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the places of %zu particles", n);
 }
 
-/* Volumes over their mean: the cubes of the spacings that the grading wants. */
+/* Volumes divided by their mean: the cubes of the spacings of the grading. */
 static void fill_shares(const struct sph_grading *grading, size_t n, double (*at)[3], double *share) {
   double total = 0;
   for (size_t i = 0; i < n; i++) {
@@ -109,7 +109,7 @@ cleanup:
 enum { SHELLS = 1024, RAYS = 512 };
 
 struct shells {
-  double r[SHELLS + 1];      /* m, edges */
+  double r[SHELLS + 1];      /* m, edges of the shells */
   double open[SHELLS];       /* part of each shell, at its middle, that is in the body */
   double number[SHELLS + 1]; /* of whole shells, cumulative */
 };
@@ -195,7 +195,7 @@ static status decide(const struct sph_lattice *lattice, struct sph_grading *g, s
   return STATUS_OK;
 }
 
-/* Sorts the points of the sequence, which jumps about, so that neighbours in space are neighbours in memory. */
+/* Sorts the points so that neighbours in space are neighbours in memory; the sequence has no such order. */
 static status sort(size_t n, double (*at)[3], struct error *error) {
   double *column = malloc(3 * n * sizeof *column);
   uint32_t *order = malloc(n * sizeof *order);
@@ -219,8 +219,9 @@ cleanup:
   return code;
 }
 
-/* Throws n points: a low-discrepancy sequence (Weyl's, with powers of the 3D analogue of the plastic number) over the
- * number within r and the direction, of which the points inside the body are kept. Returns how many were found. */
+/* Places n points by a low-discrepancy sequence (Weyl's, with powers of the 3D analogue of the plastic number). Its
+ * coordinates are the number within r and the direction. Only points inside the body are kept. Returns how many were
+ * found. */
 static size_t throw_points(const struct sph_lattice *lattice, const struct sph_shape *shape,
                            const struct shells *shells, size_t n, double (*at)[3]) {
   static const double weyl[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};

@@ -1,5 +1,5 @@
-/* Bodies of irregular points: uniform, or finer near a point (sph_grading). Points are thrown into the body with a
- * wanted spacing s(x), then pushed apart until the density sum is uniform.
+/* Bodies of irregular points: uniform, or finer near a point (sph_grading). Points are placed in the body with a wanted
+ * spacing s(x), then pushed apart until the density sum is uniform.
  *
  * A neighbour j pushes i along their line with (s_j / s_i)(1 - r/R), R = s_i + s_j (after the weighted Voronoi
  * relaxation of Diehl, Rockefeller, Fryer, Riethmiller & Statler 2015, who have other weights). With any push F(r/R)

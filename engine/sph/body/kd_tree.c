@@ -169,7 +169,7 @@ size_t sph_kd_tree_other(const struct sph_kd_tree *t, const double p[3], size_t 
   double best = HUGE_VAL;
   size_t id = SIZE_MAX;
   const struct part all = {.high = t->n};
-  /* The best point of the own leaf is near, so that the search proper keeps few other halves. */
+  /* The best point of the leaf of `point` is near, so the main search keeps few other halves. */
   struct part part = descend(t, p, all, -1, stack, &depth);
   best_of(t, p, part.low, part.high, self, &best, &id);
   for (part = descend(t, p, all, best * rounding, stack, &depth); depth;) {

@@ -9,8 +9,8 @@
  * each side, so that periodic sides match. The number of particles is that of whole planes: within 1 % of the wanted
  * one in hexagonal cubes of 12000 and in long bars of fewer, within 2 % in cubic cubes, coarser where planes are few.
  * In cylinders layers are whole along the axis. All other lattices, turned ones included, are cut by the surface: their
- * offset is searched so that the number comes out right. Then the lattice is scaled (by less than 0.1 % where it has
- * hundreds of particles) so that its volume per particle is exactly V/n. */
+ * offset is searched to give the wanted number. Then the lattice is scaled (by less than 0.1 % where it has hundreds of
+ * particles) so that its volume per particle is exactly V/n. */
 #ifndef CLAST_ENGINE_SPH_BODY_LATTICE_H
 #define CLAST_ENGINE_SPH_BODY_LATTICE_H
 
@@ -40,7 +40,7 @@ struct sph_lattice {
   double particles; /* wanted number; NaN: from `spacing` */
   double spacing;   /* m; used when `particles` is NaN */
   bool turned;      /* lattices: orientation and offset are drawn from the seed */
-  bool periodic[3]; /* boxes, and cylinders along their axis: the direction repeats; the body begins at 0 there */
+  bool periodic[3]; /* boxes, and cylinders along their axis: the direction is periodic; the body begins at 0 in it */
   uint64_t seed;
   uint64_t body; /* bodies of one seed have different points */
   struct sph_grading grading;
@@ -59,7 +59,7 @@ struct sph_points {
  * number, before anything is allocated. On failure *points is empty. */
 status sph_lattice_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
                         struct error *error);
-void sph_lattice_empty(struct sph_points *points); /* frees what is in it */
+void sph_lattice_empty(struct sph_points *points); /* frees the arrays in `points` */
 
 /* The length (m) of direction 0 to 2 that holds whole periods of the unstretched lattice, next above `at_least`.
  * Periodic lengths of thin bars should be at least 4h and the skin, so that no particle meets its own image. */

@@ -1,4 +1,4 @@
-/* What lattice.c, lattice_cut.c and irregular.c share: cells, and memory for places. */
+/* Shared by lattice.c, lattice_cut.c and irregular.c: unit cells, and memory for places. */
 #ifndef CLAST_ENGINE_SPH_BODY_LATTICE_CELL_H
 #define CLAST_ENGINE_SPH_BODY_LATTICE_CELL_H
 

@@ -145,8 +145,8 @@ static bool thin(const struct cut *c) {
   return !(wider < 40 * sph_shape_volume(s));
 }
 
-/* Searches the offset that gives the wanted number of particles: it changes with the offset by a few per mille where
- * there are thousands, by more where there are few. Returns the number, 0 when the lattice misses the shape. */
+/* Searches the offset that gives the wanted number of particles. The number changes with the offset by a few per mille
+ * of thousands of particles, by more of few. Returns the number, 0 when the lattice misses the shape. */
 static size_t search(const struct sph_lattice *lattice, const struct cut *c, double wanted, double best[3]) {
   const uint64_t trials = wanted < 2000 ? 1000 : 100;
   double off = HUGE_VAL;

@@ -15,7 +15,7 @@ size_t sph_particles_memory(void) {
   return most;
 }
 
-/* The columns of doubles, and which flag of enum sph_particle_arrays asks for each (0: always there). */
+/* The columns of doubles, and the flag of enum sph_particle_arrays that turns each on (0: always on). */
 static const struct {
   size_t offset;
   int array;

@@ -15,7 +15,7 @@ enum sph_freedom { /* bits of `held` */
                    SPH_HELD_Z = 4, /* keeps its velocity under any forces (grips, pistons) */
 };
 
-enum sph_array { /* what modules declare has its flag behind these four */
+enum sph_array { /* the flags of arrays that modules declare follow these four */
                  SPH_ARRAYS_OF_ALL = 3,
 #define PARTICLE_ARRAYS(FLAG, column) SPH_ARRAY_##FLAG,
 #include "engine/sph/modules/declarations.h"
@@ -55,8 +55,8 @@ static inline double sph_particles_damage(const struct sph_particles *p, size_t 
   return cbrt * cbrt * cbrt;
 }
 
-/* Pressure that acts, for files and pictures: of tension, the share 1 - D. NaN in broken matter under tension: it
- * cannot bear any, and the equation of state gives rubble that flies apart many GPa of it. */
+/* The acting pressure, for files and pictures: tension is multiplied by 1 - D. NaN in broken matter under tension: it
+ * bears none, but the equation of state gives many GPa of tension in rubble that flies apart. */
 #define SPH_PARTICLES_BROKEN 0.99 /* D from which matter counts as broken there */
 static inline double sph_particles_acting_pressure(const struct sph_particles *p, size_t i) {
   const double damage = sph_particles_damage(p, i), pressure = p->pressure[i];
@@ -70,8 +70,8 @@ static inline double sph_particles_acting_pressure(const struct sph_particles *p
 status sph_particles_make(size_t n, int arrays, struct sph_particles **out, struct error *error);
 void sph_particles_free(struct sph_particles *particles); /* NULL is fine */
 
-/* The number of bytes that this process may have at most: the machine's memory or its limit of address space. What
- * needs more is refused, with the number, before anything is allocated. */
+/* The largest number of bytes for this process: the machine's memory or the limit of its address space. A larger
+ * request is refused, with the number, before anything is allocated. */
 size_t sph_particles_memory(void);
 
 #endif

@@ -125,7 +125,7 @@ static double box_distance(const struct sph_shape *s, const double p[3], double 
   return distance;
 }
 
-/* A place as seen from a cylinder's axis. */
+/* A point in a cylinder's coordinates. */
 struct cylinder_place {
   double axis[3], outward[3]; /* unit vectors; outward is 0 on the axis */
   double along, r;            /* m: from the centre along the axis, from the axis */

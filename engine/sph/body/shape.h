@@ -40,8 +40,8 @@ double sph_shape_reach(const struct sph_shape *shape, const double direction[3])
 /* The point where the ray from the centre along `direction` leaves the hull (of a mesh: the mesh, for the last time),
  * and the outward normal there. False: a mesh that the ray does not meet. */
 bool sph_shape_surface(const struct sph_shape *shape, const double direction[3], double point[3], double normal[3]);
-/* Turns three uniforms of [0, 1) into a point that is uniform in the shape. False: of a mesh the point is uniform in
- * the box around it, and this one is outside of the mesh; draw again. */
+/* Turns three uniforms of [0, 1) into a point that is uniform in the shape. For a mesh the point is uniform in the box
+ * around it. False: the point is outside of the mesh; draw again. */
 bool sph_shape_place(const struct sph_shape *shape, const double uniform[3], double point[3]);
 /* The distance of two shapes, m; negative: the depth of their overlap. Rings count as their hulls. Exact when one is a
  * sphere, else to about 1e-6 of their size. Of two meshes, or of a mesh and a box or cylinder, the depth is that of the

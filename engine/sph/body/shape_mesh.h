@@ -1,4 +1,4 @@
-/* Shapes that are meshes: what shape.h says, for this kind. Inside this folder only, but for the area. */
+/* The functions of shape.h for meshes. Only the area is used outside of this folder. */
 #ifndef CLAST_ENGINE_SPH_BODY_SHAPE_MESH_H
 #define CLAST_ENGINE_SPH_BODY_SHAPE_MESH_H
 

@@ -1,4 +1,4 @@
-/* What follows from a material's values: moduli, speeds and densities, each in this one place. */
+/* Moduli, speeds and densities that follow from a material's values. */
 #ifndef CLAST_ENGINE_SPH_MATERIAL_DERIVED_H
 #define CLAST_ENGINE_SPH_MATERIAL_DERIVED_H
 

@@ -129,7 +129,7 @@ status sph_materials_open(const char *path, struct sph_material *out, char **tex
   return code || *text ? code : status_fail(error, STATUS_MEMORY, "%s: no memory", path);
 }
 
-/* What stands at a path, or else at the nearest of its sections: "a.b.c", "a.b", "a". NULL: nothing. */
+/* The node at a path, or else at the nearest of its sections: "a.b.c", "a.b", "a". NULL: none. */
 static document_node *find_section(document_node *sources, const char *path) {
   char key[FIELD_TEXT_SIZE];
   field_copy_text(key, path);

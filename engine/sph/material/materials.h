@@ -16,10 +16,11 @@ const char *sph_materials_name(size_t index);     /* sorted; NULL beyond the las
 const char *sph_materials_text(const char *name); /* the document, or NULL */
 /* STATUS_MISSING with the nearest name; STATUS_CONTENT with the report when the document has a fault. */
 status sph_materials_load(const char *name, struct sph_material *out, struct error *error);
-/* The same of a document at hand. */
+/* The same from the text of a document. */
 status sph_materials_parse(const char *name, const char *text, struct sph_material *out, struct error *error);
 
-/* The same of a file; *text, malloc'd, is what it holds. What document_open returns, too. */
+/* The same from a file. *text is its content (malloc'd, owned by the caller). Also returns the errors of document_open.
+ */
 status sph_materials_open(const char *path, struct sph_material *out, char **text, struct error *error);
 /* Where a value of a named material comes from, by the document's `sources` (the value's or its section's), else its
  * `source`. STATUS_MISSING: the document does not say. */

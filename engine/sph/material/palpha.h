@@ -6,8 +6,8 @@
  * and alpha follows the pressure on one of two branches:
  *   crush    alpha = alpha_crush(P), P_e < P < P_s; 1 from P_s on: pores close for good
  *   elastic  dalpha/dP = (alpha^2/K0)(1 - 1/h^2), h = 1 + (alpha-1)(c_e-c_s)/(c_s(alpha_e-1)), K0 = rho_s0 c_s^2:
- *            below P_e, and when matter that was crushed is unloaded and loaded again. Pores open again on their own
- * way back.
+ *            below P_e, and when matter that was crushed is unloaded and loaded again. On unloading pores open again
+ * along it.
  *
  * The memory of a particle is its *rest distention*: alpha on its elastic branch at P = 0. It never rises,
  * whatever the path; everything else is a function of (rest, rho, u). (The papers integrate alpha-dot, which must know
@@ -31,8 +31,8 @@ struct sph_palpha_law {
   double stiffness_slope;    /* q = (1 - c_e/c_s)/(alpha_e - 1), so that h = 1 - q(alpha - 1); 0: no elastic change */
 };
 
-/* alpha_e of the quadratic curve is where the elastic branch from alpha_0 at P = 0 meets P_e: implicit, since h holds
- * it. STATUS_CONTENT: a value that makes no law, named with what to do. */
+/* alpha_e of the quadratic curve is where the elastic branch from alpha_0 at P = 0 meets P_e: implicit, since h
+ * contains it. STATUS_CONTENT: a value that gives no law; the message has its name and a remedy. */
 status sph_palpha_prepare(const struct sph_palpha *given, const struct sph_material *solid, struct sph_palpha_law *out,
                           struct error *error);
 

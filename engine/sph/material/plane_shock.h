@@ -28,15 +28,15 @@ struct sph_front {
 };
 
 struct sph_plane_shock {
-  double first_density; /* kg/m^3, bulk, before */
+  double first_density; /* kg/m^3, bulk, ahead of the fronts */
   bool has_precursor, has_shock;
   struct sph_front precursor, shock; /* all NaN where there is none */
 };
 
-/* STATUS_CONTENT: values that make no law, or a piston so fast or slow that no pressure up to 1e16 Pa stops it. */
+/* STATUS_CONTENT: values that give no law, or a piston so fast or slow that no pressure up to 1e16 Pa stops it. */
 status sph_plane_shock(const struct sph_material *material, double piston, struct sph_plane_shock *out,
                        struct error *error);
-/* The fronts that there are, a line each. */
+/* Prints the existing fronts, one per line. */
 void sph_plane_shock_describe(const struct sph_plane_shock *shock, FILE *out);
 
 #endif

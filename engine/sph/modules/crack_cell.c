@@ -3,10 +3,10 @@
  *   fracture.cell   width of the cells
  *
  * Without this module every particle must fail by a flaw of its own. The threshold of the weakest of them grows as
- * (k V_p)^(-1/m), so strength grows with the number of particles without end. With it, the particles of a cell are to
- * fracture what one particle is without it: they share the flaws in the cell, R_s of the cell's volume, the mean stress
- * and so the damage. Motion is as finely resolved as before. Strength depends on the width of the cells, which is a
- * length of the rock, not of the method (tests/validation/crack_cell.md).
+ * (k V_p)^(-1/m), so strength grows with the number of particles without end. With it, fracture treats the particles of
+ * a cell as one particle: they share the flaws in the cell, R_s of the cell's volume, the mean stress and so the
+ * damage. Motion is as finely resolved as before. Strength depends on the width of the cells, which is a length of the
+ * rock, not of the method (tests/validation/crack_cell.md).
  *
  * Where another module damages the body, too, the bound that pressure sets to D depends on all damage of a particle, so
  * that D by flaws may differ a little within a cell. */

@@ -1,7 +1,7 @@
 /* Cracks that run on beyond the particle of their flaw (crack_front.h has the equations).
  *
  *   fracture.front         plane turns the module on
- *   fracture.front_arrest  least tension before a front, over that which opens its flaw
+ *   fracture.front_arrest  smallest tension ahead of a front, over the tension that opens its flaw
  *
  * Without this module a crack ends at its particle, and every particle must fail by a flaw of its own, whose threshold
  * grows as (k V_p)^(-1/m). So strength grows with the number of particles without end. With it, strength depends on the
@@ -110,7 +110,7 @@ void sph_crack_front_publish(struct sph_system *s, const struct sph_solid *body,
                                                    c->front_normal[2][i]}};
     const size_t own = s->id[i] - body->first;
     for (size_t k = l->first[own]; k < l->first[own + 1]; k++)
-      __atomic_store_n(&l->near[l->other[k]], 1, __ATOMIC_RELAXED); /* several threads may, all write 1 */
+      __atomic_store_n(&l->near[l->other[k]], 1, __ATOMIC_RELAXED); /* several threads may write here; all write 1 */
   }
 }
 

@@ -11,7 +11,7 @@
  *
  * Damage of a reached particle grows at c_g/R_s, or as fast as by its own open flaws, without a cap, as long as its
  * largest tension is positive. The loops of `fracture` do it: they read the weakest threshold, the rate between two
- * thresholds and the cap, which stand here as they are with a flaw of threshold 0. They act from the next step on. */
+ * thresholds and the cap. This module sets these as for a flaw of threshold 0. They act from the next step on. */
 
 INPUT_CHOICE(fracture, front, SPH_CHOICES("none", "plane"), .flags = FIELD_SILENT_DEFAULT,
              .when = "target.fracture=auto|on",
@@ -34,8 +34,8 @@ COLUMN(front_normal[3]) /* 1 */
 #include "engine/sph/modules/crack_front_links.h"
 #include "engine/sph/modules/range_tools.h"
 
-/* Unit vector of the largest principal stress: the largest cross product of two rows of S - lambda. Any, where all
- * principal stresses are the same. */
+/* Unit vector of the largest principal stress: the largest cross product of two rows of S - lambda. Any direction where
+ * all principal stresses are equal. */
 RANGE_INLINE void crack_front_normal(const struct sph_columns *c, size_t i, double normal[3]) {
   const double xx = c->stress[0][i], xy = c->stress[1][i], xz = c->stress[2][i], yy = c->stress[3][i];
   const double yz = c->stress[4][i], lambda = fracture_largest(xx, xy, xz, yy, yz);
@@ -62,7 +62,7 @@ RANGE_INLINE double crack_front_tension(const struct sph_columns *c, size_t i, c
          2 * (xy * n[0] * n[1] + xz * n[0] * n[2] + yz * n[1] * n[2]) - c->pressure[i];
 }
 
-/* The particle is as one with a flaw that any tension opens. */
+/* Makes the particle behave as one with a flaw that any tension opens. */
 RANGE_INLINE void crack_front_break(struct sph_columns *c, size_t i) {
   if (c->damage[i] >= 1)
     return;

@@ -1,5 +1,5 @@
-/* What the front of a crack needs to know beside the columns: the neighbours that every particle has at the start, and
- * how far cracks have come. Particles are named by their number within their body, which sorting does not change. */
+/* Data of crack fronts beside the columns: the neighbours of every particle at the start, and the progress of cracks.
+ * Particles are named by their number within their body, which sorting does not change. */
 #ifndef CLAST_ENGINE_SPH_MODULES_CRACK_FRONT_LINKS_H
 #define CLAST_ENGINE_SPH_MODULES_CRACK_FRONT_LINKS_H
 
@@ -29,7 +29,7 @@ struct sph_crack_front_links {
 struct sph_system;
 struct sph_solid;
 
-/* Gives the neighbours what the particles low .. high - 1 have in the columns front_*. */
+/* Copies the columns front_* of the particles low .. high - 1 to `tip`, where their neighbours read them. */
 void sph_crack_front_publish(struct sph_system *system, const struct sph_solid *body, size_t low, size_t high);
 
 #endif

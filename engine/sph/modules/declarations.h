@@ -1,6 +1,6 @@
-/* What modules declare, from which tables and structs are made: each NAME.h of a module is a list of the lines below,
- * and behind them its loops. Whoever makes a table of one kind defines that kind as a macro and includes this file;
- * lines of other kinds vanish. So everything about a module stands in its two files, and no table is written twice.
+/* Declarations of modules. Tables and structs are made from them. Each NAME.h of a module has lines of the kinds below,
+ * and then its loops. A file that makes a table of one kind defines that kind as a macro and includes this file; lines
+ * of other kinds vanish. So everything about a module is in its two files, and no table is written twice.
  *
  *   MATERIAL_MEMBERS(...)        members of struct sph_material; then its rows, as in material/material.h:
  *   MATERIAL_VALUE(member, unit, minimum, maximum, flags, need, doc, source)

@@ -13,7 +13,7 @@ MATERIAL_VALUE(shear_modulus, "Pa", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH, "mu: sh
 
 COLUMN(stress[5])      /* Pa, deviator, undamaged: xx xy xz yy yz */
 COLUMN(stress_rate[5]) /* Pa/s */
-COLUMN(stress_factor)  /* (1-D)/rho^2, D that scales the deviator: the pair loop multiplies the stress by it */
+COLUMN(stress_factor)  /* (1-D)/rho^2, where D scales the deviator: the pair loop multiplies the stress by it */
 COLUMN(two_mu)         /* Pa, effective 2 mu in bodies whose modules publish it; others have the material's */
 
 #ifdef SPH_MODULE_LOOPS

@@ -63,32 +63,32 @@ struct sph_module {
   enum sph_module_sets sets;
   const struct sph_column_need *columns; /* NULL: none */
   int bytes_in_pairs;                    /* per particle, of the pair loop's records */
-  int bytes_linked;                      /* per particle, near enough to plan, of what `prepare` makes */
+  int bytes_linked;                      /* per particle, made by `prepare`; an estimate */
   double cost;                           /* ns of one core per particle-step, where it is an option (bench_sph) */
   /* All optional. `check_material` refuses values of a material that do not go together, whether or not the module is
-   * on; STATUS_CONTENT, the message begins with the value's name. `check` refuses what the rows of inputs and materials
-   * cannot: STATUS_CONTENT, without "body n: ". */
+   * on; STATUS_CONTENT, the message begins with the value's name. `check` refuses inputs that their rows alone cannot
+   * refuse: STATUS_CONTENT, without "body n: ". */
   status (*check_material)(const struct sph_material *material, struct error *error);
   status (*check)(const struct sph_body_physics *body, const struct sph_particles *particles, size_t first, size_t last,
                   struct error *error);
-  /* The particles first .. last - 1 of a body that is set up at rest. */
+  /* Sets up the particles first .. last - 1 of a body at rest. */
   void (*set_up)(const struct sph_body_physics *body, struct sph_particles *particles, size_t first, size_t last);
   /* Makes body->prepared[index]; `free_prepared` frees it, `bytes_prepared` counts it. */
   status (*prepare)(const struct sph_inputs *inputs, const struct sph_particles *particles, struct sph_solid *body,
                     struct error *error);
   void (*free_prepared)(void *prepared);
   size_t (*bytes_prepared)(const void *prepared);
-  /* Makes what it prepared and changes in a run again from the columns, after a restart. */
+  /* After a restart, makes again from the columns those prepared data that change in a run. */
   void (*restored)(struct sph_system *system, const struct sph_solid *body);
-  /* Called once a step between SPH_RETURN and SPH_CRACK, when all blocks of all bodies have their new stress: for what
-   * depends on particles of several blocks. One module of a body may have it. */
+  /* Called once a step between SPH_RETURN and SPH_CRACK, when all blocks of all bodies have their new stress: for
+   * computations on particles of several blocks. One module of a body may have it. */
   void (*meet)(struct sph_system *system, const struct sph_solid *body);
   /* Initial values of the body's columns. */
   void (*fill)(struct sph_system *system, const struct sph_solid *body, const struct sph_particles *particles);
   /* Values of a material that follow from others: `given` says of each row of sph_materials_table whether the scene
-   * gives it. Whether or not the module is on. */
+   * gives it. Called whether or not the module is on. */
   void (*complete_material)(struct sph_material *material, const bool *given);
-  /* Its results, when the other ones are filled; in runs with a body that has the module. */
+  /* Fills its results when the others are filled. Called in runs with a body that has the module. */
   void (*report)(const struct sph_run *run, struct sph_results *results);
 };
 
@@ -108,7 +108,7 @@ static inline size_t sph_modules_next(uint64_t set, size_t from) {
 uint64_t sph_modules_of(const struct sph_body_physics *body, const struct sph_inputs *inputs);
 /* The columns that these modules need in a body, a bit each (SPH_COLUMNS_OF). */
 uint64_t sph_modules_columns(uint64_t modules, const struct sph_body_physics *body);
-/* What the modules of a body give its particles at rest. */
+/* Sets up the particles of a body at rest, by all of its modules. */
 void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_inputs *inputs,
                         struct sph_particles *particles, size_t first, size_t last);
 /* Does damage scale the deviator of a body by 1 - D? Not where a module publishes the damage that does (shear_damage).

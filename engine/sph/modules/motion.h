@@ -86,7 +86,7 @@ RANGE_HOOK void motion_output_fluid(struct sph_system *s, const struct sph_solid
     term[i] = -pressure[i] / (density[i] * density[i]);
 }
 
-/* Of the stored stress (1-D) S acts, and (1-D) P where P < 0. `published`: D of the deviator is another one. */
+/* The acting stress is (1-D) S, and (1-D) P where P < 0. `published`: another D scales the deviator. */
 RANGE_INLINE void motion_output(struct sph_system *s, struct sph_block *b, bool damaged, bool published) {
   const double *pressure = s->c.pressure, *density = s->c.density, *d = s->c.damage, *of_shear = s->c.shear_damage;
   double *term = s->c.pressure_term, *factor = s->c.stress_factor;
@@ -116,7 +116,7 @@ RANGE_HOOK void motion_output_damaged(struct sph_system *s, const struct sph_sol
 static const double MOTION_DAMPING_SHARE = 0.9;
 
 /* Held freedoms keep their velocity. The ledger counts the power of the force that holds them, half with the old and
- * half with the new acceleration, as the step uses them. Damping likewise. */
+ * half with the new acceleration, as the step uses them. The power of damping is counted in the same way. */
 RANGE_HOOK void motion_hold(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
   double *const a[3] = {b->sums->ax, b->sums->ay, b->sums->az};
@@ -197,8 +197,9 @@ RANGE_INLINE void motion_find_lost(const struct sph_system *s, struct sph_block 
 
 /* Corrects v, rho and h by half the change of rates, clamps, and finds the limits of the next step:
  *   Courant   cfl h / (c_L + 0.6 (alpha c + beta max mu))    Monaghan 1992; c_L^2 = c^2 + 4/3 mu (1-D)/rho
- *             (D that scales S) and h / (2 |w|), w: velocity in the frame of the centre of mass at the start: no
- * particle jumps into another body; and 0.9 over the rate of a damped side (motion_hold) force     cfl sqrt(h/|a|)
+ *             (D scales S); h / (2 |w|), w: velocity in the frame of the centre of mass at the start, so that no
+ *             particle jumps into another body; 0.9 over the rate of a damped side (motion_hold)
+ *   force     cfl sqrt(h/|a|)
  *   energy    a fifth of (u + c^2/100)/|du/dt|
  *   density   a tenth of 1/|div v|
  *   damage    damage_step over the rate of D^(1/3) */
@@ -236,8 +237,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
     /* Debris without neighbours (signal < 0) sends no waves; hot, it would halve the step of all particles. But it must
      * not fly past others. A body much faster than sound must not jump into another one, because it interacts with it
      * only in contact: no particle flies farther than h/2 in a step (this binds above about three times the speed of
-     * sound).
-     */
+     * sound). */
     const double wx = vx[i] - drift_x, wy = vy[i] - drift_y, wz = vz[i] - drift_z;
     const double flight = sqrt(wx * wx + wy * wy + wz * wz);
     courant[k] = (signal[k] < 0 ? flight : range_larger(fast + alpha * c[i] + beta * signal[k], step * flight)) *

@@ -34,7 +34,7 @@ static status check_material(const struct sph_material *m, struct error *error) 
   return p->distention > 1 ? sph_palpha_prepare(p, m, &law, error) : STATUS_OK;
 }
 
-/* By whichever of its two names the porosity was given; the material's own distention otherwise. */
+/* Takes the porosity by the name that was given (of two), else the material's own distention. */
 static void complete_material(struct sph_material *m, const bool *given) {
   const size_t distention = sph_materials_row(offsetof(struct sph_material, porosity.distention)),
                fraction = sph_materials_row(offsetof(struct sph_material, porosity.fraction));

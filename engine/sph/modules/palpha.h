@@ -3,10 +3,10 @@
  * Nearly all particles are on their elastic branch in cold or compressed matter, and alpha moves little in a step. Two
  * Newton steps from the last alpha are made for all particles, without branches, so that they vectorise. The other
  * particles (crushing, hot, far off) are computed again by sph_palpha_update. An elastic particle is accepted when the
- * error before the second step is below 1e-9, as there. */
+ * error before the second step is below 1e-9, as in sph_palpha_update. */
 
 MATERIAL_MEMBERS(struct sph_palpha {
-  enum { SPH_CRUSH_NONE, SPH_CRUSH_QUADRATIC, SPH_CRUSH_TWO_POWER } curve; /* none: nothing else here counts */
+  enum { SPH_CRUSH_NONE, SPH_CRUSH_QUADRATIC, SPH_CRUSH_TWO_POWER } curve; /* none: no other member is used */
   double distention;                                                       /* alpha_0; 1: no pores, the solid itself */
   double fraction; /* porosity 1 - 1/alpha_0: another way to give it in a document, made to agree; not used elsewhere */
   double elastic_pressure; /* Pa, P_e: plastic crushing begins */

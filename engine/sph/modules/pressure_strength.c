@@ -10,7 +10,7 @@
  *   material.melt_energy                         u_melt; off: the limit does not depend on the energy
  *
  * Y bounds sqrt(J2), as in Collins, Melosh & Ivanov 2004, where Y is a shear strength (tau = Y_0 + mu P) and 90 MPa,
- * 2.0 and 1.5 GPa are values of that. The program's yield limit bounds sqrt(3 J2), so the loop publishes sqrt(3) Y.
+ * 2.0 and 1.5 GPa are values for it. The program's yield limit bounds sqrt(3 J2), so the loop publishes sqrt(3) Y.
  *
  * Damage acts on the deviator through Y and not as a factor. The module publishes the column shear_damage, the D^(1/3)
  * that scales the deviator: it is 0 everywhere. */

@@ -8,7 +8,7 @@
  * the solid matter, P rho_s/rho. D is that of the predicted state, or 0 where nothing damages the body. */
 
 MATERIAL_MEMBERS(struct sph_pressure_strength {
-  enum { SPH_PRESSURE_STRENGTH_NONE, SPH_PRESSURE_STRENGTH_LUNDBORG } law; /* none: nothing else here counts */
+  enum { SPH_PRESSURE_STRENGTH_NONE, SPH_PRESSURE_STRENGTH_LUNDBORG } law; /* none: no other member is used */
   double intact_cohesion, intact_friction, intact_limit;                   /* Pa, 1, Pa: Y_0, mu_i, Y_M */
   double broken_cohesion, broken_friction;                                 /* Pa, 1: Y_d0, mu_d */
 } pressure_strength;)

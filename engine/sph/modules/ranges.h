@@ -1,7 +1,7 @@
 /* The loops over particles, compiled once per CPU class and chosen at run time.
  *
- * Bits are promised for one class (contraction to FMA differs), so the class is recorded with a run. The environment
- * variable CLAST_CPU=baseline|v3|v4 asks for a class; a class that this machine does not have is not used. */
+ * Results are bit-identical only within one class (contraction to FMA differs), so a run records its class. The
+ * environment variable CLAST_CPU=baseline|v3|v4 limits the class; a class that this machine lacks is not used. */
 #ifndef CLAST_ENGINE_SPH_MODULES_RANGES_H
 #define CLAST_ENGINE_SPH_MODULES_RANGES_H
 

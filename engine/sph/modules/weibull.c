@@ -11,7 +11,7 @@
 #include "engine/sph/step/system_layout.h"
 
 struct sph_weibull_lists {
-  size_t lists, count; /* a list for each owner of flaws; flaws */
+  size_t lists, count; /* number of lists (one per owner of flaws); of flaws */
   size_t particles;
   uint32_t *cell; /* by particle: its list; NULL: each has its own */
   /* exact */

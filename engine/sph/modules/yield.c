@@ -4,9 +4,9 @@
  *   material.melt_energy    u_melt; off: the limit does not depend on the energy
  *
  * Another yield law is a module like this one: its loop of the stage SPH_YIELD writes the terms' yield_limit, a bound
- * of sqrt(3 J2) of the solid's stress in Pa, and its descriptor sets SPH_SETS_YIELD_LIMIT. It stands behind this one in
- * list.h and before tension_limit; where it is on, this one is off. It may read pressure (of the body), density, energy
- * and, where sph_solid_has(body, SPH_COLUMN(damage)), the predicted D^(1/3). */
+ * of sqrt(3 J2) of the solid's stress in Pa, and its descriptor sets SPH_SETS_YIELD_LIMIT. In list.h it comes after
+ * this one and before tension_limit; where it is on, this one is off. It may read pressure (of the body), density,
+ * energy and, where sph_solid_has(body, SPH_COLUMN(damage)), the predicted D^(1/3). */
 #include <math.h>
 
 #include "engine/sph/modules/ranges.h"
