@@ -10,8 +10,8 @@
 #include "schemas/field.h"
 #include "schemas/status.h"
 
-/* Says what the connection's last error means and how to mend it. `doing`: "adding a run". Returns the status that fits
- * the code. */
+/* Reports the connection's last error and its remedy in *error. `doing`: the activity, such as "adding a run". Returns
+ * the status that fits the SQLite code. */
 status sql_fail(sqlite3 *db, int code, const char *doing, struct error *error);
 
 /* Runs any number of statements. */
@@ -25,7 +25,8 @@ status sql_preparef(sqlite3 *db, sqlite3_stmt **out, const char *doing, struct e
 status sql_prepare_once(sqlite3 *db, sqlite3_stmt **out, const char *sql, const char *doing, struct error *error);
 /* Steps a statement that gives no rows, and resets it. */
 status sql_run(sqlite3_stmt *statement, const char *doing, struct error *error);
-/* Steps to the next row while *result is STATUS_OK. False at the end, and on an error, which *result then is. */
+/* Steps to the next row while *result is STATUS_OK. Returns false at the end and after an error, whose status is then
+ * in *result. */
 bool sql_next(sqlite3_stmt *statement, status *result, const char *doing, struct error *error);
 /* A column as text; "" where the row has NULL. Rows of a damaged or hostile file may have NULL anywhere. */
 const char *sql_text(sqlite3_stmt *statement, int column);
@@ -33,11 +34,12 @@ const char *sql_text(sqlite3_stmt *statement, int column);
 status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out, struct error *error);
 /* The same, with 0 otherwise and the text made by sqlite3_mprintf. */
 status sql_integerf(sqlite3 *db, int64_t *out, struct error *error, const char *format, ...);
-/* The first column of all rows, each quoted as a name, with a comma before it; first and second are the texts ?1 and ?2
- * (NULL: there is no ?2). To be freed by sqlite3_free(); NULL when memory is out, empty when the text is no SQL. */
+/* The first column of all rows, each quoted as a name, with a comma before it. `first` and `second` are the texts ?1
+ * and ?2 (NULL: there is no ?2). Free the result with sqlite3_free(). NULL when memory ran out; empty when `sql` is
+ * invalid. */
 char *sql_name_list(sqlite3 *db, const char *sql, const char *first, const char *second);
 
-/* Writes a name within double quotes; those of the name are doubled. */
+/* Writes a name within double quotes; double quotes inside the name are doubled. */
 void sql_write_name(const char *name, FILE *out);
 
 /* Binds the value that `row` describes in *object: NaN as NULL (as the text 'off' with off_as_text), choices by name.
@@ -68,9 +70,9 @@ struct sql_insert {
   const struct sql_column *columns;
   size_t column_count;
   const struct field_table *fields;
-  size_t rows; /* inserted at once */
+  size_t rows; /* rows that one execution inserts */
 };
-/* Prepares it, unless it is prepared for that many rows already. */
+/* Prepares the statement, unless it is prepared for that many rows already. */
 status sql_insert_prepare(sqlite3 *db, struct sql_insert *insert, const char *table, size_t column_count,
                           const struct sql_column *columns, const struct field_table *fields, size_t rows,
                           const char *doing, struct error *error);

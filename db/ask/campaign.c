@@ -8,8 +8,8 @@
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 
-/* Sessions with their campaigns. A store of an older program that is only read does not name the campaign: it is one
- * of those of the session's runs. */
+/* Sessions with their campaigns. A read-only store of an older program does not name the campaign: it is then one of
+ * the campaigns of the session's runs. */
 static const char sessions_named[] = "SELECT campaign_id, started_at, ended_at, outcome FROM session";
 static const char sessions_of_runs[] =
     "SELECT max(c.campaign_id) AS campaign_id, started_at, ended_at, outcome FROM (SELECT DISTINCT session_id, point_id"

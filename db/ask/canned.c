@@ -81,7 +81,7 @@ static void write_scatter(FILE *out) {
   fputs("\nFROM points WHERE n > 1 ORDER BY point_id", out);
 }
 
-/* The queries whose text follows from the main results; it is written when it is first needed. */
+/* The queries whose text follows from the main results; the text is written at first use. */
 static const struct {
   const char *name;
   void (*write)(FILE *out);

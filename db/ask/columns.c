@@ -34,7 +34,7 @@ static status take_column(void *context, size_t count, const struct query_value 
   return STATUS_OK;
 }
 
-/* A written unit is text of the file: only one that is a unit of the input's dimension is taken. */
+/* A written unit comes from the file. It is used only if it is a valid unit of the input's dimension. */
 void ask_columns_write_in(struct ask_column *column, const char *written) {
   struct unit own, other;
   if (unit_parse(*column->unit ? column->unit : "1", &own, NULL) || unit_parse(written, &other, NULL) ||
@@ -59,7 +59,7 @@ status ask_columns_axes(struct store *store, bool written, size_t most, struct a
   struct list list = {.columns = axes, .capacity = most};
   const struct query_sink sink = {.context = &list, .row = take_axis};
   char sql[128];
-  bool has = false; /* a store of an older program that is only read has no written units */
+  bool has = false; /* false: a read-only store of an older program has no written units */
   status code = written ? schema_has_column(store->db, "axis", "written_unit", &has, error) : STATUS_OK;
   if (code != STATUS_OK)
     return code;

@@ -15,7 +15,7 @@ struct names {
   size_t count;
 };
 
-/* `column` ends in `wanted` after an underscore or a dot, or is it. */
+/* Is `column` equal to `wanted`, or does it end in `wanted` after an underscore or a dot? */
 static bool ends_in(const char *column, const char *wanted) {
   size_t length = strlen(column), tail = strlen(wanted);
   if (tail > length)
@@ -24,9 +24,9 @@ static bool ends_in(const char *column, const char *wanted) {
   return strcmp(end, wanted) == 0 && (end == column || end[-1] == '_' || end[-1] == '.');
 }
 
-struct choice { /* what a word may stand for */
+struct choice { /* possible meanings of a word */
   const char *wanted;
-  struct text_guess guess; /* its nearest is `near` */
+  struct text_guess guess; /* guess.nearest points to `near` */
   char found[NAME];
   size_t matches;
   bool exact;
@@ -43,7 +43,7 @@ static status consider(void *context, size_t count, const struct query_value *va
   struct choice *choice = context;
   const char *column = values[0].text, *path = count > 1 ? values[1].text : NULL, *name = path ? path : column;
   text_guess_offer(&choice->guess, name);
-  if (choice->guess.nearest == name) { /* borrowed from the row: keep a copy */
+  if (choice->guess.nearest == name) { /* the row owns the name: keep a copy */
     snprintf(choice->near, sizeof choice->near, "%s", name);
     choice->guess.nearest = choice->near;
   }
@@ -58,7 +58,7 @@ static status consider(void *context, size_t count, const struct query_value *va
   return STATUS_OK;
 }
 
-/* "energy_kinetic" for "result_dem_energy_kinetic", the name that it has in a store with two engines; else `column`. */
+/* "energy_kinetic" for "result_dem_energy_kinetic", its name in a store with two engines; else `column`. */
 static const char *without_engine(const char *column) {
   for (size_t i = 0; i < engine_count(); i++) {
     char prefix[NAME];
@@ -69,7 +69,7 @@ static const char *without_engine(const char *column) {
   return column;
 }
 
-/* Looks for the name as it is written, as the name of a column, and without an engine in front. */
+/* Looks for the name as written, as a column name, and as a column name without its engine's prefix. */
 static status look_for(struct store *store, const char *columns_sql, const char *name, struct choice *choice,
                        struct error *error) {
   char column[NAME];
@@ -97,7 +97,7 @@ static status judge(const struct choice *choice, const char *what, const char *n
                      choice->known[0] ? choice->known : "none");
 }
 
-/* The next word of a list with commas, without blanks around it. Returns the rest of the list. */
+/* The next word of a comma-separated list, without blanks around it. Returns the rest of the list. */
 static const char *next_word(const char *list, char word[NAME]) {
   const size_t length = strcspn(list, ",");
   const char *rest = list + length + (list[length] == ',');
@@ -135,8 +135,8 @@ static void write_names(FILE *out, const struct names *names) {
   }
 }
 
-/* One row per point of a group: its runs, and of quantity N its number rN, mean pN and standard deviation oN. Ordered
- * rows, so that the sums have the same bits for any order in which the runs finished. */
+/* One row per point of a group: its number of runs and, for quantity N, the number of values rN, mean pN and standard
+ * deviation oN. Rows are ordered so that the sums have the same bits for any order in which the runs finished. */
 static void write_points(FILE *out, const struct names *axes, const struct names *quantities) {
   fputs("\nFROM (SELECT ", out);
   write_names(out, axes);
@@ -150,7 +150,7 @@ static void write_points(FILE *out, const struct names *axes, const struct names
             "\"%s\", NULL)) AS o%zu",
             q, i, q, i, q, i);
   }
-  fputs("\nFROM (SELECT ", out); /* no more columns than are needed: the rows are sorted */
+  fputs("\nFROM (SELECT ", out); /* only the needed columns, because the rows are sorted */
   write_names(out, axes);
   for (size_t i = 0; i < quantities->count; i++)
     fprintf(out, "\"%s\", ", quantities->name[i]);
@@ -166,8 +166,8 @@ static void write_points(FILE *out, const struct names *axes, const struct names
   fputs(" USING (point_id, results_version)\nGROUP BY ", out);
 }
 
-/* The units of a group: the runs of its only point, or the means of its points. What finer settings may change is the
- * most that they may change at one of its points. */
+/* The units of a group are the runs of its only point, or the means of its points. The resolution error of a group is
+ * the largest one among its points. */
 static char *group_sql(const struct names *axes, const struct names *quantities) {
   char *sql = NULL;
   size_t size = 0;
@@ -308,7 +308,7 @@ static status take_twins(void *context, size_t count, const struct query_value *
   return STATUS_OK;
 }
 
-/* Points are compared input by input only where their varied inputs agree: otherwise they differ anyway. */
+/* Points are compared input by input only where their varied inputs agree; other points differ anyway. */
 status ask_group_twins(struct store *store, struct ask_group_twins *twins, struct error *error) {
   *twins = (struct ask_group_twins){.pairs = 0};
   const struct query_sink sink = {.context = twins, .row = take_twins};

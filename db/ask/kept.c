@@ -1,4 +1,4 @@
-/* Asks for runs with fields. */
+/* Finds runs whose fields are kept. */
 #include "db/ask/kept.h"
 
 #include <stdio.h>
@@ -24,7 +24,7 @@ static status give_names(void *context, size_t count, const char *const *names, 
   return giving->to->columns ? giving->to->columns(giving->to->context, count, names, error) : STATUS_OK;
 }
 
-/* The store has the path relative to its folder. */
+/* The store holds the path relative to its own folder. */
 static status give_row(void *context, size_t count, const struct query_value *values, struct error *error) {
   const struct giving *giving = context;
   struct query_value *changed = malloc(count * sizeof *changed);

@@ -5,7 +5,7 @@
 #include "db/ask/query.h"
 
 /* One row per run that counts, of each point's newest results_version: run_id, point_id, seed, the varied inputs, the
- * main results, and last `fields`, the path of the file for this process (text). */
+ * main results, and last `fields` (text): the file's path as this process can open it. */
 status ask_kept(struct store *store, const struct query_sink *sink, struct error *error);
 
 #endif

@@ -12,7 +12,7 @@
 
 static const char doing[] = "making the page";
 
-/* Tables that are copied as they are, and from which column on numbers are rounded. */
+/* Tables that are copied, and the first column from which on numbers are rounded. */
 static const struct {
   const char *name, *sql;
 } tables[] = {
@@ -91,7 +91,8 @@ status ask_page_copy(struct ask_page *page, struct store *store, const char *tab
   return code;
 }
 
-/* Points of the newest version with fewer rows of spectra than there is room for: all, or every n-th one. */
+/* Spectra of points, newest version only: of all points, or of every n-th point when there are more rows than the
+ * limit. */
 static status copy_spectra(struct ask_page *page, struct store *store, struct error *error) {
   double rows = 0;
   char sql[400], number[32];
@@ -169,7 +170,7 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
     code = ask_page_scatter(page, store, error);
   if (code == STATUS_OK)
     code = ask_page_goodness(page, store, error);
-  if (code == STATUS_OK) /* the ready questions know the table by the store's name, too */
+  if (code == STATUS_OK) /* canned queries also use the table's name in the store */
     code = sql_execute(page->db, "CREATE VIEW run AS SELECT * FROM runs", doing, error);
   return code ? code : add_questions(page, error);
 }
@@ -179,7 +180,8 @@ status ask_page_make(struct store *store, struct ask_page **out, struct error *e
   if (!page)
     return status_fail(error, STATUS_MEMORY, "no memory for the page");
   status code = sqlite3_open(":memory:", &page->db) == SQLITE_OK
-                    ? sql_execute(store->db, "BEGIN", doing, error) /* one state of a store that is being written */
+                    ? sql_execute(store->db, "BEGIN", doing,
+                                  error) /* one consistent state of a store that another process writes */
                     : status_fail(error, STATUS_MEMORY, "no memory for the page");
   if (code == STATUS_OK) {
     code = fill(page, store, error);

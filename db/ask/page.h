@@ -1,5 +1,5 @@
-/* What a page of `clast report` holds of a store: a small SQLite file, made in memory, with tables that have the names
- * and columns of the store's views. The questions of the page and of its readers work on both.
+/* The data of a page of `clast report`: a small SQLite file, made in memory, with tables that have the names and
+ * columns of the store's views. Queries of the page and of its readers work on both.
  *
  *   runs, points, spectra   of the store's views; `runs` and `spectra` thinned, results rounded to 7 digits
  *   estimates               those of points
@@ -10,8 +10,7 @@
  *   resolution              of the store's view: what finer settings may change, where `clast converge` was used
  *   campaign, session, attempt, axis, column_doc   of the store's tables
  *   question                the canned queries that work here
- *   label, fact, picture, difference   filled in by the caller
- */
+ *   label, fact, picture, difference   filled in by the caller */
 #ifndef CLAST_DB_ASK_PAGE_H
 #define CLAST_DB_ASK_PAGE_H
 
@@ -20,40 +19,40 @@
 
 struct ask_page; /* opaque */
 
-/* Statistics are of all runs. Single runs are kept up to a number, the first replicates of every point, and results of
- * single runs up to a number of values. Facts say what was left out. */
+/* Statistics are of all runs. Single runs are limited in number (the first replicates of every point are kept), and so
+ * are the results of single runs. Facts record what was left out. */
 status ask_page_make(struct store *store, struct ask_page **out, struct error *error);
 void ask_page_free(struct ask_page *page); /* NULL is fine */
 
 /* A sentence or a number about the page. */
 status ask_page_fact(struct ask_page *page, const char *name, const char *value, struct error *error);
-/* The readable name of a column, and the unit in which it is shown: one of it is `factor` in SI. */
+/* The readable name of a column, the unit in which it is shown, and the SI value `factor` of one such unit. */
 status ask_page_label(struct ask_page *page, const char *column, const char *label, const char *unit, double factor,
                       struct error *error);
 /* All columns of the page that have no label yet: inputs that were varied, and results. */
 status ask_page_columns(struct ask_page *page, status (*each)(void *context, const char *column, struct error *error),
                         void *context, struct error *error);
 
-/* A run whose fields are kept, and its place among the runs of its point by the main quantity: 0 is the smallest value,
- * 0.5 the median, 1 the largest. */
+/* A run whose fields are kept, and its quantile among the runs of its point by the main quantity: 0 is the smallest
+ * value, 0.5 the median, 1 the largest. */
 struct ask_page_kept {
   int64_t run_id, point_id;
   double quantile;
-  const char *fields; /* path for this process; borrowed for the call */
+  const char *fields; /* path as this process can open it; borrowed for the call */
 };
-/* The runs nearest to the quantiles 0, 0.5 and 1 of every point, if their fields are kept: the first `most` of them,
- * the medians of all points before the rest. */
+/* The runs nearest to the quantiles 0, 0.5 and 1 of every point, if their fields are kept; at most `most` runs, the
+ * medians of all points first. */
 status ask_page_kept(struct store *store, size_t most,
                      status (*each)(void *context, const struct ask_page_kept *run, struct error *error), void *context,
                      struct error *error);
 status ask_page_picture(struct ask_page *page, const struct ask_page_kept *run, const void *png, size_t size,
                         struct error *error);
 
-/* A result of a point of this store less that of a point of the page's first store. */
+/* The difference of a result: a point of this store minus a point of the page's first store. */
 status ask_page_difference(struct ask_page *page, const char *quantity, int64_t first_point, int64_t point,
                            const struct difference *difference, struct error *error);
 
-/* The file; *bytes is malloc'd. */
+/* The file's contents; the caller frees *bytes. */
 status ask_page_file(struct ask_page *page, unsigned char **bytes, size_t *size, struct error *error);
 
 #endif

@@ -1,4 +1,4 @@
-/* Does a power law fit the fragments of a point? The answer of `clast exponents`. */
+/* Does a power law fit the fragments of a point? The same test as in `clast exponents`. */
 #include <math.h>
 
 #include "db/ask/page_private.h"
@@ -8,7 +8,7 @@ static const char doing[] = "making the page";
 
 struct judging {
   sqlite3_stmt *insert;
-  int64_t fragments; /* judged so far */
+  int64_t fragments; /* tested so far */
 };
 
 static status judge(void *context, const struct ask_pool *pool, struct error *error) {

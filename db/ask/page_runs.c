@@ -66,8 +66,8 @@ static status add_mean(struct reading *reading, const struct column *column, con
   return sql_run(reading->insert, doing, error);
 }
 
-/* The statistics of the current point: means of the results that the view points lacks, modes of all of them. `newest`:
- * the point has no newer version of results. */
+/* Writes the statistics of the current point: means of the results that the view points lacks, and modes of all
+ * results. `newest`: the point has no newer version of results. */
 static status end_point(struct reading *reading, bool newest, struct error *error) {
   status code = STATUS_OK;
   for (size_t i = 0; code == STATUS_OK && reading->begun && i < reading->count; i++) {
@@ -141,7 +141,7 @@ static status read_results(struct reading *reading, struct store *store, struct 
   return code ? code : end_point(reading, true, error);
 }
 
-/* Results with one value everywhere tell nothing on a page, and the last of very many rows do not fit. */
+/* Removes results with the same value everywhere, and the last rows beyond the limit. */
 static status thin_means(struct reading *reading, struct error *error) {
   status code = STATUS_OK;
   for (size_t i = 0; code == STATUS_OK && i < reading->count; i++)
@@ -163,15 +163,15 @@ static status thin_means(struct reading *reading, struct error *error) {
   return code;
 }
 
-/* How many of the points' runs there is room for: the first `replicates` of every point; when there are more points
- * than room, of every n-th point. */
+/* Chooses the runs to keep within the limit: the first `replicates` of every point or, with more points than the limit,
+ * of every n-th point. */
 static status choose_room(struct store *store, int *replicates, int *every, struct error *error) {
   double points = 0, kept = 0, runs = 0;
   status code = query_number(store, "SELECT count(*) FROM point_total", 0, NULL, &points, error);
   if (code == STATUS_OK)
     code = query_number(store, "SELECT max(runs + failed) FROM point_total", 0, NULL, &runs, error);
   *every = (int)(points / ASK_PAGE_RUNS) + 1;
-  int low = 1, high = isfinite(runs) && runs > 1 ? (int)runs : 1; /* low fits, or is 1 */
+  int low = 1, high = isfinite(runs) && runs > 1 ? (int)runs : 1; /* invariant: `low` fits, or is 1 */
   while (code == STATUS_OK && low < high) {
     char sql[128];
     const int middle = low + (high - low + 1) / 2;
@@ -186,7 +186,7 @@ static status choose_room(struct store *store, int *replicates, int *every, stru
   return code;
 }
 
-/* Results of single runs: the main ones, then the others in their order, while there is room. */
+/* Results of single runs: the main ones, then the others in their order, up to the limit. */
 static void write_results(const struct reading *reading, double runs, FILE *out, size_t *left_out) {
   size_t room = runs > 0 ? (size_t)(ASK_PAGE_VALUES / runs) : COLUMNS;
   for (int main = 1; main >= 0; main--)

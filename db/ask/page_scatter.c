@@ -1,5 +1,5 @@
-/* Quantiles of the first main result, the mass share of the largest fragment, at every point, as `clast scatter` tells
- * them. Only of this one, and of few points: they would not fit. */
+/* Quantiles of the first main result, the mass share of the largest fragment, at every point, as `clast scatter` gives
+ * them. Other results and further points are left out to keep the page small. */
 #include "analysis/statistics/scatter.h"
 #include "db/ask/page_private.h"
 #include "db/ask/pool.h"

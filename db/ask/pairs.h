@@ -1,4 +1,4 @@
-/* Which points `clast compare` sets side by side, and their differences. */
+/* The pairs of points that `clast compare` compares, and their differences. */
 #ifndef CLAST_DB_ASK_PAIRS_H
 #define CLAST_DB_ASK_PAIRS_H
 
@@ -9,12 +9,12 @@
 struct ask_pairs; /* opaque */
 
 struct ask_pairs_row {
-  int64_t point[2];   /* numbers in their stores */
-  const char *inputs; /* varied inputs that both have; of two points: "" */
+  int64_t point[2];   /* number of each point in its store */
+  const char *inputs; /* varied inputs that both have; "" when two points were named */
   struct difference difference;
 };
 
-/* Reads the values of both sides: STORE, STORE:POINT or STORE:CAMPAIGN. STATUS_USAGE: unknown names; STATUS_MISSING: no
+/* Reads the values of both sides: STORE, STORE:POINT or STORE:CAMPAIGN. STATUS_USAGE: unknown name; STATUS_MISSING: no
  * such store. */
 status ask_pairs_read(const char *first, const char *second, const char *quantity, struct ask_pairs **out,
                       struct error *error);

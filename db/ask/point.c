@@ -1,4 +1,4 @@
-/* Reads the fragments of one point and makes its exponents. */
+/* Reads the fragments of one point and estimates its exponents. */
 #include "db/ask/point.h"
 
 #include <math.h>
@@ -34,7 +34,7 @@ static status make_room(struct growing *growing, size_t masses) {
   return STATUS_OK;
 }
 
-/* Blobs are little-endian float64, the machine's own order on everything that this program is built for. */
+/* Blobs are little-endian float64, which is the native format of every supported machine. */
 static status take_run(void *context, size_t count, const struct query_value *values, struct error *error) {
   struct growing *growing = context;
   struct point_data *point = growing->point;
@@ -53,7 +53,7 @@ static status take_run(void *context, size_t count, const struct query_value *va
   return STATUS_OK;
 }
 
-/* A store that was made before runs said it, and is only read, has no such column. */
+/* A read-only store from before this column was added lacks it. */
 static status read_complete_mass(struct store *store, struct query_parameter parameters[2], double *mass,
                                  struct error *error) {
   const struct query_parameter column = {"column", OUTCOME_NAME(complete_mass)};
@@ -80,7 +80,7 @@ static status take_version(void *context, size_t count, const struct query_value
   return STATUS_OK;
 }
 
-/* The newest version with runs that count, 0: there is none; and the dimensions of the engine. */
+/* The newest version with runs that count (0: none), and the dimensions of the engine. */
 static status read_version(struct store *store, const struct query_parameter *id, struct point_data *out,
                            struct error *error) {
   struct query_value row[2] = {{0}};

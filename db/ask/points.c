@@ -1,4 +1,4 @@
-/* Lists of points, as typed questions. */
+/* Lists of points, as functions with typed results. */
 #include "db/ask/points.h"
 
 #include <stdio.h>
@@ -11,7 +11,7 @@
 #include "db/store/schema.h"
 #include "engine/grow.h"
 
-/* Condition for the points of a choice, on any table with a column point_id. */
+/* Condition that selects the chosen points, for any table with a column point_id. */
 static void write_choice(FILE *sql, const struct ask_points_choice *choice) {
   fputs(" WHERE true", sql);
   if (choice->campaign)
@@ -21,7 +21,7 @@ static void write_choice(FILE *sql, const struct ask_points_choice *choice) {
     fprintf(sql, " AND point_id = %lld", (long long)choice->point);
 }
 
-/* Asks the text that was written to `out`, which is open_memstream's; closes it and frees the text. */
+/* Runs the SQL text that was written to `out` (from open_memstream); closes `out` and frees the text. */
 static status run_written(struct store *store, FILE *out, char **sql, const struct query_sink *sink,
                           struct error *error) {
   fclose(out);
@@ -61,7 +61,7 @@ static status take_range(void *context, size_t count, const struct query_value *
 }
 
 status ask_points_known(struct store *store, int64_t point, struct error *error) {
-  int64_t range[3] = {0}; /* points of this number: 1 or 0; lowest and highest number */
+  int64_t range[3] = {0}; /* number of matching points (1 or 0); lowest and highest number */
   const struct query_sink sink = {.context = range, .row = take_range};
   char sql[160];
   if (point == 0)
@@ -84,7 +84,7 @@ struct rows {
   void *context;
 };
 
-enum { FIRST_INPUT = 8 }; /* column of the first input in the question of ask_points_rows */
+enum { FIRST_INPUT = 8 }; /* column of the first input in the query of ask_points_rows */
 
 static status give_row(void *context, size_t count, const struct query_value *values, struct error *error) {
   const struct rows *rows = context;
@@ -153,7 +153,7 @@ static status add_input(void *context, size_t count, const struct query_value *v
   const int size = snprintf(item, sizeof item, "%s%s %s%s%s", label->used ? ", " : "", word ? word + 1 : path, value,
                             *unit ? " " : "", unit);
   if (size <= 0 || (size_t)size >= sizeof item || label->used + (size_t)size >= label->size)
-    return STATUS_OK; /* what does not fit is left out */
+    return STATUS_OK; /* inputs that do not fit are left out */
   memcpy(label->text + label->used, item, (size_t)size + 1);
   label->used += (size_t)size;
   return STATUS_OK;

@@ -13,24 +13,24 @@ struct ask_points_row {
   int64_t n, failed;       /* runs that count; runs that failed */
   double mean, half_width; /* of the largest fraction, with the half width of the 95 % interval of its mean. NaN: too
                               few runs */
-  double resolution;       /* what finer settings may change in it; NaN: not known */
+  double resolution;       /* error that the resolution leaves in it; NaN: not known */
   enum ask_resolution_verdict resolution_verdict;
   size_t input_count;
-  const struct query_value *inputs; /* values of the inputs asked for, in their order; borrowed for the call */
+  const struct query_value *inputs; /* values of the requested inputs, in their order; borrowed for the call */
 };
-/* Anything but STATUS_OK ends the question with that status. It may ask the store itself. */
+/* A status other than STATUS_OK ends the query with that status. The callback may query the store itself. */
 typedef status (*ask_points_each)(void *context, const struct ask_points_row *row, struct error *error);
 
-/* Which points are meant; 0 is all of them. */
+/* Selects points; 0 means all. */
 struct ask_points_choice {
   int64_t campaign, point;
 };
 
-/* How many points these are, with and without runs. */
+/* The number of these points, with and without runs. */
 status ask_points_count(struct store *store, const struct ask_points_choice *choice, int64_t *points,
                         struct error *error);
 
-/* STATUS_USAGE, with the numbers that there are, when the store has no point of this number. 0 is every point. */
+/* STATUS_USAGE, with the known numbers, when the store has no point of this number. 0 means every point. */
 status ask_points_known(struct store *store, int64_t point, struct error *error);
 
 /* These points with the named input columns (ask_columns_axes), in the order of their numbers. Each point comes with
@@ -46,8 +46,7 @@ struct ask_points_version {
   int64_t point_id;
   int results_version;
 };
-/* The points of a campaign (0: of all) whose runs have no pooled estimates yet, in *list (to be freed by the caller).
- */
+/* The points of a campaign (0: of all) whose runs have no pooled estimates yet, in *list (the caller frees it). */
 status ask_points_without_estimates(struct store *store, int64_t campaign, struct ask_points_version **list,
                                     size_t *count, struct error *error);
 

@@ -1,4 +1,4 @@
-/* Which points are pooled, and their runs. */
+/* Chooses the points of each pool and reads their runs. */
 #include "db/ask/pool.h"
 
 #include <math.h>
@@ -79,7 +79,7 @@ static status find_members(struct store *store, struct members *members, struct 
     return no_memory(error);
   const status code = query_run(store, text, 0, NULL, 0, &sink, error);
   free(text);
-  for (size_t i = 0; i < members->count; i++) /* now that the list does not move */
+  for (size_t i = 0; i < members->count; i++) /* only now: the list no longer moves in memory */
     for (size_t a = 0; a < members->axes; a++)
       members->list[i].input[a].text = members->list[i].text[a];
   return code;
@@ -91,7 +91,7 @@ static bool same_input(const struct query_value *a, const struct query_value *b)
   return (a->kind == QUERY_NULL && b->kind == QUERY_NULL) || a->real == b->real;
 }
 
-/* Behind the last member of the pool that begins at `from`; *version: the newest of the pool. */
+/* Index after the last member of the pool that begins at `from`. *version: the newest results_version of the pool. */
 static size_t end_of_pool(const struct members *members, size_t from, int64_t *version) {
   *version = members->list[from].version;
   size_t end = from + 1;
@@ -153,7 +153,7 @@ static status read_values(struct store *store, const struct ask_pool_choice *cho
   return code;
 }
 
-/* A pool while it grows. */
+/* A pool under construction. */
 struct growing {
   struct ask_pool pool;
   int64_t *point;
@@ -170,7 +170,7 @@ static void release(struct growing *growing) {
   free(growing->seed);
 }
 
-/* Behind each other; false: no memory. */
+/* Appends `count` elements to the array. False: no memory. */
 static bool append(void **array, size_t have, const void *more, size_t count, size_t size) {
   if (count == 0)
     return true;
@@ -180,7 +180,7 @@ static bool append(void **array, size_t have, const void *more, size_t count, si
   return true;
 }
 
-/* Adds the runs of a point to the pool. What is there of the point stays the caller's. */
+/* Adds the runs of a point to the pool. `point` and `values` stay the caller's. */
 static status add_point(struct growing *growing, const struct point_data *point, const struct values *values,
                         struct error *error) {
   struct point_data *all = &growing->pool.data;
@@ -200,7 +200,7 @@ static status add_point(struct growing *growing, const struct point_data *point,
       all->first[r] += masses;
   }
   all->runs = (struct pooled_runs){have + more, all->first, all->masses};
-  all->element_mass = fmax(all->element_mass, point->element_mass); /* NaN: the other */
+  all->element_mass = fmax(all->element_mass, point->element_mass); /* fmax ignores a NaN */
   all->complete_mass = fmax(all->complete_mass, point->complete_mass);
   all->dimensions = point->dimensions;
   growing->point[growing->pool.points++] = point->point_id;
@@ -234,7 +234,7 @@ static status read_pool(struct store *store, const struct members *members, size
   return code;
 }
 
-/* "strain 0.03, angle 0.0698 rad" of the inputs of `by`; of a point by itself its varied inputs. */
+/* The pool's label: "strain 0.03, angle 0.0698 rad" from the inputs of `by`; for a single point its varied inputs. */
 static status write_label(struct store *store, struct ask_pool *pool, struct error *error) {
   if (pool->points == 1)
     return ask_points_label(store, pool->point[0], pool->label, sizeof pool->label, error);

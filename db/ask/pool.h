@@ -10,40 +10,43 @@
 struct ask_pool_choice {
   int64_t point;     /* only this point; 0: all */
   const char *where; /* only runs that meet this SQL condition on the view runs; NULL: all */
-  const char *by;    /* varied inputs, as of ask_group: points that share them are one pool; NULL: each point is one */
+  const char *by;    /* comma-separated varied inputs (see ask_group): points that share them are one pool; NULL: a pool
+                        per point */
 };
 
 enum { ASK_POOL_AXES = 16, ASK_POOL_TEXT = 64, ASK_POOL_LABEL = 256 };
-/* Always runs that count, of the newest results_version among the points of the pool. */
+/* Holds only runs that count, of the newest results_version among the points of the pool. */
 struct ask_pool {
   char label[ASK_POOL_LABEL]; /* "strain 0.03, angle 0.0698 rad", or "point 7" */
   size_t points;
-  const int64_t *point;    /* their numbers */
+  const int64_t *point;    /* numbers of the points */
   const size_t *first_run; /* points + 1: the runs of point p are first_run[p] .. first_run[p + 1] - 1 */
   size_t axes;             /* of `by` */
   char column[ASK_POOL_AXES][ASK_GROUP_NAME];
   struct query_value input[ASK_POOL_AXES];
   /* ask_pools: fragments of all runs, point after point; complete_mass and element_mass are those of the point where
-   * they are largest; point_id is 0 if there are several. ask_pool_values: only the runs' numbers, no fragments. */
+   * they are largest; point_id is 0 if there are several. ask_pool_values: only the run ids, no fragments. */
   struct point_data data;
   const double *value; /* ask_pool_values: of each run, NaN: off; NULL with ask_pools */
   const int64_t *seed; /* ask_pool_values: of each run */
 };
-/* The pool is borrowed for the call. Anything but STATUS_OK ends the question with that status. */
+/* The pool is borrowed for the call. A status other than STATUS_OK ends the query with that status. */
 typedef status (*ask_pool_each)(void *context, const struct ask_pool *pool, struct error *error);
 
 /* Calls `each` for every pool that has a run, one at a time in memory, in the order of the inputs of `by` or of the
- * points. STATUS_USAGE: an unknown input, or the condition is no SQL. */
+ * points. STATUS_USAGE: an input is unknown, or the condition is no valid SQL. */
 status ask_pools(struct store *store, const struct ask_pool_choice *choice, ask_pool_each each, void *context,
                  struct error *error);
-/* The same with the values of a result column of the view runs (its name or a unique ending of it) and no fragments. */
+/* The same for the values of a result column of the view runs (its name or a unique ending of it), without
+ * fragments. */
 status ask_pool_values(struct store *store, const struct ask_pool_choice *choice, const char *quantity,
                        ask_pool_each each, void *context, struct error *error);
 
 /* Dimensions of the engine of the store's first point, 2 or 3: masses in the plane are kg per metre. */
 status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error);
 
-/* A pool as the pooled spectrum takes it: the units of mean and interval are the runs of a point, or the points. */
+/* The pool in the form that the pooled spectrum needs. Mean and interval are over the runs of a point, or over the
+ * points. */
 struct pooled_form ask_pool_form(const struct ask_pool *pool, bool cumulative, double density);
 
 #endif

@@ -1,4 +1,4 @@
-/* Runs one statement that only reads, with a time limit. */
+/* Runs one read-only statement with a time limit. */
 #include "db/ask/query.h"
 
 #include <errno.h>
@@ -42,7 +42,7 @@ static bool only_reads(int action, const char *first, const char *second) {
   case SQLITE_SELECT:
   case SQLITE_READ:
   case SQLITE_RECURSIVE: return true;
-  /* how SQLite declares json_each and the like; a real one is refused as not read-only */
+  /* SQLite declares json_each and the like this way; a real update is refused because it is not read-only */
   case SQLITE_UPDATE: return first && strcmp(first, "sqlite_master") == 0;
   case SQLITE_FUNCTION: return !second || strcmp(second, "load_extension") != 0;
   case SQLITE_PRAGMA: return first && describes(first, second);
@@ -50,7 +50,7 @@ static bool only_reads(int action, const char *first, const char *second) {
   }
 }
 
-/* Allows reading only: no change, no other file, no transaction, and only pragmas that describe. */
+/* Allows reading only: no change, no other file, no transaction, and only pragmas that describe the database. */
 static int authorize(void *context, int action, const char *first, const char *second, const char *database,
                      const char *trigger) {
   struct watch *watch = context;
@@ -61,7 +61,7 @@ static int authorize(void *context, int action, const char *first, const char *s
   return SQLITE_DENY;
 }
 
-/* Behind blanks, semicolons and comments. */
+/* Skips blanks, semicolons and comments. */
 static const char *skip_space(const char *text) {
   for (;;) {
     text += strspn(text, " \t\n\v\f\r;");
@@ -102,7 +102,7 @@ static status prepare(struct store *store, const char *sql, struct watch *watch,
   return STATUS_OK;
 }
 
-/* As SQL would take the literal: an integer, a number, else text. */
+/* Binds the value as SQL reads a literal: an integer, a number, else text. */
 static void bind_text_or_number(sqlite3_stmt *statement, int index, const char *value) {
   char *end = NULL;
   errno = 0;
@@ -118,7 +118,7 @@ static void bind_text_or_number(sqlite3_stmt *statement, int index, const char *
     sqlite3_bind_text(statement, index, value, -1, SQLITE_TRANSIENT);
 }
 
-/* The value for the statement's index-th parameter, the last one that was given; NULL: there is none. */
+/* The last value given for the statement's index-th parameter; NULL: none. */
 static const struct query_parameter *value_for(sqlite3_stmt *statement, int index, size_t count,
                                                const struct query_parameter *parameters) {
   const char *name = sqlite3_bind_parameter_name(statement, index);
@@ -180,7 +180,7 @@ static struct query_value value_of(sqlite3_stmt *statement, int i) {
   return value;
 }
 
-/* Why there was no next row. */
+/* Finds out why there was no next row. */
 static status judge_end(sqlite3_stmt *statement, int code, const struct watch *watch, struct error *error) {
   sqlite3 *db = sqlite3_db_handle(statement);
   if (code == SQLITE_DONE)

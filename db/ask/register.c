@@ -22,7 +22,7 @@ static void stdev_final(sqlite3_context *context) {
     sqlite3_result_double(context, sample_summarise_moments(moments, 0.95).standard_deviation);
 }
 
-/* pooled_hw95(runs, count, squares): pooled_spectrum_count_hw95(). SQLite makes NULL of its NaN. */
+/* pooled_hw95(runs, count, squares): pooled_spectrum_count_hw95(). SQLite turns NaN into NULL. */
 static void pooled_hw95(sqlite3_context *context, int count, sqlite3_value **values) {
   (void)count;
   sqlite3_result_double(context,

@@ -1,4 +1,4 @@
-/* Looks for a study of the resolution of a point's scene. */
+/* Finds the study of the resolution of a point's scene. */
 #include "db/ask/resolution.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 #include "analysis/statistics/estimates.h"
 
-/* One scene: its name. Several: "SCENE" stays. */
+/* With one scene, its name. With several, "SCENE" stays. */
 static status take_scene(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)count, (void)error;
   struct ask_resolution *out = context;
@@ -34,8 +34,8 @@ enum ask_resolution_verdict ask_resolution_verdict(const char *verdict) {
   return ASK_RESOLUTION_NOT_STUDIED;
 }
 
-/* The knobs of the studies that a point belongs to. Only where the view resolution has rows: stores of earlier programs
- * lack the columns. */
+/* The knobs of the studies that a point belongs to. Run only where the view resolution has rows: stores of earlier
+ * programs lack the columns. */
 static const char of_knobs[] =
     "SELECT group_concat(knob, ', ') FROM (SELECT DISTINCT knob FROM convergence"
     "   WHERE quantity = :quantity AND (resolution IS NOT NULL OR knob = 'settings')"

@@ -1,4 +1,4 @@
-/* One stored run: its inputs and seed, its results and its fragment masses; and the time that runs take. */
+/* One stored run: its inputs and seed, its results and its fragment masses. Also the wall time of all runs. */
 #ifndef CLAST_DB_ASK_RUN_H
 #define CLAST_DB_ASK_RUN_H
 
@@ -8,10 +8,10 @@ struct ask_run {
   char *scene; /* resolved scene as JSON; owned. NULL: the store has no such run */
   uint64_t seed;
   int64_t results_version;
-  /* What computed it. "" where the session does not tell. */
+  /* The program and machine that computed the run. "" where the session does not tell. */
   char cpu_class[16];              /* baseline, v3 or v4 */
   char version[64], compiler[128]; /* of the program */
-  char commit[96];                 /* with the words " with local changes" where there were some */
+  char commit[96];                 /* followed by " with local changes" if the program had any */
 };
 status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, struct error *error);
 void ask_run_release(struct ask_run *run); /* a zeroed one is fine */
@@ -20,12 +20,12 @@ void ask_run_release(struct ask_run *run); /* a zeroed one is fine */
 status ask_run_results(struct store *store, int64_t run_id, const char *engine, const struct query_sink *sink,
                        struct error *error);
 
-/* Did the program that computed this run store a value in a column of run or result_<engine>, of this run or of another
- * one in the same session? If not, it may not have known that result. */
+/* Did the program that computed this run store a value in a column of run or result_<engine>, for this run or another
+ * one of the same session? If not, it may not have had that result. */
 status ask_run_column_used(struct store *store, int64_t run_id, const char *engine, const char *column, bool *used,
                            struct error *error);
 
-/* Fragment masses in kg, largest first, to be freed by the caller. NULL: the store has none. */
+/* Fragment masses in kg, largest first; the caller frees them. NULL: the store has none. */
 status ask_run_masses(struct store *store, int64_t run_id, double **masses, size_t *count, struct error *error);
 
 /* Wall time of all stored runs in s: mean and longest. NaN: there are none. */

@@ -1,4 +1,4 @@
-/* Provenance out of a store. */
+/* Reads provenance from a store. */
 #include "db/ask/sessions.h"
 
 #include <stdio.h>

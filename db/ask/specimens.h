@@ -1,6 +1,5 @@
-/* One number of every run of a point: a result, an exponent, or how many fragments are heavier than a share of the
- * body.
- */
+/* One number for every run of a point: a result, an exponent, or the number of fragments heavier than a share of the
+ * body. */
 #ifndef CLAST_DB_ASK_SPECIMENS_H
 #define CLAST_DB_ASK_SPECIMENS_H
 
@@ -11,7 +10,7 @@ enum ask_specimens_kind {
   ASK_SPECIMENS_RESULT,
   ASK_SPECIMENS_EXPONENT,
   ASK_SPECIMENS_COUNT, /* fragments heavier than a share of the body */
-  ASK_SPECIMENS_SHARE, /* their share of its mass: what a sieve holds back */
+  ASK_SPECIMENS_SHARE, /* the share of the mass in such fragments: the part that a sieve retains */
 };
 
 struct ask_specimens_quantity {
@@ -20,7 +19,7 @@ struct ask_specimens_quantity {
   bool of_outcome;             /* a row of outcome_table, else of the engine's results */
   enum exponent_method method; /* of an exponent */
   enum estimates_window window;
-  double share; /* of the mass of all fragments together */
+  double share; /* threshold: share of the mass of all fragments together */
 };
 
 typedef void (*ask_specimens_each)(void *context, uint64_t seed, double value);

@@ -5,7 +5,7 @@
 #include "db/ask/query.h"
 
 struct ask_values_choice {
-  const char *campaign; /* only runs of its points; NULL: of all */
+  const char *campaign; /* only runs of this campaign's points; NULL: all */
   int64_t point;        /* only this point; 0: all */
 };
 struct ask_values_row {

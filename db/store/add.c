@@ -71,7 +71,7 @@ static status add_inputs(struct store *store, int64_t point_id, const struct sce
   return result;
 }
 
-/* The digest of the rows that a point is about to become. */
+/* The digest of the rows of a point that is about to be stored. */
 static void digest_point(const struct scene *scene, const uint8_t hash[16], const char *json, uint8_t digest[16]) {
   const struct field_table *inputs = scene->kind->inputs;
   const struct digest value = digest_name("point_input", "value");

@@ -1,4 +1,4 @@
-/* Adding rows of runs. Every statement is prepared once, and a run needs no text or JSON. */
+/* Adding rows of runs. Every statement is prepared once; adding a run needs no further SQL text or JSON. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@ static const char adding_run[] = "adding a run";
 
 static const struct sql_column run_id_column = {"run_id", SQL_COLUMN_INTEGER, 0};
 
-/* The names of what digest_run() adds, made once for a store and an engine. */
+/* The column names for digest_run(), made once for a store and an engine. */
 static status name_columns(struct store *store, struct store_kind *kind, struct error *error) {
   const struct schema_table results = schema_result_table(kind->kind);
   store->name_of.identity = digest_name("run", "identity");
@@ -31,7 +31,7 @@ static status has_no_rows(struct store *store, const char *table, bool *none, st
   return result;
 }
 
-/* Creates the engine's result table, or its columns, when the store has none. */
+/* Creates the engine's result table, or adds its missing columns. */
 static status complete_table(struct store *store, const struct schema_table *table, bool *grown, struct error *error) {
   static const char version[] = "PRAGMA schema_version";
   int64_t before = 0, after = 0;
@@ -44,7 +44,7 @@ static status complete_table(struct store *store, const struct schema_table *tab
   return result;
 }
 
-/* Everything that a store keeps of an engine. */
+/* Prepares all tables that the store keeps for an engine. */
 static status open_kind(struct store *store, const struct engine_kind *kind, struct store_kind *entry, bool *grown,
                         struct error *error) {
   const struct schema_table table = schema_result_table(kind);
@@ -103,7 +103,8 @@ static const struct sql_column run_columns[] = {
     RUN("digest", IDENTITY, digest),
 };
 
-/* The digest of the rows that a run is about to become: db/store/digest_rows.c finds the same in them. */
+/* The digest of the rows of a run that is about to be stored. db/store/digest_rows.c computes the same from the
+ * rows. */
 static void digest_run(const struct store *store, const struct store_kind *kind, const struct store_run *run,
                        uint8_t digest[16]) {
   struct digest sum = {0};
@@ -137,8 +138,8 @@ static status add_row(struct store *store, const struct store_kind *kind, const 
   return result;
 }
 
-/* What the engine reports of the run; NULL: nothing. With its first run an engine's results get columns in the views.
- */
+/* Adds the engine's results of the run; NULL: none. With the first run of an engine, the views get columns for its
+ * results. */
 static status add_result(struct store *store, struct store_kind *kind, int64_t run_id, const void *values,
                          struct error *error) {
   if (!values)

@@ -1,4 +1,4 @@
-/* clast check: each check is a question that must have no rows. */
+/* clast check: each check is a query that must return no rows. */
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>
@@ -51,7 +51,7 @@ static const char *const questions[] = {
     "' that is not there' FROM pragma_foreign_key_check",
     "SELECT 'run ' || run_id || ' has no fragment masses' FROM run WHERE run_id NOT IN (SELECT run_id FROM "
     "fragment_mass)",
-    /* SQLite evaluates no CHECK of a file that is only read. */
+    /* SQLite does not evaluate CHECKs when it only reads a file. */
     "SELECT 'point ' || point_id || ': its scene is no JSON' FROM point WHERE NOT json_valid(scene)",
     "SELECT 'session ' || session_id || ': its facts are no JSON' FROM session WHERE NOT json_valid(facts)",
     "SELECT 'point ' || point_id || ' has no inputs' FROM point WHERE point_id NOT IN (SELECT point_id FROM "
@@ -106,8 +106,8 @@ static bool range_columns(struct store *store, const char *table, const struct f
   return any;
 }
 
-/* Results of runs that count must be in the ranges of their rows; a share above 1 is an error of the sums. Results of
- * another results_version cannot be judged. */
+/* Results of runs that count must be in the ranges of their field rows; a share above 1 means an error in the sums.
+ * Results of another results_version cannot be checked. */
 static status check_ranges(struct report *report, struct error *error) {
   status result = STATUS_OK;
   for (size_t k = 0; result == STATUS_OK && k < 2 * engine_count(); k++) {
@@ -153,7 +153,7 @@ static status check_files(struct report *report, struct error *error) {
   return result;
 }
 
-/* Compares the spectrum of a run with its masses: bit by bit. */
+/* Compares the spectrum of a run with its masses, bit by bit. */
 static status check_spectrum(struct report *report, int64_t run_id, size_t n, const double *masses, sqlite3_stmt *rows,
                              struct error *error) {
   struct spectrum_bin_row bins[512];
@@ -187,7 +187,7 @@ struct mass_list { /* grows to the longest run */
   size_t count, capacity; /* bytes */
 };
 
-/* The masses of column 1 of a row; the length is that of the blob, not of other columns. */
+/* Reads the masses in column 1 of a row; the length is that of the blob, not from another column. */
 static status read_masses(struct mass_list *list, sqlite3_stmt *run, struct error *error) {
   const unsigned char *bytes = sqlite3_column_blob(run, 1);
   const size_t size = (size_t)sqlite3_column_bytes(run, 1);
@@ -202,7 +202,7 @@ static status read_masses(struct mass_list *list, sqlite3_stmt *run, struct erro
   return STATUS_OK;
 }
 
-/* `run` is a row of run_id, masses, total mass, counts. */
+/* Checks one run. Columns of `run`: run_id, masses, total mass, counts. */
 static status check_run(struct report *report, sqlite3_stmt *run, struct mass_list *list, sqlite3_stmt *spectrum,
                         struct error *error) {
   const int64_t run_id = sqlite3_column_int64(run, 0);
@@ -221,7 +221,7 @@ static status check_run(struct report *report, sqlite3_stmt *run, struct mass_li
   }
   if (!descending)
     say(report, "run %lld: its masses are not in descending order", (long long)run_id);
-  /* The engine may have summed in another order: n roundings of the total, with n below 1e6. */
+  /* The engine may have summed in another order. Tolerance: n roundings of the total, with n below 1e6. */
   if (sqlite3_column_int(run, 3) && !(fabs(total - stored) <= 1e-9 * stored))
     say(report, "run %lld: its masses sum to %.17g kg, but its total mass is %.17g kg", (long long)run_id, total,
         stored);
@@ -259,7 +259,7 @@ static status check_point_identities(struct report *report, const struct scene *
 }
 
 /* A run's identity must follow from its point's scene and its seed. Runs of another results_version, or of an engine
- * that this program lacks, cannot be judged. */
+ * that this program lacks, cannot be checked. */
 static status check_identities(struct report *report, struct error *error) {
   sqlite3_stmt *points = NULL, *runs = NULL;
   struct error damaged = {0};

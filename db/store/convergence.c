@@ -1,4 +1,4 @@
-/* Writes what a study of convergence found. */
+/* Writes the results of a convergence study. */
 #include "db/store/internal.h"
 
 static const char writing[] = "writing a study of convergence";
@@ -12,7 +12,7 @@ struct level_key {
 static const struct sql_column of_level[] = {KEY("base_point_id", INTEGER, base_point_id),
                                              KEY("results_version", INT, results_version), KEY("level", INTEGER, level),
                                              KEY("point_id", INTEGER, point_id)};
-enum { LIMIT_COLUMNS = 2 }; /* the first two of them */
+enum { LIMIT_COLUMNS = 2 }; /* the first two columns of of_level */
 
 /* Removes the knob and quantity of this scene from a table. */
 static status forget(struct store *store, const char *table, const struct store_convergence *study,

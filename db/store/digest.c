@@ -1,4 +1,4 @@
-/* Chains of words, and the values that a writer adds. */
+/* Chains of words, and the digests of values before they are stored. */
 #include "db/store/digest.h"
 
 #include <endian.h>
@@ -18,7 +18,7 @@ static struct digest step(struct digest state, uint64_t word) {
   return state;
 }
 
-/* Up to 8 bytes, little-endian, the missing ones 0. */
+/* Up to 8 bytes, little-endian; missing bytes are 0. */
 static uint64_t word_at(const uint8_t *bytes, size_t size) {
   uint64_t word = 0;
   memcpy(&word, bytes, size);
@@ -89,7 +89,7 @@ void digest_add_field(struct digest *sum, struct digest name, uint64_t row, cons
     double value;
     memcpy(&value, place, sizeof value);
     if (!isnan(value))
-      add_real(sum, name, row, value == 0 ? 0 : value); /* SQLite keeps no -0 */
+      add_real(sum, name, row, value == 0 ? 0 : value); /* SQLite does not keep the sign of -0 */
     else if (off_as_text)
       add_text(sum, name, row, "off");
     break;

@@ -9,14 +9,14 @@ static const char doing[] = "reading digests";
 
 enum { MOST_TABLES = 64, NAME = 160 };
 
-/* A table whose rows go into the digest. `row` tells the rows of one number apart; `but`: columns left out. */
+/* A table whose rows go into the digest. `row` distinguishes the rows of one run or point; `but`: columns left out. */
 struct source {
   char table[NAME];
   const char *row, *but;
 };
 
-/* Everything that inputs, seed and results_version determine. Times, hosts and numbers within the store are left out,
- * and what stopping rules change: surplus, counts. The spectrum follows from the masses, bit by bit. */
+/* All values that follow from inputs, seed and results_version. Left out: times, hosts and ids within the store, and
+ * the values that stopping rules change (surplus, counts). The spectrum follows from the masses, bit by bit. */
 static const struct source of_runs[] = {
     {"run", "0",
      "'run_id', 'point_id', 'session_id', 'surplus', 'counts', 'attempt', 'wall_time', 'cpu_time', 'peak_memory', "
@@ -30,7 +30,7 @@ static const struct source of_points[] = {
 };
 
 struct table {
-  sqlite3_stmt *rows; /* of the number ?1: what tells the row apart, then the columns */
+  sqlite3_stmt *rows; /* parameter ?1: the number; first the column that distinguishes the rows, then the others */
   struct digest *names;
 };
 
@@ -73,7 +73,7 @@ static status open_table(struct reader *reader, const struct source *source, str
   return STATUS_OK;
 }
 
-/* Result tables of all engines: a run has a row in that of its own. */
+/* Opens the result tables of all engines: each run has a row in the table of its engine. */
 static status open_results(struct reader *reader, struct error *error) {
   sqlite3_stmt *names = NULL;
   status result = sql_prepare(reader->db,
@@ -118,8 +118,8 @@ static status read_digest(struct reader *reader, int64_t number, uint8_t bytes[1
   return result;
 }
 
-/* The numbers of the rows to look at and, with `more`, further columns: the row `only`, or all that meet the condition.
- */
+/* Selects the numbers of the rows and, with `more`, further columns: the row `only`, or all rows that meet the
+ * condition. */
 static status prepare_numbers(sqlite3 *db, const struct reader *reader, const char *more, int64_t only,
                               const char *condition, sqlite3_stmt **numbers, struct error *error) {
   if (!only)

@@ -9,7 +9,7 @@
 
 static const char doing[] = "writing the deterministic content";
 
-/* Text on its way to the file. A store of 1e5 runs is 600 MB of text: stdio's calls for each value took half of the
+/* Buffered text for the file. A store of 1e5 runs gives 600 MB of text: one stdio call per value took half of the
  * time. */
 struct text {
   FILE *out;
@@ -56,13 +56,13 @@ static void put_integer(struct text *text, int64_t value) {
   put(text, number + at, sizeof number - at);
 }
 
-/* As printf's %a, which takes ten times as long. */
+/* The same text as printf's %a, which takes ten times as long. */
 static void put_real(struct text *text, double value) {
   uint64_t bits;
   memcpy(&bits, &value, sizeof bits);
   char number[40];
   size_t at = 0;
-  if (!isnormal(value)) { /* 0 and the rare ones */
+  if (!isnormal(value)) { /* 0, and rare values such as subnormals */
     const int size = snprintf(number, sizeof number, "%a", value);
     put(text, number, (size_t)size);
     return;
@@ -106,7 +106,7 @@ static void put_value(struct text *text, sqlite3_stmt *row, int column) {
 
 enum { HEAD = 2 * SCHEMA_NAME_SIZE };
 
-/* A question, and what stands before each value of its rows: ` name=`. */
+/* A query, and the prefix of each value of its rows: ` name=`. */
 struct rows {
   sqlite3_stmt *statement;
   char (*heads)[HEAD];
@@ -140,8 +140,8 @@ static status prepare_rows(sqlite3 *db, const char *sql, struct rows *rows, stru
   return result == STATUS_OK ? name_columns(rows, error) : result;
 }
 
-/* Each row as ` name=value` pairs on one line that begins with `head`. Parameter 1, if any, is run_id. The statement is
- * left ready for another run. */
+/* Prints each row as ` name=value` pairs on one line that begins with `head`. Parameter 1, if any, is run_id. The
+ * statement is reset at the end. */
 static status print_rows(sqlite3 *db, const struct rows *rows, int64_t run_id, const char *head, struct text *text,
                          struct error *error) {
   sqlite3_stmt *statement = rows->statement;
@@ -187,7 +187,7 @@ static status prepare_columns(sqlite3 *db, const char *table, const char *before
   return result;
 }
 
-/* The questions about one run, prepared once. */
+/* The queries about one run, prepared once. */
 struct dump {
   sqlite3 *db;
   struct text *text;
@@ -224,7 +224,7 @@ static void forget(struct dump *dump) {
     close_rows(&dump->results[i].rows);
 }
 
-/* The question about the engine's own results. */
+/* The query about the engine's own results. */
 static status find_results(struct dump *dump, const char *engine, const struct rows **rows, struct error *error) {
   char table[SCHEMA_NAME_SIZE];
   for (size_t i = 0; i < dump->result_count; i++)

@@ -6,7 +6,7 @@
 #include "db/store/internal.h"
 #include "db/store/paths.h"
 
-/* Fields files stay where they are: the paths of the copy lead there from its own folder. */
+/* Fields files are not moved: the paths in the copy are made relative to the copy's folder. */
 static status keep_paths(const struct store *store, const char *copy, struct error *error) {
   sqlite3 *db = NULL;
   char *way = paths_between(copy, store->path);
@@ -32,7 +32,7 @@ status store_export(struct store *store, const char *path, struct error *error) 
   status result = store_flush(store, error);
   if (result != STATUS_OK)
     return result;
-  /* query_only refuses VACUUM INTO, although it writes another file. */
+  /* query_only refuses VACUUM INTO, although VACUUM INTO writes another file. */
   sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
   result = guard_vacuum_into(store->db, path, "writing the hand-over file", error);
   if (!store->writer)

@@ -31,7 +31,7 @@ void guard_connection(sqlite3 *db) {
     int option, value;
   } options[] = {
       {SQLITE_DBCONFIG_DEFENSIVE, 1},      {SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0},
-      {SQLITE_DBCONFIG_ENABLE_VIEW, 0}, /* views of the file; temporary ones stay: db/store/views.h */
+      {SQLITE_DBCONFIG_ENABLE_VIEW, 0}, /* disables views of the file, but not temporary ones: db/store/views.h */
       {SQLITE_DBCONFIG_ENABLE_TRIGGER, 0}, {SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, 0},
   };
   for (size_t i = 0; i < sizeof options / sizeof options[0]; i++)
@@ -65,7 +65,7 @@ status guard_attach(sqlite3 *db, const char *source, const char *doing, struct e
   return result;
 }
 
-/* VACUUM attaches the new file, and takes SQLite's own json_valid(). */
+/* VACUUM attaches the new file and needs SQLite's own json_valid(). */
 status guard_vacuum_into(sqlite3 *db, const char *path, const char *doing, struct error *error) {
   allow_attach(db, true);
   sqlite3_db_config(db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 1, NULL);
@@ -78,12 +78,12 @@ status guard_vacuum_into(sqlite3 *db, const char *path, const char *doing, struc
 struct guard {
   sqlite3 *db;
   int version;
-  FILE *out; /* the names of what does not belong here */
+  FILE *out; /* the names of unexpected objects */
   size_t strangers;
   bool out_of_memory;
 };
 
-/* A name from the file, without what would move a terminal's cursor. */
+/* Writes a name from the file without characters that move a terminal's cursor. */
 static void write_name(const char *name, FILE *out) {
   fputc('"', out);
   for (size_t i = 0; name && name[i] && i < 100; i++)
@@ -112,8 +112,8 @@ static bool is_plain_column(const char *line) {
   return false;
 }
 
-/* Is it the rule of which runs count, with main results that an older program knew (`.main_rank` in schemas/field.h)?
- * `ours` is the rule of this program. */
+/* Is it the rule that selects runs that count, with the main results of an older program (`.main_rank` in
+ * schemas/field.h)? `ours` is the rule of this program. */
 static bool is_older_rule(const char *line, const char *ours) {
   const char *states = strstr(ours, " IN ("), *from = states ? strstr(states, " AND ") : NULL;
   if (!from || strncmp(line, ours, (size_t)(from - ours)) != 0)
@@ -135,7 +135,7 @@ static bool same_first_word(const char *a, const char *b) {
   return strncmp(a, b, length) == 0 && (b[length] == ' ' || b[length] == '\0');
 }
 
-/* May this line stand in the table? */
+/* Is this line allowed in the table? */
 static bool is_ours(const char *line, const struct schema_text *ours, bool may_grow) {
   for (size_t k = 1; k + 1 < ours->count; k++) {
     if (strcmp(line, ours->lines[k]) == 0)
@@ -206,7 +206,7 @@ static void judge_table(struct guard *guard, const struct schema_table *table, c
   free(texts);
 }
 
-/* An index lists columns, perhaps other main results than ours; it is neither unique nor partial. */
+/* Checks an index: it lists columns, perhaps other main results than ours; it is neither unique nor partial. */
 static void judge_index(struct guard *guard, const struct schema_index *index, const char *sql) {
   struct schema_text *texts = calloc(2, sizeof *texts), *found = texts, *ours = texts + 1;
   if (!texts) {
@@ -236,7 +236,7 @@ static const struct schema_table motion = {.name = "fragment_motion",
                                            .count = 2,
                                            .options = "STRICT"};
 
-/* The table that `name` should be. False: it is none of ours. */
+/* Finds the table that `name` should be. False: clast has no such table. */
 static bool find_table(const char *name, struct schema_table *table) {
   for (size_t i = 0; i < schema_table_count(); i++) {
     *table = schema_table_at(i);
@@ -265,7 +265,7 @@ static void judge_view(struct guard *guard, const char *name, const char *sql) {
   stranger(guard, "view", name, NULL);
 }
 
-/* SQLite makes these itself: the index of a key, whose text is that of its table, and the tables of ANALYZE. */
+/* SQLite makes these: the index of a key, whose text is part of its table's, and the tables of ANALYZE. */
 static bool is_of_sqlite(const char *type, const char *name, const char *sql) {
   if (!sql)
     return strcmp(type, "index") == 0 && strncmp(name, "sqlite_autoindex_", 17) == 0;
@@ -313,7 +313,7 @@ static status judge_objects(struct guard *guard, struct error *error) {
   return result;
 }
 
-/* Columns of the views are named by rows of table axis. */
+/* Rows of table axis name columns of the views. */
 static status judge_axes(struct guard *guard, struct error *error) {
   sqlite3_stmt *rows = NULL;
   bool has = false;

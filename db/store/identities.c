@@ -6,7 +6,7 @@
 
 #include "db/store/internal.h"
 
-/* An identity is a hash already, so that multiplying its words is enough. */
+/* An identity is already a hash, so multiplying its words is enough. */
 #define HASH_FUNCTION(key, size, hash) ((hash) = hash_of(key))
 #define HASH_NONFATAL_OOM              1
 #define uthash_nonfatal_oom(entry)     ((entry)->identity_is_added = false)

@@ -1,5 +1,5 @@
-/* The identities that a store holds, in memory: resume asks for every run of a campaign, and adding a run asks again.
- */
+/* The identities in a store, held in memory: a resumed campaign looks up every run, and adding a run looks it up
+ * again. */
 #ifndef CLAST_DB_STORE_IDENTITIES_H
 #define CLAST_DB_STORE_IDENTITIES_H
 
@@ -15,9 +15,9 @@ struct identities { /* all zero: empty */
   struct identities_entry *table;
 };
 
-/* What is stored of an identity. */
+/* The stored facts about an identity. */
 struct identities_state {
-  uint32_t attempts; /* failed ones */
+  uint32_t attempts; /* failed attempts */
   bool stored;
 };
 
@@ -27,7 +27,7 @@ struct identities_state *identities_add(struct identities *set, const uint8_t id
 struct identities_state *identities_find(const struct identities *set, const uint8_t identity[16]);
 void identities_clear(struct identities *set);
 
-/* Reads those of the store, and the bins that it has. error may be NULL. */
+/* Reads the identities of the store, and its range of bins. error may be NULL. */
 status identities_load(struct store *store, struct error *error);
 
 #endif

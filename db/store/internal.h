@@ -15,7 +15,7 @@ enum { STORE_BATCH_ROWS = 500, STORE_KINDS = 16 };
 
 struct store_kind { /* fills result_<engine> */
   const struct engine_kind *kind;
-  bool first; /* no run of it is stored yet: the views have no columns for its results */
+  bool first; /* no run of this engine is stored yet: the views have no columns for its results */
   struct sql_insert insert;
   struct digest_names names;
 };
@@ -27,10 +27,10 @@ struct store {
   int lock;       /* descriptor, -1 for readers */
   bool lacks_wal; /* in WAL mode without its -wal file when it was opened (db/store/place.h) */
 
-  struct identities identities; /* read when a writer opens, and by a reader when they are first needed */
+  struct identities identities; /* a writer reads them when it opens, a reader at first use */
   bool identities_loaded;
   struct sums sums;
-  int64_t lowest_bin, highest_bin; /* covered by table bin; lowest > highest: none */
+  int64_t lowest_bin, highest_bin; /* range covered by table bin; lowest > highest: none */
 
   bool in_batch, broken;
   int batch_rows;
@@ -67,8 +67,8 @@ status store_begin(struct store *store, struct error *error);
  * is rolled back and the store refuses further writing. Returns `result`, or the status of the commit. */
 status store_end(struct store *store, status result, int rows, struct error *error);
 
-/* What the store keeps of the engine. Creates the engine's result table when the store has none; *grown becomes true
- * when the views need another column. */
+/* Gives the store's entry for the engine in *found. Creates the engine's result table when the store has none; *grown
+ * becomes true when the views need another column. */
 status store_add_run_kind(struct store *store, const struct engine_kind *kind, struct store_kind **found, bool *grown,
                           struct error *error);
 
@@ -79,11 +79,11 @@ static inline bool store_run_counts(const struct store_run *run) {
 
 /* Fills store->blob with the masses of a run, little-endian float64. */
 status store_fragments_encode(struct store *store, const struct store_run *run, struct error *error);
-/* After store_fragments_encode(): adds the masses, the spectrum and the running sums of a run whose row is written.
- * Within the open batch. */
+/* Call after store_fragments_encode(), within the open batch. Adds the masses, the spectrum and the running sums of a
+ * run whose row is already written. */
 status store_fragments_add(struct store *store, int64_t run_id, const struct store_run *run, struct error *error);
 
-/* The hash that a point is known by. */
+/* The hash that identifies a point. */
 void store_point_hash(const struct scene *scene, uint8_t hash[16]);
 
 /* Inserts the estimates of a run that has none yet, within the open batch. */

@@ -13,13 +13,13 @@
 static const char doing[] = "merging";
 
 struct merged {
-  int64_t last;   /* number of the last run before */
-  int64_t added;  /* runs */
-  int64_t common; /* runs that both stores have */
+  int64_t last;   /* last run_id before the merge */
+  int64_t added;  /* number of runs */
+  int64_t common; /* number of runs that both stores have */
 };
 
-/* The columns of a table that both stores have, without the column `but`, each with a comma before it. sqlite3_free()
- * it. */
+/* The columns of a table that both stores have, without the column `but`, each with a comma before it. Free with
+ * sqlite3_free(). */
 static char *common_columns(sqlite3 *db, const char *table, const char *but) {
   return sql_name_list(db,
                        "SELECT a.name FROM pragma_table_info(?1, 'main') a JOIN pragma_table_info(?1, 'other') b "
@@ -63,8 +63,8 @@ static status map_parents(sqlite3 *db, struct error *error) {
       doing, error);
 }
 
-/* Lists the runs that are missing here in the temporary table merge_run, with numbers from the last one on. Numbers
- * rise in both stores, so that the order of theirs is that of ours and nothing has to be sorted. */
+/* Lists the runs that are missing here in the temporary table merge_run, with new numbers after the last one. Numbers
+ * rise in both stores, so both orders agree and no sort is needed. */
 static status find_runs(sqlite3 *db, struct merged *merged, struct error *error) {
   status result = sql_integer(db, "SELECT max(run_id) FROM main.run", 0, &merged->last, error);
   if (result == STATUS_OK)
@@ -125,8 +125,8 @@ static status copy_attempts(sqlite3 *db, struct error *error) {
       doing, error);
 }
 
-/* Result tables of engines that this program lacks are made from the list of their columns. No text of the other store
- * is run: its names are quoted, its types are compared with those of a store. */
+/* Creates result tables of engines that this program lacks from the list of their columns. No SQL text of the other
+ * store is run: its names are quoted, and its types are compared with those that a store allows. */
 static status make_tables(sqlite3 *db, struct error *error) {
   sqlite3_stmt *tables = NULL;
   status result = sql_prepare(
@@ -137,7 +137,7 @@ static status make_tables(sqlite3 *db, struct error *error) {
       "other.sqlite_schema t WHERE t.type = 'table' AND t.name GLOB 'result_*' AND t.name NOT IN (SELECT name FROM "
       "main.sqlite_schema)",
       &tables, doing, error);
-  char *sql = NULL; /* of all tables: no table can be made while the statement runs */
+  char *sql = NULL; /* SQL for all tables: no table can be created while the statement runs */
   size_t size = 0;
   FILE *out = open_memstream(&sql, &size);
   while (out && sql_next(tables, &result, doing, error))
@@ -172,8 +172,8 @@ static status copy_results(sqlite3 *db, struct error *error) {
   return result;
 }
 
-/* The campaigns of the sessions that were copied. A source of an older version does not name them: they are found by
- * their runs. */
+/* The campaigns of the sessions that were copied. A source of an older version does not name them; their runs identify
+ * them. */
 static status copy_campaigns_of_sessions(sqlite3 *db, struct error *error) {
   int64_t named = 0;
   status result = sql_integer(db,
@@ -202,7 +202,7 @@ static status copy_written_units(sqlite3 *db, struct error *error) {
                      doing, error);
 }
 
-/* Tables, then rows in the order of their references. */
+/* Copies tables, then rows in the order of their references. */
 static status copy_all(struct store *store, struct merged *merged, struct error *error) {
   sqlite3 *db = store->db;
   status result = make_tables(db, error);
@@ -215,7 +215,7 @@ static status copy_all(struct store *store, struct merged *merged, struct error 
   if (result != STATUS_OK)
     return result;
   result = copy_results(db, error);
-  if (result == STATUS_OK) /* pooled estimates of these points go: they are stale */
+  if (result == STATUS_OK) /* the pooled estimates of these points are stale: delete them */
     result = sums_runs_copy(&store->sums, db, merged->last + 1, merged->last + merged->added, error);
   if (result == STATUS_OK)
     result = copy_attempts(db, error);
@@ -232,11 +232,11 @@ static status merge(struct store *store, struct merged *merged, struct error *er
   if (result == STATUS_OK)
     result = digest_rows_fill_missing(db, DIGEST_POINTS, 0, error);
   if (result == STATUS_OK)
-    result = digest_rows_fill_missing(db, DIGEST_RUNS, merged->last + 1, error); /* of a source without digests */
+    result = digest_rows_fill_missing(db, DIGEST_RUNS, merged->last + 1, error); /* for a source without digests */
   return result == STATUS_OK ? views_regenerate(db, error) : result;
 }
 
-/* Runs of the same identity must have the same bits; otherwise another machine or a bug computed something else. */
+/* Runs of the same identity must have the same bits. A difference comes from another machine or a bug. */
 static status count_differing(sqlite3 *db, int64_t *differing, struct error *error) {
   return sql_integer(
       db,
@@ -246,7 +246,7 @@ static status count_differing(sqlite3 *db, int64_t *differing, struct error *err
       0, differing, error);
 }
 
-/* Fields files stay where they are: the paths of the runs that were added lead there from the folder of this store. */
+/* Fields files are not moved: the paths of the added runs are made relative to the folder of this store. */
 static status keep_paths(struct store *store, const char *way, struct error *error) {
   return sql_executef(store->db, doing, error,
                       "UPDATE main.run SET fields_path = %Q || fields_path WHERE run_id IN (SELECT ours FROM "
@@ -254,7 +254,7 @@ static status keep_paths(struct store *store, const char *way, struct error *err
                       way);
 }
 
-/* Of a run that both stores have, the fields file may be in the other one only, or be missing here and not there. */
+/* For a run in both stores, only the other store may name a fields file, or only the other store's file may exist. */
 static status take_paths(struct store *store, const char *way, struct error *error) {
   sqlite3_stmt *pairs = NULL, *update = NULL;
   status result =
@@ -335,7 +335,8 @@ static status refuse_damaged(const char *source, const char *what, const struct 
                            source, what, (long long)damage->first, (long long)damage->count);
 }
 
-/* All pages and the types of all rows. Of table spectrum, the longest, each row is compared when it is copied. */
+/* Checks all pages and the types of all rows. Rows of table spectrum, the longest table, are checked one by one when
+ * they are copied. */
 static status check_pages(struct store *other, const char *source, struct error *error) {
   sqlite3_stmt *rows = NULL;
   status result = sql_prepare(other->db,
@@ -350,7 +351,7 @@ static status check_pages(struct store *other, const char *source, struct error 
   return result;
 }
 
-/* Pages, types, and digests. */
+/* Checks pages, types and digests. */
 static status read_through(struct store *other, const char *source, struct error *error) {
   struct damage runs = {0}, points = {0};
   status result = check_pages(other, source, error);
@@ -363,8 +364,8 @@ static status read_through(struct store *other, const char *source, struct error
   return result == STATUS_OK ? refuse_damaged(source, "point", &points, error) : result;
 }
 
-/* Opens the source by itself, which refuses a missing, foreign, newer or older file and one with anything in it that no
- * store has, and reads it through. */
+/* Opens the source as a store, which refuses a missing, foreign, newer or older file and one with unexpected objects.
+ * Then checks its contents. */
 static status inspect(const char *source, struct error *error) {
   struct store *other = NULL;
   status result = store_open_reader(source, &other, error);
@@ -392,7 +393,7 @@ status store_merge(struct store *store, const char *source, int64_t *added, int6
                "DROP TABLE IF EXISTS temp.merge_point; DROP TABLE IF EXISTS temp.merge_session; DROP TABLE IF EXISTS "
                "temp.merge_run; DETACH other; PRAGMA temp_store = MEMORY",
                NULL, NULL, NULL);
-  identities_clear(&store->identities); /* they are read again when they are needed */
+  identities_clear(&store->identities); /* they are read again at the next use */
   store->identities_loaded = false;
   return result;
 }

@@ -1,4 +1,4 @@
-/* Inspects a file and brings an older store forward. */
+/* Inspects a file and upgrades an older store. */
 #include "db/store/migrate.h"
 
 #include <unistd.h>
@@ -86,7 +86,7 @@ static status drop_empty_motion(sqlite3 *db, struct error *error) {
                      "bringing the store forward", error);
 }
 
-/* Version 1 had no digests. They vouch for the rows from now on, not for what happened to them before. */
+/* Version 1 had no digests. New digests protect the rows from now on; they cannot show earlier damage. */
 static status to_version_2(sqlite3 *db, struct error *error) {
   status result = digest_rows_fill_missing(db, DIGEST_RUNS, 0, error);
   return result == STATUS_OK ? digest_rows_fill_missing(db, DIGEST_POINTS, 0, error) : result;
@@ -101,7 +101,7 @@ static status (*const steps[SCHEMA_VERSION])(sqlite3 *, struct error *) = {to_ve
 
 static status back_up(sqlite3 *db, const char *path, int version, struct error *error) {
   char *copy = NULL;
-  for (int i = 0; i < 100; i++) { /* an earlier try may have left a copy */
+  for (int i = 0; i < 100; i++) { /* an earlier attempt may have left a copy */
     sqlite3_free(copy);
     copy = i ? sqlite3_mprintf("%s.version%d.%d", path, version, i) : sqlite3_mprintf("%s.version%d", path, version);
     if (!copy)

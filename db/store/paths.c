@@ -1,4 +1,4 @@
-/* Folders of stores, and the way from one to another. */
+/* Folders of stores, and the relative path from one to another. */
 #include "db/store/paths.h"
 
 #include <libgen.h>
@@ -28,7 +28,7 @@ bool paths_readable(const char *store_path, const char *fields_path) {
   return readable;
 }
 
-/* The folder of a file without links, with a slash at the end. */
+/* The folder of a file, with symbolic links resolved and a slash at the end. */
 static char *folder_of(const char *file, char resolved[PATHS_LONGEST]) {
   char *copy = strdup(file);
   if (!copy)

@@ -1,4 +1,4 @@
-/* Where a store lies. */
+/* Checks the location of a store. */
 #include "db/store/place.h"
 
 #include <fcntl.h>

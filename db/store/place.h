@@ -1,5 +1,5 @@
-/* Where a store lies: names that are no files, a file that is moved away while it is written, a copy that lacks a part.
- */
+/* The location of a store: names that are no files, a file that is moved while it is written, a copy without its -wal
+ * file. */
 #ifndef CLAST_DB_STORE_PLACE_H
 #define CLAST_DB_STORE_PLACE_H
 
@@ -9,17 +9,17 @@
 
 struct sqlite3;
 
-/* Why the name cannot be a store's: SQLite takes ":memory:", "file:..." and "" for no file, or for one in memory, and
- * the results would be gone at the end. NULL: it can. */
+/* Returns the reason why a name is refused as a store's; NULL: it is accepted. SQLite takes ":memory:", "file:..." and
+ * "" for no file, or for a database in memory, so results would be lost at the end. */
 const char *place_refused(const char *path);
-/* Does something lie at the path that is no file: a folder, a pipe, a device? To open a pipe waits for good. STATUS_IO
- * then; STATUS_OK for a file, or nothing. */
+/* STATUS_IO when the path leads to something other than a file: a folder, a pipe, a device (opening a pipe would
+ * block). STATUS_OK for a file or a free path. */
 status place_is_file(const char *path, struct error *error);
-/* STATUS_IO when the open file is not at its path any more: moved, removed or replaced. What is written then reaches
- * nobody. */
+/* STATUS_IO when the open file is no longer at its path: moved, removed or replaced. Data written then would be
+ * lost. */
 status place_check(struct sqlite3 *db, const char *path, struct error *error);
-/* Is the file in WAL mode, with no or an empty FILE-wal beside it? Ask before SQLite opens it, which may make one. A
- * store that is being written looks like this when FILE alone was copied. */
+/* Is the file in WAL mode, with no or an empty FILE-wal beside it? Call before SQLite opens the file, which may create
+ * one. This is the state of a store that was copied without its FILE-wal while it was being written. */
 bool place_lacks_wal(const char *path);
 
 #endif

@@ -7,7 +7,8 @@
 #include "db/store/paths.h"
 #include "db/store/schema.h"
 
-/* A point's hash is a run's identity without seed and results_version: a point outlives a change of result bits. */
+/* A point's hash is a run's identity without seed and results_version: a point stays the same when results_version
+ * changes. */
 void store_point_hash(const struct scene *scene, uint8_t hash[16]) {
   struct engine_kind kind = *scene->kind;
   struct scene unversioned = *scene;

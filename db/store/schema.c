@@ -1,4 +1,4 @@
-/* Writes tables, columns and indexes from their rows, and completes those of an older store. */
+/* Writes tables, columns and indexes from their rows, and adds those that an older store lacks. */
 #include "db/store/schema.h"
 
 #include <stdlib.h>
@@ -37,7 +37,7 @@ struct schema_table schema_table_at(size_t index) {
                                      : schema_result_table(engine_at(index - schema_tables_count));
 }
 
-/* A column is read without the program, so its meaning names the choices. */
+/* A store is also read without clast, so the meaning of a column names the choices. */
 static void write_meaning(const struct field *row, FILE *out) {
   for (const char *c = row->doc ? row->doc : ""; *c; c++)
     fputc(*c == '\n' ? ' ' : *c, out);
@@ -71,7 +71,7 @@ void schema_write_index(const struct schema_index *index, FILE *out) {
 /* A column of a table: of its own, or one that a field makes. */
 struct column {
   char name[SCHEMA_NAME_SIZE];
-  const char *source; /* what a developer looks for: the name, or the path of the row */
+  const char *source; /* for a developer: the name, or the path of the field row */
   const char *declaration, *unit;
   const char *meaning;     /* of the table's own */
   const struct field *row; /* of a field; else NULL */
@@ -165,7 +165,7 @@ status schema_has_column(sqlite3 *db, const char *table, const char *column, boo
   return result;
 }
 
-/* Results are what determinism is about: the table's own columns may differ from machine to machine. */
+/* Results must be deterministic; the table's own columns may differ from machine to machine. */
 static status write_doc(sqlite3 *db, const char *table, const struct column *column, struct error *error) {
   char *meaning = NULL;
   size_t size = 0;

@@ -12,7 +12,7 @@
 enum {
   SCHEMA_APPLICATION_ID = 0x434c5354, /* "CLST" */
   SCHEMA_VERSION = 3,
-  SCHEMA_READABLE = 1, /* the oldest version that can be read without being brought forward */
+  SCHEMA_READABLE = 1, /* the oldest version that can be read without an upgrade */
   SCHEMA_NAME_SIZE = 128,
 };
 
@@ -32,7 +32,7 @@ struct schema_table {
 
 struct schema_index {
   const char *table, *name, *columns;
-  bool with_main_results; /* columns of the main results after the others */
+  bool with_main_results; /* add columns of the main results at the end */
 };
 
 /* The tables that are not results of one engine, in the order of their creation, and the indexes. */
@@ -49,24 +49,24 @@ struct schema_table schema_table_at(size_t index);
 void schema_write_table(const struct schema_table *table, FILE *out);
 void schema_write_index(const struct schema_index *index, FILE *out);
 
-/* The condition that a row of table run is part of the statistics, as SQL: not surplus, a usable state, every main
- * result a number. `not_surplus`: "surplus = 0", or another expression for it. The same as store_run_counts(). */
+/* Writes the SQL condition that a row of table run is part of the statistics: not surplus, a usable state, every main
+ * result a number. `not_surplus`: "surplus = 0", or another expression for it. It matches store_run_counts(). */
 void schema_write_counts(const char *not_surplus, FILE *out);
 
-/* Refuses a table in which two columns have one name, and names both: paths of rows become names of columns
- * (schemas/field.h), so that largest.speed and largest_speed are the same one. STATUS_INTERNAL. */
+/* Refuses a table with two columns of one name, and names both. Paths of rows become names of columns
+ * (schemas/field.h), so largest.speed and largest_speed are the same column. STATUS_INTERNAL. */
 status schema_check_names(const struct schema_table *table, struct error *error);
 
-/* *has: the database has this column of this table; of any column with the name "". */
+/* *has: does this table have this column? With the column name "": does the table have any column? */
 status schema_has_column(sqlite3 *db, const char *table, const char *column, bool *has, struct error *error);
-/* Creates what is missing in the database: the table, or columns that its field table has gained (NULL in old rows),
- * and their rows of column_doc. */
+/* Creates missing parts in the database: the table, or columns that its field table has gained (NULL in old rows), and
+ * their rows of column_doc. */
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error);
 /* schema_complete of every table. Within the caller's transaction. */
 status schema_complete_all(sqlite3 *db, struct error *error);
 
-/* Names the campaign of sessions that do not: of those of the runs' points the last one that was there when the session
- * ended. */
+/* Fills in the campaign of sessions that lack it: among the campaigns of the runs' points, the last one that existed
+ * when the session ended. */
 extern const char schema_sessions_sql[];
 
 #endif

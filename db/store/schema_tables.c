@@ -221,8 +221,8 @@ const struct schema_table schema_tables[] = {
 };
 const size_t schema_tables_count = sizeof schema_tables / sizeof schema_tables[0];
 
-/* run_statistics covers the means and scatters of the view `points`, in an order that does not depend on which run came
- * first, so that sums have the same bits for any number of workers. */
+/* run_statistics covers the means and scatters of the view `points`. Its order does not depend on which run finished
+ * first, so the sums have the same bits for any number of workers. */
 const struct schema_index schema_tables_indexes[] = {
     {"run", "run_statistics", "point_id, results_version, counts, replicate, seed, state", true},
     {"attempt", "attempt_identity", "identity", false},

@@ -33,7 +33,7 @@ static const char *skip_blanks(const char *at) {
   }
 }
 
-/* Length of the word, the quoted text or the single character here. */
+/* Length of the word, quoted text or single character at `at`. */
 static size_t word_length(const char *at) {
   size_t length = 0;
   if (*at == '\'' || *at == '"' || *at == '`') {
@@ -53,10 +53,10 @@ static void write_word(const char *at, size_t length, FILE *out) {
     length -= 2;
   }
   for (size_t i = 0; i < length; i++)
-    fputc(at[i] == '\n' ? ' ' : at[i], out); /* a line break within quotes ends no line */
+    fputc(at[i] == '\n' ? ' ' : at[i], out); /* a line break within quotes does not end a line */
 }
 
-/* Words with blanks between them. At depth 1, a parenthesis and a comma end a line. */
+/* Writes words with blanks between them. At depth 1, a parenthesis and a comma end a line. */
 static void write_lines(const char *at, FILE *out) {
   int depth = 0;
   bool begins = true;

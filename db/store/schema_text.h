@@ -7,9 +7,9 @@
 
 enum { SCHEMA_TEXT_LINES = 2100 }; /* SQLite has at most 2000 columns in a table */
 
-/* Lines of a statement `CREATE ... (a, b) rest`: line 0 is what stands before the parenthesis, the last line what
- * stands behind it, the others the parts between commas. Words are separated by one blank. A quoted name that is plain
- * (schema_text_is_plain) stands without quotes. */
+/* Lines of a statement `CREATE ... (a, b) rest`: line 0 is the text before the parenthesis, the last line the text
+ * after it, the others are the parts between commas. Words are separated by one blank. A quoted name that needs no
+ * quotes (schema_text_is_plain) is written without them. */
 struct schema_text {
   char *text;
   size_t count;
@@ -22,7 +22,7 @@ void schema_text_clear(struct schema_text *text);
 
 /* Letters, digits and underscores: a name that needs no quotes. */
 bool schema_text_is_plain(const char *name, size_t length);
-/* Does the line begin with this word? Returns what follows it and its blank, or NULL. */
+/* Does the line begin with this word? Returns the text after the word and its blank, or NULL. */
 const char *schema_text_after(const char *line, const char *word);
 
 #endif

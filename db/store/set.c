@@ -19,7 +19,7 @@ static const struct sql_column of_point[] = {KEY("point_id", INTEGER, owner),
                                              KEY("results_version", INT, results_version),
                                              KEY("ordinal", INTEGER, ordinal)};
 
-/* All rows of a run go in with one statement: every run has the same number of them. */
+/* One statement inserts all rows of a run: every run has the same number of them. */
 status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
                                 struct error *error) {
   status result = sql_insert_prepare(store->db, &store->estimate, "estimate", 2, of_run, &estimates_table, count,
@@ -66,7 +66,7 @@ status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id
   return store_end(store, result, 1, error);
 }
 
-/* UPDATE that makes replicates from `prefix` on surplus. malloc'd; NULL when out of memory. */
+/* UPDATE that makes replicates from `prefix` on surplus. The caller frees it; NULL when memory ran out. */
 static char *prefix_sql(int64_t point_id, int64_t prefix) {
   char *sql = NULL, inside[64];
   size_t size = 0;

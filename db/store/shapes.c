@@ -1,4 +1,4 @@
-/* Keeps shape files, each once. */
+/* Stores each shape file once. */
 #include "db/store/shapes.h"
 
 #include <string.h>

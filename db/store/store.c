@@ -19,7 +19,7 @@ static const char lacks_wal_text[] =
     "was copied without its -wal file while it was being written: what that file held is missing here. Copy both "
     "files, or make a copy with `clast export`.";
 
-enum { EMPTY_STORE = 4096 }; /* bytes: SQLite's head of a file, in its first page, without any table */
+enum { EMPTY_STORE = 4096 }; /* bytes: SQLite's first page, without any table */
 
 static struct store *allocate(const char *path) {
   struct store *store = calloc(1, sizeof *store);
@@ -69,7 +69,7 @@ static status open_database(struct store *store, int flags, struct error *error)
   return sql_execute(store->db, "PRAGMA cell_size_check = ON", "opening", error);
 }
 
-/* The refusal names the holder, when its row is written already. */
+/* Refuses the store. The message names the lock's holder if its row is already written. */
 static status refuse_held(const char *path, struct error *error) {
   struct store *store = NULL;
   sqlite3_stmt *statement = NULL;
@@ -99,7 +99,7 @@ static status write_holder(struct store *store, struct error *error) {
                       host, (long long)getpid());
 }
 
-/* A copy of a store that was being written holds the row of its writer, or nothing at all. */
+/* A copy of a store that was being written contains its writer's row in table holder, or no tables. */
 static bool is_partial_copy(const struct store *store, int version) {
   int64_t holders = 0;
   if (!store->lacks_wal || version < 0)
@@ -107,7 +107,7 @@ static bool is_partial_copy(const struct store *store, int version) {
   return sql_integer(store->db, "SELECT count(*) FROM holder", 0, &holders, NULL) == STATUS_OK && holders > 0;
 }
 
-/* The file is locked: opens it, brings it forward and reads what a writer must know. */
+/* With the file locked: opens it, upgrades it and reads the data that a writer needs. */
 static status open_locked(struct store *store, struct error *error) {
   int version = -1;
   status result = open_database(store, SQLITE_OPEN_READWRITE, error);
@@ -129,9 +129,8 @@ static status open_locked(struct store *store, struct error *error) {
   return result == STATUS_OK ? identities_load(store, error) : result;
 }
 
-/* A call that failed leaves the place as it was if it made no table: no file, or an empty one. A file in WAL mode
- * without a table would be taken for a copy without its -wal file. `before`: bytes of the file, -1 if there was none.
- */
+/* Undoes a failed call that made no table: leaves no file or an empty one, as before. Otherwise a file in WAL mode
+ * without a table would look like a copy without its -wal file. `before`: bytes of the file, -1 if there was none. */
 static void leave_empty(const char *path, off_t before) {
   struct stat file;
   if (before > 0 || stat(path, &file) != 0 || file.st_size > EMPTY_STORE)
@@ -140,7 +139,7 @@ static void leave_empty(const char *path, off_t before) {
     unlink(path);
 }
 
-/* A warning about a store that could be opened; "" if there is none. */
+/* Writes a warning about a store that could be opened; "" if there is none. */
 static void write_warning(const struct store *store, char *warning, size_t size) {
   const char *network = lock_network_file_system(store->lock);
   if (size == 0)
@@ -254,7 +253,7 @@ status store_close(struct store *store, struct error *error) {
     result = store_flush(store, error);
     if (result == STATUS_OK)
       result = sql_execute(store->db, "DELETE FROM holder", "closing", error);
-    /* While a reader is in the middle of a query, the file stays in WAL mode, complete and readable. */
+    /* If a reader is in the middle of a query, the file stays in WAL mode, complete and readable. */
     sqlite3_busy_timeout(store->db, 1000);
     sqlite3_exec(store->db, "PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode = DELETE", NULL, NULL, NULL);
   }

@@ -1,9 +1,9 @@
 /* The store: every result of a campaign in one SQLite file that any tool can read. db/README.md describes it for users.
  *
- * One process writes, under an OS lock that ends with the process; any number of readers never block it (WAL mode while
- * writing; a clean end leaves journal_mode=DELETE). The tables follow from db/store/schema_tables.c and the field
+ * One process writes, under an OS lock that ends with the process. Readers, in any number, never block it (WAL mode
+ * while writing; a clean end leaves journal_mode=DELETE). The tables follow from db/store/schema_tables.c and the field
  * tables; schemas/results.sql is a copy of the schema. `point.scene` (resolved JSON) and `point_input` define a point.
- * The views runs, points, spectra and estimates are made anew when campaigns vary more inputs. */
+ * The views runs, points, spectra and estimates are made again when campaigns vary more inputs. */
 #ifndef CLAST_DB_STORE_STORE_H
 #define CLAST_DB_STORE_STORE_H
 
@@ -17,16 +17,16 @@
 
 struct store;
 
-/* Opens for writing: creates the file when absent, brings an older one forward (and keeps a copy of it), refuses a
- * newer or foreign one. STATUS_IO: read-only, disk full, locked (the message names the holder's host and process).
+/* Opens for writing: creates the file when absent, upgrades an older one (and keeps a copy of it), refuses a newer or
+ * foreign one. STATUS_IO: read-only, disk full, locked (the message names the holder's host and process).
  * STATUS_CONTENT: not a clast store, damaged, newer. STATUS_USAGE: the name is no file's (":memory:"). *warning (may be
- * NULL) receives a sentence to print (network file system, copied without its -wal file), or "". The lock dies with the
- * process; a child forked while the store is open shares it until it ends or executes another program. */
+ * NULL) receives a sentence to print (network file system, copied without its -wal file), or "". The lock ends with the
+ * process; a child forked while the store is open shares it until the child ends or executes another program. */
 status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size, struct error *error);
-/* Opens for reading only; never blocks the writer. STATUS_MISSING when absent. db/ask/query.h reads from a store; it
- * works on a writer too, and then sees its open batch. */
+/* Opens for reading only; never blocks the writer. STATUS_MISSING when absent. The functions of db/ask/query.h read
+ * from a store. They also accept a writer and then see its open batch. */
 status store_open_reader(const char *path, struct store **out, struct error *error);
-/* Does a process write this store now? Ask before the store is opened: closing a descriptor of the file drops SQLite's
+/* Is a process writing this store? Call it before the store is opened: closing a descriptor of the file drops SQLite's
  * locks on it. */
 bool store_is_being_written(const char *path);
 /* Commits and leaves one plain file in journal_mode=DELETE when writing. NULL is fine. */
@@ -41,15 +41,16 @@ status store_end_session(struct store *store, int64_t session_id, const char *ou
 status store_add_campaign(struct store *store, const char *name, const char *document_text, const char *plan_json,
                           int64_t *campaign_id, struct error *error);
 
-/* An input that a campaign varies: a column of the views. `unit`: the one that the campaign gives its values in, "" for
- * SI; the last campaign decides. */
+/* Registers an input that a campaign varies, which is a column of the views. `unit`: the unit of the campaign's values,
+ * "" for SI; the last campaign decides. */
 status store_add_axis(struct store *store, const struct field *input, const char *unit, struct error *error);
 
-/* The point of this resolved scene (inputs, no seed), found by its hash or added; varied paths widen the views. */
+/* Finds the point of this resolved scene (inputs, no seed) by its hash, or adds it. Varied paths become columns of the
+ * views. */
 status store_add_point(struct store *store, int64_t campaign_id, const struct scene *scene, size_t varied_count,
                        const char *const *varied_paths, int64_t *point_id, struct error *error);
 
-/* *point_id: 0 when the store has no such point. For a reader or a writer. */
+/* Finds a point. *point_id: 0 when the store has none for this scene. For a reader or a writer. */
 status store_point_find(struct store *store, const struct scene *scene, int64_t *point_id, struct error *error);
 
 struct store_run {
@@ -73,8 +74,8 @@ struct store_run {
   const char *fields_path; /* HDF5 file kept, or NULL */
 };
 /* Adds the rows of run, result_<engine>, fragment_mass, spectrum and estimate and the point's running sums, in the
- * transaction of its batch (500 rows or 1 s). A run whose identity is stored already is STATUS_OK and changes
- * nothing. */
+ * transaction of its batch (500 rows or 1 s). If the identity is stored already, nothing changes and the status is
+ * STATUS_OK. */
 status store_add_run(struct store *store, const struct store_run *run, struct error *error);
 
 struct store_attempt {
@@ -86,7 +87,7 @@ struct store_attempt {
   int exit_code, signal;
   double wall_s;
   int64_t peak_memory;
-  double limit; /* that ended it: s (time_limit) or bytes (memory_limit); 0 for the other reasons */
+  double limit; /* the limit that ended it: s (time_limit) or bytes (memory_limit); 0 for the other reasons */
   const char *message, *host;
   int rank;
 };
@@ -96,11 +97,11 @@ status store_add_attempt(struct store *store, const struct store_attempt *attemp
  * open batch. */
 status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
                            const struct estimate *rows, struct error *error);
-/* After a decision of a stopping rule: the point's replicates below `prefix` are its statistics, the others are
- * surplus. The running sums follow. Joins the open batch. */
+/* Call after a decision of a stopping rule: the point's replicates below `prefix` count in its statistics, the others
+ * are surplus. The running sums follow. Joins the open batch. */
 status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error);
 
-/* One knob of a study, for one quantity. All is borrowed for the call. */
+/* One knob of a convergence study, for one quantity. All pointers are borrowed for the call. */
 struct store_convergence {
   int64_t base_point_id;
   int results_version;
@@ -109,7 +110,7 @@ struct store_convergence {
   const struct convergence_row *rows;
   const struct convergence_limit_row *limit;
 };
-/* Replaces what the store has of this scene, knob and quantity. Joins the open batch. */
+/* Replaces the stored study of this scene, knob and quantity. Joins the open batch. */
 status store_convergence_set(struct store *store, const struct store_convergence *study, struct error *error);
 
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */
@@ -118,8 +119,9 @@ status store_tick(struct store *store, struct error *error);
 
 /* Is a run of this identity stored? */
 bool store_has_run(struct store *store, const uint8_t identity[16]);
-/* Failed attempts of an identity. Those that ended at a lower time or memory limit than the one given (s, bytes; 0: no
- * limit) are not counted, so that a raised limit tries again. Nor are lost ones, which say nothing about the run. */
+/* Number of failed attempts of an identity. Attempts that ended at a lower time or memory limit than the given one (s,
+ * bytes; 0: no limit) are not counted, so a raised limit allows another try. Lost attempts are not counted either: they
+ * say nothing about the run. */
 int store_attempts(struct store *store, const uint8_t identity[16], double time_limit, double memory_limit);
 
 /* A stored run of a point, for a driver that resumes and for stopping rules. */
@@ -133,14 +135,14 @@ struct store_point_run {
   double wall_s, cpu_s;
   int64_t peak_memory;
   const char *fields_path; /* NULL when none was kept */
-  bool fields_missing;     /* a path is kept, and no such file can be read */
+  bool fields_missing;     /* a path is stored, but the file cannot be read */
 };
 /* Gives the runs of a point and of the engine's results_version, in order of replicate, each borrowed for the call.
- * `row` is the quantity: a row of outcome_table (of_outcome), or else of the engine's results. */
+ * `row` gives the quantity: a row of outcome_table (of_outcome), or else of the engine's results. */
 status store_point_runs(struct store *store, int64_t point_id, const struct engine_kind *kind, const struct field *row,
                         bool of_outcome, void (*each)(void *context, const struct store_point_run *run), void *context,
                         struct error *error);
-/* Notes the HDF5 file of a stored run: a replay may write it after the run. */
+/* Stores the path of a run's HDF5 file: a replay may write the file after the run. */
 status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path, struct error *error);
 
 /* Checks the file's integrity, foreign keys, rows without an owner, missing fields files, running sums and spectra
@@ -148,7 +150,7 @@ status store_set_fields(struct store *store, const uint8_t identity[16], const c
  * problem is one call of `line`. STATUS_CONTENT when there are any. For a reader or a writer. */
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error);
-/* *whole: the digest of a run is that of its rows. Also true when the store has no such run, or no digests yet. */
+/* *whole: the run's digest matches its rows. Also true when the store has no such run, or no digests yet. */
 status store_check_run(struct store *store, int64_t run_id, bool *whole, struct error *error);
 /* Adds the runs of the store `source` that `store` (a writer) lacks, in one transaction. *added: how many. *differing:
  * runs present in both stores with different masses or states. The version of `store` is kept; the caller must report
@@ -158,7 +160,7 @@ status store_merge(struct store *store, const char *source, int64_t *added, int6
 status store_export(struct store *store, const char *path, struct error *error);
 
 /* Writes the deterministic content as text: every run that is not surplus, by identity, with its results, masses,
- * spectrum and estimates, doubles in hexadecimal. No times, hosts or sessions. The same text for any number of
+ * spectrum and estimates, doubles in hexadecimal. No times, hosts or sessions. The text is the same for any number of
  * workers. */
 status store_dump(struct store *store, FILE *out, struct error *error);
 

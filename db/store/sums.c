@@ -1,4 +1,4 @@
-/* Running sums of points: gathered in a hash table, written with the batch, made anew from the rows. */
+/* Running sums of points: gathered in a hash table, written with the batch, rebuilt from the rows. */
 #include "db/store/sums.h"
 
 #include <stdlib.h>
@@ -25,7 +25,7 @@ struct sums_entry {
 };
 
 enum { BLOCK = 1024 };
-struct sums_block { /* entries are given out in order, and all are returned together */
+struct sums_block { /* entries are allocated in order, and all are released together */
   struct sums_block *next;
   struct sums_entry entries[BLOCK];
 };
@@ -90,7 +90,7 @@ static status prepare(struct sums *sums, sqlite3 *db, struct error *error) {
                          "count_squared = count_squared + "
                          "?6, mass = mass + ?7",
                          &sums->bin, "keeping running sums", error);
-  if (result == STATUS_OK) /* what was pooled before these runs came is stale */
+  if (result == STATUS_OK) /* the previous pooled estimates are stale */
     result = sql_prepare(db, "DELETE FROM point_estimate WHERE point_id = ?1 AND results_version = ?2", &sums->stale,
                          "keeping pooled estimates", error);
   return result;
@@ -127,7 +127,7 @@ static status write_row(struct sums *sums, const struct sums_row *row, struct er
   return sql_run(sums->stale, "keeping pooled estimates", error);
 }
 
-/* Points come again and again, so the rows stay in the table with zeros, in order, until there are too many of them. */
+/* Batches return to the same points, so the rows stay in the table in order, set to zero, until there are too many. */
 enum { ROWS_KEPT = 65536 };
 
 status sums_write(struct sums *sums, sqlite3 *db, struct error *error) {
@@ -151,7 +151,7 @@ status sums_write(struct sums *sums, sqlite3 *db, struct error *error) {
 
 void sums_forget(struct sums *sums) {
   HASH_CLEAR(hh, sums->table);
-  while (sums->blocks && sums->blocks->next) { /* one block stays for the next batch */
+  while (sums->blocks && sums->blocks->next) { /* keep one block for the next batch */
     struct sums_block *block = sums->blocks;
     sums->blocks = block->next;
     free(block);

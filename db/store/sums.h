@@ -23,11 +23,11 @@ struct sums_row {
 
 struct sums { /* all zero: empty */
   struct sums_entry *table;
-  struct sums_block *blocks; /* that hold the entries, the one in use first */
+  struct sums_block *blocks; /* blocks of the entries, the one in use first */
   size_t used;               /* entries of the first block */
   bool sorted;
   sqlite3_stmt *total, *bin; /* upserts, prepared at first use */
-  sqlite3_stmt *stale;       /* deletes the pooled estimates of a point that grew */
+  sqlite3_stmt *stale;       /* deletes the pooled estimates of a point with new runs */
 };
 
 /* The row to add to, zeros when new. NULL when memory ran out. Valid until the sums are written or forgotten. */
@@ -37,14 +37,14 @@ status sums_write(struct sums *sums, sqlite3 *db, struct error *error);
 void sums_forget(struct sums *sums); /* what was gathered, after a rollback */
 void sums_clear(struct sums *sums);  /* everything, statements too */
 
-/* For a merge, within its transaction: the runs first..last are copied, and their masses; table temp.merge_run maps
- * their numbers (ours) to those in the attached store `other` (theirs). Copies their spectra, adds them to the sums and
- * covers their bins, with a bounded number of sums in memory. STATUS_CONTENT: a spectrum is not that of the
+/* For a merge, within its transaction. The runs first..last and their masses are already copied; table temp.merge_run
+ * maps their numbers (ours) to those in the attached store `other` (theirs). Copies their spectra, adds them to the
+ * sums and covers their bins, with a bounded number of sums in memory. STATUS_CONTENT: a spectrum does not match the
  * masses. */
 status sums_runs_copy(struct sums *sums, sqlite3 *db, int64_t first, int64_t last, struct error *error);
-/* Makes the sums of one point (0: of all) anew from the rows of run and spectrum. Within the caller's transaction. */
+/* Rebuilds the sums of one point (0: of all) from the rows of run and spectrum. Within the caller's transaction. */
 status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error);
-/* Rows in which the running sums differ from the rows they sum (doubles: by more than their rounding). */
+/* *count: rows whose running sums differ from the sums of their rows (doubles: by more than rounding). */
 status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error);
 
 /* Adds to table bin the edges of the bins lowest..highest that it lacks, so that spectra can be read without the

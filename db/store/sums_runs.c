@@ -1,7 +1,7 @@
-/* The spectra of runs that a merge copies, and their running sums. Digests vouch for the masses, and a spectrum must be
- * that of its masses: a changed one is refused here. Each row of the source is read once: the INSERT that copies it
- * asks a function of ours whether it is right. (Making all sums anew sorts the spectra of all runs: three quarters of
- * the time of a merge.) */
+/* Copies the spectra of runs in a merge, and adds to their running sums. Digests protect the masses, and a spectrum
+ * must match its masses: a changed one is refused here. Each row of the source is read once: the INSERT that copies it
+ * calls our function to check it. (Rebuilding all sums would sort the spectra of all runs: three quarters of the time
+ * of a merge.) */
 #include "db/store/sums.h"
 
 #include <endian.h>
@@ -22,7 +22,7 @@ static const char of_runs[] = "SELECT run_id, point_id, results_version, counts,
                               "FROM main.run LEFT JOIN main.fragment_mass USING (run_id) WHERE run_id >= ?1 ORDER BY "
                               "run_id";
 enum { RUN, POINT, VERSION, COUNTS, CENSORED, SURPLUS, MASSES };
-/* OR FAIL: the merge rolls back as a whole, so that no statement has to be undone by itself. */
+/* OR FAIL: the merge rolls back as a whole, so no single statement has to be undone. */
 static const char copy_rows[] = "INSERT OR FAIL INTO main.spectrum (run_id, bin, count, mass) SELECT m.ours, o.bin, "
                                 "o.count, o.mass FROM temp.merge_run m CROSS JOIN other.spectrum o ON o.run_id = "
                                 "m.theirs WHERE m.ours BETWEEN ?1 AND ?2 AND is_of_masses(m.ours, o.bin, o.count, "
@@ -31,17 +31,17 @@ static const char copy_rows[] = "INSERT OR FAIL INTO main.spectrum (run_id, bin,
 struct copying {
   struct sums *sums;
   sqlite3_stmt *runs, *rows;
-  int64_t last;           /* run that `runs` stands on; 0: before the first one */
+  int64_t last;           /* the current run of `runs`; 0: before the first one */
   bool counts;            /* is it part of the statistics? */
-  struct sums_row *total; /* of its point */
-  double *masses;         /* of it */
-  size_t capacity;        /* bytes of them */
+  struct sums_row *total; /* running sums of the run's point */
+  double *masses;         /* masses of the run */
+  size_t capacity;        /* bytes of `masses` */
   struct spectrum_bin_row bins[MOST_BINS];
-  size_t count, seen;      /* bins of its masses; rows of it that came */
-  size_t gathered;         /* since sums were written; no more of them are in memory */
+  size_t count, seen;      /* bins of the run's masses; rows of the run read so far */
+  size_t gathered;         /* sums gathered since the last write; bounds their number in memory */
   int64_t lowest, highest; /* bins of all runs; lowest > highest: none */
-  status result;           /* of is_of_masses() */
-  struct error error;      /* of it */
+  status result;           /* status of is_of_masses() */
+  struct error error;      /* error of is_of_masses() */
 };
 
 static struct sums_row *add_run(struct sums *sums, sqlite3_stmt *run) {
@@ -57,7 +57,7 @@ static struct sums_row *add_run(struct sums *sums, sqlite3_stmt *run) {
   return total;
 }
 
-/* The spectrum that the masses of the run have. */
+/* Computes the spectrum from the masses of the run. */
 static status make_bins(struct copying *copying, struct error *error) {
   const void *bytes = sqlite3_column_blob(copying->runs, MASSES);
   const size_t size = (size_t)sqlite3_column_bytes(copying->runs, MASSES);
@@ -93,7 +93,7 @@ static status add_bin(struct copying *copying, const struct spectrum_bin_row *bi
   return STATUS_OK;
 }
 
-/* The run that `runs` stands on: adds its bins to the sums. */
+/* Adds the bins of the current run of `runs` to the sums. */
 static status take_run(struct copying *copying, struct error *error) {
   copying->last = sqlite3_column_int64(copying->runs, RUN);
   copying->counts = sqlite3_column_int(copying->runs, COUNTS) != 0;
@@ -114,7 +114,7 @@ static status take_run(struct copying *copying, struct error *error) {
   return STATUS_OK;
 }
 
-/* Takes the runs up to this one. Those before it must have had all their rows. */
+/* Advances to this run. All rows of the runs before it must have been read. */
 static status go_to(struct copying *copying, int64_t run, struct error *error) {
   status result = STATUS_OK;
   while (result == STATUS_OK && copying->last < run) {
@@ -146,7 +146,7 @@ static void is_of_masses(sqlite3_context *context, int count, sqlite3_value **va
     sqlite3_result_error_code(context, SQLITE_ABORT);
 }
 
-/* The runs first..last and their spectra. */
+/* Copies the spectra of the runs first..last. */
 static status copy_some(struct copying *copying, int64_t first, int64_t last, struct error *error) {
   sqlite3_bind_int64(copying->rows, 1, first);
   sqlite3_bind_int64(copying->rows, 2, last);

@@ -9,7 +9,7 @@
 
 const char *const views_names[VIEWS_COUNT] = {"runs", "points", "spectra", "estimates", "resolution"};
 
-/* Axis columns, statistics and the views' own columns first; the others inherit from the table they come from. */
+/* Documents axis columns, statistics and the views' own columns first; the others inherit from their table. */
 static status document(sqlite3 *db, struct error *error) {
   static const char sql[] =
       "DELETE FROM column_doc WHERE table_name IN ('runs', 'points', 'spectra', 'estimates', 'resolution');"

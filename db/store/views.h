@@ -1,6 +1,6 @@
 /* The views `runs`, `points`, `spectra`, `estimates`, `resolution`: flat tables for any tool, one column per varied
  * input. Plain SQL only, so that a database browser or pandas can open them. clast itself never runs the views of a
- * file (db/store/guard.h): every connection makes temporary ones of the same names, which come first. */
+ * file (db/store/guard.h): every connection makes temporary ones of the same names, which take precedence. */
 #ifndef CLAST_DB_STORE_VIEWS_H
 #define CLAST_DB_STORE_VIEWS_H
 
@@ -9,10 +9,10 @@
 enum { VIEWS_COUNT = 5 };
 extern const char *const views_names[VIEWS_COUNT];
 
-/* Makes all anew, in the file and for this connection, and their rows in column_doc. Within the caller's
+/* Makes all views again, in the file and for this connection, and their rows in column_doc. Within the caller's
  * transaction. */
 status views_regenerate(sqlite3 *db, struct error *error);
-/* Makes those of this connection. Changes no file: for readers. */
+/* Makes the views of this connection only. Changes no file: for readers. */
 status views_make_temporary(sqlite3 *db, struct error *error);
 
 /* The column of a new axis: its path with underscores. "input_" goes in front when a view has such a column already:

@@ -55,10 +55,10 @@ void views_statistics_write(size_t count, const char *const *names, FILE *out) {
   fprintf(out, "\n  FROM moment\n)\n");
 }
 
-/* Studies name a quantity as its engine does; the view runs may have put the engine's table in front. */
+/* A study names a quantity without its engine; the view runs may have the engine's table as a prefix. */
 static void write_is_quantity(const char *name, FILE *out) {
   char *sql = sqlite3_mprintf("%Q IN (quantity, 'result_' || engine || '_' || quantity)", name);
-  fputs(sql ? sql : "NULL", out); /* without memory the next query fails, too */
+  fputs(sql ? sql : "NULL", out); /* without memory the next query fails too */
   sqlite3_free(sql);
 }
 

@@ -1,4 +1,4 @@
-/* Plain SQL of the statistics of points: any tool can run it, no function of ours is needed. */
+/* Plain SQL for the statistics of points: any tool can run it without our functions. */
 #ifndef CLAST_DB_STORE_VIEWS_STATISTICS_H
 #define CLAST_DB_STORE_VIEWS_STATISTICS_H
 
@@ -16,7 +16,7 @@ size_t views_statistics_main(const char *names[VIEWS_STATISTICS_MAIN]);
 void views_statistics_write(size_t count, const char *const *names, FILE *out);
 
 /* SQL of a table expression with point_id, results_version and, for the N-th name from 0 (a column of the view runs),
- * the half width eN and the verdict vN of the view resolution; NULL for what was not studied. */
+ * the half width eN and the verdict vN of the view resolution; NULL if not studied. */
 void views_statistics_resolution(size_t count, const char *const *names, FILE *out);
 
 /* SQL for the two-sided 95 % quantile of Student's t with `degrees` (an SQL expression) of freedom: sample_student()

@@ -7,8 +7,8 @@
 
 static const char doing[] = "making the views";
 
-/* The view that is being written. After the first error nothing more is asked of the database, and the text is
- * worthless. */
+/* The view that is being written. After the first error the database is not queried again, and the text is not
+ * valid. */
 struct view {
   sqlite3 *db;
   FILE *out;
@@ -16,7 +16,7 @@ struct view {
   struct error *error;
 };
 
-/* Writes what an SQL text gives: one text in every row. */
+/* Runs SQL that returns one text per row, and writes these texts. */
 static void write_rows(struct view *view, const char *sql) {
   sqlite3_stmt *statement = NULL;
   if (view->result == STATUS_OK)
@@ -26,7 +26,7 @@ static void write_rows(struct view *view, const char *sql) {
   sqlite3_finalize(statement);
 }
 
-/* The same of a text that sqlite3_mprintf made. */
+/* The same for SQL that sqlite3_mprintf made; frees it. */
 static void write_rows_of(struct view *view, char *sql) {
   if (sql)
     write_rows(view, sql);
@@ -47,8 +47,8 @@ static bool is_filled(sqlite3 *db, const char *table) {
   return sql_integerf(db, &filled, NULL, "SELECT EXISTS (SELECT 1 FROM main.\"%w\")", table) == STATUS_OK && filled;
 }
 
-/* The names of the result tables, or of those that hold a row, as the inside of IN (...). NULL: there is none.
- * sqlite3_free() it. */
+/* The names of the result tables, or of those that hold a row, as the inside of IN (...). NULL: there is none. Free
+ * with sqlite3_free(). */
 static char *list_tables(struct view *view, bool filled_only) {
   sqlite3_stmt *names = NULL;
   char *list = NULL;
@@ -62,7 +62,7 @@ static char *list_tables(struct view *view, bool filled_only) {
   return list;
 }
 
-/* Those of the engines that have runs; all of them while there are no runs. */
+/* The result tables of the engines that have runs; of all engines while there are no runs. */
 static char *result_tables(struct view *view) {
   char *list = list_tables(view, true);
   if (!list && view->result == STATUS_OK)
@@ -70,8 +70,8 @@ static char *result_tables(struct view *view) {
   return list ? list : sqlite3_mprintf("''");
 }
 
-/* Columns of run, then of the engines' result tables. An engine's column with the name of another column gets its
- * table's name in front: so in a store with runs of two engines. */
+/* Writes the columns of run, then of the engines' result tables. An engine's column with the name of another column
+ * gets its table's name as a prefix; this happens in a store with runs of two engines. */
 static void write_result_columns(struct view *view, const char *tables) {
   write_rows(view, "SELECT format('  r.\"%w\",' || char(10), name) FROM pragma_table_xinfo('run') WHERE name NOT "
                    "IN ('run_id', 'point_id', 'replicate', 'seed', 'identity', 'digest')");
@@ -109,9 +109,9 @@ static bool has_column(struct view *view, const char *table, const char *column)
   return has;
 }
 
-/* For every point and quantity that a study has: the sum over the knobs of resolution of what each leaves unknown at
- * the point, or, when the point is no level of the knob, at the scene's own setting. Of several studies counts the one
- * that knows least. */
+/* For every point and quantity with a study: the sum over the knobs of the error that each knob leaves, taken at the
+ * point or, when the point is no level of the knob, at the scene's own setting. Among several studies, the one with the
+ * largest error counts. */
 static const char resolution_sql[] =
     "WITH level AS (SELECT * FROM convergence WHERE resolution IS NOT NULL),\n"
     "of_knob AS (SELECT base_point_id, results_version, quantity, knob,\n"
@@ -145,7 +145,7 @@ static void write_resolution(struct view *view) {
           view->out);
 }
 
-/* The main results that the store has: an older one that is only read may lack some. */
+/* The main results that the store has: a read-only older store may lack some. */
 static size_t stored_main_results(struct view *view, const char *names[VIEWS_STATISTICS_MAIN]) {
   const char *all[VIEWS_STATISTICS_MAIN];
   const size_t most = views_statistics_main(all);

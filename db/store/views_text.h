@@ -6,8 +6,8 @@
 
 #include "db/sql.h"
 
-/* Writes the index-th view of views_names as it follows CREATE VIEW and the schema's name: "runs AS SELECT ...;". Its
- * columns are those that this database has. */
+/* Writes the text of the index-th view of views_names after CREATE VIEW and the schema's name: "runs AS SELECT ...;".
+ * It lists the columns that this database has. */
 status views_text_write(sqlite3 *db, size_t index, FILE *out, struct error *error);
 
 #endif
