@@ -53,7 +53,7 @@ status document_parse(const char *name, const char *text, size_t size, struct do
   return code;
 }
 
-/* Reads up to one byte more than a document may have. */
+/* Reads at most one byte more than the size limit of a document. */
 static status read_text(int file, const char *path, char *text, size_t *size, struct error *error) {
   for (*size = 0; *size <= DOCUMENT_LARGEST;) {
     const ssize_t got = read(file, text + *size, DOCUMENT_LARGEST + 1 - *size);
@@ -118,7 +118,7 @@ void document_free(struct document *document) {
   free(document);
 }
 
-/* "first\nsecond", where either may be NULL; frees both. Without memory the first one alone. */
+/* "first\nsecond", where either may be NULL; frees both. Returns the first one alone when memory runs out. */
 static char *join(char *first, char *second) {
   char *both = NULL;
   if (!first || !second)
@@ -138,7 +138,7 @@ static char *own_report(struct document *document) {
   return document->error_count ? document_report_text(document) : NULL;
 }
 
-/* The reports of a document and of those that it includes, one after the other. */
+/* The reports of a document and of its included documents, one after the other. */
 static char *whole_report(struct document *document) {
   char *text = own_report(document);
   for (struct document *other = document->included; other; other = other->next_included)

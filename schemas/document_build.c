@@ -1,5 +1,6 @@
-/* The tree of a document, made from libfyaml's events. Our own tree, not libfyaml's document: limits on depth, size and
- * aliases hold while it grows, and one report holds every duplicate key, tag and lost alias of a file. */
+/* Builds the tree of a document from libfyaml's events. libfyaml's own document type is not used: here limits on depth,
+ * size and aliases apply while the tree grows, and one report contains every duplicate key, tag and undefined alias of
+ * a file. */
 #include <libfyaml.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +18,7 @@ struct anchor {
 struct builder {
   struct document *document;
   document_node *open[DOCUMENT_DEEPEST]; /* collections being filled, outermost first */
-  document_node *key[DOCUMENT_DEEPEST];  /* the key that waits for its value, per level */
+  document_node *key[DOCUMENT_DEEPEST];  /* per level: the key whose value comes next */
   size_t depth;
   struct anchor *anchors;
   size_t anchor_count, documents;
@@ -49,7 +50,7 @@ static void append(struct builder *b, document_node *to, document_node *key, doc
     b->failed = true;
 }
 
-/* The path of what is being read now, such as "vary.grain.density[2]". */
+/* The path of the node that is being read, such as "vary.grain.density[2]". */
 static const char *where(const struct builder *b, char path[PATH_SIZE]) {
   *path = 0;
   for (size_t i = 0; i < b->depth; i++) {
@@ -61,7 +62,7 @@ static const char *where(const struct builder *b, char path[PATH_SIZE]) {
   return path;
 }
 
-/* Put a finished node where it belongs: root, item, key or value. */
+/* Puts a finished node into its place: root, item, key or value. */
 static void attach(struct builder *b, document_node *node) {
   if (!node)
     return;
@@ -83,7 +84,7 @@ static void attach(struct builder *b, document_node *node) {
     *key = node;
     return;
   }
-  if (node->end == node->start + 1 && node->plain && !node->text[0]) { /* nothing: point at its key */
+  if (node->end == node->start + 1 && node->plain && !node->text[0]) { /* empty value: mark its key */
     node->start = (*key)->start;
     node->end = (*key)->end;
   }
@@ -132,7 +133,7 @@ static void remember(struct builder *b, struct fy_token *token, document_node *n
   b->anchors[b->anchor_count++] = (struct anchor){kept, node};
 }
 
-/* The last node before here with this anchor, or NULL. */
+/* The last earlier node with this anchor, or NULL. */
 static document_node *anchored(const struct builder *b, const char *name, size_t length) {
   for (size_t i = b->anchor_count; i-- > 0;)
     if (strncmp(b->anchors[i].name, name, length) == 0 && !b->anchors[i].name[length])
@@ -205,7 +206,7 @@ static void close_collection(struct builder *b, size_t end) {
   document_node *node = b->open[--b->depth];
   char first = b->document->text[node->start];
   if (end > node->start && (first == '{' || first == '['))
-    node->end = end; /* of others the first character is marked */
+    node->end = end; /* for other nodes the first character is marked */
   char path[PATH_SIZE];
   if (node->kind == DOCUMENT_MAPPING && node->count > 1 && !document_duplicates_report(node, where(b, path)))
     b->failed = true;
@@ -254,12 +255,12 @@ static void take_scalar(struct builder *b, const struct fy_event *event, size_t 
   remember(b, event->scalar.anchor, node);
   if (event->scalar.tag && node) {
     report_tag(b, node);
-    node->faulty = true; /* the tag's meaning is unknown: readers pass over the value */
+    node->faulty = true; /* the tag's meaning is unknown: readers skip the value */
   }
   attach(b, node);
 }
 
-/* One event into the tree. False: the document's end. */
+/* Adds one event to the tree. False: the end of the document. */
 static bool take(struct builder *b, struct fy_event *event) {
   const struct fy_mark *from = fy_event_start_mark(event), *to = fy_event_end_mark(event);
   size_t start = from ? from->input_pos : 0, end = to ? to->input_pos : start;
@@ -288,7 +289,7 @@ static void silence(struct fy_diag *diag, void *user, const char *text, size_t l
   (void)diag, (void)user, (void)text, (void)length; /* libfyaml would write to stderr */
 }
 
-/* libfyaml's own words on the first thing it could not read. */
+/* Reports libfyaml's message about the first thing it could not read. */
 static void report_syntax(struct document *document, struct fy_diag *diag) {
   void *previous = NULL;
   const struct fy_diag_error *error = fy_diag_errors_iterate(diag, &previous);

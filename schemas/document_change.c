@@ -1,4 +1,4 @@
-/* Values that are put into a document after it was read, and the document written out again with them. */
+/* Puts values into a document after it was read, and writes the changed document as text. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@ static document_node *create(struct document *document, enum document_kind kind,
   return node;
 }
 
-/* Sets mapping[key], replacing what is there. */
+/* Sets mapping[key]; replaces an existing value. */
 static bool set(document_node *mapping, const char *key, document_node *value) {
   document_node *name = create(mapping->document, DOCUMENT_SCALAR, key);
   if (!name)
@@ -31,11 +31,11 @@ static bool set(document_node *mapping, const char *key, document_node *value) {
   return true;
 }
 
-/* The mapping at a key of the document: what is there, or a new one for nothing. NULL without memory. A value that is
- * no mapping is returned, too. */
+/* The value at a key of the document, or a new mapping if it is absent or null. The value may be no mapping. NULL: no
+ * memory. */
 static document_node *section_at(struct document *document, const char *key) {
   const struct document_pair *pair = document_node_find(document->root, key);
-  if (pair && !document_value_is_null(pair->value)) /* "set:" with nothing behind it */
+  if (pair && !document_value_is_null(pair->value)) /* "set:" without a value */
     return pair->value;
   document_node *section = create(document, DOCUMENT_MAPPING, "");
   return section && set(document->root, key, section) ? section : NULL;
@@ -59,7 +59,7 @@ status document_change_put(struct document *document, const char *const keys[2],
 
 /* ---- writing ---- */
 
-/* Plain text that means the same inside brackets: words, numbers with units. All else is quoted. */
+/* Plain text that means the same inside brackets: words, numbers with units. Other text is quoted. */
 #define DIGITS  "0123456789"
 #define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 static bool stays_plain(const char *text) {

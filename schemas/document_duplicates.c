@@ -1,4 +1,4 @@
-/* Keys that one mapping gives twice. */
+/* Finds keys that one mapping contains twice. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,7 +24,7 @@ static void report(document_node *key, const char *path, const document_node *fi
                   document_report_line(document, first->start));
 }
 
-/* Sorted, not pairwise: a file of a hundred thousand keys must not take minutes. */
+/* Keys are sorted, not compared pairwise: a file of a hundred thousand keys must not take minutes. */
 bool document_duplicates_report(const document_node *mapping, const char *path) {
   document_node **keys = malloc((mapping->count + 1) * sizeof(document_node *));
   if (!keys)

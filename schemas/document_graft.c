@@ -1,10 +1,10 @@
-/* The contents of another document as a section of this one: a material's file as the material of a body. */
+/* Copies the contents of another document into a section of this one: a material's file as the material of a body. */
 #include <string.h>
 
 #include "schemas/document_tree.h"
 #include "schemas/text.h"
 
-/* What `to` gives itself stays. */
+/* Values that `to` already has stay unchanged. */
 static bool merge(document_node *to, document_node *from, const char *const *leave_out) {
   for (size_t i = 0; i < from->count; i++) {
     document_node *key = from->pairs[i].key, *value = from->pairs[i].value;
@@ -30,7 +30,7 @@ static document_node *scalar(struct document *document, const char *text, const 
   return node;
 }
 
-/* A scalar becomes an empty mapping; a mapping stays what it is. */
+/* A scalar becomes an empty mapping; a mapping stays unchanged. */
 static void make_section(document_node *section) {
   if (section->kind == DOCUMENT_SCALAR)
     section->count = 0;

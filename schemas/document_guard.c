@@ -3,14 +3,14 @@
 #include "schemas/document_tree.h"
 #include "schemas/text.h"
 
-/* YAML 1.2.2, 5.1: what is not printable there is refused here too, and so are the line ends of YAML 1.1 and byte order
- * marks in the middle, which tools disagree about. */
+/* YAML 1.2.2, 5.1: characters that are not printable there are refused. Also refused are the line ends of YAML 1.1 and
+ * byte order marks inside the text, which tools treat differently. */
 static const struct {
   uint32_t first, last;
 } refused[] = {
     {0x00, 0x08},     {0x0B, 0x0C},     {0x0E, 0x1F}, /* all but tab, line feed and carriage return */
     {0x7F, 0x9F},     {0x2028, 0x2029},               /* U+0085, U+2028, U+2029: line ends of YAML 1.1 */
-    {0xFEFF, 0xFEFF}, {0xFFFE, 0xFFFF},               /* byte order mark; no characters */
+    {0xFEFF, 0xFEFF}, {0xFFFE, 0xFFFF},               /* byte order mark; noncharacters */
 };
 
 static bool is_refused(uint32_t character) {
@@ -49,7 +49,7 @@ bool document_guard(struct document *document) {
     report_byte(document, bad);
     return false;
   }
-  bool good = true, margin = true; /* between a line's start and its first character that is no space */
+  bool good = true, margin = true; /* margin: only spaces since the start of the line */
   for (size_t i = 0; i < size; i++) {
     if (margin && text[i] == '\t') {
       document_report_at(document, i, i + 1, NULL, "a tab as indentation; YAML wants spaces");

@@ -1,4 +1,4 @@
-/* Nodes of a document's tree: made, put into a mapping or list, found by their key. */
+/* Nodes of a document's tree: creating, inserting into a mapping or list, finding by key. */
 #include <stdlib.h>
 #include <string.h>
 

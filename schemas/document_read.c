@@ -1,4 +1,4 @@
-/* A mapping into a struct, through its field table. */
+/* Reads a mapping into a struct through its field table. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ struct reading {
   } * places;
 };
 
-/* The words allowed at this level, each once; malloc'd, the strings, too. */
+/* The allowed words at this level, each once. The caller frees the array and the strings. */
 static char **siblings(const struct reading *r, const char *prefix) {
   const size_t length = strlen(prefix);
   size_t count = 0, extra = 0;
@@ -63,7 +63,7 @@ struct meaning {
   bool section;
 };
 
-/* `length` as snprintf returned it: a path that was cut means nothing. */
+/* `length` is snprintf's return value: a truncated path has no meaning. */
 static struct meaning meaning_of(const struct field_table *table, const char *path, int length) {
   struct meaning found = {0};
   if (length <= 0 || length >= PATH_SIZE - 2)
@@ -81,7 +81,7 @@ static struct meaning meaning_of(const struct field_table *table, const char *pa
 static void read_row(struct reading *r, const struct field *row, document_node *key, document_node *node) {
   struct place *place = &r->places[row - r->table->rows];
   if (place->key)
-    return; /* a duplicate: reported already, the first one counts */
+    return; /* a duplicate: already reported, the first one is used */
   struct field_value value;
   *place = (struct place){.key = key, .value = node, .good = document_value(node, row, &value)};
   if (place->good)
@@ -114,7 +114,7 @@ static void walk(struct reading *r, document_node *mapping, const char *prefix) 
   }
 }
 
-/* The innermost mapping of the document on the way to a path: a missing key is reported there. */
+/* The innermost mapping that the document has along a path: a missing key is reported there. */
 static document_node *holder(document_node *mapping, const char *path) {
   for (;;) {
     size_t length = strcspn(path, ".");
@@ -128,7 +128,7 @@ static document_node *holder(document_node *mapping, const char *path) {
   }
 }
 
-/* False when a row that controls this one was given with a bad value: the condition cannot be judged. */
+/* False when a controlling row was given with a bad value: the condition cannot be evaluated. */
 static bool judgeable(const struct reading *r, const struct field *row) {
   for (size_t links = 0; row && row->when && links <= r->table->count; links++) {
     row = field_controller(r->table, row);

@@ -6,7 +6,7 @@
 #include "schemas/document_tree.h"
 #include "schemas/text.h"
 
-enum { SHOWN = 120, BEFORE = 70 }; /* bytes of a long line that are shown, and of these before the error */
+enum { SHOWN = 120, BEFORE = 70 }; /* shown bytes of a long line, and how many of them precede the error */
 
 static void add(struct document *document, size_t start, size_t end, bool put, const char *path, const char *format,
                 va_list arguments) {
@@ -19,7 +19,7 @@ static void add(struct document *document, size_t start, size_t end, bool put, c
   char message[1024];
   int used = path && *path ? snprintf(message, sizeof message, "%.200s: ", path) : 0;
   vsnprintf(message + used, sizeof message - (size_t)used, format, arguments);
-  /* A quotation cut inside a character, or a control character from an escape, must not reach a terminal. */
+  /* A quotation that was cut inside a character, or a control character from an escape, must not reach a terminal. */
   for (size_t bad; (bad = document_guard_text(message, strlen(message))) < strlen(message);)
     message[bad] = '?';
   for (char *at = message; *at; at++)
@@ -55,13 +55,13 @@ static bool continues(char byte) {
   return ((unsigned char)byte & 0xC0) == 0x80;
 }
 
-/* The part of a line that is shown around an error, bytes of the text: [from, to) of the line [begin, finish). */
+/* The part of a line that is shown around an error, in bytes of the text: [from, to) of the line [begin, finish). */
 struct excerpt {
   size_t begin, finish, from, to;
-  bool readable; /* UTF-8. Else the line may hold anything: each byte beyond ASCII is shown as '?', in one column */
+  bool readable; /* the line is UTF-8. Otherwise each byte beyond ASCII is shown as '?', in one column */
 };
 
-/* Cuts a long line to what is shown, between characters. */
+/* Shortens a long line to the shown part, between characters. */
 static void cut_line(const char *text, size_t start, struct excerpt *e) {
   if (start - e->begin > BEFORE)
     e->from = start - BEFORE;
@@ -88,7 +88,7 @@ static struct excerpt excerpt_around(const struct document *document, size_t sta
   return e;
 }
 
-/* The guard reports a byte before it has seen the rest: control characters may follow. */
+/* The guard reports a byte before it has checked the rest of the line, so control characters may follow. */
 static void write_line(const char *text, const struct excerpt *e, FILE *out) {
   fprintf(out, "  %s", e->from > e->begin ? "..." : "");
   for (size_t i = e->from; i < e->to; i++) {
@@ -99,7 +99,7 @@ static void write_line(const char *text, const struct excerpt *e, FILE *out) {
   fputs(e->to < e->finish ? "...\n" : "\n", out);
 }
 
-/* ^~~~ below bytes [start, end). */
+/* Writes ^~~~ below bytes [start, end). */
 static void write_marker(const char *text, const struct excerpt *e, size_t start, size_t end, FILE *out) {
   fputs(e->from > e->begin ? "     " : "  ", out);
   for (size_t i = e->from; i < start; i++)
@@ -112,7 +112,7 @@ static void write_marker(const char *text, const struct excerpt *e, size_t start
   fputc('\n', out);
 }
 
-/* One error as text. Columns count characters from 1, as editors do. */
+/* Writes one error as text. Columns count characters from 1, as editors do. */
 static void write_error(const struct document *document, const struct document_error *error, FILE *out) {
   const char *text = document->text, *message = error->message ? error->message : "(no memory for the message)";
   if (error->put) {
@@ -138,7 +138,7 @@ static int by_place(const void *a, const void *b) {
   return (left->order > right->order) - (left->order < right->order);
 }
 
-/* Appends one error to the report `out`, of which `size` is the length, unless it would grow beyond `limit`. */
+/* Appends one error to the report `out`, whose length is *size, unless the report would grow beyond `limit`. */
 static bool append_error(const struct document *document, const struct document_error *error, FILE *out,
                          const size_t *size, size_t limit) {
   char *text = NULL;
@@ -148,7 +148,7 @@ static bool append_error(const struct document *document, const struct document_
     return false;
   write_error(document, error, memory);
   const bool whole = fclose(memory) == 0;
-  fflush(out); /* *size is up to date after this */
+  fflush(out); /* updates *size */
   const bool fits = whole && *size + length <= limit;
   if (fits)
     fwrite(text, 1, length, out);
@@ -157,7 +157,9 @@ static bool append_error(const struct document *document, const struct document_
 }
 
 char *document_report_text(struct document *document) {
-  enum { LIMIT = sizeof((struct error *)0)->message - 128 }; /* it must fit into struct error, with its last line */
+  enum {
+    LIMIT = sizeof((struct error *)0)->message - 128
+  }; /* the report with its last line must fit into struct error */
   const size_t kept = document->error_count < DOCUMENT_MOST_ERRORS ? document->error_count : DOCUMENT_MOST_ERRORS;
   qsort(document->errors, kept, sizeof *document->errors, by_place);
 
@@ -172,6 +174,6 @@ char *document_report_text(struct document *document) {
     fprintf(out, "%.60s: error: and %zu more; correct the ones above first\n", document->name,
             document->error_count - shown);
   if (text_close(out, &text) && size && text[size - 1] == '\n')
-    text[size - 1] = 0; /* messages end without a line end */
+    text[size - 1] = 0; /* remove the line end: messages have none */
   return text;
 }

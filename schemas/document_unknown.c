@@ -1,4 +1,4 @@
-/* Keys that no table knows, and which one may have been meant. */
+/* Reports keys that no table has, and suggests the intended one. */
 #include <string.h>
 
 #include "schemas/document_tree.h"
@@ -6,7 +6,7 @@
 
 enum { PATH_SIZE = 300, LIST_SIZE = 400 };
 
-/* "a, b, c", cut with "..." when it is too long. */
+/* "a, b, c"; a long list is cut and ends in "...". */
 static void write_list(const char *const *words, char list[LIST_SIZE]) {
   *list = 0;
   for (size_t i = 0; words && words[i]; i++)
@@ -26,7 +26,7 @@ void document_unknown_key(document_node *key, const char *path, const char *cons
   if (key->faulty)
     return;
   struct document *document = key->document;
-  if (document->error_count >= DOCUMENT_MOST_ERRORS) { /* only counted: the guess would not be shown */
+  if (document->error_count >= DOCUMENT_MOST_ERRORS) { /* only counted: the suggestion would not be shown */
     document->error_count++;
     return;
   }

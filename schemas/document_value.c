@@ -1,4 +1,4 @@
-/* One scalar through its row, and what a node is called in messages. */
+/* Reads one scalar through its row, and names nodes in messages. */
 #include <string.h>
 
 #include "schemas/document_tree.h"
@@ -50,8 +50,8 @@ const char *document_value_path(const document_node *node, char *path, size_t si
   return path;
 }
 
-/* field_parse's message begins with the row's path. The node's own path replaces it: it is the same or longer, such as
- * "vary." before it. */
+/* field_parse's message begins with the row's path. The node's own path replaces it: both are equal, or the node's has
+ * a prefix such as "vary.". */
 static void report(document_node *node, const struct field *row, const char *message) {
   char path[PATH_SIZE] = "";
   size_t length = strlen(row->path);
@@ -62,7 +62,7 @@ static void report(document_node *node, const struct field *row, const char *mes
   document_report(node, *path ? path : row->path, "%s", message);
 }
 
-/* `True` and `FALSE` are booleans of the core schema, too: the row's own spelling of them. */
+/* The row's own spelling: the core schema also accepts `True` and `FALSE` as booleans. */
 static const char *own_spelling(const struct field *row, const char *text) {
   static const char *const yes[] = {"True", "TRUE", NULL}, *const no[] = {"False", "FALSE", NULL};
   if (row->kind != FIELD_BOOLEAN)

@@ -1,4 +1,4 @@
-/* Names, values, conditions and bytes of field tables. What rows accept, in words, is in field_describe.c. */
+/* Names, values, conditions and bytes of field tables. field_describe.c describes in words what rows accept. */
 #include "schemas/field.h"
 
 #include <inttypes.h>
@@ -14,7 +14,7 @@ bool field_is_off(double value) {
 
 /* ---- names ---- */
 
-/* True when `suffix` is the last word of `path`, or its last words. */
+/* Does `path` end with the whole words of `suffix`? */
 static bool ends_with(const char *path, const char *suffix) {
   size_t path_length = strlen(path), length = strlen(suffix);
   if (length == 0 || length > path_length || strcmp(path + path_length - length, suffix) != 0)
@@ -111,7 +111,7 @@ size_t field_choice_count(const struct field *row) {
 }
 
 void field_copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
-  memset(to, 0, FIELD_TEXT_SIZE); /* all of it: some callers compare or hash whole structs */
+  memset(to, 0, FIELD_TEXT_SIZE); /* fill all bytes: some callers compare or hash whole structs */
   if (from)
     memcpy(to, from, strnlen(from, FIELD_TEXT_SIZE - 1));
 }
@@ -193,7 +193,7 @@ static bool value_is(const struct field *row, const void *object, const char *te
   return strlen(shown) == length && memcmp(shown, text, length) == 0;
 }
 
-/* Whether the row has one of the values that stand behind `=`, separated by `|`. */
+/* Does the row have one of the values after `=`, which are separated by `|`? */
 static bool is_one_of(const struct field *row, const void *object, const char *values) {
   for (const char *at = values;; at++) {
     const size_t length = strcspn(at, "|");
@@ -207,7 +207,7 @@ static bool is_one_of(const struct field *row, const void *object, const char *v
 
 const struct field *field_unmet(const struct field_table *table, const struct field *row, const void *object,
                                 const struct field **other) {
-  for (size_t links = 0; row->when; links++) { /* a circular chain has more links than the table rows */
+  for (size_t links = 0; row->when; links++) { /* a circular chain would have more links than the table has rows */
     const char *equals = strchr(row->when, '=');
     *other = equals ? field_controller(table, row) : NULL;
     if (!*other || links > table->count || !is_one_of(*other, object, equals + 1))
@@ -236,11 +236,11 @@ bool field_needs_unit(const struct field *row) {
 /* ---- bytes ---- */
 
 static uint64_t mix(uint64_t hash, const char *text) {
-  static const uint8_t end = 0xff; /* never a byte of our names, so "ab","c" differs from "a","bc" */
+  static const uint8_t end = 0xff; /* never a byte of our names, so "ab","c" and "a","bc" differ */
   return text_hash(text_hash(hash, text, strlen(text)), &end, 1);
 }
 
-/* A hash of names, kinds and choices, which decide how bytes are read. Ranges and texts may change freely. */
+/* A hash of names, kinds and choices, which define the encoding. Ranges and texts may change freely. */
 static uint64_t table_hash(const struct field_table *table) {
   static const char *const kinds[] = {"real", "integer", "boolean", "choice", "text"};
   uint64_t hash = TEXT_HASH_START;
@@ -266,7 +266,7 @@ static uint64_t take(const uint8_t *bytes, size_t count) {
   return value;
 }
 
-/* Bytes of a number, truth or choice; of a text those of its length. */
+/* Bytes of a number, boolean or choice; for a text its length. */
 static size_t width_of(const struct field *row) {
   switch (row->kind) {
   case FIELD_REAL:
@@ -278,7 +278,7 @@ static size_t width_of(const struct field *row) {
   return 1;
 }
 
-/* What stands in those bytes. */
+/* The bits of a number, boolean or choice. */
 static uint64_t bits_of(const struct field *row, const void *from) {
   uint64_t bits = 0;
   bool truth;
@@ -313,7 +313,7 @@ size_t field_encoded_size(const struct field_table *table, const void *object) {
   return field_encode(table, object, NULL);
 }
 
-/* Stores what stood in the bytes of a number, truth or choice. False: no such value. */
+/* Stores the bits of a number, boolean or choice. False: no such value. */
 static bool store_bits(const struct field *row, uint64_t bits, void *to) {
   const bool truth = bits == 1;
   const int index = (int)bits;

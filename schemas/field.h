@@ -1,12 +1,12 @@
-/* Field tables: one row per quantity, and nothing else lists the same names.
+/* Field tables: one row per quantity. No other list repeats these names.
  *
  * A table is a plain `static const struct field rows[]` beside the struct it describes, with offsetof. From it come:
- * YAML reading and its errors, defaults, `clast explain PATH`, JSON Schemas, resolved JSON, the identity of a run,
- * SQL columns, HDF5 attributes and the versioned byte encoding that serves pipe, MPI and store.
+ * YAML reading and its errors, defaults, `clast explain PATH`, JSON Schemas, resolved JSON, the identity of a run, SQL
+ * columns, HDF5 attributes and the versioned byte encoding that serves pipe, MPI and store.
  *
- * Paths are dotted ("grain.young_modulus"); a YAML document nests them as mappings. Values inside a struct are SI.
- * C types by kind: FIELD_REAL double, FIELD_INTEGER int64_t, FIELD_BOOLEAN bool, FIELD_CHOICE int (index into
- * choices), FIELD_TEXT char[FIELD_TEXT_SIZE] (inline, so that a struct is copied by assignment). */
+ * Paths are dotted ("grain.young_modulus"); a YAML document nests them as mappings. Values inside a struct are SI. C
+ * types by kind: FIELD_REAL double, FIELD_INTEGER int64_t, FIELD_BOOLEAN bool, FIELD_CHOICE int (index into choices),
+ * FIELD_TEXT char[FIELD_TEXT_SIZE] (inline, so that a struct is copied by assignment). */
 #ifndef CLAST_SCHEMAS_FIELD_H
 #define CLAST_SCHEMAS_FIELD_H
 
@@ -22,7 +22,7 @@ enum field_kind { FIELD_REAL, FIELD_INTEGER, FIELD_BOOLEAN, FIELD_CHOICE, FIELD_
 enum { FIELD_TEXT_SIZE = 256 };
 
 enum field_flags {
-  FIELD_REQUIRED = 1,      /* no default: a document must give it */
+  FIELD_REQUIRED = 1,      /* no default: a document must contain it */
   FIELD_MAY_BE_OFF = 2,    /* FIELD_REAL only: the keyword `off` is accepted; stored as NaN, see field_is_off() */
   FIELD_ABOVE_MINIMUM = 4, /* minimum itself is out of range */
   FIELD_BELOW_MAXIMUM = 8, /* maximum itself is out of range */
@@ -31,8 +31,8 @@ enum field_flags {
   FIELD_SILENT_DEFAULT = 32, /* FIELD_CHOICE and FIELD_REAL: the first choice, or the default, is left out of the
                               * identity. For an input that came later and whose first value changes no bit: stored runs
                               * are still found */
-  FIELD_PERCENT = 64, /* FIELD_REAL of unit "1": a strain or share that people give in percent and that may exceed 1. A
-                       * number without % is refused */
+  FIELD_PERCENT = 64, /* FIELD_REAL of unit "1": a strain or share that users give in percent and that may exceed 1. A
+                         number without % is refused */
   FIELD_FILE = 128,   /* FIELD_TEXT of inputs: a scene's document names a file, and the value is its SHA-256
                        * (engine/scene_files.h) */
 };
@@ -48,9 +48,9 @@ struct field {
   const char *const *choices; /* NULL-terminated, for CHOICE */
   const char *choice_docs;    /* optional, one sentence per choice, separated by '\n' */
   unsigned flags;
-  const char *when;   /* NULL, or "path=value|value" (a choice, boolean or integer of the same table, itself active):
-                       * active only then; given otherwise, it is refused */
-  const char *doc;    /* meaning, one or more sentences */
+  const char *when; /* NULL, or "path=value|value" (a choice, boolean or integer of the same table, itself active): the
+                       row is active only then; a value given otherwise is refused */
+  const char *doc;  /* meaning, one or more sentences */
   const char *source; /* paper and equation, or NULL */
   const char *label;  /* name on the axis of a chart, in lower case, without unit; NULL: field_label() makes one */
   int main_rank; /* results only: place among the main results, from 1; 0: not a main result. Old stores keep the CHECK
@@ -68,7 +68,7 @@ struct field_table {
 #define FIELD_TABLE(rows_, type_, name_, doc_)                                                                         \
   { .rows = rows_, .count = sizeof rows_ / sizeof rows_[0], .size = sizeof(type_), .name = name_, .doc = doc_ }
 
-/* A value on its own: what a sweep axis holds, what the store writes. */
+/* A value without its row: a value on a sweep axis, or a value that the store writes. */
 struct field_value {
   enum field_kind kind;
   double number;              /* REAL (NaN = off), BOOLEAN 0/1, CHOICE index */
@@ -80,14 +80,14 @@ size_t field_choice_count(const struct field *row);
 bool field_is_off(double value); /* value of a FIELD_MAY_BE_OFF row */
 
 /* Exact path, or unique suffix after a dot ("strain" for "threshold.strain"), or the path as the name of a column
- * ("threshold_strain"). NULL: *error names the nearest
- * known paths (or the candidates when a suffix is ambiguous), STATUS_CONTENT. */
+ * ("threshold_strain"). NULL: *error has STATUS_CONTENT and names the nearest known paths (or the candidates of an
+ * ambiguous suffix). */
 const struct field *field_find(const struct field_table *table, const char *path, struct error *error);
 
-/* Offers every path of the table, and every trailing part of it, as what may have been meant: "young_modulos" finds
+/* Offers every path of the table, and every trailing part of it, to the guess: "young_modulos" finds
  * "grain.young_modulus". */
 void field_guess(const struct field_table *table, struct text_guess *guess);
-/* The path of one table that is nearest, or NULL when none is near. */
+/* The nearest path of one table, or NULL when none is near. */
 const char *field_nearest(const struct field_table *table, const char *path);
 
 /* A path as the name of a column: dots become underscores. */
@@ -101,17 +101,18 @@ void field_label_path(const char *path, char *label, size_t size);
 /* A unit for people: "kg/mÂ³" for "kg/m^3"; empty for "1" and NULL. */
 void field_label_unit(const char *unit, char *text, size_t size);
 
-/* Fills every row, required ones with zero or NaN; members that no row describes are left alone. */
+/* Fills every row: its default, or zero or NaN if it is required. Members without a row do not change. */
 void field_defaults(const struct field_table *table, void *object);
 /* The row that decides whether this one is active; NULL when it has no condition, or a condition on an unknown row. */
 const struct field *field_controller(const struct field_table *table, const struct field *row);
 bool field_is_active(const struct field_table *table, const struct field *row, const void *object);
-/* The first row, from this one up through the rows that control it, whose condition is not met, and in *other the row
- * that it asks; NULL when the row is active. The rows of a circular chain are inactive. */
+/* The first row with an unmet condition, from this row up through its controlling rows; *other is the row in that
+ * condition. NULL when the row is active. The rows of a circular chain are inactive. */
 const struct field *field_unmet(const struct field_table *table, const struct field *row, const void *object,
                                 const struct field **other);
 
-/* Why a row is inactive: "used only when charge.kind is disc or ring, which is none"; empty text when it is active. */
+/* The reason why a row is inactive: "used only when charge.kind is disc or ring, which is none"; empty text when it is
+ * active. */
 void field_describe_inactive(const struct field_table *table, const struct field *row, const void *object, char *text,
                              size_t size);
 
@@ -121,25 +122,25 @@ void field_get(const struct field *row, const void *object, struct field_value *
 /* Two values of one row; NaN (off) equals NaN. */
 bool field_same_value(const struct field *row, const struct field_value *a, const struct field_value *b);
 /* Checks kind and range, then stores (-0 becomes 0). A REAL row accepts INTEGER values, an INTEGER row whole REAL
- * values. A choice comes by name in `text` (kind TEXT, too) or, with empty text, by index. STATUS_CONTENT with a
+ * values. A choice is given by name in `text` (also of kind TEXT) or, with empty text, by index. STATUS_CONTENT with a
  * message that names the path, the range and the value. */
 status field_set(const struct field *row, void *object, const struct field_value *value, struct error *error);
-/* Stores a value that is known to suit the row. */
+/* Stores a value that is known to be valid for the row. */
 void field_set_unchecked(const struct field *row, void *object, const struct field_value *value);
-/* The same without storing: *out is `value` in the row's own kind. */
+/* The same without storing: *out is `value`, converted to the row's kind. */
 status field_set_value(const struct field *row, const struct field_value *value, struct field_value *out,
                        struct error *error);
-/* The unit behind the row's numbers where people read them: "%", "m/s"; empty for a plain number. */
+/* The unit that users see after the row's numbers: "%", "m/s"; empty for a plain number. */
 const char *field_shown_unit(const struct field *row);
-/* A number of this row needs a unit behind it when a user writes it (0 does not). */
+/* Must a user write a unit after a number of this row? (0 needs none.) */
 bool field_needs_unit(const struct field *row);
-/* From text as a user types it: "5 km/s", "off", "true", a choice. Dimension, unit and range are checked. */
+/* Reads text as a user types it: "5 km/s", "off", "true", a choice. Dimension, unit and range are checked. */
 status field_parse(const struct field *row, const char *text, struct field_value *value, struct error *error);
-/* The same, and a number without a unit is in SI: for what the program itself wrote. */
+/* The same for text that the program wrote: a number without a unit is in SI. */
 status field_parse_si(const struct field *row, const char *text, struct field_value *value, struct error *error);
-/* What a number's row accepts: "above 0 m", "at least 1 and at most 12". */
+/* The accepted range of a number's row: "above 0 m", "at least 1 and at most 12". */
 void field_describe_range(const struct field *row, char *text, size_t size);
-/* What a choice's row accepts: "weak, strong or off". */
+/* The accepted words of a choice's row: "weak, strong or off". */
 void field_describe_choices(const struct field *row, char *text, size_t size);
 /* The values of the row's condition as words, "disc or ring", into `out`. */
 void field_describe_condition(const struct field *row, FILE *out);
@@ -152,21 +153,24 @@ void field_print_number(double number, char text[32]);
  * length as snprintf. */
 int field_print(const struct field *row, const struct field_value *value, char *buffer, size_t size);
 
-/* Resolved object as JSON text (nested, active rows only, shortest round-trip numbers, "off" as "off"). malloc'd. */
+/* Resolved object as JSON text (nested, active rows only, shortest round-trip numbers, "off" as "off"). The caller
+ * frees it; NULL: no memory. */
 char *field_json(const struct field_table *table, const void *object);
-/* Parts of it, for a caller that writes the outer object: its members without braces; one value. */
+/* Parts of that text, for a caller that writes the outer object: the members without braces; one value. */
 void field_json_members(const struct field_table *table, const void *object, FILE *out);
 void field_json_value(const struct field *row, const struct field_value *value, FILE *out);
-/* Canonical identity text: sorted lines `path=%a\n` of the active rows (text and choices by name). malloc'd. */
+/* Canonical identity text: sorted lines `path=%a\n` of the active rows (text and choices by name). The caller frees it;
+ * NULL: no memory. */
 char *field_identity(const struct field_table *table, const void *object);
 /* `clast explain`: one row, or every row under a prefix ("" = all), as text for people. Returns how many rows. */
 size_t field_explain(const struct field_table *table, const char *prefix, FILE *out);
 
-/* Table-driven byte encoding: little-endian, rows in table order, preceded by a hash of the table's names and kinds,
- * so that a reader with other rows refuses instead of misreading. */
+/* Table-driven byte encoding: little-endian, rows in table order, preceded by a hash of the table's names and kinds, so
+ * that a reader with other rows refuses the bytes instead of misreading them. */
 size_t field_encoded_size(const struct field_table *table, const void *object);
 size_t field_encode(const struct field_table *table, const void *object, uint8_t *bytes);
-/* Returns bytes consumed, 0 when truncated or made from another table. Members that no row describes are left alone. */
+/* Returns the number of bytes read; 0 when they are truncated or from another table. Members without a row do not
+ * change. */
 size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_t size, void *object);
 
 #endif

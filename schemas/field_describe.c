@@ -44,7 +44,7 @@ void field_describe_choices(const struct field *row, char *text, size_t size) {
   }
 }
 
-/* A bound as a user would write it: "0", "1e-7" of a row in percent. */
+/* A bound as a user would write it: "0", or "1e-7" for a row in percent. */
 static void print_bound(const struct field *row, double bound, char text[64]) {
   struct field bare = *row;
   bare.kind = FIELD_REAL;

@@ -1,4 +1,4 @@
-/* Rows as text for people: what `clast explain` prints. */
+/* Rows as text for users: the output of `clast explain`. */
 #include <string.h>
 
 #include "schemas/field.h"

@@ -12,7 +12,7 @@ static int by_path(const void *a, const void *b) {
   return strcmp((*left)->path, (*right)->path);
 }
 
-/* Text with what would break a line escaped, so that no value can pretend to be another line. */
+/* Writes text with line breaks and backslashes escaped, so that no value can look like another line. */
 static void write_text(const char *text, FILE *out) {
   for (; *text; text++) {
     if (*text == '\n')

@@ -23,8 +23,8 @@ void field_json_value(const struct field *row, const struct field_value *value, 
   }
 }
 
-/* Rows that share their first word become one object. They need not be neighbours in the table: every section is
- * opened once, at its first active row, and gathers the rest from there. */
+/* Rows that share their first word become one object. They need not be neighbours in the table: a section is opened
+ * once, at its first active row, and includes all later rows of the section. */
 static void write_level(const struct field_table *table, const void *object, const char *prefix, size_t length,
                         FILE *out) {
   bool first = true;

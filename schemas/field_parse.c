@@ -22,7 +22,7 @@ static status parse_real(const struct field *row, const char *text, struct field
   return STATUS_OK;
 }
 
-/* Digits alone, or with the row's own unit, keep all 64 bits; all else goes through a double: "1e6", "2 GiB". */
+/* Digits alone, or with the row's own unit, keep all 64 bits; other numbers ("1e6", "2 GiB") go through a double. */
 static status parse_integer(const struct field *row, const char *text, struct field_value *came, struct error *error) {
   char *end;
   came->integer = strtoll(text, &end, 10);
@@ -63,7 +63,7 @@ static status percent_missing(const struct field *row, const char *text, int len
                      row->path, length, text, length, text, percent);
 }
 
-/* "threshold.angle=4" would be 229 degrees: who leaves the unit out may mean any. */
+/* Without this check "threshold.angle=4" would be 229 degrees: a user who leaves out the unit may mean any. */
 static status check_unit(const struct field *row, const char *text, struct error *error) {
   if (!field_needs_unit(row) || !unit_is_bare(text) || strtod(text, NULL) == 0)
     return STATUS_OK;
@@ -88,7 +88,7 @@ static status parse(const struct field *row, const char *text, struct field_valu
   case FIELD_INTEGER: code = parse_integer(row, text, &came, error); break;
   case FIELD_BOOLEAN: code = parse_boolean(row, text, &came, error); break;
   case FIELD_TEXT: code = parse_text(row, text, &came, error); break;
-  case FIELD_CHOICE: /* any text: field_set_value names the choices */
+  case FIELD_CHOICE: /* any text is accepted here: field_set_value reports unknown choices */
     came.kind = FIELD_TEXT;
     field_copy_text(came.text, text);
     break;

@@ -28,7 +28,7 @@ static void print_plain(char *to, const char *mantissa, size_t count, long expon
 struct digits {
   char mantissa[24]; /* without sign and point */
   size_t count;
-  long exponent; /* of the first digit */
+  long exponent; /* decimal exponent of the first digit */
 };
 
 static struct digits shortest_digits(double number) {
@@ -47,13 +47,13 @@ static struct digits shortest_digits(double number) {
   return d;
 }
 
-/* Is it written without an exponent? 5000 and 1234567 are, 5e8 is not. */
+/* Is the number written without an exponent? 5000 and 1234567 are, 5e8 is not. */
 static bool is_plain(const struct digits *d) {
   const long most = d->count > 4 ? 9 : 6;
   return d->exponent >= 0 && d->exponent < most;
 }
 
-/* The number times 10^ten: its own shortest digits, with the point elsewhere. */
+/* Prints the number times 10^ten: its own shortest digits, with the decimal point moved. */
 static void print_shifted(double number, long ten, char text[32]) {
   if (isnan(number)) {
     strcpy(text, "off");
@@ -85,7 +85,7 @@ void field_print_number(double number, char text[32]) {
 
 static int print_real(const struct field *row, double number, char *buffer, size_t size) {
   char text[32];
-  print_shifted(number, row->flags & FIELD_PERCENT ? 2 : 0, text); /* decimal shifts are exact in unit_read, too */
+  print_shifted(number, row->flags & FIELD_PERCENT ? 2 : 0, text); /* decimal shifts are also exact in unit_read */
   const char *unit = isnan(number) ? "" : field_shown_unit(row);
   return snprintf(buffer, size, "%s%s%s", text, *unit ? " " : "", unit);
 }

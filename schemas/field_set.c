@@ -1,4 +1,4 @@
-/* A value into a row: brought to the row's kind, checked against its range and stored. */
+/* Converts a value to a row's kind, checks its range and stores it. */
 #include "schemas/field.h"
 
 #include <math.h>
@@ -37,7 +37,7 @@ static status set_real(const struct field *row, const struct field_value *value,
                        struct error *error) {
   out->number = value->kind == FIELD_REAL ? value->number + 0.0 : (double)value->integer; /* -0 becomes 0 */
   if (isnan(out->number) && row->flags & FIELD_MAY_BE_OFF) {
-    out->number = (double)NAN; /* one bit pattern */
+    out->number = (double)NAN; /* every NaN gets the same bits */
     return STATUS_OK;
   }
   return check_range(row, out->number, out, error);
@@ -71,7 +71,7 @@ static status unknown_choice(const struct field *row, const char *text, struct e
                      text, guess.nearest);
 }
 
-/* By name; by index when the name is empty. */
+/* Reads a choice by name, or by index when the name is empty. */
 static status set_choice(const struct field *row, const struct field_value *value, struct field_value *out,
                          struct error *error) {
   const size_t count = field_choice_count(row);
@@ -88,7 +88,7 @@ static status set_choice(const struct field *row, const struct field_value *valu
   return STATUS_OK;
 }
 
-/* Can a value of this kind become one of the row's kind? */
+/* Can a value of this kind be converted to the row's kind? */
 static bool suits(enum field_kind row, enum field_kind value) {
   switch (row) {
   case FIELD_REAL:

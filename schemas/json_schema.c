@@ -7,8 +7,8 @@
 
 #include "schemas/text.h"
 
-/* A decimal number, perhaps with a unit behind it. A schema cannot judge the unit or the value in SI: the reader does.
- * The last part keeps `$` from matching before a line end. */
+/* A decimal number, perhaps with a unit behind it. A schema cannot check the unit or the value in SI; the reader checks
+ * them. The last part keeps `$` from matching before a line end. */
 #define NUMBER          "^ *[-+]?([0-9]+\\\\.?[0-9]*|\\\\.[0-9]+)([eE][-+]?[0-9]+)?"
 #define UNIT            " *[^-+0-9. ,_\\\\n][^,_\\\\n]*| +1/[^,_\\\\n]+)$(?!\\\\n)"
 #define NUMBER_AND_UNIT NUMBER "( *|" UNIT /* the unit may be left out */
@@ -35,7 +35,7 @@ static void range(const struct field *row, FILE *out) {
   }
 }
 
-/* A number alone, within the row's range; of a row with a unit only 0. */
+/* A number without a unit, within the row's range. For a row with a unit only 0. */
 static void bare(const struct field *row, FILE *out) {
   const bool zero = row->flags & FIELD_ABOVE_MINIMUM ? row->minimum < 0 : row->minimum <= 0;
   if (field_needs_unit(row)) {
@@ -81,7 +81,7 @@ static void type(const struct field *row, FILE *out) {
   case FIELD_INTEGER: type_integer(row, out); break;
   case FIELD_BOOLEAN: fputs("\"type\": \"boolean\"", out); break;
   case FIELD_CHOICE: type_choice(row, out); break;
-  case FIELD_TEXT: /* a plain 12 or true is text, too */
+  case FIELD_TEXT: /* a plain 12 or true is accepted as text, too */
     fprintf(out, "\"type\": [\"string\", \"number\", \"boolean\"], %s\"maxLength\": %d",
             row->flags & FIELD_REQUIRED ? "\"minLength\": 1, " : "", FIELD_TEXT_SIZE - 1);
     break;
@@ -122,7 +122,7 @@ static void describe(const struct field *row, FILE *out) {
     fprintf(out, " Source: %s.", row->source);
 }
 
-/* What an editor shows: the row's doc, unit, choices, condition and source as one text. */
+/* The description that an editor shows: the row's doc, unit, choices, condition and source as one text. */
 static void description(const struct field *row, FILE *out) {
   char *text = NULL;
   size_t size = 0;
@@ -154,12 +154,12 @@ static bool same_start(const char *a, const char *b, size_t length) {
   return strncmp(a, b, length) == 0;
 }
 
-/* A required row without a condition, below a prefix of `length` bytes. */
+/* Is the row required, without a condition, below a prefix of `length` bytes? */
 static bool is_required(const struct field *row, const char *prefix, size_t length) {
   return row->flags & FIELD_REQUIRED && !row->when && same_start(row->path, prefix, length);
 }
 
-/* Does a required row before row i have the same word, which ends at `end`? */
+/* Does an earlier required row have the same word, which ends at `end`? */
 static bool named_before(const struct field_table *table, size_t i, size_t end) {
   for (size_t j = 0; j < i; j++) {
     const struct field *row = &table->rows[j];
@@ -202,7 +202,7 @@ static bool is_named(const struct field_table *table, const char *path, size_t w
   return false;
 }
 
-/* The section whose path is the first `whole` bytes of `path`, a dot at their end. */
+/* Writes the section whose path is the first `whole` bytes of `path`, including a dot at the end. */
 static void write_section(const struct field_table *table, const char *path, size_t whole, int indent, FILE *out) {
   const bool named = is_named(table, path, whole);
   fprintf(out, "\"type\": %s, \"additionalProperties\": false,", named ? "[\"object\", \"string\"]" : "\"object\"");
@@ -267,7 +267,7 @@ void json_schema_properties(const struct field_table *table, int indent, FILE *o
 
 /* ---- conditions ---- */
 
-/* True when the row has this condition, or its controlling row rests on it. */
+/* True when the row has this condition, or its controlling row depends on it. */
 static bool rests_on(const struct field_table *table, const struct field *row, const char *when) {
   for (size_t links = 0; row && row->when && links <= table->count; links++) {
     if (strcmp(row->when, when) == 0)
@@ -319,7 +319,7 @@ static bool holds_by_default(const struct field_table *table, const struct field
     return false;
   field_defaults(table, object);
   struct field probe = {.path = "", .when = when};
-  /* Only this link counts: the controlling row's own condition has its own clause. */
+  /* Only this condition is tested: the controlling row's own condition has its own clause. */
   struct field alone = *row;
   alone.when = NULL;
   const struct field_table small = {.rows = &alone, .count = 1, .size = table->size};
@@ -328,8 +328,8 @@ static bool holds_by_default(const struct field_table *table, const struct field
   return holds;
 }
 
-/* "The condition holds, or none of the rows that rest on it is given": an if/then clause, or if/else when the condition
- * holds by default, so that a document without the controlling key is judged by its default. */
+/* "The condition holds, or no row that depends on it is given": an if/then clause. It is if/else when the condition
+ * holds by default, so that a document without the controlling key follows the default. */
 static void write_condition(const struct field_table *table, const struct field *control, const char *when, int indent,
                             FILE *out) {
   const bool holds = holds_by_default(table, control, when);
@@ -355,7 +355,7 @@ static void write_condition(const struct field_table *table, const struct field 
   fputs("]}}", out);
 }
 
-/* One clause per condition, as an allOf array's items; returns how many. */
+/* Writes one clause per condition, as items of an allOf array; returns how many. */
 static int conditions(const struct field_table *table, int indent, FILE *out) {
   int count = 0;
   for (size_t i = 0; i < table->count; i++) {

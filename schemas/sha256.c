@@ -51,7 +51,7 @@ void sha256_text(const void *bytes, size_t size, char text[65]) {
   size_t left = size;
   for (; left >= 64; left -= 64, at += 64)
     compress(h, at);
-  uint8_t end[128] = {0}; /* section 5.1.1: a one, zeros, the length in bits */
+  uint8_t end[128] = {0}; /* section 5.1.1: a one bit, zero bits, the length in bits */
   if (left)
     memcpy(end, at, left);
   end[left] = 0x80;

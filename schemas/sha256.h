@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-/* Of `size` bytes, as 64 hexadecimal digits and a NUL. */
+/* The hash of `size` bytes, as 64 hexadecimal digits and a NUL. */
 void sha256_text(const void *bytes, size_t size, char text[65]);
 
 #endif

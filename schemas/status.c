@@ -1,4 +1,4 @@
-/* Meanings of statuses, and filling errors. */
+/* Meanings of statuses; functions that fill errors. */
 #include "schemas/status.h"
 
 #include <stdarg.h>

@@ -1,7 +1,7 @@
-/* Statuses and errors: what every fallible call returns and fills.
+/* Statuses and errors of every call that can fail.
  *
- * The values are the process exit codes (BSD sysexits), so main() returns a status unchanged. Nothing below
- * main() prints or exits; it returns a status and says in `struct error` what happened, where, and what to do. */
+ * The values are the process exit codes (BSD sysexits), so main() returns a status unchanged. Nothing below main()
+ * prints or exits; it returns a status and says in `struct error` what happened, where, and what to do. */
 #ifndef CLAST_SCHEMAS_STATUS_H
 #define CLAST_SCHEMAS_STATUS_H
 
@@ -23,15 +23,15 @@ typedef enum status {
 #undef STATUS_ENUM
 } status;
 
-/* Caller-owned. `message` is whole sentences for a person: what, where, what to do. It may span lines: a
- * report of a document with a few dozen errors fits (schemas/document.h). */
+/* Owned by the caller. `message` holds whole sentences for a person: what happened, where, what to do. It may span
+ * lines: a report of a document with a few dozen errors fits (schemas/document.h). */
 struct error {
   status status;
   char message[8192];
 };
 
-/* Fill *error (NULL is fine) and return `code`, so that `return status_fail(error, STATUS_IO, "...", ...)` reads well.
- */
+/* Fills *error (may be NULL) and returns `code`, so that a function can end with `return status_fail(error, STATUS_IO,
+ * "...", ...)`. */
 status status_fail(struct error *error, status code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 const char *status_meaning(status code);

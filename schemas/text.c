@@ -7,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lengths of sequences: what their first byte is, and the first character that needs so many bytes. */
+/* UTF-8 sequences by length: the pattern of the first byte, and the first character that needs this length. */
 static const struct {
   unsigned char mask, first;
   uint32_t least;
 } utf8[] = {{0x80, 0x00, 0}, {0xE0, 0xC0, 0x80}, {0xF0, 0xE0, 0x800}, {0xF8, 0xF0, 0x10000}};
 enum { UTF8_LONGEST = sizeof utf8 / sizeof utf8[0] };
 
-/* What the first byte says; 0: it begins no sequence. */
+/* The length that the first byte announces; 0: it begins no sequence. */
 static size_t utf8_claimed_length(unsigned char first) {
   for (size_t length = 1; length <= UTF8_LONGEST; length++)
     if ((first & utf8[length - 1].mask) == utf8[length - 1].first)
@@ -173,7 +173,7 @@ struct text_guess text_guess(const char *typed) {
 
 void text_guess_offer_part(struct text_guess *guess, const char *part, const char *name) {
   const size_t edits = text_distance(guess->typed, guess->length, part);
-  if (edits >= strlen(part)) /* nothing of it would be left */
+  if (edits >= strlen(part)) /* all letters would be edited */
     return;
   const size_t distance = 2 * edits + (part != name);
   if (distance >= guess->least)

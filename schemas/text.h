@@ -1,4 +1,4 @@
-/* Small tools for text that every folder needs: UTF-8, JSON strings, wrapped paragraphs, a hash, and the guess behind
+/* Small tools for text that every folder needs: UTF-8, JSON strings, wrapped paragraphs, a hash, and the guess for
  * every "did you mean". */
 #ifndef CLAST_SCHEMAS_TEXT_H
 #define CLAST_SCHEMAS_TEXT_H
@@ -18,16 +18,16 @@ uint32_t text_utf8_character(const char *text, size_t length);
 /* Writes `text` as a JSON string with its quotes. Bytes that are not UTF-8 become U+FFFD. */
 void text_json_string(const char *text, FILE *out);
 
-/* Whether `text` is one of the words, which end with NULL. No list has no words. */
+/* Is `text` one of the words of a NULL-terminated list? An absent list has no words. */
 bool text_is_one_of(const char *text, const char *const *words);
 
-/* Appends to `text`, which has room for `size` bytes; what does not fit is cut. */
+/* Appends to `text`, an array of `size` bytes; text that does not fit is cut. */
 void text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /* The first sentence of `doc` without its full stop. */
 void text_sentence(const char *doc, char *text, size_t size);
 
-/* Is `word` one of the words of a text, which single spaces separate? */
+/* Is `word` one of the words in `words`, which single spaces separate? */
 bool text_has_word(const char *words, const char *word);
 
 /* Closes the stream that open_memstream made for *text. Returns the text, which the caller frees; NULL (and *text is
@@ -46,7 +46,7 @@ uint64_t text_hash(uint64_t hash, const void *bytes, size_t size);
 enum { TEXT_DISTANCE_LENGTH = 128 };
 
 /* Edit distance (optimal string alignment): insertions, deletions, changed letters and swapped neighbours each cost 1.
- * `a` is `length` bytes. SIZE_MAX when a name is longer than TEXT_DISTANCE_LENGTH. */
+ * `a` has `length` bytes. SIZE_MAX when a name is longer than TEXT_DISTANCE_LENGTH. */
 size_t text_distance(const char *a, size_t length, const char *b);
 
 /* The largest distance at which a name of this length is worth a guess: about a third of it; 0 for one letter. */
@@ -60,8 +60,8 @@ struct text_guess {
 };
 struct text_guess text_guess(const char *typed);
 void text_guess_offer(struct text_guess *guess, const char *name);
-/* Offers `name`, compared by the part of it that begins at `part`. A part costs half an edit, so that a whole name wins
- * over a part that is equally near. */
+/* Offers `name`, compared by the part of it that begins at `part`. A part costs half an edit, so that a whole name is
+ * preferred to an equally near part. */
 void text_guess_offer_part(struct text_guess *guess, const char *part, const char *name);
 
 #endif

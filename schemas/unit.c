@@ -1,4 +1,4 @@
-/* Units of measure: a recursive descent over their grammar, and numbers with units. The names are in unit_names.c. */
+/* Units of measure: a recursive-descent parser, and numbers with units. The names are in unit_names.c. */
 #include "schemas/unit.h"
 
 #include <ctype.h>
@@ -226,7 +226,7 @@ static status wrong_dimension(const struct unit *want, const char *want_text, co
 
 /* A decimal number as text: [+-] digits [. digits] [e [+-] digits]. */
 struct decimal {
-  size_t length, mantissa; /* of the whole, 0 when there is none; of what precedes the exponent */
+  size_t length, mantissa; /* of the whole number (0: none); of the part before the exponent */
   long exponent;
   bool zero;
 };
@@ -250,7 +250,7 @@ static size_t mantissa_end(const char *text) {
   return end > begin + 1 ? end : 0; /* "." alone is no number */
 }
 
-/* The exponent behind the mantissa, if there is one: then *end moves behind it. Beyond 1e5 it counts as about that. */
+/* The exponent after the mantissa; 0 if there is none. *end moves behind it. Values beyond 1e5 are truncated. */
 static long read_exponent(const char *text, size_t *end) {
   if (text[*end] != 'e' && text[*end] != 'E')
     return 0;
@@ -293,7 +293,7 @@ static status no_number(const char *text, const char *expected, struct error *er
                      QUOTE, text);
 }
 
-/* What comes right behind a number and looks like a part of it. */
+/* Refuses text directly after a number that looks like a part of it. */
 static status check_end(const char *text, size_t length, struct error *error) {
   const char *rest = text + length;
   if (length == 1 && text[0] == '0' && (*rest == 'x' || *rest == 'X' || *rest == 'o'))
@@ -307,7 +307,7 @@ static status check_end(const char *text, size_t length, struct error *error) {
   return STATUS_OK;
 }
 
-/* The unit behind a number, of the dimension of `want`; nothing there means `want` itself. */
+/* The unit after a number, with the dimension of `want`; without a unit it is `want` itself. */
 static status read_unit(const char *rest, const struct unit *want, const char *want_text, struct unit *got,
                         struct error *error) {
   const bool spaced = *rest == ' ';
@@ -356,7 +356,7 @@ status unit_read(const char *text, const char *expected_unit, double *si, struct
   if (code)
     return code;
 
-  char shifted[512]; /* the powers of ten of number and unit together: one rounding */
+  char shifted[512]; /* add the powers of ten of number and unit: only one rounding */
   if (number.mantissa > sizeof shifted - 32)
     return status_fail(error, STATUS_CONTENT, "a number of more than 480 digits; write fewer");
   snprintf(shifted, sizeof shifted, "%.*se%ld", (int)number.mantissa, text, number.exponent + got.ten);

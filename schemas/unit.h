@@ -1,5 +1,5 @@
-/* Units: text such as "km/s", "kg/m^3", "dyn/cm^2", "deg", "%" turned into a factor to SI and a dimension, once, when a
- * document is read. Everything behind that is SI doubles. */
+/* Units: text such as "km/s", "kg/m^3", "dyn/cm^2", "deg", "%" converted to a factor to SI and a dimension, once, when
+ * a document is read. All later values are doubles in SI. */
 #ifndef CLAST_SCHEMAS_UNIT_H
 #define CLAST_SCHEMAS_UNIT_H
 
@@ -8,13 +8,13 @@
 
 #include "schemas/status.h"
 
-/* The dimensions kg, m, s, K, rad, byte. The last two are kept apart so that "4 deg" is refused for a length or a plain
- * number. */
+/* The dimensions kg, m, s, K, rad, byte. The last two are separate dimensions so that "4 deg" is refused for a length
+ * or a plain number. */
 enum { UNIT_BASES = 6 };
 
 struct unit {
   double factor; /* 1 of this unit in SI: times / per * 10^ten */
-  int ten;       /* kept apart so that "5 cm", "50 mm" and "0.05 m" become the same double: decimal shifts are exact */
+  int ten;       /* separate so that "5 cm", "50 mm" and "0.05 m" become the same double: decimal shifts are exact */
   double times, per;
   signed char power[UNIT_BASES];
 };
@@ -25,17 +25,17 @@ struct unit {
 status unit_parse(const char *text, struct unit *unit, struct error *error);
 bool unit_same_dimension(const struct unit *a, const struct unit *b);
 
-/* True for a number alone: no unit behind it. */
+/* Is the text a number without a unit? */
 bool unit_is_bare(const char *text);
 /* Another unit that people often use where `unit` is expected ("deg" for "rad"); NULL when there is none. */
 const char *unit_usual(const char *unit);
 
 /* "5 km/s" with expected "m/s" -> 5000. A number without a unit is in the expected unit. Refuses NaN, inf, hex floats,
- * trailing text, wrong dimension; messages say which unit was expected and what came. The result is the double nearest
+ * trailing text, wrong dimension; messages name the expected unit and quote the text. The result is the double nearest
  * to the exact decimal value whenever the unit is a power of ten of SI. */
 status unit_read(const char *text, const char *expected_unit, double *si, struct error *error);
 
-/* The unit of such a text, within it: "km/s" of "5 km/s"; "" when there is none, or no number. */
+/* The part of such a text that is its unit: "km/s" in "5 km/s"; "" without a unit or a number. */
 const char *unit_of(const char *text);
 
 #endif

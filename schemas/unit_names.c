@@ -54,7 +54,7 @@ static const struct prefix {
 };
 enum { PREFIXES = sizeof prefixes / sizeof prefixes[0] };
 
-/* Spellings that people use, and the unit meant. */
+/* Spellings that users write, and the unit that they mean. */
 static const char *const habits[][2] = {
     {"kph", "km/h"},    {"kmh", "km/h"},    {"kmph", "km/h"},    {"mph", "km/h"},    {"sec", "s"},
     {"secs", "s"},      {"second", "s"},    {"seconds", "s"},    {"msec", "ms"},     {"usec", "us"},
@@ -72,7 +72,7 @@ static const char *const habits[][2] = {
     {"ergs", "erg"},    {"tonne", "t"},     {"ton", "t"},        {"tons", "t"},      {"tonnes", "t"},
 };
 
-/* Case does not count, except in a single letter: "m" and "M" differ. */
+/* Compares without regard to case, except for a single letter: "m" and "M" differ. */
 static bool same_but_case(const char *name, size_t length, const char *known) {
   return strlen(known) == length && strncasecmp(known, name, length) == 0 && (length > 1 || known[0] == name[0]);
 }
@@ -84,8 +84,8 @@ static size_t half_edits(const char *name, size_t length, const char *known) {
   return 2 * text_distance(name, length, known);
 }
 
-/* Not text_guess: units are so short that only one edit is a guess, and a wrong case is nearer than that ("KM", "gpa").
- */
+/* text_guess is not used: units are so short that only one edit is a guess, and a wrong case is nearer than one edit
+ * ("KM", "gpa"). */
 bool unit_names_near(const char *name, size_t length, char out[UNIT_NAMES_LENGTH]) {
   for (size_t i = 0; i < sizeof habits / sizeof habits[0]; i++)
     if (same_but_case(name, length, habits[i][0])) {
@@ -117,7 +117,7 @@ static const struct base *find_base(const char *name, size_t length) {
   return NULL;
 }
 
-/* The base of a name with a prefix, whose power of ten becomes *ten. */
+/* The base unit of a name with a prefix; *ten is the prefix's power of ten. */
 static const struct base *find_prefixed(const char *name, size_t length, int *ten) {
   for (size_t p = 0; p < PREFIXES; p++) {
     const size_t cut = strlen(prefixes[p].name);

@@ -9,10 +9,11 @@
 
 enum { UNIT_NAMES_LENGTH = 16 };
 
-/* The unit of this name, which may have a prefix ("km"); its `factor` is not filled. `name` is `length` bytes. */
+/* Finds the unit of this name, which may have a prefix ("km"); does not fill its `factor`. `name` has `length`
+ * bytes. */
 bool unit_names_find(const char *name, size_t length, struct unit *unit);
 
-/* The known unit nearest to an unknown name, into `out`; false when none is near. */
+/* Writes the known unit nearest to an unknown name into `out`; false when none is near. */
 bool unit_names_near(const char *name, size_t length, char out[UNIT_NAMES_LENGTH]);
 
 #endif
