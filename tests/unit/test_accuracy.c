@@ -1,4 +1,4 @@
-/* Which settings and how many seeds reach an accuracy: known answers from made-up studies. */
+/* Which settings and how many seeds reach an accuracy: known answers from invented studies. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -72,8 +72,8 @@ static void add_study(struct store *store, int64_t point, const char *knob, size
   assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
 }
 
-/* Own setting: 10 s, error 0.03. Twice the time step: 5 s, error 0.04. A quarter: 40 s, error 0.01. A model that is
- * cheap is no choice. */
+/* Own setting: 10 s, error 0.03. Twice the time step: 5 s, error 0.04. A quarter: 40 s, error 0.01. A cheaper model is
+ * not a candidate. */
 static void store_study(const struct campaign *campaign, bool open) {
   struct store *store = NULL;
   int64_t point = 0;
@@ -111,14 +111,14 @@ static void the_cheapest_that_reaches_it(void **state) {
   assert_true(value.number == 2e-6);
   campaign_free(campaign);
 
-  /* Nearer: only the finest reaches it. */
+  /* A smaller margin: only the finest setting reaches it. */
   campaign = campaign_of(HEAD "accuracy: {quantity: largest_fraction, within: 0.025}\n");
   assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_OK);
   field_get(field_find(campaign->scene->kind->inputs, "fidelity.time_step", &error), campaign->scene->inputs, &value);
   assert_true(value.number == 2.5e-7);
   campaign_free(campaign);
 
-  /* Nothing reaches it, and nothing counts whose error is not bounded. */
+  /* No setting reaches it, and a setting without a bound of its error does not count. */
   campaign = campaign_of(HEAD "accuracy: {within: 0.01}\n");
   assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "0.01"));

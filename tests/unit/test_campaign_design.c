@@ -105,7 +105,7 @@ static void refusals_say_the_remedy(void **state) {
   assert_int_equal(design_create(DESIGN_RANDOM, NULL, 0, 5, 0, &design, &error), STATUS_CONTENT);
   assert_int_equal(design_create(DESIGN_SOBOL, &uniform, 1, (UINT64_C(1) << 30) + 1, 0, &design, &error),
                    STATUS_CONTENT);
-  /* GSL lets 41 dimensions through and answers zeros: the check is ours. */
+  /* GSL accepts 41 dimensions and returns zeros: the check is ours. */
   struct design_axis many[41];
   for (int i = 0; i < 41; i++)
     many[i] = uniform;
@@ -118,7 +118,7 @@ static void refusals_say_the_remedy(void **state) {
   assert_int_equal(design_create(DESIGN_GRID, wide, 4, 0, 0, &design, &error), STATUS_CONTENT); /* 2^56 points */
 }
 
-/* Every n, small ones above all: an order of 0..n-1, and over seeds each number equally often in each place. */
+/* Every n, especially small ones: an order of 0..n-1; over seeds each number is equally often in each place. */
 static void latin_orders_are_permutations_and_even(void **state) {
   (void)state;
   for (uint64_t n = 1; n <= 300; n += n < 20 ? 1 : 37) {
@@ -139,7 +139,7 @@ static void latin_orders_are_permutations_and_even(void **state) {
       for (uint64_t j = 0; j < n; j++)
         chi += (count[i][j] - expected) * (count[i][j] - expected) / expected;
     double freedom = (double)((n - 1) * (n - 1)); /* rows and columns sum to SEEDS */
-    /* Fixed seeds: no chance in the test. One in 1e5 such sequences of an honest shuffle would lie above. */
+    /* Fixed seeds: the test is deterministic. One in 1e5 such sequences of a correct shuffle would lie above. */
     assert_true(chi * (double)(n - 1) / (double)n < gsl_cdf_chisq_Pinv(1 - 1e-5, freedom));
   }
 }
@@ -160,7 +160,7 @@ static void latin_projections_are_stratified(void **state) {
       assert_int_equal(strata[s], 1);
     assert_true(fabs(inside / N - 0.5) < 5 * sqrt(1 / 12.0 / N)); /* draws within strata: five standard errors */
   }
-  /* Dimensions are not in step. Rank correlation of independent orders: sd 1/sqrt(N-1). */
+  /* Dimensions are independent. Rank correlation of independent orders: sd 1/sqrt(N-1). */
   double product = 0;
   for (uint64_t i = 0; i < N; i++)
     product += (design_latin_coordinate(11, N, i, 0) - 0.5) * (design_latin_coordinate(11, N, i, 1) - 0.5) * 12 / N;
@@ -217,7 +217,7 @@ static void quantiles_are_the_laws(void **state) {
   struct design_axis logs = law(DESIGN_AXIS_LOG_UNIFORM, 1e-3, 1e3, -HUGE_VAL, HUGE_VAL);
   design_axis_quantile(&logs, 0.5, &value);
   assert_true(fabs(value.number - 1) < 1e-12);
-  design_axis_quantile(&normal, 0, &value); /* a draw of exactly 0 is no infinity */
+  design_axis_quantile(&normal, 0, &value); /* a draw of exactly 0 does not give infinity */
   assert_true(isfinite(value.number));
 }
 
@@ -303,7 +303,8 @@ static void random_points_are_uniform(void **state) {
   assert_true(fabs(product) < 4 / sqrt(N));
 }
 
-/* The first of a million points comes at once, and the last is there too; the time stands for memory nobody builds. */
+/* The first of a million points comes at once, and the last is there too. The time shows that the points are not all
+ * stored in memory. */
 static void a_million_points_are_a_counter(void **state) {
   (void)state;
   struct design_axis axes[3] = {law(DESIGN_AXIS_UNIFORM, 0, 1, -HUGE_VAL, HUGE_VAL),

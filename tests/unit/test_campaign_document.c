@@ -1,4 +1,4 @@
-/* Campaign documents: what good ones mean, what bad ones are told. Every bad one with the line, the path and the
+/* Campaign documents: the meaning of good ones and the errors of bad ones. Every error has the line, the path and the
  * remedy. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -40,7 +40,7 @@ static struct campaign *good(const char *text) {
   return campaign;
 }
 
-/* `first` opens the report; the others, separated by '|', stand in it somewhere. */
+/* `first` opens the report; it contains the others, separated by '|', in any place. */
 static void bad(const char *text, const char *expected) {
   struct campaign *campaign = NULL;
   struct error error = {0};
@@ -159,7 +159,7 @@ static void bad_documents_are_told_what_to_do(void **state) {
   bad(HEAD "vary: {beam.young_modulus: {linked: strain, values: [1 GPa]}, strain: [1 %, 2 %]}\n", "as many as");
   bad(HEAD "set: {contact.friction: [1, 2]}\n", "several values belong in `vary`");
   bad(HEAD "set: {contact.friction: 5 m}\n", "t.yaml:3:|set.contact.friction");
-  bad(HEAD "set: {impact.speed: 5 m/s}\n", "impact.speed"); /* does nothing in an explosion */
+  bad(HEAD "set: {impact.speed: 5 m/s}\n", "impact.speed"); /* has no effect in an explosion */
   bad(HEAD "seeds: {per_point: 0}\n", "t.yaml:3:|seeds.per_point");
   bad(HEAD "seeds: {per_point: 3.5}\n", "t.yaml:3:|seeds.per_point");
   bad(HEAD "seeds: {per_point: 3, until: {half_width: 0.1}}\n", "exclude each other");
@@ -245,7 +245,7 @@ static void examples_are_ready_to_run(void **state) {
   assert_int_equal(seen, 11);
 }
 
-/* Documents and scenes of stores from before units were asked for. */
+/* Documents and scenes of stores from before units were required. */
 static void stored_numbers_are_si(void **state) {
   (void)state;
   static const char text[] = "name: x\nscene: disc-explosion\nset: {threshold.angle: 0.1}\n"
@@ -259,7 +259,7 @@ static void stored_numbers_are_si(void **state) {
   assert_int_equal(campaign_parse_stored("t.yaml", text, NULL, &campaign, &error), STATUS_OK);
   assert_true(campaign->axes[0].levels[0].number == 0.02 && campaign->time_limit == 60);
 
-  char *json = scene_json(campaign->scene); /* bare SI numbers, as in every store */
+  char *json = scene_json(campaign->scene); /* SI numbers without unit, as in every store */
   struct scene *again = NULL;
   assert_non_null(json);
   assert_int_equal(scene_parse("t", json, &again, &error), STATUS_CONTENT);

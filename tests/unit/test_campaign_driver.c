@@ -1,5 +1,5 @@
-/* The driver against a real store, with a farm played by the test: same bits whatever the slots, the order and the
- * interruptions; resume, growth, attempts, the failure limit, surplus, fields. */
+/* The driver against a real store, with a farm played by the test: same bits for any slots, order and interruptions;
+ * resume, growth, attempts, the failure limit, surplus, fields. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -47,7 +47,7 @@ static void same_bits_whatever_the_slots(void **state) {
     struct play play = {.slots = 4, .order = 9 + (uint64_t)invocations, .stop_after = 1 + invocations % 5};
     code = play_once(&play, campaign, path, &summary);
     assert_true(code == STATUS_STOPPED || code == STATUS_OK);
-    assert_int_equal(summary.runs_reused, done); /* nothing that was reported is lost or done twice */
+    assert_int_equal(summary.runs_reused, done); /* no reported run is lost or computed twice */
     done += summary.runs_done;
     free(play.says);
   }
@@ -100,7 +100,7 @@ static void growing_campaigns_repeat_nothing(void **state) {
   assert_int_equal(play_once(&play, wider, path, &summary), STATUS_OK);
   assert_int_equal(summary.runs_done, 14);
   assert_int_equal(summary.runs_reused, 28);
-  wider->first_seed = 4; /* seeds 4..10 of which 4..7 are there, as other replicates */
+  wider->first_seed = 4; /* seeds 4..10; 4..7 exist already, as other replicates */
   assert_int_equal(play_once(&play, wider, path, &summary), STATUS_OK);
   assert_int_equal(summary.runs_reused, 6 * 4);
   assert_int_equal(summary.runs_done, 6 * 3);
@@ -132,7 +132,7 @@ static void a_rule_gives_the_same_prefix_whatever_the_slots(void **state) {
   assert_int_equal(play_once(&wide, campaign, many, &again), STATUS_OK);
   assert_int_equal(again.runs_done, 0);
   free(a), free(b);
-  /* A fixed number takes in what was computed ahead. */
+  /* A campaign with a fixed number of runs includes runs that were computed ahead. */
   campaign->per_point = 120;
   char *c = complete(campaign, many, 5, 4), *d = complete(campaign, one, 1, 0);
   assert_string_equal(c, d);
@@ -180,7 +180,7 @@ static void attempts_are_kept_and_repeated_up_to_the_limit(void **state) {
   assert_int_equal(summary.runs_failed, 2);
   assert_int_equal(play_once(&good, campaign, slow, &summary), STATUS_OK);
   assert_int_equal(summary.runs_done, 0);
-  campaign->time_limit = 20; /* a raised limit is a new chance */
+  campaign->time_limit = 20; /* a higher limit allows a new attempt */
   assert_int_equal(play_once(&good, campaign, slow, &summary), STATUS_OK);
   assert_int_equal(summary.runs_done, 2);
   free(crashing.says), free(good.says), free(slowly.says);
@@ -192,7 +192,7 @@ static enum play_fate lose_three(uint64_t seed, int attempt) {
   return seed == 3 ? PLAY_LOST : PLAY_RUN;
 }
 
-/* Runs that the machine ended are left, whatever their number, and computed when the machine lets them. */
+/* Runs that the machine ended are skipped, whatever their number, and computed when the machine allows it. */
 static void lost_runs_are_never_given_up(void **state) {
   (void)state;
   const char *path = in("lost.db");
@@ -277,7 +277,7 @@ static void fields_are_kept_as_asked(void **state) {
   snprintf(kept, sizeof kept, "%s/fields-fields", folder);
   assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
   assert_int_equal(files_in(kept), 0);
-  campaign->keep = CAMPAIGN_KEEP_EXTREMES; /* asked for later: replayed */
+  campaign->keep = CAMPAIGN_KEEP_EXTREMES; /* requested later: replayed */
   assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
   assert_int_equal(summary.runs_done, 0);
   assert_int_equal(summary.fields_written, 4);
@@ -327,7 +327,7 @@ static void broken_answers_are_refused(void **state) {
   assert_int_equal(result.estimate_count, ESTIMATES_COUNT);
   run_result_clear(&result);
   for (size_t cut = 0; cut < size; cut += cut < 200 ? 1 : 97) {
-    uint8_t *part = malloc(cut + 1); /* an exact copy, so that a sanitizer sees any reading beyond it */
+    uint8_t *part = malloc(cut + 1); /* an exact copy, so that a sanitizer detects any read beyond it */
     memcpy(part, bytes, cut);
     part = realloc(part, cut ? cut : 1);
     assert_int_equal(run_decode_result(&play_kind, part, cut, &result, &error), STATUS_INTERNAL);

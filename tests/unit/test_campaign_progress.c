@@ -61,7 +61,7 @@ static void a_log_gets_a_line_per_twentieth_or_minute(void **state) {
   rewind(out);
   progress = progress_create(out, PROGRESS_PLAIN, false, 0);
   now = of(3);
-  for (int second = 0; second <= 200; second++) /* nothing finishes: a line a minute says that it lives */
+  for (int second = 0; second <= 200; second++) /* no run finishes: one line a minute shows that the program is alive */
     progress_update(progress, &now, second, false);
   progress_free(progress);
   fclose(out);

@@ -1,5 +1,5 @@
-/* The stopping rule looks at complete prefixes: unbiased where "the first n that finished" is not; and it never decides
- * before its minimum, grows by its batch, ends at its cap. The cost model learns. */
+/* The stopping rule uses complete prefixes: it is unbiased where "the first n that finished" is not. It never decides
+ * before its minimum, grows by its batch and ends at its cap. The cost model learns. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -35,7 +35,7 @@ static void judges_prefixes(void **state) {
   }
   assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_CAP_REACHED);
   rule.half_width = 10;
-  prefix = 60; /* the guard against chance runs of equal values lets nothing stop before 50 */
+  prefix = 60; /* the guard against runs that are equal by chance prevents any stop before 50 */
   assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_INTERVAL_MET);
   assert_int_equal(prefix, 60);
   for (int r = 0; r < 40; r++) /* failed runs give no confidence */
@@ -46,9 +46,9 @@ static void judges_prefixes(void **state) {
 }
 
 /* A farm of 32 slots whose runs take the longer the larger their outcome (correlation 0.8 of the logarithm), played
- * many times. The point's own rule decides when to stop; what is compared is which runs are averaged. Standard error of
- * the mean of PLAYS plays of >= 30 unit normals: 1/sqrt(30 PLAYS) = 0.0041; five of them are allowed. Stopping itself
- * biases a mean of symmetric values not at all. */
+ * many times. The point's own rule decides when to stop; the test compares averages over different sets of runs.
+ * Standard error of the mean of PLAYS plays of >= 30 unit normals: 1/sqrt(30 PLAYS) = 0.0041; five of them are allowed.
+ * Stopping itself does not bias a mean of symmetric values. */
 static void prefixes_are_unbiased_where_first_finished_is_not(void **state) {
   (void)state;
   enum { PLAYS = 2000, SLOTS = 32, MOST = 200 };
@@ -74,7 +74,7 @@ static void prefixes_are_unbiased_where_first_finished_is_not(void **state) {
       on[s] = -1;
     for (double now = 0; !point.decided;) {
       int soonest = -1;
-      for (int s = 0; s < SLOTS; s++) { /* as the driver: the prefix first, then ahead of it */
+      for (int s = 0; s < SLOTS; s++) { /* like the driver: the prefix first, then replicates ahead of it */
         if (on[s] < 0) {
           int64_t r = point_next(&point, false);
           if (r < 0)
@@ -156,7 +156,7 @@ static void fields_of_the_extremes(void **state) {
   campaign = (struct campaign){.keep = CAMPAIGN_KEEP_FIRST, .keep_first = 2};
   replicates[0].fields = true;
   point_want_fields(&point, &campaign);
-  assert_false(replicates[0].replay || replicates[1].replay); /* there already; failed */
+  assert_false(replicates[0].replay || replicates[1].replay); /* one has its fields already, one failed */
 }
 
 static void costs_are_learnt(void **state) {
@@ -167,7 +167,7 @@ static void costs_are_learnt(void **state) {
   cost_learn(&model, &cheap, 2);
   assert_true(fabs(cost_predict(&model, &dear) - 6) < 1e-12); /* 0.2 s per unit of work */
   for (int i = 0; i < 999; i++)
-    cost_learn(&model, &cheap, 8); /* this point is dearer than its work says */
+    cost_learn(&model, &cheap, 8); /* this point costs more than its work predicts */
   cost_learn(&model, &dear, 1);
   assert_true(fabs(cost_predict(&model, &cheap) - 8) < 0.01 && cost_predict(&model, &dear) < 13);
   cost_learn(&model, &dear, NAN);

@@ -52,8 +52,8 @@ static void every_knob_names_inputs_of_its_engine(void **state) {
   }
 }
 
-/* Every knob of every built-in scene either has a ladder with one reference, steps that fall, and levels that differ,
- * or says why it has none. */
+/* Every knob of every built-in scene either has a ladder with one reference, decreasing steps and different levels, or
+ * states why it has none. */
 static void ladders_of_all_scenes(void **state) {
   (void)state;
   size_t made = 0, refused = 0;
@@ -134,7 +134,7 @@ static void levels_of_ones_own(void **state) {
   scene_free(scene);
 }
 
-/* Named settings are levels by their work; the one called reference is what the others are compared with. */
+/* Named settings are levels by their work; the others are compared with the one called reference. */
 static void named_settings_are_levels(void **state) {
   (void)state;
   char text[8192];
@@ -212,7 +212,7 @@ static void findings_replace_earlier_ones(void **state) {
   study.count = 1;
   assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 1);
-  strcpy(rows[0].quantity, "dust_fraction"); /* another quantity stays beside it */
+  strcpy(rows[0].quantity, "dust_fraction"); /* another quantity is kept beside it */
   strcpy(limit.quantity, "dust_fraction");
   assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 2);
@@ -231,7 +231,7 @@ static void findings_replace_earlier_ones(void **state) {
   scene_free(scene);
 }
 
-/* Adds what the knob leaves unknown at the point, which is the scene studied (`base` 0) or a level of it. */
+/* Adds the knob's remaining error at the point, which is the scene studied (`base` 0) or a level of it. */
 static void level_of(struct store *store, int64_t base, int64_t point, const char *knob, double resolution, bool open,
                      enum convergence_verdict verdict) {
   struct convergence_row row;
@@ -271,7 +271,7 @@ static void a_point_has_the_errors_of_its_knobs(void **state) {
   assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
   assert_int_equal(found.verdict, ASK_RESOLUTION_KNOWN);
   assert_true(fabs(found.half_width - 0.06) < 1e-12);
-  assert_string_equal(found.knobs, "grains, time_step"); /* no more: the contact law has no error here */
+  assert_string_equal(found.knobs, "grains, time_step"); /* not "contact law": it has no error here */
   assert_int_equal(ask_resolution(store, 0, "largest_fraction", &found, &error), STATUS_OK);
   assert_true(fabs(found.half_width - 0.06) < 1e-12 && found.points == 2 && found.studied == 1);
   assert_true(fabs(number(store, "SELECT largest_fraction_resolution FROM points WHERE point_id = 1") - 0.06) < 1e-12);

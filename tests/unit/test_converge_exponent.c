@@ -1,5 +1,5 @@
-/* A study of convergence knows exponents: mean, interval and bias of a level are those of the pooled exponent of its
- * runs, and a difference that was put into the store is found. */
+/* Convergence studies of exponents: mean, interval and bias of a level are those of the pooled exponent of its runs,
+ * and a difference that was put into the store is found. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -159,7 +159,7 @@ static void the_bias_is_found(void **state) {
   study_find(&f.study, f.ladder, 0, &found);
   const struct convergence_row *row = &found.rows[0];
   assert_true(row->base && row->paired && found.rows[1].reference);
-  assert_true(row->bias + row->bias_half_width < 0); /* and it is not nothing */
+  assert_true(row->bias + row->bias_half_width < 0); /* and it is not zero */
   for (size_t l = 0; l < LEVELS; l++)
     assert_int_equal(point_read(f.store, f.ladder->point[l], 0, &pair.point[l], &error), STATUS_OK);
   const struct sample_interval want = sample_jackknife(SEEDS, 0.95, difference_of, &pair);
@@ -182,7 +182,7 @@ static void the_store_has_the_second_error(void **state) {
   static const char *const names[] = {"beta", "beta_masses_from_5"};
   for (size_t i = 0; i < 2; i++) {
     assert_int_equal(ask_resolution(f.store, f.ladder->point[0], names[i], &found, &error), STATUS_OK);
-    assert_int_equal(found.verdict, ASK_RESOLUTION_AT_LEAST); /* two levels tell no limit */
+    assert_int_equal(found.verdict, ASK_RESOLUTION_AT_LEAST); /* two levels do not determine a limit */
     assert_true(found.half_width > fine_beta - coarse_beta - 0.1);
   }
   assert_int_equal(ask_resolution(f.store, f.ladder->point[0], "beta_masses_from_2", &found, &error), STATUS_OK);
@@ -201,7 +201,7 @@ static void a_missing_seed_keeps_its_place(void **state) {
   tear_down(&f);
 }
 
-/* One run has no interval, so that a study of one seed knows nothing of an exponent. */
+/* One run has no interval, so a study of one seed has no result for an exponent. */
 static void one_seed_tells_nothing(void **state) {
   (void)state;
   struct fixture f;

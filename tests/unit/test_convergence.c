@@ -91,7 +91,7 @@ static struct convergence_limit study(const double mean[3], double scatter, bool
 static void limits(void **state) {
   (void)state;
   const double second[3] = {1 + 16, 1 + 4, 1 + 1};
-  struct convergence_limit found = study(second, 5, true); /* a scatter that pairs is no error at all */
+  struct convergence_limit found = study(second, 5, true); /* a scatter that is the same in paired seeds is no error */
   assert_int_equal(found.verdict, CONVERGENCE_ORDER);
   NEAR(found.order, 2, 1e-9);
   NEAR(found.limit, 1, 1e-9);

@@ -1,4 +1,4 @@
-/* What runs cost: the time left of a campaign, and a whole run told by a coarse one. */
+/* Cost of runs: the remaining time of a campaign, and the time of a whole run predicted from a coarse one. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,7 +23,7 @@ static void time_left(void **state) {
   /* Runs of 1 ms that take 10 ms in all: 1000 of them on one slot are 10 s and not 1 s. */
   left = (struct cost_left){.missing_s = 1, .finished_s = 0.2, .elapsed_s = 2, .slots = 1};
   NEAR(cost_time_left(&left), 10, 1e-12);
-  /* One long run holds the end up, however many slots are free. */
+  /* One long run delays the end, however many slots are free. */
   left = (struct cost_left){.missing_s = 60,
                             .under_way_s = 20,
                             .finished_s = 380,
@@ -31,7 +31,7 @@ static void time_left(void **state) {
                             .longest_s = 40,
                             .slots = 4};
   NEAR(cost_time_left(&left), 40, 1e-12);
-  /* Nothing finished: as if slots were busy. */
+  /* No run has finished: the estimate assumes busy slots. */
   left = (struct cost_left){.missing_s = 8, .elapsed_s = 3, .slots = 2};
   NEAR(cost_time_left(&left), 4, 1e-12);
 }
@@ -58,8 +58,8 @@ static void whole_runs(void **state) {
   free(piece);
 }
 
-/* A piece of a real run, with its coarse version, tells the number of steps of the whole run within a factor of 1.5.
- * The clock is left out: a step counts as a second. */
+/* A piece of a real run, with its coarse version, predicts the number of steps of the whole run within a factor of 1.5.
+ * Time is counted in steps: a step counts as a second. */
 static void a_run_told_by_its_beginning(void **state) {
   (void)state;
   struct scene *scene = NULL, *coarse = NULL;

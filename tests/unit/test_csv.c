@@ -1,4 +1,4 @@
-/* The CSV reader and SHA-256: known answers, and what they refuse. */
+/* The CSV reader and SHA-256: known answers and refusals. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -45,7 +45,7 @@ static void cells(void **state) {
       {"\"\",x\n", "|x/"},
       {"\"open\n1,2\n", "!a double quote is not closed"},
       {"\"a\"b,c\n", "!text after a closing double quote"},
-      {"a\"b,c\n", "a\"b|c/"}, /* a quote inside a bare cell stands for itself */
+      {"a\"b,c\n", "a\"b|c/"}, /* a quote inside an unquoted cell is an ordinary character */
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
     assert_string_equal(joined(cases[i].text, strlen(cases[i].text)), cases[i].cells);

@@ -1,4 +1,5 @@
-/* Engine dem as its callers see it: tables, built-in scenes, refusals, stop rules, chunks that do not matter. */
+/* Engine dem through its public functions: tables, built-in scenes, refusals, stop rules; the chunk length has no
+ * effect. */
 #include "tests/support/run_case.h"
 
 #include "engine/dem/lattice/assemble.h"
@@ -15,7 +16,7 @@ static void check_table(const struct field_table *table) {
     assert_true(row->offset < table->size);
     if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER)
       assert_non_null(row->unit);
-    for (size_t j = 0; j < i; j++) { /* no row twice, neither by name nor by place */
+    for (size_t j = 0; j < i; j++) { /* no two rows have the same name or the same place */
       assert_string_not_equal(row->path, table->rows[j].path);
       assert_true(row->offset != table->rows[j].offset);
     }
@@ -62,7 +63,7 @@ static void builtin_scenes_say_what_they_model(void **state) {
   }
 }
 
-/* K99 table 1 in SI: the scene and the defaults must say the same. */
+/* K99 table 1 in SI: the scene and the defaults must agree. */
 static void explosion_starts_as_the_paper_says(void **state) {
   (void)state;
   struct dem_inputs inputs = DEM_CASE("disc-explosion", NULL), defaults;
@@ -83,7 +84,8 @@ static void explosion_starts_as_the_paper_says(void **state) {
     double momentum[2], magnitude, speed = 0;
     dem_run_momentum(run, momentum, &magnitude);
     assert_true(magnitude > 0);
-    assert_true(hypot(momentum[0], momentum[1]) < 1e-10 * magnitude); /* asked for; rounding gives some 1e-14 */
+    /* the required bound; rounding gives some 1e-14 */
+    assert_true(hypot(momentum[0], momentum[1]) < 1e-10 * magnitude);
     assert_true(fabs(run->state.energy_input / 5e4 - 1) < 1e-12);
     assert_false(dem_system_grain(run->system, run->charge).present);
     size_t n = run->tessellation->cell_count, moving = 0;
@@ -94,8 +96,9 @@ static void explosion_starts_as_the_paper_says(void **state) {
         continue;
       moving++;
       speed += v;
-      assert_true(radius < 3.5 * inputs.grain.spacing);                 /* neighbours of the centre */
-      assert_true(g.x * g.vx + g.y * g.vy > -v * inputs.grain.spacing); /* outwards, but for a lopsided centre */
+      assert_true(radius < 3.5 * inputs.grain.spacing); /* neighbours of the centre */
+      /* outwards, except for an off-centre central grain */
+      assert_true(g.x * g.vx + g.y * g.vy > -v * inputs.grain.spacing);
     }
     assert_in_range(moving, 3, 14);
     assert_true(speed / (double)moving > 100 && speed / (double)moving < 300); /* table 1: about 200 m/s */
@@ -137,7 +140,8 @@ static void impact_and_collision_start(void **state) {
       }
     }
     assert_true(fabs(count[0] / count[1] - 1) < 0.1);
-    assert_true(least > 1.0 * inputs.grain.spacing && least < 5 * inputs.grain.spacing); /* near, and not touching */
+    /* close together, without contact */
+    assert_true(least > 1.0 * inputs.grain.spacing && least < 5 * inputs.grain.spacing);
     dem_run_free(run);
   }
 }
@@ -180,12 +184,12 @@ static void what_cannot_run_is_refused(void **state) {
   struct error error = {0};
   assert_int_equal(scene_load("block-impact", NULL, &scene, &error), STATUS_OK);
   assert_int_equal(scene_set_text(scene, "charge.energy", "1 J/m", &error), STATUS_OK);
-  assert_int_equal(scene_check(scene, &error), STATUS_CONTENT); /* an input that does nothing here */
+  assert_int_equal(scene_check(scene, &error), STATUS_CONTENT); /* an input without effect here */
   assert_non_null(strstr(error.message, "charge.energy"));
   scene_free(scene);
 }
 
-/* A small disc that is over soon. */
+/* A small disc whose run ends soon. */
 static struct dem_inputs small(void) {
   return DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m", "stop.end_time=2 ms");
 }
@@ -226,7 +230,7 @@ static void stop_rules(void **state) {
   assert_true(fabs(mass / ran.outcome.total_mass - 1) < 1e-12);
   free(ran.fragments);
 
-  inputs.stop.quiet_time = 1; /* never quiet: the hard end, and it says so */
+  inputs.stop.quiet_time = 1; /* never quiet: the run ends at the hard end and reports it */
   ran = run_case_run(&dem_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_END_TIME);
   assert_non_null(strstr(ran.outcome.message, "end_time"));
@@ -242,15 +246,15 @@ static void stop_rules(void **state) {
   assert_true(isnan(ran.results.dem.last_break));
   free(ran.fragments);
 
-  inputs = small(); /* breaking at the least strain: dust, and still finite */
+  inputs = small(); /* breaking at the smallest strain: dust, still finite */
   inputs.threshold.strain = inputs.threshold.angle = 1e-9;
   ran = run_case_run(&dem_engine, &inputs, 3);
   assert_true(ran.outcome.dust_fraction > 0.5);
   free(ran.fragments);
 }
 
-/* What the report makes of the ledger, from its definition: bounds alone do not see a figure that is ten times too
- * small. */
+/* The report's figures from the ledger, compared with their definition: bounds alone do not detect a figure that is ten
+ * times too small. */
 static void figures_by_hand(void **state) {
   (void)state;
   const struct dem_inputs cases[] = {small(), DEM_CASE("compression", "body.columns=8", "body.rows=12")};
@@ -267,7 +271,7 @@ static void figures_by_hand(void **state) {
     const double input = run->state.energy_input + fabs(last.external_work),
                  drift = fabs(dem_run_closed(&last) - dem_run_closed(&first));
     print_message("energy_error %.3g of %.3g J/m\n", ran.outcome.energy_error, input);
-    /* sums in the same order: the last digits of the whole */
+    /* sums in the same order: the difference is in the last digits of the whole */
     assert_true(fabs(ran.outcome.energy_error - drift / input) < 1e-14 && ran.outcome.energy_error > 1e-9);
     for (size_t k = 0; k < ran.count; k++)
       translation += 0.5 * ran.fragments[k].mass *
@@ -283,7 +287,7 @@ static void figures_by_hand(void **state) {
   }
 }
 
-/* A run is complete when it is quiet, and not before its least time. */
+/* A run is complete when it is quiet, and not before its minimum time. */
 static void completed_needs_the_least_time(void **state) {
   (void)state;
   struct dem_inputs inputs = small();
@@ -297,12 +301,13 @@ static void completed_needs_the_least_time(void **state) {
   assert_int_equal(paper.outcome.state, OUTCOME_COMPLETED);
   assert_int_equal(later.outcome.state, OUTCOME_COMPLETED);
   assert_true(paper.outcome.time < 0.5e-3 && later.outcome.time > 1e-3 - 1e-9 && later.outcome.time < 2e-3);
-  assert_true(later.results.dem.broken > paper.results.dem.broken); /* what the paper's rule leaves out */
+  /* breaks after the paper's rule has ended the run */
+  assert_true(later.results.dem.broken > paper.results.dem.broken);
   free(paper.fragments);
   free(later.fragments);
 }
 
-/* How final a run is, against a run that ends at half of its time. */
+/* How final a run is, compared with a run that ends at half of its time. */
 static void finality_is_what_broke_late(void **state) {
   (void)state;
   struct dem_inputs inputs = small();
@@ -321,7 +326,8 @@ static void finality_is_what_broke_late(void **state) {
   free(half.fragments);
 }
 
-/* Grains too fast for any overlap to stop them. At 400 m/s none is; 3 km/s is four times the speed of passing. */
+/* Grains so fast that no overlap can stop them. At 400 m/s there are none; 3 km/s is four times the speed of passing.
+ */
 static void grains_that_pass_are_flagged(void **state) {
   (void)state;
   for (int fast = 0; fast < 2; fast++) {
@@ -335,8 +341,7 @@ static void grains_that_pass_are_flagged(void **state) {
   }
 }
 
-/* Whatever the number of grains is modulo the lanes: lists made at every step would be right, and eight times slower.
- */
+/* Any number of grains modulo the SIMD lanes. Lists made at every step would also be right, but eight times slower. */
 static void neighbour_lists_last(void **state) {
   (void)state;
   struct dem_inputs inputs = small();
@@ -349,8 +354,8 @@ static void neighbour_lists_last(void **state) {
   }
 }
 
-/* Pairs with a very short common side once had a contact stiffness without limit: these two runs then ended with energy
- * errors of 67 and 5. A sound run drifts by less than 1e-3 at this time step; 1e-2 is far from both. */
+/* Pairs with a very short common side once had an unlimited contact stiffness; these two runs then ended with energy
+ * errors of 67 and 5. A correct run drifts by less than 1e-3 at this time step; 1e-2 is far from both. */
 static void short_common_sides_do_not_blow_up(void **state) {
   (void)state;
   assert_true(dem_assemble_reference_side(0, 1, 1) == 0.54);
@@ -376,13 +381,13 @@ static void energy_bound_ends_a_run(void **state) {
   assert_int_equal(ran.results.dem.stop_reason, DEM_STOP_FAULT);
   assert_non_null(strstr(ran.outcome.message, "fidelity.time_step"));
   free(ran.fragments);
-  inputs.stop.end_time = 5e-5; /* over before the first regular look at the ledger: the last look counts */
+  inputs.stop.end_time = 5e-5; /* the run ends before the first regular check of the ledger: the last check counts */
   ran = run_case_run(&dem_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
   assert_int_equal(ran.outcome.steps, 50);
   free(ran.fragments);
 
-  /* A drift of some per cent counts as a fault unless the scene says otherwise: Gear with strong damping, near its
+  /* A drift of some per cent counts as a fault unless the scene sets another bound: Gear with strong damping, near its
    * longest step. */
   inputs = small();
   inputs.fidelity.integrator = DEM_GEAR;
@@ -399,8 +404,8 @@ static void energy_bound_ends_a_run(void **state) {
   free(ran.fragments);
 }
 
-/* Grains that pass through others between two steps lose no energy, so that no ledger tells: two discs that meet at
- * 1000 km/s and 1 us once came out whole, as a completed run. */
+/* Grains that pass through others between two steps lose no energy, so the ledger does not show it: two discs that met
+ * at 1000 km/s with 1 us steps once stayed whole, and the run counted as completed. */
 static void grains_too_fast_for_the_step_end_a_run(void **state) {
   (void)state;
   struct dem_inputs disc = small(), discs = DEM_CASE("disc-collision", "body.diameter=8 cm", "collision.speed=1e6 m/s");
@@ -415,7 +420,7 @@ static void grains_too_fast_for_the_step_end_a_run(void **state) {
     assert_non_null(strstr(ran.outcome.message, "fidelity.time_step"));
     free(ran.fragments);
   }
-  block.impact.speed = 3000; /* 3 mm a step, of grains of 12 mm */
+  block.impact.speed = 3000; /* 3 mm a step, for grains of 12 mm */
   struct ran ran = run_case_run(&dem_engine, &block, 3);
   assert_true(ran.outcome.state == OUTCOME_COMPLETED || ran.outcome.state == OUTCOME_END_TIME);
   free(ran.fragments);

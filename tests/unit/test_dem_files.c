@@ -1,4 +1,4 @@
-/* Fields files of engine dem say what they hold. */
+/* Fields files of engine dem describe their contents. */
 #include "tests/support/run_case.h"
 
 #include <unistd.h>

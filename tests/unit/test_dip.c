@@ -13,19 +13,18 @@
 #include "engine/random.h"
 
 /* The definition, by all pairs and triples of knots. A distribution function G is within d of F at both sides of every
- * jump, convex below the mode x[last] and concave above it, where it may jump. Side -1 is the upper part, turned round.
- */
+ * jump, convex below the mode x[last] and concave above it, where it may jump. Side -1 is the upper part, reversed. */
 struct bounds {
   double x, low, high;
 };
 
 static struct bounds bounds_at(size_t n, const double *x, double d, size_t j, size_t last, int side) {
   const double number = (double)n, place = side > 0 ? x[j] : -x[n - 1 - j];
-  const double before = (double)j / number, behind = (double)(j + 1) / number; /* F turned round is the same */
+  const double before = (double)j / number, behind = (double)(j + 1) / number; /* the reversed F has the same value */
   return (struct bounds){place, (j == last ? before : behind) - d, before + d};
 }
 
-/* The least value that G can have at the mode, coming from the side. HUGE_VAL: no convex function fits. */
+/* The smallest value that G can have at the mode, for the part on this side. HUGE_VAL: no convex function fits. */
 static double least_end(size_t n, const double *x, double d, size_t last, int side) {
   const struct bounds end = bounds_at(n, x, d, last, last, side);
   double least = end.low;
@@ -60,7 +59,7 @@ static void known_dips(void **state) {
   for (int n = 2; n <= 50; n += 6) {
     for (int i = 0; i < n; i++)
       x[i] = i;
-    assert_true(fabs(dip_of((size_t)n, x) - 0.5 / n) < 1e-14); /* equal steps: as small as it can be */
+    assert_true(fabs(dip_of((size_t)n, x) - 0.5 / n) < 1e-14); /* equal steps: the smallest possible dip */
   }
   for (int i = 0; i < 400; i++) /* two clusters of equal weight, far apart: 1/4 in the limit */
     x[i] = (i < 200 ? 0 : 1000) + 1e-3 * i;
@@ -86,7 +85,7 @@ static void as_defined(void **state) {
   }
 }
 
-/* Samples with one mode are called two no more often than the level says; two clear modes nearly always. */
+/* Samples with one mode are reported as two no more often than the level allows; two clear modes nearly always are. */
 static void false_and_true_alarms(void **state) {
   (void)state;
   enum { CASES = 80, N = 60 };

@@ -1,4 +1,4 @@
-/* Documents: each kind of error held to its exact text with line, column and caret; several errors of one file in one
+/* Documents: the exact text of each kind of error, with line, column and caret; several errors of one file in one
  * report, sorted; parts, trees and values. */
 #include "tests/support/document_thing.h"
 
@@ -133,7 +133,7 @@ static void each_error_says_this(void **state) {
                                  "here it is disc; remove one or change the other\n"
                                  "  block: {height: 3 m}\n"
                                  "          ^~~~~~"},
-      /* No word about height: whether it has an effect is not known while the shape is wrong. */
+      /* No message about height: its effect is unknown while the shape is wrong. */
       {"shape: blokc\nblock: {height: 3 m}\n",
        "a.yaml:1:8: error: shape: expected disc or block, got 'blokc'; did you mean 'block'?\n"
        "  shape: blokc\n"
@@ -228,7 +228,7 @@ static void each_error_says_this(void **state) {
   assert_int_equal(wrong, 0);
 }
 
-/* Every error of the file, in the order of its lines, whoever found it and when. */
+/* All errors of the file, in the order of its lines, whichever check found them. */
 static void all_errors_in_one_go(void **state) {
   (void)state;
   const char *text = "shape: dsic\nbody:\n  length: 3 kg\n  cuont: 3\n  limit: \"12 %\"\nbroken: no\nbroken: "
@@ -268,7 +268,7 @@ static void long_lines_and_many_errors_stay_readable(void **state) {
     used += (size_t)sprintf(text + used, "wrong_%d: 1\n", i);
   char *report = report_of(text, used, &thing);
   struct error whole;
-  assert_true(strlen(report) < sizeof whole.message); /* nothing is cut when it becomes an error's message */
+  assert_true(strlen(report) < sizeof whole.message); /* the report fits into an error's message without being cut */
   assert_non_null(strstr(report, "a.yaml:2:1: error: wrong_0: unknown key"));
   const char *last = strrchr(report, '\n');
   int more = 0, shown = 0;
@@ -372,7 +372,7 @@ static void trees_are_walked(void **state) {
   document_free(document);
 }
 
-/* Values put in are read like those of the file, and the text of the changed document gives them again. */
+/* Values added by the caller are read like those of the file; the text of the changed document contains them. */
 static void values_are_put(void **state) {
   (void)state;
   static const char text[] = "# a comment\nbody: {length: 2 m, count: 5}\nname: 'a: b'\nset:\n  x: [1 %, off]\n";
@@ -400,7 +400,7 @@ static void values_are_put(void **state) {
   assert_string_equal(document_scalar(document_key(document_key(document_root(again), "set"), "y.z")), "#3");
   document_free(again);
   free(changed);
-  /* an error about such a value names the command line and no place of the file, and is one of usage */
+  /* an error about such a value names the command line instead of a place in the file, and is a usage error */
   document_report(document_key(document_key(document_root(document), "new"), "a"), "new.a", "is wrong");
   assert_int_equal(document_finish(document, &report), STATUS_USAGE);
   assert_string_equal(report, "command line: error: new.a: is wrong");

@@ -1,4 +1,4 @@
-/* Documents of strangers: what is UTF-8, adversarial sizes, and files that are none. */
+/* Documents from unknown sources: valid and invalid UTF-8, adversarial sizes, and files that are no documents. */
 #include "tests/support/document_thing.h"
 
 /* RFC 3629: what is UTF-8 and what is not, one byte sequence at a time in the place of a name's last letters. */
@@ -26,7 +26,7 @@ static void utf8_is_judged_strictly(void **state) {
       {"\xC2\x85", false},
       {"\xE2\x80\xA8", false},
       {"\xEF\xBB\xBF", false},
-      {"\xEF\xBF\xBF", false}, /* no text */
+      {"\xEF\xBF\xBF", false}, /* characters not allowed in text */
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char text[64];
@@ -47,7 +47,7 @@ static double seconds(void) {
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Adversarial sizes end in a message, and soon. */
+/* Adversarial sizes give an error message, and soon. */
 static void limits_hold(void **state) {
   (void)state;
   struct thing thing;
@@ -91,7 +91,8 @@ static void limits_hold(void **state) {
   assert_non_null(strstr(report, "more; correct the ones above first"));
   free(report);
   free(text);
-  /* About 1 s of CPU without sanitizers, 5 s with: 60 s tell a quadratic search (hours) from a busy machine. */
+  /* About 1 s of CPU without sanitizers, 5 s with: a limit of 60 s distinguishes a quadratic search (hours) from a busy
+   * machine. */
   assert_true(seconds() - start < 60);
 }
 
@@ -114,7 +115,7 @@ static void files_that_are_none(void **state) {
   assert_int_equal(document_open(path, &document, &error), STATUS_OK);
   assert_string_equal(document_text(document), "name: x\nbody: {length: 3 s}\n");
   document_free(document);
-  if (geteuid() != 0) { /* root reads everything */
+  if (geteuid() != 0) { /* root can read every file */
     chmod(path, 0);
     assert_int_equal(document_open(path, &document, &error), STATUS_IO);
   }

@@ -22,7 +22,7 @@ static void rows_of_a_run(void **state) {
     grains += fragments[i].count;
   }
   assert_true(total / grains == 2);
-  fragments[60].mass = 4; /* a single grain twice the mean is unresolved all the same */
+  fragments[60].mass = 4; /* a single grain of twice the mean mass still counts as unresolved */
   fragments[61].mass = fragments[62].mass = 1;
   struct estimate rows[ESTIMATES_COUNT];
   assert_int_equal(estimates_make(200, fragments, 0, rows, NULL), STATUS_OK);

@@ -1,4 +1,5 @@
-/* Frames: whole ones come out as they went in, whatever the cuts; torn and foreign bytes are seen. Jobs: handles. */
+/* Frames: complete ones are received unchanged however the stream is cut; incomplete and foreign bytes are detected.
+ * Jobs: handles. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,7 +21,7 @@ static void append(struct farm_bytes *bytes, uint64_t handle, size_t size) {
   free(payload);
 }
 
-/* Fed in pieces of every small size: the same frames, payloads aligned. */
+/* Delivered in pieces of every small size: the same frames, payloads aligned. */
 static void any_cut(void **state) {
   (void)state;
   struct farm_bytes whole = {0};
@@ -55,7 +56,7 @@ static void any_cut(void **state) {
   farm_frame_free(&whole);
 }
 
-/* Every single bit of a frame matters, padding excepted: it carries nothing. */
+/* A change of any single bit of a frame is detected, except in padding, which carries no data. */
 static void any_flipped_bit(void **state) {
   (void)state;
   struct farm_bytes bytes = {0};
@@ -65,7 +66,7 @@ static void any_flipped_bit(void **state) {
     const uint8_t *payload;
     bytes.data[bit / 8] ^= (uint8_t)(1u << (bit % 8));
     const int got = farm_frame_next(&bytes, &frame, &payload);
-    assert_true(got < 1); /* 0: a larger size says that more is to come */
+    assert_true(got < 1); /* 0: the changed size is larger, so the reader waits for more */
     bytes.data[bit / 8] ^= (uint8_t)(1u << (bit % 8));
   }
   struct farm_frame frame;
@@ -116,7 +117,7 @@ static void handles_are_never_used_twice(void **state) {
   for (int i = 0; i < 200; i++)
     assert_ptr_equal(farm_job_table_find(&table, kept[i]->handle), kept[i]);
   assert_int_equal(table.count, 200);
-  assert_int_equal(HASH_COUNT(table.jobs), 200); /* nothing is left of those that were removed */
+  assert_int_equal(HASH_COUNT(table.jobs), 200); /* none of the removed jobs is left */
   farm_job_table_free(&table);
 }
 
@@ -126,7 +127,7 @@ static void queues_keep_order(void **state) {
   for (uint64_t i = 1; i <= 5; i++)
     farm_job_push(&queue, farm_job_new(i, NULL, 0));
   farm_job_push_front(&queue, farm_job_new(9, NULL, 0));
-  free(farm_job_take(&queue, 5)); /* the last: `last` must move */
+  free(farm_job_take(&queue, 5)); /* the last job: `last` must move */
   farm_job_push(&queue, farm_job_new(6, NULL, 0));
   free(farm_job_take(&queue, 3));
   assert_null(farm_job_take(&queue, 3));

@@ -134,7 +134,7 @@ static void large_results(void **state) {
   }
 }
 
-/* CPU and memory are the task's own, not the slot's history. */
+/* CPU and memory are those of the task, not of earlier tasks in the slot. */
 static void costs_are_the_tasks_own(void **state) {
   (void)state;
   for (int mode = 0; mode < 2; mode++) {
@@ -175,9 +175,9 @@ static void the_caller_can_stop(void **state) {
       for (size_t i = 0; i < list.count; i++)
         assert_in_range(list.reports[i], 0, 1);
       if (reasons[reason] == STATUS_IO)
-        assert_int_equal(list.reported, 20); /* it asked for no more */
+        assert_int_equal(list.reported, 20); /* the campaign asked for no more tasks */
       else
-        assert_in_range(list.reported, 20, 26); /* what ran is reported: two slots, a few sent ahead */
+        assert_in_range(list.reported, 20, 26); /* every started run is reported: two slots, a few sent ahead */
       task_list_free(&list);
     }
   }
@@ -199,7 +199,7 @@ static void runs_again_after_a_run(void **state) {
   farm_stop(farm, NULL);
 }
 
-/* The last short tasks do not wait behind a long one that was begun before them. */
+/* The last short tasks do not wait behind a long one that started earlier. */
 static void nobody_waits_behind_a_long_task(void **state) {
   (void)state;
   for (int mode = 0; mode < 2; mode++) {
@@ -214,8 +214,7 @@ static void nobody_waits_behind_a_long_task(void **state) {
     assert_each_once(&list);
     for (size_t i = 1; i < list.count; i++)
       assert_true(list.slots[i] != list.slots[0]);
-    assert_true(wall <
-                1.5); /* 1 s of the long one, the rest is room for a loaded machine; behind it: 1.02 s and more */
+    assert_true(wall < 1.5); /* 1 s of the long task plus a margin for a loaded machine; behind it: 1.02 s and more */
     task_list_free(&list);
   }
 }
@@ -230,7 +229,7 @@ static status counting_work(const uint8_t *bytes, size_t size, uint8_t **result,
   return task_work(bytes, size, result, result_size, error);
 }
 
-/* A task taken back from a busy slot and run elsewhere stays in that slot's channel: it must be passed over there. */
+/* A task taken back from a busy slot and run elsewhere stays in that slot's channel: the slot must skip it. */
 static void computed_once_though_taken_back(void **state) {
   (void)state;
   for (int mode = 0; mode < 2; mode++) {
@@ -246,7 +245,7 @@ static void computed_once_though_taken_back(void **state) {
       list.tasks[i] = (struct task){.id = i, .kind = TASK_SLEEP, .amount = i == 0 ? 0.3 : 0.01};
     const struct farm_manager manager = task_list_manager(&list);
     assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
-    task_sleep(0.2); /* the slot reads what is left in its channel */
+    task_sleep(0.2); /* the slot reads the rest of its channel */
     farm_stop(farm, NULL);
     assert_each_once(&list);
     for (size_t i = 0; i < list.count; i++)

@@ -116,7 +116,7 @@ static void defaults_fill_everything(void **state) {
   assert_true(isnan(thing.needed));
   thing.unlisted = 7;
   field_defaults(&table, &thing);
-  assert_int_equal(thing.unlisted, 7); /* what no row describes belongs to somebody else */
+  assert_int_equal(thing.unlisted, 7); /* a member without a row is not changed */
 }
 
 static void finds_by_suffix(void **state) {
@@ -144,7 +144,7 @@ static void distances_count_slips(void **state) {
   assert_int_equal(text_distance("kittens of a litter", 6, "sitting"), 3); /* only `length` bytes are read */
   assert_int_equal(text_distance("", 0, "abc"), 3);
   assert_int_equal(text_distance("abc", 3, "abc"), 0);
-  assert_int_equal(text_distance("simulate", 8, "simualte"), 1); /* a swap is one slip */
+  assert_int_equal(text_distance("simulate", 8, "simualte"), 1); /* a swap of two letters counts as one error */
   assert_int_equal(text_distance_limit(1), 0);
   assert_int_equal(text_distance_limit(12), 4);
   char lengthy[400];
@@ -183,7 +183,7 @@ static void conditions_chain(void **state) {
 static void parses_or_says_why(void **state) {
   (void)state;
   static const struct {
-    const char *path, *text, *shown, *message; /* one of the last two */
+    const char *path, *text, *shown, *message; /* either `shown` or `message` */
   } cases[] = {
       {"body.length", "40 cm", "0.4 m", NULL},
       {"body.length", "0", NULL, "body.length: expected above 0 m, got 0 m"},
@@ -229,7 +229,7 @@ static void parses_or_says_why(void **state) {
         fail_msg("%s: %s", cases[i].text, error.message);
       field_print(row(cases[i].path), &value, shown, sizeof shown);
       assert_string_equal(shown, cases[i].shown);
-      struct field_value again; /* what is printed reads back the same */
+      struct field_value again; /* the printed text reads back as the same value */
       assert_int_equal(field_parse(row(cases[i].path), shown, &again, &error), STATUS_OK);
       assert_memory_equal(&again, &value, sizeof value);
     }
@@ -244,7 +244,7 @@ static void parses_or_says_why(void **state) {
   assert_int_equal(field_parse(row("name"), lengthy + 1, &value, &error), STATUS_OK);
 }
 
-/* A strain of 5 is 5 % to most people and 500 % to a program. */
+/* For most people a strain of 5 means 5 %, for a program 500 %. */
 static void percentages_are_written_as_such(void **state) {
   (void)state;
   const struct field strain =
@@ -331,7 +331,7 @@ static void json_and_identity(void **state) {
   free(text);
   thing.broken = false;
   thing.law = 2;
-  text = field_identity(&table, &thing); /* what is inactive is not part of it */
+  text = field_identity(&table, &thing); /* inactive inputs are not part of it */
   assert_null(strstr(text, "name="));
   assert_null(strstr(text, "mode="));
   assert_null(strstr(text, "angle="));
@@ -440,7 +440,7 @@ static void bytes_are_pinned_and_guarded(void **state) {
   assert_int_equal(size, sizeof expected);
   assert_memory_equal(bytes + 8, expected + 8, size - 8);
   assert_memory_equal(bytes, expected, 8);
-  /* Another name, kind, order or choice: refused. */
+  /* Another name, kind, order or choice is refused. */
   for (int change = 0; change < 4; change++) {
     memcpy(changed, few, sizeof few);
     if (change == 0)

@@ -104,7 +104,7 @@ static void dumbbell(void **state) {
   near(outcome.total_mass, 4.5);
   near(outcome.dust_fraction, 0.5 / 4.5);
   near(outcome.complete_mass, 3);
-  struct outcome heavy = {0}; /* dust is what is lighter than a mass, however many grains it has */
+  struct outcome heavy = {0}; /* dust means lighter than a mass, however many grains a fragment has */
   outcome_fragments(&heavy, count, f, &(struct outcome_small){.dust = 4.1, .complete = 3});
   near(heavy.dust_fraction, 1);
   assert_int_equal(heavy.single_count, 1);

@@ -1,5 +1,5 @@
-/* Growing arrays: what is in them stays, they double, and one large need is met at once. Aligned ones keep only what
- * the caller names. */
+/* Growing arrays: their contents stay, they double, and one large request is met in one step. Aligned ones keep only as
+ * many elements as the caller names. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -68,7 +68,7 @@ static void aligned_arrays_keep_what_is_asked_for(void **state) {
   for (uint32_t i = 0; i < 10; i++)
     values[i] = i;
   const uint32_t *before = values;
-  assert_true(grow_aligned(&values, &room, 900, sizeof *values, 10)); /* there is room */
+  assert_true(grow_aligned(&values, &room, 900, sizeof *values, 10)); /* the capacity is enough */
   assert_ptr_equal(values, before);
   assert_true(grow_aligned(&values, &room, 5000, sizeof *values, 10));
   assert_int_equal((uintptr_t)values % 64, 0);

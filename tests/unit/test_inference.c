@@ -48,7 +48,7 @@ static void kalman_replaces_failed_members(void **state) {
   assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_OK);
   for (size_t j = 3; j < 6; j++)
     assert_true(fabs(z[j]) < 4);
-  double far[3] = {90, 100, 110}; /* what few rounds are left for is taken in greater parts */
+  double far[3] = {90, 100, 110}; /* when few rounds are left, the data are taken in larger parts */
   e = (struct ensemble_kalman){.members = 3, .inputs = 1, .outputs = 1, .z = z, .g = far, .y = &y, .gamma = &gamma};
   assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_OK);
   assert_true(e.tempered < 0.01);
@@ -161,7 +161,7 @@ static void kriging_passes_through_a_smooth_function(void **state) {
   assert_true(worst < 0.01);
   assert_true(ratio < 3);
   kriging_predict(k, &(double){6}, &variance);
-  assert_true(variance > 1); /* far from all points it knows nothing */
+  assert_true(variance > 1); /* far from all points the surface is uncertain */
   kriging_free(k);
 }
 
@@ -182,7 +182,7 @@ static void kriging_knows_what_seeds_leave(void **state) {
   assert_near(sqrt(squares), 1, 0.3);
   kriging_free(k);
   assert_true(alone > 0.09 / N && alone < 0.09 / 4);
-  k = surface_of(N, x, y, 0.09, 0.04); /* a seed that moves all points is not seen in them */
+  k = surface_of(N, x, y, 0.09, 0.04); /* a shift of all points by one seed cannot be seen in them */
   kriging_predict(k, &(double){0}, &together);
   assert_near(together - alone, 0.04, 0.01);
   kriging_free(k);
@@ -222,7 +222,7 @@ static void posterior_is_that_of_a_linear_model(void **state) {
   assert_int_equal(found.determined, 2);
   assert_near(found.direction[0].information, 4 * (3.5 + sqrt(1.5 * 1.5 + 1)), 6); /* eigenvalues of [20 -4; -4 8] */
 
-  /* One more experiment: scatter and errors, and what is not known of the inputs. */
+  /* The predicted spread of one more experiment: scatter and errors, plus the uncertainty of the inputs. */
   const double spread = 2 * 2 * c[0] - 2 * 2 * c[1] + c[3] + 0.25;
   assert_near(posterior_predicted(&fit.surfaces.model, &fit.posterior, 0, 0.95) -
                   posterior_predicted(&fit.surfaces.model, &fit.posterior, 0, 0.5),
@@ -230,7 +230,7 @@ static void posterior_is_that_of_a_linear_model(void **state) {
   case_clear(&fit);
 }
 
-/* A product and a sum: only u0 + u1 matters, or only a ring. */
+/* A product and a sum: only u0 + u1 is determined, or only a ring. */
 static double sum_only(const double *u, size_t k, uint64_t seed) {
   (void)k;
   return u[0] + u[1] + 0.02 * case_normal(seed, (uint64_t)(u[0] * 0x1p52), (uint64_t)(u[1] * 0x1p52));
@@ -263,11 +263,12 @@ static void ridges_are_seen(void **state) {
   fit = (struct case_fit){.inputs = 2, .outputs = 1};
   assert_int_equal(case_solve(&fit, ring, &radius, bounded, 3, &error), STATUS_OK);
   identify_find(&fit.surfaces.model, &fit.posterior, &found);
-  assert_int_equal(found.determined, 1); /* everywhere on the ring one direction is known, another one each time */
+  /* on the ring one direction is known everywhere, and it differs from point to point */
+  assert_int_equal(found.determined, 1);
   case_clear(&fit);
 }
 
-/* Slopes 3 and 1, and where `wiggle` is not 0 a steep part in the middle of the ridge that ends soon. */
+/* Slopes 3 and 1; where `wiggle` is not 0, also a short steep part in the middle of the ridge. */
 static double wiggle;
 static double steep_and_flat(const double *u, size_t k, uint64_t seed) {
   (void)k;
@@ -276,7 +277,7 @@ static double steep_and_flat(const double *u, size_t k, uint64_t seed) {
          0.1 * case_normal(seed, (uint64_t)(u[0] * 0x1p52), (uint64_t)(u[1] * 0x1p52));
 }
 
-/* Along a ridge of 3 z0 + z1 the inputs change as -1 to 3, wherever its middle is steeper. */
+/* Along a ridge of 3 z0 + z1 the inputs change as -1 to 3, even if its middle is steeper. */
 static void ridges_follow_unequal_slopes(void **state) {
   (void)state;
   static struct case_fit fit;
@@ -292,7 +293,7 @@ static void ridges_follow_unequal_slopes(void **state) {
     assert_int_equal(found.determined, 1);
     assert_near(along[0], -1 / sqrt(10), off);
     assert_near(along[1], 3 / sqrt(10), off);
-    assert_near(found.direction[1].deviation, 1, 0.1); /* that of the prior: the data say nothing along it */
+    assert_near(found.direction[1].deviation, 1, 0.1); /* that of the prior: the data do not determine this direction */
     case_clear(&fit);
   }
 }
@@ -325,7 +326,7 @@ static void five_inputs_are_sampled(void **state) {
   case_clear(&fit);
 }
 
-/* y = z + two heaps at -1 and +1, y = 0 measured: the posterior has two modes, which no normal law has. */
+/* y = z + two clusters at -1 and +1, y = 0 measured: the posterior has two modes, unlike any normal law. */
 static void approximation_finds_two_modes(void **state) {
   (void)state;
   enum { PARTICLES = 1000 };
@@ -341,7 +342,7 @@ static void approximation_finds_two_modes(void **state) {
     }
     approximate_take(&a, distance);
   }
-  assert_true(a.tolerance < 0.25); /* of the order of the scatter in a heap */
+  assert_true(a.tolerance < 0.25); /* of the order of the scatter in a cluster */
   double inside = 0, sum = 0, upper = 0;
   for (size_t n = 0; n < a.kept; n++) {
     sum += a.weight[n];

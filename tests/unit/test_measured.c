@@ -1,4 +1,4 @@
-/* Measured spectra: what files say, what is refused, and distances with known answers. */
+/* Measured spectra: the contents of files, refusals, and distances with known answers. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -55,7 +55,7 @@ static void the_three_kinds(void **state) {
   free(bins);
   measured_release(&m);
 
-  /* Sizes: a sphere of 1 cm and 6/pi g/cm^3 weighs 1 g. The density of the file goes before that of the caller. */
+  /* Sizes: a sphere of 1 cm and 6/pi g/cm^3 weighs 1 g. The density of the file overrides that of the caller. */
   assert_int_equal(read_text("# density: 1.909859317102744 g/cm^3\n# complete from: 1 cm\n"
                              "size (mm)\tcumulative\n10\t7\n20\t2\n",
                              &(struct spectrum_size){1, 3}, &m),

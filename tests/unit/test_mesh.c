@@ -1,4 +1,4 @@
-/* Meshes: what each format gives, volumes and insides against plain geometry, and every refusal with its place. */
+/* Meshes: the result of each format, volumes and insides against plain geometry, and every refusal with its line. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -193,7 +193,7 @@ static void ball_inside_and_distance(void **state) {
     random_bits(3, RANDOM_FLAW_PLACE, 0, i, bits);
     for (int k = 0; k < 3; k++) {
       p[k] = 2.2 * random_uniform(bits[k]) - 1.1;
-      if (i % 4 == 0) /* on planes and lines of edges and vertices, too */
+      if (i % 4 == 0) /* also on planes and lines of edges and vertices */
         p[k] = rint(8 * p[k]) / 8;
       squares += p[k] * p[k];
     }

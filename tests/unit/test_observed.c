@@ -1,4 +1,4 @@
-/* Documents of what was measured: what good ones mean, what bad ones are told. */
+/* Documents of measurements: the meaning of good ones and the errors of bad ones. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -28,7 +28,7 @@ static struct observed *good(const char *text) {
   return observed;
 }
 
-/* Parts of the report, separated by '|'. */
+/* Parts of the expected report, separated by '|'. */
 static void bad(const char *text, const char *expected) {
   struct observed *observed = NULL;
   struct error error = {0};
@@ -140,7 +140,7 @@ static void documents_of_the_pages_are_good(void **state) {
   }
 }
 
-/* Which campaigns can be fitted. */
+/* Which campaigns a fit accepts. */
 static status create(const char *text, struct error *error) {
   struct campaign *other = NULL;
   struct observed *m = good(SHOT "measured: [{quantity: time, value: 1 ms}]\n");

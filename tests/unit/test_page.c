@@ -1,5 +1,5 @@
-/* The data of a page against the store that it is made from: all statistics, some of the single runs, no names. And the
- * file that holds them. */
+/* The data of a page against the store that it is made from: all statistics, a sample of the runs, no names. Also the
+ * file that contains the data. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,7 +17,7 @@
 
 enum { M = 2, K = 2 };
 
-/* A store of M x K points with so many runs each. */
+/* A store of M x K points with this many runs each. */
 static struct store *filled(const char *name, int runs, char path[64]) {
   struct store *store = NULL;
   fixture_path(path, name);
@@ -95,7 +95,7 @@ static void test_a_small_store_is_whole(void **state) {
   assert_near(asked(db, mean), number(store, mean), 1e-6 * number(store, mean));
   assert_near(asked(db, "SELECT value FROM fact WHERE name = 'results_left_out'"), 0, 0);
   check_means(store, db);
-  /* an input is exact: a condition of a reader finds it */
+  /* inputs are exact: an equality condition finds them */
   assert_near(asked(db, "SELECT count(*) FROM runs JOIN axis WHERE column_name = 'material_k' AND material_k = 1e30"),
               number(store, "SELECT count(*) FROM runs WHERE material_k = 1e30 AND surplus = 0"), 0);
   assert_true(asked(db, "SELECT count(*) FROM question") > 5);
@@ -114,7 +114,7 @@ static void test_a_large_store_is_thinned(void **state) {
   sqlite3 *db = opened(page);
   const double kept = asked(db, "SELECT count(*) FROM runs");
   assert_true(kept <= ASK_PAGE_RUNS && kept > ASK_PAGE_RUNS - M * K);
-  /* the first replicates of every point: a sample that no result has chosen */
+  /* the first replicates of every point: a sample that does not depend on results */
   const double replicates = asked(db, "SELECT value FROM fact WHERE name = 'replicates_kept'");
   assert_near(asked(db, "SELECT min(n) FROM (SELECT count(*) AS n FROM runs GROUP BY point_id)"), replicates, 0);
   assert_near(asked(db, "SELECT max(replicate) FROM runs"), replicates - 1, 0);
@@ -136,7 +136,7 @@ static void test_a_large_store_is_thinned(void **state) {
   store_close(store, NULL);
 }
 
-/* Point 1: a third of the runs near 0.8, the others near 0.2. Point 2: all of them, evenly; half of the runs have
+/* Point 1: a third of the runs near 0.8, the others near 0.2. Point 2: the runs are spread evenly; half of them have
  * another hardness, which is no main result. */
 static void test_two_modes_are_told(void **state) {
   (void)state;

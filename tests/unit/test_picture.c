@@ -28,7 +28,7 @@ static const char *at(const char *name) {
 
 enum { SIDE = 36, MOST = SIDE * SIDE };
 
-/* A disc of jittered squares, broken round random centres and thrown outwards, with dust at the rim. */
+/* A disc of jittered squares, broken round random centres and expanding outwards, with dust at the rim. */
 struct example {
   size_t cells;
   uint32_t first[MOST + 1], fragment[MOST], crack[8][2];
@@ -286,8 +286,7 @@ static status curves(const char *name, size_t count, const struct picture_curve 
                         &(struct picture_words){"M_1/M", "seeds", "k (1/m^3)", "largest fraction"}, count, curve, NULL);
 }
 
-/* The numbers that gnuplot gets are the ones given, and a gap stays one; the axis is logarithmic from a factor of 20.
- */
+/* gnuplot receives exactly the given numbers, and a gap stays a gap; the axis is logarithmic from a factor of 20. */
 static void curves_are_drawn(void **state) {
   (void)state;
   const struct picture_mean high[] = {{1, 0.9, 0.85, 0.95, 0.1}, {10, 0.9, 0.85, 0.95, NAN}, {100, 0.9, NAN, NAN, 0.2}};
@@ -317,7 +316,7 @@ static void curves_are_drawn(void **state) {
   assert_int_equal(curves("none.png", 9, both), STATUS_USAGE);
 }
 
-/* Text of users reaches the picture as text: no command, no markup, no file. */
+/* Text from users reaches the picture as plain text: no command, no markup, no file. */
 static void hostile_text_is_text(void **state) {
   (void)state;
   const struct picture_mean mean[] = {{1, 2, 1, 3, NAN}, {2, 3, 2, 4, NAN}};

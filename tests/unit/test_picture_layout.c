@@ -1,4 +1,4 @@
-/* Fragments side by side: none hides another, the heaviest stays; and what can be seen of fragments in a heap. */
+/* Fragments side by side: none hides another, the heaviest is kept; and the visible part of fragments in a heap. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,7 +13,7 @@
 
 enum { PIECES = 30, EACH = 40, DISCS = PIECES * EACH };
 
-/* A heap of fragments, all over each other; fragment 0 is the heaviest. */
+/* A heap of fragments that cover each other; fragment 0 is the heaviest. */
 static void make_heap(struct picture_cloud *cloud, struct picture_layout_disc *discs) {
   for (uint32_t i = 0; i < DISCS; i++) {
     const uint64_t piece = i / EACH;

@@ -1,4 +1,4 @@
-/* A point read from a store: its runs in order, those that do not count left out, its estimates and picture. */
+/* A point read from a store: its runs in order, without those that do not count; its estimates and picture. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -47,7 +47,7 @@ static double number_of(struct store *store, const char *format, ...) {
   return number(store, sql);
 }
 
-/* The scene that a study of the resolution is asked for is the point's. */
+/* A study of the resolution uses the point's own scene. */
 static void resolution_names_the_scene(void **state) {
   (void)state;
   char path[64];
@@ -63,7 +63,7 @@ static void resolution_names_the_scene(void **state) {
   OK(store_close(store, &error));
 }
 
-/* The same statistics three times: in C from the masses, in the views' plain SQL, and in the question of spectra. */
+/* The same statistics from three sources: C from the masses, the views' plain SQL, and the query of spectra. */
 static void views_and_c_agree(void **state) {
   (void)state;
   char path[64];
@@ -138,7 +138,8 @@ static void runs_that_count_in_order(void **state) {
   OK(point_estimates(&point, 0.95, again, &error));
   for (int i = 0; i < POINT_ESTIMATES; i++) {
     const bool told = isfinite(rows[i].exponent.interval.half_width);
-    assert_true(told || rows[i].exponent.fit.method == EXPONENT_LEAST_SQUARES); /* which needs every bin filled */
+    /* least squares needs every bin filled */
+    assert_true(told || rows[i].exponent.fit.method == EXPONENT_LEAST_SQUARES);
     if (!told)
       continue;
     assert_true(rows[i].exponent.interval.standard_error > 0);
@@ -146,7 +147,7 @@ static void runs_that_count_in_order(void **state) {
     /* log m is uniform over three decades: beta is 1 */
     assert_near(rows[i].exponent.fit.beta, 1, 0.05 + 5 * rows[i].exponent.fit.standard_error);
   }
-  for (int i = 0; i < POINT_ESTIMATES; i++) { /* each by its name */
+  for (int i = 0; i < POINT_ESTIMATES; i++) { /* the lookup by name finds each */
     static const char *const names[] = {"beta_least_squares_from_2",  "beta_least_squares_from_5",
                                         "beta_least_squares_from_10", "beta_binned_from_2",
                                         "beta_binned_from_5",         "beta_binned_from_10",

@@ -1,5 +1,5 @@
-/* The generator's published known-answer vectors, our mapping of (seed, purpose, item, draw) onto it (pinned: it is
- * part of what a seed means) and the range of the uniforms. */
+/* The generator's published known-answer vectors, our mapping of (seed, purpose, item, draw) onto it (pinned, because
+ * it is part of the meaning of a seed) and the range of the uniforms. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* Files of a run of either engine: a restart file gives the same bits, and one that is damaged, of another scene or of
- * another CPU class is refused; files are whole or not there, on a full disk and after a kill. */
+/* Files of a run of either engine: a restart file gives the same bits; a damaged one, or one of another scene or CPU
+ * class, is refused. Files are complete or absent, on a full disk and after a kill. */
 #include "tests/support/run_case.h"
 
 #include <dirent.h>
@@ -38,7 +38,7 @@ static void *stepped(const struct engine_kind *kind, const void *inputs, uint64_
 
 static void continues(const struct engine_kind *kind, const void *inputs) {
   struct ran straight = run_case_run(kind, inputs, 11);
-  const uint64_t half = (uint64_t)straight.outcome.steps / 2 + 3; /* amid lists that are reused */
+  const uint64_t half = (uint64_t)straight.outcome.steps / 2 + 3; /* between two list rebuilds */
   assert_true(straight.outcome.steps >= 40);
   void *run = stepped(kind, inputs, 11, half), *again;
   struct error error = {0};
@@ -74,7 +74,7 @@ static void restart_continues_with_the_same_bits(void **state) {
     continues(&sph_engine, &sph[c]);
 }
 
-/* Fails unless `path` is refused as bad content, with a message that has `why` in it. */
+/* Fails unless `path` is refused as bad content with a message that contains `why`. */
 static void refused(const struct engine_kind *kind, const void *inputs, const char *path, const char *why) {
   struct error error = {0};
   void *run;
@@ -84,10 +84,10 @@ static void refused(const struct engine_kind *kind, const void *inputs, const ch
     fail_msg("no \"%s\" in: %s", why, error.message);
 }
 
-/* Where words stand in a restart file (engine/restart.h). */
+/* Positions of words in a restart file (engine/restart.h). */
 enum { AT_VERSION = 8, AT_BUILD = 32 };
 
-/* Adds `more` to a word of a restart file and makes its checksum (FNV-1a of all but the last 8 bytes) right again. */
+/* Adds `more` to a word of a restart file and corrects its checksum (FNV-1a of all but the last 8 bytes). */
 static void change_word(const char *path, size_t at, uint64_t more) {
   unsigned char *bytes = NULL;
   size_t size = 0;
@@ -132,7 +132,7 @@ static void damaged_is_refused(const struct engine_kind *kind, const void *input
   }
   assert_int_equal(restart_load(kind, inputs, path, &run, &error), STATUS_OK);
   kind->free(run);
-  /* Another build may keep the same arrays in another order: its file would be read as good numbers. */
+  /* Another build may keep the same arrays in another order: its file would be read as plausible but wrong numbers. */
   for (size_t at = AT_VERSION; at <= AT_BUILD; at += AT_BUILD - AT_VERSION) {
     change_word(path, at, UINT64_MAX);
     refused(kind, inputs, path, "another build");
@@ -158,7 +158,7 @@ static void damaged_or_foreign_restart_is_refused(void **state) {
   damaged_is_refused(&sph_engine, &sph, &other_sph, &dem_engine, &dem);
 }
 
-/* Bits differ from class to class (FMA): a run that goes on elsewhere would be neither's. */
+/* Bits differ from class to class (FMA): a run continued in another class would match neither. */
 static void restart_of_another_cpu_class_is_refused(void **state) {
   (void)state;
   if (cpu_class_choose() == CPU_BASELINE) {
@@ -208,7 +208,7 @@ static void failed_writes_leave_nothing(const struct engine_kind *kind, const vo
   assert_int_equal(fields, STATUS_IO);
   assert_int_equal(restart, STATUS_IO);
   assert_non_null(strstr(error.message, "too large"));
-  kind->free(run); /* that nothing is left in the folder, remove_folder sees */
+  kind->free(run); /* remove_folder checks that no file is left in the folder */
 }
 
 static void failed_writes_are_one_error_and_leave_nothing(void **state) {
@@ -219,7 +219,7 @@ static void failed_writes_are_one_error_and_leave_nothing(void **state) {
   failed_writes_leave_nothing(&sph_engine, &sph);
 }
 
-/* What stands in the folder beside a.restart, and whether it is the one temporary file of that name. */
+/* Number of files in the folder beside a.restart; *temporary: whether it is the one temporary file of that name. */
 static int beside(bool *temporary) {
   int count = 0;
   *temporary = false;
@@ -234,9 +234,8 @@ static int beside(bool *temporary) {
   return count;
 }
 
-/* A process that does nothing but write is killed at twenty moments: the file is always whole, and of the run. What a
- * kill may leave behind is one temporary file beside it, and the next write takes that away; but not one that is being
- * written. */
+/* A process that only writes is killed at twenty moments: the file is always complete and of the right run. A kill may
+ * leave one temporary file beside it. The next write removes this file, but not one that another process is writing. */
 static void killed_amid_a_write_the_file_is_whole(void **state) {
   (void)state;
   const struct sph_inputs inputs = sphere();
@@ -263,13 +262,13 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
     sph_engine.free(again);
   }
   bool temporary;
-  assert_true(beside(&temporary) == (temporary ? 1 : 0)); /* twenty kills heap nothing up */
-  FILE *stale = fopen(in_folder("a.restart.tmp"), "wb");  /* of a process that is gone */
+  assert_true(beside(&temporary) == (temporary ? 1 : 0)); /* twenty kills leave at most one file */
+  FILE *stale = fopen(in_folder("a.restart.tmp"), "wb");  /* of a process that has ended */
   fputs("of a write that was never finished", stale);
   fclose(stale);
   assert_int_equal(restart_save(&sph_engine, run, path, NULL), STATUS_OK);
   assert_int_equal(beside(&temporary), 0);
-  FILE *other = fopen(in_folder("a.restart.tmp"), "wb"); /* of one that is at it */
+  FILE *other = fopen(in_folder("a.restart.tmp"), "wb"); /* of a process that is still writing */
   fputs("half", other);
   fflush(other);
   assert_int_equal(flock(fileno(other), LOCK_EX), 0);
@@ -278,7 +277,7 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
   struct stat there;
   assert_true(stat(in_folder("a.restart.tmp"), &there) == 0 && there.st_size == 4);
   fclose(other);
-  const pid_t rival = fork(); /* two that write the same file: no write fails */
+  const pid_t rival = fork(); /* two processes write the same file: neither write fails */
   assert_true(rival >= 0);
   for (int k = 0; k < 100; k++)
     if (restart_save(&sph_engine, run, path, NULL)) {

@@ -65,7 +65,7 @@ static void two_modes(void **state) {
   scatter_release(&s);
 }
 
-/* Counts around 7 +- 2 look like a comb: no modes are told. Counts of thousands may have two. */
+/* Counts around 7 +- 2 look like a comb: no modes are reported. Counts of thousands may have two. */
 static void counts_in_few_steps(void **state) {
   (void)state;
   double x[200];
@@ -73,7 +73,7 @@ static void counts_in_few_steps(void **state) {
   for (uint64_t i = 0; i < 200; i++)
     x[i] = round(7 + 2 * normal(7, 1, i));
   assert_int_equal(scatter_make(200, x, &s, NULL), STATUS_OK);
-  assert_true(s.dip > dip_limit(200)); /* what a dip would say */
+  assert_true(s.dip > dip_limit(200)); /* the dip test alone would report two modes */
   assert_true(isnan(s.dip_share) && isnan(s.between));
   scatter_release(&s);
   for (uint64_t i = 0; i < 200; i++)
@@ -115,7 +115,8 @@ static void coverage(void **state) {
       scatter_release(&s);
     }
     assert_true(held[0] >= 0.95 * CASES - 4 * 4.4); /* exact: 0.95 and more */
-    assert_true(held[1] >= 0.82 * CASES);           /* the jackknife of a deviation is short for skewed laws */
+    /* the jackknife interval of a deviation is too short for skewed laws */
+    assert_true(held[1] >= 0.82 * CASES);
     assert_true(held[2] >= 0.90 * CASES);
   }
 }
@@ -158,7 +159,7 @@ static void split_of_a_variance(void **state) {
   }
   assert_true(fabs(mean) < 0.08);
   assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 1, 2, level, value}, parts, NULL), STATUS_USAGE);
-  /* Every point has a value of its own: no grid, no part of an axis. */
+  /* Every point has its own value: no grid, no part of an axis. */
   for (uint32_t p = 0; p < POINTS; p++)
     level[2 * p] = p;
   assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 4, 2, level, value}, parts, NULL), STATUS_OK);

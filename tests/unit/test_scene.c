@@ -89,7 +89,7 @@ static void reads_and_fills_defaults(void **state) {
   char *json = scene_json(scene);
   assert_string_equal(json, "{\"engine\":\"tiny\",\"name\":\"mine\",\"kind\":\"ball\",\"impact\":{\"speed\":10},"
                             "\"ball\":{\"size\":0.03},\"fidelity\":{\"count\":5}}");
-  struct scene *again = NULL; /* resolved JSON is a scene document itself: what the store holds can be run again */
+  struct scene *again = NULL; /* resolved JSON is itself a scene document: a stored scene can be run again */
   assert_int_equal(scene_parse_json("t", json, &again, NULL), STATUS_OK);
   uint8_t one[16], two[16];
   scene_identity(scene, 7, one);
@@ -111,7 +111,7 @@ static void named_settings_give_inputs(void **state) {
   struct scene *copy = scene_copy(scene);
   assert_int_equal(scene_settings_use(copy, "draft", &error), STATUS_OK);
   assert_true(values->size == 0.03 && ((const struct tiny *)copy->inputs)->size == 0.05);
-  assert_false(copy->overridden[2]); /* as if the document had it */
+  assert_false(copy->overridden[2]); /* as if it were in the document */
   assert_int_equal(scene_settings_use(copy, "drat", &error), STATUS_MISSING);
   assert_non_null(strstr(error.message, "standard, draft"));
   scene_free(copy);
@@ -164,7 +164,7 @@ static void overrides_are_checked(void **state) {
   struct error error;
   assert_int_equal(scene_set_text(copy, "speed", "1 km/s", &error), STATUS_OK);
   assert_true(((struct tiny *)copy->inputs)->speed == 1000);
-  assert_true(((struct tiny *)scene->inputs)->speed == 10); /* the original is another scene */
+  assert_true(((struct tiny *)scene->inputs)->speed == 10); /* the original scene is unchanged */
   assert_int_equal(scene_set_text(copy, "speed", "1 km", &error), STATUS_CONTENT);
   assert_string_equal(error.message, "impact.speed: expected a speed such as m/s, got a length (km)");
   assert_int_equal(scene_set_text(copy, "sped", "1", &error), STATUS_CONTENT);
@@ -172,7 +172,7 @@ static void overrides_are_checked(void **state) {
   assert_int_equal(scene_check(copy, &error), STATUS_OK);
   const struct field_value many = {.kind = FIELD_INTEGER, .integer = 1000};
   assert_int_equal(scene_set(copy, "fidelity.count", &many, &error), STATUS_OK);
-  assert_int_equal(scene_check(copy, &error), STATUS_CONTENT); /* across fields: the engine's own word */
+  assert_int_equal(scene_check(copy, &error), STATUS_CONTENT); /* a condition across fields: the engine's own message */
   assert_string_equal(error.message, "fidelity.count: too much at this impact.speed");
   scene_free(copy);
   copy = scene_copy(scene);
@@ -190,7 +190,7 @@ static void overrides_are_checked(void **state) {
   copy = scene_copy(scene);
   assert_int_equal(scene_set_text(copy, "ball.size", "4 cm", &error), STATUS_OK);
   assert_int_equal(scene_set_text(copy, "kind", "block", &error), STATUS_OK);
-  assert_int_equal(scene_check(copy, &error), STATUS_CONTENT); /* who overrides it means it */
+  assert_int_equal(scene_check(copy, &error), STATUS_CONTENT); /* an override of an inactive input is an error */
   assert_string_equal(
       error.message,
       "ball.size: has no effect: it is used only when kind is ball; here it is block; remove one or change the other");
@@ -204,7 +204,7 @@ static void identity_is_pinned(void **state) {
   struct scene *scene = parsed("engine: tiny\nball: {size: 50 mm}\n");
   scene_identity(scene, 42, one);
   /* hashlib.blake2s(b"engine=tiny\nresults_version=3\nseed=42\nball.size=0x1.999999999999ap-5\nfidelity.count=5\n"
-   *                 b"impact.speed=0x1.4p+3\nkind=ball\n", digest_size=16): stored runs are found by this. */
+   *                 b"impact.speed=0x1.4p+3\nkind=ball\n", digest_size=16). Stored runs are found by this identity. */
   static const uint8_t expected[16] = {0x3a, 0x6a, 0xd2, 0xb2, 0xe5, 0x91, 0x51, 0x3c,
                                        0x14, 0x3e, 0xba, 0x1d, 0x74, 0xce, 0x39, 0x34};
   assert_memory_equal(one, expected, 16);
@@ -279,7 +279,7 @@ static void files_and_names(void **state) {
   for (size_t i = 0; i < scene_builtin_count(); i++) {
     const char *text = scene_builtin_text(scene_builtin_name(i));
     assert_non_null(strstr(text, "engine:"));
-    char near[100]; /* a slip of the finger is put right */
+    char near[100]; /* the error names the scene that was meant */
     snprintf(near, sizeof near, "%sx", scene_builtin_name(i));
     assert_int_equal(scene_load(near, NULL, &scene, &error), STATUS_MISSING);
     assert_non_null(strstr(error.message, scene_builtin_name(i)));

@@ -1,4 +1,4 @@
-/* The C reader's side of schema_corpus.sh, and on its own a test that the corpus is judged as its folders say.
+/* The C reader's part of schema_corpus.sh. Alone it tests that the reader judges the corpus as its folders say.
  *
  *     test_schema_corpus                              every document of corpus/<kind>/{good,bad,reader}
  *     test_schema_corpus judge scene-dem|scene-sph|campaign FILE...   lines "good FILE" or "bad FILE"
@@ -121,7 +121,7 @@ static void generate(const struct engine_kind *engine) {
   for (size_t i = 0; i < engine->inputs->count; i++) {
     const struct field *row = &engine->inputs->rows[i];
     if (row->flags & FIELD_FILE)
-      continue; /* no schema knows which files are there */
+      continue; /* a schema cannot check whether a file exists */
     for (size_t k = 0; k < sizeof texts / sizeof texts[0]; k++)
       emit_row(engine, row, texts[k]);
     const double edges[] = {row->minimum,
@@ -136,7 +136,7 @@ static void generate(const struct engine_kind *engine) {
         continue;
       field_print_number(edges[k], text);
       emit_row(engine, row, text);
-      /* Behind a unit the schema knows no range: only what is in it. */
+      /* After a unit the schema cannot check the range, only the form. */
       const struct field_value edge = {.kind = row->kind, .number = edges[k], .integer = (int64_t)edges[k]};
       struct field_value ignored;
       if ((k != 0 && k != 5) || !field_needs_unit(row) || field_set_value(row, &edge, &ignored, NULL))
@@ -166,7 +166,7 @@ int main(int count, char **arguments) {
     return 0;
   }
   int wrong = scene_builtin_count() == 0;
-  for (size_t i = 0; i < scene_builtin_count(); i++) { /* what ships can be run as it is */
+  for (size_t i = 0; i < scene_builtin_count(); i++) { /* the built-in scenes can be run unchanged */
     struct scene *scene = NULL;
     struct error error;
     if (scene_load(scene_builtin_name(i), NULL, &scene, &error) || scene_check(scene, &error)) {

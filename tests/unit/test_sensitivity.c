@@ -34,7 +34,8 @@ static double normal(uint64_t a, uint64_t b, uint64_t c) {
   return sqrt(-2 * log1p(-random_draw(31, a, b, 2 * c))) * cos(2 * M_PI * random_draw(31, a, b, 2 * c + 1));
 }
 
-/* Values of a design. shared, own: deviation of what a seed adds everywhere alike, and at each point by itself. */
+/* Values of a design. shared: deviation that a seed adds equally at all points; own: deviation at each point
+ * separately. */
 static double *evaluate(enum design_sensitivity_kind kind, size_t inputs, size_t base, size_t seeds, uint64_t shift,
                         double (*f)(size_t, const double *), double shared, double own) {
   struct design_sensitivity *design;
@@ -68,7 +69,7 @@ static void ishigami_indices(void **state) {
     assert_true(fabs(index[i].total.estimate - ishigami_total[i]) < 0.015);
     assert_true(index[i].total.half_width > 0.005 && index[i].total.half_width < 0.08);
   }
-  assert_true(isnan(index[3].first.estimate)); /* one seed tells nothing of seeds */
+  assert_true(isnan(index[3].first.estimate)); /* one seed gives no index of seeds */
   free(value);
 }
 
@@ -88,12 +89,12 @@ static void g_function_indices(void **state) {
   free(value);
 }
 
-/* Seeds add a normal deviate: all shares shrink, and the seed has its own, whether it does the same at all points or
- * not. */
+/* Seeds add a normal deviate: all shares become smaller, and the seed has its own share, whether its effect is the same
+ * at all points or not. */
 static void the_share_of_the_seed(void **state) {
   (void)state;
   enum { BASE = 1024, SEEDS = 8 };
-  const double variance = ishigami_variance; /* the seed has half of the whole */
+  const double variance = ishigami_variance; /* the seed has half of the total variance */
   for (int kind = 0; kind < 2; kind++) {
     const double shared = kind ? sqrt(0.75 * variance) : 0, own = sqrt(kind ? 0.25 * variance : variance);
     double *value = evaluate(DESIGN_SENSITIVITY_SALTELLI, 3, BASE, SEEDS, 5, ishigami, shared, own);
@@ -102,7 +103,8 @@ static void the_share_of_the_seed(void **state) {
     assert_int_equal(sensitivity_sobol(&table, index, NULL), STATUS_OK);
     for (int i = 0; i < 3; i++) {
       const struct sample_interval first = index[i].first, total = index[i].total;
-      /* own noise differs between points, as if it were interplay with the seed: part of every total of same seeds */
+      /* own noise differs between points, like an interaction with the seed: it is part of every total index at equal
+       * seeds */
       const double interplay = kind ? 0.125 : 0;
       assert_true(fabs(first.estimate - ishigami_first[i] / 2) < fmax(0.03, 1.5 * first.half_width));
       assert_true(fabs(total.estimate - ishigami_total[i] / 2 - interplay) < fmax(0.03, 1.5 * total.half_width));
@@ -128,7 +130,8 @@ static void coverage(void **state) {
     }
     free(value);
   }
-  assert_true(held >= 0.92 * 6 * CASES); /* even points scatter less than independent ones: not short */
+  /* evenly spread points scatter less than independent ones: the intervals are not too short */
+  assert_true(held >= 0.92 * 6 * CASES);
 }
 
 static double plane(size_t n, const double *u) {

@@ -1,5 +1,5 @@
-/* The reader of fields files takes nothing from outside of the file: links and storage that lead elsewhere, and types
- * and shapes that clast never writes, are refused. */
+/* The reader of fields files reads no data from outside of the file. It refuses links and storage that lead elsewhere,
+ * and types and shapes that clast never writes. */
 #include <hdf5.h>
 #include <unistd.h>
 
@@ -27,7 +27,7 @@ static void write_file(const char *path) {
   snapshot_file_close(file);
 }
 
-/* What the reader finds in `path`. */
+/* The reader's result for `path`. */
 static void look(const char *path, bool *rows, bool *time) {
   struct snapshot_read *file;
   struct error error = {0};
@@ -70,7 +70,7 @@ static void links_that_lead_elsewhere_are_refused(void **state) {
   }
 }
 
-/* Puts a data set in the place of the points. Closes all that it gets. */
+/* Replaces the points with a data set. Closes all handles that it is given. */
 static void refuse(hid_t type, hid_t space, hid_t layout) {
   bool rows, time;
   hid_t file = open_without(POINTS);

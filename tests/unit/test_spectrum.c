@@ -68,7 +68,7 @@ static void fill_counts_everything_in_any_order(void **state) {
   assert_true(rows[1].mass == 2.1e-3 + 2.2e-3);
   assert_int_equal(rows[3].bin, -4);
   assert_int_equal(rows[4].bin, 16);
-  /* Too little room: the need is told. */
+  /* The output array is too small: the required size is returned. */
   assert_int_equal(spectrum_fill(n, masses, again, 4), 5);
   assert_int_equal(spectrum_fill(n, masses, NULL, 0), 5);
   assert_int_equal(spectrum_fill(0, NULL, again, 8), 0);

@@ -1,4 +1,4 @@
-/* What opens, what is refused with which words, what is brought forward, and who may write. */
+/* Which stores open, which are refused with which message, which are migrated, and who may write. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -39,7 +39,7 @@ static long long size_of(const char *path) {
   return stat(path, &file) == 0 ? (long long)file.st_size : -1;
 }
 
-/* Both ways of opening say no, with this status and this word, and leave the file alone. */
+/* Both ways of opening refuse with this status and this word, and leave the file unchanged. */
 static void refused(const char *path, status writing, status reading, const char *word) {
   struct store *store = NULL;
   long long before = size_of(path);
@@ -92,7 +92,7 @@ static void missing_and_unreachable(void **state) {
   refused("test-store-folder.db", STATUS_IO, STATUS_IO, "folder");
   struct store *store = NULL;
   assert_int_equal(store_open_reader(fixture_path(path, "absent"), &store, &error), STATUS_MISSING);
-  assert_int_not_equal(access(path, F_OK), 0); /* asking makes no file */
+  assert_int_not_equal(access(path, F_OK), 0); /* opening a missing store makes no file */
 }
 
 static void empty_file_is_a_new_store(void **state) {
@@ -109,7 +109,7 @@ static void empty_file_is_a_new_store(void **state) {
   store_close(store, NULL);
 }
 
-/* A file without a table is an empty file, not half of a copy. */
+/* A file without a table is an empty file, not an incomplete copy. */
 static void failed_creation_leaves_an_empty_file(void **state) {
   (void)state;
   char path[64];
@@ -128,7 +128,7 @@ static void failed_creation_leaves_an_empty_file(void **state) {
   populated(path);
 }
 
-/* Version 0: no running sums, no bin edges, views of another shape, and columns that have come since are absent. */
+/* Version 0: no running sums, no bin edges, views of another shape; later columns are absent. */
 static void old_store_is_brought_forward(void **state) {
   (void)state;
   char path[64], backup[80];
@@ -151,7 +151,7 @@ static void old_store_is_brought_forward(void **state) {
   assert_near(number(store, "SELECT sum(mass) FROM point_spectrum"), mass, 1e-12 * mass);
   assert_near(number(store, "SELECT count(*) FROM points WHERE n = 10 AND material_m >= 6"), 4, 0);
   assert_near(number(store, "SELECT momentum_error IS NULL FROM runs LIMIT 1"), 1, 0);
-  OK(fixture_populate(store, 2, 2, 11, false, &error)); /* and is written on */
+  OK(fixture_populate(store, 2, 2, 11, false, &error)); /* and can be written */
   assert_near(number(store, "SELECT count(hardest) FROM runs"), 4, 0);
   assert_near(number(store, "SELECT count(momentum_error) FROM runs"), 4, 0);
   OK(store_close(store, &error));
@@ -167,7 +167,7 @@ static void old_store_is_brought_forward(void **state) {
   store_close(store, NULL);
 }
 
-/* Version 1: no digests. A reader takes it as it is; a writer adds them, the same that new runs have. */
+/* Version 1: no digests. A reader opens it unchanged; a writer adds them, equal to those of new runs. */
 static void digests_are_added(void **state) {
   (void)state;
   static const char columns[] = "ALTER TABLE run DROP COLUMN digest; ALTER TABLE point DROP COLUMN digest; PRAGMA "
@@ -199,7 +199,7 @@ static void digests_are_added(void **state) {
   assert_int_equal(sqlite3_column_int(same, 1), 4);
   sqlite3_finalize(same);
   sqlite3_close(db);
-  /* A source without digests is merged, and its runs get them. */
+  /* A source without digests is merged, and its runs get digests. */
   int64_t added = 0, differing = 0;
   sql(other, columns);
   unlink(fixture_path(path, "undigested"));
@@ -212,7 +212,7 @@ static void digests_are_added(void **state) {
   OK(store_close(store, &error));
 }
 
-/* Version 2: no session named its campaign, no axis the unit of the document. A reader takes it as it is. */
+/* Version 2: no campaign in sessions, no document unit on axes. A reader opens it unchanged. */
 static void sessions_get_their_campaign(void **state) {
   (void)state;
   char path[64];
@@ -237,14 +237,14 @@ static void sessions_get_their_campaign(void **state) {
   assert_string_equal(axes[1].name, "material_m");
   assert_string_equal(axes[1].unit, "%");
   assert_near(axes[1].factor, 0.01, 0);
-  OK(store_add_axis(store, &fixture_input_rows[0], "km/s", &error)); /* no unit of this input: not taken */
+  OK(store_add_axis(store, &fixture_input_rows[0], "km/s", &error)); /* not a unit of this input: refused */
   OK(ask_columns_axes(store, true, 4, axes, &count, &error));
   assert_string_equal(axes[1].unit, "1");
   OK(store_check(store, NULL, NULL, &error));
   OK(store_close(store, &error));
 }
 
-/* Stores of earlier programs have a table of the fragments' motion: an empty one goes, rows stay. */
+/* Stores of earlier programs have a table of the fragments' motion: an empty one is removed, rows are kept. */
 static void table_of_motion_goes_when_it_is_empty(void **state) {
   (void)state;
   char path[64];
@@ -255,7 +255,7 @@ static void table_of_motion_goes_when_it_is_empty(void **state) {
               "STRICT; INSERT INTO column_doc VALUES ('fragment_motion', 'motion', NULL, 'motion', 0)");
     if (filled)
       sql(path, "INSERT INTO fragment_motion VALUES (1, x'00')");
-    OK(store_open_reader(path, &store, &error)); /* the version is the same: a reader may go on */
+    OK(store_open_reader(path, &store, &error)); /* the version is the same: a reader may continue */
     OK(store_close(store, &error));
     OK(store_open_writer(path, &store, NULL, 0, &error));
     assert_near(number(store, "SELECT count(*) FROM sqlite_schema WHERE name = 'fragment_motion'"), filled, 0);
@@ -265,7 +265,7 @@ static void table_of_motion_goes_when_it_is_empty(void **state) {
   }
 }
 
-/* A migration that cannot finish leaves the old store as it was. */
+/* A migration that cannot finish leaves the old store unchanged. */
 static void failed_migration_changes_nothing(void **state) {
   (void)state;
   char path[64];
@@ -318,14 +318,14 @@ static void second_writer_is_told_who_holds_it(void **state) {
   gethostname(host, sizeof host - 1);
   if (!strstr(error.message, word) || !strstr(error.message, host))
     fail_msg("said: %s", error.message);
-  OK(store_open_reader(path, &store, &error)); /* readers do not mind */
+  OK(store_open_reader(path, &store, &error)); /* readers are not affected */
   assert_near(number(store, "SELECT count(*) FROM run"), 40, 0);
   store_close(store, NULL);
   close(end);
   waitpid(pid, NULL, 0);
   OK(store_open_writer(path, &store, NULL, 0, &error));
   OK(store_close(store, &error));
-  /* the lock dies with its holder, however that ends, and a child of the holder does not keep it */
+  /* the lock ends with its holder, however the holder ends, and a child of the holder does not keep it */
   end = hold(path, &pid);
   kill(pid, SIGKILL);
   waitpid(pid, NULL, 0);

@@ -1,5 +1,5 @@
-/* Asking a store: views against numbers made here, reading statements only, grouping, canned queries, our aggregates.
- */
+/* Queries of a store: views against numbers computed here, reading statements only, grouping, canned queries, our
+ * aggregates. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -72,7 +72,7 @@ static status ask(struct store *store, const char *sql, struct rows *rows) {
   return query_run(store, sql, 0, NULL, 5, &sink, &error);
 }
 
-/* The values of one quantity of the runs of a point, made again. */
+/* The values of one quantity of the runs of a point, computed again. */
 static double two_pass(double (*value)(const struct fixture_run *), int m, int k_first, int k_count, double *sd) {
   static struct fixture_run f;
   struct fixture_inputs inputs;
@@ -246,7 +246,7 @@ static void time_limit_stops(void **state) {
                              "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT max(i) FROM n", 0,
                              NULL, 0.05, &sink, &error),
                    STATUS_STOPPED);
-  assert_near(number(store, "SELECT count(*) FROM run"), M * K * RUNS, 0); /* and the next one works */
+  assert_near(number(store, "SELECT count(*) FROM run"), M * K * RUNS, 0); /* and the next query works */
   store_close(store, NULL);
 }
 
@@ -288,7 +288,7 @@ static void our_aggregates(void **state) {
   (void)state;
   struct store *store = reader();
   struct rows rows;
-  assert_int_equal(ask(store, "SELECT median(1)", &rows), STATUS_USAGE); /* not before they are asked for */
+  assert_int_equal(ask(store, "SELECT median(1)", &rows), STATUS_USAGE); /* not before they are registered */
   OK(ask_register_functions(store, &error));
   assert_near(number(store, "SELECT stdev(value) FROM json_each('[2,4,4,4,5,5,7,9]')"), sqrt(32.0 / 7), 1e-14);
   assert_near(number(store, "SELECT median(value) FROM json_each('[5,1,4,2]')"), 3, 0);
@@ -357,7 +357,7 @@ static void the_same_seeds_are_seen(void **state) {
   assert_int_equal(twins.point[1], older);
   assert_string_equal(twins.input, "fidelity.grains");
 
-  scene = fixture_scene(&inputs, 6, 1e31); /* another value: a point of its own */
+  scene = fixture_scene(&inputs, 6, 1e31); /* another value: a separate point */
   inputs.grains = 50;
   OK(store_add_point(store, campaign, &scene, 2, fixture_axes, &newer, &error));
   fixture_fill(&f, &scene, newer, session, 0, FIXTURE_FRAGMENTS);

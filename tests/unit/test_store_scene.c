@@ -1,4 +1,4 @@
-/* A store of real scenes: the scene kept with a point is enough to make every run's identity again. */
+/* A store of real scenes: the scene stored with a point is enough to compute the identity of every run again. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,7 +16,7 @@ static void line(void *context, const char *text) {
   snprintf((char *)context + used, 4000 - used, "%s\n", text);
 }
 
-/* One run of every built-in scene, its results those of nothing but two fragments. */
+/* One run of every built-in scene, with the results of a run that has only two fragments. */
 static void populate(const char *path) {
   struct store *store = NULL;
   OK(store_open_writer(path, &store, NULL, 0, &error));
@@ -88,12 +88,12 @@ static void a_changed_seed_or_scene_is_found(void **state) {
   }
 }
 
-/* A share above 1, in what all engines report and in an engine's own results; not of runs that do not count, and of no
- * other version. */
+/* A share above 1 is found in common results and in an engine's own results. Runs that do not count and runs of another
+ * version are not checked. */
 static void results_out_of_range_are_found(void **state) {
   (void)state;
   static const struct {
-    const char *damage, *word; /* NULL: none of that kind */
+    const char *damage, *word; /* NULL: no message of that kind */
   } cases[] = {
       {"UPDATE run SET second_fraction = 1.0000001 WHERE run_id = 1",
        "run 1, out of range: second_fraction is 1.0000001\n"},

@@ -1,6 +1,6 @@
-/* schemas/results.sql is what a store is, every column of it is documented, and the names in SQL text of ours are those
- * of the field tables. `test_store_schema print` prints the schema: the build target schemas writes the file with it.
- */
+/* schemas/results.sql is the schema of a store, every column of it is documented, and the names in our SQL text are
+ * those of the field tables. `test_store_schema print` prints the schema: the build target schemas writes the file with
+ * it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -130,7 +130,7 @@ static void every_column_is_documented(void **state) {
                                "pragma_table_xinfo(d.table_name) c WHERE c.name = d.column_name)"),
                    0);
   sqlite3_close(db);
-  /* a comment on every column of a table, where the column stands */
+  /* a comment on every column of a table, beside the column */
   for (const char *line = strstr(sql, "CREATE TABLE"), *end; line; line = *end ? end + 1 : NULL) {
     end = line + strcspn(line, "\n");
     if (strncmp(line, "  ", 2) == 0 && strncmp(line, "  PRIMARY KEY", 13) != 0 && line[2] != '(' &&
@@ -202,7 +202,7 @@ static void no_input_has_the_column_of_a_result(void **state) {
   }
 }
 
-/* SQL takes A and a for the same name: Tillotson's law has both. */
+/* SQL treats A and a as the same name: Tillotson's law has both. */
 static void inputs_that_differ_by_case_get_two_columns(void **state) {
   (void)state;
   static const char *const paths[] = {"target.material.tillotson.A", "target.material.tillotson.a"};

@@ -39,7 +39,7 @@ static void dumps_agree_whatever_the_order(void **state) {
   assert_null(strstr(x, "testhost"));
   assert_non_null(strstr(x, "broken_count=27"));
   free(y);
-  /* one bit of one mass, a surplus run more: seen, not seen */
+  /* one bit of one mass: found; a surplus run more: not found */
   struct store *store = writer(b);
   struct fixture_inputs inputs;
   struct scene scene = fixture_scene(&inputs, 6, 1e30);
@@ -113,7 +113,7 @@ static void merge_takes_what_is_missing(void **state) {
   assert_string_equal(x, y);
   free(x);
   free(y);
-  /* a run whose masses differ by one bit is counted, and ours stays */
+  /* a run whose masses differ by one bit is counted, and the target's version is kept */
   sqlite3 *other = NULL;
   assert_int_equal(sqlite3_open(b, &other), SQLITE_OK);
   assert_int_equal(
@@ -124,7 +124,7 @@ static void merge_takes_what_is_missing(void **state) {
       SQLITE_OK);
   sqlite3_close(other);
   store = writer(b);
-  OK(digest_rows_fill(store->db, DIGEST_RUNS, 3, &error)); /* as if another machine had computed it so */
+  OK(digest_rows_fill(store->db, DIGEST_RUNS, 3, &error)); /* as if another machine had computed it with this result */
   OK(store_close(store, &error));
   store = writer(a);
   OK(store_merge(store, b, &added, &differing, &error));

@@ -134,7 +134,7 @@ static void sums_are_those_of_the_rows(void **state) {
       "= b.point_id AND a.bin = b.bin WHERE (a.runs, a.n, a.q) IS NOT (b.runs, b.count, b.count_squared)";
   assert_near(number(store, different), 0, 0);
   assert_near(number(store, "SELECT sum(fragments) FROM point_total"), 6 * 30 * FIXTURE_FRAGMENTS, 0);
-  /* a stopping prefix leaves replicates out, and takes them in again */
+  /* a stopping prefix leaves replicates out, and includes them again */
   OK(store_set_prefix(store, 2, 12, &error));
   assert_near(number(store, "SELECT runs = 12 AND surplus = 18 FROM point_total WHERE point_id = 2"), 1, 0);
   assert_near(number(store, different), 0, 0);

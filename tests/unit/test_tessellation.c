@@ -1,4 +1,4 @@
-/* Voronoi cells against libqhull_r: areas and common sides to 1e-12 over seeds, sizes and disorders; and what must hold
+/* Voronoi cells against libqhull_r: areas and common sides to 1e-12 over seeds, sizes and disorders; and the properties
  * of any tessellation of a body: it fills the rectangle, neighbours share vertices to the last bit, disorder 0 is the
  * square lattice. */
 #include <math.h>
@@ -16,7 +16,7 @@
 
 #include "engine/dem/lattice/lattice.h"
 
-/* ---- the oracle: areas and sides by Delaunay triangles of qhull; circumcentres in long double ---- */
+/* ---- the reference: areas and sides by Delaunay triangles of qhull; circumcentres in long double ---- */
 
 struct oracle {
   size_t n;
@@ -97,9 +97,9 @@ static void oracle_free(struct oracle *o) {
   free(o->side);
 }
 
-static const double tolerance = 1e-12; /* of spacing and spacing^2: asked for; rounding is some 1e-14 */
+static const double tolerance = 1e-12; /* in units of spacing and spacing^2: the requirement; rounding is some 1e-14 */
 
-/* Compare a tessellation (spacing 1, origin chosen so that world = lattice coordinates) with the oracle. */
+/* Compares a tessellation (spacing 1, origin chosen so that world = lattice coordinates) with the reference. */
 static void compare(const struct dem_tessellation *t, const struct oracle *o, uint32_t columns, uint32_t centre) {
   uint32_t *cell_of = malloc(o->n * sizeof *cell_of);
   memset(cell_of, 0xff, o->n * sizeof *cell_of);
@@ -112,7 +112,7 @@ static void compare(const struct dem_tessellation *t, const struct oracle *o, ui
       fail_msg("area of cell %u: %.17g, qhull %.17Lg", c, t->area[c], o->area[i]);
     for (int k = 0; o->side[i][k][0] >= 0; k++) {
       uint32_t j = (uint32_t)o->side[i][k][0];
-      /* below 1e-10 spacings our corners are one and there is no side */
+      /* below 1e-10 spacings our two corners coincide and there is no side */
       if (j < o->n && j > i && cell_of[j] != UINT32_MAX && o->side[i][k][1] > 1e-10)
         pairs++;
     }
@@ -217,7 +217,7 @@ static void disc_equals_qhull(void **state) {
 
 static void neighbours_share_vertices(void **state) {
   (void)state;
-  /* all but square lattices, too: their corners lie nearer to each other than rounding can tell */
+  /* for all lattices except square ones: their corners lie nearer to each other than rounding can resolve */
   const double disorders[] = {1, 0, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11};
   for (uint64_t seed = 0; seed < 35; seed++) {
     struct dem_lattice lattice = {DEM_OUTLINE_BLOCK, 0.01069, disorders[seed % 7], 0, 30, 20, {3.7, -11.1}, seed, 2};
@@ -313,7 +313,8 @@ static void ten_thousand_cells_in_time(void **state) {
     dem_tessellation_free(t);
   }
   print_message("10 000 cells: %.1f ms\n", 1e3 * best);
-  assert_true(best < 1); /* 50 ms is asked of a release build on a quiet core; sanitizers and neighbours need room */
+  /* the requirement is 50 ms in a release build on a quiet core; sanitizers and other load need a margin */
+  assert_true(best < 1);
 }
 
 static void nonsense_is_refused(void **state) {

@@ -1,4 +1,4 @@
-/* Text plots: points stand in their decade's column, bars on both sides, lines fit the terminal. */
+/* Text plots: points are in their decade's column, bars on both sides, lines fit the terminal. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
