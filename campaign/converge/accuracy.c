@@ -21,7 +21,7 @@ static bool are_enough(int64_t seeds, double deviation, double margin) {
 int64_t accuracy_seeds(double deviation, double margin) {
   if (!(margin > 0) || !(deviation >= 0) || !are_enough(MOST_SEEDS, deviation, margin))
     return 0;
-  int64_t low = FEWEST_SEEDS - 1, high = MOST_SEEDS; /* low is too few, high is enough */
+  int64_t low = FEWEST_SEEDS - 1, high = MOST_SEEDS; /* invariant: `low` seeds are too few, `high` are enough */
   while (high - low > 1) {
     const int64_t middle = low + (high - low) / 2;
     if (are_enough(middle, deviation, margin))
@@ -35,7 +35,7 @@ int64_t accuracy_seeds(double deviation, double margin) {
 struct finding {
   const struct campaign *campaign;
   struct accuracy *accuracy;
-  bool base_open[KNOB_MOST]; /* by number of the knob */
+  bool base_open[KNOB_MOST]; /* indexed by number of the knob */
   bool studied;
 };
 
@@ -51,7 +51,7 @@ static bool is_axis(const struct campaign *campaign, const char *path) {
   return false;
 }
 
-/* Does the campaign vary an input that this level of the knob sets? */
+/* True when the campaign varies an input that this level of the knob sets. */
 static bool is_varied(const struct campaign *campaign, const struct knob *knob, const char *setting) {
   for (size_t i = 0; i < KNOB_INPUTS && knob->inputs[i].path; i++)
     if (is_axis(campaign, knob->inputs[i].path))
@@ -64,7 +64,7 @@ static bool is_varied(const struct campaign *campaign, const struct knob *knob, 
   return false;
 }
 
-/* First pass: which knobs have no limit at the scene's own setting. */
+/* First pass: finds the knobs without a limit at the scene's own setting. */
 static status take_open(void *context, const struct convergence_row *row, struct error *error) {
   (void)error;
   struct finding *finding = context;
@@ -83,7 +83,7 @@ static bool others_open(const struct finding *finding, const struct knob *knob) 
   return false;
 }
 
-/* A model is not chosen for its price; a level without runs tells nothing. */
+/* A level is a choice unless it belongs to a model or a part of one (these are not chosen by cost) or has no runs. */
 static bool is_choice(const struct knob *knob, const struct convergence_row *row) {
   return knob && knob->group != KNOB_MODEL && knob->group != KNOB_PART && isfinite(row->error) &&
          isfinite(row->deviation);

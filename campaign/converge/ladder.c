@@ -198,7 +198,7 @@ static status add_all_named(struct making *making, const char *settings, struct 
   for (size_t i = 0; i < ladder->count; i++)
     if (strcmp(ladder->level[i].setting, "reference") == 0)
       reference = i;
-  const struct ladder_level last = ladder->level[reference]; /* it goes to the end, as the finest does */
+  const struct ladder_level last = ladder->level[reference]; /* the reference goes to the end, like the finest level */
   memmove(ladder->level + reference, ladder->level + reference + 1,
           (ladder->count - 1 - reference) * sizeof *ladder->level);
   ladder->level[ladder->count - 1] = last;
@@ -227,7 +227,8 @@ static void sort_levels(const struct making *making) {
     qsort(ladder->level, ladder->count, sizeof *ladder->level, by_value);
 }
 
-/* The finest level; of models the scene's own, which may be missing among the user's settings. */
+/* The reference is the finest level. For models it is the scene's own, which may be missing among the user's
+ * settings. */
 static void choose_reference(const struct making *making) {
   struct ladder *ladder = making->ladder;
   size_t reference = ladder->count - 1;
@@ -237,7 +238,7 @@ static void choose_reference(const struct making *making) {
   ladder->level[reference].reference = true;
 }
 
-/* All levels of a knob that turns inputs, in order, with the reference among them. */
+/* Makes all levels of a knob that sets inputs, in order, and marks the reference. */
 static status add_all_levels(struct making *making, const char *settings, struct error *error) {
   status code = find_inputs(making, error);
   if (code != STATUS_OK)

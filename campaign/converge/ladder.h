@@ -17,12 +17,12 @@ struct ladder {
   size_t count;
 };
 
-/* The levels of a knob in a scene. Of the group settings: the scene as written and its named settings, by their work;
- * the reference is the one of this name, or the last. settings: NULL, or a comma-separated list of values of the knob's
- * first input, which replaces the ladder; the scene's own setting is then a level only if it is among them. Levels that
- * the scene refuses are left out and said in *notes (malloc'd lines, may become NULL). STATUS_CONTENT: the knob does
- * not apply to this scene, or fewer than two levels are left; *ladder is empty then. STATUS_USAGE: a setting is no
- * value of the input. */
+/* The levels of a knob in a scene. For the group `settings`: the scene as written and its named settings, sorted by
+ * their work; the reference is the one named `reference`, or the last. settings: NULL, or a comma-separated list of
+ * values of the knob's first input, which replaces the ladder; the scene's own setting is then a level only if it is
+ * among them. Levels that the scene refuses are left out and named in *notes (malloc'd lines, may become NULL).
+ * STATUS_CONTENT: the knob does not apply to this scene, or fewer than two levels are left; *ladder is empty then.
+ * STATUS_USAGE: a setting is no value of the input. */
 status ladder_make(const struct knob *knob, const struct scene *base, const char *settings, struct ladder *ladder,
                    char **notes, struct error *error);
 /* Sets all inputs of a knob in a scene, as the level `setting` of its ladder has them. STATUS_CONTENT when the knob

@@ -34,7 +34,7 @@ static status read_seconds(struct study_rule *rule, const char *text, struct err
   return STATUS_OK;
 }
 
-/* A width, or a share in percent. */
+/* Reads a half width, or a share in percent. */
 static status read_within(struct study_rule *rule, const char *text, bool several, struct error *error) {
   char *end = NULL;
   if (!text || strcmp(text, "off") == 0)

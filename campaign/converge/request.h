@@ -1,4 +1,4 @@
-/* What a user asks of a study of convergence, in words, and the study that follows. */
+/* A user's request for a study of convergence, as text, and the study made from it. */
 #ifndef CLAST_CAMPAIGN_CONVERGE_REQUEST_H
 #define CLAST_CAMPAIGN_CONVERGE_REQUEST_H
 
@@ -9,11 +9,11 @@ struct request {
   struct option_list knobs, set;
   const char *quantity, *store, *within, *seconds;
   int64_t first_seeds, most_seeds, first_seed;
-  bool quiet; /* no remarks on levels that are left out */
+  bool quiet; /* prints no remarks on levels that are left out */
 };
 
 /* Loads the scene or campaign `path` and sets up its study: quantities, rule, ladders. Clear *subject also after an
- * error. STATUS_USAGE: words that mean nothing; STATUS_CONTENT: knobs that do not apply. */
+ * error. STATUS_USAGE: unknown words; STATUS_CONTENT: knobs that do not apply. */
 status request_read(const struct request *request, const char *path, struct subject *subject, struct error *error);
 
 #endif

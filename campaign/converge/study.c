@@ -1,5 +1,4 @@
-/* What the runs of a study tell: values from the store, rows of levels, errors over knobs. The runs are study_rounds.c.
- */
+/* Results of a study: values from the store, rows of levels, errors over knobs. study_rounds.c computes the runs. */
 #include "campaign/converge/study.h"
 
 #include <math.h>
@@ -56,7 +55,7 @@ void study_clear(struct study *study) {
 /* ---- what was found ---- */
 
 size_t study_reference(const struct study_ladder *ladder) {
-  size_t finest = 0; /* the finest that was not left out, where the reference was */
+  size_t finest = 0; /* the finest level that was not left out, for a ladder whose reference was left out */
   for (size_t l = 0; l < ladder->levels.count; l++) {
     if (ladder->left_out[l])
       continue;
@@ -162,7 +161,7 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
   }
 }
 
-/* What the knob leaves unknown at the scene's own setting; 0 when that was not run. */
+/* Error of the knob at the scene's own setting; 0 when that setting was not run. */
 static double error_at_base(const struct study_found *found) {
   for (size_t l = 0; l < found->count; l++)
     if (found->rows[l].base && isfinite(found->rows[l].error))
@@ -187,7 +186,7 @@ static void mark_frontier(size_t count, struct study_found *found) {
       found[i].rows[l].frontier = on[n++];
 }
 
-/* What the knob leaves unknown at its value in this scene; without such a level, at the scene's own. */
+/* Error of the knob at its value in this scene; without such a level, at the scene's own setting. */
 static double error_at(const struct study_ladder *ladder, const struct study_found *found, const struct scene *scene) {
   char setting[64];
   ladder_setting(ladder->levels.knob, scene, setting, sizeof setting);
@@ -197,8 +196,8 @@ static double error_at(const struct study_ladder *ladder, const struct study_fou
   return error_at_base(found);
 }
 
-/* Named settings turn all knobs: what the reference of them leaves unknown adds to the bias against it. Without a study
- * of the knobs of resolution that is not known. */
+/* Named settings set all knobs. The error of their reference adds to the bias against it. Without a study of the
+ * resolution knobs this error is not known. */
 static void add_reference_error(const struct study_ladder *ladders, size_t count, size_t of,
                                 struct study_found *found) {
   const struct study_ladder *ladder = &ladders[of];
@@ -219,14 +218,14 @@ static void add_reference_error(const struct study_ladder *ladders, size_t count
   }
 }
 
-/* own: the error of each knob at the scene's own setting. */
+/* Adds the errors of the other knobs. own: error of each knob at the scene's own setting. */
 static void add_other_errors(size_t count, const double *own, size_t of, struct study_found *found) {
   for (size_t other = 0; other < count; other++)
     for (size_t l = 0; other != of && l < found->count; l++)
       found->rows[l].error += own[other];
 }
 
-/* Each level has the errors of all knobs: of the others, what they leave unknown at the scene's own setting. */
+/* Gives each level the errors of all knobs: for the other knobs, their errors at the scene's own setting. */
 static void combine(const struct study_ladder *ladders, size_t count, struct study_found *found) {
   double own[STUDY_KNOBS] = {0};
   for (size_t i = 0; i < count; i++)
@@ -240,7 +239,7 @@ static void combine(const struct study_ladder *ladders, size_t count, struct stu
   mark_frontier(count, found);
 }
 
-/* Tells two modes of a level apart where there are two. */
+/* Separates the two modes of a level that has two. */
 static void find_modes(const struct study_ladder *ladder, size_t quantity, struct study_found *found) {
   for (size_t l = 0; l < found->count; l++) {
     struct scatter scatter;
@@ -291,7 +290,7 @@ status study_store(const struct study *study, struct store *store, struct error 
 /* ---- values from the store ---- */
 
 struct reading {
-  double *values; /* NULL: of no interest */
+  double *values; /* NULL: not wanted */
   bool *ran;
   int64_t first, count;
   double cpu, wall;
@@ -311,7 +310,7 @@ static void take_run(void *context, const struct store_point_run *run) {
   reading->runs++;
 }
 
-/* The values of a result of the runs; of an exponent only what the runs cost. */
+/* Reads the values of a result from the runs; for an exponent only the runs' cost. */
 static status read_runs(const struct study *study, struct study_ladder *ladder, size_t l, size_t q, struct store *store,
                         struct error *error) {
   bool of_outcome = study->quantity[q].of_outcome;
@@ -329,7 +328,7 @@ static status read_runs(const struct study *study, struct study_ladder *ladder, 
   return code;
 }
 
-/* What each run adds to an exponent of the first seeds: their number decides about all values. */
+/* Reads what each run adds to an exponent of the first seeds. All values depend on the number of seeds. */
 static status read_exponent(const struct study *study, struct study_ladder *ladder, size_t l, size_t q,
                             struct store *store, struct error *error) {
   const struct study_quantity *quantity = &study->quantity[q];

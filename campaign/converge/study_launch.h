@@ -9,11 +9,11 @@ struct study_launch {
   const struct launch_options *options;
   const struct command_line *line;
   enum table_format format;
-  const char *picture, *frontier; /* of means, of errors; NULL: none */
+  const char *picture, *frontier; /* pictures of means and of errors; NULL: none */
 };
 
-/* Starts the farm, runs the study and, on rank 0, prints what was found and draws the picture. What study_rounds_run
- * returns. */
+/* Starts the farm, runs the study and, on rank 0, prints the results and draws the pictures. Returns the status of
+ * study_rounds_run. */
 status study_launch(struct study *study, const struct study_launch *asked, struct error *error);
 
 #endif

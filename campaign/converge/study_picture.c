@@ -24,7 +24,7 @@ static struct picture_mean error_of(const struct convergence_row *row) {
   return (struct picture_mean){row->cpu, row->error, NAN, NAN, NAN};
 }
 
-/* Adds a mark to the curve under way, in order of cost. */
+/* Adds a mark to the current curve, in order of cost. */
 static void add_mark(struct drawing *drawing, struct picture_mean mark) {
   struct picture_mean *means = drawing->means[drawing->count];
   struct picture_curve *curve = &drawing->curves[drawing->count];

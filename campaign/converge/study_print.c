@@ -23,7 +23,7 @@ status study_print_knobs(enum table_format format, struct error *error) {
 static void print_level(struct table *table, const struct convergence_row *row) {
   char setting[80];
   if (row->n == 0)
-    return; /* left out by the budget, or every run failed: said below */
+    return; /* left out by the budget, or every run failed: print_limit names it */
   snprintf(setting, sizeof setting, "%.64s%s%s", row->setting, row->base ? " *" : "", row->reference ? " ref" : "");
   table_text(table, row->knob);
   table_text(table, setting);
@@ -71,10 +71,10 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
   putchar('\n');
 }
 
-/* Would a cheaper level save runs of a finer one? Levels that do not differ from the reference need no such help: the
- * cheaper one is the answer. */
+/* Prints whether a cheaper level would save runs of a finer one. Levels that do not differ from the reference are
+ * skipped, because the cheaper level can replace the reference. */
 static void print_gain(size_t count, const struct study_found *found) {
-  const double worth_it = 1.5; /* below, the estimator costs more care than it saves time */
+  const double worth_it = 1.5; /* below this gain the estimator is not worth its effort */
   const struct convergence_row *best = NULL;
   double most = 0;
   for (size_t i = 0; i < count; i++)

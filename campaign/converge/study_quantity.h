@@ -1,4 +1,4 @@
-/* What a study of convergence is of: a result of every run, or an exponent of all runs of a point together. */
+/* The quantity of a study of convergence: a result of every run, or an exponent fitted to all runs of a point. */
 #ifndef CLAST_CAMPAIGN_CONVERGE_STUDY_QUANTITY_H
 #define CLAST_CAMPAIGN_CONVERGE_STUDY_QUANTITY_H
 
@@ -6,7 +6,7 @@
 #include "engine/engine.h"
 
 struct study_quantity {
-  const struct field *row; /* of a run; NULL: an exponent */
+  const struct field *row; /* result of a run; NULL: an exponent */
   bool of_outcome;
   enum exponent_method method;
   enum estimates_window window;
@@ -14,7 +14,7 @@ struct study_quantity {
   char column[FIELD_TEXT_SIZE]; /* its name in the store's table convergence */
 };
 
-/* STATUS_CONTENT or STATUS_USAGE, with the names that come near: there is no such quantity. */
+/* STATUS_CONTENT or STATUS_USAGE, with similar names: there is no such quantity. */
 status study_quantity_find(const struct engine_kind *kind, const char *name, struct study_quantity *quantity,
                            struct error *error);
 

@@ -1,4 +1,4 @@
-/* The rounds of a study: which levels run next with how many seeds, and the runs of a round as a campaign. */
+/* The rounds of a study: chooses the next levels and numbers of seeds, and runs a round as a campaign. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -12,25 +12,25 @@ struct rounds { /* of one farm_run */
   const struct driver_options *options;
   struct store *store;
   double begin;
-  double seconds, work; /* of the levels that have run: their ratio predicts the others */
+  double seconds, work; /* sums over the levels that have run: their ratio predicts the other levels */
 
   /* The round under way. */
   struct study_ladder *ladder;
   int64_t seeds;
-  bool probe;                /* one seed of the cheapest level, because nothing has run yet */
+  bool probe;                /* runs one seed of the cheapest level, because nothing has run yet */
   struct campaign *campaign; /* owned */
-  struct driver *driver;     /* NULL: between two rounds */
-  struct farm_manager calls; /* of the driver */
+  struct driver *driver;     /* NULL between two rounds */
+  struct farm_manager calls; /* the driver's callbacks */
   int out;                   /* tasks on slots */
-  struct error error;        /* of a callback that cannot return one */
+  struct error error;        /* error of a callback that cannot return one */
 };
 
 static double work_of(const struct scene *scene) {
   return scene->kind->work ? scene->kind->work(scene->inputs) : 1;
 }
 
-/* Wall time of a run of the level, s: measured, or by the engine's measure of work from the ladder's other levels,
- * or from other ladders. NaN: nothing has run. */
+/* Wall time of a run of the level, s: measured, or estimated by the engine's measure of work from other levels of the
+ * ladder or from other ladders. NaN: nothing has run. */
 static double predict(const struct rounds *rounds, const struct study_ladder *ladder, size_t level) {
   if (!isnan(ladder->wall[level]))
     return ladder->wall[level];
@@ -48,7 +48,7 @@ static double seconds_left(const struct rounds *rounds) {
   return rounds->study->rule.seconds - (clock_s() - rounds->begin);
 }
 
-/* Is every bias of every quantity known to the wanted width? */
+/* True when every bias of every quantity is known to the wanted width. */
 static bool is_narrow(const struct study *study, const struct study_ladder *ladder) {
   if (isnan(study->rule.within))
     return true;
@@ -63,7 +63,7 @@ static bool is_narrow(const struct study *study, const struct study_ladder *ladd
   return true;
 }
 
-/* Wall time on one slot that a level still needs for its first `seeds` seeds, s. */
+/* Wall time (s) on one slot of the missing runs among the level's first `seeds` seeds. */
 static double cost_of(const struct rounds *rounds, const struct study_ladder *ladder, size_t level, int64_t seeds) {
   int64_t missing = 0;
   for (int64_t s = 0; s < seeds; s++)
@@ -78,9 +78,9 @@ static double wall_time(const struct rounds *rounds, const struct study_ladder *
   return seconds / fmax(1, rounds->options->slots);
 }
 
-/* Leaves out the most expensive levels until the first round fits into the ladder's share of the time left: as much as
- * each of those that wait for their first round. Levels that other ladders have run cost nothing and stay. Returns how
- * many levels are left. */
+/* Leaves out the most expensive levels until the first round fits into the ladder's share of the time left. All ladders
+ * that wait for their first round have equal shares. Levels whose runs exist cost nothing and stay. Returns the number
+ * of levels that remain. */
 static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladder, int64_t seeds) {
   size_t count = ladder->levels.count, waiting = 0;
   for (size_t i = 0; i < rounds->study->ladder_count; i++)
@@ -108,7 +108,7 @@ static void end_ladder(struct study_ladder *ladder, const char *why) {
 
 static const char budget[] = "the time given is spent";
 
-/* How many seeds the ladder gets next. 0: it is done. */
+/* Next number of seeds of the ladder. 0: the ladder is done. */
 static int64_t next_seeds(const struct rounds *rounds, struct study_ladder *ladder) {
   const struct study_rule *rule = &rounds->study->rule;
   if (ladder->seeds == 0) {
@@ -154,7 +154,7 @@ static size_t cheapest_level(const struct study_ladder *ladder) {
   return best;
 }
 
-/* Does some level give the input another value than the base scene has? An input without effect is none. */
+/* True when some level gives the input another value than the base scene. False for an input without effect. */
 static bool is_turned(const struct study_ladder *ladder, size_t input) {
   const struct scene *base = ladder->base;
   const struct field *row = &base->kind->inputs->rows[input];
@@ -171,7 +171,7 @@ static bool is_turned(const struct study_ladder *ladder, size_t input) {
   return false;
 }
 
-/* The inputs that the knob turns as axes, whose i-th values are the i-th level. */
+/* Makes axes of the inputs that the knob sets; their i-th values are the i-th level. */
 static status make_axes(const struct rounds *rounds, struct campaign *campaign, struct error *error) {
   const struct ladder *levels = &rounds->ladder->levels;
   const struct field_table *inputs = rounds->ladder->base->kind->inputs;
@@ -254,7 +254,7 @@ static void judge(struct rounds *rounds) {
     end_ladder(ladder, "the largest number of seeds has run");
 }
 
-/* `outcome`: of the round's session in the store. */
+/* `outcome`: outcome of the round's session in the store. */
 static status end_round(struct rounds *rounds, const char *outcome, struct error *error) {
   struct driver_summary summary;
   status code = driver_end(rounds->driver, error);

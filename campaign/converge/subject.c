@@ -66,12 +66,12 @@ static status load_scene(struct subject *subject, const char *reference, const s
   snprintf(limits->name, sizeof limits->name, "%s", scene->name[0] ? scene->name : "scene");
   snprintf(limits->store, sizeof limits->store, "%.200s-converge.db", limits->name);
   for (char *slash = limits->store; (slash = strchr(slash, '/'));)
-    *slash = '-'; /* a name is no way to another folder */
+    *slash = '-'; /* a name must not lead to another folder */
   snprintf(subject->reference, sizeof subject->reference, "%s", reference);
   return add_scene(subject, set, scene, error);
 }
 
-/* A campaign's document has the key `scene`, which a scene's has not; what is no file is a built-in scene. */
+/* Only a campaign's document has the key `scene`. A name without a file is a built-in scene. */
 static bool is_campaign(const char *path) {
   bool found = false;
   char line[4096];
@@ -88,7 +88,7 @@ status subject_load(struct subject *subject, const char *path, const struct opti
   if (code != STATUS_OK)
     return code;
   struct campaign *limits = &subject->study.limits;
-  /* What the study borrows from a campaign is not owned twice. */
+  /* The study borrows these from the campaign, so they must not be freed twice. */
   limits->axes = NULL;
   limits->axis_count = 0;
   limits->scene = NULL;

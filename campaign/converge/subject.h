@@ -1,4 +1,4 @@
-/* What a study of convergence is of: a scene, or every point of a campaign. */
+/* The subject of a study of convergence: a scene, or every point of a campaign. */
 #ifndef CLAST_CAMPAIGN_CONVERGE_SUBJECT_H
 #define CLAST_CAMPAIGN_CONVERGE_SUBJECT_H
 
@@ -7,13 +7,13 @@
 
 enum { SUBJECT_SCENES = 64 };
 
-/* What is studied, and what holds it. */
+/* The study, and the objects that it borrows from. */
 struct subject {
   struct study study;
   struct campaign *campaign;            /* NULL: a scene was named */
   struct scene *scenes[SUBJECT_SCENES]; /* owned */
   size_t scene_count;
-  char reference[2 * FIELD_TEXT_SIZE]; /* of the scene, from the current folder */
+  char reference[2 * FIELD_TEXT_SIZE]; /* path of the scene from the current folder */
 };
 
 /* A file of a campaign or a scene, or a built-in scene; `set` as in scene_option_apply(). Fills the study's limits.

@@ -150,7 +150,8 @@ double campaign_value(const struct field *row, bool of_outcome, const struct out
   return row->kind == FIELD_INTEGER ? (double)value.integer : value.number;
 }
 
-/* The document for the store. The sum tells which points it stood for; another file of points is another campaign. */
+/* The document for the store. The checksum identifies the file of points; another file of points is another
+ * campaign. */
 static char *text_for_store(const char *document, const struct campaign *campaign) {
   char *text = NULL;
   size_t size = 0;

@@ -28,40 +28,41 @@ enum campaign_keep { CAMPAIGN_KEEP_NONE, CAMPAIGN_KEEP_ALL, CAMPAIGN_KEEP_EXTREM
 
 struct campaign_design_keys { /* the mapping form of `design`, table campaign_design_table */
   int kind;                   /* enum campaign_design; CAMPAIGN_LIST with a file */
-  int64_t points;             /* of the sampling designs and of a file; 0 for grid and list, whose axes give it */
-  int64_t seed;               /* of the sampling designs: for shift, permutations and draws */
+  int64_t points; /* number of points of a sampling design or a file; 0 for grid and list, whose axes give it */
+  int64_t seed;   /* seed of a sampling design: for shift, permutations and draws */
   char file[FIELD_TEXT_SIZE]; /* CSV file of the points, "" for none; campaign_points.h */
 };
 
 struct campaign {
   char name[FIELD_TEXT_SIZE];
   char scene_reference[FIELD_TEXT_SIZE];
-  char quantity[FIELD_TEXT_SIZE]; /* the main quantity: shown while running, judged by `extremes` */
+  char quantity[FIELD_TEXT_SIZE]; /* the main quantity: shown while running; selects the runs of keep `extremes` */
   char store[FIELD_TEXT_SIZE];    /* path, relative to the current folder */
   int64_t first_seed;
   bool independent;  /* seeds derive from point and replicate instead of first_seed + r */
   int64_t per_point; /* replicates of every point; 0 when `until` decides */
-  int64_t maximum;   /* of replicates when `until` decides */
+  int64_t maximum;   /* most replicates of a point when `until` decides */
   char until_quantity[FIELD_TEXT_SIZE];
-  double until_half_width; /* of the confidence interval of the mean, SI of the quantity */
+  double until_half_width; /* half width of the mean's confidence interval, in the quantity's SI unit */
   double until_level;      /* 0.95 */
   int64_t until_minimum, until_batch;
   char accuracy_quantity[FIELD_TEXT_SIZE];
-  double accuracy_within; /* |error| and interval of the mean together, SI of the quantity; NaN: not given */
+  double accuracy_within; /* limit of |error| plus half width of the mean's interval, in the quantity's SI unit; NaN:
+                             not given */
   double time_limit;      /* s per attempt, NaN = off */
   double memory_limit;    /* bytes per attempt, NaN = off */
-  int64_t attempts;       /* of one run, in all */
-  int64_t failures;       /* of the first CAMPAIGN_FIRST_RUNS that end the campaign; 0 = never */
+  int64_t attempts;       /* most attempts of one run */
+  int64_t failures;       /* failures among the first CAMPAIGN_FIRST_RUNS runs that end the campaign; 0 = never */
   struct campaign_design_keys design;
   int keep;           /* enum campaign_keep */
-  int64_t keep_first; /* of CAMPAIGN_KEEP_FIRST */
+  int64_t keep_first; /* number N of CAMPAIGN_KEEP_FIRST */
 
   struct design_axis *axes; /* owned */
   size_t axis_count;
-  int64_t *point_lines;   /* owned: of each point in design.file; NULL without */
-  char points_sha256[65]; /* of design.file; "" without */
+  int64_t *point_lines;   /* owned: line of each point in design.file; NULL without a file */
+  char points_sha256[65]; /* checksum of design.file; "" without */
   struct scene *scene;    /* owned: the scene with `set` applied; axes are applied to copies of it */
-  char *text;             /* owned: the document as read, for the store; a last line has the sum of design.file */
+  char *text; /* owned: the document as read, for the store; its last line has the checksum of design.file */
 };
 enum { CAMPAIGN_FIRST_RUNS = 50 };
 
@@ -71,13 +72,13 @@ extern const struct field_table campaign_design_table; /* the keys of `design` a
 /* Reports all errors of the document together in *error, each with its place. STATUS_MISSING, STATUS_IO,
  * STATUS_CONTENT. May be called before farm_start: opens no HDF5 file, starts no thread. */
 status campaign_load(const char *path, struct campaign **out, struct error *error);
-/* The same with changes from the command line (NULL: none). STATUS_USAGE when they alone are at fault. */
+/* The same with changes from the command line (NULL: none). STATUS_USAGE when only the changes are wrong. */
 status campaign_load_changed(const char *path, const struct campaign_changes *changes, struct campaign **out,
                              struct error *error);
-/* `folder` is what `scene` is relative to (NULL: the current one). */
+/* The path `scene` is relative to `folder` (NULL: the current one). */
 status campaign_parse(const char *name, const char *text, size_t size, const char *folder, struct campaign **out,
                       struct error *error);
-/* The document of a store, which may be from before units were asked for: numbers without one are SI. */
+/* Parses the document of a store. Numbers without a unit are SI, because old documents have no units. */
 status campaign_parse_stored(const char *name, const char *text, const char *folder, struct campaign **out,
                              struct error *error);
 void campaign_free(struct campaign *campaign); /* NULL is fine */
@@ -85,7 +86,7 @@ void campaign_free(struct campaign *campaign); /* NULL is fine */
 /* The axis of an input; NULL: it does not vary. */
 const struct design_axis *campaign_axis(const struct campaign *campaign, const struct field *row);
 
-/* Replicates of a point at least, and at most. Equal for per_point. */
+/* Least and greatest number of replicates of a point. Equal for per_point. */
 int64_t campaign_replicates_least(const struct campaign *campaign);
 int64_t campaign_replicates_most(const struct campaign *campaign);
 
@@ -93,7 +94,7 @@ int64_t campaign_replicates_most(const struct campaign *campaign);
  * together (cross-field check). Owned by the caller. */
 struct scene *campaign_point_scene(const struct campaign *campaign, const struct field_value *values,
                                    struct error *error);
-/* The same from another scene of the campaign's engine than its own (a level of a knob). */
+/* The same from another scene of the campaign's engine (a level of a knob). */
 struct scene *campaign_point_scene_from(const struct scene *base, const struct campaign *campaign,
                                         const struct field_value *values, struct error *error);
 /* Seed of replicate r: first_seed + r, the same for every point; with independent seeds derived from the point's
@@ -104,9 +105,9 @@ uint64_t campaign_seed(const struct campaign *campaign, const struct scene *poin
  */
 const struct field *campaign_quantity(const struct engine_kind *kind, const char *path, bool *of_outcome,
                                       struct error *error);
-/* Its value in a finished run: NaN when the run failed (outcome states other than completed and end_time). */
+/* Value of a quantity in a finished run; NaN when the run failed (outcome states other than completed and end_time). */
 double campaign_value(const struct field *row, bool of_outcome, const struct outcome *outcome, const void *result);
-/* A finished run that is a usable result. */
+/* True when a finished run is a usable result. */
 bool campaign_usable(const struct outcome *outcome);
 
 #endif

@@ -1,4 +1,4 @@
-/* Puts the changes into the document before it is read: they are checked like what the file says. */
+/* Puts the changes into the document before it is read: they are checked like the file's own values. */
 #include "campaign/document/campaign_change.h"
 
 #include <inttypes.h>

@@ -1,5 +1,5 @@
-/* Changes of a campaign from the command line. They become part of its document, so that the store keeps what was run
- * and `clast retry` runs the same. */
+/* Changes of a campaign from the command line. They become part of its document, so that the store keeps them and
+ * `clast retry` runs the same campaign. */
 #ifndef CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_CHANGE_H
 #define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_CHANGE_H
 
@@ -12,7 +12,7 @@ struct campaign_changes {
   int64_t seeds;             /* seeds.per_point; 0: as written */
 };
 
-/* PATH=VALUE of --set. *value points into the text. STATUS_USAGE: it is not so. */
+/* Splits PATH=VALUE of --set. *value points into the text. STATUS_USAGE: the text has another form. */
 status campaign_change_split(const char *text, char path[FIELD_TEXT_SIZE], const char **value, struct error *error);
 
 /* STATUS_USAGE: no PATH=VALUE. */

@@ -9,7 +9,7 @@
 
 struct campaign_key {
   const char *name;
-  const char *words;               /* that may stand inside it, separated by spaces */
+  const char *words;               /* words that may occur in its value, separated by spaces */
   const char *doc;                 /* one sentence */
   const char *forms;               /* lines of examples and their meaning */
   const struct field_table *table; /* the rows of its mapping; NULL: none */
@@ -18,7 +18,7 @@ struct campaign_key {
 extern const struct campaign_key campaign_keys[];
 extern const size_t campaign_keys_count;
 
-/* The key named `path`, or of which `path` is a part ("keep.fields"), or one of whose words it is. NULL: none. */
+/* Finds the key that is named `path`, contains it ("keep.fields"), or has it among its words. NULL: none. */
 const struct campaign_key *campaign_keys_find(const char *path);
 
 #endif

@@ -16,9 +16,9 @@ enum { LARGEST = 16 << 20, MOST_COLUMNS = 1000, MOST_REPORTS = 10 };
 
 struct reading {
   struct campaign *campaign;
-  document_node *node; /* where the document names the file */
-  char (*units)[64];   /* of the columns; "" for none */
-  size_t capacity;     /* of every axis and of the lines */
+  document_node *node; /* the document's node that names the file */
+  char (*units)[64];   /* units of the columns; "" for none */
+  size_t capacity;     /* capacity of every axis and of the lines */
   int reports;
 };
 
@@ -120,7 +120,7 @@ static bool read_cell(struct reading *r, size_t column, int64_t line, const char
   if (!*cell)
     return wrong(r, line, "%s: the cell is empty", axis->row->path);
   snprintf(text, sizeof text, "%s%s%s", cell, bare && *r->units[column] ? " " : "", bare ? r->units[column] : "");
-  const bool plain = bare && strcmp(r->units[column], "1") == 0; /* [1]: fractions, where percent are asked for */
+  const bool plain = bare && strcmp(r->units[column], "1") == 0; /* [1]: fractions, for inputs that require percent */
   struct field_value *value = &axis->levels[r->campaign->design.points];
   const status code = plain ? field_parse_si(axis->row, cell, value, &error)
                             : field_parse(axis->row, text, value, &error);
@@ -167,7 +167,7 @@ static bool read_point(struct reading *r, struct csv *csv) {
   return true;
 }
 
-/* Goes on after a bad line, so that one report has the first MOST_REPORTS of them. */
+/* Goes on after an invalid line, so that one report has the first MOST_REPORTS errors. */
 static bool read_text(struct reading *r, struct csv *csv) {
   if (csv_record(csv) && !read_header(r, csv))
     return false;

@@ -1,4 +1,4 @@
-/* Higher limits for runs that met them. */
+/* Raises the limits for runs that reached them. */
 #include "campaign/document/campaign_raise.h"
 
 /* A limit given on the command line, or twice the campaign's. */

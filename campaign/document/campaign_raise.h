@@ -4,8 +4,8 @@
 
 #include "campaign/document/campaign.h"
 
-/* Limits as a user types them ("30 min", off); NULL: twice the campaign's. So many attempts more, and no limit of
- * failures. STATUS_USAGE. */
+/* Limits as a user types them ("30 min", off); NULL: twice the campaign's. Adds this many attempts and removes the
+ * limit of failures. STATUS_USAGE. */
 status campaign_raise(struct campaign *campaign, const char *time, const char *memory, int64_t attempts,
                       struct error *error);
 

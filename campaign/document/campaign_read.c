@@ -14,7 +14,7 @@ static document_node *key_of(document_node *mapping, const char *key) {
   return mapping && document_kind(mapping) == DOCUMENT_MAPPING ? document_key(mapping, key) : NULL;
 }
 
-/* One entry of `set`. `path` is where it stands in the document. */
+/* Reads one entry of `set`. `path` is its path in the document. */
 static void read_set_value(document_node *node, const char *key, const char *path, struct campaign *campaign) {
   struct error error = {0};
   struct field_value value;
@@ -51,7 +51,7 @@ static void read_set(document_node *set, struct campaign *campaign) {
   }
 }
 
-/* "first 12": a number from 1 without sign or blanks, of up to 9 digits. 0: it is none. */
+/* The number of "first 12": at least 1, up to 9 digits, no sign or blanks. 0: the text has another form. */
 static int64_t first_of(const char *text) {
   char *end = NULL;
   if (strncmp(text, "first ", 6) != 0 || text[6] < '1' || text[6] > '9' || strlen(text + 6) >= 10)
@@ -106,7 +106,7 @@ static void read_design(document_node *design, struct campaign *campaign) {
     campaign->design.kind = (int)value.number;
 }
 
-/* The union in `seeds`: a fixed number, or a rule with a maximum. */
+/* Checks `seeds`: a fixed number, or a rule with a maximum. */
 static void check_seeds(document_node *root, struct campaign *campaign) {
   document_node *seeds = key_of(root, "seeds");
   document_node *until = key_of(seeds, "until"), *per_point = key_of(seeds, "per_point"), *max = key_of(seeds, "max");
@@ -151,7 +151,8 @@ static void check_quantity(document_node *node, const char *path, const char *na
     document_report(node, path, "%s", error.message);
 }
 
-/* A study of convergence knows exponents, too: they belong to a point, and have no mean over runs. */
+/* Exponents are refused, although a study of convergence has them: an exponent belongs to a point and has no mean over
+ * runs. */
 static void check_accuracy_quantity(document_node *node, const struct campaign *campaign) {
   struct error error;
   bool exponent;
@@ -184,7 +185,7 @@ static bool read_axes(document_node *root, const char *folder, struct campaign *
   return campaign_points_read(file, folder, campaign) && !vary;
 }
 
-/* A point that cannot be run: the line of the file that it stands on, or the key that made it. */
+/* Reports a point that cannot be run, with its line in the file or the key that made it. */
 static void report_point(document_node *root, int64_t index, const char *why, const struct campaign *campaign) {
   document_node *vary = document_key(root, "vary");
   if (campaign->point_lines)
@@ -224,7 +225,7 @@ static void check_store(document_node *root, struct campaign *campaign) {
   if (!campaign->store[0] &&
       snprintf(campaign->store, sizeof campaign->store, "%s.db", campaign->name) >= (int)sizeof campaign->store)
     document_report(name, "name", "too long to name the store after it; give `store`");
-  if (!store && strchr(campaign->name, '/')) /* a name is no way to another folder */
+  if (!store && strchr(campaign->name, '/')) /* a name must not lead to another folder */
     document_report(name, "name",
                     "\"%s\" has a slash, and the store would be in another folder; take it out, or give `store`",
                     campaign->name);
@@ -254,7 +255,7 @@ void campaign_read(document_node *root, const char *folder, struct campaign *cam
   check_accuracy(root, campaign);
   check_store(root, campaign);
   if (!read_scene(root, folder, campaign))
-    return; /* nothing more can be read without it */
+    return; /* the other keys cannot be read without a scene */
   const bool varied = read_axes(root, folder, campaign);
   read_set(set, campaign);
   check_quantities(root, campaign);

@@ -5,8 +5,8 @@
 #include "campaign/document/campaign.h"
 #include "schemas/document.h"
 
-/* Fills the whole struct, text excepted. Errors are reported to the document: see document_finish(). `folder` is what
- * scene and design.file are relative to (NULL: the current one). */
+/* Fills the whole struct, text excepted. Errors are reported to the document: see document_finish(). The paths of scene
+ * and design.file are relative to `folder` (NULL: the current one). */
 void campaign_read(document_node *root, const char *folder, struct campaign *campaign);
 
 #endif

@@ -21,7 +21,7 @@ static bool wrong(struct reading *r, document_node *node, const char *text) {
   return false;
 }
 
-/* A row like the input's own with other limits: the mean of a law may lie where no value may. */
+/* Copy of the input's row with other limits: the mean of a distribution may be outside the range of its values. */
 static struct field number_row(const struct reading *r, const char *unit, double minimum, double maximum,
                                unsigned flags) {
   struct field row = *r->axis->row;
@@ -39,8 +39,8 @@ static unsigned own_percent(const struct reading *r) {
   return r->axis->row->flags & FIELD_PERCENT;
 }
 
-/* The unit of the first value that has one is the one that tables are in. `unit`: SI, of the row that the value was
- * read by; that of the law's sigma or factor is another one. */
+/* Tables use the unit of the first value that has one. `unit`: SI unit of the row that read the value; it differs from
+ * the input's for a law's sigma or factor. */
 static void note_unit(struct reading *r, document_node *node, const char *unit) {
   const char *text = document_scalar(node);
   if (*r->axis->unit || !text || !unit || r->axis->row->unit == NULL || strcmp(unit, r->axis->row->unit) != 0)
@@ -63,7 +63,7 @@ static bool read_number(struct reading *r, document_node *node, const char *what
   return true;
 }
 
-/* A value of the axis' own row, as a number. */
+/* Reads a value by the axis' own row, as a number. */
 static bool read_own(struct reading *r, document_node *node, double *x) {
   struct field_value value;
   struct field row = *r->axis->row;
@@ -145,7 +145,7 @@ static bool read_truncation(struct reading *r, bool positive) {
   document_node *node = document_key(r->node, "truncated");
   if (node && !read_pair(r, node, positive, &r->axis->lower, &r->axis->upper))
     return false;
-  /* Position in a law, in standard deviations from its middle. */
+  /* Position in a distribution, in standard deviations from its centre. */
   struct design_axis *axis = r->axis;
   const struct field *row = axis->row;
 #define DEVIATIONS(x) (positive ? log(fmax(x, 0) / axis->a) / axis->b : ((x)-axis->a) / axis->b)
@@ -155,8 +155,8 @@ static bool read_truncation(struct reading *r, bool positive) {
   /* beyond 37 standard deviations the mass of a normal law underflows */
   if (from > 37 || to < -37)
     return wrong(r, node, "the law has nothing there: more than 37 standard deviations from its middle");
-  /* Checks that the values of the law are within the range of the input. A law is cut six standard deviations away (one
-   * draw in 1e9) without a message. */
+  /* Checks that the values of the law are within the range of the input. A range that ends beyond six standard
+   * deviations (one draw in 1e9) truncates the law without a message. */
   if ((from < least && least > -6) || (to > most && most < 6)) {
     document_report(r->node, r->path,
                     "the law reaches values that this input cannot take (%g to %g); cut it: {..., truncated: [a, b]}",
@@ -192,7 +192,7 @@ static bool read_lognormal(struct reading *r, document_node *node) {
   return good && read_truncation(r, true);
 }
 
-/* The values that go with those of the other input, one to one. */
+/* Reads the values that correspond one to one to those of the other input. */
 static bool read_linked_values(struct reading *r, document_node *values) {
   if (document_kind(values) != DOCUMENT_SEQUENCE)
     return wrong(r, values, "expected a list of values, one for each value of the input it follows");
@@ -201,7 +201,7 @@ static bool read_linked_values(struct reading *r, document_node *values) {
   return good;
 }
 
-/* factor times the other input, plus offset. */
+/* Reads factor and offset: the value is factor times the other input, plus offset. */
 static bool read_line(struct reading *r) {
   const struct field factor = number_row(r, "1", -HUGE_VAL, HUGE_VAL, 0);
   const struct field offset = number_row(r, r->axis->row->unit, -HUGE_VAL, HUGE_VAL, own_percent(r));
@@ -292,7 +292,7 @@ static bool read_form(struct reading *r) {
                  "expected one of {from, to, n}, {log: [a, b], n}, {uniform: [a, b]}, {log_uniform: [a, b]}, {normal: "
                  "{mean, sd}}, {lognormal: {median, sigma}}, {linked: path}");
   for (int k = 0; form->keys[k]; k++)
-    document_key(r->node, form->keys[k]); /* marks the keys as known, wherever the reading below may end */
+    document_key(r->node, form->keys[k]); /* marks the keys as known before any error below can end the reading */
   document_unknown_keys(r->node, r->path, form->keys);
   if (form->read != read_linked && !is_number(r->axis->row))
     return wrong(r, NULL, "this input is no number: give a list of its values");
@@ -309,7 +309,7 @@ static bool read_axis(struct reading *r) {
   }
 }
 
-/* An axis follows a free axis, and lists go together one to one. */
+/* Checks that every linked axis follows a free axis, and that linked lists have the same length. */
 static bool check_links(struct reading *readings, struct campaign *campaign) {
   for (size_t i = 0; i < campaign->axis_count; i++) {
     struct design_axis *axis = &campaign->axes[i];
@@ -346,7 +346,7 @@ static bool begin_axis(struct reading *readings, size_t index, document_node *va
   return !same;
 }
 
-/* The rows of all axes first, so that links work in any order. */
+/* Finds the inputs of all axes first, so that links may come in any order. */
 static bool read_axes(struct reading *readings, size_t count, document_node *vary, struct campaign *campaign) {
   for (size_t i = 0; i < count; i++)
     if (!begin_axis(readings, i, vary, campaign))

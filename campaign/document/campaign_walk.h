@@ -8,15 +8,16 @@
 struct campaign_walk {
   const struct campaign *campaign;
   struct design *design;
-  struct field_value *values; /* of the point it is at, one for each axis */
+  struct field_value *values; /* values of the current point, one for each axis */
 };
 
-/* Before the first point. STATUS_MEMORY; STATUS_CONTENT: no such design. End it also after an error. */
+/* Begins a walk before the first point. STATUS_MEMORY; STATUS_CONTENT: no such design. End the walk also after an
+ * error. */
 status campaign_walk_begin(struct campaign_walk *walk, const struct campaign *campaign, struct error *error);
 void campaign_walk_end(struct campaign_walk *walk);
-/* To the next point. False after the last one. */
+/* Goes to the next point. False after the last one. */
 bool campaign_walk_next(struct campaign_walk *walk);
-/* The scene of this point, the caller's. NULL with *error when its values cannot be run together. */
+/* The scene of the current point, owned by the caller. NULL with *error when its values cannot be run together. */
 struct scene *campaign_walk_scene(const struct campaign_walk *walk, struct error *error);
 
 #endif

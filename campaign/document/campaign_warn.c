@@ -1,4 +1,4 @@
-/* Walks the first points of a campaign and asks the engine for its doubts. */
+/* Collects the engine's warnings about the first points of a campaign. */
 #include "campaign/document/campaign_warn.h"
 
 #include <stdlib.h>
@@ -11,7 +11,7 @@ enum { LOOKED_AT = 1000, LINE = 400 };
 
 struct doubts {
   size_t points, count[WARNINGS_COUNT];
-  char first[WARNINGS_COUNT][LINE]; /* what the engine says of the first point with this doubt */
+  char first[WARNINGS_COUNT][LINE]; /* the engine's text for the first point with this warning */
 };
 
 /* The engine writes its lines in the order of the bits. */

@@ -41,7 +41,7 @@ static bool quoted(struct csv *csv, char cell[CSV_CELL], size_t *length) {
         csv->text++;
         return true;
       }
-      csv->text++; /* "" stands for one */
+      csv->text++; /* "" means one quote */
     }
     csv->line += *csv->text == '\n';
     if (!put(csv, cell, length))
@@ -63,7 +63,7 @@ static bool ends_cell(const struct csv *csv) {
   return ends_line(csv) || *csv->text == ',';
 }
 
-/* Blanks at the end do not belong to it. */
+/* Reads a cell without quotes. Trailing blanks are not part of it. */
 static bool plain(struct csv *csv, char cell[CSV_CELL], size_t *length) {
   while (!ends_cell(csv))
     if (!put(csv, cell, length))

@@ -11,11 +11,11 @@ enum { CSV_CELL = 256 };
 
 struct csv { /* set text and end; line to 1 */
   const char *text, *end;
-  int64_t line;      /* of the next character */
+  int64_t line;      /* line of the next character */
   const char *wrong; /* why the last cell cannot be read; NULL: it could */
 };
 
-/* True when there is another record; csv->line is its line. */
+/* True when there is another record; csv->line is the number of its line. */
 bool csv_record(struct csv *csv);
 /* The next cell of the record, without spaces around it. *last: it ends the record. False: csv->wrong has the reason.
  */

@@ -43,7 +43,7 @@ static const struct field shot_rows[] = {
 static const struct field_table shot_table = FIELD_TABLE(shot_rows, struct observed_shot, "shot",
                                                          "One experiment, or the mean of several equal ones.");
 
-/* The units of value, error and resolution are those of the quantity: read_datum() puts them in. */
+/* value, error and resolution have the quantity's unit, which read_datum() fills in. */
 static const struct field datum_rows[] = {
     {.path = "value",
      .kind = FIELD_REAL,
@@ -78,7 +78,7 @@ static struct observed_datum *add_datum(struct reading *r, document_node *node) 
   return datum;
 }
 
-/* What a quantity's name means. */
+/* Finds the quantity of a name. */
 static bool find_quantity(struct reading *r, document_node *node, struct observed_datum *datum) {
   struct error error = {0};
   bool exponent = false;
@@ -167,8 +167,8 @@ static int descending(const void *a, const void *b) {
   return (x < y) - (x > y);
 }
 
-/* The largest fragment, and the numbers above up to four masses from the second largest down to where the list is
- * complete, evenly in the logarithm. */
+/* Takes the largest fragment, and the numbers of fragments above up to four masses. These are evenly spaced in the
+ * logarithm, from the second largest fragment to the mass down to which the list is complete. */
 static void take_masses(struct reading *r, document_node *node, size_t count, double *masses, double total,
                         double complete) {
   enum { STEPS = 4 };

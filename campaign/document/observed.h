@@ -1,5 +1,5 @@
-/* What was measured: the document that `clast fit` compares a campaign with. Plain keys are rows of tables; what a shot
- * sets and its list of masses are read by hand.
+/* The document of measurements that `clast fit` compares a campaign with. Plain keys are rows of tables; a shot's `set`
+ * and its list of masses are read by hand.
  *
  *     name: basalt spheres
  *     source: who measured it, and where it is printed        # required: a number without a source is no datum
@@ -23,9 +23,9 @@ enum { OBSERVED_DATA = 32, OBSERVED_SHOTS = 32 };
 /* One number of one shot. */
 struct observed_datum {
   char quantity[FIELD_TEXT_SIZE];    /* a result, an exponent (beta, beta_METHOD_WINDOW), count_above, share_above */
-  double share;                      /* of count_above and share_above: of the body's mass */
+  double share;                      /* mass limit of count_above and share_above, as a share of the body's mass */
   double value, error;               /* SI; standard deviation of the measurement */
-  double resolution;                 /* standard deviation of what a finer resolution would change; NaN: not given */
+  double resolution;                 /* standard deviation of the change by a finer resolution; NaN: not given */
   struct ask_specimens_quantity ask; /* how a run's value is found */
   size_t shot;
 };
@@ -43,14 +43,14 @@ struct observed {
   size_t shot_count, datum_count;
 };
 
-/* All errors of the document together, each with its place. STATUS_MISSING, STATUS_IO, STATUS_CONTENT. Nothing of the
- * campaign is kept. */
+/* Reports all errors of the document together, each with its place. STATUS_MISSING, STATUS_IO, STATUS_CONTENT. Keeps no
+ * pointer to the campaign. */
 status observed_load(const char *path, const struct campaign *campaign, struct observed **out, struct error *error);
 status observed_parse(const char *name, const char *text, size_t size, const struct campaign *campaign,
                       struct observed **out, struct error *error);
 void observed_free(struct observed *observed); /* NULL is fine */
 
-/* "shot 1: M1/M" for tables and pictures: the shot is left out when there is one. */
+/* "shot 1: M1/M" for tables and pictures: the shot's name is left out when there is only one. */
 void observed_label(const struct observed *observed, size_t datum, char *label, size_t size);
 
 #endif

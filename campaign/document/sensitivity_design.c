@@ -8,7 +8,7 @@
 
 #include "schemas/text.h"
 
-static const double MORRIS_STEP = 0.5; /* of the quantile: two of four levels */
+static const double MORRIS_STEP = 0.5; /* change of the quantile: two of four levels */
 
 static status check_axes(const char *path, const struct campaign *campaign, struct error *error) {
   if (campaign->axis_count == 0 || *campaign->design.file)
@@ -164,7 +164,8 @@ status sensitivity_design_find(const struct campaign *campaign, enum design_sens
                      "CAMPAIGN.yaml NEW.yaml --design saltelli` writes one");
 }
 
-/* A step that changes no value, of an input of few values, is given to an input that changes nowhere else. */
+/* A step of an input with few values may change no value. Such a step is attributed to an input that no other step
+ * changes. */
 void sensitivity_design_steps(const struct campaign *campaign, size_t blocks, size_t *order, double *step) {
   const size_t n = campaign->axis_count;
   for (size_t b = 0; b < blocks; b++) {

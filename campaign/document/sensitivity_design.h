@@ -9,10 +9,12 @@
 status sensitivity_design_write(const char *path, const char *output, enum design_sensitivity_kind kind, size_t blocks,
                                 uint64_t seed, struct error *error);
 
-/* Which design the points of a campaign are, and how many blocks. STATUS_USAGE: neither. */
+/* Finds the kind of design that the points of a campaign form, and its number of blocks. STATUS_USAGE: it is neither
+ * design. */
 status sensitivity_design_find(const struct campaign *campaign, enum design_sensitivity_kind *kind, size_t *blocks,
                                struct error *error);
-/* Of a Morris design: the input that each step changes and the signed change of its quantile. inputs x blocks. */
+/* For a Morris design: the input that each step changes, and the signed change of its quantile. Both arrays: inputs x
+ * blocks. */
 void sensitivity_design_steps(const struct campaign *campaign, size_t blocks, size_t *order, double *step);
 
 #endif

@@ -28,8 +28,7 @@ void farm_pool_dispatch(struct farm_pool *pool);
 /* Sleeps until a slot or `signals` (a file descriptor, or -1) is readable or the timeout is over, and reads what the
  * slots have written. True when something was readable. */
 bool farm_pool_listen(struct farm_pool *pool, int signals, int64_t timeout_ns);
-int farm_pool_slots(
-    const struct farm_pool *pool); /* number of slots that work or are being replaced; 0: the pool is lost */
+int farm_pool_slots(const struct farm_pool *pool); /* slots that work or are being replaced; 0: the pool is lost */
 /* Most jobs that the pool should hold, from the recent duration of tasks. */
 size_t farm_pool_capacity(const struct farm_pool *pool);
 /* Ends slots and server immediately and frees everything, jobs included. NULL is fine. */

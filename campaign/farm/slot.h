@@ -15,10 +15,9 @@
 #define FARM_SLOT_TICKETS 64
 
 struct farm_slot_record {
-  _Atomic uint64_t running;   /* handle of the running task, 0 = none: the task that a crash is counted for */
-  _Atomic int64_t started_ns; /* start time of `running` */
-  _Atomic uint64_t
-      ticket[FARM_SLOT_TICKETS]; /* handle of the waiting task, 0 = taken by the slot or the main process */
+  _Atomic uint64_t running;                   /* handle of the running task, 0 = none; a crash is counted for it */
+  _Atomic int64_t started_ns;                 /* start time of `running` */
+  _Atomic uint64_t ticket[FARM_SLOT_TICKETS]; /* handle of the waiting task, 0 = taken by either side */
 };
 
 struct farm_slot_setup {
