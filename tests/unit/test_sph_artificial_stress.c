@@ -32,9 +32,9 @@ static void artificial_stress_opposes_tension_only(void **state) {
     assert_true(fabs(r[k] - expected[k]) < 1e-14);
 }
 
-/* The fast form, in every class: any stress, spheres and axes of it, none, and what is pressed all round, which has
- * exactly no R. A dozen rotations with inverses within 2 ulp leave some 1e-15 of the largest; stresses here are
- * below 10. */
+/* The fast form, in every class: any stress, isotropic and axisymmetric ones, none, and compression along all axes, for
+ * which R is exactly zero. A dozen rotations with inverses within 2 ulp leave some 1e-15 of the largest; stresses here
+ * are below 10. */
 static void opposed_stress_equals_plain_c(void **state) {
   (void)state;
   enum { COUNT = 203, FIRST = 3 };

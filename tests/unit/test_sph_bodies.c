@@ -52,7 +52,7 @@ static void masses_add_up_and_ids_follow_bodies(void **state) {
   sph_particles_free(p);
 }
 
-/* h^3 goes with the mass, where particles differ. */
+/* h^3 is proportional to the mass where particles differ. */
 static void graded_bodies_have_graded_h(void **state) {
   (void)state;
   struct sph_body body = bar;
@@ -124,7 +124,8 @@ static void the_same_bits_each_time(void **state) {
   }
 }
 
-/* The gap of the surfaces is the one asked for, the angle is that between flight and inward normal, and it hits. */
+/* The gap of the surfaces is the requested one, the angle is that between flight direction and inward normal, and the
+ * projectile hits. */
 static void projectiles_are_aimed(void **state) {
   (void)state;
   const struct sph_shape targets[] = {
@@ -228,7 +229,7 @@ static void ends_are_held_and_sides_damped(void **state) {
   assert_int_equal(sph_bodies_make(&bar, 1, SPH_WITH_HELD | SPH_WITH_DAMPING, &p, &range, NULL), STATUS_OK);
   const struct sph_middle middle = {.axis = {0, 0, -3}, .half = 0.15};
   const size_t held = sph_bodies_hold(p, range, &middle, SPH_HELD_Z | SPH_HELD_X);
-  /* all sides but the upper z: the impact's */
+  /* all sides except the upper z side, where the impact is */
   sph_bodies_damp(p, range, &bar.shape, SPH_SIDE_X0 | SPH_SIDE_X1 | SPH_SIDE_Y0 | SPH_SIDE_Y1 | SPH_SIDE_Z0, 0.04, 1e5);
   size_t count = 0, damped = 0, free_top = 0;
   for (size_t i = 0; i < p->n; i++) {

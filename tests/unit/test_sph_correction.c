@@ -12,8 +12,8 @@
 
 #include "engine/sph/pairs/pairs_kernels.h"
 
-/* Moments are diagonal in axes that are turned out of those of the coordinates; so is B. Eigenvalues size (1, 1 + d, 1
- * - d): the mean is `size`, the determinant over its cube 1 - d^2. */
+/* Moments are diagonal in axes turned relative to the coordinates; so is B. Eigenvalues size (1, 1 + d, 1 - d): the
+ * mean is `size`, the determinant over its cube 1 - d^2. */
 static const struct {
   double size, d_squared, share;
 } cases[] = {
@@ -37,7 +37,7 @@ static const struct {
     {0.175, 0.625, 27.0 / 32 * 5 / 32},
     {0.125, 0.475, 5.0 / 32 * 27 / 32},
 };
-enum { CASES = sizeof cases / sizeof cases[0] }; /* more than two registers of eight, and some left over */
+enum { CASES = sizeof cases / sizeof cases[0] }; /* more than two registers of eight, with a remainder */
 
 static const double axis[3][3] = {{2.0 / 3, -1.0 / 3, 2.0 / 3},
                                   {2.0 / 3, 2.0 / 3, -1.0 / 3},

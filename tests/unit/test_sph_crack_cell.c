@@ -1,12 +1,13 @@
-/* Cells that crack as one (module crack_cell): which particles share a cell, the flaws of a cell, what its particles
- * share, and the bits. A cube under tension along z, whose ends are held. */
+/* Cells that crack as one (module crack_cell): which particles share a cell, the flaws of a cell, the values that its
+ * particles share, and identical bits after a restart. The body is a cube under tension along z, whose ends are held.
+ */
 #include "engine/sph/body/cells.h"
 #include "engine/sph/body/flaws.h"
 #include "engine/sph/material/derived.h"
 #include "engine/sph/step/system_layout.h"
 #include "tests/support/sph_solid.h"
 
-static const double side = 0.01, load = 1e-3; /* m; strain: more than twice what opens the weakest flaw */
+static const double side = 0.01, load = 1e-3; /* m; strain: more than twice the threshold of the weakest flaw */
 
 static struct solid_case pulled(double width, uint64_t seed, struct sph_flaws **flaws) {
   struct solid_case c = solid_pulled_cube(side, load);
@@ -21,8 +22,8 @@ static struct solid_case pulled(double width, uint64_t seed, struct sph_flaws **
   return c;
 }
 
-/* Two particles of a cell are no farther apart than the diagonal of a cube. There are as many cells as cubes, and those
- * that the surface cuts. Each cell has a particle. Another seed deals otherwise, the same seed alike. */
+/* Two particles of a cell are no farther apart than the diagonal of a cube. There are as many cells as whole cubes and
+ * cubes cut by the surface. Each cell has a particle. The same seed gives the same cells, another seed other cells. */
 static void cubes(void **state) {
   (void)state;
   struct sph_flaws *flaws;
@@ -125,7 +126,7 @@ static void shared(void **state) {
   solid_end(&c);
 }
 
-/* Cells of one particle are particles: the same flaws up to rounding, and the same damage. */
+/* Cells of one particle act like particles: the same flaws up to rounding, and the same damage. */
 static void one_particle_each(void **state) {
   (void)state;
   struct sph_flaws *flaws[2];

@@ -1,6 +1,6 @@
-/* The front of a crack (module crack_front): its speed, its plane, the tension it needs, what it does to a particle,
- * and its bits. A cube under even tension along z, whose ends are held, with one flaw, in its
- * middle. */
+/* The front of a crack (module crack_front): its speed, its plane, the tension it needs, its effect on a particle, and
+ * identical bits after a restart. A cube under even tension along z, whose ends are held, with one flaw, in its middle.
+ */
 #include "engine/sph/body/flaws.h"
 #include "engine/sph/material/derived.h"
 #include "engine/sph/modules/crack_front_links.h"
@@ -38,8 +38,8 @@ static struct solid_case pulled(int front, double arrest, struct sph_flaws **fla
 }
 
 /* Reached particles lie within h of the plane. The front was there no earlier than c_g allows, and near the plane at
- * most 6 % later (from neighbour to neighbour it does not run quite straight; measured: 1.9 %) beside one step. Nobody
- * near the plane is left out. (Farther from it, broken particles may have taken the tension away before.) */
+ * most 6 % later (from neighbour to neighbour it does not run quite straight; measured: 1.9 %) beside one step. No
+ * particle near the plane is left out. (Farther from it, broken particles may have taken the tension away before.) */
 static void speed_and_plane(void **state) {
   (void)state;
   struct sph_flaws *flaws;
@@ -95,13 +95,13 @@ static size_t count_reached(int front, double arrest, double times) {
   return reached;
 }
 
-/* The front stops where the tension is less than the share of what opens the flaw, 0.9 times the load. Off, the crack
- * stays in its particle. */
+/* The front stops where the tension is less than the given share of the flaw's threshold, which is 0.9 times the load.
+ * Without the module the crack stays in its particle. */
 static void tension_and_off(void **state) {
   (void)state;
   assert_int_equal(count_reached(SPH_CRACK_FRONT_NONE, 0.5, 1), 1);
   assert_true(count_reached(SPH_CRACK_FRONT_PLANE, 0.5, 1) > 50);
-  assert_true(count_reached(SPH_CRACK_FRONT_PLANE, 0, 0.1) > 50); /* any tension will do */
+  assert_true(count_reached(SPH_CRACK_FRONT_PLANE, 0, 0.1) > 50); /* any tension is enough */
   assert_int_equal(count_reached(SPH_CRACK_FRONT_PLANE, 1, 0.1), 1);
   assert_int_equal(count_reached(SPH_CRACK_FRONT_PLANE, 0.5, -1), 1); /* compression */
 }

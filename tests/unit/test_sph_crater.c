@@ -38,7 +38,7 @@ static const struct sph_crater_options options = {.count = SIDE * SIDE * HIGH,
                                                   .spacing = 1e-3,
                                                   .ejection_speed = 5};
 
-/* Crater, ejecta and what closed pores left, in matter of distention `initial` at the start. */
+/* Crater, ejecta and volume of closed pores, in matter of distention `initial` at the start. */
 static void measure(const struct sph_particles *start, const struct sph_particles *now,
                     const struct sph_crater_options *o, double initial, struct sph_results *results) {
   assert_int_equal(sph_crater_measure(start, now, o, results, NULL), STATUS_OK);
@@ -88,7 +88,7 @@ static void thrown_out(void **state) {
   sph_particles_free(now);
 }
 
-/* A cylinder of radius 10 mm, 20 mm deep, whose pores close: it shrinks to half its height and nothing leaves. */
+/* A cylinder of radius 10 mm, 20 mm deep, whose pores close: it shrinks to half its height and no matter leaves. */
 static void compacted(void **state) {
   (void)state;
   struct sph_particles *start = slab(), *now = slab();
@@ -96,7 +96,7 @@ static void compacted(void **state) {
   for (size_t i = 0; i < now->n; i++)
     if (hypot(now->x[i], now->y[i]) < 10e-3 && now->z[i] > 10e-3) {
       now->z[i] = 10e-3 + (now->z[i] - 10e-3) / 2;
-      now->rest_distention[i] = 1; /* closed for good; `distention` of fractured matter, under tension, stays larger */
+      now->rest_distention[i] = 1; /* closed permanently; `distention` of fractured matter under tension stays larger */
       now->damage_cbrt[i] = 1;
       count++;
     }
@@ -107,8 +107,9 @@ static void compacted(void **state) {
   near(c.compaction.volume, (double)count * 0.5e-9, 1e-12, "closed pores");
   near(c.crater.depth, 10e-3, 0.05, "depth");
   near(c.crater.volume, c.compaction.volume, 0.2,
-       "the crater is what pores left"); /* columns across the rim, 2 mm of 10, are not dug */
-  near(c.compaction.depth, 19e-3, 1e-9, "depth of compacted matter"); /* from the first layer to the last of it */
+       "the crater is what pores left"); /* columns across the rim, 2 mm of 10, are not part of the crater */
+  /* from the first compacted layer to the last one */
+  near(c.compaction.depth, 19e-3, 1e-9, "depth of compacted matter");
   near(c.compaction.reach, hypot(19e-3, 10e-3), 0.05, "reach");
   struct sph_crater_layer layer[40];
   size_t layers = sph_crater_profile(start, now, &options, layer, 40);
@@ -122,7 +123,7 @@ static void compacted(void **state) {
   sph_particles_free(now);
 }
 
-/* A ball that is ejected whole: its crater is the ball, without the space below it. */
+/* A ball that is ejected completely: its crater is the ball, without the space below it. */
 static void nothing_left(void **state) {
   (void)state;
   struct sph_particles *start = slab(), *now = slab();

@@ -1,5 +1,5 @@
-/* Engine sph as its callers see it: tables, built-in scenes, how protocols start, stop rules, chunks and restarts that
- * do not matter. Small bodies: this is not about physics. */
+/* Engine sph through its public functions: tables, built-in scenes, how protocols start, stop rules; chunk length and
+ * restarts have no effect. The bodies are small because physics is not tested here. */
 #include "tests/support/run_case.h"
 
 #include <unistd.h>
@@ -12,7 +12,7 @@ static const char *const scenes[] = {"basalt-sphere",       "tensile-rod", "gabb
                                      "colliding-cylinders", "disruption",  "porous-ice",    "porous-plate"};
 enum { SCENES = sizeof scenes / sizeof scenes[0] };
 
-/* A small sphere that is over soon. */
+/* A small sphere whose run ends soon. */
 #define SMALL(...) SPH_CASE("basalt-sphere", "fidelity.particles=400", "fidelity.projectile_spacing=0.7", __VA_ARGS__)
 
 static void results_table_is_whole(void **state) {
@@ -28,7 +28,7 @@ static void results_table_is_whole(void **state) {
   }
 }
 
-/* Every scene can be prepared at a small size, says what it models, and needs no more memory than it was said to. */
+/* Every scene can be prepared at a small size, says what it models, and needs no more memory than predicted. */
 static void builtin_scenes_say_what_they_model(void **state) {
   (void)state;
   for (size_t k = 0; k < SCENES; k++) {
@@ -61,7 +61,7 @@ static void builtin_scenes_say_what_they_model(void **state) {
   }
 }
 
-/* What explain says of flaws is what they are: (kV)^(-1/m), V the solid volume. */
+/* The flaw strengths that explain prints are the real ones: (kV)^(-1/m), V the solid volume. */
 static void flaws_are_described(void **state) {
   (void)state;
   struct sph_inputs inputs = SPH_CASE("porous-ice", "target.material.porosity.distention=3");
@@ -85,8 +85,8 @@ static double described_speed(const struct sph_inputs *inputs) {
   return speed;
 }
 
-/* The order of what options cost, and its size within the factor of two that cores of today differ by (bench_sph
- * measures). */
+/* The order of what options cost, and its size within the factor of two by which today's cores differ (bench_sph
+ * measures it). */
 static void cost_follows_the_options(void **state) {
   (void)state;
   struct sph_inputs plain = SPH_CASE("basalt-sphere", NULL),
@@ -233,7 +233,7 @@ static void stop_rules(void **state) {
   assert_true(parts > 0.99 && parts <= 1 + 1e-12);
   free(ran.fragments);
 
-  inputs.stop.quiet_time = 1; /* never quiet: the hard end, and it says so */
+  inputs.stop.quiet_time = 1; /* never quiet: the run ends at the hard end and reports it */
   inputs.stop.end_time = 2e-5;
   ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_END_TIME);
@@ -264,8 +264,8 @@ static void stop_rules(void **state) {
   free(ran.fragments);
 }
 
-/* The largest stress of a stretch is that of a step, not of one of the samples, which lie a share of the end time
- * apart. */
+/* The largest stress of a stretch is taken from every step, not only from the samples, which are a share of the end
+ * time apart. */
 static void the_peak_does_not_hang_on_the_end_time(void **state) {
   (void)state;
   double peak[2];

@@ -283,7 +283,7 @@ static void replace(const char *path, const char *name, hid_t type, int rank, hs
   H5Ldelete(file, name, H5P_DEFAULT);
   space = H5Screate_simple(rank, size, NULL);
   if (!values)
-    H5Pset_chunk(layout, rank, chunk); /* promises much, stores nothing */
+    H5Pset_chunk(layout, rank, chunk); /* declares a large size, stores nothing */
   hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
   assert_true(set >= 0);
   if (values)
@@ -358,7 +358,7 @@ static void damaged_and_foreign_files_are_refused(void **state) {
   number[n - 1] = 4;
   replace(bad, "VTKHDF/PointData/part", H5T_NATIVE_INT64, 1, n, 0, number);
   REFUSED("none of core");
-  replace(bad, "VTKHDF/Points", H5T_NATIVE_DOUBLE, 2, 99000000, 3, NULL); /* 2.4 GB promised by a file of 100 kB */
+  replace(bad, "VTKHDF/Points", H5T_NATIVE_DOUBLE, 2, 99000000, 3, NULL); /* a file of 100 kB that declares 2.4 GB */
   REFUSED("cannot be read");
   replace(bad, "VTKHDF/Points", H5T_NATIVE_DOUBLE, 2, n, 2, wild);
   REFUSED("cannot be read");
@@ -380,7 +380,7 @@ static void damaged_and_foreign_files_are_refused(void **state) {
 }
 
 static unsigned char pixel(const char *path, double x,
-                           double y) { /* mean brightness round a place; x and y are shares of width and height */
+                           double y) { /* mean brightness round a place; x and y are fractions of width and height */
   cairo_surface_t *surface = cairo_image_surface_create_from_png(path);
   assert_int_equal(cairo_surface_status(surface), CAIRO_STATUS_SUCCESS);
   int stride = cairo_image_surface_get_stride(surface), sum = 0;

@@ -1,4 +1,4 @@
-/* Fields files of engine sph explain themselves and hold what the run reports. */
+/* Fields files of engine sph describe their contents and agree with what the run reports. */
 #include "tests/support/run_case.h"
 
 #include <unistd.h>

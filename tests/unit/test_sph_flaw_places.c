@@ -55,8 +55,8 @@ static size_t brute(size_t n, const double *x, const double *y, const double *z,
   return best;
 }
 
-/* On random points, on a lattice asked at its own points and half-way between them (ties), on points in a line and all
- * at one place. */
+/* On random points, on a lattice searched at its own points and half-way between them (ties), on points in a line and
+ * all at one place. */
 static void nearest_is_the_nearest(void **state) {
   (void)state;
   enum { MOST = 700 };
@@ -88,12 +88,13 @@ static void nearest_is_the_nearest(void **state) {
     }
 }
 
-/* Flaws that are drawn at places of n particles; what stands behind them was given to a particle without one. */
+/* Number of flaws drawn at places of n particles; later entries were given to particles without one. */
 static size_t drawn(size_t n) {
   return (size_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
 }
 
-/* Each flaw stands at the particle nearest to its place: found by its strength, which with ranked flaws names it. */
+/* Each flaw belongs to the particle nearest to its place. It is found by its strength, which is unique for ranked
+ * flaws. */
 static void owners_are_nearest(void **state) {
   (void)state;
   const struct sph_body body = sphere(300);
@@ -123,8 +124,8 @@ static void owners_are_nearest(void **state) {
   sph_particles_free(p);
 }
 
-/* Coarse or fine, a seed means the same flaws: the same strengths at the same places. What stands at a fine particle
- * stands at the coarse one nearest to the place; so both lie within a coarse particle's reach of the place, and of each
+/* Coarse or fine, a seed means the same flaws: the same strengths at the same places. A flaw of a fine particle belongs
+ * to the coarse particle nearest to its place; so both lie within a coarse particle's reach of the place, and of each
  * other. */
 static void a_seed_means_the_same_flaws(void **state) {
   (void)state;
@@ -173,7 +174,7 @@ static void a_seed_means_the_same_flaws(void **state) {
   sph_particles_free(q);
 }
 
-/* About n (ln n + 0.58) flaws, as for random particles: and one for each particle that got none, 0.56 with equal
+/* About n (ln n + 0.58) flaws, as for random particles, plus one for each particle that got none: 0.56 with equal
  * cells, some more with those that the surface cuts: below 0.5 % of n. */
 static void particles_have_ln_n_flaws(void **state) {
   (void)state;
@@ -271,8 +272,8 @@ static void ends_have_none(void **state) {
   sph_particles_free(p);
 }
 
-/* Small particles of a graded body are as strong as their size says: with kV_i the expected number below strain 1,
- * k V_i eps_min^m is a unit exponential for each particle, whether its flaw was drawn or waited for. Means over classes
+/* Small particles of a graded body are as strong as their size says: with kV_i the expected number below strain 1, k
+ * V_i eps_min^m is a unit exponential for each particle, whether its flaw was drawn or given to it. Means over classes
  * of size, against 1 within 4 standard errors 1/sqrt(n); nearest-particle cells differ from V_i by some per cent (5 %
  * room). */
 static void graded_particles_have_their_weakest(void **state) {
@@ -305,7 +306,7 @@ static void graded_particles_have_their_weakest(void **state) {
       }
       sph_flaws_free(flaws);
     }
-  assert_true(waited > 1000); /* the second way is used */
+  assert_true(waited > 1000); /* particles of the second kind exist */
   for (int k = 0; k < 4; k++) {
     assert_true(count[k] > 1000);
     assert_true(fabs(sum[k] / count[k] - 1) < 0.05 + 4 / sqrt(count[k]));

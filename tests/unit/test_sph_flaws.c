@@ -105,7 +105,7 @@ static void extremes_keep_the_law(void **state) {
 /* Both draws obey n(eps) = k eps^m: flaws below eps in volume V are k V eps^m exactly (ranked) or a Poisson variable of
  * that mean and variance (poisson); and which particle a flaw goes to is uniform. 2000 seeds: a mean of M is known to
  * sqrt(M/2000), a variance to M sqrt(2/2000) and a bit for the Poisson's own kurtosis; five standard errors. The body
- * is large enough (N = 300, hence about 1900 flaws) that the end of the draw never comes before the eps looked at. */
+ * is large enough (N = 300, hence about 1900 flaws) that the draw never ends below the tested eps. */
 static void draws_obey_the_law(void **state) {
   (void)state;
   enum { SEEDS = 2000, N = 300 };

@@ -1,4 +1,4 @@
-/* Fragments of SPH particles: against brute force over all pairs; each rule of BA95 section 4.4 by itself; spin of
+/* Fragments of SPH particles: against brute force over all pairs; each rule of BA95 section 4.4 separately; spin of
  * asymmetric fragments; particles that are far away or not finite; no particles. */
 #include <math.h>
 #include <setjmp.h>
@@ -174,7 +174,7 @@ static void equals_brute_force(void **state) {
   sph_particles_free(p);
 }
 
-/* Positions and states decide, not the numbering: the same partition under any permutation (masses distinct). */
+/* Positions and states decide, not the numbering: every permutation gives the same partition (masses distinct). */
 static void numbering_does_not_matter(void **state) {
   (void)state;
   enum { N = 500 };
@@ -284,7 +284,7 @@ static void static_strength_breaks(void **state) {
     assert_int_equal(f.part[i] != SPH_FRAGMENTS_CORE, broken[i]);
   assert_int_equal(f.broken, 3);
   sph_fragments_clear(&f);
-  p->damage_cbrt[2] = 0; /* sound matter stays whole under the same tension */
+  p->damage_cbrt[2] = 0; /* undamaged matter stays whole under the same tension */
   f = find(p, &o);
   assert_int_equal(f.part[2], SPH_FRAGMENTS_CORE);
   assert_int_equal(f.broken, 2);
@@ -296,7 +296,7 @@ static void static_strength_breaks(void **state) {
   sph_particles_free(p);
 }
 
-/* Two blocks that touch are two fragments unless across_bodies is set; a body that is left out counts nowhere. */
+/* Two blocks in contact are two fragments unless across_bodies is set; a body that is left out is never counted. */
 static void bodies_touch_or_are_left_out(void **state) {
   (void)state;
   struct sph_particles *p = make(10, 0);
@@ -341,7 +341,7 @@ static void turning_pieces(void **state) {
   const double spin[3] = {300, -200, 500}, velocity[3] = {10, -20, 5};
   double angular[3] = {0}, trace = 0;
   for (size_t i = 0; i < N; i++) {
-    /* a lopsided brick, 4 x 2 x 1 and heavier to one end, none of its axes along x, y, z */
+    /* an asymmetric brick, 4 x 2 x 1 and heavier at one end, none of its axes along x, y, z */
     double a = 4 * draw(7, i, 0) - 2, b = 2 * draw(7, i, 1) - 1, c = draw(7, i, 2) - 0.5;
     double r[3] = {0.8 * a - 0.36 * b + 0.48 * c + 100, 0.6 * a + 0.48 * b - 0.64 * c - 50, 0.8 * b + 0.6 * c + 20};
     p->x[i] = r[0], p->y[i] = r[1], p->z[i] = r[2];
@@ -504,7 +504,7 @@ static void nothing_all_dust_all_one(void **state) {
   sph_particles_free(p);
 }
 
-/* With the initial smoothing lengths, expanding matter does not link farther. */
+/* With the initial smoothing lengths, expanding matter is not linked over larger distances. */
 static void h_may_be_the_initial_one(void **state) {
   (void)state;
   struct sph_particles *p = row();

@@ -1,4 +1,4 @@
-/* Pinned hashes of three small runs of engine sph: what to do when they change is said in tests/support/golden.h. */
+/* Pinned hashes of three small runs of engine sph: tests/support/golden.h says what to do when they change. */
 #include "tests/support/golden.h"
 
 enum { RESULTS_VERSION = 7 };

@@ -56,7 +56,7 @@ static void from_cell_to_cell_by_faces(void **state) {
   }
 }
 
-/* So that the order depends on nothing but places and numbers. */
+/* The order depends only on places and numbers. */
 static void ties_stand_by_number(void **state) {
   (void)state;
   static double x[3][COUNT];

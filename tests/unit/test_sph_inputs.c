@@ -1,4 +1,4 @@
-/* Inputs and materials of engine sph: tables, defaults from a named material, what is refused and with which remedy. */
+/* Inputs and materials of engine sph: tables, defaults from a named material, refusals and their remedies. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -70,7 +70,7 @@ static void table_is_whole(void **state) {
     assert_true(row->offset < sph_inputs.size);
     if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER)
       assert_non_null(row->unit);
-    for (size_t j = 0; j < i; j++) { /* no row twice, neither by name nor by place */
+    for (size_t j = 0; j < i; j++) { /* no two rows have the same name or the same place */
       assert_string_not_equal(row->path, sph_inputs.rows[j].path);
       assert_true(row->offset != sph_inputs.rows[j].offset);
     }
@@ -104,7 +104,8 @@ static void every_material_is_sound(void **state) {
     double nu = sph_derived_poisson_ratio(&m);
     assert_true(nu > 0 && nu < 0.5);
     assert_true(isnan(m.weibull.m) == isnan(m.weibull.k));
-    /* Something must limit tension, or the cold curve reaches -A: flaws or a limit. Rubber is elastic on purpose. */
+    /* A limit of tension is necessary, or the cold curve reaches -A: flaws or tension_limit. Rubber is elastic on
+     * purpose. */
     assert_true(!isnan(m.weibull.m) || !isnan(m.tension_limit) || strcmp(name, "rubber") == 0);
     assert_true(m.porosity.curve == SPH_CRUSH_NONE || m.porosity.distention > 1);
   }
@@ -140,7 +141,7 @@ static void a_name_gives_the_values(void **state) {
   assert_true(in.target.material.density == 917 && in.target.material.weibull.m == 7 &&
               in.target.material.weibull.k == 1.4e38);
 
-  /* The name set later, as a sweep axis does: all that was not given follows, times and strengths too. */
+  /* The name set later, as a sweep axis does: all values that were not given follow, times and strengths too. */
   struct read_scene r = read_text("target: {radius: 5 cm, material: {weibull: {m: 7}}}");
   double crossing = sph_derived_crossing(&r.inputs), end = r.inputs.stop.end_time;
   const struct field *row = field_find(&sph_inputs, "target.material.name", NULL);
@@ -161,7 +162,7 @@ static void a_name_gives_the_values(void **state) {
   assert_true(in.target.material.density == 1000 && isnan(in.target.material.tillotson.A));
 }
 
-/* The law of yield under pressure is in the identity only where it is on: a run without it is the run that it was. */
+/* The law of yield under pressure is in the identity only where it is on: a run without it keeps its identity. */
 static void pressure_strength(void **state) {
   (void)state;
   const struct sph_inputs off = good("kind: impact"),
@@ -233,7 +234,7 @@ static void what_cannot_be_run_is_refused(void **state) {
           "stretch.grip");
   refused("fidelity: {projectile_spacing: 0.001}", "too many");
   refused("fidelity: {projectile_spacing: 0.001}",
-          "raise fidelity.projectile_spacing"); /* a remedy that this protocol has */
+          "raise fidelity.projectile_spacing"); /* a remedy that is valid for this protocol */
   refused("{kind: piston, target: {shape: box, strength: false}, fidelity: {points: 10000}}", "lower fidelity.points");
   refused("{kind: collision, target: {shape: cylinder, radius: 1 cm}, fidelity: {particles: 2e9}}",
           "lower fidelity.particles or target.length");

@@ -45,7 +45,7 @@ struct around {
   double steepest; /* largest spacing of a near one over its own */
 };
 
-/* What stands about point i, with all 27 images where `length` says that a direction repeats. */
+/* The neighbours of point i, with all 27 images where `length` says that a direction repeats. */
 static struct around look(const struct sph_points *points, const struct sph_kd_tree *tree, size_t i,
                           const double *length) {
   enum { ROOM = 4096 };
@@ -108,8 +108,8 @@ static void numbers_come_out(void **state) {
         assert_true(fabs((double)p.n - wanted[k]) <= 0.01 * wanted[k]);
         sph_lattice_empty(&p);
       }
-  /* Fitted boxes come in whole planes: 1 % from 12 000 on, where a cube has 22 planes and the three directions of the
-   * hexagonal lattice differ, in long bars of fewer, too. */
+  /* Fitted boxes have whole planes. The number is right to 1 % from 12 000 on, where a cube has 22 planes and the three
+   * directions of the hexagonal lattice differ; in long bars also with fewer. */
   for (double n = 12000; n < 120000; n *= 1.23) {
     struct sph_points p = fill(&cube, (struct sph_lattice){.particles = n});
     assert_true(fabs((double)p.n / n - 1) < 0.01 && p.stretch < 1.03);
@@ -119,7 +119,7 @@ static void numbers_come_out(void **state) {
   struct sph_points p = fill(&bar, (struct sph_lattice){.particles = 4321});
   assert_true(fabs((double)p.n / 4321 - 1) < 0.01);
   sph_lattice_empty(&p);
-  /* asked by spacing */
+  /* set by spacing */
   p = fill(&sphere, (struct sph_lattice){.particles = NAN, .spacing = 0.05});
   assert_true(fabs(p.spacing / 0.05 - 1) < 0.001);
   sph_lattice_empty(&p);
@@ -286,7 +286,7 @@ static double sum_scatter(const struct sph_shape *shape, const struct sph_points
   return sqrt(squares / inner - *mean * *mean);
 }
 
-/* Random points scatter by some 6 %; pushed apart they shall by 1 to 2 % at most, about the right density. */
+/* Random points scatter by some 6 %; after relaxation at most by 1 to 2 %, about the right density. */
 static void irregular_points_are_even(void **state) {
   (void)state;
   double mean;
@@ -324,7 +324,7 @@ static void irregular_points_are_even(void **state) {
   sph_lattice_empty(&p);
 }
 
-/* 0.5 mm at the impact, growing outwards: the number asked for, volumes that add up, spacing where it was wanted, and a
+/* 0.5 mm at the impact, growing outwards: the requested number, volumes that add up, the requested spacing, and a
  * density sum that is right in every shell. */
 static void graded_points_keep_their_grading(void **state) {
   (void)state;
@@ -364,7 +364,7 @@ static void graded_points_keep_their_grading(void **state) {
   assert_true(shells >= 4);
   sph_kd_tree_free(tree);
   sph_lattice_empty(&p);
-  /* a growth that is given decides the number */
+  /* a given growth determines the number */
   struct sph_grading given = grading;
   given.growth = 0.1;
   p = fill(&target, (struct sph_lattice){.particles = NAN, .seed = 3, .grading = given});
@@ -421,7 +421,7 @@ static void absurd_lattices_are_refused(void **state) {
   }
 }
 
-/* Threads, sheets and discs, thinner than a million to one: as asked, or refused; in no time, and never an empty body.
+/* Threads, sheets and discs, thinner than a million to one: as requested, or refused; quickly, and never an empty body.
  */
 static void thin_bodies_are_filled_or_refused(void **state) {
   (void)state;

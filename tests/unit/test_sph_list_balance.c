@@ -1,5 +1,5 @@
-/* Pairs change hands between lists so that these are whole batches: none is lost or met twice, and hardly a lane is
- * left over. */
+/* Pairs move between lists so that most lists fill whole batches: no pair is lost or appears twice, and few lanes stay
+ * empty. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +19,8 @@ struct cloud {
   double x[MOST + 7], y[MOST + 7], z[MOST + 7], reach[MOST + 7];
 };
 
-/* A jittered lattice of spacing 1, row by row; some lie far off, nowhere or upon another, some reach thrice as far. */
+/* A jittered lattice of spacing 1, row by row; some particles are far off, not finite or coincide, some reach three
+ * times as far. */
 static struct cloud *cloud_make(bool odd) {
   struct cloud *c = calloc(1, sizeof *c);
   uint64_t seed = 12;
@@ -44,8 +45,8 @@ static bool is_near(const struct cloud *c, const double periodic[3], size_t i, s
   return square < pow(c->reach[i] + c->reach[j], 2);
 }
 
-/* Lists of one chunk whose own particles are those from `first` on, `own` of them; returns how many lanes are idle,
- * over all. */
+/* Lists of one chunk whose own particles are those from `first` on, `own` of them; returns the idle lanes over all
+ * lanes. */
 static double check(const struct cloud *c, const double periodic[3], const struct sph_neighbours *neighbours,
                     size_t share, size_t chunk, size_t first, size_t own) {
   static char met[MOST][MOST];
@@ -60,7 +61,7 @@ static double check(const struct cloud *c, const double periodic[3], const struc
     for (size_t k = start[g]; k < start[g] + count[g]; k++) {
       const size_t j = lists.j[k];
       assert_true(j < MOST - first && j != g * share);
-      assert_true(j >= own || !foreign); /* foreign ones stand at the end */
+      assert_true(j >= own || !foreign); /* foreign ones are at the end */
       foreign = j >= own;
       handed += j < g * share;
       for (size_t i = g * share; i < (g + 1) * share && i < own; i++)
@@ -74,7 +75,7 @@ static double check(const struct cloud *c, const double periodic[3], const struc
   for (size_t i = 0; i < own; i++)
     for (size_t j = i + 1; first + j < MOST; j++)
       assert_true(met[i][j] || !is_near(c, periodic, first + i, first + j));
-  assert_true(handed > own); /* several of each list */
+  assert_true(handed > own); /* several entries per list were moved */
   const double lanes = start[(own + share - 1) / share];
   free(lists.j);
   return 1 - (double)filled / lanes;

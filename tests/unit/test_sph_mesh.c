@@ -1,6 +1,5 @@
-/* Bodies from shape files. A box as a mesh must be what a box is: the same particles to rounding, distances, gaps and
- * places of impact. Bodies that only a mesh can be: flaws are uniform in them, and a projectile starts clear of them.
- */
+/* Bodies from shape files. A box as a mesh must equal a box: the same particles to rounding, distances, gaps and places
+ * of impact. In bodies that only a mesh can describe, flaws are uniform, and a projectile starts outside of them. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -186,8 +185,8 @@ static void flaws_are_uniform(void **state) {
     near(third[k], N / 3., 4 * sqrt(N * 2 / 9.));
 }
 
-/* The projectile touches the plane of the face that is hit, at 60 degrees, and what stands above that plane, if
- * anything, must not overlap it. */
+/* The projectile touches the plane of the face that is hit, at 60 degrees, and parts of the body above that plane must
+ * not overlap it. */
 static void projectile_starts_clear(void **state) {
   (void)state;
   char text[512];
@@ -211,7 +210,7 @@ static void projectile_starts_clear(void **state) {
   scene_free(scene);
 }
 
-/* A scene without its file, or with the hash of one that nobody has read, is refused with a remedy. */
+/* A scene without its file, or with the hash of a file that was not read, is refused with a remedy. */
 static void file_is_needed(void **state) {
   (void)state;
   FILE *file = fopen("box.obj", "w");

@@ -1,4 +1,4 @@
-/* Lists of neighbours: against brute force, shared by several particles, worn out by motion, bounded in memory. */
+/* Lists of neighbours: against brute force, shared by several particles, invalid after motion, bounded in memory. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +22,7 @@ static void swap_particles(struct cloud *c, size_t i, size_t j) {
   }
 }
 
-/* Bounded by n and by pairs, whatever the extent: the cloud, and the same with every third particle flung over 1e12 m.
+/* Bounded by n and by pairs, whatever the extent: the cloud, and the same with every third particle spread over 1e12 m.
  */
 static void memory_does_not_grow_with_the_extent(void **state) {
   (void)state;
@@ -45,8 +45,8 @@ static void memory_does_not_grow_with_the_extent(void **state) {
 }
 
 /* Every pair within reach and no other, once, ascending: in open and periodic boxes, in every CPU class, cut into
- * chunks of any size, sorted in space or not at all, reaches 10:1, and with particles far off, nowhere, without reach
- * and upon each other. */
+ * chunks of any size, sorted in space or not at all, reaches 10:1, and with particles that are far off, not finite,
+ * without reach or coincident. */
 static void lists_equal_brute_force(void **state) {
   (void)state;
   static const size_t chunks[] = {4096, 256, 100};
@@ -96,7 +96,8 @@ static void lists_equal_brute_force(void **state) {
   unsetenv("CLAST_CPU");
 }
 
-/* A list for several particles is theirs together: sorted in space or not, with members far apart. */
+/* A list for several particles contains the neighbours of all of them: sorted in space or not, with members far apart.
+ */
 static void shared_lists_join_those_of_their_members(void **state) {
   (void)state;
   enum { CHUNK = 240 };
@@ -164,7 +165,7 @@ static void thin_periodic_boxes_are_refused(void **state) {
   free(c);
 }
 
-/* Stale exactly when a pair could be missed: each particle may use up its slack, by moving or by growing. */
+/* Stale exactly when a pair could be missed: each particle may use up its slack by moving or by growing. */
 static void lists_wear_out_with_the_slack(void **state) {
   (void)state;
   struct cloud *c = cloud_make(6, 1, false, 5);
@@ -185,7 +186,7 @@ static void lists_wear_out_with_the_slack(void **state) {
   free(c);
 }
 
-/* Entries of shared lists have bits for a number, and bits for whose it is. */
+/* Entries of shared lists have bits for the neighbour's number, and bits for the members it belongs to. */
 static void float_takes_so_many_particles(void **state) {
   (void)state;
   struct sph_pair_options options = usual;

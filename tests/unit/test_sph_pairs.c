@@ -32,7 +32,7 @@ static struct sph_pair_fields fields_of(const struct cloud *c) {
   return f;
 }
 
-/* Component xx xy xz yy yz zz of the deviator that acts, over rho^2. */
+/* Component xx xy xz yy yz zz of the acting deviator, over rho^2. */
 static double acting(const struct cloud *c, int k, size_t i) {
   return c->factor[i] * (k < 5 ? c->stress[k][i] : -(c->stress[0][i] + c->stress[3][i]));
 }
@@ -225,8 +225,8 @@ static void corrected_gradient_is_linear(void **state) {
   unsetenv("CLAST_CPU");
 }
 
-/* Each pair once, however lists are cut into chunks: equal masses, no stress, unit volume weights, so that what a
- * particle counts is the number of others within the mean of both supports. */
+/* Each pair once, however lists are cut into chunks: equal masses, no stress and unit volume weights, so that each
+ * particle's sum is the number of others within the mean of both supports. */
 static void each_pair_is_summed_once(void **state) {
   (void)state;
   struct cloud *c = cloud_make(SIDE, 1, true, 9);
@@ -271,7 +271,7 @@ static void angular_momentum_is_conserved(void **state) {
   }
 }
 
-/* Where there is no body around a particle there is no correction, whose inverse would be noise: in a layer, and in
+/* Without a body around a particle there is no correction, because its inverse would be noise: in a layer, and in
  * debris of five. A corner of a body is corrected in full. */
 static void debris_is_not_corrected(void **state) {
   (void)state;
@@ -396,7 +396,7 @@ static void not_finite_does_no_harm(void **state) {
   free(c);
 }
 
-/* Sums leave the caller's arithmetic as it was: numbers below the normal ones are not flushed there. */
+/* Sums restore the caller's floating-point mode: subnormal numbers are not flushed there. */
 static void tiny_numbers_stay_the_callers(void **state) {
   (void)state;
   struct cloud *c = cloud_make(4, 1, false, 14);
@@ -436,7 +436,8 @@ static void check_float(struct cloud *c) {
   free(s), free(exact), free(c);
 }
 
-/* The same scene 1000 km from the origin: double keeps what its positions hold, float loses nothing more. */
+/* The same scene 1000 km from the origin: double keeps the precision of its positions, float loses no more than that.
+ */
 static void float_is_as_good_far_away(void **state) {
   (void)state;
   struct cloud *c = cloud_make(12, 1, false, 7);

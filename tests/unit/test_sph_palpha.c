@@ -224,8 +224,8 @@ static void against_the_rate_form(void **state) {
 }
 
 /* Load, unload, load again to the same density: the same pressure, 312 MPa. A code that takes the crush slope whenever
- * P is between P_e and P_s and rising crushes the same pores twice and comes out far below (85 MPa): computed here,
- * too. */
+ * P rises between P_e and P_s crushes the same pores twice, and its pressure is far too low (85 MPa): also computed
+ * here. */
 static void load_unload_reload(void **state) {
   (void)state;
   struct sph_palpha_law law = law_of(&porous_aluminium, &aluminium);
@@ -285,7 +285,7 @@ static void jump(void **state) {
       struct sph_pressure solid = sph_tillotson(&laws[l].solid, laws[l].solid_density, rho, 1e4);
       if (solid.pressure < laws[l].given.solid_pressure)
         continue;
-      assert_true(s.distention == 1 && s.rest == 1); /* at once, and for good */
+      assert_true(s.distention == 1 && s.rest == 1); /* at once and permanently */
       assert_true(s.shear_factor == 1);
       near(s.pressure, solid.pressure, 1e-9 * solid.pressure, "solid pressure");
       near(s.by_density, solid.by_density, 1e-9 * solid.by_density, "solid dP/drho");
@@ -324,7 +324,7 @@ static void solid_limit(void **state) {
   }
 }
 
-/* alpha_0 -> 1: closing ever fewer pores does ever less harm, without a jump; a body of many pores is as the law says.
+/* alpha_0 -> 1: closing ever fewer pores causes ever less damage, without a jump; a body of many pores follows the law.
  */
 static void few_pores_do_little_harm(void **state) {
   (void)state;
@@ -384,11 +384,11 @@ static void compaction_damage(void **state) {
    * 0.215443) */
   near(sph_palpha_damage_cbrt(&law, 1.1375), (0.798957 - 0.215443) / (1.003322 - 0.215443), 2e-6, "half closed");
   struct sph_palpha_state s = sph_palpha_update(&law, 1.275, 1.275, 2700 / 1.275 * 1.001, 0);
-  assert_true(s.distention < 1.275 && sph_palpha_damage_cbrt(&law, s.rest) == 0); /* elastic: no harm */
+  assert_true(s.distention < 1.275 && sph_palpha_damage_cbrt(&law, s.rest) == 0); /* elastic: no damage */
 }
 
 /* Any path: alpha within [1, alpha_0], rest never rises, all finite, P continuous along small steps (bounded by the
- * stiffest slope there is), P_s(alpha rho, u)/alpha is the pressure, and alpha not above the crush curve. */
+ * largest slope), P_s(alpha rho, u)/alpha is the pressure, and alpha not above the crush curve. */
 static void random_paths(void **state) {
   (void)state;
   const struct sph_palpha *given[] = {&porous_aluminium, &pumice, &porous_ice};
@@ -429,7 +429,7 @@ static void random_paths(void **state) {
   }
 }
 
-/* However soft the pores: a law that is taken follows its elastic branch to P_e; others are refused. */
+/* However soft the pores: an accepted law follows its elastic branch to P_e; others are refused. */
 static void soft_pores_follow_their_branch(void **state) {
   (void)state;
   int taken = 0, left = 0;

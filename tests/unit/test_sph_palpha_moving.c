@@ -1,5 +1,5 @@
 /* P-alpha in the moving system: the range loop against the formulas one by one, deviator, yield, damage, limiter,
- * state; and what must not be there without pores. */
+ * state; and arrays that must be absent without pores. */
 #include "tests/support/sph_case.h"
 
 #include "engine/random.h"
@@ -44,7 +44,7 @@ static struct sph_system *cube(const struct sph_palpha *porosity, bool strength,
   return s;
 }
 
-/* The state of pores at the densities and energies as they are, and what other modules are told of it. */
+/* The state of the pores at the current densities and energies, and the values passed to other modules. */
 static void respond(struct sph_system *s) {
   CASE_LOOPS(s, true, {SPH_MODULE_palpha, SPH_RESPOND}, {SPH_MODULE_palpha, SPH_PUBLISH});
 }
@@ -172,7 +172,7 @@ static void tension_limit_is_of_the_body(void **state) {
   sph_system_free(s);
 }
 
-/* D = min(1, D_tension + D_compaction); closed pores do not open again, and elastic change harms nothing. */
+/* D = min(1, D_tension + D_compaction); closed pores do not open again, and elastic change causes no damage. */
 static void damage_adds_up(void **state) {
   (void)state;
   for (int flaws = 0; flaws < 2; flaws++) {
@@ -244,7 +244,7 @@ static void *saved(const struct sph_system *s, size_t *size) {
   return bytes;
 }
 
-/* alpha_0 = 1 is the solid itself: the same bits and bytes, and no array of pores. */
+/* alpha_0 = 1 is the solid itself: the same bits and bytes, and no arrays for pores. */
 static void solid_bits(void **state) {
   (void)state;
   struct sph_palpha none = porous_basalt;
@@ -269,8 +269,8 @@ static void solid_bits(void **state) {
   impact_end(&b);
 }
 
-/* Nothing opens a flaw here, so all damage is compaction's: in the porous body alone. Steps keep |dalpha| to 0.01, by
- * the limiter of that name. */
+/* No flaw opens here, so all damage comes from compaction, in the porous body alone. The distention limiter keeps
+ * |dalpha| within 0.01 per step. */
 static void beside_a_solid(void **state) {
   (void)state;
   struct impact m = impact_of(&porous_basalt, NULL, true);
@@ -329,7 +329,7 @@ static void restart(void **state) {
   impact_end(&b);
 }
 
-/* Few pores: the run tends to the solid's in proportion to alpha_0 - 1. */
+/* Few pores: the run approaches the solid's in proportion to alpha_0 - 1. */
 static void tends_to_the_solid(void **state) {
   (void)state;
   struct impact solid = impact_of(NULL, NULL, false);

@@ -18,7 +18,7 @@ static void more_than_memory_is_refused(void **state) {
   assert_non_null(strstr(error.message, " GB"));
 }
 
-#ifndef __SANITIZE_ADDRESS__ /* which needs address space of its own */
+#ifndef __SANITIZE_ADDRESS__ /* the address sanitizer needs address space of its own */
 static size_t address_space(void) {
   unsigned long pages = 0;
   FILE *in = fopen("/proc/self/statm", "r");
@@ -27,8 +27,7 @@ static size_t address_space(void) {
   return pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
-/* Lists that outgrow the memory in the middle of a run: an attempt that failed, never a result that is stored for good.
- */
+/* Lists that exceed the memory in the middle of a run: an attempt that failed, never a stored result. */
 static void memory_that_runs_out_is_no_result(void **state) {
   (void)state;
   struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.particles=4000");
@@ -42,7 +41,7 @@ static void memory_that_runs_out_is_no_result(void **state) {
   for (size_t i = 0; i < run->system->n; i++)
     run->system->c.h[i] *= 10; /* nearly all pairs: some 30 MB of lists */
   for (size_t k = 0; k < run->system->block_count; k++)
-    run->system->block[k].slack = -1; /* grown behind its back */
+    run->system->block[k].slack = -1; /* changed without the system's knowledge */
   getrlimit(RLIMIT_AS, &before);
   tight = before;
   tight.rlim_cur = address_space() + (1 << 20);
@@ -56,7 +55,7 @@ static void memory_that_runs_out_is_no_result(void **state) {
 }
 #endif
 
-/* Overlaps are refused by name. */
+/* The error of an overlap names the overlap. */
 static void overlapping_bodies_are_refused(void **state) {
   (void)state;
   struct sph_inputs inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300");
@@ -67,7 +66,7 @@ static void overlapping_bodies_are_refused(void **state) {
   assert_non_null(strstr(error.message, "overlap"));
 }
 
-/* Grips and damping layers that hold no particle would silently do nothing. */
+/* Grips and damping layers without any particle are refused: they would have no effect. */
 static void empty_layers_are_refused(void **state) {
   (void)state;
   const struct {
@@ -85,7 +84,7 @@ static void empty_layers_are_refused(void **state) {
   }
 }
 
-/* Matter that flies apart has a larger h, in a slab that repeats no larger one than fits. */
+/* The h of matter that flies apart grows; in a periodic slab it is limited by the slab's width. */
 static void vapour_in_a_slab(void **state) {
   (void)state;
   const struct sph_inputs inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300", "collision.speed=50 km/s",
@@ -124,7 +123,7 @@ static void extreme(const char *a, const char *b, const char *c, const char *d) 
       assert_true(isfinite(ran.fragments[k].position[0]) && isfinite(ran.fragments[k].velocity[2]));
   if (strcmp(a, "impact.speed=0") == 0)
     assert_true(fine && ran.results.sph.mean_damage == 0);
-  if (strcmp(a, "impact.speed=70 km/s") == 0) /* the fastest of impacts on bodies without gravity is no odd case */
+  if (strcmp(a, "impact.speed=70 km/s") == 0) /* the fastest impacts on bodies without gravity are ordinary cases */
     assert_true((fine || !finished) && o->energy_error < 5e-3);
   print_message("%s %s %s %s: state %d, %lld steps, M_1/M %.3f, energy %.2g %s\n", a, b, c, d, o->state,
                 (long long)o->steps, o->largest_fraction, o->energy_error, o->message);

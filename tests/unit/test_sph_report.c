@@ -1,15 +1,15 @@
-/* What engine sph reports of a run: results that are checked once more from the particles, and what is off because it
- * cannot be told. */
+/* The report of engine sph: results computed again from the particles, and results that are off because they cannot be
+ * determined. */
 #include "tests/support/run_case.h"
 
 #include "engine/sph/observe/observe.h"
 #include "engine/sph/step/system_layout.h"
 
-/* A small sphere that is over soon. */
+/* A small sphere whose run ends soon. */
 #define SMALL(...) SPH_CASE("basalt-sphere", "fidelity.particles=400", "fidelity.projectile_spacing=0.7", __VA_ARGS__)
 
-/* The static strength breaks what cracks have entered. A body that cannot crack, and one whose flaws are all stronger
- * than the blow, stay whole, however they ring. */
+/* The static strength breaks only matter that cracks have entered. A body that cannot crack stays whole, however it
+ * vibrates. So does one whose flaws are all stronger than the impact. */
 static void sound_matter_stays_whole(void **state) {
   (void)state;
   const struct sph_inputs cases[] = {SMALL("target.fracture=off"),
@@ -25,7 +25,7 @@ static void sound_matter_stays_whole(void **state) {
   }
 }
 
-/* A body with next to no pores breaks as the solid does. */
+/* A body with almost no pores breaks like the solid. */
 static void few_pores_change_nothing(void **state) {
   (void)state;
   const struct sph_inputs cases[] = {SMALL("stop.end_time=10 us"),
@@ -45,8 +45,8 @@ static void few_pores_change_nothing(void **state) {
   assert_true(fabs(damage[1] - damage[0]) < 1e-3 * damage[0]); /* 1e-7, and steps that the pores limit */
 }
 
-/* Dust is what is lighter than a mass of the scene, not what is one particle; few particles have no shape and no motion
- * of their own. */
+/* Dust means lighter than a mass of the scene, not one particle; a fragment of few particles has no shape and no
+ * motion. */
 static void small_fragments(void **state) {
   (void)state;
   for (int c = 0; c < 2; c++) { /* a largest fragment of more and of less than 100 particles */
@@ -72,8 +72,8 @@ static void small_fragments(void **state) {
   assert_true(few == many && fabs(few / (4.0 / 3 * M_PI * 2.7e-5 * 2700 * 1e-3) - 1) < 1e-9);
 }
 
-/* What the report makes of the ledger, as the rows of its tables say it: once more, from the particles. Bounds alone do
- * not see a figure that is ten times too small. */
+/* The figures of the ledger in the report, computed again from the particles. Bounds alone do not detect a figure that
+ * is ten times too small. */
 static void figures_by_hand(void **state) {
   (void)state;
   const struct sph_inputs cases[] = {SMALL("impact.speed=20 km/s", "stop.end_time=10 us", "viscosity.alpha=0",
@@ -105,7 +105,7 @@ static void figures_by_hand(void **state) {
           momentum[k][d] += m * v[d];
         scale[k] += m * sqrt(square);
         turning[k] += m * (look[k]->x[i] * v[1] -
-                           look[k]->y[i] * v[0]); /* the only one that keeps in a slab that repeats along z */
+                           look[k]->y[i] * v[0]); /* the only component conserved in a slab that repeats along z */
       }
     const struct sph_ledger ledger = sph_system_ledger(run->system);
     const double input = kinetic[0] + fabs(ledger.work_of_held),
@@ -145,7 +145,7 @@ static void figures_by_hand(void **state) {
   }
 }
 
-/* A part larger than its whole is an error of the sums, and is shown as it is; no whole, no share. */
+/* A part larger than its whole is an error of the sums and is reported unchanged; without a whole there is no share. */
 static void a_share_above_one_is_shown(void **state) {
   (void)state;
   const struct sph_inputs inputs = SMALL("stop.end_time=4 us");
@@ -171,7 +171,7 @@ static void a_share_above_one_is_shown(void **state) {
   sph_run_free(run);
 }
 
-/* What cannot be told is off, not a number that looks like one. */
+/* A result that cannot be determined is off, not a plausible number. */
 static void no_angle_of_nowhere(void **state) {
   (void)state;
   const struct sph_inputs inputs = SMALL("stop.end_time=4 us");

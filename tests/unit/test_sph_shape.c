@@ -50,7 +50,7 @@ static void volume_is_what_is_inside(void **state) {
   }
 }
 
-/* Places lie inside, and as many in each of 20 parts of equal volume. Two ways to part each shape: by depth (the
+/* Places lie inside, and equally many in each of 20 parts of equal volume. Two ways to divide each shape: by depth (the
  * uniforms' own coordinate is not used: volumes of inner shapes of the same kind), and by the plane through the centre,
  * normal to x. */
 static double inner_volume(const struct sph_shape *s, double depth) {

@@ -1,14 +1,14 @@
-/* Seeds of engine sph: what a seed changes, and how many flaws a specimen has. */
+/* Seeds of engine sph: the effect of a seed, and the number of flaws of a specimen. */
 #include "tests/support/run_case.h"
 
 #include "engine/sph/observe/observe.h"
 #include "engine/sph/step/system_layout.h"
 
-/* A small sphere that is over soon. */
+/* A small sphere whose run ends soon. */
 #define SMALL(...) SPH_CASE("basalt-sphere", "fidelity.particles=400", "fidelity.projectile_spacing=0.7", __VA_ARGS__)
 
-/* The number of flaws is the one that explain tells and memory is planned for; small cells at the surface do not add.
- */
+/* The number of flaws is the one that explain prints and that the memory estimate uses; small cells at the surface do
+ * not add to it. */
 static void flaws_are_as_many_as_told(void **state) {
   (void)state;
   static const char *const cracked[] = {"disruption", "solid-ice", "basalt-sphere"};
@@ -18,7 +18,7 @@ static void flaws_are_as_many_as_told(void **state) {
     assert_int_equal(sph_run_create(&inputs, 2, &run, NULL), STATUS_OK);
     const double n = (double)run->targets, told = n * (log(n) + 0.5772);
     print_message("%s: %llu flaws, told %.0f\n", cracked[k], (unsigned long long)run->flaw_count, told);
-    assert_true(fabs((double)run->flaw_count / told - 1) < 0.005); /* and the few particles that are given one */
+    assert_true(fabs((double)run->flaw_count / told - 1) < 0.005); /* and the few particles that received one */
     sph_run_free(run);
   }
 }
@@ -37,7 +37,7 @@ static void seeds_move_flaws(void **state) {
   free(c.fragments);
 }
 
-/* Each seed is a specimen of its own unless a scene says otherwise: another lattice, other strengths of the flaws. */
+/* Each seed is its own specimen unless a scene says otherwise: another lattice, other strengths of the flaws. */
 static void seeds_are_specimens(void **state) {
   (void)state;
   static const char *const torn[] = {"disruption", "solid-ice", "pumice-sphere"};
@@ -59,7 +59,7 @@ static void seeds_are_specimens(void **state) {
     sph_run_free(run[0]);
     sph_run_free(run[1]);
   }
-  /* a slab that repeats stands along its axes; the papers' choices are in their scenes */
+  /* a periodic slab has its lattice along its axes; the papers' choices are in their scenes */
   assert_false(SPH_CASE("colliding-cylinders", NULL).target.turned);
   assert_int_equal(SPH_CASE("basalt-sphere", NULL).fracture.draw, SPH_FLAWS_RANKED);
   assert_int_equal(SPH_CASE("tensile-rod", NULL).fracture.draw, SPH_FLAWS_RANKED);

@@ -1,4 +1,4 @@
-/* The moving solid: conservation over a collision that breaks, ledger, limits and rates by hand, what is absent. */
+/* The moving solid: conservation in a collision with fracture, ledger, limits and rates by hand, absent modules. */
 #include "tests/support/sph_collision.h"
 
 static void conserved(void **state) {
@@ -21,7 +21,7 @@ static void conserved(void **state) {
   let_go(&c);
 }
 
-/* The sums themselves, written out: a ledger that is wrong by a sign or a factor keeps just as well. */
+/* The sums themselves, written again: a ledger with a wrong sign or factor would be conserved as well. */
 static void ledger_by_hand(void **state) {
   (void)state;
   const struct case_block block = {{4, 3, 5}, {-1e-3, 2e-3, 5e-3}, {3, -7, 11}, spacing};
@@ -58,7 +58,7 @@ static void ledger_by_hand(void **state) {
 
 static double seen_signal[4096], seen_divergence[4096];
 
-/* A hook that only looks. */
+/* A hook that only reads. */
 static void see_sums(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)s, (void)body;
   for (size_t i = b->low; i < b->high; i++) {
@@ -68,8 +68,8 @@ static void see_sums(struct sph_system *s, const struct sph_solid *body, struct 
   }
 }
 
-/* Every limit of the step as motion.h says it, from the columns, while a blow goes on; the step is the least of
- * them. */
+/* Every limit of the step as defined in motion.h, from the columns, during an impact; the step is the smallest of them.
+ */
 static void limits_by_hand(void **state) {
   (void)state;
   struct collision c = collide(1000);
@@ -77,8 +77,7 @@ static void limits_by_hand(void **state) {
   assert_true(s->n <= sizeof seen_signal / sizeof *seen_signal);
   for (size_t b = 0; b < s->body_count; b++)
     s->solid[b].after[s->solid[b].after_count++] = see_sums;
-  double share[3] = {
-      0}; /* of the viscous terms and of shear in the Courant limit: were they missing, it would be seen */
+  double share[3] = {0}; /* if the viscous terms or the shear in the Courant limit were missing, the test would fail */
   for (int step = 0; step < 60; step++) {
     case_steps(s, 1);
     double courant = 0, bare = 0, linear = 0, fluid = 0, force = 0, energy = 0, density = 0, damage = 0;
@@ -118,7 +117,7 @@ static void limits_by_hand(void **state) {
 
 enum { BOOSTED_STEPS = 30 };
 
-/* A piece of debris at 20 km/s, far from the collision, sets the step. Positions are seen from the moving frame. */
+/* A fragment at 20 km/s, far from the collision, sets the step. Positions are relative to the moving frame. */
 static struct sph_particles *seen_in_flight(const double boost[3], double step[BOOSTED_STEPS], double *time) {
   struct collision c = collide(1000);
   const size_t lonely = c.particles->n - 1;
@@ -148,7 +147,7 @@ static struct sph_particles *seen_in_flight(const double boost[3], double step[B
   return now;
 }
 
-/* Galilean invariance: an observer who flies by sees the same steps and the same motion. */
+/* Galilean invariance: an observer in motion sees the same steps and the same motion. */
 static void boosted(void **state) {
   (void)state;
   const double rest[3] = {0, 0, 0}, boost[3] = {100, -60, 80};
@@ -167,7 +166,7 @@ static void boosted(void **state) {
   sph_particles_free(flying);
 }
 
-/* h^3 rho keeps while matter is squeezed and expands, within the bounds of h. */
+/* h^3 rho is conserved while matter is compressed and expands, within the bounds of h. */
 static void h_follows_density(void **state) {
   (void)state;
   struct collision c = collide(3000);
@@ -188,7 +187,7 @@ static void h_follows_density(void **state) {
   let_go(&c);
 }
 
-/* Damping as fast as three Courant steps bear it: motion dies, at no gain of energy. */
+/* Damping as strong as three Courant steps allow: motion dies out and no energy is gained. */
 static void fast_damping(void **state) {
   (void)state;
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 10}, spacing};
@@ -213,8 +212,8 @@ static void fast_damping(void **state) {
   sph_particles_free(p);
 }
 
-/* A block's slack is below what its particles have left, until it is used up and looked up anew: no list misses a pair.
- */
+/* A block's slack is never above the smallest slack of its particles; when used up it is computed again. So no list
+ * misses a pair. */
 static void slack_is_never_overrated(void **state) {
   (void)state;
   struct collision c = collide(1000);
@@ -241,8 +240,8 @@ static void slack_is_never_overrated(void **state) {
   let_go(&c);
 }
 
-/* Flaws open by eq. 21, of the damaged stress: E eps = lambda(S) - P where pulled, lambda(S) - P/(1-D) where pressed.
- */
+/* Flaws open by eq. 21, from the damaged stress: E eps = lambda(S) - P under tension, lambda(S) - P/(1-D) under
+ * pressure. */
 static void flaws_open_by_the_damaged_stress(void **state) {
   (void)state;
   struct collision c = collide(0);
@@ -287,8 +286,8 @@ static void load_all(struct sph_system *s, double tension, double pressure) {
   }
 }
 
-/* Damage at its cap has no rate: else it would go on shortening the time step. Below the cap it has, and reaches it,
- * not more. */
+/* Damage at its cap has no rate: otherwise it would continue to shorten the time step. Below the cap it grows up to the
+ * cap and not beyond it. */
 static void growth_ends_at_the_cap(void **state) {
   (void)state;
   struct collision c = collide(0);
@@ -339,8 +338,8 @@ static void growth_is_the_mean_of_two_rates(void **state) {
   let_go(&c);
 }
 
-/* Under pressure a flaw shuts as damage grows: E eps = lambda(S) - P/(1-D) falls to its threshold at the D that these
- * loads say. However long the step, damage goes so far and no farther: it never heals. */
+/* Under pressure a flaw closes as damage grows: at the D of this table, E eps = lambda(S) - P/(1-D) falls to its
+ * threshold. Damage stops there for any step length, and it never heals. */
 static void pressure_shuts_flaws(void **state) {
   (void)state;
   static const struct {
@@ -369,9 +368,8 @@ static void pressure_shuts_flaws(void **state) {
   let_go(&c);
 }
 
-/* A body that flies fast wears lists out soon, and with room for many steps each of its particles would list most of
- * the others: then lists are made for fewer steps, so that what a pass sums stays near what it must. Bodies at rest
- * list for many. */
+/* A fast body makes lists invalid soon. With slack for many steps each of its particles would list most of the others.
+ * Lists are then made for fewer steps, so that a pass sums few surplus pairs. Bodies at rest list for many steps. */
 static void lists_stay_short_in_a_fast_body(void **state) {
   (void)state;
   static const double speeds[] = {0, 5000};
@@ -406,7 +404,7 @@ static void absent(void **state) {
   for (int b = 0; b < 2; b++)
     c.physics[b].strength = false;
   struct sph_system *fluid = case_system(c.particles, 2, c.physics, &c.parameters);
-  /* what `clast explain` says a module adds is what it adds */
+  /* the memory of a module that `clast explain` prints is the memory it adds */
   const struct sph_body_physics cracks = {.strength = true, .flaws = c.flaws[0]};
   assert_int_equal((solid->arena_doubles - whole->arena_doubles) / solid->stride,
                    columns_of(1u << SPH_MODULE_weibull | 1u << SPH_MODULE_fracture, &cracks));

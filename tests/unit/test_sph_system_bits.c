@@ -1,4 +1,4 @@
-/* The moving solid to the last bit: after a restart, with any number of threads; and, but for rounding, whatever axes
+/* The moving solid to the last bit: after a restart, with any number of threads; and, except for rounding, for any axes
  * and numbering. */
 #include "tests/support/sph_collision.h"
 
@@ -38,7 +38,7 @@ static void restarted(void **state) {
     case_steps(again, 41);
     assert_same_bits(whole, again);
   }
-  assert_true(whole->now.listings > 2); /* lists were renewed on the way: that, too, restarts the same */
+  assert_true(whole->now.listings > 2); /* the restart also covers list rebuilds */
   assert_string_equal(sph_system_failure(again), "");
   sph_system_free(whole);
   sph_system_free(again);
@@ -96,7 +96,7 @@ static void every_module(void **state) {
     case_steps(again, 45);
     assert_same_bits(whole, again);
     assert_true(sph_system_damage(whole, NULL) > 0 && whole->now.damped > 0 &&
-                whole->now.listings > 1); /* all that did act */
+                whole->now.listings > 1); /* all modules did act */
     double closed = 0;
     for (size_t i = 0; i < whole->n; i++)
       closed = fmax(closed, 1.3 - whole->c.rest_distention[i]);
@@ -107,7 +107,7 @@ static void every_module(void **state) {
   }
 }
 
-/* Physics knows no axes: the same scene with x, y, z taking each other's places, or seen in a mirror, does the same. */
+/* Physics does not depend on the axes: the same scene with x, y, z permuted, or mirrored, gives the same. */
 static void no_axis_is_special(void **state) {
   (void)state;
   enum { PLAIN, TURNED, MIRRORED, SCENES };
@@ -178,8 +178,8 @@ static void threads(void **state) {
   let_go(&c);
 }
 
-/* Ids mean nothing to the physics: the same solid with its particles numbered backwards moves the same, but for the
- * order of sums where the space-filling curve ties (it does not here) -- to the last bit. */
+/* Ids mean nothing to the physics: the same solid with its particles numbered backwards moves the same to the last bit.
+ * Only ties on the space-filling curve could change the order of sums; here there are none. */
 static void renumbered(void **state) {
   (void)state;
   const struct case_block block = {{6, 5, 4}, {0, 0, 0}, {0, 0, 0}, spacing};

@@ -3,8 +3,8 @@
 
 #include "engine/sph/body/bodies.h"
 
-/* At 70 km/s, ten times the speed of sound, a body must not leap into another between two steps: the Courant condition
- * alone, which sees only pairs that already touch, would let it (the energy then grows several times over). */
+/* At 70 km/s, ten times the speed of sound, a body must not jump into another between two steps. The Courant condition
+ * alone would allow this, because it sees only pairs already in reach; the energy would then grow several times. */
 static void fast(void **state) {
   (void)state;
   for (int gap = 0; gap < 4; gap++) {
@@ -26,7 +26,8 @@ static void fast(void **state) {
   }
 }
 
-/* Matter that gives more work than its internal energy holds: what the clamp puts in is booked, to the joule. */
+/* Matter that does more work than its internal energy allows: the ledger books the energy added by the clamp, to the
+ * joule. */
 static void clamps(void **state) {
   (void)state;
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 0}, spacing};
@@ -54,7 +55,7 @@ static void clamps(void **state) {
   sph_particles_free(p);
 }
 
-/* Density does not fall below its bound; energy keeps its balance. */
+/* Density does not fall below its bound; energy is conserved. */
 static void thin(void **state) {
   (void)state;
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 0}, spacing};
@@ -115,9 +116,9 @@ static void lost(void **state) {
   print_message("%s\n", sph_system_failure(s));
   assert_non_null(strstr(sph_system_failure(s), "is not finite"));
   assert_non_null(strstr(sph_system_failure(s), "body 0"));
-  assert_false(sph_system_step(s, HUGE_VAL)); /* and it stays so */
+  assert_false(sph_system_step(s, HUGE_VAL)); /* and it remains false */
   sph_system_free(s);
-  /* a step that collapses says what held it */
+  /* the message of a step that becomes too short names the limit */
   s = case_system(c.particles, 2, c.physics, &c.parameters);
   case_steps(s, 2);
   s->now.worst[SPH_LIMIT_ENERGY] = 1e30;

@@ -91,7 +91,7 @@ static void derivatives(void **state) {
     assert_true(branch_seen[b] >= 60);
 }
 
-/* From next to nothing to a hundred times the density, any energy that 70 km/s can make and more: finite, c above its
+/* From nearly zero to a hundred times the density, and beyond any energy that 70 km/s can produce: finite, c above its
  * floor, and the loops of all CPU classes give what the formula gives. */
 static void extremes(void **state) {
   (void)state;
@@ -177,7 +177,7 @@ static void known_values(void **state) {
   /* cold tension is linear: no B below rho0, so dP/drho never turns negative */
   for (double eta = 0.05; eta < 1; eta += 0.05)
     assert_true(sph_tillotson(&basalt, basalt_density, eta * basalt_density, 0).by_density > 0);
-  /* negative energy is taken as none: the pole at -E0 eta^2 is out of reach */
+  /* negative energy is treated as zero: the pole at -E0 eta^2 cannot be reached */
   struct sph_pressure cold = sph_tillotson(&basalt, basalt_density, 2000, -basalt.E0 * 4 / 7.29);
   assert_true(cold.pressure == sph_tillotson(&basalt, basalt_density, 2000, 0).pressure);
   assert_true(isfinite(cold.sound_speed) && cold.sound_speed > 0);

@@ -1,12 +1,12 @@
-/* Strength of the scene tensile-rod over the number of particles, for the tests of two ways in which it does not grow.
- */
+/* Strength of the scene tensile-rod against the number of particles, for the tests of two methods that keep it
+ * constant. */
 #ifndef CLAST_TESTS_ROD_STRENGTH_H
 #define CLAST_TESTS_ROD_STRENGTH_H
 
 #include "tests/support/run_case.h"
 
-/* Peak of the mean stress between the grips, Pa, seed 1. `option`: "fracture.front=plane". The end of the run is after
- * the peak, and sets how often the stress is recorded. */
+/* Peak of the mean stress between the grips, Pa, seed 1. `option`: "fracture.front=plane". The run ends after the peak;
+ * its end time also sets how often the stress is recorded. */
 static double rod_strength_peak(const char *option, const char *rate, int particles, const char *end) {
   char options[3][64];
   snprintf(options[0], sizeof options[0], "fidelity.particles=%d", particles);

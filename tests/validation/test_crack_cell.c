@@ -1,4 +1,4 @@
-/* The strength of a stretched rod (Benz & Asphaug 1995, section 5.1) over the number of particles, when cells of a
+/* The strength of a stretched rod (Benz & Asphaug 1995, section 5.1) against the number of particles, when cells of a
  * fixed width crack as one (module crack_cell).
  *
  * Quick: 3000 and 12 000 particles at 60 /s. CLAST_FULL=1: 3000 to 150 000 at 60 and 360 /s. */

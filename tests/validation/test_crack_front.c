@@ -1,5 +1,5 @@
-/* The strength of a stretched rod (Benz & Asphaug 1995, section 5.1) over the number of particles, when a crack ends at
- * its particle and when it runs on (module crack_front).
+/* The strength of a stretched rod (Benz & Asphaug 1995, section 5.1) against the number of particles, when a crack ends
+ * at its particle and when it continues into the next (module crack_front).
  *
  * Quick: 3000 and 12 000 particles at 60 /s. CLAST_FULL=1: 12 000, 50 000 and 150 000 at 60 and 360 /s. */
 #include "tests/validation/rod_strength.h"

@@ -43,7 +43,7 @@ static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
         f.residue = fmax(f.residue, fabs(stress - f.modulus * strain - shift / n) / f.strength);
     }
   /* Abrupt: time from the maximum to half of it, in wave passages along the block (height over sqrt(E/rho)): a crack
-   * cannot end the load sooner than waves tell of it, however slow the load. */
+   * cannot end the load before a wave arrives, however slow the load. */
   double passage = (double)inputs->body.rows * inputs->grain.spacing / r.sound_speed_extension;
   f.drop = NAN;
   for (size_t k = 0; k < run->state.samples; k++)
@@ -88,7 +88,8 @@ static void failure_is_abrupt_and_cracks_are_upright(void **state) {
   if (run_case_full()) {
     inputs.loading.rate /= 2;
     struct figures slow = press_all(&inputs, run_case_seeds(1, 5));
-    assert_true(fabs(slow.strength / f.strength - 1) < 0.1); /* quasi-static: the rate does not make the strength */
+    /* quasi-static: the strength does not depend on the rate */
+    assert_true(fabs(slow.strength / f.strength - 1) < 0.1);
   }
 }
 

@@ -22,7 +22,8 @@ static struct moduli measure(double beam_modulus, bool extension, bool contact, 
   in.loading.direction = extension ? DEM_EXTENSION : DEM_SHORTENING;
   if (!contact)
     in.contact.law = 2; /* off */
-  /* Slow against sound: the load takes 10 times as long as a wave along the body, after a rise of 5 such times. */
+  /* Slow compared with sound: the load takes 10 times as long as a wave along the body, after a rise of 5 such times.
+   */
   double wave = (double)in.body.rows * in.grain.spacing / sqrt(beam_modulus / in.grain.density);
   in.loading.strain_end = 2e-3;
   in.loading.rate = in.loading.strain_end / (10 * wave);
@@ -76,7 +77,7 @@ static void trends(void **state) {
   for (int k = 0; k < MODULI; k++) {
     assert_true(pressed[k].k > pulled[k].k);   /* "the solid is more stiff under compression" */
     assert_true(pressed[k].nu > pulled[k].nu); /* figure 6 */
-    /* the beam lattice alone has no scale but E: what differs are the start's vibrations */
+    /* the beam lattice alone has no scale except E: the only differences are vibrations of the start */
     assert_true(fabs(beams[k].k / e[k] / (beams[0].k / e[0]) - 1) < 0.01);
     assert_true(k == 0 || pulled[k].k > pulled[k - 1].k);
   }

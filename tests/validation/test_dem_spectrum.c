@@ -1,11 +1,11 @@
 /* Fragment spectra of the exploding disc and the block hit (K99 section 3.3, figures 11 and 12): F(m) ~ m^-beta "for at
- * least one order of magnitude", beta 2.0 and 1.98 +- 0.05; and how the disc breaks: everything near the charge, and a
- * layer under the surface. Pooled over seeds, by the paper's least squares and by maximum likelihood, in three windows
- * chosen beforehand: from two grains (single ones are left out, as in the paper) over one decade and over one and a
- * half, and from five grains over one decade.
+ * least one order of magnitude", beta 2.0 and 1.98 +- 0.05; and the fracture of the disc: all beams near the charge,
+ * and a layer under the surface. Pooled over seeds, by the paper's least squares and by maximum likelihood, in three
+ * windows chosen beforehand: from two grains (single ones are left out, as in the paper) over one decade and over one
+ * and a half, and from five grains over one decade.
  *
- * Quick: few seeds, a gate widened by their own error. CLAST_FULL=1: 30 seeds of each, thresholds of figure 11, and the
- * choices that the paper leaves open (contact law, damping, disorder, stop), for dem_spectrum_choices.md.
+ * Quick: few seeds, with a tolerance widened by their own error. CLAST_FULL=1: 30 seeds of each, thresholds of figure
+ * 11, and the choices that the paper leaves open (contact law, damping, disorder, stop), for dem_spectrum_choices.md.
  * CLAST_SEEDS=n changes the number. */
 #include "tests/support/run_case.h"
 
@@ -22,7 +22,7 @@ struct spectrum_case {
   struct sample_interval beta[2][WINDOWS]; /* least squares, maximum likelihood */
   double largest, dust, broken, bend, energy_error;
   int completed, failed;
-  double radial[BANDS]; /* share of broken beams among those along the wave's way, by how far along it they lie */
+  double radial[BANDS]; /* share of broken beams among those along the direction of the wave, by distance along it */
 };
 
 struct pool {
@@ -82,7 +82,7 @@ static struct spectrum_case pool(const char *label, const struct dem_inputs *inp
     while (!run->state.finished)
       dem_run_advance(run, 10000);
     assert_int_equal(dem_report_finish(run, &outcome, &results, &fragments, &n, &error), STATUS_OK);
-    if (outcome.state > OUTCOME_END_TIME) { /* a failed run: counted, and left out as in any campaign */
+    if (outcome.state > OUTCOME_END_TIME) { /* a failed run is counted, and left out as in any campaign */
       print_message("seed %zu: %s\n", r + 1, outcome.message);
       c.failed++;
       pool.first[r + 1] = count;
@@ -136,7 +136,8 @@ static struct spectrum_case pool(const char *label, const struct dem_inputs *inp
 }
 
 /* 2.0 +- 0.3, pooled, for both methods in the paper's own window of one decade and in the longer one. The exponent is
- * an effective one: window and stop time move it by 0.2. Few seeds add two of their own standard errors. */
+ * an effective one: window and stop time move it by 0.2. With few seeds, the tolerance grows by two of their standard
+ * errors. */
 static void gate(const struct spectrum_case *c) {
   for (int m = 0; m < 2; m++)
     for (int w = 0; w < 2; w++) {
@@ -196,7 +197,7 @@ static void thresholds_and_choices(void **state) {
   };
   for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
     struct dem_inputs inputs = run_case("disc-explosion", (const char *const[]){cases[k][0], cases[k][1], NULL}).dem;
-    inputs.fidelity.energy_bound = NAN; /* the printed law gains energy: reported, not refused */
+    inputs.fidelity.energy_bound = NAN; /* the printed law gains energy: reported, but not an error */
     char label[100];
     snprintf(label, sizeof label, "%s%s", cases[k][0], cases[k][1] ? " (bonded)" : "");
     pool(label, &inputs, run_case_seeds(10, 10));

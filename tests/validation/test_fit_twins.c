@@ -9,18 +9,19 @@
 #include "analysis/analysis.h"
 #include "tests/support/inference_cases.h"
 
-/* Two summaries of a body that falls to pieces, as functions of two inputs: the largest fragment's share, a curve from
- * 1 to 0 over a load, and the logarithm of a number of fragments. The seed moves both, more where the body breaks. */
+/* Two results of a body that breaks up, as functions of two inputs: the largest fragment's share, a curve from 1 to 0
+ * over a load, and the logarithm of a number of fragments. The seed changes both, more where the body breaks. */
 static double body(const double *u, size_t k, uint64_t seed) {
   const double load = 2 * u[0] - u[1], share = 1 / (1 + exp(3 * (load - 0.5)));
   const uint64_t place = (uint64_t)(u[0] * 0x1p31) << 31 | (uint64_t)(u[1] * 0x1p31);
-  const double own = case_normal(seed, place, k), common = case_normal(seed, 0, 7 + k); /* a seed is alike everywhere */
+  /* common: the same deviation at all points */
+  const double own = case_normal(seed, place, k), common = case_normal(seed, 0, 7 + k);
   if (k == 0)
     return share + (0.02 + 0.2 * share * (1 - share)) * (0.8 * own + 0.6 * common);
   return 2 + 1.5 * u[0] + 2 * u[1] * u[1] + (0.15 + 0.1 * u[0]) * (0.9 * own + 0.44 * common);
 }
 
-/* One input and one summary that falls with it, with a skewed scatter. */
+/* One input and one result that decreases with it, with a skewed scatter. */
 static double skewed(const double *u, size_t k, uint64_t seed) {
   const uint64_t place = (uint64_t)(u[0] * 0x1p52);
   return exp(-2 * u[0]) + 0.05 * (case_normal(seed, place, k) * case_normal(seed, place, k + 1) - 0.2 +

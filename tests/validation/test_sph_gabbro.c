@@ -1,16 +1,16 @@
 /* The gabbro cube of Benz & Asphaug 1995 [BA95] section 5.3: speed of longitudinal waves after the impact, against
  * distance.
  *
- * c_p(r) = sqrt((K + 4 mu (1-D)/3)/rho), the mean over what stood in a shell of 1 cm round the point of impact. The
- * experiment (Ahrens & Rubin 1993): damage falls as about r^-1.5 from the crater on. The paper: m = 3 falls within the
- * measurements, m = 6 and 9 cannot be made to, whatever k. Here k of m = 6 and 9 is such that about half of the matter
- * at 7.5 cm is damaged, as with m = 3 (at each number of particles: the smaller a particle, the stronger, by an amount
- * that depends on m), and what is compared is how damage falls round that place; the points of the paper's figure 6 are
- * not printed in it.
+ * c_p(r) = sqrt((K + 4 mu (1-D)/3)/rho), the mean over the matter that was in a shell of 1 cm round the point of impact
+ * before the impact. The experiment (Ahrens & Rubin 1993): damage falls as about r^-1.5 from the crater on. The paper:
+ * m = 3 falls within the measurements; m = 6 and 9 do not for any k. Here k of m = 6 and 9 is such that about half of
+ * the matter at 7.5 cm is damaged, as with m = 3 (at each number of particles: the smaller a particle, the stronger, by
+ * an amount that depends on m), and the test compares the decrease of damage round that place; the points of the
+ * paper's figure 6 are not printed in it.
  *
- * Far sides are damped, but in one run with the cube's own, from which waves return: within 7 cm that must change
- * nothing, and beyond it the cube has spalls near its edges, as in the paper's figure 5. To 50 us; a wave crosses the
- * cube in 31 us, and the damped box takes no more damage after 40 us.
+ * Far sides are damped. One run has the cube's free sides, which reflect waves: within 7 cm this must change nothing,
+ * and beyond it the cube has spalls near its edges, as in the paper's figure 5. To 50 us; a wave crosses the cube in 31
+ * us, and the damped box takes no more damage after 40 us.
  *
  * Quick: a coarse cube, m = 3 and 9. CLAST_FULL=1: 45 000 particles, m = 6, and the paper's 80 000 evenly spaced on a
  * lattice, with c_p halfway between floor and sound rock at 4.8 to 5.6 cm (the paper: "centered around r = 4 cm").
@@ -53,7 +53,7 @@ static double halfway(const double *speed) {
   return NAN;
 }
 
-/* `even`: number of particles on an even lattice; NULL: graded ones. */
+/* `even`: number of particles on an even lattice, as text; NULL: graded particles. */
 struct rock {
   const char *m, *k, *far, *even;
 };
@@ -78,7 +78,8 @@ static struct sph_inputs inputs_of(const struct rock *rock) {
                   "stop.end_time=50 us");
 }
 
-/* Adds this run's shells, over `seeds`, to `c`; returns where its own speed is halfway. */
+/* Adds this run's shells, over `seeds`, to `c`; returns where its own speed is halfway between floor and sound rock, m.
+ */
 static double add_run(const struct sph_inputs *inputs, uint64_t seed, size_t seeds, struct cratered *c) {
   struct sph_run *run;
   struct error error = {0};
@@ -153,20 +154,20 @@ static void speed_of_waves(void **state) {
     assert_true(three.speed[s] < three.speed[s + 1]);
   assert_true(three.speed[12] > 0.93);
   /* The experiment's 1.5; steeper by up to 1 as D of this model begins at 1 there. It is 1.4 to 2.3 at 6000 to 45 000
-   * particles, and 4 and more for m = 9: the same blow on a rock whose flaws are more alike breaks up to a sharper
-   * edge. */
+   * particles, and 4 and more for m = 9: flaws of more similar strength give a sharper edge of the broken zone. */
   assert_true(three.exponent > 1 && three.exponent < 2.5);
   assert_true(nine.exponent > three.exponent + 1);
   if (run_case_full())
     assert_true(crater((struct rock){"6", "3e29", "damped", NULL}, 1).exponent > three.exponent + 0.5);
   const struct cratered cube = crater((struct rock){"3", "1.39e18", "free", NULL}, 1);
-  for (int s = 0; s < 7; s++) /* a wave to the nearest side and back to there goes 23 cm; its tension is weak by then */
+  /* a wave to the nearest side and back to this place travels 23 cm; its tension is weak by then */
+  for (int s = 0; s < 7; s++)
     assert_true(fabs(three.damage[s] - cube.damage[s]) < 0.05);
   assert_true(cube.mean >
               three.mean + 0.08); /* spalls near the edges: 0.16 of the cube at either number of particles */
 
   if (!run_case_full())
-    return; /* with fewer particles there would be none in the projectile: it is one here */
+    return; /* with fewer particles the projectile would have none: here it is one particle */
   const char *asked = getenv("CLAST_EVEN"), *number = asked ? asked : "80000";
   const struct cratered even = crater((struct rock){"3", "1.39e18", "damped", number}, seeds);
   assert_true(asked || (even.halfway > 0.048 && even.halfway < 0.056)); /* of 80 000: 5.2 cm; seeds within 0.1 */

@@ -1,9 +1,9 @@
-/* What pores do to craters. Jutzi & Benz, section 3: porous ice against the same ice without pores at 10 km/s (far less
- * is thrown out; alpha is 1 near the crater only and rises to alpha_0), and a polymer bullet into very porous matter
- * (the crater is made by compaction).
+/* Effect of pores on craters. Jutzi & Benz, section 3: porous ice against the same ice without pores at 10 km/s (far
+ * less is thrown out; alpha is 1 near the crater only and rises to alpha_0), and a polymer bullet into very porous
+ * matter (the crater is made by compaction).
  *
  * Quick: 2 seeds of 4000 particles. CLAST_FULL=1: 10 seeds of 8000. Each seed is shown, and the ratio with its
- * interval; what is asked is the mean, not every seed (one that goes the other way is a finding). */
+ * interval. The criterion applies to the mean, not to every seed (a seed with the opposite result is a finding). */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -76,13 +76,12 @@ static void ice(void **state) {
         seed, thrown, of_solid, thrown / of_solid, porous.sph.ejecta.momentum, solid.sph.ejecta.momentum,
         porous.sph.mean_damage, solid.sph.mean_damage, porous.sph.compaction.mass_fraction * porous.sph.target_mass,
         porous.sph.crater.volume, porous.sph.crater.compaction_share);
-    assert_true(isnan(solid.sph.compaction.mass_fraction)); /* nothing to compact */
+    assert_true(isnan(solid.sph.compaction.mass_fraction)); /* no pores that could be compacted */
     for (size_t k = 0; seed == 1 && k < porous.layers; k++)
       print_message("  depth %.3f m: alpha %.4f, D %.2f\n", porous.axis[k].depth, porous.axis[k].distention,
                     porous.axis[k].damage);
-    /* alpha = 1 near the crater only: within 3 cm of the first surface, while pores were lost far beyond. Layers are by
-     * the depth at the start, and what stood on top was pushed aside, so that alpha need not rise from layer to layer.
-     */
+    /* alpha = 1 near the crater only: within 3 cm of the first surface, while pores were lost far beyond. Layers refer
+     * to the depth at the start. Matter above was pushed aside, so alpha need not rise from layer to layer. */
     assert_true(porous.sph.compaction.mass_fraction > 0 && porous.sph.compaction.depth < 0.03);
     assert_true(porous.sph.compaction.reach > 3 * porous.sph.compaction.depth);
     assert_true(porous.layers > 5);

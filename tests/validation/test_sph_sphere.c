@@ -1,13 +1,13 @@
-/* The basalt sphere of Benz & Asphaug 1995 [BA95] section 5.2, and how much is left of it against the energy.
+/* The basalt sphere of Benz & Asphaug 1995 [BA95] section 5.2, and its largest fragment against the energy.
  *
- * The paper: a nearly spherical core of 0.35 of the mass (experiment: 0.31), everything near the point of impact broken
- * to less than what is resolved, the second largest fragment a spall nearly opposite; "very similar" for other draws of
- * flaws and half the particles. Quick: a few seeds of a coarse sphere. CLAST_FULL=1: more of each, for
+ * The paper: a nearly spherical core of 0.35 of the mass (experiment: 0.31), all matter near the point of impact broken
+ * into pieces below the resolution, the second largest fragment a spall nearly opposite; "very similar" for other draws
+ * of flaws and half the particles. Quick: a few seeds of a coarse sphere. CLAST_FULL=1: more of each, for
  * tests/validation/sph_sphere*.md; CLAST_SEEDS=n changes the number, CLAST_PARTICLES=n the resolution.
  *
- * Largest fragments jump when a bridge of rock holds or not, and brackets wide enough for that are wide enough for a
- * wrong speed of cracks. Damage on its way through the sphere is smooth: that is pinned first, by this code's own
- * numbers. */
+ * The largest fragment jumps when a bridge of rock breaks; a tolerance wide enough for this would also accept a wrong
+ * crack speed. The progress of damage through the sphere is smooth, so the test first compares it with pinned numbers
+ * of this code. */
 #include "tests/support/run_case.h"
 
 #include "analysis/statistics/sample.h"
@@ -26,8 +26,9 @@ static const char *particles(const char *quick, const char *full) {
 struct sphere {
   struct outcome outcome;
   struct sph_results results;
-  double near_damage; /* mean damage of what stood within R/2 of the point of impact */
-  double core_offset; /* m, from the sphere's centre to where the middle of the largest fragment's bare core had been */
+  double near_damage; /* mean damage of matter initially within R/2 of the point of impact */
+  /* m, from the sphere's centre to the initial position of the middle of the largest fragment's core */
+  double core_offset;
 };
 
 static struct sphere run_sphere(const struct sph_inputs *inputs, uint64_t seed) {
@@ -102,9 +103,9 @@ static void pinned(const char *what, double value, double expected, double toler
     fail_msg("%s: %.5f instead of %.5f", what, value, expected);
 }
 
-/* How far damage has come, mean of seeds 1 to 3 at 3000 particles: at 3 us, when it has just begun under the point of
- * impact and waits for the growth of cracks, and at 16 us, when the wave has come back from the far side. Not the
- * paper's numbers but this engine's of results_version 6, to be pinned anew when physics changes on purpose.
+/* Progress of damage, mean of seeds 1 to 3 at 3000 particles: at 3 us, when it has just begun under the point of impact
+ * and waits for the growth of cracks, and at 16 us, when the wave has come back from the far side. Not the paper's
+ * numbers but this engine's of results_version 6, to be pinned anew when physics changes on purpose.
  *
  * What means the same physics moved them by (version 6; cfl 0.2, cfl 0.4, damage_step 0.05, float, compact):
  *   3 us: -0.1, +0.1, -0.1, 0, +0.5 %     16 us: +0.1, 0, +0.1, 0, +0.6 %
@@ -164,15 +165,16 @@ static void core_and_spall(void **state) {
   /* 0.31 measured, 0.35 in the paper. A bridge of rock that holds or not moves one run by 0.2, and the veneer of a
    * coarse sphere is worth up to that: half of 0.31 to 0.35 + 0.2. */
   assert_true(m1.mean > 0.155 && m1.mean < 0.55);
-  assert_true(m1.mean - without.mean > 0.05); /* one layer round half of the radius: 3 dr/r of it, dr/r > 0.03 at 1e5 */
-  assert_true(2 * opposite > n);              /* by chance a quarter of them */
+  /* one layer of particles round a body of half the radius: 3 dr/r of its mass, dr/r > 0.03 at 1e5 */
+  assert_true(m1.mean - without.mean > 0.05);
+  assert_true(2 * opposite > n); /* by chance a quarter of them */
 }
 
 struct line {
   double star, slope; /* of M/M_0 = 1/2 - slope (Q/star - 1) */
 };
 
-/* Through the two rungs next to one half. */
+/* The line through the two energies next to one half. */
 static struct line between(size_t n, const double *q, const double *fraction) {
   for (size_t k = 1; k < n; k++)
     if (fraction[k - 1] >= 0.5 && fraction[k] < 0.5) {
@@ -184,7 +186,7 @@ static struct line between(size_t n, const double *q, const double *fraction) {
   return (struct line){NAN, NAN};
 }
 
-/* By least squares through all rungs up to `most`. */
+/* By least squares through all energies up to `most`. */
 static struct line through(size_t n, const double *q, const double *fraction, double most) {
   double w = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (size_t k = 0; k < n && q[k] < 1.01 * most; k++)
@@ -193,7 +195,7 @@ static struct line through(size_t n, const double *q, const double *fraction, do
   return (struct line){star, fall * star};
 }
 
-/* Largest fragment against specific energy Q. A seed is the same body at every energy: Q* and s are taken for each
+/* Largest fragment against specific energy Q. One seed is the same body at every energy: Q* and s are computed for each
  * seed. */
 static void energy_ladder(void **state) {
   (void)state;

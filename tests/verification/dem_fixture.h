@@ -1,4 +1,4 @@
-/* Small systems for the tests of the moving grains. A system reads the inputs that it was created with: they must
+/* Small systems for the tests of the moving grains. A system keeps a pointer to the inputs of its creation: they must
  * outlive it. */
 #ifndef CLAST_TESTS_VERIFICATION_DEM_FIXTURE_H
 #define CLAST_TESTS_VERIFICATION_DEM_FIXTURE_H
@@ -28,14 +28,15 @@ static inline struct dem_inputs fixture_inputs(void) {
   return in;
 }
 
-/* |a - b| <= tolerance, or say the values. */
+/* Fails and prints the values unless |a - b| <= tolerance. */
 static inline void fixture_near(double a, double b, double tolerance, const char *what) {
   if (fabs(a - b) <= tolerance)
     return;
   fail_msg("%s: %.17g against %.17g, difference %g, allowed %g", what, a, b, a - b, tolerance);
 }
 
-/* Columns x rows squares of side h, neighbours bonded if `bonded`. Freed by fixture_free. `gap` pulls columns apart. */
+/* Columns x rows squares of side h, m; neighbours bonded if `bonded`; `gap`: distance between columns. Free with
+ * fixture_free. */
 static inline struct dem_tessellation *fixture_squares(uint32_t columns, uint32_t rows, double h, double gap,
                                                        bool bonded) {
   struct dem_tessellation *t = calloc(1, sizeof *t);
@@ -93,7 +94,7 @@ static inline struct dem_system *fixture_create(const struct dem_tessellation *t
   return system;
 }
 
-/* Put grains somewhere by hand; forces follow with the next evaluation. */
+/* Moves grains to given positions; forces follow at the next evaluation. */
 static inline void fixture_place(struct dem_system *s, uint32_t grain, double x, double y, double angle) {
   s->c.x[grain] = x;
   s->c.y[grain] = y;
@@ -101,7 +102,7 @@ static inline void fixture_place(struct dem_system *s, uint32_t grain, double x,
   s->now.ready = 0;
 }
 
-/* Forces at the positions now, on a system at rest: a step in which nothing can move. */
+/* Forces at the current positions, on a system at rest: a step so short that nothing can move. */
 static inline void fixture_evaluate(struct dem_system *s) {
   double *const columns[6] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle, s->c.vx, s->c.vy, s->c.spin};
   double *kept = calloc(6 * s->padded, sizeof *kept);

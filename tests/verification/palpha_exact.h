@@ -1,5 +1,5 @@
-/* Plane waves in porous matter without strength, from the jump conditions alone: written apart from the engine (its own
- * Tillotson, crush curve and elastic branch), so that it can be the oracle of the moving solid.
+/* Plane waves in porous matter without strength, from the jump conditions alone. The code is independent of the engine
+ * (its own Tillotson, crush curve and elastic branch), so that it can be a reference for the moving solid.
  *
  * A piston that drives porous matter at rest makes two fronts when it is strong enough to crush: an elastic precursor
  * to P_e, and behind it the crushing shock. Across each, with the state ahead 1 and behind 2, in the frame of the
@@ -24,7 +24,7 @@ static double exact_solid_pressure(const struct exact_matter *m, double rho, dou
   return (m->a + m->b / (u / (m->E0 * eta * eta) + 1)) * rho * u + m->A * mu + (mu > 0 ? m->B * mu * mu : 0);
 }
 
-/* alpha at P on the elastic branch from alpha0, midpoint steps; alpha_e by repeated substitution. */
+/* alpha at pressure P on the elastic branch from alpha0, midpoint steps; alpha_e by repeated substitution. */
 static double exact_elastic(const struct exact_matter *m, double P, double alpha_e) {
   double cs = sqrt(m->A / m->rho_s0), alpha = m->alpha0;
   const int steps = 2000;

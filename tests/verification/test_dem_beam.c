@@ -17,7 +17,7 @@ static double force(const struct dem_system *s, size_t freedom) {
   return column[freedom % 3][freedom / 3];
 }
 
-/* K = -dF/du by central differences at the state now; angles are scaled by `arm` so that all entries are N/m. */
+/* K = -dF/du by central differences at the current state; angles are scaled by `arm` so that all entries are N/m. */
 static void stiffness(struct dem_system *s, size_t freedoms, double arm, double *k) {
   const double step = 1e-7 * h; /* central: error 1e-14 relative from the third derivative, 1e-9 from rounding */
   for (size_t a = 0; a < freedoms; a++) {
@@ -118,7 +118,8 @@ static void force_is_the_energys_gradient(void **state) {
   dem_tessellation_free(t);
 }
 
-/* A beam turned as a whole, by any angle and several times round, feels nothing; swapping its ends swaps the forces. */
+/* A beam rotated as a whole, by any angle and several turns, has no forces; exchanging its ends exchanges the forces.
+ */
 static void rotation_and_swap(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);

@@ -72,7 +72,7 @@ static void damped_impact(void **state) {
   assert_true(i.least_push >= 0.0);
 }
 
-/* Corner on side, spinning, off centre: the conservative law gives all energy back, to the step's square. */
+/* Corner on side, spinning, off centre: the conservative law returns all energy, up to the square of the step. */
 static void oblique_impact_conserves(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.5 * h, false);
@@ -102,8 +102,8 @@ static void oblique_impact_conserves(void **state) {
   dem_tessellation_free(t);
 }
 
-/* A square slides on another: Coulomb's force is mu times the normal force, against the slip, and what the ledger books
- * as damping and friction is what the motion lost. */
+/* A square slides on another: Coulomb's force is mu times the normal force, against the slip, and the damping and
+ * friction in the ledger equal the energy lost by the motion. */
 static void friction_takes_energy_out(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, h, 1e-6 * h, false);
@@ -114,7 +114,7 @@ static void friction_takes_energy_out(void **state) {
       in.contact.law = law;
       in.fidelity.time_step = fine ? 1e-8 : 4e-8;
       in.contact.normal_damping = 1e4;
-      in.contact.tangential_damping = 1e8; /* so stiff that Coulomb limits, until the slip has all but stopped */
+      in.contact.tangential_damping = 1e8; /* so stiff that Coulomb's limit acts until the slip has almost stopped */
       in.contact.friction = 0.3;
       struct dem_system *s = fixture_create(t, &in);
       dem_system_set_velocity(s, 0, 1.0, 2.0, 0.0);

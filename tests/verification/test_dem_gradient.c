@@ -1,5 +1,5 @@
-/* Forces and torques of whole small bodies against differences of an energy written again from the paper, in long
- * double, by other means: beams from their chords by atan2, overlaps by cutting polygons. Every force term of
+/* Forces and torques of whole small bodies against differences of an energy written independently from the paper, in
+ * long double, with other methods: beams from their chords by atan2, overlaps by cutting polygons. Every force term of
  * engine/dem between the two at once: bonded, broken, never bonded and removed grains, held ones, both laws, all CPU
  * classes, turned as a whole, from slight to deep overlaps. */
 #include "tests/verification/dem_fixture.h"
@@ -72,7 +72,7 @@ static long double beam_energy(const struct model *m, size_t pair, const struct 
   const long double x0 = (long double)b->x - a->x, y0 = (long double)b->y - a->y, l0 = hypotl(x0, y0);
   const long double x = at[j].x - at[i].x, y = at[j].y - at[i].y, l = hypotl(x, y);
   const long double e = m->in.beam.young_modulus, s = m->t->side[pair], inertia = s * s * s / 12;
-  /* the chord's turn, on the branch next to the first grain's */
+  /* the chord's rotation, on the branch next to the first grain's */
   const long double chord = atan2l(x0 * y - y0 * x, x0 * x + y0 * y), turn = 2 * acosl(-1.0L);
   const long double phi = chord + turn * roundl((at[i].angle - chord) / turn);
   const long double t1 = at[i].angle - phi, t2 = at[j].angle - phi, shear = 12 * e * inertia / (e / 2 * s * l0 * l0);
@@ -192,7 +192,7 @@ static double compare(const struct variant *v, int law, double size, double turn
     m.beam[p] = false;
   }
   for (uint32_t i = 0; i < 3 && v->held;
-       ++i) /* what holds a grain is no force of its neighbours: the same is reported */
+       ++i) /* the force that holds a grain is not a force of its neighbours: the same forces are reported */
     dem_system_hold(s, i, 1u << i | 4u);
   struct place at[GRAINS];
   uint64_t random = seed * 77 + 5;
@@ -299,7 +299,7 @@ static void damping_and_friction_as_written(void **state) {
               continue;
             const long double chord = hypotl(x[1] - x[0], y[1] - y[0]), mx = (x[0] + x[1]) / 2, my = (y[0] + y[1]) / 2;
             const long double tx = (x[1] - x[0]) / chord, ty = (y[1] - y[0]) / chord;
-            long double nx = -ty, ny = tx; /* towards i: the way on which the overlap shrinks */
+            long double nx = -ty, ny = tx; /* towards i: the direction in which the overlap shrinks */
             struct place moved[GRAINS];
             memcpy(moved, at, sizeof at);
             moved[i].x += 1e-9L * cell * nx, moved[i].y += 1e-9L * cell * ny;

@@ -1,12 +1,11 @@
-/* What moves a body from outside, and what is measured of it: work of held grains, momentum under holds, strains and
- * stresses of an affine deformation, the mode of a break, energies that are known. */
+/* External loads on a body and their measurement: work of held grains, momentum under holds, strains and stresses of an
+ * affine deformation, the mode of a break, energies that are known. */
 #include "tests/verification/dem_fixture.h"
 
 #include "engine/dem/run/run.h"
 #include "tests/support/run_case.h"
 
-/* One grain of two is driven along, across and around: the energy that comes in is the work booked. Two laws of motion.
- */
+/* One grain of two is driven along, across and around: the energy gained is the booked work. Two integrators. */
 static void driven_grains_do_work(void **state) {
   (void)state;
   for (int integrator = DEM_VERLET; integrator <= DEM_GEAR; integrator++)
@@ -39,7 +38,8 @@ static void driven_grains_do_work(void **state) {
     }
 }
 
-/* Loaded bodies: what held grains feel is what the free ones lose, to rounding; the work is all the energy there is. */
+/* Loaded bodies: the momentum given to held grains is what the free ones lose, to rounding; the work is the only energy
+ * input. */
 static void loads_balance(void **state) {
   (void)state;
   struct dem_inputs cases[] = {DEM_CASE("compression", "body.columns=8", "body.rows=8", "loading.rate=5 1/s",
@@ -82,7 +82,8 @@ static void sides_are_held_as_described(void **state) {
   }
 }
 
-/* Put a block by hand into an affine deformation: the strains recorded are those put in, the stress is the beams'. */
+/* Put a block by hand into an affine deformation: the recorded strains are the given ones, the stress is that of the
+ * beams. */
 static void strains_are_those_put_in(void **state) {
   (void)state;
   struct dem_inputs inputs = DEM_CASE("uniaxial", "body.columns=12", "body.rows=10", "grain.disorder=0.7");
@@ -109,8 +110,8 @@ static void strains_are_those_put_in(void **state) {
   dem_run_free(run);
 }
 
-/* A beam that is drawn out breaks by stretching, one that is turned and hardly stretched by bending; pressed, by
- * neither. The rule is K99's eq 13: strain squared, angle not, the larger angle of the two. */
+/* A stretched beam breaks by stretching, a rotated and hardly stretched one by bending, a compressed one by neither.
+ * The rule is K99's eq 13: strain squared, angle not, the larger angle of the two. */
 static void modes_of_breaking(void **state) {
   (void)state;
   const struct {
@@ -261,7 +262,7 @@ static struct dem_tessellation *renumbered(const struct dem_tessellation *t) {
   return r;
 }
 
-/* One seed gives a beam the same thresholds in a larger body, and whatever the numbers of its grains are. */
+/* One seed gives a beam the same thresholds in a larger body, and for any numbering of its grains. */
 static void thresholds_belong_to_places(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 2), *larger = fixture_disc(0.09, 0.01, 1.0, 2);
@@ -292,7 +293,8 @@ static void thresholds_belong_to_places(void **state) {
   dem_tessellation_free(t);
 }
 
-/* Squares face on, a tenth slower than the speed told to users and a tenth faster: they bounce, they pass. */
+/* Squares face to face, a tenth slower than the speed reported to users and a tenth faster: the slow ones bounce, the
+ * fast ones pass. */
 static void grains_pass_where_said(void **state) {
   (void)state;
   for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; law++)

@@ -1,5 +1,4 @@
-/* Whole discs in motion: what is conserved, orders of the integrators, breaking, the same bits again, bounded memory.
- */
+/* Whole discs in motion: what is conserved, orders of the integrators, breaking, reproducible bits, bounded memory. */
 #include "tests/bench/dem_disc.h"
 #include "tests/verification/dem_fixture.h"
 
@@ -22,7 +21,7 @@ void *aligned_alloc(size_t alignment, size_t size) {
 }
 #endif
 
-/* K99's grains on a smaller disc, the charge at the same energy per mass; the whole set moving and turning. */
+/* K99's grains on a smaller disc, the charge at the same energy per mass; the whole body moves and rotates. */
 static struct dem_system *charged(const struct dem_tessellation *t, const struct dem_inputs *in, double vx,
                                   double spin) {
   struct dem_system *s = fixture_create(t, in);
@@ -156,7 +155,7 @@ static void integrators_have_their_order(void **state) {
 }
 
 /* Distance of a damped pair to its exact place: two squares, pressed together, start at rest, and a linear spring and a
- * linear dashpot drive them apart. All of it is a time in which they overlap. */
+ * linear dashpot drive them apart. They overlap during the whole test. */
 static double damped_error(double time_step) {
   struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
   struct dem_inputs in = fixture_inputs();
@@ -215,8 +214,8 @@ static double growth_per_period(int integrator, bool velocities, double share) {
   return log(energy[1] / energy[0]) / 500.0;
 }
 
-/* The longest step told: Verlet's is the edge of stability. Gear's method of this order has no edge: its modes grow or
- * fall as (h omega)^7, and the limit is where the fastest gains 1 % of its energy in a period. */
+/* The longest step that the engine reports: Verlet's is the edge of stability. Gear's method of this order has no edge:
+ * its modes grow or fall as (h omega)^7, and the limit is where the fastest gains 1 % of its energy in a period. */
 static void stable_steps_are_stable(void **state) {
   (void)state;
   /* at h omega = 1.98 Verlet's energy swings by a factor 1/(1 - 0.99^2) = 50 and does not grow; ln 50 over 500 */
@@ -231,8 +230,8 @@ static void stable_steps_are_stable(void **state) {
   }
 }
 
-/* One step from a made-up state: Pascal's triangle, and every coefficient of the corrector by its published value
- * (Gear 1971; Allen & Tildesley 1987, table E.1). The order alone does not tell all of them. */
+/* One step from a made-up state: Pascal's triangle, and every coefficient of the corrector by its published value (Gear
+ * 1971; Allen & Tildesley 1987, table E.1). The order alone does not determine all of them. */
 static void gear_has_its_coefficients(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
@@ -297,7 +296,7 @@ static void ledger_closes(void **state) {
   dem_tessellation_free(t);
 }
 
-/* At rest nothing acts, to the last bit, and nothing begins to move. */
+/* A body at rest has no forces, to the last bit, and does not begin to move. */
 static void rest_is_rest(void **state) {
   (void)state;
   for (int disorder = 0; disorder < 2; disorder++) {
@@ -357,7 +356,7 @@ static void broken_is_unbonded(void **state) {
       assert_memory_equal(broken->c.x, unbonded->c.x, t->cell_count * sizeof(double));
       assert_memory_equal(broken->c.spin, unbonded->c.spin, t->cell_count * sizeof(double));
     }
-    assert_true(dem_system_ledger(broken).damping > 0.0); /* they did touch */
+    assert_true(dem_system_ledger(broken).damping > 0.0); /* contacts did occur */
     assert_int_equal(dem_system_breaks(unbonded, &log), 0);
     dem_system_free(broken);
     dem_system_free(unbonded);
@@ -386,7 +385,7 @@ static void restored_run_has_the_same_bits(void **state) {
     for (int k = 0; k < 777; k++) {
       assert_true(dem_system_step(s) && dem_system_step(copy));
       if (k % 100 == 0) {
-        const struct dem_ledger a = dem_system_ledger(s); /* asking one and not the other changes nothing */
+        const struct dem_ledger a = dem_system_ledger(s); /* evaluating one and not the other changes nothing */
         assert_true(a.kinetic > 0.0);
       }
     }
@@ -405,7 +404,7 @@ static void restored_run_has_the_same_bits(void **state) {
   dem_tessellation_free(t);
 }
 
-/* Gear's start on a beam that swings lengthwise: x = A cos wt + B sin wt, whose derivatives are known. */
+/* Gear's start on a beam in longitudinal oscillation: x = A cos wt + B sin wt, whose derivatives are known. */
 static void gear_starts_with_the_derivatives(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
@@ -434,7 +433,7 @@ static void gear_starts_with_the_derivatives(void **state) {
   dem_tessellation_free(t);
 }
 
-/* Long grains that do nothing but turn: their lists must be made anew, or the end of one passes through the other. */
+/* Long grains that do nothing but turn: their lists must be rebuilt, or the end of one passes through the other. */
 static void turning_grains_meet(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, false);
@@ -508,7 +507,8 @@ static void step_loop_allocates_nothing(void **state) {
 #endif
 }
 
-/* Steps far beyond the stability limit, absurd thresholds and velocities: false or a finite state, never a crash. */
+/* Steps far beyond the stability limit, absurd thresholds and velocities: the step returns false or a finite state,
+ * never a crash. */
 static void extremes(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);

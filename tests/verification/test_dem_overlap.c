@@ -77,7 +77,7 @@ static void make_pair(uint64_t *seed, int kind, struct dem_ring ring[2]) {
     random_ring(seed, &ring[1], kind ? 1e-3 : 0.6, fixture_random(seed), fixture_random(seed),
                 M_PI * fixture_random(seed));
     break;
-  case 2: /* the same polygon, moved by next to nothing: sides all but parallel */
+  case 2: /* the same polygon, moved by almost nothing: sides nearly parallel */
     ring[1] = ring[0];
     move_ring(&ring[1], 1e-9 * fixture_random(seed), 1e-9 * fixture_random(seed));
     break;

@@ -1,6 +1,6 @@
-/* Estimators against synthetic spectra whose exponent is known. The biases measured before this program was written
- * (true exponent 2.0, 200 samples) must come out again: the bias of least squares as well as the lack of it in maximum
- * likelihood. Every tolerance is a Monte-Carlo error computed here, times four. */
+/* Estimators against synthetic spectra whose exponent is known. The test must reproduce the biases measured before this
+ * program was written (true exponent 2.0, 200 samples): least squares is biased, maximum likelihood is not. Every
+ * tolerance is a Monte-Carlo error computed here, times four. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -109,7 +109,8 @@ static void ks_pays_with_scatter(void **state) {
   (void)state;
   struct result result = measure(EXPONENT_KS, PURE, 1000, from_1);
   agrees(result, 2.002);
-  assert_true(result.deviation > result.quoted); /* .047 (.036): the search of x_min is not in the quoted error */
+  /* .047 (.036): the quoted error does not include the search of x_min */
+  assert_true(result.deviation > result.quoted);
 }
 
 /* Masses in whole grains, P(N) ~ N^-2, N >= 1: drawn by inversion from the sums themselves. */

@@ -106,7 +106,7 @@ static void pieces(void **state) {
   assert_true(fabs(d - 0.7) < 1e-15);
   assert_true(grady_kipp_grow(0.7, 8, 8, SPH_GROWTH_CUBE_ROOT, SPH_CAP_NONE, 0.1, 1) - 0.9 < 1e-15); /* 8^(1/3) = 2 */
   assert_true(grady_kipp_grow(0.95, 8, 8, SPH_GROWTH_LINEAR, SPH_CAP_BA95, 1, 1) == 1);
-  /* caps: 1 of 8 flaws: D <= 1/2 (printed), 1/8 (count); and D never heals under a lower cap */
+  /* caps: 1 of 8 flaws: D <= 1/2 (printed), 1/8 (count); D never decreases under a lower cap */
   assert_true(fabs(pow(grady_kipp_grow(0, 1, 8, 0, SPH_CAP_BA95, 9, 9), 3) - 0.5) < 1e-15);
   assert_true(fabs(pow(grady_kipp_grow(0, 1, 8, 0, SPH_CAP_COUNT, 9, 9), 3) - 0.125) < 1e-15);
   assert_true(grady_kipp_grow(0.9, 1, 8, 0, SPH_CAP_COUNT, 9, 9) == 0.9);

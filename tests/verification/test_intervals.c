@@ -1,6 +1,6 @@
 /* Do 95 % intervals hold the true value in 95 % of samples, for few runs and for many? Of exponents: synthetic runs of
  * known exponent, and runs drawn from many runs of an exploding disc, whose own exponent and mean M_1/M are then the
- * true ones. And: does least squares come nearer to the truth with every run more?
+ * true ones. Also: does least squares come nearer to the truth with more runs?
  *
  * Quick: 100 to 600 samples a row, 80 discs of 200 grains. CLAST_FULL=1: 4000 samples, more laws. CLAST_STORE=FILE
  * draws from the first point of that store instead of the discs. */
@@ -31,12 +31,12 @@ struct sample_runs {
   double masses[MOST_MASSES];
 };
 
-/* Where runs come from: fills `runs` runs of sample number `sample`. */
+/* Source of runs: fills `runs` with the runs of sample number `sample`. */
 struct source {
   const char *name;
   double beta;                          /* of the synthetic law */
   size_t least, most;                   /* fragments in a run, beside the giant */
-  bool giant;                           /* every run has a remnant far above */
+  bool giant;                           /* every run has a remnant far heavier than the other fragments */
   const struct pooled_runs *population; /* NULL: synthetic */
   double lower;
 };
@@ -72,7 +72,7 @@ static struct pooled_runs draw(const struct source *source, uint64_t sample, siz
   return (struct pooled_runs){runs, out->first, out->masses};
 }
 
-/* What a row of the table counts. */
+/* Counts of one row of the table. */
 struct row {
   const char *source, *quantity;
   size_t runs, samples, held, refused;

@@ -1,5 +1,5 @@
 /* Pooling over runs: each run bounded by its own largest fragment gives the true exponent back, with a giant in every
- * run too; the interval from resampling runs covers; cut-offs are found when there, and not when not. */
+ * run too; the interval from resampling runs has its nominal coverage; cut-offs are found if and only if they exist. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -71,7 +71,7 @@ static void true_exponent_with_an_interval(void **state) {
       assert_true(fabs(mean - 2) < 4 * error + 1.0 / 1500);
       assert_true(fabs(quoted / deviation - 1) < 4 / sqrt(2.0 * ENSEMBLES));
       assert_true(fabs(over_runs / deviation - 1) < 4 / sqrt(2.0 * ENSEMBLES));
-      assert_true(held > 100 * 0.93 - 4 * 100 * sqrt(0.93 * 0.07 / ENSEMBLES)); /* test_intervals: sharper */
+      assert_true(held > 100 * 0.93 - 4 * 100 * sqrt(0.93 * 0.07 / ENSEMBLES)); /* test_intervals has a stricter test */
     }
   }
 }

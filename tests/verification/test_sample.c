@@ -22,7 +22,7 @@ static double normal(uint64_t stream, uint64_t sample, uint64_t i) {
 
 static void summaries_are_exact(void **state) {
   (void)state;
-  /* Offsets that a sum of squares would not survive: mean 1e9 + 3, variance 2.5. */
+  /* Offsets at which a plain sum of squares loses all digits: mean 1e9 + 3, variance 2.5. */
   const double values[] = {1e9 + 1, NAN, 1e9 + 2, 1e9 + 5, 1e9 + 4, NAN, 1e9 + 3};
   struct sample_summary s = sample_summarise(7, values, 0.95);
   assert_int_equal(s.n, 5);
@@ -83,7 +83,7 @@ static void stopping_keeps_its_level(void **state) {
   assert_true(coverage(false, 30, 0.2, TRIALS, &length) > 0.95 - 4 * error);
   /* (1.97/0.2)^2 = 97 runs, the guard adds (20 t)^2/97 = 16, the batch half of ten */
   assert_true(length > 105 && length < 125);
-  /* One run in ten is 1, the rest 0. Without the guard .85-.89 from n0 = 30 and .7 from 3: this would be red. */
+  /* One run in ten is 1, the rest 0. Without the guard .85-.89 from n0 = 30 and .7 from 3: the test would fail. */
   double least = 0.91 - 4 * sqrt(0.91 * 0.09 / TRIALS);
   assert_true(coverage(true, SAMPLE_FIRST, 0.06, TRIALS, &length) > least);
   assert_true(coverage(true, SAMPLE_FIRST, 0.05, TRIALS, &length) > least);

@@ -1,12 +1,12 @@
-/* A free bar rings at its own frequency: basalt, 4 cm long, radius 1 cm, both ends free, first longitudinal mode. A
+/* A free bar vibrates at its own frequency: basalt, 4 cm long, radius 1 cm, both ends free, first longitudinal mode. A
  * thin bar has f = sqrt(E/rho0)/(2L) = 55.4 kHz. The bar starts undeformed with v_z = V sin(pi z/L) about its middle,
  * and the sides' share of it.
  *
- * A bar of finite thickness rings lower by Rayleigh's 1 - (nu pi R/L)^2/4 = 0.996, which the criterion's 2 % about 55.4
- * kHz includes. With the gradient correction every bar meets it. Without, the free sides are softer by their missing
- * neighbours (0.37 h/R of the speed: test_sph_waves.c): 96 000 particles are still 3.3 % low, and the frequency is
- * extrapolated from two sizes with the first order that a skin has, 12 000 and 1500, CLAST_FULL=1: 96 000 and 12 000.
- */
+ * A bar of finite thickness has a lower frequency by Rayleigh's 1 - (nu pi R/L)^2/4 = 0.996, which the criterion's 2 %
+ * about 55.4 kHz includes. With the gradient correction every bar meets the criterion. Without it, the free sides are
+ * softer because neighbours are missing (0.37 h/R of the speed: test_sph_waves.c): 96 000 particles are still 3.3 %
+ * low, and the frequency is extrapolated from two sizes with the first order that a skin has, 12 000 and 1500,
+ * CLAST_FULL=1: 96 000 and 12 000. */
 #include "tests/support/sph_solid.h"
 
 struct ring {
@@ -84,7 +84,7 @@ static void free_free_bar(void **state) {
     const double limit = (fine * r[count - 1].frequency - coarse * r[count - 2].frequency) / (fine - coarse);
     print_message("  to the limit: %.2f kHz (%+.2f %%)\n", limit / 1e3, 100 * (limit / exact - 1));
     assert_true(fabs(limit / exact - 1) < 0.02);
-    /* Rayleigh's value, but for the lattice's sum along z (bodies.h: 0.993) and what the first order leaves out */
+    /* Rayleigh's value, except for the lattice's sum along z (bodies.h: 0.993) and the error left by the first order */
     assert_true(fabs(limit / exact - (1 - pow(nu * M_PI / 4, 2) / 4)) < 0.01);
   }
 }

@@ -55,7 +55,7 @@ static void nylon_on_basalt(void **state) {
       st += t, sy += momentum, stt += t * t, sty += t * momentum;
     }
     const double force = (SAMPLES * sty - st * sy) / (SAMPLES * stt - st * st);
-    const double contact = length - velocity * end; /* where it stands now */
+    const double contact = length - velocity * end; /* position of the contact now */
     for (size_t i = 0; i < p->n; i++) {
       const double beyond = fabs(p->x[i] - contact);
       if (beyond < 6 * spacing || beyond > 14 * spacing)

@@ -1,7 +1,7 @@
-/* A hot ball of basalt expands into the void: how much of its energy is motion after some time, against the same flow
+/* A hot ball of basalt expands into the void: the kinetic share of its energy at several times, against the same flow
  * in one dimension, by shells (von Neumann & Richtmyer 1950, J. Appl. Phys. 21, 232) with the same equation of state.
- * Matter without strength that does not pull, as debris. Here neighbours are lost on all sides, h grows, and
- * Tillotson's hot branches are at work.
+ * Matter without strength or tension, like debris. Here neighbours are lost on all sides, h grows, and Tillotson's hot
+ * branches are at work.
  *
  * CLAST_FULL=1: up to 64 000 particles. */
 #include "engine/sph/body/bodies.h"
@@ -16,8 +16,7 @@ static double pressure_of(double density, double u) {
 
 enum { TIMES = 3 };
 
-/* Shares of the energy that are motion at `times`. Shells of even width at the start; those within `inner` radii are
- * hot. */
+/* Kinetic shares of the energy at `times`. Shells of even width at the start; those within `inner` radii are hot. */
 static void by_shells(int shells, double u0, double inner, const double times[TIMES], double share[TIMES]) {
   const size_t n = (size_t)shells;
   double *r = calloc(n + 1, sizeof *r), *v = calloc(n + 1, sizeof *v), *m = calloc(n, sizeof *m),
@@ -73,7 +72,7 @@ static void by_shells(int shells, double u0, double inner, const double times[TI
     free(all[k]);
 }
 
-/* The same by particles; returns how many. */
+/* The same with particles; returns their number. */
 static size_t by_particles(double wanted, double u0, double inner, bool corrected, const double times[TIMES],
                            double share[TIMES], double *error) {
   struct sph_body body = {.shape = {.kind = SPH_SHAPE_SPHERE, .radius = radius},
@@ -116,8 +115,8 @@ static double largest_miss(const double share[TIMES], const double exact[TIMES])
 }
 
 /* Measured with 8000 particles: a ball within 0.6 (2e7 J/kg) and 8.2 % (1e8) of the exact shares, with the gradient
- * correction within 0.2 and 0.5 %; one that is hot within half its radius, whose outer half a shock throws off,
- * within 7.6 and 5.8 %: a shock front is some 3h wide, the ball's radius 11h. Asked for is somewhat more. */
+ * correction within 0.2 and 0.5 %; one that is hot within half its radius, whose outer half a shock throws off, within
+ * 7.6 and 5.8 %: a shock front is some 3h wide, the ball's radius 11h. The bounds are somewhat wider. */
 static void motion_of_a_hot_ball(void **state) {
   (void)state;
   static const struct {

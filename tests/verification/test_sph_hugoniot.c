@@ -168,7 +168,7 @@ static void shocks(void **state) {
 }
 
 /* Shocks that squeeze matter to half and less: layers stand deep within the kernel there, and density by continuity
- * falls behind that of the particles. What is asked is that this does not grow. */
+ * falls behind that of the particles. Pass if this error does not grow. */
 static void strong(void **state) {
   (void)state;
   static const struct { double up, pressure; } cases[] = {{5000, 0.01}, {10000, 0.02}, {20000, 0.05}};
@@ -206,10 +206,10 @@ static double line_slope(const struct line *l) {
   return (l->n * l->xy - l->x * l->y) / (l->n * l->xx - l->x * l->x);
 }
 
-/* Everyone starts at v = -rate x, so that no waves arise, and the ends are held at their speeds. Yield stress 1/100 of
- * basalt's: at strains of 1e-3 what is not linear (B, and heat from plastic work) is 0.3 % each, and the criterion
- * is 1 %. Without the gradient correction every rate has the lattice's factor (bodies.h): +0.6 % along x; printed, not
- * asked. */
+/* All particles start at v = -rate x, so that no waves arise, and the ends are held at their speeds. Yield stress 1/100
+ * of basalt's: at strains of 1e-3 nonlinear terms (B, and heat from plastic work) are 0.3 % each, and the criterion is
+ * 1 %. Without the gradient correction every rate has the lattice's factor (bodies.h): +0.6 % along x; printed, not
+ * tested. */
 static void ramp(bool correction) {
   const double spacing = 1e-3, length = 24 * spacing;
   struct solid_case c = solid_make(1);

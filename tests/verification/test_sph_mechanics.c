@@ -1,9 +1,10 @@
-/* The moving solid against what can be known exactly: order of the integrator, Hooke and Jaumann, the yield ramp,
- * damage of a homogeneous stretch, pressures, principal values, energy and angular momentum of collisions.
+/* The moving solid against exact answers: order of the integrator, Hooke and Jaumann, the yield ramp, damage of a
+ * homogeneous stretch, pressures, principal values, energy and angular momentum of collisions.
  *
- * Homogeneous motions are made with held particles: everyone moves at a constant velocity linear in its place, and with
- * the gradient correction the velocity gradient is then exact at every particle, at the surfaces too. Internal energy
- * is exact where the support is full: at surfaces it balances the forces there (pairs.h), which the holds bear. */
+ * Homogeneous motions are made with held particles: each particle moves at a constant velocity linear in its position,
+ * and with the gradient correction the velocity gradient is then exact at every particle, at the surfaces too. Internal
+ * energy is exact where the support is full: at surfaces it balances the forces there (pairs.h), which the held
+ * particles carry. */
 #include "tests/support/grady_kipp.h"
 #include "tests/support/sph_case.h"
 
@@ -73,7 +74,7 @@ static void second_order(void **state) {
 
 /* ---- stress in a turning frame ---- */
 
-/* Everyone is put on its circle after each step, so that nothing but the rotation acts: the stress must turn with it.
+/* Each particle is put on its circle after each step, so that only the rotation acts: the stress must rotate with it.
  */
 static double turned(bool correction, double steps, bool whole_body) {
   const struct case_block block = {{7, 7, 7}, {-3.5e-3, -3.5e-3, -3.5e-3}, {0, 0, 0}, spacing};
@@ -181,7 +182,7 @@ static bool central(const struct sph_particles *p, size_t i) {
 }
 
 /* -sigma_xx against the strain: slope K + 4 mu/3, then K beyond the Hugoniot elastic limit. Small strains, so that the
- * pressure is linear to 1e-4; Y low, so that yielding is early. */
+ * pressure is linear to 1e-4; Y is low, so that yielding begins early. */
 static void yield_ramp(void **state) {
   (void)state;
   struct sph_particles *p = strained(6, -100, 0, 0, 0);
@@ -292,7 +293,7 @@ static double stretch(int growth, int cap, bool compact, double damage_step, dou
     sph_system_read(s, p);
     if (!back && sph_system_time(s) > turn) {
       for (size_t i = 0; i < s->n; i++)
-        s->c.vx[i] = -s->c.vx[i]; /* held: it stays so */
+        s->c.vx[i] = -s->c.vx[i]; /* held: the velocity stays the same */
       back = true;
     }
     double mean = 0;
@@ -352,8 +353,8 @@ static void damage(void **state) {
   assert_true(fabs(rough / fine - 1) < 1e-2);
 }
 
-/* What damage leaves: of a half damaged stretch, the force that holds it and the power that heats it are (1-D) of the
- * whole's; in compression the pressure stays. The held work shows both. */
+/* Effect of damage: in a half damaged stretch, the holding force and the heating power are (1-D) times those of the
+ * undamaged one; in compression the pressure is unchanged. The work of held particles shows both. */
 static void damaged_stress(void **state) {
   (void)state;
   double work[2][2] = {{0}};

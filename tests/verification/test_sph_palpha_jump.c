@@ -40,7 +40,7 @@ static void plateaus(void **state) {
   near(shock.pressure, 12.646e9, 0.5e6, "P of solid basalt");
 }
 
-/* What a piston leaves behind, over speeds: the engine finds the same alpha and P from (rho, u) in one step, or by
+/* The state behind a piston, over speeds: the engine finds the same alpha and P from (rho, u) in one step, or by
  * following the compression. The oracle's alpha comes from 2000 midpoint steps: 1e-9. */
 static void engine_agrees(void **state) {
   (void)state;

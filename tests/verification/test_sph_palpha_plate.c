@@ -1,7 +1,7 @@
-/* Scene porous-plate (T5): a piston drives a shock into porous aluminium without strength. What the run reports, and
- * what the engine says that it should be, against jump conditions solved apart from the engine (palpha_exact.h): front
- * speeds, the plateau behind the shock, the precursor, the energy; converging. By default a weak shock at 100 and 200
- * points along the bar, and the fastest at 200; CLAST_FULL=1: four speeds, 200, 400 and 800 points. */
+/* Scene porous-plate (T5): a piston drives a shock into porous aluminium without strength. The run's report and the
+ * engine's exact answer against jump conditions solved independently of the engine (palpha_exact.h): front speeds, the
+ * plateau behind the shock, the precursor, the energy; converging. By default a weak shock at 100 and 200 points along
+ * the bar, and the fastest at 200; CLAST_FULL=1: four speeds, 200, 400 and 800 points. */
 #include "engine/sph/material/materials.h"
 #include "engine/sph/material/plane_shock.h"
 #include "palpha_exact.h"
@@ -56,8 +56,8 @@ static void exact_answers_agree(void **state) {
     }
 }
 
-/* A piston slower than the precursor's matter crushes nothing; a very fast one leaves no precursor: then the jump is
- * from rest. */
+/* A piston slower than the matter behind the precursor crushes no pores; a very fast one leaves no precursor: then the
+ * jump is from rest. */
 static void slow_and_fast_pistons(void **state) {
   (void)state;
   struct sph_material m = aluminium(1.275);
@@ -84,7 +84,7 @@ static void slow_and_fast_pistons(void **state) {
 
 /* ---- the moving plate ---- */
 
-/* Under the sanitizers a run costs ten times as much: one of each kind is enough to see what they look for. */
+/* Under the sanitizers a run takes ten times as long: one run of each kind is enough for them. */
 #ifdef __SANITIZE_ADDRESS__
 enum { SLOW = 1 };
 #else
@@ -117,7 +117,7 @@ static struct sph_results run(int points, double piston) {
   return r;
 }
 
-/* alpha of matter that was raised from rest to P and never had more. */
+/* alpha of matter that was raised from rest to P and never had a higher pressure. */
 static double exact_alpha(const struct exact_matter *m, double P) {
   return P > m->P_e ? exact_crush(m, exact_alpha_e(m), P) : exact_elastic(m, P, exact_alpha_e(m));
 }
@@ -143,7 +143,7 @@ static void check(const struct sph_results *r, double piston, int points) {
     near(r->precursor.distention, r->precursor.distention_exact, 1e-4, "alpha of the precursor");
 }
 
-/* Error of what only the curve decides: the weak shock leaves alpha = 1.0334. It falls with the spacing. */
+/* Error of a result that depends only on the curve: the weak shock leaves alpha = 1.0334. It falls with the spacing. */
 static double weak_error(const struct sph_results *r) {
   return fabs(r->shock.distention - r->shock.distention_exact);
 }

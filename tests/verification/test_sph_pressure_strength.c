@@ -1,7 +1,7 @@
 /* Rock under pressure against the exact yield surface: triaxial cells from 0 to 5 GPa, intact, half broken and broken;
- * thermal softening; what damage leaves of the stress, what opens flaws, and pores.
+ * thermal softening; the effect of damage on the stress, the stress that opens flaws, and pores.
  *
- * A cell is a block of held particles at one density. It is squeezed along x and gives way along y and z at constant
+ * A cell is a block of held particles at one density. It is compressed along x and expands along y and z at constant
  * volume to first order. With the gradient correction every particle has the exact velocity gradient, so each is a
  * triaxial test of its own. */
 #include "tests/support/sph_case.h"
@@ -19,7 +19,7 @@ static struct sph_material rock(void) {
   return m;
 }
 
-/* The published law, written out once more: the bound of sqrt(J2). */
+/* The published law, written independently: the bound of sqrt(J2). */
 static double bound(const struct sph_material *m, double pressure, double damage, double energy) {
   const struct sph_pressure_strength *k = &m->pressure_strength;
   const double p = fmax(pressure, 0), friction = k->intact_friction * p;
@@ -173,7 +173,7 @@ static void von_mises(void **state) {
     assert_true(fabs(stress[0][c] - stress[1][c]) < 1e-12 * 2e8); /* 300 returns of the rounding 1e-16 */
 }
 
-/* Damage takes tension, not the deviator; without the law it takes both. */
+/* With the law, damage reduces tension but not the deviator; without the law it reduces both. */
 static void what_acts(void **state) {
   (void)state;
   for (int law = 0; law < 2; law++)
@@ -195,7 +195,7 @@ static void what_acts(void **state) {
     }
 }
 
-/* Shear waves in broken rock are as fast as in whole rock: so is the time step that they allow. */
+/* Shear waves in broken rock are as fast as in whole rock, so the allowed time step is the same. */
 static void waves_of_broken_rock(void **state) {
   (void)state;
   double step[2][2];

@@ -3,9 +3,9 @@
  * dimensions. Under tension particles clump and rings break numerically; an artificial stress (epsilon 0.3, exponent 4)
  * prevents it.
  *
- * Whole means: every particle still has its neighbours, that is, no two that were nearest neighbours at rest are
- * further than twice that apart. Rebound: the rings have parted, out of each other's reach, and fly apart. The unit of
- * length is 1 cm, K = 1e7 Pa, density 1000 kg/m^3.
+ * Whole means: no two particles that were nearest neighbours at rest are further apart than twice that distance.
+ * Rebound: the rings are out of each other's reach and fly apart. The unit of length is 1 cm, K = 1e7 Pa, density 1000
+ * kg/m^3.
  *
  * CLAST_FULL=1: ten particles across a ring as in the paper, four else. The work of the artificial stress is in the
  * internal energy: without it 9 % of the kinetic energy were missing. */
@@ -123,14 +123,14 @@ static void rubber_rings(void **state) {
       if (k) {
         assert_true(r.broken > 0.01); /* whole layers of neighbours have lost each other */
         assert_true(r.clumping < 0.5);
-        assert_true(r.gap < 2); /* what is left of them sticks together */
+        assert_true(r.gap < 2); /* the rest of the rings sticks together */
       } else {
         assert_true(fabs(r.energy_error - r.clamped) < 5e-4); /* second order in the step; measured: 2e-5 */
         assert_true(r.clamped < 0.05);                        /* cold rubber held at u = 0; measured: 0.032 */
         assert_true(r.broken == 0);
-        assert_true(r.gap > 2); /* parted: out of each other's reach */
+        assert_true(r.gap > 2); /* separated: out of each other's reach */
         assert_true(r.speed <
-                    -0.65); /* and fly apart, at 0.765: what lacks is the viscosity's and the rings' ringing */
+                    -0.65); /* and fly apart, at 0.765: the rest went into viscosity and the rings' vibration */
       }
     }
 }

@@ -1,15 +1,14 @@
 /* A basalt rod under tension (Benz & Asphaug 1995, section 5.1): radius 1 cm, length 4 cm, its ends held.
  *
- * 1. How fast a crack runs. The speed is no constant of the model but of its options; the documented case is: one flaw
- * per particle, crack radius R_s of the particle's volume, cube_root growth, all thresholds 1.3 times the strain of the
- * load, and a starter, a penny of 3 mm radius across the middle. There it runs at the crack growth speed c_g = 0.4
- * sqrt((K + 4 mu/3)/rho0) = 1837 m/s, which is also how fast cracks grow inside particles, within 5 %, across the load.
- * That is its mean speed over the whole way from the starter to the rod's side, with 50 000 particles: it gathers speed
- * on the way (1.2 to 2.0 km/s) and with resolution, because what opens a particle is the stress before a tip that is a
- * particle wide.
- * 2. With Weibull flaws, stretched evenly at 60 and at 360 /s: more cracks at six times the rate, and peak stresses
- * between Grady and Kipp's law and the particle form of it at this rod's own flaws (test_grady_kipp.c), which no load
- * is shared in.
+ * 1. Speed of a crack. The speed is not a constant of the model but depends on its options; the documented case is: one
+ * flaw per particle, crack radius R_s of the particle's volume, cube_root growth, all thresholds 1.3 times the strain
+ * of the load, and a starter, a penny of 3 mm radius across the middle. There it runs at the crack growth speed c_g =
+ * 0.4 sqrt((K + 4 mu/3)/rho0) = 1837 m/s, which is also how fast cracks grow inside particles, within 5 %, across the
+ * load. That is its mean speed over the whole way from the starter to the rod's side, with 50 000 particles: the crack
+ * accelerates on the way (1.2 to 2.0 km/s) and is faster at higher resolution, because a particle opens under the
+ * stress before a tip that is one particle wide. 2. With Weibull flaws, stretched evenly at 60 and at 360 /s: more
+ * cracks at six times the rate, and peak stresses between Grady and Kipp's law and the particle form of it at this
+ * rod's own flaws (test_grady_kipp.c), which no load is shared in.
  *
  * With fracture.front: plane the speed is within 5 % from 12 000 particles on.
  *
@@ -36,7 +35,7 @@ static struct solid_case rod(double particles) {
   return c;
 }
 
-/* None near the grips; with `starter_only` none but in what is broken at the start. */
+/* No flaws near the grips; with `starter_only` flaws only in the particles that are broken at the start. */
 static struct sph_flaws *one_flaw_each(const struct sph_particles *p, double strain, bool starter_only) {
   struct sph_flaws *flaws = calloc(1, sizeof *flaws);
   flaws->particles = flaws->count = p->n;
@@ -116,7 +115,7 @@ static struct front run_crack(const struct form *form, double particles) {
     FIRST = 6,
     HALF = 13,
     LAST = SHELLS - 1
-  }; /* 3.25, 6.75 and 9.75 mm: infinite, speed 0, when it never got across */
+  }; /* 3.25, 6.75 and 9.75 mm: infinite, speed 0, if the front never got there */
   struct front f = {.speed = (LAST - FIRST) * shell / (reached[LAST] - reached[FIRST]),
                     .late = (LAST - HALF) * shell / (reached[LAST] - reached[HALF]),
                     .slab = spacing + c.range[0].h,

@@ -5,9 +5,9 @@
  * degrees at a time, over which each moves on a tangent: then the angle is atan(w t) exactly, and they are put back on
  * their circles.
  *
- * A free elastic sphere spun at once keeps its angular momentum within 1 % over ten turns with the gradient correction,
- * and is shown without it. Two solids that collide, with all that basalt does, keep linear momentum to 1e-12 and energy
- * to 0.5 %. */
+ * A free elastic sphere, set into rotation at the start, keeps its angular momentum within 1 % over ten turns with the
+ * gradient correction; the result without it is printed. Two colliding solids with all modules of basalt keep linear
+ * momentum to 1e-12 and energy to 0.5 %. */
 #include "tests/support/sph_solid.h"
 
 static void rotate(double c, double s, const double from[6], double to[6]) { /* about z; xx xy xz yy yz zz */
@@ -51,7 +51,7 @@ static double turn(bool correction, bool inside_only, double *turned) {
       p->y[i] = x[i] * sin(angle) + y[i] * cos(angle);
       p->vx[i] = -spin * p->y[i];
       p->vy[i] = spin * p->x[i];
-      p->density[i] = density; /* the tangents' expansion undone */
+      p->density[i] = density; /* the expansion from the tangents is removed */
       p->h[i] = h;
       p->energy[i] = 0;
     }
@@ -123,7 +123,7 @@ static double spin(bool correction, double turns, double *energy_error, double *
 static void spinning_sphere(void **state) {
   (void)state;
   for (int correction = 1; correction >= 0; correction--)
-    for (int part = 0; part < 2; part++) { /* without it, a turn tells: the rest is gone by ten */
+    for (int part = 0; part < 2; part++) { /* without the correction one turn is enough: after ten the spin is lost */
       const double turns = SOLID_SLOW ? 0.1 : part ? 10 : 1;
       double energy_error, clamped, kept = spin(correction, turns, &energy_error, &clamped);
       print_message("free sphere after %4.1f turns, correction %s: angular momentum %.5f of the first, energy error "
@@ -131,7 +131,7 @@ static void spinning_sphere(void **state) {
                     turns, correction ? "on" : "off", kept, energy_error, clamped);
       if (correction)
         assert_true(fabs(kept - 1) < 0.01);              /* the criterion */
-      assert_true(fabs(energy_error - clamped) < 0.005); /* booked, or not there */
+      assert_true(fabs(energy_error - clamped) < 0.005); /* the clamped energy is booked, or zero */
       if (SOLID_SLOW)
         break;
     }

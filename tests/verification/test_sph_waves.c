@@ -83,7 +83,7 @@ static void plane_waves(void **state) {
           if (lattice && along > 0)
             continue; /* the cubic lattice looks alike along all axes */
           if (!solid_full() && (correction || along == 1))
-            continue; /* to save time: nothing that the others do not have */
+            continue; /* left out to save time: the other cases cover it */
           print_message("%-9s correction %-3s %s along %c:", lattice ? "cubic" : "hexagonal", correction ? "on" : "off",
                         name[kind], 'x' + along);
           for (int l = 0; l < levels; l++) {
@@ -212,9 +212,10 @@ static void bar_wave(void **state) {
     const double order = solid_order(w[levels - 3].speed, w[levels - 2].speed, w[levels - 1].speed, 2);
     const double limit = w[levels - 1].speed + (w[levels - 1].speed - w[levels - 2].speed) / (pow(2, order) - 1);
     print_message("  order %.2f; extrapolated with it %.1f m/s (%+.2f %%)\n", order, limit, 100 * (limit / exact - 1));
-    /* The sums of a particle at a free side miss what would be outside: a soft skin of about h, hence first order, of
-     * whose limit the criterion of 1 % holds. With the correction a side is as stiff as the inside: second order up to
-     * the surface, to which the skin's rest at R/h = 2.5 adds a little, and 1 % of the finest run itself. */
+    /* The sums of a particle at a free side lack the neighbours outside: a soft skin of about h. The order is therefore
+     * the first, and the criterion of 1 % applies to the limit. With the correction a side is as stiff as the inside:
+     * second order up to the surface, to which the skin's rest at R/h = 2.5 adds a little, and 1 % of the finest run
+     * itself. */
     if (correction)
       assert_true(order > 1.8 && order < 2.4 && fabs(w[levels - 1].speed / exact - 1) < 0.01);
     else
