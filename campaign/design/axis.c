@@ -24,7 +24,7 @@ double design_axis_spaced(double from, double to, size_t n, bool logarithmic, si
 }
 
 /* Quantile of the standard normal law cut to (lower, upper). In the upper half the survival function is used: its small
- * values keep their digits where 1 - p has none left. */
+ * values keep their digits where 1 - p loses them. */
 static double truncated_normal(double lower, double upper, double u) {
   if (lower > 0) {
     double from = gsl_cdf_ugaussian_Q(lower), to = gsl_cdf_ugaussian_Q(upper);
@@ -52,7 +52,7 @@ void design_axis_quantile(const struct design_axis *axis, double u, struct field
     *value = axis->levels[design_axis_level(axis, u)];
     return;
   }
-  /* Keeps half a unit of the generator's resolution from 0 and 1, where an unbounded law has no value. */
+  /* Keeps u half a unit of the generator's resolution away from 0 and 1, where an unbounded law has no value. */
   u = fmin(fmax(u, 0x1p-54), 1 - 0x1p-53);
   double x = NAN;
   switch (axis->kind) {
@@ -75,10 +75,10 @@ void design_axis_quantile(const struct design_axis *axis, double u, struct field
   default: break;
   }
   if (axis->kind == DESIGN_AXIS_UNIFORM || axis->kind == DESIGN_AXIS_LOG_UNIFORM)
-    x = fmin(fmax(x, axis->a), axis->b); /* exp(log b) may round across b */
+    x = fmin(fmax(x, axis->a), axis->b); /* exp(log b) may be rounded to a value beyond b */
   x = fmin(fmax(x, axis->lower), axis->upper);
   set_number(axis->row, x, value);
-  if (axis->row->kind == FIELD_INTEGER) { /* rounding must not cross a bound that is no whole number */
+  if (axis->row->kind == FIELD_INTEGER) { /* rounding must not cross a bound that is not a whole number */
     if ((double)value->integer < axis->lower)
       value->integer = (int64_t)ceil(axis->lower);
     if ((double)value->integer > axis->upper)

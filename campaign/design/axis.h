@@ -1,6 +1,6 @@
-/* One axis of a campaign: a path into the scene and the values that it takes. An axis is a path and nothing else: no
- * code looks at its name. Every kind of axis is one function of u in [0, 1): its quantile. Grids walk the levels of the
- * kinds that have levels. */
+/* One axis of a campaign: the path of an input in the scene and its values. No code depends on the name of the path.
+ * Every kind of axis is one function of u in [0, 1): its quantile. Grids use the levels of the kinds that have
+ * levels. */
 #ifndef CLAST_CAMPAIGN_DESIGN_AXIS_H
 #define CLAST_CAMPAIGN_DESIGN_AXIS_H
 
@@ -16,29 +16,30 @@ enum design_axis_kind {
 };
 
 struct design_axis {
-  const struct field *row;    /* of the engine's inputs */
-  char unit[32];              /* that the campaign gives its values in; "": SI */
+  const struct field *row;    /* row of the engine's inputs */
+  char unit[32];              /* unit of the values in the campaign; "": SI */
   int kind;                   /* enum design_axis_kind */
   struct field_value *levels; /* owned */
   size_t level_count;
-  double a, b;         /* bounds (uniform kinds), mean and sd, median and sigma; factor and offset (linked) */
+  double a, b;         /* bounds (uniform kinds); mean and sd; median and sigma; factor and offset (linked) */
   double lower, upper; /* truncation, -HUGE_VAL / HUGE_VAL for none */
   size_t linked;       /* index of the axis it follows, which is not itself linked */
 };
 
 void design_axis_free_all(struct design_axis *axes, size_t count); /* frees the array too */
 
-/* Value at quantile u in [0, 1), of every kind but linked. Integers are rounded to the nearest, and no bound is
- * crossed. */
+/* Value at quantile u in [0, 1), of every kind but linked. Integers are rounded to the nearest whole number within the
+ * bounds. */
 void design_axis_quantile(const struct design_axis *axis, double u, struct field_value *value);
-/* The inverse: the share of the law below a value, in [0, 1]; of an integer the middle of its step. NaN: no law. */
+/* The inverse: the share of the law below a value, in [0, 1]; for an integer the middle of its step. NaN: the axis has
+ * no law. */
 double design_axis_share(const struct design_axis *axis, const struct field_value *value);
 /* Value of a linked axis when the axis it follows has `value` at `level` (its level for LEVELS, else 0). */
 void design_axis_follow(const struct design_axis *axis, const struct field_value *followed, size_t level,
                         struct field_value *value);
 /* axes[index] for people, every number with its unit: "1 %, 3 %", "uniform from 1 GPa to 2 GPa". */
 void design_axis_describe(const struct design_axis *axes, size_t index, FILE *out);
-/* Level of a LEVELS axis that quantile u falls in. */
+/* Level of a LEVELS axis at quantile u. */
 size_t design_axis_level(const struct design_axis *axis, double u);
 
 /* Evenly spaced levels, ends exact: linear or (both ends positive) logarithmic. n >= 2, or n == 1 gives `from`. */

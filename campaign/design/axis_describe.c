@@ -7,7 +7,8 @@
 
 enum { SHOWN = 12, VALUE_SIZE = FIELD_TEXT_SIZE + 64 };
 
-/* "0.0698132 rad (4 deg)": radians say little. Six digits: levels of a range carry rounding errors. */
+/* "0.0698132 rad (4 deg)": degrees are easier to read than radians. Six digits: levels of a range carry rounding
+ * errors. */
 static void print_value(const struct field *row, const struct field_value *value, FILE *out) {
   char text[VALUE_SIZE], digits[32];
   struct field_value shown = *value;
@@ -21,7 +22,7 @@ static void print_value(const struct field *row, const struct field_value *value
 }
 
 static void print_number(const struct field *row, double number, FILE *out) {
-  struct field real = *row; /* the mean of an integer's law is no integer */
+  struct field real = *row; /* the mean of an integer's law need not be an integer */
   real.kind = FIELD_REAL;
   print_value(&real, &(struct field_value){.kind = FIELD_REAL, .number = number}, out);
 }

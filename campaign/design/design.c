@@ -11,11 +11,11 @@ struct design {
   size_t axis_count, free_count; /* free: not linked */
   uint64_t points, seed, next;
   struct design_sobol *sobol;
-  size_t *levels; /* of the point under way, per axis */
+  size_t *levels; /* of the current point, by axis */
   double *coordinates;
 };
 
-#define MOST_POINTS (UINT64_C(1) << 53) /* a count stays exact in a double, and in SQL and JSON */
+#define MOST_POINTS (UINT64_C(1) << 53) /* the number of points must be exact in a double, in SQL and in JSON */
 
 static status count_grid(struct design *design, struct error *error) {
   design->points = 1;
@@ -110,7 +110,7 @@ uint64_t design_points(const struct design *design) {
   return design->points;
 }
 
-/* Levels of point i of a grid (the last axis turns fastest) or a list. */
+/* Levels of point i of a grid (the last axis varies fastest) or a list. */
 static void walk_levels(struct design *design, uint64_t i) {
   for (size_t a = design->axis_count; a-- > 0;) {
     const struct design_axis *axis = &design->axes[a];

@@ -1,5 +1,5 @@
-/* The points of a campaign, one after the other. A design of a million points is a counter, not a table, so that the
- * first run starts at once. Point i of a design depends on kind, seed, i and the number of points only. */
+/* The points of a campaign, one after the other. A design is a counter, not a table, so that the first run of a million
+ * points starts immediately. Point i of a design depends only on kind, seed, i and the number of points. */
 #ifndef CLAST_CAMPAIGN_DESIGN_DESIGN_H
 #define CLAST_CAMPAIGN_DESIGN_DESIGN_H
 
@@ -19,7 +19,7 @@ uint64_t design_points(const struct design *design);
 /* The next point's values, one per axis in axis order; false after the last. */
 bool design_next(struct design *design, struct field_value *values);
 
-/* Coordinates in [0, 1) of point i on dimension d, by kind: what the axes' quantiles are taken at. */
+/* Coordinate in [0, 1) of point i in dimension d, by kind: the argument of the axis' quantile. */
 double design_random_coordinate(uint64_t seed, uint64_t i, size_t dimension);
 double design_latin_coordinate(uint64_t seed, uint64_t points, uint64_t i, size_t dimension);
 /* A permutation of 0..points-1 without a table: a Feistel network keyed by (seed, dimension), walked back into range.

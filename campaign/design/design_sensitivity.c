@@ -7,13 +7,13 @@
 #include "engine/random.h"
 
 enum { LEVELS = 4 };
-#define MORRIS_MARK (UINT64_C(1) << 61) /* draws of these designs are not those of others */
+#define MORRIS_MARK (UINT64_C(1) << 61) /* keeps the random numbers of these designs apart from those of others */
 
 struct design_sensitivity {
   enum design_sensitivity_kind kind;
   size_t inputs, blocks;
   uint64_t seed;
-  double *pairs; /* Saltelli: of every block the coordinates of A, then of B */
+  double *pairs; /* Saltelli: for every block the coordinates of A, then of B */
 };
 
 static status fill_pairs(struct design_sensitivity *design, struct error *error) {
@@ -68,7 +68,7 @@ static size_t draw(const struct design_sensitivity *design, size_t block, size_t
   return (size_t)(random_draw(design->seed, RANDOM_DESIGN, MORRIS_MARK | block, number) * (double)n);
 }
 
-/* The k-th input that a trajectory changes (Fisher and Yates), and where its inputs begin. */
+/* The order in which a trajectory changes its inputs (Fisher and Yates), and their first levels. */
 static void walk(const struct design_sensitivity *design, size_t block, size_t *order, size_t *level) {
   for (size_t i = 0; i < design->inputs; i++) {
     order[i] = i;

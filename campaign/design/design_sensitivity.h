@@ -1,4 +1,4 @@
-/* Designs that ask which input matters: blocks of points as analysis/statistics/sensitivity.h takes them. */
+/* Designs for sensitivity indices: blocks of points in the form that analysis/statistics/sensitivity.h needs. */
 #ifndef CLAST_CAMPAIGN_DESIGN_DESIGN_SENSITIVITY_H
 #define CLAST_CAMPAIGN_DESIGN_DESIGN_SENSITIVITY_H
 
@@ -13,14 +13,16 @@ enum design_sensitivity_kind {
 };
 struct design_sensitivity; /* opaque */
 
-/* blocks: of Saltelli best a power of two. STATUS_CONTENT: no input, more than Sobol numbers have (20), no block. */
+/* blocks: best a power of two for Saltelli. STATUS_CONTENT: no input, more inputs than Sobol numbers allow (20), or no
+ * block. */
 status design_sensitivity_create(enum design_sensitivity_kind kind, size_t inputs, size_t blocks, uint64_t seed,
                                  struct design_sensitivity **out, struct error *error);
 void design_sensitivity_free(struct design_sensitivity *design); /* NULL is fine */
 size_t design_sensitivity_rows(const struct design_sensitivity *design);
-/* Coordinates of a row in (0, 1), one for each input: quantiles. */
+/* Coordinates of a row in (0, 1), one for each input: the arguments of the quantiles. */
 void design_sensitivity_row(const struct design_sensitivity *design, size_t row, double *coordinates);
-/* Morris: which input each step of each trajectory changes, and by how much. inputs x blocks of both. */
+/* Morris: the input that each step of each trajectory changes, and the change of its coordinate. Both arrays: inputs x
+ * blocks. */
 void design_sensitivity_steps(const struct design_sensitivity *design, size_t *order, double *step);
 
 #endif

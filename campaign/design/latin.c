@@ -1,14 +1,16 @@
 /* Latin hypercube (McKay, Beckman & Conover 1979): each dimension is cut into as many strata as there are points, and
  * each stratum holds one point. The strata's order is a pseudo-random permutation per dimension that needs no table: a
  * Feistel network over the next power of four, walked along its cycle until it lands inside (Black & Rogaway 2002), so
- * that a design of a million points costs no memory and point i is known at once. */
+ * that a design of a million points needs no memory and point i is computed directly. */
 #include <math.h>
 
 #include "campaign/design/design.h"
 #include "engine/random.h"
 
-enum { ROUNDS = 8 }; /* Luby & Rackoff 1988 prove 4 for a strong permutation; doubled for the small domains here */
-#define PERMUTATION_MARK (UINT64_C(1) << 63) /* apart from the draws within strata, which count items from 0 */
+enum {
+  ROUNDS = 8
+}; /* Luby & Rackoff 1988 prove that 4 give a strong permutation; doubled for the small domains here */
+#define PERMUTATION_MARK (UINT64_C(1) << 63) /* differs from the draws within strata, which count items from 0 */
 
 uint64_t design_latin_permute(uint64_t seed, size_t dimension, uint64_t points, uint64_t i) {
   if (points < 2)

@@ -8,15 +8,15 @@
 #include <stdint.h>
 
 struct design_stopping {
-  bool fixed; /* `minimum` replicates, nothing is judged */
+  bool fixed; /* `minimum` replicates, the rule is not applied */
   int64_t minimum, batch, maximum;
-  double half_width, level; /* of the confidence interval of the mean */
+  double half_width, level; /* half width of the mean's confidence interval, in the quantity's SI unit */
 };
 
 enum design_verdict { DESIGN_GROW, DESIGN_INTERVAL_MET, DESIGN_CAP_REACHED, DESIGN_FIXED };
 
-/* All replicates below *prefix are in; values[r] is NaN for a run that failed. DESIGN_GROW: *prefix is the next one to
- * complete. Otherwise the point is finished at this prefix. */
+/* All replicates below *prefix have ended; values[r] is NaN for a failed run. DESIGN_GROW: *prefix is set to the next
+ * prefix to complete. Otherwise the point is finished at this prefix. */
 enum design_verdict design_stopping_judge(const struct design_stopping *rule, const double *values, int64_t *prefix);
 
 #endif

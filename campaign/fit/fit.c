@@ -1,4 +1,4 @@
-/* The fit's state: priors and data as the algebra takes them, and the solution from all runs. */
+/* The fit's state: priors and data in the form that the algebra needs, and the solution from all runs. */
 #include "campaign/fit/fit.h"
 
 #include <math.h>
@@ -87,7 +87,7 @@ static status find_inputs(struct fit *fit, struct error *error) {
 static void find_data(struct fit *fit) {
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct observed_datum *from = &fit->observed->data[k];
-    /* Of a count, ln(1 + N) has the error dN / (1 + N). */
+    /* For a count N, ln(1 + N) has the error dN / (1 + N). */
     const double slope = from->ask.kind == ASK_SPECIMENS_COUNT ? 1 / (1 + from->value) : 1;
     fit->data[k] = (struct posterior_datum){.value = fit_transform(from, from->value),
                                             .error = from->error * slope,
@@ -112,7 +112,7 @@ static status allocate(struct fit *fit, struct error *error) {
   return particles ? approximate_begin(&fit->check, particles, fit->inputs, fit->rule.seed, error) : STATUS_OK;
 }
 
-/* The first ensemble: the points that `clast run` makes of the campaign. */
+/* Makes the first ensemble: the points of `clast run` for this campaign. */
 static status draw_members(struct fit *fit, struct error *error) {
   const struct campaign *campaign = fit->campaign;
   struct design *design = NULL;

@@ -1,14 +1,13 @@
-/* A fit: which inputs of a campaign give what was measured? The campaign's laws are the priors, its sampled points the
- * first ensemble. Rounds of runs move the ensemble towards the data (analysis/inference), surfaces go through all their
- * means, and a posterior follows.
+/* A fit finds the inputs of a campaign that reproduce the measurements. The campaign's laws are the priors, and its
+ * sampled points are the first ensemble. Rounds of runs move the ensemble towards the data (analysis/inference).
+ * Surfaces are fitted to the means of all runs and give the posterior.
  *
  *     campaign_load(...), observed_load(...);
  *     fit_create(campaign, observed, &rule, reference, &fit, &error);  // every rank
  *     series_run(&(struct series){fit, fit_rounds_next, fit_rounds_done}, farm, ...);
  *     fit_solve(fit, &error);                                           // rank 0
  *
- * The rounds depend on the documents and the rule alone, so that the same command finds all runs of an earlier one in
- * the store. */
+ * The rounds depend only on the documents and the rule, so that a repeated command finds all its runs in the store. */
 #ifndef CLAST_CAMPAIGN_FIT_FIT_H
 #define CLAST_CAMPAIGN_FIT_FIT_H
 
@@ -23,9 +22,9 @@
 enum { FIT_FEWEST_MEMBERS = 8, FIT_MOST_ROUNDS = 10, FIT_CHECK_ROUNDS = 12 };
 
 struct fit_rule {
-  int64_t rounds; /* of the ensemble at most, the last at its end and one from the posterior included */
+  int64_t rounds; /* most rounds of the ensemble, including the last round at its end and one from the posterior */
   int64_t check;  /* particles of the approximate Bayesian computation; 0: none */
-  uint64_t seed;  /* of what the algebra draws; the runs' seeds are the campaign's */
+  uint64_t seed;  /* seed of the algebra's random numbers; the runs' seeds are the campaign's */
   void (*note)(void *context, const char *text); /* a line after each round; may be NULL */
   void *note_context;
 };
@@ -44,23 +43,23 @@ struct fit {
   const char *scene_reference;     /* from the current folder; borrowed */
   struct fit_rule rule;
 
-  size_t inputs, axis[POSTERIOR_INPUTS]; /* the unknown ones: which axis of the campaign each is */
+  size_t inputs, axis[POSTERIOR_INPUTS]; /* axis of the campaign of each unknown input */
   bool bounded[POSTERIOR_INPUTS];
-  struct posterior_datum data[OBSERVED_DATA];      /* counts as ln(1 + N) */
-  struct ask_resolution resolution[OBSERVED_DATA]; /* what a study in the store says, where the document says nothing */
+  struct posterior_datum data[OBSERVED_DATA];      /* a count N is compared as ln(1 + N) */
+  struct ask_resolution resolution[OBSERVED_DATA]; /* from a study in the store, for data without `resolution` */
 
   /* All points so far, and the values of their runs: point x datum x replicate. Owned. */
   size_t points, capacity, members, replicates;
   double *z, *values;
 
   enum fit_phase phase;
-  size_t shot; /* that runs next in this round */
+  size_t shot; /* shot that runs next in this round */
   struct ensemble_kalman ensemble;
-  double *place; /* owned: members x inputs, of the round under way */
+  double *place; /* owned: members x inputs, of the current round */
   double gamma[OBSERVED_DATA * OBSERVED_DATA];
-  size_t rounds; /* of the ensemble that were run, all phases */
+  size_t rounds; /* rounds of the ensemble that were run, all phases */
   struct approximate check;
-  double *specimens; /* owned: particles x data, of the round of the check under way */
+  double *specimens; /* owned: particles x data, of the current round of the check */
   size_t proposed, check_rounds;
 
   /* What was found. */
@@ -75,23 +74,23 @@ status fit_create(const struct campaign *campaign, const struct observed *observ
                   const char *scene_reference, struct fit **out, struct error *error);
 void fit_free(struct fit *fit); /* NULL is fine */
 
-/* Value of an unknown input at a normal coordinate, six digits of it. */
+/* Value of an unknown input at a normal coordinate, rounded to six digits. */
 void fit_value(const struct fit *fit, size_t input, double z, struct field_value *value);
 /* The same as a number for tables. */
 double fit_number(const struct fit *fit, size_t input, double z);
-/* A run's number as the fit compares it, and back. */
+/* Transforms a run's value for the comparison in the fit, and back. */
 double fit_transform(const struct observed_datum *datum, double value);
 double fit_back(const struct observed_datum *datum, double transformed);
 
 /* The callbacks of struct series; context is the fit. */
 struct campaign *fit_rounds_next(void *context, struct store *store, struct error *error);
 status fit_rounds_done(void *context, struct store *store, struct error *error);
-/* Runs at most: all shots of all rounds, with and without the check. */
+/* Largest number of runs: all shots of all rounds, with or without the check. */
 int64_t fit_rounds_most(const struct fit *fit, bool check);
 
 /* Surfaces and posterior from all points so far. */
 status fit_solve(struct fit *fit, struct error *error);
-/* The same, and what the data tell of the inputs. */
+/* The same, and the information that the data give about the inputs. */
 status fit_find(struct fit *fit, struct error *error);
 
 #endif

@@ -7,12 +7,12 @@
 #include "campaign/fit/fit_print.h"
 #include "schemas/clock.h"
 
-/* The two documents and what was made of them. */
+/* The two documents, and the objects made from them. */
 struct subject {
   struct campaign *campaign;
   struct observed *observed;
   struct fit *fit;
-  char reference[2 * FIELD_TEXT_SIZE]; /* of the scene, from the current folder */
+  char reference[2 * FIELD_TEXT_SIZE]; /* path of the scene from the current folder */
 };
 
 static void clear(struct subject *subject) {

@@ -42,7 +42,8 @@ static status print_inputs(const struct fit *fit, bool check, struct error *erro
 
 /* ---- what was measured ---- */
 
-/* Standard deviation of a datum's specimens over seeds at the middle of the posterior, as it was measured. */
+/* Standard deviation over seeds of a datum's specimens at the middle of the posterior, in the unit of the
+ * measurement. */
 static double seeds_of(const struct fit *fit, size_t k) {
   const struct observed_datum *datum = &fit->observed->data[k];
   double x[POSTERIOR_INPUTS];

@@ -6,11 +6,11 @@
 #include "campaign/terminal/chart_option.h"
 #include "campaign/terminal/table.h"
 
-/* For people a table of the inputs, a table of what was measured, and what to make of them in sentences. For programs
- * one table: rows of kind input, then of kind measured, then of kind check. */
+/* For people a table of the inputs, a table of the measurements, and conclusions in sentences. For programs one table:
+ * rows of kind input, then of kind measured, then of kind check. */
 status fit_print(const struct fit *fit, enum table_format format, struct error *error);
 
-/* What was measured beside what is predicted for one more experiment. */
+/* Draws the measurements beside the predictions for one more experiment. */
 status fit_print_picture(const struct fit *fit, const char *path, const struct chart_options *chart,
                          struct error *error);
 

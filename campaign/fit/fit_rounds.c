@@ -23,7 +23,7 @@ static bool is_check(const struct fit *fit) {
   return fit->phase == FIT_CHECKED;
 }
 
-/* The places of the round under way, and how many. */
+/* The places of the current round, and their number. */
 static const double *places(const struct fit *fit, size_t *count) {
   *count = is_check(fit) ? fit->proposed : fit->members;
   return is_check(fit) ? fit->check.z + fit->check.kept * fit->inputs : fit->place;
@@ -62,7 +62,7 @@ static status make_campaign(const struct fit *fit, struct campaign *campaign, st
   const struct observed_shot *shot = &fit->observed->shots[fit->shot];
   char comment[64];
   *campaign = *fit->campaign;
-  campaign->axes = NULL; /* what the fit's campaign owns is not owned twice */
+  campaign->axes = NULL; /* the fit's campaign owns these; they must not be freed twice */
   campaign->axis_count = 0;
   campaign->text = NULL;
   campaign->scene = scene_copy(shot->scene);
@@ -84,7 +84,7 @@ static status make_campaign(const struct fit *fit, struct campaign *campaign, st
   return campaign->text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");
 }
 
-/* What a study in the store says of the resolution, where the document says nothing. */
+/* Reads the error of the resolution from a study in the store, for data without `resolution`. */
 static status find_resolution(struct fit *fit, struct store *store, struct error *error) {
   status code = STATUS_OK;
   for (size_t k = 0; code == STATUS_OK && k < fit->observed->datum_count; k++) {
@@ -123,7 +123,8 @@ struct campaign *fit_rounds_next(void *context, struct store *store, struct erro
 
 /* ---- after a round ---- */
 
-/* Moves the ensemble; the last round at its end follows when the data are taken in or rounds run out. */
+/* Moves the ensemble by one Kalman step. The final round follows when the data have their full weight or no rounds are
+ * left. */
 static status move_ensemble(struct fit *fit, struct error *error) {
   const size_t d = fit->observed->datum_count, from = fit->points - fit->members;
   double *g = calloc(fit->members * d, sizeof *g), *packed = calloc(fit->points * d * fit->replicates, sizeof *packed);
@@ -201,8 +202,8 @@ static status after_ensemble(struct fit *fit, struct error *error) {
   return code;
 }
 
-/* Distance of a particle from the data: in units of the scatter and errors at the middle of the posterior. The errors
- * of the measurement and of the resolution are drawn for each. */
+/* Distance of each particle from the data, in units of the scatter and errors at the middle of the posterior. The
+ * errors of measurement and resolution are drawn at random for each particle. */
 static void find_distances(struct fit *fit, double *distance) {
   const size_t d = fit->observed->datum_count;
   double middle[POSTERIOR_INPUTS], c[POSTERIOR_INPUTS * POSTERIOR_INPUTS];

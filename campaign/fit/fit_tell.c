@@ -84,7 +84,7 @@ static void tell_determined(const struct fit *fit, FILE *out) {
     tell_open_direction(fit, i, out);
 }
 
-/* Numbers whose error of resolution nobody has told. */
+/* Names the data whose error of resolution is unknown. */
 static void tell_not_studied(const struct fit *fit, FILE *out) {
   char *text = NULL, label[2 * FIELD_TEXT_SIZE];
   size_t size = 0, count = 0;
@@ -132,14 +132,14 @@ static void tell_errors(const struct fit *fit, FILE *out) {
   }
 }
 
-/* Where the algebra's own assumptions do not hold. */
+/* Names the assumptions of the algebra that do not hold. */
 static void tell_doubts(const struct fit *fit, FILE *out) {
   char label[2 * FIELD_TEXT_SIZE], text[6 * FIELD_TEXT_SIZE];
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct seed_scatter *scatter = &fit->surfaces.scatter[k];
     const double below = posterior_below(&fit->surfaces.model, &fit->posterior, k);
     observed_label(fit->observed, k, label, sizeof label);
-    /* Of a normal law skewness and excess have standard errors sqrt(6/n) and sqrt(24/n). */
+    /* For a normal law, skewness and excess have standard errors sqrt(6/n) and sqrt(24/n). */
     const double n = (double)scatter->freedom;
     if (fabs(scatter->skewness) > 4 * sqrt(6 / n) || fabs(scatter->excess) > 4 * sqrt(24 / n)) {
       snprintf(

@@ -1,4 +1,4 @@
-/* What a fit says of itself in sentences: what the data determine, what they leave open, what its errors hold. */
+/* The sentences of a fit's report: which inputs the data determine, which they do not, and what the errors include. */
 #ifndef CLAST_CAMPAIGN_FIT_FIT_TELL_H
 #define CLAST_CAMPAIGN_FIT_FIT_TELL_H
 

@@ -40,7 +40,7 @@ static struct scene *scene_of(const struct fit *fit, const double *z, struct err
   return scene;
 }
 
-/* Of the shot's data at a point of the store; 0: it has none. */
+/* Reads the values of the shot's data at a point of the store; point 0: it has none. */
 static status read_data(const struct fit *fit, struct store *store, const struct scene *scene, int64_t point,
                         const uint64_t *seeds, size_t count, double *values, size_t stride, struct error *error) {
   status code = STATUS_OK;
@@ -58,7 +58,7 @@ static status read_data(const struct fit *fit, struct store *store, const struct
 }
 
 /* Reads `count` replicates of the shot's data at z; the values of datum k begin at values + k * stride. A point that
- * cannot be run has none. */
+ * cannot be run has no values. */
 static status read_point(const struct fit *fit, struct store *store, const double *z, bool independent, size_t count,
                          double *values, size_t stride, struct error *error) {
   struct error invalid = {0};

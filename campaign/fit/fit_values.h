@@ -4,9 +4,9 @@
 
 #include "campaign/fit/fit.h"
 
-/* Reads the values of the shot under way for the members at z into fit->values, behind the points that there are. */
+/* Reads the values of the shot under way for the members at z into fit->values, after the existing points. */
 status fit_values_read(struct fit *fit, struct store *store, const double *z, struct error *error);
-/* Reads those of the particles at z into fit->specimens: the mean over the shot's specimens. */
+/* Reads the values of the particles at z into fit->specimens: means over the shot's specimens. */
 status fit_values_check(struct fit *fit, struct store *store, const double *z, struct error *error);
 
 /* All values in the order that the algebra takes them; packed has room for all of them. */

@@ -15,8 +15,8 @@ struct serve_http {
   struct MHD_Daemon *daemon;
   const struct serve_model *model;
   struct serve_jobs *jobs;
-  size_t exchanges; /* requests that are not sent back whole */
-  uint64_t events;  /* pieces of requests that came, answers that went */
+  size_t exchanges; /* requests whose answers are not completely sent */
+  uint64_t events;  /* counts pieces of requests received and answers sent */
   bool loopback;
 };
 
@@ -51,8 +51,8 @@ static enum MHD_Result refuse(struct exchange *exchange, unsigned http, const ch
   return send_answer(exchange);
 }
 
-/* A web page in a browser of this machine could send requests to a loopback port, too: browsers say where a page is
- * from, and other clients do not. */
+/* A web page in a browser on this machine could also send requests to a loopback port. Browsers send the origin of the
+ * page, other clients do not. */
 static const char *refused_at_once(struct MHD_Connection *connection, unsigned *http) {
   const char *length = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
   if (MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN)) {
@@ -85,7 +85,7 @@ static enum MHD_Result begin(struct serve_http *http, struct MHD_Connection *con
   return why ? refuse(exchange, code, why) : MHD_YES;
 }
 
-/* The request is whole: answers it, or suspends the connection. */
+/* Answers a complete request, or suspends the connection. */
 static enum MHD_Result judge(struct exchange *exchange, const char *method, const char *url) {
   struct serve_request request;
   if (serve_request_read(exchange->http->model, method, url, exchange->body ? exchange->body : "", exchange->size,
@@ -108,7 +108,7 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
   if (*upload_size > 0) {
     const size_t size = *upload_size;
     *upload_size = 0;
-    if (exchange->size + size > SERVE_HTTP_BODY) /* sent without a length: the rest is read, and forgotten */
+    if (exchange->size + size > SERVE_HTTP_BODY) /* sent without a length: the rest is read and discarded */
       exchange->answer.http = MHD_HTTP_CONTENT_TOO_LARGE;
     return exchange->answer.http || take_body(exchange, upload, size) ? MHD_YES : MHD_NO;
   }
@@ -204,10 +204,10 @@ bool serve_http_loopback(const struct serve_http *http) {
   return http->loopback;
 }
 
-/* Goes on as long as something happens: the library takes a body in pieces, and its file is readable for the first one
- * only. */
+/* Repeats while anything is received or sent: the library takes a body in pieces, but its file descriptor is readable
+ * only for the first one. */
 void serve_http_run(struct serve_http *http) {
-  enum { MOST = 256 }; /* the farm has its turn, too */
+  enum { MOST = 256 }; /* the number is limited so that the farm also gets its turn */
   for (int i = 0; i < MOST; i++) {
     const uint64_t before = http->events;
     MHD_run(http->daemon);

@@ -18,7 +18,7 @@ struct serve_job { /* an evaluation under way */
   int64_t point_id;
   void *ticket;
   double started; /* s, clock_s() */
-  bool answered;  /* it waited too long: only its runs are left */
+  bool answered;  /* it waited too long and was answered; only its runs are left */
   size_t missing; /* runs of it that are waiting or on slots */
 };
 
@@ -28,10 +28,10 @@ struct serve_jobs {
   struct serve_jobs_options options;
   struct farm_options limits;
   int64_t session_id, campaign_id;
-  const char **paths; /* of the inputs that vary, for the store */
+  const char **paths; /* paths of the varied inputs, for the store */
   size_t path_count;
   struct serve_job *first;
-  struct serve_runs runs; /* that they wait for */
+  struct serve_runs runs; /* runs that the jobs wait for */
   uint8_t *task;          /* bytes of the last task given out */
   struct serve_jobs_counts counts;
   bool stopping;
@@ -147,7 +147,7 @@ static struct serve_answer answer_of(struct serve_jobs *jobs, const struct serve
 
 /* ---- evaluations in ---- */
 
-/* The run of a replicate, waiting or on a slot. NULL with *code STATUS_OK: it has used up its attempts. */
+/* The run of a replicate, waiting or on a slot. NULL with *code STATUS_OK: the run has used up its attempts. */
 static struct serve_run *find_or_add_run(struct serve_jobs *jobs, const struct serve_job *job, int64_t replicate,
                                          status *code, struct error *error) {
   struct record record = {.point_id = job->point_id, .session_id = jobs->session_id, .replicate = replicate};
@@ -179,7 +179,7 @@ static status want(struct serve_jobs *jobs, struct serve_job *job, int64_t repli
   return STATUS_OK;
 }
 
-/* The point in the store, and a wish for each run that it lacks. */
+/* Finds or adds the point in the store, and requests each missing run. */
 static status open_job(struct serve_jobs *jobs, struct serve_job *job, struct error *error) {
   const struct serve_config *config = &job->request.config;
   status code = store_add_point(jobs->store, jobs->campaign_id, job->scene, jobs->path_count, jobs->paths,
@@ -228,7 +228,7 @@ struct serve_answer serve_jobs_submit(struct serve_jobs *jobs, struct serve_requ
     free_job(job);
     return answer;
   }
-  job->answered = answer.http != 0; /* runs may point at it: it goes when they are done */
+  job->answered = answer.http != 0; /* runs may point to the job: it is freed when they are done */
   job->next = jobs->first;
   jobs->first = job;
   return answer;
@@ -245,7 +245,7 @@ bool serve_jobs_next(void *context, struct farm_task *task) {
   free(jobs->task);
   jobs->task = run_encode_task(&request, &task->size);
   if (!jobs->task)
-    return false; /* asked again at the next tick */
+    return false; /* the farm asks again at the next tick */
   task->id = run->id;
   serve_runs_pop(&jobs->runs);
   task->bytes = jobs->task;
@@ -260,7 +260,7 @@ static void unlink_job(struct serve_jobs *jobs, struct serve_job *job) {
   free_job(job);
 }
 
-/* The run is over, well or not: the jobs that waited for it alone are answered. */
+/* Handles a run that has ended or failed: answers the jobs that waited only for this run. */
 static void settle(struct serve_jobs *jobs, struct serve_run *run) {
   for (struct serve_wish *wish = run->wishes; wish; wish = wish->next) {
     struct serve_job *job = wish->job;

@@ -1,4 +1,4 @@
-/* What a server offers of a campaign: the varied inputs as numbers, results by name, levels of a knob. */
+/* A campaign as a model for a server: the varied inputs as numbers, results by name, levels of a knob. */
 #ifndef CLAST_CAMPAIGN_SERVE_MODEL_H
 #define CLAST_CAMPAIGN_SERVE_MODEL_H
 
@@ -17,7 +17,7 @@ struct serve_model {
   const struct campaign *campaign; /* borrowed */
   size_t *inputs;                  /* owned: indices of the axes that are not linked */
   size_t input_count;
-  struct serve_result results[SERVE_MODEL_RESULTS]; /* when a request names none */
+  struct serve_result results[SERVE_MODEL_RESULTS]; /* default results of a request */
   size_t result_count;
   struct ladder ladder; /* count 0: no levels */
 };
@@ -28,11 +28,12 @@ status serve_model_make(const struct campaign *campaign, const char *results, co
                         struct serve_model *model, struct error *error);
 void serve_model_clear(struct serve_model *model);
 
-/* STATUS_USAGE: more than SERVE_MODEL_RESULTS, or no number of a run. */
+/* STATUS_USAGE: more than SERVE_MODEL_RESULTS results, or one that is not a number of a run. */
 status serve_model_result(const struct serve_model *model, const char *name, struct serve_result *result,
                           struct error *error);
 
-/* The scene of these inputs (input_count of them, SI) at a level. NULL with *error when it cannot be run. Owned. */
+/* The scene of these inputs (input_count of them, SI) at a level. NULL with *error when it cannot be run. Owned by the
+ * caller. */
 struct scene *serve_model_scene(const struct serve_model *model, const double *inputs, size_t level,
                                 struct error *error);
 

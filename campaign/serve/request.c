@@ -120,7 +120,7 @@ static bool read_key(const struct serve_model *model, const char *key, json_t *v
   return false;
 }
 
-/* One replicate is a value: it has no statistic. A scatter needs two. */
+/* Checks statistic and replicates: a single replicate has no statistic, and a scatter needs two replicates. */
 static bool check_config(const struct serve_config *config, json_t *given, struct serve_answer *answer) {
   if (config->single && json_object_get(given, "replicates"))
     return refuse(answer, "config: replicate (one seed) and replicates (how many) exclude each other");
@@ -312,7 +312,7 @@ struct serve_answer serve_request_answer(const struct serve_request *request, co
     for (size_t k = 0; k < config->result_count; k++) {
       const struct sample_summary summary = sample_summarise(count, values + k * count, 0.95);
       const double number = config->single ? values[k] : statistic_of(&summary, config->statistics[v]);
-      if (!isfinite(number)) { /* JSON has no such number */
+      if (!isfinite(number)) { /* JSON has no NaN and no infinity */
         json_decref(output);
         return serve_request_error(500, "InvalidOutput",
                                    "%s has no value here: %zu of %zu runs have one (see `clast query STORE --named "

@@ -9,7 +9,7 @@
 
 #include "campaign/serve/model.h"
 
-enum { SERVE_REQUEST_REPLICATES = 10000 }; /* most of one request */
+enum { SERVE_REQUEST_REPLICATES = 10000 }; /* most replicates of one request */
 
 enum serve_statistic { SERVE_MEAN, SERVE_SD, SERVE_SE, SERVE_HW95, SERVE_STATISTICS };
 
@@ -19,8 +19,8 @@ struct serve_config {
   enum serve_statistic statistics[SERVE_STATISTICS];
   size_t statistic_count;
   int64_t first, count; /* replicates */
-  bool single;          /* one replicate: no statistic */
-  size_t level;         /* or SERVE_MODEL_OWN_LEVEL */
+  bool single;          /* a single replicate, without statistic */
+  size_t level;         /* index of the level, or SERVE_MODEL_OWN_LEVEL */
 };
 
 struct serve_request {
@@ -33,12 +33,13 @@ struct serve_answer { /* status of HTTP, 0: none yet; body malloc'd */
   unsigned http;
   char *body;
 };
-/* type: InvalidInput, InvalidOutput, UnsupportedFeature, ModelNotFound, or ours: Unavailable. */
+/* type: InvalidInput, InvalidOutput, UnsupportedFeature, ModelNotFound, or Unavailable, which is not part of the
+ * protocol. */
 struct serve_answer serve_request_error(unsigned http, const char *type, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* Judges a request: `method` and `path` of HTTP, and the body. True: *request is an evaluation to be made. False:
- * *answer says it all. */
+ * *answer is the complete answer. */
 bool serve_request_read(const struct serve_model *model, const char *method, const char *path, const char *body,
                         size_t size, struct serve_request *request, struct serve_answer *answer);
 

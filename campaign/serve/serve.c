@@ -39,7 +39,7 @@ static status serve(struct server *server, struct farm *farm, struct error *erro
                                        .stopping = stopping,
                                        .orders = serve_http_file(server->http)};
   status code = farm_run(farm, &manager, error);
-  if (code == STATUS_STOPPED) /* the only end that a server has */
+  if (code == STATUS_STOPPED) /* a signal is the normal end of a server */
     code = STATUS_OK;
   serve_jobs_stop(server->jobs, true);
   const status ended = serve_jobs_end(server->jobs, code ? NULL : error);

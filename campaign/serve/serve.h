@@ -10,13 +10,13 @@ struct serve_options {
   const char *address;
   int port;
   double wait_s;
-  /* Called once it listens. May be NULL. */
+  /* Called when the server listens. May be NULL. */
   void (*ready)(void *context, const struct serve_http *http);
   void *context;
 };
 
-/* Serves until a signal stops it (STATUS_OK) or the store fails. The farm has been started; on ranks other than 0 this
- * computes. */
+/* Serves until a signal stops it (STATUS_OK) or the store fails. The farm has been started; ranks other than 0 compute
+ * runs. */
 status serve_run(const struct serve_model *model, struct farm *farm, const struct serve_options *options,
                  struct serve_jobs_counts *counts, struct error *error);
 
