@@ -1,4 +1,4 @@
-/* Engine `dem`: grains on breakable beams, in the plane (Kun, D'Addetta, Herrmann & Ramm 1999). */
+/* Engine `dem`: grains joined by breakable beams, in 2D (Kun, D'Addetta, Herrmann & Ramm 1999). */
 #ifndef CLAST_ENGINE_DEM_DEM_H
 #define CLAST_ENGINE_DEM_DEM_H
 

@@ -1,4 +1,4 @@
-/* Engine `sph`: solids that crack, in space (Benz & Asphaug 1994, 1995). */
+/* Engine `sph`: solids that crack, in 3D (Benz & Asphaug 1994, 1995). */
 #ifndef CLAST_ENGINE_SPH_SPH_H
 #define CLAST_ENGINE_SPH_SPH_H
 

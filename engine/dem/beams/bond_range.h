@@ -1,24 +1,25 @@
 /* Tessellation pairs: beam and contact of eight pairs at a time.
  *
- * The beam is co-rotational (K99 eqs 7-12 with the correction of eq 12 in engine/dem/README.md): with phi the chord's
- * angle against its initial one and Theta = theta - phi, U = alpha (l - l0)^2 / 2 + delta l0^2 (Theta_1 - Theta_2)^2 /
- * 2 + beta l0^2 Theta_1 Theta_2 / 2, M_1 = -dU/dTheta_1 = -beta l0^2 Theta_2 / 2 + delta l0^2 (Theta_2 - Theta_1), M_2
- * by swap, F_1 = alpha (l - l0) e + (M_1 + M_2)/l e_perp, F_2 = -F_1   (from dphi/dx = e_perp / l): a potential force
- * that conserves momentum and angular momentum.
+ * The beam is co-rotational (K99 eqs 7-12 with the correction of eq 12 in engine/dem/README.md). phi is the chord's
+ * angle from its initial direction, and Theta = theta - phi:
+ *   U   = alpha (l - l0)^2 / 2 + delta l0^2 (Theta_1 - Theta_2)^2 / 2 + beta l0^2 Theta_1 Theta_2 / 2
+ *   M_1 = -dU/dTheta_1 = -beta l0^2 Theta_2 / 2 + delta l0^2 (Theta_2 - Theta_1), M_2 by swap
+ *   F_1 = alpha (l - l0) e + (M_1 + M_2)/l e_perp, F_2 = -F_1   (from dphi/dx = e_perp / l)
+ * The force has a potential, and conserves momentum and angular momentum.
  *
- * The contact's window: of either grain the common side, the side before it and the side after it (vertices 0..3). It
- * gives the overlap of the whole polygons exactly when, for either grain, its vertices 0 and 3 are outside the other's
- * common side while 1 or 2 is inside: then all its other vertices are outside too (distance to a line has one minimum
- * round a convex outline), so none of its other sides reaches the half-plane that the other grain lies in. If this does
- * not hold and no common side separates the grains, the lane goes to the general overlap.
- */
+ * The contact's window: of each grain the common side, the side before it and the side after it (vertices 0..3). It
+ * gives the overlap of the whole polygons exactly when, for each grain, its vertices 0 and 3 are outside the other's
+ * common side while 1 or 2 is inside. Then all its other vertices are outside too (distance to a line has one minimum
+ * round a convex outline), so none of its other sides reaches the half-plane of the other grain. If this does not hold
+ * and no common side separates the grains, the lane goes to the general overlap. */
 #ifndef CLAST_ENGINE_DEM_BEAMS_BOND_RANGE_H
 #define CLAST_ENGINE_DEM_BEAMS_BOND_RANGE_H
 
 #include "engine/dem/beams/breaking.h"
 #include "engine/dem/contacts/contact_law.h"
 
-/* Sides nearer to one line than this share of their length are in one line: above the rounding of positions. */
+/* Sides nearer to one line than this share of their length count as in one line; the share is above the rounding of
+ * positions. */
 static const double bond_same_line = 1e-12;
 
 enum bond_work { BOND_FORCES, BOND_MEASURE };
@@ -49,7 +50,7 @@ LANES_INLINE lanes_d bond_arcsine(lanes_d s) {
                                       z * (231.0 / 13312.0 + z * (143.0 / 10240.0 + z * (6435.0 / 557056.0))))))));
 }
 
-/* Turns both windows to where the grains are now; (*origin_x, *origin_y) is the origin from grain 1's centre. */
+/* Turns both windows to the grains' present places; (*origin_x, *origin_y) is the origin from grain 1's centre. */
 LANES_INLINE void bond_place_windows(const struct dem_bond_block *block, int at, const struct bond_ends *ends,
                                      lanes_d apart_x, lanes_d apart_y, lanes_d x[2][4], lanes_d y[2][4],
                                      lanes_d ex[2][3], lanes_d ey[2][3], lanes_d cross[2][3], lanes_d *origin_x,

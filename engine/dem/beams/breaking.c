@@ -1,4 +1,4 @@
-/* What the break of a beam changes: lanes, log, ledger, contact. */
+/* Changes at the break of a beam: lanes, log, ledger, contact. */
 #include "engine/dem/beams/breaking.h"
 
 #include <math.h>

@@ -15,14 +15,14 @@ void dem_breaking_cut(struct dem_system *system, int32_t pair);
 /* Points an unused lane at the ghosts, with every constant zero. */
 void dem_breaking_clear(const struct dem_system *system, struct dem_bond_block *block, int lane);
 
-/* Makes the chord's present direction its reference (sine and cosine are those of the turn since the old one), so that
+/* Makes the chord's present direction its reference (sine and cosine: of the turn since the old one), so that
  * the angle from the reference stays small and the total angle unwrapped. */
 void dem_breaking_turn(struct dem_bond_block *block, int lane, double ux, double uy, double sine, double cosine);
 
-/* Coefficients of a tessellation pair's contact as they act now: zero while the inputs switch off those of bonded
- * pairs and the beam holds. */
+/* Present coefficients of a tessellation pair's contact: zero while the beam holds, if the inputs switch off contacts
+ * of bonded pairs. */
 struct dem_contact dem_breaking_contact(const struct dem_system *system, int32_t pair);
-/* Writes them to the pair's lane. */
+/* Writes these coefficients to the pair's lane. */
 void dem_breaking_set_contact(const struct dem_system *system, int32_t pair, struct dem_bond_block *block, size_t lane);
 
 #endif

@@ -37,7 +37,7 @@ LANES_INLINE void near_range(struct dem_system *s) {
   }
 }
 
-/* Contacts that wait until there are enough for a full vector. */
+/* Buffer of contacts until there are enough for a full vector. */
 enum { NEAR_COLUMNS = 12 };
 struct near_batch {
   int count;
@@ -93,7 +93,7 @@ LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, boo
   batch->count = 0;
 }
 
-/* A pair for the general overlap, with its coefficients as they act now. */
+/* A pair for the general overlap, with its present coefficients. */
 struct near_candidate {
   uint32_t first, second;
   struct dem_contact contact;

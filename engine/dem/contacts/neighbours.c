@@ -52,7 +52,7 @@ void dem_neighbours_cache_side(struct dem_system *s, uint32_t near, const struct
   }
 }
 
-/* Whether the contact of a broken pair is still side on side, so that its window is exact. Only the positions decide:
+/* Is the contact of a broken pair still side on side, so that its window is exact? Only the positions decide:
  * it does not matter when the beam broke. */
 static bool still_side_on_side(const struct dem_system *s, const struct dem_bond_block *block, size_t lane,
                                int32_t pair) {
@@ -70,7 +70,7 @@ static bool still_side_on_side(const struct dem_system *s, const struct dem_bond
   return dx * dx + dy * dy < half && fabs(s->c.angle[s->pair[pair][0]] - s->c.angle[s->pair[pair][1]]) < 0.3;
 }
 
-/* Broken pairs that came apart leave the bond blocks. The other lanes close up in their old order. */
+/* Removes broken pairs that came apart from the bond blocks. The other lanes keep their order. */
 static void repack_bonds(struct dem_system *s) {
   const size_t lanes = s->now.bond_blocks * DEM_BLOCK;
   size_t kept = 0;
@@ -121,7 +121,7 @@ static int32_t cell_of(double position, double per_size) {
   const double cell = floor(position * per_size);
   if (cell > 1e9)
     return 1000000000;
-  return cell > -1e9 ? (int32_t)cell : -1000000000; /* also for a position that is no number */
+  return cell > -1e9 ? (int32_t)cell : -1000000000; /* also for a position that is NaN */
 }
 
 static size_t bucket_of(const struct dem_system *s, int32_t x, int32_t y) {
@@ -170,7 +170,7 @@ static bool consider(struct dem_system *s, uint32_t i, uint32_t j, const struct 
 /* A grain's skin also allows for the speed of its neighbours, which a wave or an impact will pass on to it. */
 static void set_skins(struct dem_system *s) {
   struct dem_columns *c = &s->c;
-  double *const speed = c->list_x; /* used as scratch until the positions are stored there */
+  double *const speed = c->list_x; /* scratch memory until the positions are stored there */
   const double reach = horizon_steps * s->in->fidelity.time_step;
   for (size_t i = 0; i < s->count; i++)
     speed[i] = sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i]) + s->c.radius[i] * fabs(c->spin[i]);
@@ -253,8 +253,8 @@ static void pad_near(struct dem_system *s) {
   }
 }
 
-/* Searches the new list. A grain makes a new list before it leaves its skin, so it touches no grain that is not in a
- * list with it. */
+/* Searches the new list. A grain makes a new list before it leaves its skin, so it has no contact with a grain that is
+ * not in a list with it. */
 static void see_approaches(struct dem_system *s) {
   for (size_t k = 0; k < s->now.near_count; k++) {
     const struct dem_near_pair *near = &s->near_pair[k];

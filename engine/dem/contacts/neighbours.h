@@ -1,5 +1,5 @@
-/* Which pairs can touch soon: a hashed cell grid, and lists that hold until a grain has left its skin. Also the
- * outlines of grains and their overlap, as the general overlap (overlap.h) takes and gives them. */
+/* Finds pairs that can come into contact soon: a hashed cell grid, and lists that stay valid until a grain has left its
+ * skin. Also the outlines of grains and their overlap, as the general overlap (overlap.h) takes and gives them. */
 #ifndef CLAST_ENGINE_DEM_CONTACTS_NEIGHBOURS_H
 #define CLAST_ENGINE_DEM_CONTACTS_NEIGHBOURS_H
 
@@ -26,12 +26,12 @@ struct dem_overlap {
   double twice_area, chord_x, chord_y, moment, xx, xy, yy; /* see contact_law.h */
 };
 
-/* Makes the near list and repacks the bond blocks, from the positions now. Every pair whose gap is less than the sum of
- * its two skins is in one of them afterwards. A skin grows with its grain's speed, so that a few fast grains do not
- * force a new list all the time. False: no memory; the list is then incomplete. */
+/* Makes the near list and repacks the bond blocks, from the present positions. Every pair whose gap is less than the
+ * sum of its two skins is in one of them afterwards. A skin grows with its grain's speed, so that a few fast grains do
+ * not force a new list all the time. False: no memory; the list is then incomplete. */
 bool dem_neighbours_make(struct dem_system *system);
 
-/* Writes the outline of a grain, turned as it is now and shifted by (dx, dy) from its own centre. */
+/* Writes the outline of a grain, in its present orientation and shifted by (dx, dy) from its own centre. */
 void dem_neighbours_ring(const struct dem_system *system, uint32_t grain, double dx, double dy, struct dem_ring *ring);
 
 /* Stores the side that keeps a near pair apart. */

@@ -26,7 +26,7 @@ struct dem_contact dem_assemble_contact(const struct dem_system *s, uint32_t i, 
   return (struct dem_contact){stiffness, mass * contact->normal_damping, mass * contact->tangential_damping};
 }
 
-/* Grains are smaller than their cells by this share, so that rounding gives no overlap at rest. */
+/* Grains are smaller than their cells by this share, so that rounding errors give no overlap at rest. */
 static const double shrink = 1e-11;
 
 static status grains(struct dem_system *s, const struct dem_tessellation *t, struct error *error) {

@@ -4,8 +4,8 @@
 
 #include "engine/dem/step/system_layout.h"
 
-/* `system` is zero but for in, velocities, kernels. STATUS_CONTENT: outlines that cannot be used; STATUS_MEMORY. Either
- * way *system owns what was allocated. */
+/* `system` must be zero except for in, velocities, kernels. STATUS_CONTENT: outlines that cannot be used;
+ * STATUS_MEMORY. In both cases *system owns the allocated memory. */
 status dem_assemble(struct dem_system *system, const struct dem_tessellation *tessellation, uint64_t seed,
                     struct error *error);
 

@@ -1,6 +1,6 @@
 /* The points of a vectorizable random lattice, and the Voronoi cell of one of them, in lattice units (spacing 1).
  *
- * One point per grid square, thrown uniformly into the concentric square of side `disorder` (K99 section 2.1: "randomly
+ * One point per grid square, drawn uniformly from the concentric square of side `disorder` (K99 section 2.1: "randomly
  * and independently in each square of the grid with a maximal distance a from the center", a between 0 and the
  * spacing). K99 does not say whether that region is a disc or a square. A disc of radius a = spacing would leave the
  * grid square, against "in each square"; the square of side a = spacing fills it exactly, so the region is that square.
@@ -26,8 +26,8 @@ status dem_lattice_fill(const struct dem_lattice *lattice, struct dem_lattice_po
 
 enum { DEM_LATTICE_CORNERS = 40 };
 
-/* A cell while it is cut: corners counter-clockwise relative to its point; `across` names what lies beyond the side
- * from corner k to k + 1: the index of another point, or -1..-4 for the left, lower, right, upper wall. */
+/* A cell while it is cut: corners counter-clockwise relative to its point; `across` identifies the neighbour beyond the
+ * side from corner k to k + 1: the index of another point, or -1..-4 for the left, lower, right, upper wall. */
 struct dem_lattice_cell {
   int count;
   double x[DEM_LATTICE_CORNERS], y[DEM_LATTICE_CORNERS];

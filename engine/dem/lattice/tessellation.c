@@ -9,8 +9,8 @@
 #include "engine/dem/lattice/lattice.h"
 #include "engine/grow.h"
 
-/* Corners nearer than this (in spacings) are one. Rounding puts the same corner at most some 1e-14 apart at coordinates
- * below 100; a true side is this short in one of 1e10 pairs. */
+/* Corners nearer than this (in spacings) count as one. Rounding puts the same corner at most some 1e-14 apart at
+ * coordinates below 100; a true side is this short in one of 1e10 pairs. */
 static const double same_corner = 1e-10;
 
 struct corners { /* unique corners, found through the grid square that they lie in */
@@ -90,7 +90,7 @@ struct builder {
   struct dem_tessellation *out;
   size_t cell_capacity, vertex_capacity, pair_capacity;
   uint32_t *number; /* by lattice point: cell number, or UINT32_MAX */
-  int64_t *across;  /* by vertex: what lies beyond the side that starts there */
+  int64_t *across;  /* by vertex: the neighbour (or wall) beyond the side that starts there */
   double ox, oy;    /* lattice coordinates of the world's origin of the body */
 };
 

@@ -46,7 +46,7 @@ struct dem_lattice {
 };
 
 status dem_tessellation_make(const struct dem_lattice *lattice, struct dem_tessellation **out, struct error *error);
-/* Joins two bodies into one, without pairs between them. The inputs stay with the caller. */
+/* Joins two bodies into one, without pairs between them. The caller still owns both inputs. */
 status dem_tessellation_join(const struct dem_tessellation *a, const struct dem_tessellation *b,
                              struct dem_tessellation **out, struct error *error);
 void dem_tessellation_free(struct dem_tessellation *tessellation); /* NULL is fine */

@@ -5,7 +5,7 @@
 
 #include "engine/dem/run/run.h"
 
-/* What the search for fragments works on. */
+/* Data of the search for fragments. */
 struct search {
   struct fragment_member *member;
   uint32_t *number;        /* by grain: its number among the present ones, or UINT32_MAX */
@@ -57,7 +57,7 @@ static void add_link(const struct dem_run *run, size_t pair, struct search *w) {
   w->link[w->links++][1] = b;
 }
 
-/* The beams that held at the time `when`: those of now, and those that broke since. */
+/* The beams that held at the time `when`: the present ones, and those that broke since. */
 static void add_links(const struct dem_run *run, double when, struct search *w) {
   const struct dem_break *log;
   for (size_t p = 0; p < run->tessellation->pair_count; p++)
@@ -67,8 +67,8 @@ static void add_links(const struct dem_run *run, double when, struct search *w) 
     add_link(run, log[k - 1].beam, w);
 }
 
-/* Finds the fragments of the time `when`: the present grains, joined by the beams that held then. Their motion is that
- * of now. label[grain] (may be NULL) becomes the fragment's number, UINT32_MAX for the explosive. */
+/* Finds the fragments at the time `when`: the present grains, joined by the beams that held then. Their motion is the
+ * present one. label[grain] (may be NULL) becomes the fragment's number, UINT32_MAX for the explosive. */
 static status fragments_of(const struct dem_run *run, double when, uint32_t *label, struct fragment **fragments,
                            size_t *count, struct error *error) {
   const size_t n = run->tessellation->cell_count;
@@ -100,7 +100,7 @@ status dem_report_fragments(const struct dem_run *run, uint32_t *label, struct f
   return fragments_of(run, HUGE_VAL, label, fragments, count, error);
 }
 
-/* How final the run is: breaks and loss of mass in the second half of its time. */
+/* Measures whether fracture had ended: breaks and loss of mass in the second half of the simulated time. */
 static status fill_finality(const struct dem_run *run, const struct outcome *outcome, struct dem_results *results,
                             struct error *error) {
   const double half = 0.5 * dem_system_time(run->system);
@@ -127,7 +127,7 @@ static double vibration(size_t count, const struct fragment *fragments) {
     sum += f->kinetic_energy - 0.5 * f->mass * (v[0] * v[0] + v[1] * v[1]) -
            0.5 * f->moment_of_inertia * f->spin[2] * f->spin[2];
   }
-  return fmax(0, sum); /* of single grains alone: rounding */
+  return fmax(0, sum); /* single grains alone give rounding errors only */
 }
 
 static void fill_breaks(const struct dem_run *run, struct dem_results *results) {
@@ -185,8 +185,7 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
     dem_loading_results(run, results);
 }
 
-/* The words of doubts. A message says so when grains met too fast, unless the run has a fault: that message is worse.
- */
+/* The words of warnings. When grains met too fast, a message says so, unless a fault has its own message. */
 static void warn(const struct dem_run *run, struct outcome *outcome) {
   const double fastest = dem_system_fastest_approach(run->system);
   unsigned set = dem_warn_known(&run->inputs, run->stable_time_step);
@@ -205,7 +204,7 @@ static double not_infinite(double value) {
   return isfinite(value) ? value : (double)NAN;
 }
 
-/* Single grains are dust; two grains and more are all there. */
+/* Single grains are dust; the spectrum is complete from two grains on. */
 static struct outcome_small small_fragments(size_t count, const struct fragment *fragments) {
   double mass = 0, grains = 0;
   for (size_t k = 0; k < count; k++) {

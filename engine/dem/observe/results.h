@@ -1,4 +1,5 @@
-/* What engine `dem` reports beyond struct outcome: table result_dem. Off (NaN) where a quantity does not apply. */
+/* Results of engine `dem` in addition to struct outcome: table result_dem. A quantity that does not apply is off (NaN).
+ */
 #ifndef CLAST_ENGINE_DEM_OBSERVE_RESULTS_H
 #define CLAST_ENGINE_DEM_OBSERVE_RESULTS_H
 

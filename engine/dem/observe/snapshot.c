@@ -1,4 +1,4 @@
-/* The big fields as one self-describing HDF5 file, which VTK or ParaView opens as it is (VTKHDF 1.0, unstructured grid
+/* The fields file: self-describing HDF5, which VTK and ParaView open directly (VTKHDF 1.0, unstructured grid
  * of polygons; name it .hdf for older ParaViews). */
 #include <math.h>
 #include <stdlib.h>

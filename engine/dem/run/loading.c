@@ -42,7 +42,7 @@ static status allocate(struct dem_run *run, struct error *error) {
   return status_fail(error, STATUS_MEMORY, "no memory for the sides of %zu grains", n);
 }
 
-/* A grain of the middle half, away from the held sides, may be where the width is measured. */
+/* A grain of the middle half, away from the held sides, may be one of those at which the width is measured. */
 static void add_to_gauge(struct dem_run *run, uint32_t grain) {
   const struct dem_tessellation *t = run->tessellation;
   const uint32_t rows = (uint32_t)run->inputs.body.rows, columns = (uint32_t)run->inputs.body.columns;

@@ -145,7 +145,7 @@ void dem_run_free(struct dem_run *run) {
   free(run);
 }
 
-/* Energy put in so far: what a drift is measured against. */
+/* Energy put in so far; a drift is measured relative to it. */
 static double input_now(const struct dem_run *run, const struct dem_ledger *ledger) {
   return run->state.energy_input + fabs(ledger->external_work);
 }
@@ -199,7 +199,7 @@ static void check_stop(struct dem_run *run) {
     if (broke)
       dem_run_end(run, DEM_STOP_END_TIME, OUTCOME_END_TIME,
                   "beams still broke %.3g s before the hard end: raise stop.end_time", time - last);
-    else /* nothing ever broke: there is no fracture that could still go on */
+    else /* nothing has broken: there is no fracture that could go on */
       dem_run_end(run, DEM_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
   }
 }

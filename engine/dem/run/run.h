@@ -14,7 +14,7 @@ struct dem_sample {
   uint64_t broken;
 };
 
-/* What changes during a run besides the system. A plain value: restart files save it as it stands. */
+/* Values that change during a run besides the system. A plain struct: restart files save its raw bytes. */
 struct dem_state {
   int finished, stop, outcome_state;
   char message[FIELD_TEXT_SIZE];
@@ -50,7 +50,7 @@ struct dem_run {
 
 status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error);
 void dem_run_free(struct dem_run *run); /* NULL is fine */
-/* At most max_steps, independent of how they are split over calls. */
+/* Advances by at most max_steps. The result does not depend on how steps are split over calls. */
 void dem_run_advance(struct dem_run *run, uint64_t max_steps);
 /* The monitor: ends the run when its energy drifts or a grain is too fast. Called every DEM_RUN_LOOKS steps and at the
  * end; a check costs about a step. Every step checks that all values are finite. */
@@ -83,16 +83,16 @@ status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct de
 /* describe.c */
 char *dem_describe_scene(const struct dem_inputs *inputs);
 double dem_describe_threshold_energy(const struct dem_inputs *inputs, const struct dem_tessellation *tessellation);
-/* Closing speed above which two free grains pass through each other: no overlap stores so much energy, m/s. */
+/* Closing speed above which two free grains pass through each other: no overlap stores that much energy, m/s. */
 double dem_describe_passing_speed(const struct dem_inputs *inputs);
 void dem_describe_sound_speeds(const struct dem_inputs *inputs, double *extension, double *compression);
 
 /* warn.c */
 double dem_warn_stable_step(const struct dem_inputs *inputs); /* s: an estimate, without a body */
-double dem_warn_damping(const struct dem_inputs *inputs);     /* 1/s: the largest that acts */
-/* Doubts about step and damping, once the longest stable step is known. */
+double dem_warn_damping(const struct dem_inputs *inputs);     /* 1/s: the largest active damping */
+/* Warnings about time step and damping, once the longest stable step (s) is known. */
 unsigned dem_warn_known(const struct dem_inputs *inputs, double stable_step);
-/* Doubts before the run: engine_kind.warn. */
+/* Warnings before the run: engine_kind.warn. */
 unsigned dem_warn_inputs(const struct dem_inputs *inputs, FILE *out);
 
 /* snapshot.c */

@@ -1,6 +1,6 @@
 /* The typed scene of engine `dem`: every input of every protocol, with one row each in inputs.c. SI units throughout.
  *
- * The physics reads these sections by const pointer. Ranges and defaults stand in the rows alone. */
+ * The physics reads these sections by const pointer. Only the rows have ranges and defaults. */
 #ifndef CLAST_ENGINE_DEM_SCENE_INPUTS_H
 #define CLAST_ENGINE_DEM_SCENE_INPUTS_H
 
@@ -68,7 +68,8 @@ struct dem_inputs {
 
 extern const struct field_table dem_inputs;
 
-/* Checks conditions across fields: sizes that cannot be run, times that contradict. STATUS_CONTENT with a remedy. */
+/* Checks conditions across fields: sizes that cannot be run, times that contradict each other. STATUS_CONTENT with a
+ * remedy. */
 status dem_inputs_check(const struct dem_inputs *inputs, struct error *error);
 
 /* Whether moving sides load the body (uniaxial, compression). */

@@ -127,7 +127,8 @@ static void impact(struct dem_run *run) {
 
 static void collision(struct dem_run *run) {
   const struct dem_tessellation *t = run->tessellation;
-  struct dem_point centre[2] = {{0, 0}, {0, 0}}; /* of the first body, mirrored: the other lies opposite the origin */
+  struct dem_point centre[2] =
+      {{0, 0}, {0, 0}}; /* of the first body, mirrored: the other body is on the opposite side of the origin */
   for (uint32_t c = 0; c < t->cell_count; c++) {
     centre[0].x = fmin(centre[0].x, t->centroid[c].x);
     centre[0].y = fmin(centre[0].y, t->centroid[c].y);

@@ -1,4 +1,4 @@
-/* Doubts that inputs raise before a run. The limits are measured: tests/extremes/map.md. */
+/* Warnings that follow from the inputs before a run. The limits are measured: tests/extremes/map.md. */
 #include <math.h>
 
 #include "engine/dem/run/run.h"

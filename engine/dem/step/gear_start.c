@@ -1,4 +1,4 @@
-/* Higher derivatives for the start of the Gear integrator, which needs five; a scene gives one. */
+/* Higher derivatives for the start of the Gear integrator. It needs five; a scene gives one. */
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* The loops over whole ranges. They are compiled once per CPU class and chosen at run time; engine/cpu_class.h says
- * what that means for bits. */
+ * when results are bit-identical. */
 #ifndef CLAST_ENGINE_DEM_STEP_KERNELS_H
 #define CLAST_ENGINE_DEM_STEP_KERNELS_H
 

@@ -2,7 +2,7 @@
  *
  * The including file sets LANES to its class's register width (2, 4 or 8). Data lie in blocks of eight for any
  * class, and running sums are kept per block lane, so that their order is the same everywhere. Products and sums may
- * contract to FMA where the class has it; that is why the class is recorded with a run. */
+ * contract to FMA where the class has it; so a run records its class. */
 #ifndef CLAST_ENGINE_DEM_STEP_LANES_H
 #define CLAST_ENGINE_DEM_STEP_LANES_H
 

@@ -21,8 +21,8 @@ LANES_INLINE void motion_turn(struct dem_columns *c, size_t g) {
   lanes_store(c->cosine + g, cosine);
 }
 
-/* Whether a grain has left its skin, and whether its state is still finite. A turn moves the farthest vertex by at most
- * radius x angle. */
+/* Tests whether a grain has left its skin, and whether its state is still finite. A turn moves the farthest vertex by
+ * at most radius x angle. */
 LANES_INLINE void motion_check(const struct dem_system *s, size_t g, lanes_i *moved, lanes_i *lost) {
   const struct dem_columns *c = &s->c;
   const lanes_d x = lanes_load(c->x + g), y = lanes_load(c->y + g), angle = lanes_load(c->angle + g);

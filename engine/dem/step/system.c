@@ -1,4 +1,4 @@
-/* The moving grains: set-up, holds, the step, and what others read. */
+/* The moving grains: set-up, holds, the step, and reading their state. */
 #include "engine/dem/step/system.h"
 
 #include <math.h>
@@ -38,7 +38,7 @@ static bool make_ready(struct dem_system *s) {
   return true;
 }
 
-/* Whether contact forces need velocities: for damping and friction, and for the work that the printed law does. */
+/* Do contact forces need velocities? They do for damping and friction, and for the work of the printed law. */
 static bool needs_velocities(const struct dem_contact_inputs *contact) {
   if (contact->law == DEM_CONTACT_OFF)
     return false;

@@ -52,7 +52,7 @@ struct dem_grain {
 struct dem_grain dem_system_grain(const struct dem_system *system, uint32_t grain);
 /* Force on a grain at the last evaluation (without the reaction of its holds). */
 void dem_system_force(const struct dem_system *system, uint32_t grain, double *fx, double *fy, double *torque);
-/* Beams: whether they hold, and their strain now. */
+/* Beams: do they hold, and their present strain. */
 bool dem_system_beam_alive(const struct dem_system *system, size_t beam);
 double dem_system_beam_strain(const struct dem_system *system, size_t beam);
 size_t dem_system_breaks(const struct dem_system *system, const struct dem_break **log);
@@ -63,13 +63,13 @@ double dem_system_fastest_approach(const struct dem_system *system);
 /* Longest stable time step, s: 2 / omega_max for Verlet, 0.54 / omega_max for Gear (why: system_stable.c), by power
  * iteration on the beams and contacts at rest. NaN: no memory. */
 double dem_system_stable_time_step(const struct dem_system *system);
-/* Pairs that overlap now over the tessellation's neighbour pairs. */
+/* Number of pairs that overlap now, divided by the number of the tessellation's neighbour pairs. */
 double dem_system_overlap_share(struct dem_system *system);
 /* Current outline of a grain, counter-clockwise; returns the number of vertices (up to capacity are written). */
 size_t dem_system_outline(const struct dem_system *system, uint32_t grain, size_t capacity, struct dem_point *vertices);
 
-/* Everything that the next step depends on: a restored run continues with the same bits. load: false when the bytes fit
- * no state of this system, or without memory. */
+/* Everything that the next step depends on: a restored run continues with the same bits. load: false when the bytes do
+ * not fit this system, or without memory. */
 size_t dem_system_state_size(const struct dem_system *system);
 void dem_system_state_save(const struct dem_system *system, void *bytes);
 bool dem_system_state_load(struct dem_system *system, const void *bytes, size_t size);

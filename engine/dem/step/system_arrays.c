@@ -1,4 +1,4 @@
-/* The arrays of a system, all by the one list in system_layout.h. */
+/* The arrays of a system, all from the single list in system_layout.h. */
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>

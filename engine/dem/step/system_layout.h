@@ -1,10 +1,10 @@
 /* The memory layout of a system; for engine/dem/ and its tests only.
  *
- * Grains are columns (structure of arrays). Two ghost grains follow them, which unused lanes point at, and padding to
- * blocks of eight. A pair of the tessellation owns one lane of a bond block: its beam, and its contact as a *window*,
- * the common side of either grain with the side before and after it (bond_range.h says when this is exact). All other
- * pairs near each other lie in near blocks, each with a cached separating side. The general overlap of two convex
- * polygons (overlap.h) handles, pair by pair, those that neither decides. */
+ * Grains are columns (structure of arrays). After them come two ghost grains, for unused lanes, and padding to blocks
+ * of eight. A pair of the tessellation owns one lane of a bond block: its beam, and its contact as a *window*, the
+ * common side of either grain with the side before and after it (bond_range.h says when this is exact). All other near
+ * pairs are in near blocks, each with a cached separating side. Pairs that neither decides go one by one to the general
+ * overlap of two convex polygons (overlap.h). */
 #ifndef CLAST_ENGINE_DEM_STEP_SYSTEM_LAYOUT_H
 #define CLAST_ENGINE_DEM_STEP_SYSTEM_LAYOUT_H
 
@@ -66,7 +66,7 @@ struct dem_sums {
   uint64_t overlaps;                   /* with `measure`: pairs with positive overlap area */
 };
 
-/* What changes from step to step and is no array. */
+/* Values that change from step to step and are not arrays. */
 struct dem_progress {
   double time, last_break;
   double fastest_approach; /* m/s: largest speed so far of two near grains without a beam on paths that meet */
@@ -169,9 +169,9 @@ struct dem_system {
 bool dem_system_arrays_allocate(struct dem_system *system);
 void dem_system_arrays_free(struct dem_system *system);
 size_t dem_system_arrays_bytes(const struct dem_system *system); /* of the arrays and the system itself */
-/* Gives the near list a capacity of at least `pairs`; what it holds stays. False: no memory, and nothing changes. */
+/* Gives the near list a capacity of at least `pairs` and keeps its entries. False: no memory, and nothing changes. */
 bool dem_system_arrays_grow_near(struct dem_system *system, size_t pairs);
-/* Lists what the next step depends on, and returns how many blocks there are. */
+/* Lists the memory blocks on which the next step depends, and returns their number. */
 enum { DEM_SAVED_BLOCKS = 48 };
 size_t dem_system_arrays_saved(struct dem_system *system, struct restart_block blocks[DEM_SAVED_BLOCKS]);
 
@@ -179,7 +179,7 @@ size_t dem_system_arrays_saved(struct dem_system *system, struct restart_block b
  * method; the trial steps are undone. False: no memory, or the trial steps are not finite. */
 bool dem_gear_start(struct dem_system *system);
 
-/* Forces at the positions now, with the lists as they are. `dt` books the dissipated powers for a step's length. */
+/* Computes forces at the present positions with the present lists. Books the dissipated powers over `dt` (s). */
 void dem_system_evaluate(struct dem_system *system, double dt);
 
 #endif

@@ -48,7 +48,7 @@ static void add_bond(const struct dem_system *s, size_t slot, const double *u, d
  * (tests/verification/test_dem_motion.c). */
 static const double largest_angle[] = {[DEM_VERLET] = 2.0, [DEM_GEAR] = 0.54};
 
-/* Any start with all modes in it. The two grains beyond the last one stay at rest. */
+/* Any start vector that contains all modes. The two grains beyond the last one stay at rest. */
 static void start(const struct dem_system *s, double *u) {
   const size_t n = s->count;
   for (size_t k = 0; k < 3 * n; k++)
@@ -82,7 +82,7 @@ static double quotient(const struct dem_system *s, const double *u, double *f, d
   return bottom > 0.0 ? top / bottom : 0.0;
 }
 
-/* u = f, scaled; what is held stays at rest. */
+/* u = f, scaled; held degrees of freedom stay at rest. */
 static void take_next(const struct dem_system *s, const double *f, double largest, double *u) {
   const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
   for (size_t i = 0; i < s->count; i++)

@@ -1,10 +1,10 @@
-/* What the next step depends on, in memory of the caller: for restart files and trial steps. */
+/* Saves all data on which the next step depends to memory of the caller, for restart files and trial steps. */
 #include <string.h>
 
 #include "engine/dem/step/system_layout.h"
 
 size_t dem_system_state_size(const struct dem_system *system) {
-  struct dem_system view = *system; /* blocks can be written to; these are only counted */
+  struct dem_system view = *system; /* blocks need a writable system; here they are only counted */
   struct restart_block blocks[DEM_SAVED_BLOCKS];
   return restart_blocks_size(blocks, dem_system_arrays_saved(&view, blocks));
 }

@@ -1,10 +1,10 @@
-/* What a solid is made of: the numbers that equation of state, strength and fracture need. The modules that are on
+/* Values of a solid that the equation of state, strength and fracture need. The modules that are on
  * decide which of them a scene needs; a value that is not given is NaN, and the module that needs it refuses it.
  *
  * To add a value or a choice that one module needs: MATERIAL_MEMBERS and a row in its header (modules/declarations.h);
- * what several modules read stands here, in SPH_MATERIAL_COMMON. The documents of engine/sph/material/builtin/ are read
- * through the rows (materials.c), and each body of a scene has them as inputs (scene/inputs.c), there with the named
- * material's values as defaults. A row is of one of three kinds:
+ * values that several modules read are here, in SPH_MATERIAL_COMMON. The documents of engine/sph/material/builtin/ are
+ * read through the rows (materials.c), and each body of a scene has them as inputs (scene/inputs.c), there with the
+ * named material's values as defaults. A row is of one of three kinds:
  *
  * MATERIAL_VALUE(member, unit, minimum, maximum, flags, need, doc, source): a number.
  *

@@ -81,7 +81,7 @@ static void fill_map(const struct sph_particles *start, const struct sph_particl
   }
 }
 
-/* Columns to visit: each enters once. */
+/* Columns to visit; each is added once. */
 struct queue {
   size_t *column, head, tail;
   bool *seen; /* by column */

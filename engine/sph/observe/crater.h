@@ -1,4 +1,4 @@
-/* What an impact leaves of a target: crater and ejecta. A pure function of the target's particles at the
+/* Crater and ejecta of an impact on a target. A pure function of the target's particles at the
  * start and now; its resolution is the spacing of the particles.
  *
  * The impact moves along -z. Ejecta are the target's particles that move outwards (+z) faster than a given speed; all
@@ -26,7 +26,7 @@ struct sph_crater_options {
 bool sph_crater_is_ejected(const struct sph_particles *now, size_t i, const struct sph_crater_options *options);
 /* m, of particle i from the axis. */
 double sph_crater_off_axis(const struct sph_particles *particles, size_t i, const struct sph_crater_options *options);
-/* m, the highest particle within so many spacings of the axis. */
+/* m, the highest particle less than `spacings` spacings from the axis. */
 double sph_crater_top(const struct sph_particles *start, const struct sph_crater_options *options, double spacings);
 
 /* Fills the results ejecta.* and crater.*. STATUS_MEMORY. */
@@ -36,10 +36,11 @@ status sph_crater_measure(const struct sph_particles *start, const struct sph_pa
 /* One layer of the profile along the axis: means over the retained target particles within 1.5 spacings of the axis. A
  * layer is one spacing thick, by the particles' depth at the start. */
 struct sph_crater_layer {
-  double depth;    /* m, of the layer's middle, at the start */
-  double damage;   /* D */
-  double pressure; /* Pa, that acts; of an impact without broken particles under tension, NaN: there are no others */
-  double bearing;  /* particles that the pressure is a mean of */
+  double depth;  /* m, of the layer's middle, at the start */
+  double damage; /* D */
+  double
+      pressure;   /* Pa, acting; in an impact a mean without broken particles under tension; NaN: there are no others */
+  double bearing; /* number of particles in the mean of the pressure */
   double velocity; /* m/s, along +z */
 #define PROFILE_COLUMN(member, ...) double member;
 #include "engine/sph/modules/declarations.h"

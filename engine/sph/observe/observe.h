@@ -16,13 +16,13 @@ void sph_protocol_record(struct sph_run *run); /* after each step */
 /* plate.c: the shock fronts in a plate that a piston hits.
  * Starts: computes the exact answer and allocates the layers. STATUS_MEMORY, or an error of sph_plane_shock(). */
 status sph_plate_start(struct sph_run *run, struct error *error);
-/* Places of shock and precursor, m from the plate's surface at the start; NaN where there is none. `particles`: as read
- * now. */
+/* Places of shock and precursor, m from the plate's surface at the start; NaN where there is none. `particles`: the
+ * present ones. */
 void sph_plate_look(const struct sph_run *run, const struct sph_particles *particles, double *shock, double *precursor);
 /* State of the plate in layers of one spacing by their depth at the start; velocity along x. Fills at most `most`
  * layers and returns how many. */
 size_t sph_plate_profile(const struct sph_run *run, struct sph_crater_layer *layers, size_t most);
-/* Where the state behind each front is measured, as they stand now: from one place to the other, m. */
+/* Regions in which the state behind each front is measured now: from one place to the other, m. */
 struct sph_plate_regions {
   double shock[2], precursor[2];
 };
@@ -45,8 +45,8 @@ status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sp
 
 /* snapshot.c: a fields file of the run as it is now. */
 status sph_snapshot_write(struct sph_run *run, const char *path, struct error *error);
-/* Particles as a VTKHDF 1.0 grid of vertices, row i particle i, and the table /fragments. It needs no run. flaws: how
- * many each particle has, or NULL. */
+/* Particles as a VTKHDF 1.0 grid of vertices, row i particle i, and the table /fragments. It needs no run. flaws:
+ * number of flaws of each particle, or NULL. */
 void sph_snapshot_particles(struct snapshot_file *file, const struct sph_particles *particles,
                             const struct sph_fragments *fragments, const uint32_t *flaws);
 

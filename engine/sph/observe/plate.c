@@ -102,7 +102,7 @@ static double speed(const struct sph_run *run, size_t offset) {
   return n > 2 ? (tx - t * x / n) / (tt - t * t / n) : (double)NAN;
 }
 
-/* Width of the shock's rise, as if it were even: twice the distance from a quarter of it to three quarters. */
+/* Width of the shock's rise, taken as linear: twice the distance from a quarter of it to three quarters. */
 static double shock_width(const struct sph_run *run) {
   const struct sph_plane_shock *exact = &run->exact;
   const double ahead = exact->has_precursor ? exact->precursor.density : exact->first_density;
@@ -118,7 +118,7 @@ static void find_flat(const struct sph_run *run, double from, double to, double 
   region[0] = region[1] = NAN;
   for (size_t k = 2; k < (size_t)run->inputs.fidelity.points; k++) {
     double x[3], pressure[3];
-    for (size_t i = 0; i < 3; i++) { /* a layer without particles has none of them: it fails the tests below */
+    for (size_t i = 0; i < 3; i++) { /* NaN in a layer without particles, which fails the tests below */
       const struct sph_plate_layer *l = &run->layer[k - 2 + i];
       x[i] = l->x / l->count;
       pressure[i] = l->pressure / l->count;

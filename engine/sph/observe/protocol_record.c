@@ -1,4 +1,4 @@
-/* What stretch, vibration and piston record during a run, at equal intervals of simulated time. */
+/* Records of stretch, vibration and piston during a run, at equal intervals of simulated time. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -26,7 +26,7 @@ static double axial_stress(const struct sph_run *run, const struct sph_particles
   for (size_t i = 0; i < p->n; i++) {
     if (fabs(run->start->z[i]) > half)
       continue;
-    double d = p->damage_cbrt ? pow(p->damage_cbrt[i], 3) : 0; /* not sph_particles_damage(): other last bits */
+    double d = p->damage_cbrt ? pow(p->damage_cbrt[i], 3) : 0; /* not sph_particles_damage(): its last bits differ */
     double part = p->mass[i] / p->density[i], shear = scales_shear ? 1 - d : 1;
     double pressure = p->pressure[i] < 0 ? (1 - d) * p->pressure[i] : p->pressure[i];
     sum += part * (-pressure + (p->stress[5] ? shear * p->stress[5][i] : 0));

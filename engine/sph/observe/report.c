@@ -12,7 +12,7 @@
 /* `link_h` of the inputs; parts of a rod count as separate when each is more than 1/ROD_PARTS of it. */
 enum { INITIAL_H = 0, ROD_PARTS = 100 };
 
-/* Shares above which a run is warned of (engine/warnings.h). */
+/* Shares above which a run gets a warning (engine/warnings.h). */
 static const double largest_clamped = 0.01, largest_held = 0.01;
 
 status sph_report_fragments(const struct sph_run *run, double static_strength, bool layer, struct sph_fragments *out,
@@ -290,7 +290,7 @@ static void fill_outcome(const struct sph_run *run, const struct sph_ledger *led
   outcome->momentum_error = closed(run) ? sph_results_share(norm(change), momentum_scale(run, ledger)) : (double)NAN;
 }
 
-/* The words of doubts. A leaking piston shows in the state only, not in the inputs. */
+/* The words of warnings. A leaking piston shows in the state only, not in the inputs. */
 static void warn(const struct sph_run *run, const struct sph_results *results, struct outcome *outcome) {
   unsigned set = sph_warn_inputs(&run->inputs, NULL) & ~(unsigned)WARNINGS_PISTON;
   if (outcome->energy_error > WARNINGS_LARGEST_DRIFT)

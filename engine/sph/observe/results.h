@@ -1,5 +1,6 @@
-/* What engine `sph` reports beyond struct outcome: table result_sph. A quantity that does not apply is off (NaN).
- * The file that measures a result fills it here: report.c, crater.c, plate.c, and modules with what they declare. */
+/* Results of engine `sph` in addition to struct outcome: table result_sph. A quantity that does not apply is off (NaN).
+ * The file that measures a result fills it here: report.c, crater.c, plate.c, and modules for the results that they
+ * declare. */
 #ifndef CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
 #define CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
 

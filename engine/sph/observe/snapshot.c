@@ -1,4 +1,4 @@
-/* The fields file of a run: one self-describing HDF5 file, which VTK or ParaView opens as it is. It has particles,
+/* The fields file of a run: one self-describing HDF5 file, which VTK and ParaView open directly. It has particles,
  * fragments, results, the curve that a protocol records, and the profile of an impact or a plate. */
 #include <stdlib.h>
 

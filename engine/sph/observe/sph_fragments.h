@@ -1,15 +1,15 @@
 /* Fragments of a cracked body of SPH particles, before the fragments have flown apart. Benz & Asphaug 1995 section 4.4
  * [BA95]:
  *
- *   1. Static strength: a damaged particle breaks whose largest tension (principal value of the damaged stress,
- * pressure in it) exceeds the static strength of its body. This anticipates the end state, in which the last cracks
- * open slowly. Undamaged matter (D = 0) has no crack that could open, and does not break; BA95 does not require damage.
+ *   1. Static strength: a damaged particle breaks if its largest tension (principal value of the damaged stress,
+ *      pressure included) exceeds the static strength of its body. This anticipates the end state, in which the last
+ *      cracks open slowly. Undamaged matter (D = 0) has no crack and does not break; BA95 does not require damage.
  *   2. Cores: friends of friends over unbroken particles (damage below a threshold). Two are friends within link_length
  *      (h_i + h_j)/2.
  *   3. Damaged layer: a broken particle within a link, or a given length, of a core joins the fragment of its nearest
- * unbroken particle. Of two at the same distance the one of the heavier core decides, then the one of the core with the
- * lower first particle. SPH forces reach two layers deep, so a crack is two layers of broken particles wide. The
- * damaged layer itself links nothing.
+ *      unbroken particle. At equal distance the heavier core decides, then the core with the lower first particle.
+ *      SPH forces reach two layers deep, so a crack is two layers of broken particles wide. The damaged layer itself
+ *      links nothing.
  *   4. Single particles: every other broken particle is a fragment of its own, below the resolution.
  *
  * A core is thus a fragment without its damaged layer. The input fragments.veneer switches step 3 on.

@@ -1,4 +1,5 @@
-/* Makes the lists of all chunks: of neighbours (neighbours.c), balanced (list_balance.c), with slots for numbers. */
+/* Makes the lists of all chunks: of neighbours (neighbours.c), balanced (list_balance.c), with slots in place of
+ * particle numbers. */
 #include "engine/sph/pairs/chunks.h"
 
 #include <stdlib.h>
@@ -40,7 +41,7 @@ size_t sph_chunks_bytes(const struct sph_chunks *c) {
 }
 
 /* The particles of later chunks that are in a chunk's lists, numbered from its first own one: a bit for each, and for
- * each word of bits how many are set before it. */
+ * each word of bits the number of bits set before it. */
 struct met {
   uint64_t *bits;
   uint32_t *before, last, total; /* last: the highest number */

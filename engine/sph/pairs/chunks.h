@@ -1,6 +1,6 @@
-/* Neighbour lists by chunks of particles that are together in space. A chunk has slots, places of records, for its own
- * particles and behind them for its halo: the particles of later chunks in its lists. So all that a chunk needs while
- * it is summed fits into the cache of a core.
+/* Neighbour lists by chunks of particles that are close together in space. A chunk has slots, places of records, for
+ * its own particles and behind them for its halo: the particles of later chunks in its lists. So all data of a chunk
+ * fit into the cache of a core while it is summed.
  *
  *   slots   | own particles (SPH_CHUNK of them) | halo, ascending particle numbers |
  *   lists   | list 0 | list 1 | ...               slots, padded to whole batches (neighbours.h, list_balance.c)
@@ -25,7 +25,7 @@ struct sph_chunk_stretch {
 
 struct sph_chunk {
   size_t first, own;                /* first particle, number of particles */
-  size_t halo, halo_before;         /* size of the halo; of those of all chunks before */
+  size_t halo, halo_before;         /* size of the halo; total size of the halos of earlier chunks */
   uint32_t *halo_particle;          /* their numbers: ascending, all above the chunk's own */
   size_t halo_capacity;             /* of halo_particle */
   struct sph_neighbour_lists lists; /* entries are slots */
@@ -37,7 +37,7 @@ struct sph_chunk {
 
 struct sph_chunks {
   size_t count, per_list; /* chunks; particles that share a list */
-  size_t most_slots;      /* own and halo of one chunk; 0 before the first lists are made */
+  size_t most_slots;      /* largest number of slots (own and halo) of a chunk; 0 before the first lists are made */
   size_t halos;           /* halo particles of all chunks */
   struct sph_chunk *chunk;
   struct sph_neighbours *neighbours;

@@ -23,7 +23,7 @@ struct passed {
   uint32_t count;
 };
 
-/* The loops that pass entries have no branches that a processor would guess wrong half the time: an entry is always
+/* The loops that pass entries avoid branches that a processor would predict wrongly half the time: an entry is always
  * written, but counted only if it is `chosen`. Returns the new count. */
 static inline uint32_t pass(const struct passed *p, uint32_t count, size_t list, size_t who, bool chosen) {
   p->who[count + 1] = (uint32_t)who;
@@ -78,7 +78,7 @@ static inline size_t pass_excess(const size_t per_list, const uint32_t *from, ui
   return kept + count - k;
 }
 
-/* Makes the new list at `to`: the particles that earlier lists passed to it, then what stays of its own entries.
+/* Makes the new list at `to`: the particles that earlier lists passed to it, then its own entries that stay.
  * Returns its length. */
 static size_t balance_list(const struct sph_neighbour_lists *lists, size_t list, size_t own, size_t per_list,
                            uint32_t *to, struct passed *p) {

@@ -1,9 +1,9 @@
-/* The kernels of the pair loop, compiled once per CPU class and chosen at run time (engine/sph/modules/ranges.h says
- * what this means for bits), in double and in float.
+/* The kernels of the pair loop, compiled once per CPU class and chosen at run time (engine/sph/modules/ranges.h: bits
+ * of results), in double and in float.
  *
- * All that a pair needs of a particle is one record: a row of numbers, so that a neighbour costs two cache lines. A
- * kernel loads the records of as many neighbours as a vector register has lanes and transposes them in registers. The
- * sums of the neighbours are transposed back and added to their records of sums. */
+ * All data that a pair needs of a particle are in one record, a row of numbers, so that a neighbour costs two cache
+ * lines. A kernel loads the records of as many neighbours as a vector register has lanes and transposes them in
+ * registers. The sums of the neighbours are transposed back and added to their records of sums. */
 #ifndef CLAST_ENGINE_SPH_PAIRS_PAIRS_KERNELS_H
 #define CLAST_ENGINE_SPH_PAIRS_PAIRS_KERNELS_H
 
@@ -111,7 +111,7 @@ struct sph_pair_constants {
 struct sph_near_box {
   double middle[3], half[3], reach;
 };
-/* Eight boxes side by side. A box that does not exist has NaN for its middle and is near nothing. */
+/* Eight boxes side by side. A box that does not exist has NaN for its middle and is near no other box. */
 struct sph_near_boxes {
   double middle[3][8], half[3][8], reach[8];
 };

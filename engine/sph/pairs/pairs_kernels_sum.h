@@ -62,7 +62,7 @@ struct pair_batch {
   vec slope, w[3];          /* W'/r, grad W; zero beyond the support */
   vec closing, mu, viscous; /* -r.v, positive when they approach; |mu_ij|; Pi_ij */
   vec force[3];
-  vec work;             /* that the artificial stress takes from the motion */
+  vec work;             /* power that the artificial stress takes from the motion */
   vec_mask near, inner; /* within the support; within h */
 };
 

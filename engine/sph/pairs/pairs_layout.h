@@ -15,8 +15,8 @@ enum {
   SPH_PAIRS_BUFFER = SPH_PAIRS_ROWS * SPH_PAIRS_ROW,
 };
 
-/* Units in which the numbers of float records are of the order of 1; in double all of them are 1. They are powers of
- * two. per_...: their inverses. */
+/* Units in which the numbers of float records are of order 1; powers of two. In double all units are 1. per_...: their
+ * inverses. */
 struct sph_pairs_units {
   double length, mass, velocity, density, specific; /* specific: of stress over density squared */
   double per_length, per_mass, per_velocity, per_density, per_specific;

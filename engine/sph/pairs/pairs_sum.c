@@ -6,10 +6,10 @@
  *                                                              |             |
  *                                             kept in `out` <--+             +--> kept in `halo`
  *
- * A halo belongs to later chunks only. So when a chunk and all chunks before it are summed, its own sums are complete:
- * the sums that earlier chunks keep for it are added, always in the order of the chunks, and everything is unpacked to
- * columns and delivered. Bits therefore depend neither on the number of threads nor on their timing, and the pass no
- * longer reads the chunk's fields. */
+ * A halo belongs to later chunks only. So when a chunk and all chunks before it are summed, its own sums can be
+ * completed: the sums that earlier chunks keep for it are added, always in the order of the chunks, and everything is
+ * unpacked to columns and delivered. Bits therefore depend neither on the number of threads nor on their timing, and
+ * the pass no longer reads the chunk's fields. */
 #include <math.h>
 #include <sched.h>
 #include <stdatomic.h>
@@ -160,7 +160,7 @@ static void deliver(const struct pass *w, size_t k, double *buffer) {
   }
 }
 
-/* Waits for another thread, which took that turn long before. */
+/* Waits for another thread, which took that turn earlier. */
 static void wait_for(atomic_bool *done) {
   while (!atomic_load_explicit(done, memory_order_acquire))
     sched_yield();

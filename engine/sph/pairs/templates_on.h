@@ -11,9 +11,9 @@
  * REAL         the number's type; REAL_BYTES its size; INT the signed integer of that size
  * SINGLE       1 in single precision, else 0
  * TYPED(name)  the name of a type or function in this precision. A source maps each of its names once, for example
- *              `#define vec_less TYPED(vec_less)`, and uses the plain name from there on. Code that needs one precision
- * in all templates writes vec_less_double. MM512(before, after)  the AVX-512 intrinsic of this precision, where there
- * is AVX-512 */
+ *              `#define vec_less TYPED(vec_less)`, and uses the plain name from there on. Code that needs one
+ *              precision in all templates writes vec_less_double.
+ * MM512(before, after)  the AVX-512 intrinsic of this precision, where there is AVX-512 */
 #if defined(TEMPLATE_DOUBLE)
 #define REAL                 double
 #define REAL_BYTES           8

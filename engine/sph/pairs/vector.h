@@ -99,7 +99,7 @@ INLINE vec vec_inverse_root(vec a) {
 
 /* ---- choices between lanes ---- */
 
-/* A mask says for each lane yes or no: a bit with AVX-512, else all bits of the lane. */
+/* A mask is true or false for each lane: a bit with AVX-512, else all bits of the lane. */
 #ifdef __AVX512F__
 #if SINGLE
 typedef __mmask16 vec_mask;

@@ -201,7 +201,7 @@ static void look_at_end(struct sph_run *run) {
   if (can_crack(run) && !isnan(run->state.first_damage))
     end(run, SPH_STOP_END_TIME, OUTCOME_END_TIME, "damage still grew %.3g s before the hard end: raise stop.end_time",
         time - run->state.quiet_since);
-  else /* nothing ever broke: no fracture can still go on */
+  else /* nothing has broken: there is no fracture that could go on */
     end(run, SPH_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
 }
 

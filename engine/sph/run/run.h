@@ -13,21 +13,22 @@
 enum { SPH_RUN_BODIES = 2 };
 
 /* One point of the curve that a protocol records: stress against strain (stretch), the mode's amplitude (vibration), or
- * where the fronts are (piston). */
+ * the places of the fronts (piston). */
 struct sph_sample {
   double time, strain, stress, mode, damage, front, precursor;
 };
 
-/* What changes during a run beside the system itself: a plain value, saved as it stands in a restart file. */
+/* Values that change during a run beside the system itself: a plain struct, saved as raw bytes in a restart file. */
 struct sph_state {
   int finished, stop, outcome_state;
   char message[FIELD_TEXT_SIZE];
   double energy_start, energy_input; /* J: ledger's closed sum, kinetic energy at the start */
   double momentum_start[3], angular_start[3];
-  double momentum_scale_start;                /* kg m/s, sum |p| at the start */
-  double smallest_step;                       /* s */
-  double first_damage;                        /* s, NaN: none yet */
-  double quiet_damage, quiet_since;           /* mean damage, and when it was that; the rule of stop.quiet_time */
+  double momentum_scale_start; /* kg m/s, sum |p| at the start */
+  double smallest_step;        /* s */
+  double first_damage;         /* s, NaN: none yet */
+  double quiet_damage,
+      quiet_since; /* mean damage, and the time (s) when it had this value; for the rule of stop.quiet_time */
   uint64_t limited[SPH_LIMITS];               /* steps that each limiter set */
   uint64_t samples;                           /* of the curve */
   double peak_stress, peak_strain, peak_time; /* stretch */
@@ -39,7 +40,7 @@ struct sph_state {
 struct sph_run {
   struct sph_inputs inputs;
   uint64_t seed;
-  struct sph_shape shape[SPH_RUN_BODIES]; /* where they stand at the start */
+  struct sph_shape shape[SPH_RUN_BODIES]; /* shapes at their places at the start */
   struct sph_range range[SPH_RUN_BODIES];
   int body_count;
   size_t targets;                          /* particles that can belong to fragments: ids below this one */
@@ -63,27 +64,27 @@ void sph_run_free(struct sph_run *run); /* NULL is fine */
 /* Steps between two checks of the energy; a check is a pass over all particles. Every step checks that all values are
  * finite. */
 enum { SPH_RUN_LOOKS = 64 };
-/* At most max_steps. The result does not depend on how steps are split over calls. STATUS_MEMORY: this is no result,
- * and the run cannot go on. */
+/* At most max_steps. The result does not depend on how steps are split over calls. STATUS_MEMORY: the run has no result
+ * and cannot go on. */
 status sph_run_advance(struct sph_run *run, uint64_t max_steps);
 /* The particles as they are now, in the order of their ids; owned by the run, valid until the next call. */
 const struct sph_particles *sph_run_read(struct sph_run *run);
 double sph_run_closed(const struct sph_ledger *ledger); /* the sum that must stay constant, J; `clamped` is not in it */
 double sph_run_extent(const struct sph_run *run);       /* m, the target's reach: a length for errors */
 
-/* protocol.c: bodies with their flaws, where they stand and how they move. Fills shape, range, start, flaws... of the
+/* protocol.c: bodies with their flaws, places and motion. Fills shape, range, start, flaws... of the
  * run. */
 status sph_protocol_bodies(struct sph_run *run, struct error *error);
 
 /* describe.c */
 char *sph_describe_scene(const struct sph_inputs *inputs);
 size_t sph_describe_memory(const struct sph_inputs *inputs); /* bytes a run will need */
-double sph_describe_work(const struct sph_inputs *inputs);   /* particle-steps, near enough */
+double sph_describe_work(const struct sph_inputs *inputs);   /* particle-steps, an estimate */
 
 /* warn.c */
-/* Ratio of the densities of target and projectile, 1 where it does no harm. */
+/* Ratio of the densities of target and projectile; 1 where it causes no error. */
 double sph_warn_contrast(const struct sph_inputs *inputs);
-/* Doubts before the run: engine_kind.warn. */
+/* Warnings before the run: engine_kind.warn. */
 unsigned sph_warn_inputs(const struct sph_inputs *inputs, FILE *out);
 
 #endif

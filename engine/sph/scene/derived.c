@@ -130,8 +130,8 @@ static double longest(const struct sph_shape *shape) {
   return fmax(shape->side[0], fmax(shape->side[1], shape->side[2]));
 }
 
-/* How far the projectile must go back along its flight, from the plane of the face that it hits, until nothing of a
- * mesh, which may stand above that plane, overlaps it. */
+/* Distance (m) by which the projectile must move back along its flight from the plane of the face that it hits, so that
+ * no part of a mesh above that plane overlaps it. */
 static double back_off(const struct sph_shape shape[2], const double flight[3]) {
   const double up[3] = {0, 0, 1}, most = 4 * (longest(&shape[0]) + longest(&shape[1]));
   const double least = 1e-3 * sph_shape_reach(&shape[1], up);

@@ -1,4 +1,4 @@
-/* Sizes, masses, speeds and times of a scene: what follows from the inputs alone. */
+/* Sizes, masses, speeds and times of a scene that follow from the inputs alone. */
 #ifndef CLAST_ENGINE_SPH_SCENE_DERIVED_H
 #define CLAST_ENGINE_SPH_SCENE_DERIVED_H
 
@@ -13,7 +13,7 @@ int sph_derived_bodies(const struct sph_inputs *inputs);
 bool sph_derived_has_intruder(const struct sph_inputs *inputs);
 /* Does the body crack? With fracture: auto it does if the material has Weibull's m and k. */
 bool sph_derived_cracks(const struct sph_body_inputs *body);
-/* The body as the moving system reads it. */
+/* The physics of a body for the moving system. */
 struct sph_body_physics sph_derived_physics(const struct sph_body_inputs *body, const struct sph_flaws *flaws);
 double sph_derived_density(const struct sph_body_inputs *body);       /* kg/m^3, bulk */
 double sph_derived_wave_speed(const struct sph_body_inputs *body);    /* m/s, longitudinal */
@@ -21,7 +21,7 @@ double sph_derived_shortest_side(const struct sph_body_inputs *body); /* m, of a
 /* Outlines of target and projectile (of the size that impact.projectile selects), both at the origin. */
 struct sph_shape sph_derived_target(const struct sph_inputs *inputs);
 struct sph_shape sph_derived_projectile(const struct sph_inputs *inputs);
-struct sph_shape sph_derived_piston(const struct sph_inputs *inputs); /* at the origin, too */
+struct sph_shape sph_derived_piston(const struct sph_inputs *inputs); /* outline of the piston, at the origin */
 /* Thickness, m, of a body that repeats along y or z (direction 1 or 2): whole periods of the target's lattice, not less
  * than `at_least`, and thick enough that no particle meets its own image. */
 double sph_derived_thickness(const struct sph_inputs *inputs, int direction, double at_least);

@@ -31,7 +31,7 @@ static double flaws_expected(const struct sph_inputs *in) {
 
 enum { BODIES = 2 };
 
-/* What the bodies of a scene need in the moving system. */
+/* Needs of the bodies of a scene in the moving system. */
 struct need {
   uint64_t modules[BODIES], columns; /* bits (modules.h): of each body, of all */
   size_t pairs;                      /* bytes per particle of the pair loop's options */

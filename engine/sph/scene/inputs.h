@@ -56,7 +56,7 @@ struct sph_stretch {
 struct sph_collision {
   double speed, gap; /* m/s, m */
 };
-/* Sections of which modules declare the members (modules/declarations.h). */
+/* Sections whose members the modules declare (modules/declarations.h). */
 struct sph_fracture {
 #define SPH_INPUT_MEMBERS
 #define IN_fracture(...) __VA_ARGS__
@@ -98,7 +98,7 @@ struct sph_fidelity {
 #include "engine/sph/modules/declarations.h"
 };
 
-/* Bodies and physics read these sections themselves: their names, defaults and ranges stand in rows alone. */
+/* Bodies and physics read these sections themselves: only the rows have their names, defaults and ranges. */
 struct sph_inputs {
   int kind; /* enum sph_kind: the protocol */
   struct sph_body_inputs target, projectile;
@@ -127,8 +127,7 @@ extern const struct field_table sph_inputs;
 
 /* inputs_complete.c: sets inputs that were not given and follow from others (engine_kind.complete). */
 void sph_inputs_complete(struct sph_inputs *inputs, const bool *given);
-/* inputs_check.c: values of a material of the user's own that must be given (engine_kind.check_given). STATUS_CONTENT.
- */
+/* inputs_check.c: values that a custom material must give (engine_kind.check_given). STATUS_CONTENT. */
 status sph_inputs_check_given(const struct sph_inputs *inputs, const bool *given, struct error *error);
 /* inputs_check.c: conditions across fields. STATUS_CONTENT with a remedy. */
 status sph_inputs_check(const struct sph_inputs *inputs, struct error *error);

@@ -15,11 +15,11 @@
 
 /* ---- materials ---- */
 
-/* Who needs each row of sph_materials_table, in its order. */
+/* Which bodies need each row of sph_materials_table, in its order. */
 enum need { ALWAYS, STRENGTH, FRACTURE, BY_CHOICE };
 static const struct {
   enum need need;
-  const char *choice_name; /* of a choice: what messages call it */
+  const char *choice_name; /* name of a choice in messages */
 } needs[] = {
 #define MATERIAL_VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_) {need_, NULL},
 #define MATERIAL_CHOICE(member_, choices_, flags_, need_, name_, ...)             {need_, name_},
@@ -38,7 +38,7 @@ static bool has(const struct sph_body_inputs *body, enum need need) {
   return true;
 }
 
-/* Whether the body cannot do without the value of row k. Flaws and shear_modulus may be off, but not where they are
+/* Does the body need the value of row k? Flaws and shear_modulus may be off, but not where they are
  * used. */
 static bool needed(size_t k, const struct sph_body_inputs *body) {
   const struct field *row = &sph_materials_table.rows[k];
@@ -113,7 +113,7 @@ static status check_material(const char *body_name, const struct sph_body_inputs
   return STATUS_OK;
 }
 
-/* Values that may be off must be said to be off: without a yield stress a body is elastic at any stress. */
+/* Values that may be off must be set to off explicitly: without a yield stress a body is elastic at any stress. */
 status sph_inputs_check_given(const struct sph_inputs *in, const bool *given, struct error *error) {
   static const char *const must[] = {"yield_stress", "melt_energy", "tension_limit", "weibull.m", "weibull.k"};
   for (int b = 0; b < 2; b++) {

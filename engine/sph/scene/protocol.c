@@ -1,4 +1,4 @@
-/* Bodies, where they stand and how they move at the start. */
+/* Bodies, and their places and motion at the start. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -115,7 +115,7 @@ static void ring(struct sph_run *run) {
   }
 }
 
-/* Holds both ends; without particles in both grips nothing would pull. */
+/* Holds both ends. Both grips must contain particles. */
 static status grip(struct sph_run *run, struct error *error) {
   const double length = run->inputs.stretch.grip;
   bool below = false, above = false;
@@ -132,9 +132,10 @@ static status grip(struct sph_run *run, struct error *error) {
                                       length, run->range[0].spacing);
 }
 
-/* The piston is held matter. Its layers stand as close as the shock leaves those of the plate: through layers at their
- * distance at rest, compressed matter slips, and the piston drives it too slowly. Particles of a lattice move along x
- * only, as a plane flow does: else rounding grows, and rows that a strong shock has pushed together buckle. */
+/* The piston is held matter. The distance of its layers is that of the compressed plate behind the shock: compressed
+ * matter would slip through layers at their distance at rest, and the piston would drive it too slowly. Particles of a
+ * lattice move along x only, as in a plane flow: otherwise rounding errors grow, and rows that a strong shock has
+ * pushed together buckle. */
 static status push(struct sph_run *run, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   struct sph_particles *p = run->start;

@@ -1,4 +1,4 @@
-/* Doubts that inputs raise before a run. The limits are measured: tests/extremes/map.md. */
+/* Warnings that follow from the inputs before a run. The limits are measured: tests/extremes/map.md. */
 #include <math.h>
 
 #include "engine/sph/run/run.h"
@@ -19,7 +19,7 @@ double sph_warn_contrast(const struct sph_inputs *in) {
   return fmax(target, projectile) / fmin(target, projectile);
 }
 
-/* Of the exact shock, NaN without one. */
+/* Compression of the exact shock; NaN without one. */
 static double compression(const struct sph_inputs *in) {
   struct sph_plane_shock exact;
   if (in->kind != SPH_PISTON || sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL) ||

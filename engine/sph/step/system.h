@@ -13,19 +13,19 @@
 #include "engine/sph/pairs/pairs.h"
 #include "engine/sph/scene/inputs.h"
 
-/* What one body is made of, and which physics it has. Off means absent: nothing is stored or called for it. */
+/* Material and physics of one body. Off means absent: nothing is stored or called for it. */
 struct sph_body_physics {
   struct sph_material material;
   bool strength;                 /* deviatoric stress: Hooke, Jaumann, radial return */
   const struct sph_flaws *flaws; /* NULL: no fracture; by the body's own particle order; copied at create */
 };
 
-/* What the step needs beside bodies and inputs: it follows from where the particles stand, or is a bound. */
+/* Data of the step beside bodies and inputs: they follow from the positions of the particles, or are bounds. */
 struct sph_domain {
   double periodic[3];       /* m, length of the periodic box per direction; NaN = open */
   double spacing_over_h;    /* first particle spacing over h: the artificial stress */
   double largest_time_step; /* s, NaN = off */
-  double lowest_density;    /* over the first one: below, the density is held, and the ledger counts it */
+  double lowest_density;    /* over the initial one: a lower density is raised to it, and the ledger counts that */
 };
 /* An open space. 0.03 is the density of a particle alone, m W(0), at the largest h: thinner ones would have P/rho^2
  * without bound. */
@@ -65,11 +65,11 @@ status sph_system_create(const struct sph_particles *particles, size_t body_coun
 void sph_system_free(struct sph_system *system); /* NULL is fine */
 size_t sph_system_bytes(const struct sph_system *system);
 
-enum sph_fault { /* why a step could not be done */
+enum sph_fault { /* why a step failed */
                  SPH_FAULT_NONE,
                  SPH_FAULT_NOT_FINITE,
                  SPH_FAULT_TIME_STEP, /* the same on any machine */
-                 SPH_FAULT_MEMORY,    /* this machine has too little; elsewhere the run would go on */
+                 SPH_FAULT_MEMORY,    /* too little memory; the run may succeed on another machine */
 };
 
 /* One time step, not beyond `until` (s). False after a fault; later calls return false, too. */
@@ -88,8 +88,8 @@ double sph_system_damage(const struct sph_system *system, double *rate);
 /* Fills the arrays that *out has, in the order of the ids, all at one time. Positions are wrapped into the box in
  * periodic directions. The pressure is that of the last evaluation (the predicted state of the same time). */
 void sph_system_read(const struct sph_system *system, struct sph_particles *out);
-/* Number of flaws of each particle, by id (0 in bodies without). Returns false and fills nothing when no body has any.
- */
+/* Number of flaws of each particle, by id (0 in bodies without flaws). False, and nothing is filled, when no body has
+ * flaws. */
 bool sph_system_flaws(const struct sph_system *system, uint32_t *count);
 double sph_system_neighbours(const struct sph_system *system); /* mean number of neighbours within 2h */
 

@@ -1,4 +1,5 @@
-/* Refuses what a system cannot compute, with a message that names the body, the particle or the input. */
+/* Refuses bodies and inputs that a system cannot compute, with a message that names the body, the particle or the
+ * input. */
 #include <math.h>
 
 #include "engine/sph/step/system_layout.h"
@@ -62,7 +63,7 @@ static status check_domain(const struct sph_domain *domain, struct error *error)
   return STATUS_OK;
 }
 
-/* Does it move within bounds, and has it mass, density, size and no negative energy? */
+/* Are position and velocity within bounds, mass, density and h positive, and energy not negative? */
 static bool is_matter(const struct sph_particles *p, size_t i) {
   const double motion = fabs(p->x[i]) + fabs(p->y[i]) + fabs(p->z[i]) + fabs(p->vx[i]) + fabs(p->vy[i]) +
                         fabs(p->vz[i]);

@@ -1,4 +1,4 @@
-/* The columns of a system: which exist, their memory, and how particles come into them and back. The arrays of the
+/* The columns of a system: which exist, their memory, and copying particles into them and back. The arrays of the
  * state, of a restart file and of the estimate of memory are all made from the bits of sph_system.columns. */
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@
 static const struct {
   size_t column, member; /* SPH_COLUMN, and the place in struct sph_particles */
   bool filled, read;
-  double absent; /* read where no body has the column; NaN: nothing is written */
+  double absent; /* value read when no body has the column; NaN: nothing is written */
 } carried[] = {
 #define CARRIED(name, member_, filled_, read_, absent_)                                                                \
   { SPH_COLUMN(name), offsetof(struct sph_particles, member_), filled_, read_, absent_ }
@@ -69,7 +69,7 @@ size_t sph_system_columns_list(const struct sph_system *s, double *column[SPH_CO
   return count;
 }
 
-/* Dozens of columns are read side by side: with pages of 4 kB that is more than the address cache of a core holds. */
+/* Dozens of columns are read side by side: pages of 4 kB would overflow the address cache (TLB) of a core. */
 static double *huge_pages(size_t bytes) {
   const size_t page = (size_t)1 << 21;
   if (bytes < 2 * page)

@@ -71,7 +71,7 @@ static status make_body(struct sph_system *s, const struct sph_particles *p, str
   }
   b->density = sph_derived_bulk_density(&b->physics.material);
   b->lowest_density = s->domain.lowest_density * b->density;
-  b->physics.flaws = NULL; /* the caller's; the modules have made what they need of them */
+  b->physics.flaws = NULL; /* owned by the caller; the modules have their own data from them */
   choose_hooks(s, b);
   return STATUS_OK;
 }

@@ -1,6 +1,6 @@
-/* How the moving system lies in memory; for engine/sph/ and its tests only.
+/* Memory layout of the moving system; for engine/sph/ and its tests only.
  *
- * Particles are columns (structure of arrays). Bodies stand one after the other, so that a range has one material;
+ * Particles are columns (structure of arrays). Bodies follow one another, so that a range has one material;
  * within a body particles are sorted in space. All loops over particles go block by block: a block's columns stay in
  * the cache from one hook to the next, and the sums of a block depend neither on the number of threads nor on the width
  * of the CPU's vectors. */
@@ -30,7 +30,7 @@ struct sph_columns {
 #include "engine/sph/modules/declarations.h"
 };
 
-/* The place of a column among all, and a run of them: their first and how many. */
+/* The index of a column among all; the first index and the number of consecutive columns. */
 #define SPH_COLUMN(name)     (offsetof(struct sph_columns, name) / sizeof(double *))
 #define SPH_COLUMNS_OF(name) SPH_COLUMN(name), sizeof(((struct sph_columns *)NULL)->name) / sizeof(double *)
 enum { SPH_COLUMNS = sizeof(struct sph_columns) / sizeof(double *) };
@@ -40,7 +40,7 @@ struct sph_solid;
 struct sph_block;
 typedef void (*sph_hook)(struct sph_system *system, const struct sph_solid *body, struct sph_block *block);
 
-/* What modules tell each other about the particles of a block (0 is its first) while the hooks before the pair loop
+/* Values that modules exchange about the particles of a block (0 is its first) while the hooks before the pair loop
  * run. */
 struct sph_terms {
   const double *solid_density;   /* kg/m^3; the density of the body unless a module publishes another */
@@ -48,7 +48,7 @@ struct sph_terms {
   double published[SPH_BLOCK];   /* memory of the module that publishes solid_density */
 };
 
-/* A fixed piece of a body that lies within one piece of the pair loop, and what its hooks found there in this step. */
+/* A fixed piece of a body within one piece of the pair loop, and the results of its hooks in this step. */
 struct sph_block {
   size_t low, high;
   struct sph_terms *terms;          /* only while `before` hooks run */
@@ -63,7 +63,7 @@ struct sph_block {
   size_t lost;    /* index of a particle that is no longer finite, or n */
 };
 
-/* A body: its modules, and what they have prepared from its material. */
+/* A body: its modules, and the data that they prepared from its material. */
 struct sph_solid {
   struct sph_body_physics physics; /* flaws is NULL (modules/weibull.c has them) */
   uint64_t modules, columns;       /* a bit each, by enum sph_module_index and by SPH_COLUMN */
@@ -81,7 +81,7 @@ static inline bool sph_solid_has(const struct sph_solid *body, size_t column) {
   return body->columns >> column & 1;
 }
 
-/* What changes from step to step, beside the columns. */
+/* Values that change from step to step, beside the columns. */
 struct sph_progress {
   double time, last_step, first_step;
   double worst[SPH_LIMITS];
@@ -112,10 +112,10 @@ struct sph_system {
   size_t body_count, block_count;
   struct sph_solid *solid; /* its bodies */
   struct sph_block *block;
-  uint64_t columns; /* that some body needs */
+  uint64_t columns; /* columns that some body needs, a bit each */
   struct sph_pairs *pairs;
   const struct sph_ranges *ranges;
-  int fault; /* enum sph_fault; `failure` says it in words */
+  int fault; /* enum sph_fault; `failure` has the message */
   char failure[256];
 };
 
@@ -127,14 +127,14 @@ int sph_system_columns_arrays(uint64_t columns);
 status sph_system_columns_take(struct sph_system *system, const struct sph_particles *particles, struct error *error);
 /* Pointers to the columns that exist, in a fixed order. Returns how many. */
 size_t sph_system_columns_list(const struct sph_system *system, double *column[SPH_COLUMNS]);
-/* Values of particles as they are set up, and the way back (sph_system_read). */
+/* Copies the initial values of particles into the columns, and columns back into particles (sph_system_read). */
 void sph_system_columns_fill(struct sph_system *system, const struct sph_particles *particles);
 void sph_system_columns_read(const struct sph_system *system, struct sph_particles *out);
-/* Bytes per particle, near enough to plan, of a system with these columns (a bit each, of all bodies) and `pairs` bytes
+/* Estimated bytes per particle of a system with these columns (a bit each, of all bodies) and `pairs` bytes
  * for options of the pair loop. Flaws are not in it. */
 double sph_system_columns_bytes(uint64_t columns, size_t pairs, const struct sph_fidelity *fidelity);
 
-/* x within the periodic box; as it is where `length` is NaN. */
+/* x wrapped into the periodic box; unchanged when `length` is NaN. */
 double sph_system_columns_wrapped(double x, double length);
 
 /* The checks of sph_system_create: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */

@@ -17,7 +17,7 @@ enum {
   ROOM = 4,          /* largest slack over h */
 };
 
-/* Both by precision. horizon_most: largest number of steps for which lists are made. rebuild_cost: time to make the
+/* Per precision. horizon_most: largest number of steps for which lists are made. rebuild_cost: time to make the
  * lists of a particle over the time to sum one neighbour (bench_sph pairs). In float a sum takes half the time that it
  * takes in double, and making lists takes as long. So longer lists pay in float. */
 static const uint64_t horizon_most[] = {[SPH_DOUBLE] = 20, [SPH_FLOAT] = 30};
@@ -135,7 +135,7 @@ static bool list_anew(struct sph_system *s) {
 bool sph_system_list_again(struct sph_system *s) {
   struct error error = {0};
   for (size_t k = 0; k < s->block_count; k++)
-    s->block[k].slack = -1; /* unknown: look_up_slack finds it */
+    s->block[k].slack = -1; /* unknown: look_up_slack computes it */
   if (sph_pairs_relist(s->pairs, &error) == STATUS_OK)
     return true;
   s->fault = error.status == STATUS_MEMORY ? SPH_FAULT_MEMORY : SPH_FAULT_NOT_FINITE;

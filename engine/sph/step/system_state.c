@@ -1,5 +1,5 @@
-/* Everything on which the next step depends. Lists are not saved: they are made again from the positions at which they
- * were made, in the same order, and the pair loop sums in that order. */
+/* Saves and loads all data on which the next step depends. Lists are not saved: they are made again from the positions
+ * at which they were made, in the same order, and the pair loop sums in that order. */
 #include <stdio.h>
 #include <string.h>
 
@@ -25,7 +25,7 @@ static size_t saved(struct sph_system *s, struct restart_block out[BLOCKS]) {
 }
 
 size_t sph_system_state_size(const struct sph_system *system) {
-  struct sph_system view = *system; /* blocks can be written to; these are only counted */
+  struct sph_system view = *system; /* blocks need a writable system; here they are only counted */
   struct restart_block blocks[BLOCKS];
   return restart_blocks_size(blocks, saved(&view, blocks));
 }

@@ -5,7 +5,8 @@
  *   3. one pair loop
  *   4. rates; half the change of the rates is added to the predicted state
  *
- * Where a module of a body averages over particles of several blocks (sph_module.meet), step 2 is cut in two there.
+ * Where a module of a body averages over particles of several blocks (sph_module.meet), step 2 is split in two at that
+ * point.
  *
  * All of it happens block by block, so that the columns of a block are read from memory once before the pair loop and
  * once after it. The rates of a block follow as soon as its sums are complete. */
@@ -15,20 +16,21 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double collapse = 1e-6; /* of the first step: a run of a million times smaller steps would not end */
+static const double
+    collapse = 1e-6; /* share of the first step: with steps a million times smaller a run would not end */
 
 static void run(struct sph_system *s, struct sph_block *block, const sph_hook *hook, size_t count) {
   for (size_t m = 0; m < count; m++)
     hook[m](s, &s->solid[block->body], block);
 }
 
-/* Finds the slack of a block from the positions. Called when the ways of the fastest particle of each step, added up,
- * may have used the slack up. The factor allows for rounding of positions. */
+/* Finds the slack of a block from the positions. Called when the summed distances of the fastest particle of each step
+ * may have used up the slack. The factor allows for rounding of positions. */
 static void look_up_slack(struct sph_system *s, struct sph_block *block) {
   block->slack = 0.99 * sph_pairs_slack(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
 }
 
-/* The loops before the pair loop of one block: those before its body meets, those after it, or both. */
+/* The loops before the pair loop of one block: those before `meet` of its body, those after it, or both. */
 static void run_before(struct sph_system *s, struct sph_block *block, bool first, bool last) {
   const struct sph_solid *body = &s->solid[block->body];
   const size_t low = first ? 0 : body->first_count, high = last ? body->before_count : body->first_count;
