@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The short benchmarks run to their end, and all that they print is `name value unit`; what the times are is nobody's business here.
+# The short benchmarks run to their end, and they print only lines `name value unit`; the times themselves are not tested.
 . "$(dirname "$0")/lib.bash"
 
-figures() { # figures LEAST PROGRAM [ARGUMENT...]: it prints at least so many
+figures() { # figures LEAST PROGRAM [ARGUMENT...]: the program prints at least LEAST figures
   local least=$1
   shift
   expect 0 "$@"
@@ -16,7 +16,7 @@ if [ "$sanitized" -eq 0 ]; then
   figures 18 "$build/tests/bench/bench_dem_program"
   figures 3 "$build/tests/bench/bench_sph_fragments_program"
   figures 20 "$build/tests/bench/bench_sph_program" 10000
-else # minutes of what the tests have run already
+else # skipped: it would take minutes, and other tests run the same code
   ok "(bench_dem not run)"; ok "(nor bench_sph_fragments)"; ok "(nor bench_sph)"
 fi
 done_after 6

@@ -28,7 +28,7 @@ assert len(rows) == 12 and all(r['n'] == 5 and r['failed'] == 0 for r in rows), 
 assert all(0 < r['largest_fraction_mean'] <= 1 for r in rows)"
 ok "the table at the end as JSON"
 says "8 runs computed"
-# pooled exponents stand in the store: nine of each point, made anew when runs were added, of all runs that count
+# pooled exponents are in the store: nine per point, computed again when runs were added, from all runs that count
 pooled="from estimates where run_id is null"
 same "$(number tiny.db "select count(*) $pooled group by point_id order by 1 desc limit 1")" 9 "pooled estimates of a point"
 same "$(number tiny.db "select count(distinct point_id) $pooled")" 4 "points with pooled estimates"
@@ -49,7 +49,7 @@ ok "growing the campaign changed no old run"
 expect 0 "$clast" run tiny.yaml --quiet --csv
 silent err
 
-# table, CSV and JSON tell the same
+# table, CSV and JSON have the same contents
 expect 0 "$clast" stats tiny.db --by strain,angle --quantity largest_fraction --csv; mv out stats.csv
 expect 0 "$clast" stats tiny.db --by strain,angle --quantity largest_fraction --json; mv out stats.json
 expect 0 "$clast" stats tiny.db --by strain,angle --quantity largest_fraction
@@ -66,7 +66,7 @@ for x, y, line in zip(a, b, lines[1:]):
     for (name, u), v, w in zip(x.items(), y.values(), shown):
         if v is None: assert u == '' and w == '-'
         elif isinstance(v, str): assert u == v == w
-        else: # people read varied inputs in the units of the campaign
+        else: # tables for people show varied inputs in the units of the campaign
             unit = {'threshold_strain': 0.01, 'threshold_angle': 3.14159265358979 / 180}.get(name, 1)
             assert float(u) == float(v) and abs(float(w) * unit - v) <= 1e-4 * abs(v) + 1e-12, (name, u, v, w)
 PY
@@ -105,7 +105,7 @@ expect 0 "$clast" spectrum tiny.db --where "replicate = 0" --csv
 expect 0 "$clast" check tiny.db
 expect 0 "$clast" replay tiny.db 3
 says "agree to the last bit"
-# A result that the program of that time did not know has no value in the store; one that it knew is compared.
+# A result that the earlier program did not have has no value in the store; the other results are compared.
 cp tiny.db older.db
 python -c "
 import sqlite3
@@ -184,12 +184,12 @@ same "$(number both.db 'select count(*) from runs')" 12 "merged runs"
 ok "merged store holds the same bits"
 expect 0 "$clast" check both.db
 
-# a reader that has seen enough is no error
+# a reader that closes the pipe early is no error
 { got=0; "$clast" query tiny.db --csv "with recursive c(x) as (select 1 union all select x + 1 from c limit 300000) select x from c" 2>err || got=$?; echo "$got" >code; } | head -n 1 >/dev/null
 same "$(cat code)" 0 "exit code when the reader goes away"
 silent err
 
-# what a query may not do
+# statements that a query refuses
 expect 64 "$clast" query tiny.db "delete from run"
 expect 64 "$clast" query tiny.db "select 1; select 2"
 expect 64 "$clast" query tiny.db "select nonsense"

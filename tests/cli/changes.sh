@@ -10,7 +10,7 @@ expect 0 "$clast" run tiny.yaml --set contact.friction=0.3 --set body.diameter='
 same "$(sqlite3 tiny.db "select distinct path, value from point_input where path in ('contact.friction', 'body.diameter')" | xargs)" \
   "body.diameter|0.07 contact.friction|0.3" "inputs of --set in the store"
 same "$(number tiny.db 'select count(*) from run')" 8 "runs of --seeds 2"
-# the store's document is the changed one: run again from it, everything is there
+# the store's document is the changed one: a run from it finds all runs in the store
 sqlite3 tiny.db "select document from campaign" >again.yaml
 expect 0 "$clast" run again.yaml
 says "0 runs computed"; says "8 found"

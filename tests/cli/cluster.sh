@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The job scripts of campaign/examples with stand-ins for srun and scontrol: stage in and out, requeue, arrays and merge.
+# The job scripts of campaign/examples with substitutes for srun and scontrol: stage in and out, requeue, arrays and merge.
 . "$(dirname "$0")/lib.bash"
 mkdir -p bin node net
 cat >bin/srun <<'SH'
@@ -33,12 +33,12 @@ sed -i 's/per_point: 2/per_point: 3/' net.yaml
 expect 0 bash "$examples/slurm-scratch.sh" net.yaml net/results.db
 same "$(number net/results.db 'select count(*) from run') $(number net/results.db 'select count(*) from session')" "12 2" "runs and sessions after the second job"
 expect 0 "$clast" check net/results.db
-# a copy in the middle is whole, and the last one wins
+# a copy made during the job is complete, and the last copy is kept
 sed -i 's/per_point: 3/per_point: 10/' net.yaml
 STAGE_OUT_EVERY=0.03 expect 0 bash "$examples/slurm-scratch.sh" net.yaml net/results.db
 same "$(number net/results.db 'select count(*) from run')" 40 "runs after many copies"
 [ ! -e net/results.db.part ] || fail "a part of a copy is left"
-# what cannot be copied stays where it is, and the job says where
+# files that cannot be copied stay in their place, and the job prints the place
 expect 74 bash "$examples/slurm-scratch.sh" net.yaml none/results.db
 says "it is in $work/node/clast-7"
 [ -s node/clast-7/results.db ] || fail "the store is gone"

@@ -31,7 +31,7 @@ for knob in ('grains', 'time_step'):
 assert checked == 8, checked
 PY
 ok "mean and bias are those of the runs"
-# The same command computes nothing; a later one goes on.
+# The same command computes nothing; a later one continues the study.
 expect 0 "$clast" converge "${disc[@]}" --knob time_step --knob grains=1.2cm,1.069cm,0.9cm --seeds 4 --max-seeds 8 \
   --within '0.01 %' --store disc.db --json -j 2
 says "0 runs computed"
@@ -120,7 +120,7 @@ import json, sqlite3
 plan = json.load(open('out'))
 chosen, = [a for a in plan['alternatives'] if a['choice'] == 'chosen']
 setting = chosen['setting']
-if setting == "the scene's own":  # which alternative is cheapest hangs on measured times
+if setting == "the scene's own":  # which alternative is cheapest depends on measured times
     setting, = sqlite3.connect('sharp.db').execute("select distinct setting from convergence where base = 1").fetchone()
 open('setting', 'w').write(str(float(setting)))
 assert plan['runs_least'] == chosen['seeds'] > 2, plan

@@ -42,7 +42,7 @@ stop() { # store signal command...
   local store=$1 signal=$2; shift 2
   setsid "$@" --store "$store" >/dev/null 2>>stopped.err &
   local pid=$!
-  sleep "$((RANDOM % 2)).$((RANDOM % 10))" # results are committed once a second: both sides of that
+  sleep "$((RANDOM % 2)).$((RANDOM % 10))" # results are committed once a second: stop before and after a commit
   kill "-$signal" "$pid" 2>/dev/null || true
   local got=0
   wait "$pid" 2>/dev/null || got=$?
@@ -67,7 +67,7 @@ expect 0 "$clast" run wider.yaml -j 2
 says "24 runs computed"; says "48 found in the store"
 
 surplus() { python -c "import sqlite3, sys; print(sqlite3.connect(sys.argv[1]).execute('select sum(surplus) from run').fetchone()[0])" "$1"; }
-# A rule finds the same prefix whatever the slots; what was computed ahead is surplus.
+# A rule finds the same prefix for any number of slots; runs computed ahead are surplus.
 sed '/^seeds/d; /threshold.angle/d' one.yaml >until.yaml
 echo "seeds: {until: {quantity: largest_fraction, half_width: 0.03, minimum: 10, batch: 5}, max: 60}" >>until.yaml
 expect 0 "$clast" run until.yaml -j 1 --store until-one.db

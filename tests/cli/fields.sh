@@ -48,7 +48,7 @@ expect 0 "$clast" check second/kept.db
 expect 0 "$clast" merge here/kept.db second/kept.db
 same "$(number here/kept.db "select count(*) from runs where fields_path like 'kept-fields/%'")" 4 "paths that lead to files"
 
-# A name is no way to another folder.
+# A file name cannot lead to another folder.
 sed 's,^name:.*,name: ../kept,; /^store/d' kept.yaml >out.yaml
 expect 65 "$clast" plan out.yaml
 says "slash"

@@ -29,7 +29,7 @@ shots:
       - {quantity: largest_fraction, value: $value, error: 0.01}
 YAML
 
-# Killed in the middle: the same command goes on, and its report is that of a fit that was not.
+# Killed in the middle: the same command continues, and its report equals that of an uninterrupted fit.
 "$clast" fit one.yaml disc.yaml --rounds 4 -j 1 --store killed.db >out 2>err &
 for _ in $(seq 200); do
   [ "$(sqlite3 killed.db 'select count(*) from run' 2>/dev/null || echo 0)" -gt 5 ] && break
@@ -112,7 +112,7 @@ assert abs(rows['weak: mass share above 0.05 M'] / statistics.mean(shares) - 1) 
 PY
 ok "counts and shares are those of the masses"
 
-# What is wrong, and where.
+# Error messages and their places.
 sed 's/largest_fraction/largest_fractoin/' one.yaml >wrong.yaml
 expect 65 "$clast" fit wrong.yaml disc.yaml
 says "wrong.yaml:5"

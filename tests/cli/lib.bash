@@ -1,4 +1,4 @@
-# What the command-line tests share. Each script is `bash NAME.sh BUILD_FOLDER SOURCE_FOLDER`, works in a folder of its own
+# Common parts of the command-line tests. Each script is `bash NAME.sh BUILD_FOLDER SOURCE_FOLDER`, works in a folder of its own
 # under the build folder, prints a line per thing it checks, and asserts at its end how many checks it made (`done_after`),
 # so that a script that skipped half of them cannot pass.
 set -euo pipefail
@@ -13,7 +13,7 @@ export NO_COLOR=1 TERM=dumb
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 unset CDPATH
 sanitized=$("$clast" version | grep -c fsanitize || true)
-if [ "$sanitized" -ne 0 ]; then # Open MPI leaks of its own; alone, leaks are looked for
+if [ "$sanitized" -ne 0 ]; then # Open MPI itself leaks; without it, leaks are checked
   export LSAN_OPTIONS="suppressions=$source/tests/leaks.supp:print_suppressions=0"
   mkdir bin
   printf '#!/bin/sh\nASAN_OPTIONS=detect_leaks=0 exec %s "$@"\n' "$(command -v mpirun)" >bin/mpirun
@@ -41,7 +41,7 @@ expect() {
 says() { grep -qF -- "$1" err || fail "stderr does not say: $1"; }       # on stderr
 prints() { grep -qF -- "$1" out || fail "stdout does not have: $1"; }    # on stdout
 silent() { [ ! -s "$1" ] || fail "$1 should be empty"; }
-# One error, said once: a line that begins like ours, and no second one.
+# Exactly one error line in our form.
 one_error() { [ "$(grep -c 'error: ' err)" -eq 1 ] || fail "expected one error line"; }
 same() { [ "$1" = "$2" ] || fail "${3:-values}: \"$1\" is not \"$2\""; ok "${3:-same}: $1"; }
 done_after() { [ "$checks" -eq "$1" ] || fail "made $checks checks, expected $1"; echo "$checks checks"; }
@@ -66,7 +66,7 @@ YAML
   for line in "$@"; do echo "$line" >>"$name.yaml"; done
 }
 number() { "$clast" query "$1" "$2" --csv | tail -n 1 | tr -d '\r'; } # number STORE SQL
-# The deterministic content of a store: the same however it was computed.
+# The deterministic content of a store: the same for any way of computing it.
 bits() { "$clast" export "$1" "$1.bits" --bits 2>>err || fail "no bits of $1"; [ -s "$1.bits" ] || fail "empty bits"; cat "$1.bits"; }
 same_bits() { # same_bits STORE REFERENCE.bits WHAT
   bits "$1" | cmp -s - "$2" || fail "$3: the store differs from the reference"

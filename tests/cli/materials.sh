@@ -20,7 +20,7 @@ says "did you mean 'basalt'"
 expect 64 "$clast" materials basalt ice
 says "does not know what to do"
 
-# Every printed document can be fed back: as a file it makes the same run as the name.
+# Every printed document can be used as a file: it gives the same run as the material's name.
 scene() { printf 'engine: sph\nkind: impact\ntarget: {radius: 3 cm, material: %s}\nprojectile: {radius: 6 mm}\nfidelity: {particles: 200}\nimpact: {gap: 0.1 mm}\nstop: {end_time: 1 us}\n' "$1"; }
 inputs() { "$clast" explain "$1" --json | python -c "
 import json, sys; print(*[(r['path'], r['value']) for r in json.load(sys.stdin) if r['path'] != 'target.material.name'], sep='\n')"; }

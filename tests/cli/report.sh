@@ -86,7 +86,7 @@ says "keep"
 
 if [ "$sanitized" -eq 0 ]; then
   command -v chromium >/dev/null || fail "chromium is missing: ./setup.sh packages installs it"
-  tiny other # 8 points, too many to be told apart in one chart
+  tiny other # 8 points, too many to distinguish in one chart
   sed -i 's/energy: 2/energy: 3/; s/strain: .*/strain: [2 %, 3 %, 4 %, 5 %]/' other.yaml
   expect 0 "$clast" run other.yaml -j 2 --quiet
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db || fail "the page in a browser"

@@ -34,7 +34,7 @@ assert all(float(r["total_hw95"]) > 0 for r in rows.values())
 PY
 ok "indices of both inputs and of the seed"
 
-# A block without a run is left out, and told.
+# A block without a run is left out, and the output says so.
 expect 0 "$clast" export ask.db less.db
 python -c "
 import sqlite3

@@ -74,7 +74,7 @@ def grid(path):
 
 def check_grid(path, **config):
     points = grid(path)
-    with ThreadPoolExecutor(8) as pool:  # all at a time: every answer must be that of its own request
+    with ThreadPoolExecutor(8) as pool:  # all at once: every answer must belong to its own request
         outputs = list(pool.map(lambda point: evaluate("disc", point[0], statistic=["mean", "sd", "se", "hw95"],
                                                        results=["largest_fraction", "fragment_count"], **config), points))
     for (vector, row), output in zip(points, outputs):
@@ -111,7 +111,7 @@ def protocol():
     levels = [evaluate("disc", vector, level=level)[0][0] for level in (0, 1)]
     assert len({*levels}) == 2
     assert len(evaluate("disc", vector, statistic=["mean", "se"], results=["fragment_count"])) == 2
-    # the same new run for many at a time: one answer
+    # many requests for the same new run at once: one answer
     with ThreadPoolExecutor(8) as pool:
         same = list(pool.map(lambda _: evaluate("disc", [0.03, 0.1, 1e9], replicates=2)[0][0], range(16)))
     assert len(set(same)) == 1

@@ -6,7 +6,7 @@
 served() {
   local name=$1
   shift
-  rm -f serve.err # else the port of the server before may be read
+  rm -f serve.err # otherwise the port of the previous server may be read
   "$clast" serve "$name.yaml" --port 0 -j 2 "$@" >out 2>serve.err </dev/null &
   pid=$!
   for _ in $(seq 200); do
@@ -26,7 +26,7 @@ ended() { # ended EXIT TEXT: SIGTERM ends the server, and it says so
   grep -qF "$2" serve.err || { cat serve.err; fail "the server did not say: $2"; }
   ok "server ended: $2"
 }
-client() { # client WHAT...: what the server said stands beside what the client said
+client() { # client WHAT...: prints the server's messages together with the client's
   timeout 300 python "$source/tests/cli/serve.py" "$url" "$@" >out 2>err || { cat serve.err; fail "serve.py $1"; }
   ok "serve.py $1"
 }
@@ -65,7 +65,7 @@ served disc --knob grains=1.2cm,1.07cm
 client again points.jsonl
 ended 0 "0 runs computed"
 same "$(number disc.db "select count(*) from runs")" "$runs" "runs after the second server"
-expect 0 "$clast" run disc.yaml -j 2 # a campaign goes on from what was served
+expect 0 "$clast" run disc.yaml -j 2 # a campaign continues with the served runs
 says "0 runs computed"
 
 # ---- limits: time of an answer, a run's own limit, the end of a server under load

@@ -32,7 +32,7 @@ ends() {
   fail "exit $got, expected $*"
 }
 descendants() { local p; for p in $(pgrep -P "$1"); do echo "$p"; descendants "$p"; done; }
-# Nothing of ours may be left a moment after its end. The process group of setsid is its pid.
+# No process of the campaign may be left shortly after its end. The process group of setsid is its pid.
 gone() {
   local i
   for i in $(seq 100); do pgrep -s "$pid" >/dev/null || { ok "no process is left"; return; }; sleep 0.1; done

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs that cannot go well: a time step above stability, an energy that drifts, runs over their time or memory. Verdicts are
-# rows, attempts are logged, the campaign goes on, and what was given up can be tried again.
+# Runs that must fail: a time step above stability, an energy that drifts, runs over their time or memory. Verdicts are
+# rows, attempts are logged, the campaign goes on, and abandoned runs can be tried again.
 . "$(dirname "$0")/../cli/lib.bash"
 
 small=(--set "body.diameter=8 cm" --set "stop.end_time=1 ms")
@@ -21,7 +21,7 @@ same "$(number verdict.db "select count(*) from runs where state = 'invalid' and
 expect 1 "$clast" run verdict.yaml --quiet
 same "$(number verdict.db "select count(*) from run")" 6 "a verdict is not computed again"
 
-# doubts: said before the run by simulate, plan and run, kept in the result, and counted
+# warnings: printed before the run by simulate, plan and run, stored with the result, and counted
 expect 0 "$clast" simulate disc-explosion "${small[@]}" --set charge.energy=3MJ/m --set fidelity.time_step=0.2us --json
 says "warning: passing: grains meet at about"; says "warnings of this run: passing"; prints '"warnings": "passing"'
 expect 0 "$clast" simulate disc-explosion "${small[@]}" --set charge.energy=3MJ/m --set fidelity.time_step=0.2us --quiet
@@ -42,7 +42,7 @@ prints "step"
 expect 64 "$clast" extremes doubt.db --picture map.bmp
 expect 66 "$clast" extremes nosuch.db
 
-# over its time
+# over its time limit
 slow time; sed -i 's/14 cm/40 cm/; s/per_point: [0-9]*/per_point: 1/' time.yaml
 echo 'limits: {time: 0.05 s, attempts: 2, failures: 0}' >>time.yaml
 expect 1 "$clast" run time.yaml -j 2
@@ -59,7 +59,7 @@ expect 0 "$clast" retry time.db --status failed --time "100 s" -j 2
 same "$(number time.db "select count(*) from runs where counts")" 3 "runs after the retry"
 expect 64 "$clast" retry time.db --status elephant
 
-# over its memory
+# over its memory limit
 slow memory; sed -i 's/14 cm/400 cm/; s/per_point: [0-9]*/per_point: 1/; s/\[2 %, 3 %, 5 %\]/[2 %]/' memory.yaml
 echo 'limits: {memory: 8 MiB, attempts: 1, failures: 0}' >>memory.yaml
 if [ "$sanitized" -eq 0 ]; then

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Faults of the machine, not of a run: signals from outside, full disks, a store that is moved away, a launcher without
-# MPI. No run is given up for them: the same command computes what is missing, to the reference's bits.
+# MPI. No run is given up because of them: the same command computes the missing runs with the reference's bits.
 . "$(dirname "$0")/../cli/lib.bash"
 ask() { python -c "import sqlite3, sys; print(sqlite3.connect('file:%s?mode=ro' % sys.argv[1], uri=True).execute(sys.argv[2]).fetchone()[0])" "$1" "$2"; }
 
@@ -89,7 +89,7 @@ same_bits fields.db fields.bits "after a full disk"
 for file in fields-fields/*.h5; do cmp -s "$file" "whole-fields/$(basename "$file")" || fail "$file differs"; done
 ok "the fields are those of a run without a full disk"
 
-# a limit on file sizes (ulimit -f, SIGXFSZ) is a full disk: said, 74
+# a limit on file sizes (ulimit -f, SIGXFSZ) counts as a full disk: a message, exit code 74
 tiny tiny
 sed -i 's/per_point: 3/per_point: 600/' tiny.yaml
 expect 74 bash -c "ulimit -f 700; '$clast' run tiny.yaml -j 2 --quiet"
@@ -109,7 +109,7 @@ done
 cmp -s slow.db replaced.db || fail "the file that took the store's place was written"
 expect 0 "$clast" check elsewhere.db
 
-# names that SQLite takes for memory
+# names that SQLite treats as a database in memory
 for name in :memory: "file::memory:?mode=memory" "file:x.db?mode=memory" ""; do
   expect 64 "$clast" run slow.yaml --store "$name" --quiet
   one_error
@@ -129,7 +129,7 @@ expect 65 "$clast" status copy.db
 says "-wal"
 
 # programs that a launcher started side by side without MPI: refused before anything is written
-# (Open MPI keeps memory: leaks are not looked for)
+# (Open MPI keeps memory: leaks are not checked)
 for launcher in "SLURM_STEP_NUM_TASKS=4 SLURM_PROCID=0" "PMI_RANK=0 PMI_SIZE=4 ASAN_OPTIONS=detect_leaks=0"; do
   expect 64 env $launcher "$clast" run slow.yaml --store single.db --quiet
   says "--mpi=pmix"

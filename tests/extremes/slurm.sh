@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Slurm for real: a cluster of one node on loopback, from Debian's packages slurm-wlm and munge, in a folder of its own.
+# A real Slurm: a cluster of one node on loopback, from Debian's packages slurm-wlm and munge, in a folder of its own.
 # The job script of the guide is requeued on 75 and finishes, also after scontrol requeue, scancel and SIGKILL; no run is
 # given up. A job array fills stores that are merged; srun without PMI is refused. The bits are those of one machine.
 #
@@ -116,7 +116,7 @@ for part in 0 1 2; do wait_for "${array}_$part" COMPLETED; done
 expect 0 "$clast" merge parts.db part-0.db part-1.db part-2.db
 same_bits parts.db reference.bits "a merged job array"
 
-# srun: programs that do not know of each other are refused before they write; pmix connects them; one alone works.
+# srun: programs that are not connected are refused before they write; pmix connects them; a single program works.
 tiny small
 for kind in none pmi2; do
   expect 64 srun --mpi=$kind -n 2 "$clast" run small.yaml --quiet
@@ -132,7 +132,7 @@ same_bits small.db one.bits "srun --mpi=pmix"
 expect 0 srun -n 1 "$clast" run small.yaml --quiet --store single.db
 same_bits single.db one.bits "srun -n 1"
 
-# The job script once more: nothing is left to do, and it ends at once.
+# The job script again: no run is missing, and it ends immediately.
 job=$(sbatch --parsable --ntasks=2 --time=10 slurm.sh slow.yaml)
 wait_for "$job" COMPLETED
 
@@ -149,7 +149,7 @@ ends_well() {
   same_bits "$1.db" reference.bits "$2"
   same "$(number "$1.db" 'select count(*) from attempt')" 0 "attempts that count against a run, $2"
 }
-start_again() { # of a job that waits for its two minutes
+start_again() { # for a job that would wait two minutes
   wait_for "$job" PENDING
   scontrol update JobId="$job" StartTime=now
 }

@@ -59,7 +59,7 @@ expect 0 "$clast" query ab.db "select count(distinct point_id) as n from point_i
 prints 4
 expect 0 "$clast" check ab.db
 
-# Bits are those of a class of CPU: replayed on another one they differ, and replay says why.
+# Bits belong to a CPU class: a replay in another class differs, and replay gives the reason.
 class=$("$clast" query ab.db "select json_extract(facts, '$.cpu_class') from session" --csv | tail -n 1 | tr -d '\r')
 expect 0 "$clast" replay ab.db 1
 if [ "$class" = baseline ]; then

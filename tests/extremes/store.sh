@@ -47,7 +47,7 @@ expect 65 "$clast" check flipped.db
 expect 65 "$clast" replay flipped.db 1
 prints "fragment masses"
 
-# read-only: needs a user whom permissions bind
+# read-only: needs a user other than root
 chmod 755 .
 cp tiny.db locked.db; chmod 444 locked.db; mkdir fixed; cp tiny.db fixed/; chmod 555 fixed
 if [ "$(id -u)" -ne 0 ]; then as=(); elif setpriv --reuid=65534 --clear-groups test -x "$work" 2>/dev/null && setpriv --reuid=65534 --clear-groups test -x "$clast"; then as=(setpriv --reuid=65534 --clear-groups); else as=(none); fi
@@ -62,7 +62,7 @@ else
   for i in 1 2 3 4; do ok "(not tried: permissions do not bind here)"; done
 fi
 
-# one writer: the second is told who has it; readers read meanwhile
+# one writer: the second gets a message that names the first; readers can read meanwhile
 slow slow
 "$clast" run slow.yaml -j 1 --quiet >/dev/null 2>&1 &
 pid=$!
@@ -75,7 +75,7 @@ prints "slow"
 kill -TERM "$pid"; code=0; wait "$pid" || code=$?
 same "$code" 75 "the first writer was not disturbed"
 
-# a full disk: in a file system of its own if we may, else by a limit on file sizes
+# a full disk: in a separate file system if permitted, otherwise by a limit on file sizes
 expect_full() { [ "$got" -eq 74 ] || fail "exit $got on a full disk"; says "$1"; one_error; ok "exit 74: $2"; }
 mkdir small
 sed -i 's/per_point: [0-9]*/per_point: 6/' slow.yaml

@@ -7,7 +7,7 @@ cd "$source"
 failures=0 pages=0 links=0
 fail() { echo "contributing: $*"; failures=$((failures + 1)); }
 
-# 1. Pages: five parts in this order, listed in tests/README.md; "Pass if" or "No gate" says what is asked.
+# 1. Pages: five parts in this order, listed in tests/README.md; "Pass if" or "No gate" states the criterion.
 for page in tests/verification/*.md tests/validation/*.md; do
   pages=$((pages + 1))
   parts=$(grep -E '^## ' "$page" | tr '\n' ' ')

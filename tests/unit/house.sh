@@ -43,7 +43,7 @@ only() {
   done < <(lines_of_code "^#[[:space:]]*include[[:space:]]*<($1)")
 }
 
-# Outside libraries stay where they belong.
+# Each external library is used only in its own files.
 check_libraries() {
   only 'libfyaml' schemas
   only 'hdf5' 'engine|analysis/pictures'
@@ -112,7 +112,7 @@ check_exports() {
   done
 }
 
-# Nothing names a machine's folders.
+# No file contains a path of a machine.
 check_machine_paths() {
   local hit
   while IFS= read -r hit; do
@@ -121,7 +121,7 @@ check_machine_paths() {
     setup.sh .ci 2>/dev/null | grep -v '^tests/unit/house.sh:' || true)
 }
 
-# Every C file is as clang-format leaves it.
+# Every C file has the format of clang-format.
 check_format() {
   command -v clang-format >/dev/null || { fail "clang-format is missing: ./setup.sh packages installs it"; return; }
   local hit

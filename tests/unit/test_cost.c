@@ -36,8 +36,8 @@ static void time_left(void **state) {
   NEAR(cost_time_left(&left), 4, 1e-12);
 }
 
-/* The piece stands at a quarter of the hard end after 10 steps; the coarse run had made 5 steps there, and ended after
- * 20 steps at 0.6: the whole run takes 40 steps. */
+/* The piece has reached a quarter of the hard end after 10 steps; the coarse run had made 5 steps there, and ended
+ * after 20 steps at 0.6: the whole run takes 40 steps. */
 static void whole_runs(void **state) {
   (void)state;
   struct pilot_run *piece = calloc(2, sizeof *piece), *coarse = piece + 1;

@@ -79,7 +79,7 @@ static size_t count_reached(int front, double arrest, double times) {
   struct sph_flaws *flaws;
   size_t middle, reached = 0;
   struct solid_case c = pulled(front, arrest, &flaws, &middle);
-  c.particles->damage_cbrt[middle] = 1; /* whatever the load */
+  c.particles->damage_cbrt[middle] = 1; /* for any load */
   for (size_t i = 0; i < c.particles->n; i++) {
     for (int k = 0; k < 6; k++)
       c.particles->stress[k][i] *= times;

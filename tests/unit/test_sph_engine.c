@@ -105,7 +105,7 @@ static void impact_starts_as_described(void **state) {
   assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
   const struct sph_particles *p = run->start;
   assert_true(fabs(run->range[1].mass / 2e-4 - 1) < 1e-12);
-  /* where it touches, the normal is z whatever the gap: from there it went back along its flight */
+  /* at first contact the normal is z for any gap: from there the projectile was moved back along its flight */
   double r = run->shape[1].radius, way = inputs.impact.gap / cos(30 * M_PI / 180);
   assert_true(fabs(run->shape[1].centre[0] + 0.5 * way) < 1e-12);
   assert_true(fabs(run->shape[1].centre[2] - (0.03 + r + inputs.impact.gap)) < 1e-12);
@@ -118,7 +118,7 @@ static void impact_starts_as_described(void **state) {
     top = fmax(top, sqrt(p->x[i] * p->x[i] + p->y[i] * p->y[i] + p->z[i] * p->z[i]));
     assert_true(p->vx[i] == 0 && p->vy[i] == 0 && p->vz[i] == 0);
   }
-  if (!(top <= 0.03 + 0.1 * run->range[0].spacing)) /* particles stand in the middle of their matter */
+  if (!(top <= 0.03 + 0.1 * run->range[0].spacing)) /* particles are in the middle of their matter */
     fail_msg("%g", top);
   assert_true(least >= 0.03 + 0.5 * inputs.impact.gap);
   assert_true(fabs(sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 3200 - 1) < 1e-12);

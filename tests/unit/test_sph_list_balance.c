@@ -19,7 +19,7 @@ struct cloud {
   double x[MOST + 7], y[MOST + 7], z[MOST + 7], reach[MOST + 7];
 };
 
-/* A jittered lattice of spacing 1, row by row; some particles are far off, not finite or coincide, some reach three
+/* A jittered lattice of spacing 1, row by row; some particles are far off, not finite or coincident, some reach three
  * times as far. */
 static struct cloud *cloud_make(bool odd) {
   struct cloud *c = calloc(1, sizeof *c);
@@ -97,8 +97,8 @@ static void every_pair_is_met_once_and_batches_are_whole(void **state) {
     for (size_t chunk = 0; chunk * size < MOST; chunk++) {
       const size_t first = chunk * size, own = MOST - first < size ? MOST - first : size;
       const double idle = check(c, periods, n, share, chunk, first, own);
-      /* a sixth and more without; what is left is of the last lists, that have nobody to hand to, and of those without
-       * the right number */
+      /* without moving pairs, a sixth of the lanes or more is idle; idle lanes remain in the last lists, which have no
+       * later list to give pairs to, and in lists without the right number */
       if (size > MOST)
         assert_true(idle < 0.04);
     }

@@ -69,7 +69,7 @@ static void values_are_exact(void **state) {
       {"4.9406564584124654e-324", "m", 4.9406564584124654e-324},
       {"-0", "m", 0},
       {"0e999999999999", "m", 0},
-      {"5", "cm", 0.05}, /* a bare number is in the expected unit */
+      {"5", "cm", 0.05}, /* a number without unit is in the expected unit */
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     double si = -1;

@@ -1,5 +1,5 @@
 /* Plane shocks in aluminium and basalt without strength, against the jump conditions solved with the equation of state
- * by itself: rho0 Us = rho (Us - up), P = rho0 Us up, u = up^2/2.
+ * alone: rho0 Us = rho (Us - up), P = rho0 Us up, u = up^2/2.
  *
  * A thin periodic bar whose halves run into each other at up: by symmetry each is a rigid wall to the other, so that
  * the matter behind the shock moves at exactly up as seen from the matter ahead. The shock's speed is that of the place

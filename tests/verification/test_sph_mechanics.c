@@ -445,8 +445,8 @@ static void pressures(void **state) {
   sph_particles_free(p);
 }
 
-/* Where tension_limit stands for flaws, torn matter bears no shear: Y falls from the density at rest to nothing at 0.9
- * of it. Matter with flaws keeps its Y (D takes its strength), and so does matter without a limit. */
+/* Where tension_limit replaces flaws, torn matter has no shear strength: Y falls from the density at rest to nothing at
+ * 0.9 of it. Matter with flaws keeps its Y (D takes its strength), and so does matter without a limit. */
 static void torn_matter_bears_no_shear(void **state) {
   (void)state;
   const struct case_block block = {{12, 12, 12}, {0, 0, 0}, {0, 0, 0}, spacing};
