@@ -1,5 +1,5 @@
-/* Call once per process, before anything else of analysis/: the libraries' own error handlers print and abort, where
- * this program returns a status. */
+/* Call once per process, before any other function of analysis/. The libraries' own error handlers print and abort;
+ * this program returns a status instead. */
 #ifndef CLAST_ANALYSIS_ANALYSIS_H
 #define CLAST_ANALYSIS_ANALYSIS_H
 

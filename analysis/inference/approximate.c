@@ -65,7 +65,7 @@ static size_t pick(const struct approximate *a, double u) {
   return a->kept - 1;
 }
 
-/* Prior density over the density of all ways to propose z. */
+/* Prior density divided by the proposal density at z, summed over all kept particles. */
 static double weight_of(const struct approximate *a, const double *factor, const double *z) {
   const size_t p = a->inputs;
   double proposed = 0, sum = 0, prior = 0, step[APPROXIMATE_INPUTS], half[APPROXIMATE_INPUTS];
@@ -77,8 +77,8 @@ static double weight_of(const struct approximate *a, const double *factor, const
   }
   for (size_t i = 0; i < p; i++)
     prior -= z[i] * z[i] / 2;
-  /* The kernel's own factor is the same for all particles of a round; kept ones of earlier rounds have theirs, so it
-   * cannot be left out. */
+  /* The factor of the kernel is the same for all particles of a round. Particles kept from earlier rounds have another
+   * factor, so it cannot be left out. */
   return exp(prior) / (proposed / sum * exp(-covariance_log_determinant(p, factor) / 2));
 }
 

@@ -5,16 +5,16 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Puts the lower factor L into the lower triangle of *matrix; what is above the diagonal is left. False: the matrix is
- * not positive. analysis_init() has been called. */
+/* Writes the lower factor L into the lower triangle of *matrix; elements above the diagonal do not change. False: the
+ * matrix is not positive definite. Call analysis_init() first. */
 bool covariance_factor(size_t n, double *matrix);
 /* The logarithm of the determinant of L L^T. */
 double covariance_log_determinant(size_t n, const double *factor);
 /* x = (L L^T)^-1 b; x may be b. */
 void covariance_solve(size_t n, const double *factor, const double *b, double *x);
-/* b^T (L L^T)^-1 b; `half` has room for n: L^-1 b. */
+/* Returns b^T (L L^T)^-1 b. `half` is an array of n; it receives L^-1 b. */
 double covariance_distance(size_t n, const double *factor, const double *b, double *half);
-/* The whole inverse of L L^T into *inverse, n x n. */
+/* Writes the whole inverse of L L^T into *inverse, n x n. */
 void covariance_inverse(size_t n, const double *factor, double *inverse);
 /* Eigenvalues in descending order, and the eigenvectors as rows, of a symmetric matrix of at most COVARIANCE_MOST rows.
  */

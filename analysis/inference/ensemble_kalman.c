@@ -11,12 +11,12 @@
 #include "analysis/inference/covariance.h"
 #include "engine/random.h"
 
-/* Normal coordinates stay within the prior: beyond 3.5 lies 0.05 % of it. */
+/* Limit of normal coordinates: 0.05 % of the prior lies beyond 3.5. */
 static const double FARTHEST = 3.5;
 
 struct work {
-  size_t good;                   /* members with results */
-  size_t *member;                /* their numbers */
+  size_t good;                   /* number of members with results */
+  size_t *member;                /* indices of these members */
   double *mean_z, *mean_g;       /* of the good members */
   double *cross, *spread;        /* covariances: inputs x outputs, outputs x outputs */
   double *root;                  /* Cholesky factor of gamma */
@@ -93,8 +93,8 @@ static double misfit_of(const struct ensemble_kalman *e, struct work *w, size_t 
   return covariance_distance(e->outputs, w->root, w->innovation, w->weighted) / 2;
 }
 
-/* The part of the data that a step takes: max(d / 2 mean, sqrt(d / 2 variance)) of the misfits, but at least `least`
- * and at most what is left. */
+/* The part of the data that a step uses: max(d / 2 mean, sqrt(d / 2 variance)) of the misfits, but at least `least` and
+ * at most the remaining part. */
 static double part_of(const struct ensemble_kalman *e, struct work *w) {
   double mean = 0, variance = 0;
   for (size_t i = 0; i < w->good; i++) {
@@ -127,7 +127,7 @@ static void move(const struct ensemble_kalman *e, struct work *w, size_t member,
   }
 }
 
-/* A member without results takes the place of a good one, moved by a tenth of the prior. */
+/* Replaces a member without results by a good one, shifted by a tenth of the prior's width. */
 static void replace(const struct ensemble_kalman *e, const struct work *w, size_t member) {
   const double u = random_draw(e->seed, RANDOM_INFERENCE, e->round << 32 | member, 1000000);
   const size_t other = w->member[(size_t)(u * (double)w->good)];

@@ -10,8 +10,8 @@
 #include "analysis/statistics/sample.h"
 
 enum { NODES = 64 };
-static const double STEP = 0.05; /* of the slopes, in normal coordinates */
-static const double PART = 0.25; /* a component of a unit vector that counts */
+static const double STEP = 0.05; /* step of the slopes, in normal coordinates */
+static const double PART = 0.25; /* a component of a unit vector counts from this size on */
 
 /* J^T C^-1 J at z. */
 static void information_at(const struct posterior_model *model, const double *z, double *information) {
@@ -41,7 +41,7 @@ static void information_at(const struct posterior_model *model, const double *z,
   }
 }
 
-/* Medians over nodes of the sorted eigenvalues: the directions turn along a bent ridge, their information stays. */
+/* Medians over nodes of the sorted eigenvalues. Along a bent ridge the directions turn, but the eigenvalues stay. */
 static void find_information(const struct posterior_model *model, const struct posterior *posterior,
                              struct identify *out) {
   const size_t p = model->inputs;
@@ -61,7 +61,8 @@ static void find_information(const struct posterior_model *model, const struct p
   }
 }
 
-/* From the mean information over nodes: the slopes of a surface at one place may be those of a wiggle. */
+/* Directions come from the mean information over nodes, because the slopes at a single place may come from a local
+ * wiggle of the surface. */
 static void find_directions(const struct posterior_model *model, const struct posterior *posterior,
                             const double *covariance, struct identify *out) {
   const size_t p = model->inputs;
@@ -94,7 +95,7 @@ void identify_find(const struct posterior_model *model, const struct posterior *
   *out = (struct identify){.inputs = model->inputs};
   posterior_moments(posterior, out->centre, covariance);
   for (size_t i = 0; i < model->inputs; i++) {
-    /* In quantiles of the prior: its own 90 % interval is 0.9 wide. */
+    /* Widths are in quantiles of the prior, whose own 90 % interval is 0.9 wide. */
     const double low = posterior_quantile(posterior, i, 0.05), high = posterior_quantile(posterior, i, 0.95);
     out->kept[i] = (gsl_cdf_ugaussian_P(high) - gsl_cdf_ugaussian_P(low)) / 0.9;
   }

@@ -13,14 +13,14 @@
 static const double TREND = 10;
 /* Prior of ln(length): a median of 2 units of x, within a factor e; of ln(variance of the process): within e^1.5. */
 static const double LENGTH = 0.69, LENGTH_WIDTH = 1, VARIANCE_WIDTH = 1.5;
-static const double JITTER = 1e-6; /* of the variance of the means, on the diagonal */
-enum { MOST_STEPS = 160, MOST_POINTS = 80 /* that hyperparameters are found from: each try costs points^3 */ };
+static const double JITTER = 1e-6; /* share of the variance of the means, added to the diagonal */
+enum { MOST_STEPS = 160, MOST_POINTS = 80 /* limits of the search for hyperparameters: each try costs points^3 */ };
 
 struct kriging {
   size_t points, inputs;
-  double *x, *y, *noise;    /* y: means less their mean, over their scale; noise over scale^2 */
-  double *factor, *inverse; /* of the covariance of y */
-  double *weights, *near;   /* inverse . y; covariances of a place with the points */
+  double *x, *y, *noise;    /* y: means minus their mean, divided by their scale; noise divided by scale^2 */
+  double *factor, *inverse; /* Cholesky factor and inverse of the covariance of y */
+  double *weights, *near;   /* inverse . y; covariances between a place and the points */
   double middle, scale;
   double variance, length[KRIGING_INPUTS];
 };
@@ -125,7 +125,7 @@ static bool copy(const struct kriging_data *data, struct kriging *k) {
   return true;
 }
 
-/* Hyperparameters from every s-th point, so many that the search is cheap. */
+/* Finds hyperparameters from every s-th point, with s so large that the search is cheap. */
 static status maximise_on_part(struct kriging *k, struct error *error) {
   const size_t step = (k->points + MOST_POINTS - 1) / MOST_POINTS, n = (k->points + step - 1) / step;
   struct kriging *part = calloc(1, sizeof *part);

@@ -1,4 +1,4 @@
-/* Likelihood, grid, and what weighted nodes tell. The sampler is posterior_sample.c. */
+/* Likelihood, grid, and statistics of weighted nodes. The sampler is posterior_sample.c. */
 #include "analysis/inference/posterior.h"
 
 #include <gsl/gsl_cdf.h>
@@ -12,8 +12,8 @@
 /* Nodes per input of a grid of 1 to 4 inputs. */
 static const size_t nodes_of[POSTERIOR_GRID_INPUTS + 1] = {0, 400, 60, 22, 12};
 enum { ZOOMS = 4, PREDICTED_NODES = 400 };
-static const double NEGLIGIBLE = 12;   /* below the largest logarithm: 6e-6 of it */
-static const double FEWEST_NODES = 40; /* effective ones, below which a grid is too coarse */
+static const double NEGLIGIBLE = 12;   /* drop below the largest log density: a density of 6e-6 of the maximum */
+static const double FEWEST_NODES = 40; /* effective nodes; with fewer a grid is too coarse */
 
 double posterior_share(double z) {
   return gsl_cdf_ugaussian_P(z);
@@ -61,11 +61,11 @@ double posterior_likelihood(const struct posterior_model *model, const double *z
 
 /* ---- the grid ---- */
 
-struct box { /* of quantiles of the priors */
+struct box { /* limits in quantiles of the priors */
   double low[POSTERIOR_INPUTS], high[POSTERIOR_INPUTS];
 };
 
-/* Nodes are the middles of cells of equal prior probability. Returns the largest logarithm. */
+/* Nodes are the centres of cells of equal prior probability. Returns the largest log density. */
 static double fill_grid(const struct posterior_model *model, const struct box *box, size_t side,
                         struct posterior *out) {
   double most = -HUGE_VAL;
@@ -81,7 +81,8 @@ static double fill_grid(const struct posterior_model *model, const struct box *b
   return most;
 }
 
-/* Shrinks the box to the nodes that count, and a cell beyond. Returns how much smaller it became. */
+/* Shrinks the box to the nodes that are not negligible, plus one cell. Returns the ratio of the new volume to the old
+ * one. */
 static double shrink(const struct posterior_model *model, const struct posterior *grid, double most, size_t side,
                      struct box *box) {
   double factor = 1;
@@ -180,7 +181,7 @@ void posterior_clear(struct posterior *posterior) {
   *posterior = (struct posterior){0};
 }
 
-/* ---- what the nodes tell ---- */
+/* ---- statistics of the nodes ---- */
 
 struct weighted {
   double z, weight;
@@ -199,7 +200,7 @@ double posterior_quantile(const struct posterior *posterior, size_t input, doubl
     nodes[n] = (struct weighted){posterior->z[n * posterior->inputs + input], posterior->weight[n]};
   qsort(nodes, posterior->count, sizeof *nodes, by_z);
 
-  /* Nodes of the same z (a column of the grid) are one; its weight lies half below it, half above. */
+  /* Nodes of the same z (a column of the grid) are merged; half of the weight counts as below z, half as above. */
   double before = -1, z_before = nodes[0].z, below = 0, found = NAN;
   for (size_t n = 0; n < posterior->count && isnan(found);) {
     const double z = nodes[n].z;

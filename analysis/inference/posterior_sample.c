@@ -39,7 +39,7 @@ static void sweep(const struct posterior_model *model, uint64_t seed, uint64_t n
   }
 }
 
-/* Walkers begin at the best of some draws from the prior: one of ten. */
+/* Each walker begins at the best of ten draws from the prior. */
 static void begin(const struct posterior_model *model, uint64_t seed, double *z, double *log_density) {
   const size_t p = model->inputs;
   double tried[POSTERIOR_INPUTS];

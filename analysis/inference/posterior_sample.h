@@ -7,8 +7,8 @@
 enum { POSTERIOR_SAMPLE_NODES = 4000 };
 
 /* Fills z, POSTERIOR_SAMPLE_NODES x inputs: the stretch move of Goodman & Weare (2010, doi 10.2140/camcos.2010.5.65),
- * which any stretched posterior costs the same. The first half of the moves is left out. Same seed, same sample. False:
- * no memory. */
+ * whose cost does not depend on how stretched the posterior is. The first half of the moves is discarded. The same seed
+ * gives the same sample. False: no memory. */
 bool posterior_sample_fill(const struct posterior_model *model, uint64_t seed, double *z);
 
 #endif

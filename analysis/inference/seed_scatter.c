@@ -1,4 +1,4 @@
-/* Variance over seeds, and what shared seeds do to means. */
+/* Variance over seeds, and the covariance of means with shared seeds. */
 #include "analysis/inference/seed_scatter.h"
 
 #include <gsl/gsl_sf_psi.h>
@@ -7,7 +7,7 @@
 
 #include "analysis/inference/covariance.h"
 
-/* Number, mean and sum of squares of a point's runs. */
+/* Number, mean and sum of squared deviations of a point's runs. */
 struct moments {
   size_t n;
   double mean, squares;
@@ -27,7 +27,7 @@ static struct moments moments_of(const struct seed_scatter_runs *runs, size_t po
   return m;
 }
 
-/* Mean variance over all points, and the degrees of freedom behind it. */
+/* Mean variance over all points, and its degrees of freedom. */
 static double pooled_variance(const struct seed_scatter_runs *runs, size_t *freedom) {
   double squares = 0;
   *freedom = 0;
@@ -51,7 +51,7 @@ static void fit_line(const struct seed_scatter_runs *runs, double pooled, struct
     if (m.n < 2)
       continue;
     const double half = (double)(m.n - 1) / 2;
-    /* A chance run of equal values says that the variance is small, not that it is 0. */
+    /* Runs that are equal by chance show that the variance is small, not that it is 0. */
     const double variance = fmax(m.squares / (2 * half), 1e-4 * pooled);
     const double y = log(variance / pooled) - gsl_sf_psi(half) + log(half), weight = 1 / gsl_sf_psi_1(half);
     row[0] = 1;
@@ -71,7 +71,8 @@ static void fit_line(const struct seed_scatter_runs *runs, double pooled, struct
   memcpy(out->slope, right + 1, runs->inputs * sizeof *right);
 }
 
-/* The variance over points of sums over points, seed by seed, tells how far the seeds move together. */
+/* Correlation from sums over points, seed by seed: their variance over seeds shows how strongly a seed moves all points
+ * together. */
 static double shared_correlation(const struct seed_scatter_runs *runs, const struct seed_scatter *fit) {
   double together = 0, alone = 0, pairs = 0;
   for (size_t r = 0; r < runs->replicates; r++) {
@@ -90,7 +91,7 @@ static double shared_correlation(const struct seed_scatter_runs *runs, const str
     alone += squares;
     pairs += n * (n - 1);
   }
-  const double points = pairs > 0 ? pairs / (double)runs->replicates : 0; /* n (n - 1) of one seed */
+  const double points = pairs > 0 ? pairs / (double)runs->replicates : 0; /* mean n (n - 1) per seed */
   const double n = (1 + sqrt(1 + 4 * points)) / 2;
   return points > 0 && alone > 0 ? fmin(fmax(together / (n - 1) / alone, 0), 0.99) : 0;
 }
@@ -124,7 +125,7 @@ status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, 
     return status_fail(error, STATUS_CONTENT,
                        "no point has two runs with a value of this output, so its scatter over seeds is not known: "
                        "give more seeds (seeds.per_point), or another quantity");
-  out->constant = pooled > 0 ? log(pooled) : -700; /* an output that no seed moves */
+  out->constant = pooled > 0 ? log(pooled) : -700; /* no seed changes this output */
   if (pooled > 0)
     fit_line(runs, pooled, out);
   if (pooled > 0 && shared_seeds)

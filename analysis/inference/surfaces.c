@@ -1,4 +1,4 @@
-/* Runs to surfaces. */
+/* Fits surfaces to runs. */
 #include "analysis/inference/surfaces.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ double surfaces_mean(const struct surfaces_runs *runs, size_t output, size_t poi
   return n ? sum / (double)n : (double)NAN;
 }
 
-/* What one output's scatter and surface are fitted to: copies, without points of fewer than two runs. */
+/* Data for the scatter and surface of one output: copies, without points of fewer than two runs. */
 struct part {
   struct seed_scatter_runs runs;
   double *x, *values, *mean, *noise;
@@ -81,13 +81,13 @@ static void find_correlations(const struct surfaces_runs *runs, double *correlat
                                           .values = values_of(runs, k, 0)};
       struct seed_scatter_runs b = a;
       b.values = values_of(runs, l, 0);
-      /* A correlation of 1 would let one datum stand for another, exactly. */
+      /* With a correlation of 1, one datum would determine another exactly. */
       const double r = k == l ? 1 : 0.98 * seed_scatter_correlation(&a, &b);
       correlation[k * runs->outputs + l] = correlation[l * runs->outputs + k] = r;
     }
 }
 
-/* Root mean square of the errors of leaving out one point. */
+/* Root mean square of the leave-one-out errors. */
 static double left_out(const struct kriging *surface, size_t points) {
   double *errors = calloc(points, sizeof *errors), squares = 0;
   if (!errors)
@@ -150,7 +150,7 @@ void surfaces_clear(struct surfaces *surfaces) {
   }
 }
 
-/* Mean place of the last points. */
+/* Mean position of the last points. */
 static void middle_of(const struct surfaces_runs *runs, const bool *bounded, size_t members, double *x) {
   struct posterior_model place = {.inputs = runs->inputs};
   double z[POSTERIOR_INPUTS] = {0};

@@ -1,5 +1,5 @@
-/* From the runs of all rounds to the model of the posterior: scatter over seeds, surfaces through the means, and how
- * far a measurement may be from them. */
+/* Turns the runs of all rounds into the model for the posterior: scatter over seeds, surfaces through the means, and
+ * the difference to expect between a measurement and the surfaces. */
 #ifndef CLAST_ANALYSIS_INFERENCE_SURFACES_H
 #define CLAST_ANALYSIS_INFERENCE_SURFACES_H
 
@@ -10,23 +10,23 @@ struct surfaces_runs {
   size_t points, inputs, outputs, replicates;
   const double *z;      /* points x inputs, normal coordinates */
   const double *values; /* outputs x points x replicates */
-  bool shared_seeds;    /* replicate r has one seed at all points */
+  bool shared_seeds;    /* replicate r has the same seed at all points */
 };
 
 struct surfaces {
-  struct posterior_model model; /* what posterior_make takes; its parts are below */
+  struct posterior_model model; /* input of posterior_make; it points to the members below */
   struct posterior_datum data[POSTERIOR_OUTPUTS];
   struct seed_scatter scatter[POSTERIOR_OUTPUTS];
   struct kriging *surface[POSTERIOR_OUTPUTS]; /* owned */
   double correlation[POSTERIOR_OUTPUTS * POSTERIOR_OUTPUTS];
-  double left_out[POSTERIOR_OUTPUTS]; /* rms error of predicting a point from the others, over the error predicted */
+  double left_out[POSTERIOR_OUTPUTS]; /* leave-one-out rms error divided by the predicted error */
   size_t used[POSTERIOR_OUTPUTS];     /* points with two runs or more */
 };
 
-/* data: value, error, resolution, specimens and shot of each output; bounded: of each input. Points of which an output
- * has fewer than two runs are left out of its surface; of more than SURFACES_POINTS the last ones are taken (they are
- * nearest to the data), and one in two of the first quarter. Statuses as kriging_fit() and seed_scatter_fit(). *out
- * must not move afterwards. */
+/* data: value, error, resolution, specimens and shot of each output; bounded: of each input. An output's surface leaves
+ * out points with fewer than two runs of it. If there are more than SURFACES_POINTS points, the last ones are used
+ * (they are nearest to the data), and every second one of the first quarter. Statuses as kriging_fit() and
+ * seed_scatter_fit(). *out must not move afterwards. */
 enum { SURFACES_POINTS = 200 };
 status surfaces_fit(const struct surfaces_runs *runs, const struct posterior_datum *data, const bool *bounded,
                     struct surfaces *out, struct error *error);
@@ -36,7 +36,7 @@ void surfaces_clear(struct surfaces *surfaces); /* a zeroed one is fine */
  * middle of the last `members` points. For ensemble_kalman_step(). */
 status surfaces_errors(const struct surfaces_runs *runs, const struct posterior_datum *data, const bool *bounded,
                        size_t members, double *gamma, struct error *error);
-/* Mean of a point's runs; NaN: it has none. */
+/* Mean of a point's runs; NaN: the point has no run. */
 double surfaces_mean(const struct surfaces_runs *runs, size_t output, size_t point);
 
 #endif

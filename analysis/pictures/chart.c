@@ -9,7 +9,7 @@
 #include "analysis/pictures/picture_canvas.h"
 #include "schemas/text.h"
 
-enum { LETTER = 8, LINE = 19, LINES = 4 }; /* pixels: width of a letter, height of a line; most lines of a text */
+enum { LETTER = 8, LINE = 19, LINES = 4 }; /* pixels: width of a letter, height of a line; maximum lines of a text */
 
 struct chart {
   const char *template;
@@ -43,9 +43,9 @@ struct chart *chart_new(const char *template) {
   return NULL;
 }
 
-/* In single quotes gnuplot interprets no escapes and no `commands`, but a macro such as @x: the text is cut behind an
- * @. A quote and a line end cannot stand there: they are joined in double quotes ('' for a quote is misread at the
- * start of a text, gnuplot 5.4). */
+/* In single quotes gnuplot interprets no escapes and no `commands`, but it does expand a macro such as @x, so the text
+ * is split after each @. A single quote and a line end cannot be inside single quotes: they are added in double quotes
+ * ('' for a quote is misread at the start of a text, gnuplot 5.4). */
 static void write_quoted(FILE *out, const char *text) {
   const char *end = text ? text + strlen(text) : text;
   fputc('\'', out);
@@ -92,7 +92,7 @@ void chart_texts(struct chart *chart, const char *name, size_t count, const char
 
 void chart_numbers(struct chart *chart, const char *name, size_t count, const double *values) {
   fprintf(chart->variables, "array %s[%zu]\n", name, count ? count : 1);
-  if (count == 0) /* gnuplot reads a line of a template also when its loop is empty */
+  if (count == 0) /* gnuplot evaluates a line of a template even when its loop is empty */
     fprintf(chart->variables, "%s[1] = 1\n", name);
   for (size_t i = 0; i < count; i++)
     fprintf(chart->variables, "%s[%zu] = %.17g\n", name, i + 1, isfinite(values[i]) ? values[i] : 0);
@@ -105,7 +105,7 @@ size_t chart_letters(const char *text) {
   return count;
 }
 
-/* Breaks a text at blanks into lines of at most `most` letters; what does not fit into LINES of them ends in "...".
+/* Breaks a text at blanks into lines of at most `most` letters. Text beyond LINES lines is cut and ends in "...".
  * Returns the number of lines. */
 static size_t fold(const char *text, size_t most, char *folded, size_t size) {
   size_t lines = 1, column = 0, used = 0;
@@ -150,7 +150,8 @@ void chart_words(struct chart *chart, const struct picture_page *page, const str
   chart_text(chart, "caption_text", folded);
   fold(words->x, (size_t)(0.85 * room / LETTER), folded, sizeof folded);
   chart_text(chart, "x_label", folded);
-  fold(words->y, (size_t)(0.5 * room / LETTER), folded, sizeof folded); /* upright: as long as the frame is high */
+  fold(words->y, (size_t)(0.5 * room / LETTER), folded,
+       sizeof folded); /* the y label runs upwards: its length is limited by the height of the frame */
   chart_text(chart, "y_label", folded);
 }
 
@@ -185,7 +186,7 @@ void chart_block_end(struct chart *chart) {
   fputs("\n\n", chart->data);
 }
 
-/* The text of a template: of the folder, if there is one, else as compiled in. malloc'd. */
+/* The text of a template, from page->templates if given, else the compiled-in one. The caller frees it. */
 static status read_template(const struct picture_page *page, const char *name, char **text, struct error *error) {
   *text = NULL;
   if (!page->templates) {
@@ -210,7 +211,7 @@ static status read_template(const struct picture_page *page, const char *name, c
   return *text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the template %s", path);
 }
 
-/* Variables, frame.gp and the template. */
+/* Writes variables, frame.gp and the template. */
 static status write_script(struct chart *chart, const struct picture_page *page, double height, char **script,
                            size_t *size, struct error *error) {
   char *frame = NULL, *template = NULL, stem[256];

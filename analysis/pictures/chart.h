@@ -1,9 +1,9 @@
-/* Charts by gnuplot: a template, the words and numbers that it needs, and the data. For the picture_*.c files only.
+/* Charts by gnuplot: a template, its words and numbers, and the data. For the picture_*.c files only.
  *
  * The templates are analysis/pictures/templates/NAME.gp. They are compiled in; a folder with files of the same names
  * replaces them. A chart becomes a script (its variables, then frame.gp, then the template) and a file of numbers in a
- * folder of its own, where gnuplot runs. The script holds text from users, such as the names of campaigns, only as
- * quoted strings that gnuplot does not interpret, and it names only files of that folder. */
+ * separate folder, where gnuplot runs. The script holds text from users, such as the names of campaigns, only as quoted
+ * strings that gnuplot does not interpret, and it names only files of that folder. */
 #ifndef CLAST_ANALYSIS_PICTURES_CHART_H
 #define CLAST_ANALYSIS_PICTURES_CHART_H
 
@@ -20,16 +20,16 @@ struct chart *chart_new(const char *template);
  * become '?'. NULL is "". */
 void chart_text(struct chart *chart, const char *name, const char *text);
 void chart_number(struct chart *chart, const char *name, double value);
-/* An array of `count` texts; gnuplot's first has number 1. texts[i] may be NULL. */
+/* Sets an array of `count` texts; gnuplot's first index is 1. texts[i] may be NULL. */
 void chart_texts(struct chart *chart, const char *name, size_t count, const char *const *texts);
-/* An array of `count` numbers. */
+/* Sets an array of `count` numbers. */
 void chart_numbers(struct chart *chart, const char *name, size_t count, const double *values);
-/* The title, the line under it and the names of both axes, cut into lines that fit the page. */
+/* Sets the title, the line under it and the names of both axes, cut into lines that fit the page. */
 void chart_words(struct chart *chart, const struct picture_page *page, const struct picture_words *words);
-/* The legend of `count` labels below the frame: in how many columns, and the height of it in pixels. */
+/* Sets the legend of `count` labels below the frame, with its number of columns. Returns its height in pixels. */
 double chart_legend(struct chart *chart, const struct picture_page *page, size_t count, const char *const *labels);
 
-/* Letters of a UTF-8 text, not bytes. */
+/* The number of characters of a UTF-8 text, not of bytes. */
 size_t chart_letters(const char *text);
 
 /* Numbers of the data file. A value that is not finite is written as NaN. chart_block_end ends a block: the template
@@ -38,12 +38,12 @@ void chart_columns(struct chart *chart, const char *names);
 void chart_row(struct chart *chart, size_t count, const double *values);
 void chart_block_end(struct chart *chart);
 
-/* Draws and frees the chart. The file appears under its name when it is whole. height: pixels for page->width.
- * STATUS_MISSING: no gnuplot on this machine, or no such template in page->templates. STATUS_USAGE: the ending.
- * STATUS_CONTENT: gnuplot refuses a template of page->templates. STATUS_IO. */
+/* Draws and frees the chart. The file appears under its name only when it is complete. height: pixels for page->width.
+ * STATUS_MISSING: no gnuplot on this machine, or no such template in page->templates. STATUS_USAGE: the file name's
+ * ending is not known. STATUS_CONTENT: gnuplot refuses a template of page->templates. STATUS_IO. */
 status chart_draw(struct chart *chart, const struct picture_page *page, double height, struct error *error);
 
-/* The templates that are compiled in, closed by NULL (generated at build time). */
+/* The compiled-in templates (generated at build time); an entry with NULL ends the list. */
 struct chart_template {
   const char *name, *text;
 };

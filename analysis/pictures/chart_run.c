@@ -17,7 +17,7 @@ enum { PATH = 4096 };
 
 struct folder {
   char path[PATH];
-  char script[300], data[300], picture[300]; /* names in it */
+  char script[300], data[300], picture[300]; /* file names within the folder */
 };
 
 void chart_run_stem(const char *path, char *stem, size_t size) {
@@ -55,7 +55,7 @@ static bool write_file(const struct folder *folder, const char *name, const char
   return fclose(out) == 0 && whole;
 }
 
-/* gnuplot's exit code in *end; -1: it was killed. STATUS_MISSING: there is no gnuplot. */
+/* *end: gnuplot's exit code; -1: it was killed. STATUS_MISSING: gnuplot is not installed. */
 static status run_gnuplot(const struct folder *folder, int *end, struct error *error) {
   posix_spawn_file_actions_t actions;
   char script[302];
@@ -84,7 +84,7 @@ static status run_gnuplot(const struct folder *folder, int *end, struct error *e
   return STATUS_OK;
 }
 
-/* What gnuplot wrote, on one line. */
+/* gnuplot's messages, joined on one line. */
 static void read_messages(const struct folder *folder, char *text, size_t size) {
   char path[PATH + 512];
   snprintf(path, sizeof path, "%s/messages", folder->path);
@@ -104,7 +104,7 @@ static status move(const struct folder *folder, const char *name, const char *to
   return rename(from, to) == 0 ? STATUS_OK : fail(to, error);
 }
 
-/* NAME.gp and NAME.dat beside the picture. */
+/* Moves NAME.gp and NAME.dat to the picture's folder. */
 static status move_files(const struct picture_page *page, const struct folder *folder, struct error *error) {
   char to[PATH + 8];
   const char *dot = strrchr(page->path, '.');

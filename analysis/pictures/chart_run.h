@@ -1,4 +1,4 @@
-/* Runs gnuplot on a script in a folder of its own and takes the picture out of it. For chart.c only. */
+/* Runs gnuplot on a script in a temporary folder and moves the picture out of it. For chart.c only. */
 #ifndef CLAST_ANALYSIS_PICTURES_CHART_RUN_H
 #define CLAST_ANALYSIS_PICTURES_CHART_RUN_H
 

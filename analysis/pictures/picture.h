@@ -1,10 +1,10 @@
 /* Pictures: broken bodies with cairo, and charts (spectra, curves, maps, profiles) with gnuplot from templates
  * (chart.h). PNG, SVG or PDF by the file's ending, on white, without a display. A file appears under its name only when
- * it is whole.
+ * it is complete.
  *
- * Errors of all of them: STATUS_USAGE for another ending and when there is nothing to draw, STATUS_IO when the file
- * cannot be written, STATUS_MEMORY; of charts also STATUS_MISSING when there is no gnuplot. Arrays are borrowed. width:
- * pixels (PNG) or points (SVG, PDF), 200 to 8000. title: NULL for none. */
+ * Errors of all functions: STATUS_USAGE for another ending and when there is nothing to draw, STATUS_IO when the file
+ * cannot be written, STATUS_MEMORY; for charts also STATUS_MISSING when gnuplot is not installed. Arrays are borrowed.
+ * width: pixels (PNG) or points (SVG, PDF), 200 to 8000. title: NULL for none. */
 #ifndef CLAST_ANALYSIS_PICTURES_PICTURE_H
 #define CLAST_ANALYSIS_PICTURES_PICTURE_H
 
@@ -16,33 +16,34 @@
 #include "analysis/statistics/pooled.h"
 #include "analysis/statistics/scatter.h"
 
-/* Where a chart goes. */
+/* Output of a chart. */
 struct picture_page {
   const char *path;
   double width;
-  bool keep_script;      /* leave NAME.gp and NAME.dat beside NAME.png: gnuplot draws it again */
-  const char *templates; /* folder with changed templates; NULL: those that are compiled in */
+  bool keep_script;      /* keep NAME.gp and NAME.dat beside NAME.png, so that gnuplot can draw it again */
+  const char *templates; /* folder with changed templates; NULL: the compiled-in ones */
 };
 /* The words of a chart; NULL: none. Long ones are cut into lines. */
 struct picture_words {
   const char *title, *caption; /* caption: a line under the title, in small letters */
   const char *x, *y;           /* names of the axes with their units */
 };
-enum { PICTURE_SERIES = 8 }; /* more in one chart cannot be told apart */
+enum { PICTURE_SERIES = 8 }; /* more series in one chart are hard to tell apart */
 
-/* A broken body of convex polygons (DEM's grains), and the fragment that each belongs to. */
+/* A broken body of convex polygons (DEM's grains), and the fragment of each polygon. */
 struct picture_body {
   size_t cells;
   uint32_t *first_vertex; /* cells + 1: cell i has the vertices first_vertex[i] .. first_vertex[i + 1] - 1 */
   double (*vertex)[2];    /* m */
-  uint32_t *fragment;     /* by cell: number of its fragment, 0 the heaviest */
+  uint32_t *fragment;     /* for each cell: number of its fragment, 0 the heaviest */
   size_t cracks;          /* broken links inside one fragment, drawn as lines; between fragments there is a gap */
   uint32_t (*crack)[2];   /* pairs of cells; NULL for none */
 };
 
-/* Reads the body of a fields file of any engine whose cells are polygons. The file may come from anywhere: every size
- * and index is checked. *body owns its arrays: picture_body_clear(). STATUS_MISSING: there is no such file.
- * STATUS_CONTENT: it is no fields file, or it is damaged. STATUS_MEMORY. After an error *body is all zero. */
+/* Reads the body of a fields file of any engine whose cells are polygons. The file may come from an untrusted source:
+ * every size and index is checked. *body owns its arrays; free them with picture_body_clear(). STATUS_MISSING: there is
+ * no such file. STATUS_CONTENT: the file is no fields file, or it is damaged. STATUS_MEMORY. After an error *body is
+ * all zero. */
 status picture_body_read(const char *path, struct picture_body *body, struct error *error);
 void picture_body_clear(struct picture_body *body);
 
@@ -51,7 +52,7 @@ struct picture_panel {
   const char *caption; /* under the panel; NULL: none */
   double view[4];      /* m: x0, y0, x1, y1; all zero: the whole body without distant dust */
 };
-/* One to three panels side by side, each with its own scale bar. subtitle may be NULL. */
+/* Draws one to three panels side by side, each with its own scale bar. subtitle may be NULL. */
 status picture_fragments(const char *path, double width, const char *title, const char *subtitle, size_t panels,
                          const struct picture_panel *panel, struct error *error);
 
@@ -60,35 +61,35 @@ status picture_fragments(const char *path, double width, const char *title, cons
 void picture_fragments_numbers(const struct picture_body *body, const char *cells, char *text, size_t size);
 
 enum picture_view {
-  PICTURE_CUT,     /* a cut: every particle that the plane meets, as a disc of its section */
+  PICTURE_CUT,     /* a cut: every particle that the plane meets, drawn as the disc of its section */
   PICTURE_OUTSIDE, /* all particles from outside, near ones before far ones */
   PICTURE_APART,   /* from outside, fragments side by side, so that none hides another; without dust */
 };
 struct picture_look {
   enum picture_view view;
-  int axis;     /* the line of sight: 0 x (y to the right, z up), 1 y (x right, z up), 2 z (x right, y up); -1: from
-                   outside the one from which the heaviest fragments are seen best, else y */
+  int axis; /* line of sight: 0: x (y to the right, z up), 1: y (x right, z up), 2: z (x right, y up); -1: for a view
+               from outside, the axis that shows the heaviest fragments best, else y */
   double plane; /* m, place of the cut along the axis; NaN: the centre of mass of the heaviest fragment, or of all
                    particles */
   const char *title, *subtitle; /* NULL: none */
   const char *quantity, *unit;  /* of the values: "damage", "1"; "pressure", "Pa" */
 };
-/* Particles as discs of their size. Values in unit 1 that lie within 0..1 keep that range. Other values span the range
- * of the particles drawn, without the outermost percent at both ends and without bodies that have no fragments; the
- * range is symmetric about zero when both signs occur. STATUS_USAGE also when the plane meets no particle. */
+/* Draws particles as discs of their size. The colour range is 0..1 for values of unit 1 within 0..1. Otherwise it is
+ * the range of the drawn particles, without the outermost percent at both ends and without bodies that have no
+ * fragments; it is symmetric about zero when both signs occur. STATUS_USAGE also when the plane meets no particle. */
 status picture_particles(const char *path, double width, const struct picture_cloud *cloud,
                          const struct picture_look *look, struct error *error);
 /* "95210 particles: 143 fragments of two and more (largest 34.6 %, second 3.1 % of the mass), 41.2 % in single
  * particles". */
 void picture_particles_numbers(const struct picture_cloud *cloud, char *text, size_t size);
 
-/* A fitted power law F(m) ~ m^-beta. Its line holds as many fragments per run in [lower, upper) as the fit was made
- * from; a cumulative one stands on those that are larger. */
+/* A fitted power law F(m) ~ m^-beta. Its line is normalised to the fit's number of fragments per run in [lower, upper);
+ * a cumulative line also includes the larger fragments. */
 struct picture_fit {
   const char *label;                                            /* "beta 2.03 +- 0.05" */
   double beta, lower, upper, fragments_per_run, larger_per_run; /* upper may be HUGE_VAL */
 };
-/* Its value in a form at a place of the axis; NaN outside of [lower, upper). */
+/* The fit's value in a form at a place of the axis; NaN outside [lower, upper). */
 double picture_spectrum_fit(const struct picture_fit *fit, const struct pooled_form *form, double place);
 
 struct picture_thin { /* a thin line behind a series: one of its runs */
@@ -101,13 +102,14 @@ struct picture_series {
   const struct pooled_bin *bins; /* of pooled_spectrum() */
   size_t fits;
   const struct picture_fit *fit;
-  double complete_mass; /* kg: bins that begin below are grey, as fragments are missing there; 0 or NaN: none is */
+  double complete_mass; /* kg: bins that begin below are grey, because fragments are missing there; 0 or NaN: no grey
+                           bins */
   size_t thin_count;
   const struct picture_thin *thin;
-  bool measured; /* drawn in black, as marks joined by a thin line: what was measured */
+  bool measured; /* measured data: drawn in black, as marks joined by a thin line */
 };
-/* Log-log spectra of one form with 95 % intervals over runs, as bars or, of cumulative ones, as bands; and lines of the
- * fits. One to eight series. */
+/* Draws log-log spectra of one form, and lines of the fits. The 95 % intervals over runs are bars or, for cumulative
+ * spectra, bands. One to eight series. */
 status picture_spectrum(const struct picture_page *page, const struct picture_words *words,
                         const struct pooled_form *form, size_t count, const struct picture_series *series,
                         struct error *error);
@@ -120,40 +122,41 @@ status picture_spectrum(const struct picture_page *page, const struct picture_wo
 void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *unit, const char *value,
                         const struct pooled_form *form, const struct picture_series *series);
 
-/* Quantities along a line (such as depth below a crater), one panel each, one above the other. A value that is not
- * finite leaves a gap. */
+/* Quantities along a line (such as depth below a crater), in panels one above the other. A value that is not finite
+ * leaves a gap. */
 struct picture_profile {
   const char *label; /* "damage", "pressure (Pa)" */
   const double *y;
   double at_least[2]; /* the panel shows at least this range; HUGE_VAL, -HUGE_VAL: the range of y */
 };
-/* One to three panels of `count` points, x ascending. STATUS_USAGE also when x has no range. */
+/* Draws one to three panels of `count` points, x ascending. STATUS_USAGE also when x has no range. */
 status picture_profile(const struct picture_page *page, const struct picture_words *words, size_t count,
                        const double *x, size_t panels, const struct picture_profile *panel, struct error *error);
 
 /* A mean with its interval at a value of an input. */
 struct picture_mean {
   double x, y, low, high; /* low, high: ends of the interval; NaN: none is drawn */
-  double resolution;      /* a thin bar adds it to both ends; NaN: none is drawn */
+  double resolution;      /* a thin bar extends both ends by this; NaN: none is drawn */
 };
 struct picture_curve {
   const char *label; /* may be NULL */
   size_t count;
   const struct picture_mean *mean; /* x ascending */
 };
-/* One to eight curves: marks with error bars, joined by lines. x is logarithmic when all its values are positive and
- * span a factor of 20 or more. */
+/* Draws one to eight curves: marks with error bars, joined by lines. x is logarithmic when all its values are positive
+ * and span a factor of 20 or more. */
 status picture_curves(const struct picture_page *page, const struct picture_words *words, size_t count,
                       const struct picture_curve *curve, struct error *error);
 
-/* Values of the runs of a point. */
+/* The values of a point's runs. */
 struct picture_sample {
   const char *label;
   size_t count;
   const double *value; /* ascending */
   struct scatter_histogram histogram;
 };
-/* Histograms and, below them, distribution functions. One to eight samples. words->x is the name of both x axes. */
+/* Draws histograms and, below them, distribution functions. One to eight samples. words->x is the name of both x
+ * axes. */
 status picture_scatter(const struct picture_page *page, const struct picture_words *words, size_t count,
                        const struct picture_sample *sample, struct error *error);
 /* A histogram as text: edge, count, a bar. columns: width of the terminal. */
@@ -162,32 +165,32 @@ void text_histogram_print(FILE *out, int columns, bool unicode, const struct sca
 /* Safe, warned and refused runs at a value of an input, or in a range of values. */
 struct picture_margin_tile {
   char text[32];
-  double runs[3]; /* safe, warned, refused */
+  double runs[3]; /* numbers of safe, warned and refused runs */
 };
 struct picture_margin {
-  const char *heading; /* above the row; NULL: none */
-  const char *label;   /* the input */
-  size_t count;        /* tiles, 1 at least */
+  const char *heading; /* heading above the row; NULL: none */
+  const char *label;   /* name of the input */
+  size_t count;        /* number of tiles, at least 1 */
   const struct picture_margin_tile *tile;
 };
-/* A row of tiles per input, each divided by the shares of its runs. Drawn with cairo. */
+/* Draws a row of tiles per input with cairo. Each tile is divided by the shares of its runs. */
 status picture_margins(const char *path, double width, const char *title, size_t count,
                        const struct picture_margin *row, struct error *error);
 
-/* A heat map from points (x, y, value) in any order: every distinct x is a column, every distinct y a row. The tile of
- * a NaN, or of a place without a point, is crossed. Of two points at one place the later one counts. At most 10 000
- * tiles (STATUS_USAGE). quantity: beside the colours. */
+/* Draws a heat map from points (x, y, value) in any order: every distinct x is a column, every distinct y a row. A tile
+ * with NaN or without a point is crossed. If two points have the same x and y, the later one counts. At most 10 000
+ * tiles (STATUS_USAGE). quantity: label of the colour bar. */
 status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
                    size_t count, const double (*points)[3], struct error *error);
 
-/* One measured number and what a fit predicts for one more experiment like it. */
+/* One measured number, and the fit's prediction for one more such experiment. */
 enum { PICTURE_QUANTILES = 5, PICTURE_PREDICTIONS = 32 };
 struct picture_prediction {
   const char *label;
   double measured, error;             /* standard deviation */
   double quantile[PICTURE_QUANTILES]; /* 5, 25, 50, 75, 95 % */
 };
-/* All numbers over their measured values, a row for each; one measured as 0 is left out. */
+/* Draws all numbers divided by their measured values, one row each. A measured value of 0 is left out. */
 status picture_predicted(const struct picture_page *page, const struct picture_words *words, size_t count,
                          const struct picture_prediction *row, struct error *error);
 

@@ -7,7 +7,7 @@
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/snapshot_read.h"
 
-/* The columns as the file has them, with their lengths; NULL: the file has no such column. */
+/* The columns of the file, with their lengths; NULL: the file lacks the column. */
 struct columns {
   size_t points, ids, offsets, fragments, grains, beams, alives;
   double *point, *alive, *beam;
@@ -83,7 +83,7 @@ static bool take_cells(const struct columns *c, struct picture_body *body) {
   return take_first_vertices(c, body) && take_vertices(c, body) && take_fragments(c, body);
 }
 
-/* Broken beams whose two grains are still in one fragment. */
+/* Collects broken beams between two grains of the same fragment. */
 static void take_broken_beams(const struct columns *c, const uint32_t *cell, size_t grains, struct picture_body *body) {
   for (size_t i = 0; i < c->beams; i++) {
     const double a = c->beam[2 * i], b = c->beam[2 * i + 1], end = (double)grains;
@@ -105,7 +105,7 @@ static int64_t last_grain(const struct columns *c) {
   return last;
 }
 
-/* The cell of each grain, UINT32_MAX for none; malloc'd. */
+/* The cell of each grain, UINT32_MAX for none. The caller frees it. */
 static uint32_t *cells_by_grain(const struct columns *c, size_t grains) {
   uint32_t *cell = malloc(grains * sizeof *cell);
   if (!cell)
@@ -117,7 +117,7 @@ static uint32_t *cells_by_grain(const struct columns *c, size_t grains) {
   return cell;
 }
 
-/* Beams name grains, and cells name the grain whose outline they are. A file without beams has no cracks. */
+/* Beams refer to grains, and each cell names the grain that it outlines. A file without beams has no cracks. */
 static bool take_cracks(const struct columns *c, struct picture_body *body) {
   const bool there = c->beam && c->alive && c->grain;
   if (!there || c->beams != c->alives || c->grains != body->cells)

@@ -90,7 +90,7 @@ double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const c
   return extents.x_advance;
 }
 
-/* How far text of this width begins before its place. */
+/* Distance from the given position to the start of a text of this width. */
 static double offset(enum picture_align align, double width) {
   const double share[] = {[PICTURE_LEFT] = 0, [PICTURE_CENTRE] = 0.5, [PICTURE_RIGHT] = 1};
   return share[align] * width;
@@ -102,7 +102,7 @@ void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum p
   cairo_show_text(cairo, text);
 }
 
-/* Text centred at (x, y) that reads upwards. */
+/* Draws text that runs upwards, centred at (x, y). */
 static void text_upright(cairo_t *cairo, double x, double y, double size, const char *text) {
   cairo_save(cairo);
   cairo_translate(cairo, x, y);
@@ -111,7 +111,7 @@ static void text_upright(cairo_t *cairo, double x, double y, double size, const 
   cairo_restore(cairo);
 }
 
-/* The size of letters with which a text ends before the right end of the picture, at most `size`. */
+/* The font size, at most `size`, with which a text fits into the picture's width. */
 static double fitting(cairo_t *cairo, double width, double size, bool bold, const char *text) {
   const double wide = picture_canvas_text_width(cairo, size, bold, text);
   return wide > width ? size * width / wide : size;

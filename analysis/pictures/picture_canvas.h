@@ -1,4 +1,4 @@
-/* What all pictures share: the file, text, colours, round lengths. For the picture_*.c files only. */
+/* Shared parts of all pictures: the file, text, colours, round lengths. For the picture_*.c files only. */
 #ifndef CLAST_ANALYSIS_PICTURES_PICTURE_CANVAS_H
 #define CLAST_ANALYSIS_PICTURES_PICTURE_CANVAS_H
 
@@ -19,7 +19,8 @@ struct picture_canvas {
 status picture_canvas_named(const char *path, struct error *error);
 status picture_canvas_open(struct picture_canvas *canvas, const char *path, double width, double height,
                            struct error *error);
-/* Writes the file and renames it when code is STATUS_OK, else removes it. Returns code, or the error of writing. */
+/* Renames the written file to its final name when `code` is STATUS_OK, else removes it. Returns code, or the error of
+ * writing. */
 status picture_canvas_close(struct picture_canvas *canvas, status code, struct error *error);
 
 enum picture_align { PICTURE_LEFT, PICTURE_CENTRE, PICTURE_RIGHT };
@@ -32,20 +33,20 @@ double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const c
 /* Perceptual colours (OKLCH, Ottosson 2020): lightness 0..1, chroma 0..0.2, hue in degrees. */
 void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, double hue, double alpha);
 
-/* Ramps that read in grey and for the colour-blind: lightness changes evenly from one end to the other, in a signed
- * ramp from the middle to both ends. */
+/* Colour ramps that also work in grey and for colour-blind readers: lightness changes evenly from one end to the other,
+ * or in a signed ramp from the middle to both ends. */
 enum picture_ramp {
   PICTURE_RAMP_RISING, /* dark blue to pale yellow */
   PICTURE_RAMP_SIGNED, /* blue, nearly white in the middle, orange brown */
-  PICTURE_RAMP_DAMAGE, /* pale stone to near black red: unbroken rock is light, broken rock stands out */
+  PICTURE_RAMP_DAMAGE, /* pale stone to near-black red: unbroken rock is light, broken rock is dark */
 };
 void picture_canvas_ramp(cairo_t *cairo, enum picture_ramp ramp, double share); /* share 0..1 */
 
-/* The colour bar: upright, with ticks on its right and `quantity` beside it. It needs 6.5 font to the right of
- * x + width. */
+/* Draws an upright colour bar, with ticks on its right and `quantity` beside it. It needs 6.5 font to the right of x +
+ * width. */
 void picture_canvas_colour_bar(cairo_t *cairo, enum picture_ramp ramp, double x, double y, double width, double height,
                                double font, double low, double high, const char *quantity);
-/* The scale bar: a round length of about a quarter of `available`, with its text above. */
+/* Draws a scale bar: a round length of about a quarter of `available`, with its text above. */
 void picture_canvas_scale_bar(cairo_t *cairo, double x, double y, double points_per_metre, double available,
                               double font);
 

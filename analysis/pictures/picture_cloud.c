@@ -10,7 +10,7 @@
 
 #define COLUMN "VTKHDF/PointData/"
 
-/* The columns that a message offers when one is not there. */
+/* Columns that an error message lists when a column is missing. */
 static const char *const offered[] = {"damage",          "pressure",         "density", "energy", "distention",
                                       "rest_distention", "smoothing_length", "flaws",   "mass"};
 
@@ -27,10 +27,10 @@ bool picture_cloud_in_file(const char *path) {
   return found;
 }
 
-/* The reason why particle i cannot be drawn; NULL: it can. */
+/* The reason why particle i cannot be drawn; NULL: none. */
 static const char *refuse_particle(const struct picture_cloud *cloud, size_t i) {
   for (int d = 0; d < 3; d++)
-    if (!(fabs(cloud->position[i][d]) < 1e30)) /* sums and squares of positions stay finite */
+    if (!(fabs(cloud->position[i][d]) < 1e30)) /* so that sums and squares of positions stay finite */
       return "a position is not finite";
   if (!(cloud->mass[i] > 0 && isfinite(cloud->mass[i]) && cloud->size[i] > 0 && isfinite(cloud->size[i])))
     return "a mass or density is not positive";
@@ -41,7 +41,7 @@ static const char *refuse_particle(const struct picture_cloud *cloud, size_t i) 
   return NULL;
 }
 
-/* The reason why the particles of a file are refused; NULL: they are read. */
+/* The reason why the particles of a file are refused; NULL: they were read. */
 static const char *read_particles(struct snapshot_read *file, struct picture_cloud *cloud) {
   size_t masses, densities, fragments, parts;
   cloud->position = snapshot_read_rows(file, "VTKHDF/Points", 3, SNAPSHOT_READ_REAL, &cloud->n);
@@ -55,7 +55,7 @@ static const char *read_particles(struct snapshot_read *file, struct picture_clo
     return "its columns differ in length";
 
   for (size_t i = 0; i < cloud->n; i++) {
-    cloud->size[i] = cbrt(cloud->mass[i] / cloud->size[i]); /* was the density */
+    cloud->size[i] = cbrt(cloud->mass[i] / cloud->size[i]); /* `size` held the density before */
     const char *why = refuse_particle(cloud, i);
     if (why)
       return why;
@@ -84,12 +84,12 @@ status picture_cloud_read(const char *path, struct picture_cloud *cloud, struct 
   return status_fail(error, STATUS_CONTENT, "%s is no fields file of particles, or it is damaged: %s", path, why);
 }
 
-/* A name is one link: it leads to no other group. */
+/* Is the name a single link, which leads to no other group? */
 static bool is_name(const char *name) {
   return strlen(name) < 40 && !strpbrk(name, "/.");
 }
 
-/* Closes the file after one column was read. */
+/* Closes the file after reading one column. */
 static status close_column(struct snapshot_read *file, const char *path, double **values, status code,
                            struct error *error) {
   if (snapshot_read_close(file))

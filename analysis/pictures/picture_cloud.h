@@ -1,6 +1,6 @@
-/* Particles in space, and their reader: what picture_particles() draws.
+/* Particles in space, and their reader: the data of picture_particles().
  *
- * A fields file may come from anywhere, so the reader checks every size, number and index. */
+ * A fields file may come from an untrusted source, so the reader checks every size, number and index. */
 #ifndef CLAST_ANALYSIS_PICTURES_PICTURE_CLOUD_H
 #define CLAST_ANALYSIS_PICTURES_PICTURE_CLOUD_H
 
@@ -10,8 +10,8 @@
 
 #include "schemas/status.h"
 
-/* A particle's part in its fragment: unbroken, in the damaged layer at its surface, a broken
- * particle on its own, or of a body that has no fragments (a projectile). The numbers are those of the file. */
+/* A particle's role: unbroken, in the damaged layer at its fragment's surface, a single broken particle, or in a body
+ * that has no fragments (a projectile). The numbers are those of the file. */
 enum picture_part { PICTURE_CORE, PICTURE_LAYER, PICTURE_DUST, PICTURE_LEFT_OUT, PICTURE_PARTS };
 
 struct picture_cloud {
@@ -21,7 +21,7 @@ struct picture_cloud {
   double *mass;          /* kg, above 0 */
   int64_t *fragment;     /* number of its fragment by descending mass, below n; negative: none */
   int64_t *part;         /* enum picture_part */
-  double *value;         /* the quantity that colours the particles; NULL: the fragment does */
+  double *value;         /* values that colour the particles; NULL: coloured by fragment */
   char engine[32];       /* name of the engine that wrote the file */
   long long seed;
   double time; /* s; NaN: the file does not say */
@@ -30,9 +30,9 @@ struct picture_cloud {
 /* True for a file of particles. False also for a file that cannot be read. */
 bool picture_cloud_in_file(const char *path);
 
-/* Reads all but `value`. *cloud owns its arrays: picture_cloud_clear(). STATUS_MISSING: there is no such file.
- * STATUS_CONTENT: it is no fields file of particles, or it is damaged. STATUS_MEMORY. After an error *cloud is empty.
- */
+/* Reads all members except `value`. *cloud owns its arrays; free them with picture_cloud_clear(). STATUS_MISSING: there
+ * is no such file. STATUS_CONTENT: the file is no fields file of particles, or it is damaged. STATUS_MEMORY. After an
+ * error *cloud is empty. */
 status picture_cloud_read(const char *path, struct picture_cloud *cloud, struct error *error);
 
 /* Reads one more column ("damage", "pressure", ...): n values in *values (malloc'd), and the unit as the file gives it,

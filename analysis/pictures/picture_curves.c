@@ -4,9 +4,9 @@
 #include "analysis/pictures/chart.h"
 
 static const double none = NAN;
-static const double LOG_FROM = 20; /* x is logarithmic from this factor between its ends */
+static const double LOG_FROM = 20; /* x is logarithmic if its ends differ by at least this factor */
 
-/* Least and greatest x of the means that have a value. False: there is none. */
+/* Smallest and largest x of the means that have a value. False: there are none. */
 static bool range_of(size_t count, const struct picture_curve *curve, double range[2]) {
   range[0] = HUGE_VAL;
   range[1] = -HUGE_VAL;
@@ -19,7 +19,7 @@ static bool range_of(size_t count, const struct picture_curve *curve, double ran
   return range[1] >= range[0];
 }
 
-/* A mean, its interval and, around that, what finer settings may change. */
+/* Writes a mean, its interval, and the interval plus the resolution error. */
 static void write_mean(struct chart *chart, const struct picture_mean *m) {
   const bool bar = isfinite(m->low) && isfinite(m->high) && m->low < m->high;
   const double low = bar ? m->low : m->y, high = bar ? m->high : m->y;
@@ -44,7 +44,7 @@ static void write_curve(struct chart *chart, const struct picture_curve *curve) 
   chart_block_end(chart);
 }
 
-/* The axis, with some space at both ends. */
+/* Writes the range of the axis, with some space at both ends. */
 static void write_range(struct chart *chart, const double range[2]) {
   const bool logarithmic = range[0] > 0 && range[1] >= LOG_FROM * range[0];
   double margin = 0.05 * (range[1] - range[0]);

@@ -9,7 +9,7 @@
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/statistics/sample.h"
 
-enum { LARGE = 10 }; /* cells: a smaller fragment is hardly resolved and gets a pale tint */
+enum { LARGE = 10 }; /* cells: a smaller fragment is poorly resolved and gets a pale tint */
 
 /* Cells sorted by fragment: cells of fragment f are order[start[f]] ... order[start[f + 1] - 1]. */
 struct grouping {
@@ -60,7 +60,7 @@ static void cover(double view[4], const double point[2]) {
 
 static const double nothing[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
 
-/* The views that hold all cells, and all fragments of two and more cells. */
+/* Computes the view of all cells, and the view of all fragments of two or more cells. */
 static void cover_cells(const struct picture_body *body, const struct grouping *grouping, double all[4],
                         double large[4]) {
   memcpy(all, nothing, sizeof nothing);
@@ -76,7 +76,7 @@ static void cover_cells(const struct picture_body *body, const struct grouping *
   }
 }
 
-/* Extends a view to 96 % of the cells along each axis. centre: work space for a number per cell. */
+/* Extends a view to 96 % of the cells along each axis. centre: work space of one number per cell. */
 static void cover_most(const struct picture_body *body, double *centre, double view[4]) {
   for (int axis = 0; axis < 2; axis++) {
     for (size_t i = 0; i < body->cells; i++) {
@@ -91,7 +91,8 @@ static void cover_most(const struct picture_body *body, double *centre, double v
   }
 }
 
-/* All cells; but if distant single ones would shrink the picture much, all other fragments and 96 % of the cells. */
+/* Shows all cells. If distant single cells would shrink the picture much, it shows all other fragments and 96 % of the
+ * cells. */
 static status choose_view(const struct picture_body *body, double view[4]) {
   double *centre = malloc((body->cells + 1) * sizeof *centre), all[4], bulk[4];
   struct grouping grouping;
@@ -120,7 +121,7 @@ static status choose_view(const struct picture_body *body, double view[4]) {
 }
 
 static void path_of(cairo_t *cairo, const struct picture_body *body, uint32_t cell) {
-  cairo_new_sub_path(cairo); /* else a line joins it to the cell before */
+  cairo_new_sub_path(cairo); /* otherwise a line would join it to the previous cell */
   for (uint32_t v = body->first_vertex[cell]; v < body->first_vertex[cell + 1]; v++)
     cairo_line_to(cairo, body->vertex[v][0], body->vertex[v][1]);
   cairo_close_path(cairo);
@@ -137,7 +138,7 @@ static void colour(cairo_t *cairo, size_t fragment, size_t cells, double darker,
     picture_canvas_colour(cairo, 0.70 + wave - darker, 0.125, hue, alpha);
 }
 
-/* A fragment that does not fit into the panel as a whole is not drawn. */
+/* Only fragments that fit wholly into the panel are drawn. */
 static bool is_inside(const struct picture_body *body, const struct grouping *g, size_t f, const double view[4]) {
   for (uint32_t i = g->start[f]; i < g->start[f + 1]; i++)
     for (uint32_t v = body->first_vertex[g->order[i]]; v < body->first_vertex[g->order[i] + 1]; v++) {
@@ -148,8 +149,8 @@ static bool is_inside(const struct picture_body *body, const struct grouping *g,
   return true;
 }
 
-/* All cells of a fragment: first a wide dark stroke, then the fill and a thin stroke in the fragment's colour. The rest
- * of the dark stroke is the fragment's outline, and no background shows between cells. */
+/* Draws all cells of a fragment: first a wide dark stroke, then the fill and a thin stroke in the fragment's colour.
+ * The visible rest of the dark stroke is the fragment's outline, and no background shows between cells. */
 static void draw_fragment(cairo_t *cairo, const struct picture_body *body, const struct grouping *g, size_t f,
                           double cell) {
   size_t count = g->start[f + 1] - g->start[f];
@@ -238,7 +239,8 @@ void picture_fragments_numbers(const struct picture_body *body, const char *cell
 static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, const double view[4], double left,
                          double top, double width, double height, double font) {
   const struct picture_body *body = &panel->body;
-  const bool chosen = panel->view[2] > panel->view[0]; /* a part of the body: its fragments may reach beyond */
+  const bool chosen = panel->view[2] >
+                      panel->view[0]; /* a chosen part of the body: its fragments may extend beyond the panel */
   struct grouping grouping;
   status code = group(body, &grouping);
   if (code)
@@ -252,7 +254,7 @@ static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, cons
   cairo_translate(cairo, -(view[0] + view[2]) / 2, -(view[1] + view[3]) / 2);
   for (size_t f = grouping.fragments; f-- > 0;)
     if (chosen || is_inside(body, &grouping, f, view))
-      draw_fragment(cairo, body, &grouping, f, cell); /* the largest on top */
+      draw_fragment(cairo, body, &grouping, f, cell); /* the largest is drawn last, on top */
   for (size_t i = 0; i < body->cracks; i++) {
     const uint32_t f = body->fragment[body->crack[i][0]];
     if (f == body->fragment[body->crack[i][1]] && (chosen || is_inside(body, &grouping, f, view)))

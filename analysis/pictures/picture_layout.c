@@ -9,7 +9,7 @@ enum { WIDE = 2048 };          /* cells of the grid along each side */
 static const double GAP = 1.5; /* cells between two fragments */
 
 struct piece {
-  size_t first, count; /* of its discs in `order` */
+  size_t first, count; /* range of its discs in `order` */
   double x, y;         /* centre of its discs, m */
 };
 
@@ -58,13 +58,13 @@ static status gather(const struct picture_cloud *cloud, size_t count, struct lay
   return STATUS_OK;
 }
 
-/* Cell of a coordinate from the middle; outside of the grid -1. */
+/* Cell of a coordinate relative to the middle; -1 outside the grid. */
 static long cell_of(const struct layout *l, double from_middle) {
   const double at = floor(from_middle / l->cell) + WIDE / 2;
   return at >= 0 && at < WIDE ? (long)at : -1;
 }
 
-/* Is there a free place for the piece when it is moved? Outside of the grid all is free. */
+/* Is the place free when the piece is shifted by (dx, dy)? All places outside the grid are free. */
 static bool is_free(const struct layout *l, const struct piece *piece, double dx, double dy) {
   for (size_t k = 0; k < piece->count; k++) {
     const struct picture_layout_disc *d = &l->discs[l->order[piece->first + k]];
@@ -75,7 +75,7 @@ static bool is_free(const struct layout *l, const struct piece *piece, double dx
   return true;
 }
 
-/* Takes the cells of the piece's discs and those around. */
+/* Marks the cells of the piece's discs and their neighbours as taken. */
 static void take(struct layout *l, const struct piece *piece) {
   for (size_t k = 0; k < piece->count; k++) {
     const struct picture_layout_disc *d = &l->discs[l->order[piece->first + k]];
@@ -90,7 +90,8 @@ static void take(struct layout *l, const struct piece *piece) {
   }
 }
 
-/* The direction of a piece from the middle; of one in the middle that of its number, by golden angles. */
+/* The direction of a piece from the middle. A piece in the middle gets a direction from its number, by golden
+ * angles. */
 static void direction_of(const struct layout *l, size_t p, double *x, double *y) {
   const double dx = l->piece[p].x - l->x, dy = l->piece[p].y - l->y, far = hypot(dx, dy);
   *x = far > 1e-6 * l->cell ? dx / far : cos(2.399963 * (double)p);
@@ -133,12 +134,12 @@ status picture_layout_apart(const struct picture_cloud *cloud, size_t count, str
   return code;
 }
 
-/* A raster of what can be seen: the fragment in front, and for each fragment the cells that it covers. */
+/* A raster of the visible fragments: the fragment in front, and the cells that each fragment covers. */
 enum { SEEN = 256 };
 struct raster {
   double x, y, cell; /* lower left corner, side of a cell, m */
   int32_t front[SEEN * SEEN];
-  unsigned char covered[SEEN * SEEN]; /* by the fragment under way */
+  unsigned char covered[SEEN * SEEN]; /* cells covered by the current fragment */
 };
 
 static void paint(struct raster *raster, const struct picture_layout_disc *d, int32_t fragment, bool front) {

@@ -1,4 +1,4 @@
-/* Fragments side by side in a picture: none hides another. */
+/* Places fragments side by side in a picture, so that none hides another. */
 #ifndef CLAST_ANALYSIS_PICTURES_PICTURE_LAYOUT_H
 #define CLAST_ANALYSIS_PICTURES_PICTURE_LAYOUT_H
 
@@ -9,13 +9,13 @@ struct picture_layout_disc {
   uint32_t id;                /* of its particle */
 };
 
-/* Moves the discs of each fragment together. The heaviest stays; the others, by descending mass, go away from its
- * centre in the direction in which they are, as far as they must to stand free. Every disc's particle has a fragment.
+/* Moves the discs of each fragment together. The heaviest fragment stays. The others, by descending mass, move away
+ * from its centre in their own direction until they do not overlap. Every disc's particle must belong to a fragment.
  * STATUS_MEMORY. */
 status picture_layout_apart(const struct picture_cloud *cloud, size_t count, struct picture_layout_disc *discs);
 
-/* Which share of each fragment's outline can be seen when all discs are drawn in their order: visible[f] for fragments
- * 0 .. fragments - 1; 1 for one that has no disc. STATUS_MEMORY. */
+/* Computes the visible share of each fragment's outline when all discs are drawn in their order: visible[f] for
+ * fragments 0 .. fragments - 1; 1 for a fragment without discs. STATUS_MEMORY. */
 status picture_layout_visible(const struct picture_cloud *cloud, size_t count, const struct picture_layout_disc *discs,
                               size_t fragments, double *visible);
 

@@ -1,4 +1,4 @@
-/* A quantity over two axes: one tile for each pair of values, with the value in it where it fits. */
+/* A quantity over two axes: one tile for each pair of values, with the value as text where it fits. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -24,7 +24,7 @@ static void distinct(size_t count, const double (*points)[3], int coordinate, st
 
 static size_t place(const struct axis *axis, double value) {
   const double *found = bsearch(&value, axis->values, axis->count, sizeof value, sample_ascending);
-  return (size_t)(found - axis->values); /* every value is on the axis, which was made from them */
+  return (size_t)(found - axis->values); /* always found: the axis was made from these values */
 }
 
 /* Blocks: the tiles (number of column and row from 0, value), the columns' values, the rows' values. */

@@ -9,7 +9,7 @@ static const double font = 11, row_height = 19, head_height = 26, margin = 14, l
 enum { SAFE, WARNED, REFUSED, CLASSES };
 static const char *const names[CLASSES] = {"safe", "warned", "refused"};
 
-/* They differ in lightness, too: for the colour-blind and in grey. */
+/* The colours also differ in lightness, for colour-blind readers and in grey. */
 static void set_colour(cairo_t *cairo, int class) {
   static const double lightness[CLASSES] = {0.94, 0.82, 0.64}, chroma[CLASSES] = {0.05, 0.14, 0.17},
                       hue[CLASSES] = {160, 80, 25};

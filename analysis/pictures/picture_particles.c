@@ -45,7 +45,7 @@ static void fragment_colour(cairo_t *cairo, const struct picture_scene *s, size_
 }
 
 static void value_colour(cairo_t *cairo, const struct picture_scene *s, double value) {
-  if (!isfinite(value)) { /* it has no value */
+  if (!isfinite(value)) { /* the particle has no value */
     cairo_set_source_rgb(cairo, 0.88, 0.88, 0.88);
     return;
   }
@@ -53,7 +53,7 @@ static void value_colour(cairo_t *cairo, const struct picture_scene *s, double v
   picture_canvas_ramp(cairo, s->ramp, fmin(fmax(share, 0), 1));
 }
 
-/* A dark rim sets a disc off from those behind it. */
+/* Draws a dark rim that separates a disc from those behind it. */
 static void draw_rim(cairo_t *cairo, const struct picture_layout_disc *d) {
   cairo_arc(cairo, d->x, d->y, 1.1 * d->radius, 0, 2 * M_PI);
   cairo_set_source_rgba(cairo, 0.1, 0.1, 0.12, 0.22);
@@ -77,7 +77,7 @@ static void draw_discs(cairo_t *cairo, const struct picture_scene *s) {
   }
 }
 
-/* The directions: two short arrows in the lower left corner. */
+/* Draws the directions of the axes as two short arrows in the lower left corner. */
 static void axes(cairo_t *cairo, int along, double x, double y, double font) {
   static const char *const names[] = {"x", "y", "z"};
   const char *right = names[along == 0 ? 1 : 0], *up = names[along == 2 ? 1 : 2];
@@ -105,7 +105,7 @@ static void legend_line(cairo_t *cairo, double x, double y, double font, const c
   picture_canvas_text(cairo, x + 1.5 * font, y + 0.85 * font, 0.95 * font, PICTURE_LEFT, false, text);
 }
 
-/* A particle of a fragment's core; n: there is none. */
+/* Index of a particle in a fragment's core; n if there is none. */
 static size_t core_particle(const struct picture_cloud *cloud, size_t fragment) {
   size_t i = 0;
   while (i < cloud->n && !(cloud->fragment[i] == (int64_t)fragment && cloud->part[i] == PICTURE_CORE))
@@ -113,7 +113,7 @@ static size_t core_particle(const struct picture_cloud *cloud, size_t fragment) 
   return i;
 }
 
-/* The heaviest fragments and the single particles with their shares of the mass. */
+/* Lists the heaviest fragments and the single particles with their shares of the mass. */
 static void legend(cairo_t *cairo, const struct picture_scene *s, double x, double y, double font) {
   enum { MOST = 8 };
   char text[48];
@@ -134,7 +134,7 @@ static void legend(cairo_t *cairo, const struct picture_scene *s, double x, doub
   legend_line(cairo, x, y, font, text);
 }
 
-/* What is missing, or has no value, under the picture. */
+/* Writes a note under the picture about particles that are missing or have no value. */
 static void note(cairo_t *cairo, const struct picture_scene *s, double left, double y, double font) {
   char text[300] = "";
   size_t grey = 0;
@@ -186,7 +186,7 @@ static status draw(const char *path, double width, struct picture_scene *s, stru
   return picture_canvas_close(&canvas, STATUS_OK, error);
 }
 
-/* Chooses what is seen. STATUS_MEMORY. */
+/* Chooses the discs, frame and colours. STATUS_MEMORY. */
 static status choose(struct picture_scene *s) {
   status code = picture_scene_gather(s);
   if (code)

@@ -1,11 +1,11 @@
-/* Measured numbers beside the intervals that a fit predicts, each over its measured value. */
+/* Measured numbers beside the intervals predicted by a fit, both divided by the measured value. */
 #include <math.h>
 
 #include "analysis/pictures/chart.h"
 
 static const double LETTER = 8.3; /* pixels */
 
-/* A row is drawn over its measured value. */
+/* A row is divided by its measured value. */
 static bool can_be_drawn(const struct picture_prediction *row) {
   return row->measured != 0 && isfinite(row->quantile[0]);
 }

@@ -12,7 +12,7 @@ static void extend(double range[2], double value) {
   range[1] = fmax(range[1], value);
 }
 
-/* What a panel shows at least, with some space above and below. A panel without a finite value shows 0 to 1. */
+/* The range of a panel, with some space above and below. A panel without a finite value shows 0 to 1. */
 static void range_of(size_t count, const struct picture_profile *panel, double range[2]) {
   range[0] = panel->at_least[0];
   range[1] = panel->at_least[1];

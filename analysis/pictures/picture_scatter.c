@@ -1,9 +1,9 @@
-/* How runs scatter: histograms and distribution functions, one above the other. */
+/* Scatter of runs: histograms and distribution functions, one above the other. */
 #include <math.h>
 
 #include "analysis/pictures/chart.h"
 
-enum { MOST_STEPS = 2000 }; /* of a distribution function: finer ones cannot be seen */
+enum { MOST_STEPS = 2000 }; /* steps of a distribution function; finer ones cannot be seen */
 
 static void write_histogram(struct chart *chart, const struct picture_sample *s) {
   const struct scatter_histogram *h = &s->histogram;

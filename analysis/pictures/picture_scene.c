@@ -1,4 +1,4 @@
-/* Chooses what a picture of particles shows: which discs, from where, in which frame and colours. */
+/* Chooses the contents of a picture of particles: discs, direction of view, frame and colours. */
 #include "analysis/pictures/picture_scene.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 
 #include "analysis/statistics/sample.h"
 
-static const double REACH = 0.80; /* disc radius over size: discs overlap a little, so that a cut has no holes */
+static const double REACH = 0.80; /* disc radius divided by size: discs overlap a little, so that a cut has no holes */
 
 void picture_scene_clear(struct picture_scene *s) {
   free(s->count);
@@ -91,7 +91,7 @@ static bool make_disc(const struct picture_scene *s, size_t i, struct picture_la
     return false;
   const double *at = c->position[i];
   *disc = (struct picture_layout_disc){at[right], at[up], REACH * c->size[i], at[along], (uint32_t)i};
-  if (along == 1) /* x right, z up: y goes away */
+  if (along == 1) /* x right, z up: y points away */
     disc->depth = -disc->depth;
   if (view != PICTURE_CUT)
     return true;
@@ -110,8 +110,8 @@ void picture_scene_choose_discs(struct picture_scene *s) {
   qsort(s->disc, s->discs, sizeof *s->disc, by_depth);
 }
 
-/* From outside: how much of the least visible of the heaviest fragments can be seen, 0 to 1; and the mass share of
- * those that cannot. */
+/* For a view from outside: the visible share, 0 to 1, of the least visible of the heaviest fragments; and the mass
+ * share of hidden ones. */
 static status look_at_largest(struct picture_scene *s, double *least) {
   enum { HEAVIEST = 4 };
   double visible[HEAVIEST], total, single;
@@ -133,7 +133,7 @@ status picture_scene_turn(struct picture_scene *s) {
   double best = -1, least;
   int axis = s->look->axis;
   for (int k = 0; k < 3 && s->look->axis < 0; k++) {
-    s->axis = (k + 1) % 3; /* y first: it stays if no other is better */
+    s->axis = (k + 1) % 3; /* y first: it is kept unless another is better */
     picture_scene_choose_discs(s);
     if (look_at_largest(s, &least))
       return STATUS_MEMORY;
@@ -154,8 +154,8 @@ static void cover(double view[4], double x, double y, double radius) {
   view[3] = fmax(view[3], y + radius);
 }
 
-/* All resolved fragments and nine tenths of the rest along each axis, so that jets do not shrink the body. Apart: all
- * that is drawn. */
+/* Shows all resolved fragments and nine tenths of the rest along each axis, so that jets do not shrink the body. With
+ * fragments apart: all drawn discs. */
 static status choose_view(struct picture_scene *s) {
   double *sorted = malloc((s->discs + 1) * sizeof *sorted), all[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   double *view = s->view;
@@ -190,7 +190,8 @@ static bool is_inside(const double view[4], const struct picture_layout_disc *d)
          d->y + d->radius <= view[3];
 }
 
-/* What does not fit into the frame as a whole, a jet or a small fragment far away, is not drawn at all. */
+/* Leaves out fragments and single particles that do not fit wholly into the frame, such as jets and small distant
+ * fragments. */
 static status leave_out(struct picture_scene *s) {
   bool *out = calloc(s->fragments + 1, sizeof *out);
   size_t kept = 0;
@@ -218,7 +219,7 @@ status picture_scene_frame(struct picture_scene *s) {
   return code ? code : leave_out(s);
 }
 
-/* The unit gets a prefix by the largest value shown: Pa becomes GPa. Not so shares, lengths and masses. */
+/* Chooses a prefix of the unit by the largest value shown, such as GPa. Shares, lengths and masses get none. */
 static void choose_unit(struct picture_scene *s, double largest) {
   static const struct {
     double factor;
@@ -237,8 +238,8 @@ static void choose_unit(struct picture_scene *s, double largest) {
            s->look->quantity ? s->look->quantity : "", letter, unit);
 }
 
-/* The finite values drawn, of the particles searched for fragments only if `searched`: a hot and dense projectile does
- * not set the range of the body. */
+/* Collects the finite values of drawn particles. `searched`: only of particles that were searched for fragments, so
+ * that a hot and dense projectile does not set the range of the body. */
 static size_t collect_values(const struct picture_scene *s, bool searched, double *values) {
   size_t count = 0;
   for (size_t k = 0; k < s->discs; k++) {
@@ -249,13 +250,13 @@ static size_t collect_values(const struct picture_scene *s, bool searched, doubl
   return count;
 }
 
-/* A quantity without a unit whose values lie within 0 and 1. */
+/* Is it a quantity without a unit whose values are within 0 and 1? */
 static bool is_share(const struct picture_scene *s, double least, double most) {
   return s->look->unit && strcmp(s->look->unit, "1") == 0 && least >= 0 && most <= 1;
 }
 
-/* Range and ramp for ascending values: without the outermost hundredths; shares always from 0 to 1; symmetric about 0
- * where there are both signs. */
+/* Chooses range and ramp for ascending values: without the outermost percent at both ends; shares always from 0 to 1;
+ * symmetric about 0 where there are both signs. */
 static void choose_range(struct picture_scene *s, const double *sorted, size_t count) {
   static const double nothing[2] = {0, 1};
   if (count == 0) {

@@ -1,4 +1,4 @@
-/* What a picture of particles shows: discs, their order, frame and colours. For picture_particles.c only. */
+/* The contents of a picture of particles: discs, their order, frame and colours. For picture_particles.c only. */
 #ifndef CLAST_ANALYSIS_PICTURES_PICTURE_SCENE_H
 #define CLAST_ANALYSIS_PICTURES_PICTURE_SCENE_H
 
@@ -6,7 +6,7 @@
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/picture_layout.h"
 
-enum { PICTURE_SCENE_RESOLVED = 10 }; /* particles: a smaller fragment is hardly resolved and gets a pale tint */
+enum { PICTURE_SCENE_RESOLVED = 10 }; /* particles: a smaller fragment is poorly resolved and gets a pale tint */
 
 struct picture_scene {
   const struct picture_cloud *cloud;
@@ -15,31 +15,32 @@ struct picture_scene {
   uint32_t *count; /* particles by fragment */
   double *mass;    /* kg by fragment */
   double (*centre)[3];
-  double middle[3]; /* m: of the heaviest fragment, or of all */
+  double middle[3]; /* m: centre of the heaviest fragment, or of all particles */
   struct picture_layout_disc *disc;
-  double low, high, scale; /* of the colours; values are divided by `scale` */
+  double low, high, scale; /* range of the colours; values are divided by `scale` */
   double view[4];
-  size_t left_out; /* particles beyond the frame */
-  int axis;        /* of the line of sight */
-  double hidden;   /* mass share of large fragments that cannot be seen */
+  size_t left_out; /* number of particles outside the frame */
+  int axis;        /* axis of the line of sight */
+  double hidden;   /* mass share of large fragments that are hidden */
   char label[160];
   enum picture_ramp ramp;
 };
 
-/* Mass, centre and number of particles of each fragment, and the middle of the picture. STATUS_MEMORY. */
+/* Computes mass, centre and number of particles of each fragment, and the middle of the picture. STATUS_MEMORY. */
 status picture_scene_gather(struct picture_scene *scene);
 void picture_scene_clear(struct picture_scene *scene);
 
-/* The discs along the line of sight, nearest last. */
+/* Chooses the discs along the line of sight, nearest last. */
 void picture_scene_choose_discs(struct picture_scene *scene);
-/* Turns the body so that the heaviest fragments are seen as well as they can be, unless the direction is given. */
+/* Turns the body so that the heaviest fragments are as visible as possible, unless the direction is given. */
 status picture_scene_turn(struct picture_scene *scene);
-/* The frame, without discs that do not fit into it: jets and small fragments far away. */
+/* Chooses the frame and leaves out discs that do not fit into it: jets and small fragments far away. */
 status picture_scene_frame(struct picture_scene *scene);
-/* Range, ramp and label of the values, if there are any. */
+/* Chooses range, ramp and label of the values, if there are any. */
 status picture_scene_choose_colours(struct picture_scene *scene);
 
-/* Mass of the particles that were searched for fragments, and of the single ones, kg. Returns how many they are. */
+/* Computes the mass of the particles that were searched for fragments, and of the single ones, kg. Returns the number
+ * of the searched ones. */
 size_t picture_scene_masses(const struct picture_cloud *cloud, double *total, double *single);
 
 #endif

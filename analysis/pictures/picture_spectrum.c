@@ -26,7 +26,7 @@ static double middle(const struct pooled_form *form, const struct pooled_bin *bi
   return form->cumulative ? bin->lower : sqrt(bin->lower) * sqrt(bin->upper);
 }
 
-/* Block: the bins of one series. A bar that reaches down to zero has no lower end on a logarithmic axis. */
+/* Writes a block: the bins of one series. A bar that ends at or below zero has no lower end on a logarithmic axis. */
 static void write_bins(struct chart *chart, const struct pooled_form *form, size_t count, const struct pooled_bin *bins,
                        double complete) {
   chart_columns(chart, form->cumulative ? "place N low high complete(1)" : "place density low high complete(1)");
@@ -36,7 +36,7 @@ static void write_bins(struct chart *chart, const struct pooled_form *form, size
       continue;
     double low = bin->value - bin->half_width; /* NaN: one run */
     if (low <= 0)
-      low = bin->value / 1e3; /* below the frame, or nearly */
+      low = bin->value / 1e3; /* a bar down to the frame's lower edge or beyond */
     chart_row(chart, 5,
               (double[]){middle(form, bin), bin->value, low, bin->value + bin->half_width, !(bin->lower < complete)});
   }
@@ -44,14 +44,14 @@ static void write_bins(struct chart *chart, const struct pooled_form *form, size
   chart_block_end(chart);
 }
 
-/* Block: the line of a fit. most: the greatest place of the chart. */
+/* Writes a block: the line of a fit. most: the largest place of the chart. */
 static void write_fit(struct chart *chart, const struct pooled_form *form, const struct picture_fit *fit, double most) {
   const double from = spectrum_size_of(&form->size, fit->lower);
   const double to = isinf(fit->upper) ? most : spectrum_size_of(&form->size, fit->upper);
   chart_columns(chart, "place value");
   if (from > 0 && to > from)
     for (int i = 0; i < LINE_POINTS; i++) {
-      const double place = from * pow(to / from, 0.002 + 0.996 * i / (LINE_POINTS - 1)); /* inside of the window */
+      const double place = from * pow(to / from, 0.002 + 0.996 * i / (LINE_POINTS - 1)); /* just inside the window */
       chart_row(chart, 2, (double[]){place, picture_spectrum_fit(fit, form, place)});
     }
   chart_row(chart, 2, (double[]){NAN, NAN});
@@ -81,7 +81,7 @@ static void write_ranges(struct chart *chart, const struct ranges *r) {
   chart_number(chart, "y_high", r->y[1] * tall);
 }
 
-/* The series, then the thin lines, then the fits. */
+/* Writes the series, then the thin lines, then the fits. */
 static void write_blocks(struct chart *chart, const struct pooled_form *form, size_t count,
                          const struct picture_series *series, double most) {
   enum { MOST_THIN = 1000 };
@@ -125,7 +125,7 @@ status picture_spectrum(const struct picture_page *page, const struct picture_wo
     cover(&ranges, series[s].count, series[s].bins);
   if (!(ranges.x[1] > ranges.x[0]))
     return status_fail(error, STATUS_USAGE, "%s: there is no fragment to draw", page->path);
-  for (size_t s = 0; s < count; s++) { /* thin lines: lower densities than the mean of many runs are not rare */
+  for (size_t s = 0; s < count; s++) { /* thin lines often have lower densities than the mean of many runs */
     for (size_t i = 0; i < series[s].thin_count; i++)
       cover(&ranges, series[s].thin[i].count, series[s].thin[i].bins);
   }

@@ -9,7 +9,7 @@ enum { MOST_COMPRESSED = 1100 }; /* deflate's limit is 1032 : 1 */
 
 struct snapshot_hdf5 {
   hid_t file;
-  double bytes; /* the most that the file can hold if it is compressed */
+  double bytes; /* largest size of the file's data if it is compressed */
 };
 
 struct snapshot_hdf5 *snapshot_hdf5_open(const char *path) {
@@ -17,8 +17,8 @@ struct snapshot_hdf5 *snapshot_hdf5_open(const char *path) {
   struct snapshot_hdf5 *f = calloc(1, sizeof *f);
   if (!f)
     return NULL;
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 prints nothing: the answer tells the error */
-  H5PLset_loading_state(0);              /* a file does not choose libraries to load: its unknown filters are errors */
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 prints nothing: the return values report errors */
+  H5PLset_loading_state(0);              /* a file must not choose libraries to load: its unknown filters are errors */
   f->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (f->file >= 0 && H5Fget_filesize(f->file, &size) >= 0) {
     f->bytes = (double)size * MOST_COMPRESSED;
@@ -28,7 +28,7 @@ struct snapshot_hdf5 *snapshot_hdf5_open(const char *path) {
   return NULL;
 }
 
-/* Each step of the way is a hard link: external links lead to other files, and clast writes no soft links. */
+/* Each part of the path must be a hard link: external links lead to other files, and clast writes no soft links. */
 bool snapshot_hdf5_has(struct snapshot_hdf5 *f, const char *name) {
   enum { LONGEST = 256 };
   char way[LONGEST];
@@ -47,7 +47,7 @@ bool snapshot_hdf5_has(struct snapshot_hdf5 *f, const char *name) {
   return length > 0;
 }
 
-/* Only numbers stored in this very file: no external or virtual storage. */
+/* Are the numbers stored in this file, without external or virtual storage? */
 static bool plain(hid_t set) {
   hid_t type = H5Dget_type(set), layout = H5Dget_create_plist(set);
   H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
@@ -60,7 +60,8 @@ static bool plain(hid_t set) {
   return good;
 }
 
-/* Rows of a data set that is plain numbers of the wanted shape; -1: it is not, or it has too many. */
+/* Number of rows of a data set of plain numbers with the wanted shape; -1: another kind of data set, or too many
+ * rows. */
 static int64_t count_rows(hid_t set, size_t width) {
   hsize_t size[2] = {0, 0};
   if (!plain(set)) /* first: the shape of virtual storage can lie in other files */
@@ -104,7 +105,7 @@ void *snapshot_hdf5_rows(struct snapshot_hdf5 *f, const char *name, size_t width
   return values;
 }
 
-/* The attribute when it is a scalar of this class and of at most `most` bytes; else -1. */
+/* Opens the attribute if it is a scalar of this class and has at most `most` bytes; else -1. */
 static hid_t open_attribute(struct snapshot_hdf5 *f, const char *at, const char *name, H5T_class_t class, size_t most) {
   if (!snapshot_hdf5_has(f, at))
     return -1;

@@ -1,4 +1,4 @@
-/* Reading fields files: a process of its own calls HDF5 and answers questions. If it dies, the file is damaged. */
+/* Reading fields files: a child process calls HDF5 and answers requests. If the child dies, the file is damaged. */
 #include "analysis/pictures/snapshot_read.h"
 
 #include <errno.h>
@@ -22,7 +22,7 @@ struct question {
   char at[NAME_SIZE], name[NAME_SIZE];
 };
 
-/* The rows themselves come after it. */
+/* The rows follow it. */
 struct answer {
   bool good;
   size_t rows;
@@ -83,7 +83,8 @@ static bool reply(int line, struct snapshot_hdf5 *file, const struct question *q
   return sent;
 }
 
-/* Answers until the parent closes its end. A crash ends this process at once, without the parent's handlers. */
+/* Answers requests until the parent closes its end. A crash ends this process immediately, without the parent's
+ * handlers. */
 static _Noreturn void serve(int line, const char *path) {
   const int crashes[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL};
   for (size_t k = 0; k < sizeof crashes / sizeof *crashes; k++)
@@ -99,7 +100,7 @@ static _Noreturn void serve(int line, const char *path) {
 
 /* ---- the parent */
 
-/* False: the child is gone. Then all later questions get the same answer. */
+/* False: the child has ended. Then all later requests fail, too. */
 static bool listen_to(struct snapshot_read *f, void *bytes, size_t size) {
   f->lost = f->lost || !get(f->line, bytes, size);
   return !f->lost;
@@ -154,7 +155,7 @@ status snapshot_read_open(const char *path, struct snapshot_read **out, struct e
 
 bool snapshot_read_close(struct snapshot_read *f) {
   bool whole = !f->lost;
-  shutdown(f->line, SHUT_RDWR); /* also where another child holds a copy of this end */
+  shutdown(f->line, SHUT_RDWR); /* works even if another child holds a copy of this end */
   close(f->line);
   while (waitpid(f->child, NULL, 0) < 0 && errno == EINTR)
     ;
@@ -182,7 +183,7 @@ void *snapshot_read_rows(struct snapshot_read *f, const char *name, size_t width
     return NULL;
   void *values = a.rows <= SNAPSHOT_READ_LARGEST ? malloc(size_of_rows(a.rows, width) + 1) : NULL;
   if (!values || !listen_to(f, values, size_of_rows(a.rows, width))) {
-    f->lost = true; /* what comes next on the line is no answer */
+    f->lost = true; /* the following bytes on the socket are no answer */
     free(values);
     return NULL;
   }

@@ -28,12 +28,12 @@ static int place(const struct scale *scale, double log_value) {
   return at < scale->columns ? at : scale->columns - 1;
 }
 
-/* Place on the axis; below it fragments are missing. */
+/* The place on the axis below which fragments are missing. */
 static double complete_from(const struct pooled_form *form, const struct picture_series *series) {
   return spectrum_size_of(&form->size, series->complete_mass);
 }
 
-typedef unsigned char plot_line[MOST_PLOT]; /* of enum mark */
+typedef unsigned char plot_line[MOST_PLOT]; /* values of enum mark */
 
 static void mark_error(const struct scale *scale, const struct pooled_bin *bin, plot_line line) {
   const double below = bin->value - bin->half_width;
@@ -54,7 +54,7 @@ static void mark_fit(const struct scale *scale, const struct pooled_form *form, 
     line[place(scale, fitted)] = FIT;
 }
 
-/* A line has no trailing blanks. */
+/* Writes a line without trailing blanks. */
 static void write_line(FILE *out, int columns, const plot_line line, bool unicode) {
   while (columns > 0 && line[columns - 1] == BLANK)
     columns--;
@@ -83,7 +83,7 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
   write_line(out, scale->columns, line, unicode);
 }
 
-/* The decades stand over the grid lines, as many as fit. */
+/* Writes the decades above the grid lines, as many as fit. */
 static void heading(FILE *out, const struct scale *scale, const char *mass_unit, const char *value) {
   char unit[32], line[MOST_PLOT + 16];
   snprintf(unit, sizeof unit, "from %s", mass_unit);

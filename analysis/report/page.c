@@ -1,4 +1,4 @@
-/* Puts data into the empty page. */
+/* Writes data into the empty page. */
 #include "analysis/report/page.h"
 
 #include <limits.h>
@@ -12,7 +12,7 @@
 #include "engine/atomic_file.h"
 #include "schemas/text.h"
 
-/* Where the data goes. */
+/* Mark that the data replaces. */
 static const char mark[] = "<!-- data -->";
 
 status page_empty(unsigned char **html, size_t *size, struct error *error) {
@@ -36,7 +36,7 @@ status page_empty(unsigned char **html, size_t *size, struct error *error) {
       program);
 }
 
-/* gzip at its best level, without a time: the same data gives the same bytes. */
+/* Compresses with gzip's best level and without a time: the same data gives the same bytes. */
 static status compress_data(const struct page_data *data, unsigned char **packed, size_t *size, struct error *error) {
   z_stream stream = {.next_in = data->bytes, .avail_in = (uInt)data->size};
   if (data->size > UINT_MAX)

@@ -1,5 +1,5 @@
 /* The page of `clast report`: one HTML file that holds its program and its data. The build makes the empty page
- * (share/clast/report.html) from the other files of this folder; here data is put into it. */
+ * (share/clast/report.html) from the other files of this folder; these functions add the data. */
 #ifndef CLAST_ANALYSIS_REPORT_PAGE_H
 #define CLAST_ANALYSIS_REPORT_PAGE_H
 
@@ -7,16 +7,16 @@
 
 #include "schemas/status.h"
 
-/* The empty page that belongs to this program: share/clast/report.html beside it or beside its folder. *html is
- * malloc'd. STATUS_MISSING when the program was built without npm: the message says what to install. */
+/* Reads the empty page of this program: share/clast/report.html beside the program or beside its folder. The caller
+ * frees *html. STATUS_MISSING when the program was built without npm: the message says what to install. */
 status page_empty(unsigned char **html, size_t *size, struct error *error);
 
 struct page_data { /* a small SQLite file (db/ask/page.h) */
   unsigned char *bytes;
   size_t size;
 };
-/* Writes the page with its data, compressed and as base64: whatever the data says, it is no HTML. *written: bytes of
- * the file. STATUS_CONTENT: the empty page has no place for data. */
+/* Writes the page with its data, compressed and as base64, so that no data is read as HTML. *written: bytes of the
+ * file. STATUS_CONTENT: the empty page has no mark for the data. */
 status page_write(const char *path, const unsigned char *html, size_t html_size, size_t count,
                   const struct page_data *data, size_t *written, struct error *error);
 

@@ -21,7 +21,7 @@ static struct convergence_difference paired_bias(size_t n, const double *level, 
                                                  double confidence) {
   struct sample_moments moments = {0};
   for (size_t i = 0; i < n; i++)
-    sample_add(&moments, level[i] - reference[i]); /* NaN when either is missing */
+    sample_add(&moments, level[i] - reference[i]); /* NaN when either value is missing */
   const struct sample_summary summary = sample_summarise_moments(&moments, confidence);
   return (struct convergence_difference){summary.n, summary.mean, summary.half_width};
 }
@@ -91,7 +91,7 @@ double convergence_gain(double correlation, double w) {
   if (!(r <= 1) || !(w >= 0))
     return NOTHING;
   if (r <= convergence_break_even(w))
-    return 1; /* plain Monte Carlo is the better one */
+    return 1; /* plain Monte Carlo is better */
   const double root = sqrt(1 - r * r) + r * sqrt(w);
   return 1 / (root * root);
 }
@@ -100,8 +100,8 @@ double convergence_gain(double correlation, double w) {
 
 static const char *const verdict_names[] = {"too-few", "unchanged", "order", "no-order", "unsure", NULL};
 
-/* (h0^p - h1^p)/(h1^p - h2^p), less the ratio of the differences. With logarithms of h relative to h1; expm1 keeps
- * small p exact. */
+/* The equation (h0^p - h1^p)/(h1^p - h2^p) = ratio of the differences, for p. h enters as logarithms relative to h1;
+ * expm1 is exact for small p. */
 struct order_equation {
   double up, down, ratio; /* ln(h0/h1) > 0, ln(h1/h2) > 0 */
 };
@@ -134,9 +134,9 @@ bool convergence_solve(const double h[3], const double f[3], double *order, doub
   return true;
 }
 
-/* Means of the three levels, each moved at random by as much as so few seeds leave open: a draw from Student's t in
- * several dimensions. With w_s normal, sum of w_s (x_s - mean) over sqrt(n (n - 1)) has the covariance of the means,
- * and sqrt((n - 1)/chi^2) makes t of it. Levels that pair share w and chi^2. */
+/* Means of the three levels, each shifted at random within the uncertainty that the number of seeds leaves: a draw from
+ * Student's t in several dimensions. With w_s normal, the sum of w_s (x_s - mean) over sqrt(n (n - 1)) has the
+ * covariance of the means, and the factor sqrt((n - 1)/chi^2) turns it into t. Paired levels share w and chi^2. */
 static void draw_means(uint64_t draw, size_t n, const double *const values[3], const struct sample_summary mean[3],
                        bool paired, double f[3]) {
   for (uint64_t level = 0; level < 3; level++) {
@@ -156,14 +156,14 @@ static void draw_means(uint64_t draw, size_t n, const double *const values[3], c
   }
 }
 
-/* Limits of the middle share of the values, which are sorted. */
+/* Limits of the middle part of sorted values, with the share `confidence`. */
 static void middle(size_t n, double *values, double confidence, double *low, double *high) {
   qsort(values, n, sizeof *values, sample_ascending);
   *low = gsl_stats_quantile_from_sorted_data(values, 1, n, 0.5 - confidence / 2);
   *high = gsl_stats_quantile_from_sorted_data(values, 1, n, 0.5 + confidence / 2);
 }
 
-/* Solves for order and limit of many draws. Returns how many have them. */
+/* Solves for order and limit of many draws. Returns the number of draws that have both. */
 static size_t resample(const double h[3], size_t n, const double *const values[3], const struct sample_summary mean[3],
                        bool paired, double *orders, double *limits) {
   size_t count = 0;
@@ -175,7 +175,7 @@ static size_t resample(const double h[3], size_t n, const double *const values[3
   return count;
 }
 
-/* Seeds that one of the levels lacks leave the sample of levels that pair. */
+/* Paired levels use only the seeds that all three levels have. */
 static size_t complete_seeds(size_t n, const double *const values[3], double *kept[3]) {
   size_t m = 0;
   for (size_t s = 0; s < n; s++) {
@@ -273,7 +273,7 @@ void convergence_resolve(size_t count, struct convergence_row *levels, const str
 #define LEVEL_FLAG(path_, ...)    ROW(struct convergence_row, path_, FIELD_BOOLEAN, NULL, .maximum = 1, __VA_ARGS__)
 #define LEVEL(path_, least_, ...) NUMBER(struct convergence_row, path_, least_, __VA_ARGS__)
 #define LIMIT_TEXT(path_, ...)    ROW(struct convergence_limit_row, path_, FIELD_TEXT, NULL, .text = "", __VA_ARGS__)
-/* The columns are not called as in C where the word is one of SQL. */
+/* Column names differ from the C members where the member's name is a word of SQL. */
 #define LIMIT_AS(path_, member_, least_, ...)                                                                          \
   {                                                                                                                    \
     .path = path_, .kind = FIELD_REAL, .offset = offsetof(struct convergence_limit_row, member_), .number = NAN,       \

@@ -2,8 +2,8 @@
  * one knob: bias against the finest level, order, extrapolated limit, correlation between levels, and which settings
  * are worth their cost. `clast converge` makes the runs.
  *
- * Values of a level are in order of the seed, the same seeds in the same places for every level. NaN: the run failed.
- */
+ * Values of a level are in order of the seed, with the same seed at the same index for every level. NaN: the run
+ * failed. */
 #ifndef CLAST_ANALYSIS_STATISTICS_CONVERGENCE_H
 #define CLAST_ANALYSIS_STATISTICS_CONVERGENCE_H
 
@@ -35,20 +35,20 @@ struct convergence_correlation {
 struct convergence_correlation convergence_correlate(size_t n, const double *coarse, const double *fine,
                                                      double level_of_confidence);
 
-/* Two levels with correlation rho, the coarse one at w times the cost of the fine one: a control variate with the best
- * weight and the best numbers of runs has the variance of plain Monte Carlo at equal cost over this gain,
- * 1/(sqrt(1 - rho^2) + rho sqrt(w))^2 (Peherstorfer, Willcox & Gunzburger 2016, doi 10.1137/15M1046472, two models). It
- * is above 1 from the break-even rho = 2 sqrt(w)/(1 + w) on. */
+/* Two levels have correlation rho, and the coarse one costs w times as much as the fine one. At equal cost, a control
+ * variate with the best weight and the best numbers of runs has the variance of plain Monte Carlo divided by the gain
+ * 1/(sqrt(1 - rho^2) + rho sqrt(w))^2 (Peherstorfer, Willcox & Gunzburger 2016, doi 10.1137/15M1046472, two models).
+ * The gain is above 1 when rho is above the break-even 2 sqrt(w)/(1 + w). */
 double convergence_break_even(double cost_ratio);
 double convergence_gain(double correlation, double cost_ratio);
 
 /* f(h) = limit + a h^order through the three finest levels, with intervals from resampled seeds. */
 enum convergence_verdict {
   CONVERGENCE_TOO_FEW,   /* fewer than three levels with a step, or fewer than three seeds */
-  CONVERGENCE_UNCHANGED, /* the two finest levels do not differ as far as these seeds tell */
+  CONVERGENCE_UNCHANGED, /* the two finest levels do not differ significantly with these seeds */
   CONVERGENCE_ORDER,     /* differences shrink in at least 95 % of the resamples: order and limit are given */
   CONVERGENCE_NO_ORDER,  /* they do not shrink in at least 95 % of them: no limit is in sight */
-  CONVERGENCE_UNSURE,    /* between: more seeds are needed to tell */
+  CONVERGENCE_UNSURE,    /* between both: more seeds are needed to decide */
   CONVERGENCE_VERDICTS
 };
 
@@ -60,18 +60,18 @@ struct convergence_limit {
 };
 
 /* Order p and limit of f(h) = limit + a h^p through (h[i], f[i]), h[0] > h[1] > h[2] > 0. False when the differences
- * change their sign or do not shrink faster than a logarithm, or when p would be above CONVERGENCE_ORDER_MOST: there is
- * no such p then. Richardson (1911, doi 10.1098/rsta.1911.0009); the equation for p is solved by Brent's method. */
+ * change their sign or do not shrink faster than a logarithm, or when p would be above CONVERGENCE_ORDER_MOST.
+ * Richardson (1911, doi 10.1098/rsta.1911.0009); the equation for p is solved by Brent's method. */
 #define CONVERGENCE_ORDER_MOST 12.0
 bool convergence_solve(const double h[3], const double f[3], double *order, double *limit);
 
-/* h: steps of the three finest levels, coarse to fine; values[i][s]: of seed s. `paired`: one draw of seeds serves all
- * levels. The same values give the same bits. */
+/* h: steps of the three finest levels, coarse to fine. values[i][s]: value of level i and seed s. `paired`: all levels
+ * share one draw of seeds. The same values give the same bits. */
 struct convergence_limit convergence_extrapolate(const double h[3], size_t n, const double *const values[3],
                                                  bool paired, double level_of_confidence);
 
-/* Marks the points that no other one beats: none has both a smaller (or equal) cost and a smaller error. NaN is never
- * on the frontier. */
+/* Marks the Pareto frontier: a point is on it if no other one has a smaller (or equal) cost and a smaller error. NaN is
+ * never on the frontier. */
 void convergence_frontier(size_t n, const double *cost, const double *error, bool *on_frontier);
 
 /* ---- rows of a study, as the store keeps them ---- */
@@ -87,10 +87,10 @@ struct convergence_row { /* one level of one knob, for one quantity */
   double bias, bias_half_width;
   double correlation, correlation_low, correlation_high; /* with the next finer level */
   double cost_ratio, break_even, gain;
-  double resolution; /* what this knob alone leaves unknown at this level (convergence_resolve). NaN: a model's knob */
-  bool open;         /* no limit is in sight: it may be larger */
-  double error;      /* of this level: resolution, or |bias| and half width of a model's; and what the other knobs leave
-                        unknown at the scene's own setting */
+  double resolution; /* error that this knob alone leaves at this level (convergence_resolve). NaN: a model's knob */
+  bool open;         /* no limit is known: the error may be larger */
+  double error; /* of this level: resolution, or |bias| and half width of a model's; and the errors that the other knobs
+                   leave at the scene's own setting */
   bool frontier;
 };
 extern const struct field_table convergence_table;
@@ -104,9 +104,9 @@ struct convergence_limit_row { /* one knob, for one quantity */
 extern const struct field_table convergence_limit_table;
 
 /* Fills resolution and open of every level of a ladder, coarse to fine. With an order: the distance to the limit and
- * the half width of its interval. Else |bias| and half width against the finest level; the finest level itself has
- * those of the next coarser one, unless the knob has no step: then it is the best there is, and leaves nothing. Levels
- * without runs are left out (NaN). */
+ * the half width of its interval. Without an order: |bias| and half width against the finest level. The finest level
+ * itself takes those of the next coarser one; if the knob has no step, the finest level counts as exact and has 0.
+ * Levels without runs get NaN. */
 void convergence_resolve(size_t count, struct convergence_row *levels, const struct convergence_limit_row *limit);
 
 #endif

@@ -17,12 +17,13 @@ static double welch(const struct sample_moments side[2], double level) {
     degrees += share[k] * share[k] / freedom;
   }
   const double variance = share[0] + share[1];
-  if (!(degrees > 0)) /* neither side varies */
+  if (!(degrees > 0)) /* neither sample varies */
     return 0;
   return gsl_cdf_tdist_Pinv(0.5 + level / 2, variance * variance / degrees) * sqrt(variance);
 }
 
-/* Moments of the first and second values whose seeds both sides have, and of their differences; in order of seeds. */
+/* Moments of the first and second values with seeds that both sides have, and of their differences; in order of
+ * seeds. */
 static void add_pairs(size_t first_count, const struct difference_value *first, size_t second_count,
                       const struct difference_value *second, struct sample_moments paired[2],
                       struct sample_moments *differences) {

@@ -1,4 +1,4 @@
-/* The dip of a sample, and how large chance makes it. */
+/* The dip of a sample, and its distribution by chance. */
 #include "analysis/statistics/dip.h"
 
 #include <math.h>
@@ -12,14 +12,15 @@
  * through points (value j, j), its least concave majorant through points (value j, j + 1). */
 struct hull {
   const double *x;
-  size_t *knot;          /* work space of n */
-  double *low;           /* by value: the convex minorant on the interval under way */
-  double *high;          /* the concave majorant */
-  size_t *below, *above; /* by value: the knot of the minorant at or left of it, of the majorant at or right of it */
+  size_t *knot; /* work space of n */
+  double *low;  /* for each value: the convex minorant on the current interval */
+  double *high; /* the concave majorant */
+  size_t *below,
+      *above; /* for each value: the minorant's knot at it or to its left, the majorant's knot at it or to its right */
 };
 
-/* The knots of the minorant (sign 1) or the majorant (sign -1) between the values `from` and `to`; returns how many. Of
- * equal values the first is a knot of the minorant, the last of the majorant; both ends are knots always. */
+/* Finds the knots of the minorant (sign 1) or the majorant (sign -1) between the values `from` and `to`; returns their
+ * number. Of equal values the first is a knot of the minorant, the last of the majorant. Both ends are always knots. */
 static size_t find_knots(struct hull *h, size_t from, size_t to, int sign) {
   const double *x = h->x;
   size_t count = 0;
@@ -36,8 +37,8 @@ static size_t find_knots(struct hull *h, size_t from, size_t to, int sign) {
   return count;
 }
 
-/* Values of the minorant or the majorant, and the knot next to each value. A step between equal values at an end is
- * free: the mode may hold it. */
+/* Computes the minorant or the majorant, and the knot next to each value. A step between equal values at an end costs
+ * nothing, because the mode may contain it. */
 static void fill(struct hull *h, size_t from, size_t to, int sign) {
   const size_t knots = find_knots(h, from, to, sign);
   const double *x = h->x, up = sign < 0;
@@ -55,8 +56,8 @@ static void fill(struct hull *h, size_t from, size_t to, int sign) {
   }
 }
 
-/* Twice n times the dip: narrows the interval of the mode until both hulls are nearer to each other than what the parts
- * outside of it already cost. */
+/* Returns 2 n times the dip: narrows the interval of the mode until the distance between both hulls is smaller than the
+ * cost of the parts outside. */
 static double search(struct hull *h, size_t n) {
   size_t low = 0, high = n - 1;
   double dip = 1;
@@ -103,7 +104,7 @@ double dip_of(size_t n, const double *values) {
   return dip;
 }
 
-/* Sums of exponential steps are an ordered uniform sample, but for a scale. */
+/* Sums of exponential steps are an ordered uniform sample up to a scale factor. */
 static double drawn_dip(size_t size, uint64_t draw, double *sample) {
   double sum = 0;
   for (size_t i = 0; i < size; i++)
@@ -116,7 +117,7 @@ static size_t drawn_size(size_t n) {
 }
 
 double dip_share(size_t n, double dip) {
-  enum { ENOUGH = 200 }; /* samples with a larger dip: the share is then known to a tenth */
+  enum { ENOUGH = 200 }; /* this many samples with a larger dip are enough: the share is then known to a tenth */
   if (n < 4 || !isfinite(dip))
     return NAN;
   const size_t size = drawn_size(n);

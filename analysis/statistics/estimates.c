@@ -104,7 +104,7 @@ double estimates_window_elements(enum estimates_window window) {
 }
 
 double estimates_window_lower(enum estimates_window window, double element_mass, double complete_mass) {
-  return fmax(estimates_window_elements(window) * element_mass, complete_mass); /* NaN: the other */
+  return fmax(estimates_window_elements(window) * element_mass, complete_mass); /* fmax ignores a NaN */
 }
 
 static const struct {

@@ -63,7 +63,7 @@ static void least_squares(size_t n, const struct spectrum_bin_row *bins, int fir
       continue;
     double low = spectrum_edge(bins[i].bin), high = spectrum_edge(bins[i].bin + 1);
     double x = (bins[i].bin + 0.5) / SPECTRUM_BINS_PER_DECADE, y = log10((double)bins[i].count / (high - low));
-    points++; /* Welford's update: no cancellation */
+    points++; /* Welford's update avoids cancellation */
     double dx = x - mean_x, dy = y - mean_y;
     mean_x += dx / points;
     mean_y += dy / points;
@@ -133,7 +133,7 @@ status exponent_fit_bins(enum exponent_method method, size_t n, const struct spe
 
 static status fit_from_masses_by_bins(enum exponent_method method, size_t n, const double *masses,
                                       struct exponent_window window, struct exponent *out, struct error *error) {
-  struct spectrum_bin_row few[256], *rows = few; /* 25 decades without an allocation */
+  struct spectrum_bin_row few[256], *rows = few; /* 256 bins are 25 decades: enough without an allocation */
   size_t count = spectrum_fill(n, masses, few, 256);
   if (count > 256) {
     rows = malloc(count * sizeof *rows);
@@ -147,7 +147,7 @@ static status fit_from_masses_by_bins(enum exponent_method method, size_t n, con
   return code;
 }
 
-/* The masses inside the window, descending; *count of them. NULL only when memory is short. */
+/* Returns the masses inside the window, descending; *count is their number. NULL only when memory ran out. */
 static double *select_sorted(size_t n, const double *masses, double lower, double upper, size_t *count) {
   double *inside = malloc((n ? n : 1) * sizeof *inside);
   if (!inside)
@@ -181,7 +181,7 @@ static void pure(size_t n, const double *u, double span, struct exponent *out) {
   if (!isfinite(fit.beta))
     return;
   double distance = 0;
-  for (size_t i = 0; i < n; i++) { /* i fragments lie above u[i] */
+  for (size_t i = 0; i < n; i++) { /* i fragments are larger than u[i] */
     double below = power_law_below(fit.beta, u[i], span), number = (double)n;
     distance = fmax(distance, fmax(fabs((double)(n - i) / number - below), fabs((double)(n - 1 - i) / number - below)));
   }
@@ -198,7 +198,7 @@ static void tempered(size_t n, const double *u, double span, struct exponent *ou
     out->cutoff_mass = fit.rate > 0 ? out->lower / fit.rate : HUGE_VAL;
 }
 
-/* Fits `count` ascending masses from out->lower to `upper`; they become their logarithms. */
+/* Fits `count` ascending masses from out->lower to `upper`. Overwrites `masses` with logarithms. */
 static void fit_sorted(enum exponent_method method, size_t count, double *masses, double upper, struct exponent *out) {
   out->n = (int64_t)count;
   if (count < EXPONENT_LEAST_FRAGMENTS)

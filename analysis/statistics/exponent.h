@@ -1,13 +1,13 @@
 /* Exponents of fragment spectra, F(m) ~ m^-beta: differential, fragments per unit mass. The cumulative number N(>m) has
  * slope beta - 1.
  *
- * Least squares on logarithmic bins is the method of Kun & Herrmann (1999). From few fragments it is biased, because it
- * drops empty bins and gives a bin of one fragment the weight of a bin of hundreds: a true 2.0 reads 1.66 from 100
- * fragments in a window without end. Maximum likelihood has no such bias. Tests check both numbers. From many runs, in
- * the window of exponent_window_from(), every bin is filled and least squares is right, too.
+ * Least squares on logarithmic bins is the method of Kun & Herrmann (1999). With few fragments it is biased, because it
+ * drops empty bins and gives a bin of one fragment the weight of a bin of hundreds: for a true 2.0 it gives 1.66 with
+ * 100 fragments in a window without an upper end. Maximum likelihood has no such bias. Tests check both numbers. With
+ * many runs, in the window of exponent_window_from(), every bin is filled and least squares is also unbiased.
  *
  * Grains of nearly equal mass make the masses of small fragments nearly discrete. A continuous fit that starts at one
- * grain then reads 2.8 for a true 2.0, so windows start at several mean element masses (estimates.h). */
+ * grain then gives 2.8 for a true 2.0, so windows start at several mean element masses (estimates.h). */
 #ifndef CLAST_ANALYSIS_STATISTICS_EXPONENT_H
 #define CLAST_ANALYSIS_STATISTICS_EXPONENT_H
 
@@ -28,44 +28,44 @@ enum exponent_method {
 /* "least_squares"..., NULL-terminated; as stored and printed, where EXPONENT_UPPER_CUTOFF is "cutoff". */
 extern const char *const exponent_method_names[];
 
-/* [lower, upper) kg; upper = HUGE_VAL for none. Half-open, so that upper = M_1 leaves the largest fragment out: given
+/* [lower, upper) kg; upper = HUGE_VAL for none. It is half-open, so upper = M_1 leaves out the largest fragment. Given
  * M_1, the others are independent draws below it, and the bounded fits are exact conditional likelihoods. Methods on
- * bins use the bins that lie wholly inside. */
+ * bins use the bins wholly inside. */
 struct exponent_window {
   double lower, upper;
 };
-/* The window of a method from `lower` on for a run whose largest fragment is `largest`. Least squares: one decade, the
- * largest fragment inside if it is there, as in the paper, where the histogram is straight "for at least one order of
- * magnitude" and only single grains are left out. Without the largest fragments, or in a window without end, more runs
- * make it worse: what is left out thins the upper bins of all runs (a true 2.00 reads 2.14 from 20 runs, 2.48 from
- * 1000). Other methods: up to M_1. */
+/* The window of a method from `lower` on for a run whose largest fragment is `largest`. Least squares: one decade,
+ * which includes the largest fragment if it is inside. This follows the paper, where the histogram is straight "for at
+ * least one order of magnitude" and only single grains are left out. Without the largest fragments, or in a window
+ * without an upper end, more runs make it worse: the omitted fragments reduce the upper bins of all runs (a true 2.00
+ * gives 2.14 with 20 runs, 2.48 with 1000). Other methods: up to M_1. */
 struct exponent_window exponent_window_from(enum exponent_method method, double lower, double largest);
 
-/* Fewer fragments (or, for least squares, fewer than EXPONENT_LEAST_BINS non-empty bins) give beta = NaN. */
+/* With fewer fragments (or, for least squares, fewer non-empty bins) beta is NaN. */
 enum { EXPONENT_LEAST_FRAGMENTS = 5, EXPONENT_LEAST_BINS = 3 };
 
 struct exponent {
   int method;          /* enum exponent_method */
   double lower, upper; /* the window used, kg; upper may be HUGE_VAL */
-  int64_t n;           /* fragments in it */
+  int64_t n;           /* fragments in the window */
   double beta;         /* NaN when there are too few */
-  /* Of this sample alone, fragments taken as independent. EXPONENT_KS takes its lower cut-off as known: 23-38 % too
-   * small. */
+  /* From this sample alone, with fragments taken as independent. EXPONENT_KS takes its lower cut-off as known: 23-38 %
+   * too small. */
   double standard_error;
   double cutoff_mass;    /* EXPONENT_UPPER_CUTOFF: m_c (HUGE_VAL: none needed), else NaN */
   double ks_distance;    /* largest distance of the distribution functions; EXPONENT_MASSES, EXPONENT_KS, else NaN */
   double log_likelihood; /* of ln(m) or of the bins, natural logarithm; NaN for least squares */
 };
 
-/* No fit yet: the window given, n = 0, everything else NaN. */
+/* An empty result: the given window, n = 0, everything else NaN. */
 struct exponent exponent_unknown(enum exponent_method method, struct exponent_window window);
 
-/* masses in any order (descending is fastest); values that are not positive and finite are left out. Too few fragments
- * or an empty window gives beta = NaN with n set, STATUS_OK. STATUS_USAGE: a window without 0 < lower < upper, an
- * unknown method. STATUS_MEMORY. */
+/* masses in any order (descending is fastest); values that are not positive and finite are left out. With too few
+ * fragments or an empty window beta is NaN, n is set and the status is STATUS_OK. STATUS_USAGE: a window without 0 <
+ * lower < upper, an unknown method. STATUS_MEMORY. */
 status exponent_fit(enum exponent_method method, size_t n, const double *masses, struct exponent_window window,
                     struct exponent *out, struct error *error);
-/* From bins alone, ascending (LEAST_SQUARES and BINNED only; else STATUS_USAGE). */
+/* The same from bins alone, in ascending order (LEAST_SQUARES and BINNED only; else STATUS_USAGE). */
 status exponent_fit_bins(enum exponent_method method, size_t n, const struct spectrum_bin_row *bins,
                          struct exponent_window window, struct exponent *out, struct error *error);
 

@@ -1,4 +1,4 @@
-/* A measured spectrum beside simulated ones: Kolmogorov's distance and a likelihood, above the complete mass. */
+/* Compares a measured spectrum with simulated ones: Kolmogorov's distance and a likelihood, above the complete mass. */
 #include "analysis/statistics/measured.h"
 
 #include <math.h>
@@ -10,8 +10,8 @@ void measured_release(struct measured *measured) {
   *measured = (struct measured){0};
 }
 
-/* The bin of threshold i: N(>= m) there, or the density up to the next threshold. The last class has no upper end, and
- * so no density. */
+/* The bin of threshold i: N(>= m) there, or the density up to the next threshold. The last class has no upper end, so
+ * it has no density. */
 static struct pooled_bin bin_of(const struct measured *measured, const struct pooled_form *form, size_t i) {
   const bool last = i + 1 == measured->n;
   const double above = measured->above[i];
@@ -29,7 +29,7 @@ static struct pooled_bin bin_of(const struct measured *measured, const struct po
   return bin;
 }
 
-/* Single fragments are binned as simulated ones are; thresholds are their own bins. */
+/* Single fragments are binned like simulated ones; thresholds are their own bins. */
 status measured_bins(const struct measured *measured, const struct pooled_form *form, struct pooled_bin **bins,
                      size_t *count, struct error *error) {
   const struct pooled_form one = {.cumulative = form->cumulative, .size = form->size};
@@ -44,7 +44,7 @@ status measured_bins(const struct measured *measured, const struct pooled_form *
     return status_fail(error, STATUS_MEMORY, "no memory for a measured spectrum");
   for (size_t i = 0; i < measured->n; i++) {
     if (i > 0 && measured->mass[i] == measured->mass[i - 1])
-      continue; /* N(>= m) of equal masses is that of the first */
+      continue; /* equal masses: only the first has the right N(>= m) */
     const struct pooled_bin bin = bin_of(measured, form, i);
     if (bin.value > 0)
       (*bins)[(*count)++] = bin;
@@ -52,13 +52,13 @@ status measured_bins(const struct measured *measured, const struct pooled_form *
   return STATUS_OK;
 }
 
-/* Ascending masses from `from` on. */
+/* Ascending masses, a part of a sorted array. */
 struct sorted {
   size_t n;
   const double *mass;
 };
 
-/* How many are at least `mass`, or with `beyond` more than it. */
+/* The number of masses of at least `mass`; with `beyond`, of more than `mass`. */
 static double at_least(const struct sorted *sorted, double mass, bool beyond) {
   size_t low = 0, high = sorted->n;
   while (low < high) {
@@ -71,7 +71,7 @@ static double at_least(const struct sorted *sorted, double mass, bool beyond) {
   return (double)(sorted->n - low);
 }
 
-/* Two shares of fragments above a mass, and their greatest difference so far. `own`: a run that is taken out of the
+/* Two shares of fragments above a mass, and their greatest difference so far. `own`: a run that is excluded from the
  * pool, or NULL. */
 struct distance {
   const struct sorted *pool, *own;
@@ -83,7 +83,7 @@ static void look_at(struct distance *d, double mass, bool beyond, double share) 
   d->most = fmax(d->most, fabs(rest / d->whole - share));
 }
 
-/* Of a sample of single masses: the shares differ most on one side of one of its masses. */
+/* Distance of a sample of single masses: the shares differ most just before or after one of its masses. */
 static double distance_of_sample(const struct sorted *sample, const struct sorted *pool, bool own) {
   struct distance d = {pool, own ? sample : NULL, (double)pool->n - (own ? (double)sample->n : 0), 0};
   for (size_t i = 0; i < sample->n; i++) {
@@ -94,7 +94,7 @@ static double distance_of_sample(const struct sorted *sample, const struct sorte
   return d.most;
 }
 
-/* Of a run at thresholds. */
+/* Distance of a run, evaluated at thresholds. */
 static double distance_at(const struct measured *at, size_t first, const struct sorted *run,
                           const struct sorted *pool) {
   struct distance d = {pool, run, (double)(pool->n - run->n), 0};
@@ -117,28 +117,27 @@ struct mass_class {
   double low, high, measured;
 };
 
-/* Class c of single masses: the bins of the spectrum, of which the first begins at `from`. The last has no upper end.
- */
+/* Class c of single masses: the bins of the spectrum. The first begins at `from`; the last has no upper end. */
 static struct mass_class bin_class(const struct sorted *mine, int bin, double from, bool first, bool last) {
   struct mass_class k = {first ? from : spectrum_edge(bin), last ? HUGE_VAL : spectrum_edge(bin + 1), 0};
   k.measured = at_least(mine, k.low, false) - at_least(mine, k.high, false);
   return k;
 }
 
-/* Class from threshold i to the next one. */
+/* The class from threshold i to the next one. */
 static struct mass_class threshold_class(const struct measured *m, size_t i) {
   if (i + 1 == m->n)
     return (struct mass_class){m->mass[i], HUGE_VAL, m->above[i]};
   return (struct mass_class){m->mass[i], m->mass[i + 1], m->above[i] - m->above[i + 1]};
 }
 
-/* What class k adds to the log-likelihood when the fragments are drawn from the pool. */
+/* The contribution of class k to the log-likelihood when the fragments are drawn from the pool. */
 static double class_likelihood(struct mass_class k, const struct sorted *pool, double whole) {
   const double there = at_least(pool, k.low, false) - (isinf(k.high) ? 0 : at_least(pool, k.high, false));
   return k.measured * log((there + 0.5) / whole);
 }
 
-/* Of the measured fragments of at least `from`, from number `first` on. */
+/* Log-likelihood of the measured fragments of at least `from`, which begin at index `first`. */
 static double log_likelihood(const struct measured *m, size_t first, double from, const struct sorted *pool) {
   double sum = 0;
   if (!m->single) {
@@ -155,7 +154,7 @@ static double log_likelihood(const struct measured *m, size_t first, double from
   return sum;
 }
 
-/* The masses of run r from `from` on, ascending, into `room`. */
+/* Copies the masses of run r of at least `from` into `room`, ascending. */
 static struct sorted sort_run(const struct pooled_runs *runs, size_t r, double from, double *room) {
   size_t n = 0;
   for (size_t i = runs->first[r]; i < runs->first[r + 1]; i++)
@@ -186,7 +185,7 @@ status measured_compare(const struct measured *measured, const struct pooled_run
                         struct measured_match *out, struct error *error) {
   const size_t all = runs->count ? runs->first[runs->count] : 0;
   size_t first = 0;
-  complete = fmax(fmax(complete, measured->complete), 0); /* NaN: the other */
+  complete = fmax(fmax(complete, measured->complete), 0); /* fmax ignores a NaN */
   while (first < measured->n && measured->mass[first] < complete)
     first++;
   *out = (struct measured_match){complete, 0, {0, NAN, NAN, NAN, NAN}, NAN, NAN, NAN};

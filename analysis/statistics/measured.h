@@ -6,45 +6,46 @@
  *     mass (g), count
  *     0.1, 214
  *
- * The first line that is no remark names the columns; cells are divided by commas, semicolons or tabs. One column is
- * `mass` or `size` (diameter of the sphere of equal volume) with its unit in parentheses. Alone, every row is a
- * fragment. With `count`, a row tells the fragments from its mass up to the next row's. With `cumulative`, it tells
- * N(>= m), the fragments of at least this mass. Other columns are left alone. */
+ * The first line that is not a remark names the columns. Cells are separated by commas, semicolons or tabs. One column
+ * is `mass` or `size` (diameter of the sphere of equal volume) with its unit in parentheses. Without another column,
+ * every row is a fragment. With `count`, a row gives the number of fragments from its mass up to the next row's. With
+ * `cumulative`, it gives N(>= m), the number of fragments of at least this mass. Other columns are ignored. */
 #ifndef CLAST_ANALYSIS_STATISTICS_MEASURED_H
 #define CLAST_ANALYSIS_STATISTICS_MEASURED_H
 
 #include "analysis/statistics/pooled.h"
 
 struct measured {
-  bool single;      /* the mass of every fragment is known; else numbers at thresholds */
+  bool single;      /* true: `mass` has every fragment; false: `mass` has thresholds, and `above` their numbers */
   size_t n;         /* masses, or thresholds */
   double *mass;     /* kg, ascending; owned */
   double *above;    /* N(>= mass[i]); owned */
-  double complete;  /* kg; 0: the file does not say */
-  char source[200]; /* "" when the file does not say */
+  double complete;  /* kg; 0: the file does not give it */
+  char source[200]; /* "" when the file does not give it */
 };
 
-/* size: what turns a column of sizes into masses where the file tells no density (density 0: nothing does).
+/* size: converts a column of sizes into masses if the file gives no density (size->density 0: no conversion).
  * STATUS_MISSING, STATUS_IO, STATUS_CONTENT with line and remedy, STATUS_MEMORY. After an error *out is empty. */
 status measured_read(const char *path, const struct spectrum_size *size, struct measured *out, struct error *error);
 void measured_release(struct measured *measured); /* a zeroed one is fine */
 
-/* As the bins of a spectrum, to be drawn beside others of the form: malloc'd into *bins. Without intervals. */
+/* Converts to bins of a spectrum, to be drawn beside others of the same form. Without intervals. The caller frees
+ * *bins. */
 status measured_bins(const struct measured *measured, const struct pooled_form *form, struct pooled_bin **bins,
                      size_t *count, struct error *error);
 
-/* How well runs agree with what was measured, of fragments of at least `complete` only. Shapes are compared, each with
- * its own number of fragments; the numbers are told beside them. */
+/* Agreement of runs with measured data, for fragments of at least `complete` only. Shapes are compared, each normalised
+ * by its own number of fragments; the numbers are given separately. */
 struct measured_match {
-  double from;      /* kg: fragments of at least this mass; of thresholds the first one from `complete` on */
-  double fragments; /* measured */
+  double from;      /* kg: lower limit of the fragments used; with thresholds, the first threshold from `complete` on */
+  double fragments; /* number of measured fragments */
   struct sample_summary simulated; /* fragments per run */
   double distance;                 /* Kolmogorov's: greatest difference between both shares of fragments above a mass */
-  double share; /* of runs that are at least as far from the pool of the other runs: one experiment is one specimen,
-                   so a share below 0.05 speaks against the pool. NaN for fewer than three runs with fragments */
+  double share; /* of runs that are at least as far from the pool of the other runs: one experiment is one specimen, so
+                   a share below 0.05 is evidence against the pool. NaN for fewer than three runs with fragments */
   double log_likelihood; /* of the measured fragments in classes of mass (the store's bins, or the thresholds), if each
-                            is drawn from the pool; half a fragment is added to each class. Differences between pools
-                            tell, if `complete` is the same */
+                            is drawn from the pool; half a fragment is added to each class. Compare it between pools
+                            with the same `complete` */
 };
 status measured_compare(const struct measured *measured, const struct pooled_runs *runs, double complete,
                         struct measured_match *out, struct error *error);

@@ -1,4 +1,4 @@
-/* Reads a measured spectrum. The file may come from anywhere: every cell is checked. */
+/* Reads a measured spectrum. The file may come from an untrusted source: every cell is checked. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,8 +21,8 @@ struct reading {
   const char *path;
   size_t line;
   struct spectrum_size size;
-  int place, number;   /* columns; number -1: none */
-  bool named, by_size; /* the columns have their names; fragments are given by size */
+  int place, number;   /* indices of columns; `number` is -1: no such column */
+  bool named, by_size; /* the header line was read; fragments are given by size */
   enum count_kind kind;
   char unit[CELL], complete[CELL];
   struct row *rows;
@@ -60,7 +60,7 @@ static status take_remark(struct reading *r, char *text, struct error *error) {
   return STATUS_OK;
 }
 
-/* Divides a line at commas, semicolons or tabs. Returns the cells. */
+/* Splits a line at commas, semicolons or tabs. Returns the number of cells. */
 static int split(char *line, char *cells[], int most) {
   int count = 0;
   for (char *from = line; from && count < most; count++) {
@@ -73,7 +73,7 @@ static int split(char *line, char *cells[], int most) {
   return count;
 }
 
-/* What the names of columns mean. */
+/* Meanings of column names. */
 static const struct meaning {
   const char *name;
   enum { MASS, SIZE, NUMBER } of;
@@ -91,7 +91,7 @@ static const struct meaning *find_meaning(const char *name) {
   return NULL;
 }
 
-/* "mass (g)" is the name of column i. Of masses and sizes the first column counts. */
+/* Reads "mass (g)" as the name of column i. Among columns of masses and sizes the first one counts. */
 static void take_name(struct reading *r, int i, const char *cell) {
   char name[CELL], unit[CELL] = "";
   if (sscanf(cell, "%127[^(](%127[^)])", name, unit) < 1)
@@ -127,7 +127,7 @@ static status take_names(struct reading *r, int count, char *const cells[], stru
   return STATUS_OK;
 }
 
-/* "0.5" in the unit of the column, or "0.5 g"; as a mass in kg. */
+/* Reads "0.5" in the unit of the column, or "0.5 g", as a mass in kg. */
 static status read_mass(const struct reading *r, const char *text, const char *unit, double *mass,
                         struct error *error) {
   char quantity[2 * CELL + 2];
@@ -137,7 +137,7 @@ static status read_mass(const struct reading *r, const char *text, const char *u
   if (code || !(place > 0))
     return refuse(r, error, r->by_size ? "expected a size above 0, not" : "expected a mass above 0, not", quantity);
   *mass = r->by_size ? spectrum_size_mass(&r->size, place) : place;
-  if (!(*mass > 0) || !isfinite(*mass)) /* the cube of a size leaves the range of numbers */
+  if (!(*mass > 0) || !isfinite(*mass)) /* the cube of a size can exceed the range of a double */
     return refuse(r, error, "no fragment has the mass of", quantity);
   return STATUS_OK;
 }
@@ -201,7 +201,7 @@ static int ascending(const void *a, const void *b) {
   return sample_ascending(&((const struct row *)a)->mass, &((const struct row *)b)->mass);
 }
 
-/* Rows become N(>= m) at ascending masses. */
+/* Converts rows into N(>= m) at ascending masses. */
 static status take_rows(struct reading *r, struct error *error) {
   struct measured *out = r->out;
   out->single = r->kind == SINGLE;

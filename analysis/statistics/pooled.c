@@ -1,4 +1,4 @@
-/* Exponents of a point from all its runs, and the jackknife over runs. */
+/* Exponents of a point from all its runs, with the jackknife over runs. */
 #include "analysis/statistics/pooled.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 #include "analysis/statistics/power_law.h"
 #include "analysis/statistics/tempered.h"
 
-/* What a fit needs of every run. */
+/* Data of every run for the fits. */
 struct prepared {
   enum exponent_method method;
   size_t runs;
@@ -17,10 +17,10 @@ struct prepared {
   int first_bin;                  /* LEAST_SQUARES: counts[run * bins + j] of bin first_bin + j */
   size_t bins;
   int64_t *counts;
-  struct spectrum_bin_row *total, *rows; /* of all runs; of those of one fit */
+  struct spectrum_bin_row *total, *rows; /* bins of all runs; bins of the runs in one fit */
 };
 
-/* Index behind the last fragment of run r whose mass is at least `lower`. */
+/* Index after the last fragment of run r whose mass is at least `lower`. */
 static size_t window_end(const struct pooled_runs *runs, size_t r, double lower) {
   size_t low = runs->first[r], high = runs->first[r + 1];
   while (low < high) {
@@ -33,8 +33,8 @@ static size_t window_end(const struct pooled_runs *runs, size_t r, double lower)
   return low;
 }
 
-/* The window of run r: fragments [*begin, *end), below its largest, whose mass it returns. Fragments as large as the
- * largest are left out with it. */
+/* The window of run r: fragments [*begin, *end), below its largest fragment, whose mass is returned. Fragments of the
+ * same mass as the largest are also left out. */
 static double window_of(const struct pooled_runs *runs, size_t r, double lower, size_t *begin, size_t *end) {
   *begin = runs->first[r];
   *end = window_end(runs, r, lower);
@@ -152,7 +152,8 @@ static double total_weight(size_t n, const struct power_law_group *groups) {
 }
 
 /* Least squares without the runs begin to end - 1. A bin without a fragment has no logarithm. A line through the others
- * reads up to 1 too low, and no interval over the runs knows it; so there is no fit until the runs fill every bin. */
+ * gives a beta up to 1 too low, and no interval over the runs shows it. So there is no fit until the runs fill every
+ * bin. */
 static void fit_bins(struct prepared *p, size_t begin, size_t end, struct exponent *fit) {
   bool filled = true;
   for (size_t j = 0; j < p->bins; j++) {
@@ -177,7 +178,7 @@ static void fit_groups(const struct prepared *p, struct exponent *fit) {
   fit->log_likelihood = plain.log_likelihood;
 }
 
-/* theta[g]: beta without the g-th `each` runs; `groups` of them. */
+/* theta[g]: beta without the g-th group of `each` runs; there are `groups` of them. */
 static status leave_out(struct prepared *p, size_t groups, size_t each, double *theta) {
   if (p->groups && !power_law_leave_out(p->runs, p->groups, p->bin_width, each, theta))
     return STATUS_MEMORY;
@@ -208,7 +209,7 @@ static status check(const struct pooled_runs *runs, double lower, struct error *
   return STATUS_OK;
 }
 
-/* Runs with fragments in their window, and the largest of those runs' largest fragments (0: there is none). */
+/* Counts runs with fragments in their window. *upper: the largest of these runs' largest fragments (0: none). */
 static size_t count_runs(const struct prepared *p, const struct pooled_runs *runs, double lower, double *upper) {
   size_t count = 0;
   *upper = 0;
@@ -233,8 +234,8 @@ static status check_method(enum exponent_method method, struct error *error) {
   return status_fail(error, STATUS_USAGE, "exponent: method number %d does not pool runs", (int)method);
 }
 
-/* Checks what is asked for, fits all runs, then all but one group after another: theta, where there is a beta. After an
- * error p is empty. */
+/* Checks the arguments, fits all runs, and then all runs except one group at a time: theta, if there is a beta. After
+ * an error p is empty. */
 static status fit_all(struct prepared *p, const struct pooled_runs *runs, enum exponent_method method, double lower,
                       size_t groups, size_t each, struct exponent *fit, double *theta, struct error *error) {
   *p = (struct prepared){.method = method, .runs = runs->count};
@@ -278,11 +279,12 @@ status pooled_exponent(const struct pooled_runs *runs, enum exponent_method meth
   return STATUS_OK;
 }
 
-/* The values of pooled.h from beta and theta, beta without each run; both arrays have n members. */
+/* The values of pooled_exponent_of_runs() from beta and from theta[r], beta without run r. Both arrays have n
+ * elements. */
 static void values_of_runs(size_t n, double beta, const double *theta, double *values) {
   double mean = 0;
   for (size_t r = 0; r < n; r++)
-    mean += theta[r] / (double)n; /* NaN when one is NaN: so few runs cannot tell */
+    mean += theta[r] / (double)n; /* NaN when one is NaN: too few runs */
   for (size_t r = 0; r < n; r++)
     values[r] = isfinite(mean) && n > 1 ? beta + (double)(n - 1) * (mean - theta[r]) : (double)NAN;
 }
@@ -305,7 +307,7 @@ status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_met
   return code;
 }
 
-/* Fits the pure power law's rivals to all runs at once. STATUS_MEMORY. */
+/* Fits a rival of the pure power law to all runs. STATUS_MEMORY. */
 static status fit_rival(const struct pooled_runs *runs, double lower, enum tempered_kind kind,
                         struct tempered_group *groups, struct tempered *fit) {
   for (size_t r = 0; r < runs->count; r++)

@@ -1,9 +1,9 @@
 /* A point's spectrum and exponents from all its runs together. Runs are independent, so errors come from the scatter
  * between runs, never from counting fragments.
  *
- * With maximum likelihood each run's largest fragment M_1 bounds the run's window and is left out: this costs next to
- * no information, and a giant remnant cannot bend the fit. Least squares has one window for all runs, which ends a
- * decade above its lower end; it leaves no fragment out (exponent_window_from()). */
+ * With maximum likelihood each run's largest fragment M_1 bounds the run's window and is left out. This loses almost no
+ * information, and a giant remnant cannot bias the fit. Least squares has one window for all runs, which ends a decade
+ * above its lower end; it leaves out no fragment (exponent_window_from()). */
 #ifndef CLAST_ANALYSIS_STATISTICS_POOLED_H
 #define CLAST_ANALYSIS_STATISTICS_POOLED_H
 
@@ -19,20 +19,20 @@ struct pooled_runs {
   const double *masses;
 };
 
-/* What a spectrum shows. All zero: F(m), the differential one by mass, with the runs as units. */
+/* The form of a spectrum. All zero: F(m), differential, by mass, with runs as units. */
 struct pooled_form {
   bool cumulative; /* N(>m), fragments per run of at least that mass; else fragments per run and kg (or m) */
   struct spectrum_size size;
-  /* Units of mean and interval: unit u is the runs first_run[u] .. first_run[u + 1] - 1, such as all runs of a point.
-   * Each has the same weight. NULL: every run is a unit. */
+  /* Units for mean and interval: unit u contains the runs first_run[u] .. first_run[u + 1] - 1, such as all runs of a
+   * point. Each has the same weight. NULL: every run is a unit. */
   size_t units;
   const size_t *first_run;
 };
-/* One bin that holds fragments; of a cumulative spectrum any bin, and it tells what lies above its lower end. */
+/* A non-empty bin. Of a cumulative spectrum: any bin; it counts the fragments above its lower end. */
 struct pooled_bin {
   int bin;
   double lower, upper; /* kg, or m */
-  int64_t count;       /* over all runs; cumulative: of this bin and all above */
+  int64_t count;       /* fragments of all runs; cumulative: of this bin and all above */
   double mass;         /* of these fragments, kg */
   double value;        /* F or N: the mean over the units */
   double half_width;   /* of the 95 % interval of the value over the units (Student's t); NaN for one unit */
@@ -41,52 +41,52 @@ struct pooled_bin {
  * count, squares: sum over the runs of their counts and of the squares. NaN for fewer than two runs. */
 double pooled_spectrum_count_hw95(size_t runs, double count, double squares);
 
-/* Bins in ascending order, malloc'd into *bins: those with fragments; cumulative, all from the first to the last of
- * them.
- */
+/* Computes the bins in ascending order; the caller frees *bins. Differential: the non-empty bins. Cumulative: all bins
+ * from the first to the last non-empty one. */
 status pooled_spectrum(const struct pooled_runs *runs, const struct pooled_form *form, struct pooled_bin **bins,
                        size_t *count, struct error *error);
 
-/* The exponent of a power law has four names: F(m) ~ m^-beta, N(>m) ~ m^-(beta - 1), and by size in d dimensions
- * F(L) ~ L^-(d (beta - 1) + 1), N(>L) ~ L^-(d (beta - 1)). Its value and its half width in a form. */
+/* The exponent of a power law has four names: F(m) ~ m^-beta, N(>m) ~ m^-(beta - 1), and by size in d dimensions F(L) ~
+ * L^-(d (beta - 1) + 1), N(>L) ~ L^-(d (beta - 1)). These functions convert its value and its half width to a form. */
 double pooled_spectrum_exponent(const struct pooled_form *form, double beta);
 double pooled_spectrum_half_width(const struct pooled_form *form, double half_width);
 
 struct pooled_exponent {
-  struct exponent fit; /* fit.standard_error: as if fragments were independent; fit.upper: the largest of the runs' */
-  struct sample_interval interval; /* over runs: the error to quote. NaN for one run */
-  size_t runs;                     /* with fragments in their window */
+  struct exponent fit; /* fit.standard_error takes fragments as independent; fit.upper is the largest one of the runs */
+  struct sample_interval interval; /* over runs: quote this error. NaN for one run */
+  size_t runs;                     /* number of runs with fragments in their window */
 };
-/* By least squares, on bins, or on masses; STATUS_USAGE for other methods. lower: kg, the same for all runs of the
- * point (a number of mean element masses). level: 0.95 for a 95 % interval. Costs microseconds a run. */
+/* Methods: least squares, on bins, or on masses; STATUS_USAGE for other methods. lower: kg, the same for all runs of
+ * the point (a number of mean element masses). level: 0.95 for a 95 % interval. The cost is microseconds per run. */
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
                        struct pooled_exponent *out, struct error *error);
 
-/* What each run adds to the exponent, so that points with the same seeds can be compared seed by seed: values[r] = beta
- * + (n - 1) (mean of the others - beta without run r), with n the number of runs. Their mean is beta, and Student's
- * interval of their mean is the interval of pooled_exponent (to SAMPLE_GROUPS runs; from there on that takes groups).
- * The difference of two such values is the same of the difference of two exponents. All NaN where pooled_exponent has
- * no interval. values: room for runs->count. */
+/* The contribution of each run to the exponent, so that points with the same seeds can be compared seed by seed:
+ * values[r] = beta + (n - 1) (mean of the others - beta without run r), with n the number of runs. Their mean is beta,
+ * and Student's interval of their mean is the interval of pooled_exponent (up to SAMPLE_GROUPS runs; with more,
+ * pooled_exponent uses groups). The differences of these values between two points are the contributions to the
+ * difference of their exponents. All NaN where pooled_exponent has no interval. `values` has space for runs->count
+ * numbers. */
 status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,
                                double *values, struct error *error);
 
-/* Does a power law fit at all (pooled_goodness.c)? With the window and the numbers of fragments of pooled_exponent by
- * masses, which it fits to every draw again. Fragments of one run are taken as independent. */
+/* Does a power law fit the data at all (pooled_goodness.c)? It uses the windows and numbers of fragments of
+ * pooled_exponent by masses, and fits the law to every draw again. Fragments of one run are taken as independent. */
 struct pooled_goodness {
   size_t n;        /* fragments */
-  double distance; /* Kolmogorov's, of the fragments from the fit; NaN: too few fragments */
+  double distance; /* Kolmogorov's distance of the fragments from the fit; NaN: too few fragments */
   double p;        /* share of samples from the fit that are at least as far from their own fits */
-  size_t draws;    /* samples that were drawn: fewer than asked for when p is large */
+  size_t draws;    /* number of samples drawn: fewer than requested when p is large */
 };
-/* On all cores; the same numbers on any number of them. */
+/* Runs on all cores; the numbers do not depend on their count. */
 status pooled_goodness(const struct pooled_runs *runs, double lower, size_t draws, struct pooled_goodness *out,
                        struct error *error);
 
-/* Is the pure power law good enough? Likelihood ratios against its two rivals (tempered.h) in the same windows. */
+/* Is the pure power law sufficient? Likelihood ratios against its two rivals (tempered.h) in the same windows. */
 struct pooled_rivals {
   int64_t n;
   double beta;                     /* pure */
-  double cutoff_beta, cutoff_mass; /* HUGE_VAL: none needed */
+  double cutoff_beta, cutoff_mass; /* HUGE_VAL: no cut-off needed */
   double cutoff_ratio, cutoff_p;   /* 2 dlnL; small p: the cut-off is needed */
   double lognormal_ratio, lognormal_p;
 };

@@ -1,6 +1,6 @@
 /* Does a power law fit at all? The bootstrap of Clauset, Shalizi & Newman (2009, doi 10.1137/070710111, section 4) in
- * the window that is given, which is never searched for: it begins at the complete mass or above. Draws are shared out
- * over all cores; which core makes one does not matter. */
+ * the given window, which is not optimised: it begins at the complete mass or above. Draws are distributed over all
+ * cores; the result does not depend on which core makes a draw. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,9 +8,9 @@
 #include "analysis/statistics/power_law.h"
 #include "engine/random.h"
 
-enum { BATCH = 100, ENOUGH = 100 }; /* larger distances among the draws: p is then known to a tenth */
+enum { BATCH = 100, ENOUGH = 100 }; /* stop after this many larger distances: p is then known to a tenth */
 
-/* Numbers of fragments and windows of the runs, and the same again for one draw. */
+/* Numbers of fragments and windows of the runs, and the same for one draw. */
 struct windows {
   size_t count, fragments;
   struct power_law_group *groups;
@@ -32,8 +32,8 @@ static void free_draw(struct draw *draw) {
   free(draw->u);
 }
 
-/* Fits the fragments of a draw, and their greatest distance from the fit: the distribution function at each fragment,
- * in the window of its run, is a uniform sample if the law holds. NaN when there is no fit. */
+/* Fits the fragments of a draw and returns their greatest distance from the fit. If the law holds, the distribution
+ * function at the fragments, each in the window of its run, is a uniform sample. NaN when there is no fit. */
 static double distance_of(const struct windows *windows, struct draw *draw, double *beta) {
   const struct power_law fit = power_law_fit(windows->count, draw->groups, 0);
   const double n = (double)windows->fragments;
@@ -51,7 +51,7 @@ static double distance_of(const struct windows *windows, struct draw *draw, doub
   return most;
 }
 
-/* As many fragments in the same windows, from the fitted law. */
+/* Draws the same numbers of fragments in the same windows from the fitted law. */
 static void fill_draw(const struct windows *windows, double beta, uint64_t number, struct draw *draw) {
   const double k = beta - 1;
   size_t i = 0;
@@ -69,7 +69,7 @@ static void fill_draw(const struct windows *windows, double beta, uint64_t numbe
   }
 }
 
-/* How many of the draws from .. to - 1 are at least as far from their fits. */
+/* Counts the draws from .. to - 1 that are at least as far from their fits. */
 static size_t count_larger(const struct windows *windows, double beta, double distance, size_t from, size_t to,
                            bool *failed) {
   size_t larger = 0;
@@ -103,7 +103,7 @@ static void bootstrap(const struct windows *windows, double beta, size_t draws, 
   out->p = ((double)larger + 1) / ((double)out->draws + 1);
 }
 
-/* The windows of the runs, and what was found in them as a draw. */
+/* Computes the windows of the runs, and puts the fragments in them into `found`. */
 static void take_runs(const struct pooled_runs *runs, double lower, struct windows *windows, struct draw *found) {
   size_t i = 0;
   for (size_t r = 0; r < runs->count; r++) {

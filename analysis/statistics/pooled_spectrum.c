@@ -25,16 +25,16 @@ double pooled_spectrum_half_width(const struct pooled_form *form, double half_wi
   return dimensions_of(form) * half_width;
 }
 
-/* What is summed up while the runs are read. */
+/* Sums that grow while the runs are read. */
 struct sums {
-  size_t span; /* bins */
-  int low;     /* the first */
-  double *own; /* of the unit under way: fragments by bin */
+  size_t span; /* number of bins */
+  int low;     /* the first bin */
+  double *own; /* fragments of the current unit, by bin */
   int64_t *count;
   double *mass, *mean, *square; /* by bin; mean and square: sums over the units of fragments per run */
 };
 
-/* Lowest and highest bin that holds a fragment. */
+/* Finds the lowest and highest non-empty bin. */
 static void find_span(const struct pooled_runs *runs, struct sums *sums) {
   double least = HUGE_VAL, most = 0;
   for (size_t i = runs->count ? runs->first[0] : 0; runs->count && i < runs->first[runs->count]; i++) {
@@ -50,7 +50,7 @@ static void find_span(const struct pooled_runs *runs, struct sums *sums) {
   sums->span = (size_t)(spectrum_bin(most) - sums->low) + 1;
 }
 
-/* Masses are in descending order, mostly: the bin of the last fragment is a good guess for the next one. */
+/* Masses are mostly in descending order, so the bin of the last fragment is a good guess for the next one. */
 static void add_run(const struct pooled_runs *runs, size_t r, struct sums *sums) {
   int bin = SPECTRUM_NO_BIN;
   double from = HUGE_VAL, to = 0; /* edges of `bin` */
@@ -70,7 +70,7 @@ static void add_run(const struct pooled_runs *runs, size_t r, struct sums *sums)
   }
 }
 
-/* Adds the fragments per run of a unit, which `runs` runs have, and empties it. */
+/* Adds the fragments per run of a unit with `runs` runs, and clears the unit's counts. */
 static void end_unit(struct sums *sums, bool cumulative, double runs) {
   double above = 0;
   for (size_t j = sums->span; j-- > 0;) {

@@ -66,12 +66,12 @@ static double log_normalisation(double y, double span, bool binned) {
   return binned ? whole - log_integral(y, 1) : whole;
 }
 
-/* What the search for the root needs to know of all groups. */
+/* Data of all groups for the root search. */
 struct totals {
-  double weight, sum; /* of the fragments, and of their statistic */
+  double weight, sum; /* sums over the fragments: their number, and their statistic */
   double widest;      /* largest finite span */
   bool open;          /* a group has no upper bound */
-  bool solvable;      /* the values are not all at one end of their windows, where beta would be infinite */
+  bool solvable;      /* the values are not all at one end of their windows; there, beta would be infinite */
 };
 
 static struct totals totals_of(size_t count, const struct power_law_group *groups, bool binned) {
@@ -81,7 +81,7 @@ static struct totals totals_of(size_t count, const struct power_law_group *group
     const struct power_law_group *group = &groups[g];
     if (!(group->weight > 0))
       continue;
-    double top = binned ? group->span - 1 : group->span; /* the largest value that the statistic can have */
+    double top = binned ? group->span - 1 : group->span; /* the largest possible value of the statistic */
     if (!(group->mean >= 0) || !(top > 0))
       return (struct totals){0};
     above = above || group->mean > 0;
@@ -97,7 +97,7 @@ static struct totals totals_of(size_t count, const struct power_law_group *group
   return totals;
 }
 
-/* When Newton's step leaves the bracket: halve it, or widen it while one side is open. */
+/* Used when Newton's step leaves the bracket: halves the bracket, or widens it while one side is open. */
 static double step_inside(double low, double high, double widest) {
   if (isinf(high))
     return fmax(2 * low, low + 1 / fmax(widest, 1));
@@ -106,8 +106,8 @@ static double step_inside(double low, double high, double widest) {
   return (low + high) / 2;
 }
 
-/* The root of the slope of the likelihood, by Newton's method in a bracket; with an open window it is above 0. The
- * start is the answer for open windows. */
+/* The root of the slope of the likelihood, by Newton's method in a bracket. With an open window the root is above 0.
+ * The start value is the exact answer for open windows. */
 static double root(size_t count, const struct power_law_group *groups, bool binned, const struct totals *totals) {
   double low = totals->open ? 0 : -HUGE_VAL, high = HUGE_VAL, information = 0;
   double y = binned ? log1p(totals->weight / totals->sum) : totals->weight / totals->sum;
@@ -157,8 +157,9 @@ static double fit_without(size_t count, const struct power_law_group *groups, do
 
 enum { NODES = 8 };
 
-/* y where x falls through 0, from NODES pairs: inverse interpolation by Neville's scheme. NaN when x does not fall
- * through 0 between the nodes, or when the last node still moves the result: the caller then solves the equation. */
+/* The y at which x falls through 0, from NODES pairs, by inverse interpolation with Neville's scheme. NaN when x does
+ * not fall through 0 between the nodes, or when the last node still changes the result: the caller then solves the
+ * equation. */
 static double zero_between(const double x[NODES], const double y[NODES]) {
   double column[NODES], before = NAN;
   for (int i = 0; i + 1 < NODES; i++)
@@ -176,10 +177,11 @@ static double zero_between(const double x[NODES], const double y[NODES]) {
   return fabs(column[0] - before) <= 1e-12 * (1 + fabs(column[0])) ? column[0] : (double)NAN;
 }
 
-/* The nodes: where to look for the roots without one part, from one Newton step for each. */
+/* Places the nodes near the roots without one part, from one Newton step for each part. */
 static void place_nodes(size_t count, const struct power_law_group *groups, bool binned, size_t each, double y,
                         double nodes[NODES]) {
-  double information, furthest = 1e-6 * (1 + fabs(y)); /* equal parts: a width that the slope's rounding cannot blur */
+  double information,
+      furthest = 1e-6 * (1 + fabs(y)); /* if all parts are equal: a width above the rounding error of the slope */
   const double slope = slope_of_likelihood(count, groups, binned, y, &information);
   for (size_t begin = 0; begin < count; begin += each) {
     double part_information;

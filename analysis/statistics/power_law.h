@@ -27,17 +27,17 @@ struct power_law {
   double log_likelihood;       /* of u (masses) or of the bin numbers, natural log, per group weight 1 */
 };
 
-/* bin_width: 0 for masses, else h = ln(10)/bins per decade. */
+/* bin_width: 0 for masses, else h = ln(10) / (bins per decade). */
 struct power_law power_law_fit(size_t count, const struct power_law_group *groups, double bin_width);
 
 /* beta without one part of the groups, for each part: betas[p] leaves out groups p * each to (p + 1) * each - 1 (the
- * last part may be shorter). NaN where the rest has no beta. Solving each equation anew costs parts x count; here each
- * group is evaluated at a few places that all parts share, and agrees with the solution within 1e-12. false: no memory.
- */
+ * last part may be shorter). NaN where the rest has no beta. Solving every equation again would cost parts x count.
+ * Here each group is evaluated at a few nodes that all parts share; the result agrees with the solution within 1e-12.
+ * False: no memory. */
 bool power_law_leave_out(size_t count, const struct power_law_group *groups, double bin_width, size_t each,
                          double *betas);
 
-/* Share of the fragments of a window below u = ln(m/a): the distribution function. */
+/* The distribution function: share of a window's fragments below u = ln(m/a). */
 double power_law_below(double beta, double u, double span);
 
 #endif

@@ -42,7 +42,7 @@ struct sample_summary sample_summarise_moments(const struct sample_moments *mome
   return summary;
 }
 
-/* Mean first, deviations from it second. */
+/* Computes the mean first, then the deviations from it. */
 static struct sample_moments moments_in_two_passes(size_t n, const double *values) {
   struct sample_moments moments = {0};
   double sum = 0, rest = 0;
@@ -62,7 +62,7 @@ static struct sample_moments moments_in_two_passes(size_t n, const double *value
       continue;
     double deviation = values[i] - moments.mean;
     moments.squares += deviation * deviation;
-    rest += deviation; /* zero but for the rounding of the mean */
+    rest += deviation; /* zero except for the rounding of the mean */
   }
   moments.squares -= rest * rest / number; /* corrects that rounding (Chan, Golub & LeVeque 1983) */
   return moments;

@@ -11,7 +11,7 @@
 int sample_ascending(const void *a, const void *b);
 int sample_descending(const void *a, const void *b);
 
-/* Running mean and sum of squared deviations (Welford 1962): no cancellation. All zero: no values yet. */
+/* Running mean and sum of squared deviations (Welford 1962), without cancellation. All zero: no values yet. */
 struct sample_moments {
   size_t n;
   double mean, squares;
@@ -23,8 +23,8 @@ struct sample_summary {
   double mean, standard_deviation, standard_error;
   double half_width; /* of the confidence interval of the mean, by Student's t */
 };
-/* NaN values are left out; n counts the others. level: 0.95 for a 95 % interval. What so few values cannot tell is NaN:
- * everything for n = 0, the scatter for n = 1. Two passes, no cancellation. */
+/* NaN values are left out; n counts the others. level: 0.95 for a 95 % interval. Undefined results are NaN: everything
+ * for n = 0, the scatter for n = 1. Two passes avoid cancellation. */
 struct sample_summary sample_summarise(size_t n, const double *values, double level);
 /* The same from running moments. */
 struct sample_summary sample_summarise_moments(const struct sample_moments *moments, double level);
@@ -34,21 +34,21 @@ struct sample_summary sample_summarise_moments(const struct sample_moments *mome
 double sample_student(size_t n, double level);
 
 /* Interval of a statistic of many runs, such as an exponent, by the jackknife over runs: leave out one run after
- * another and see how far the statistic moves; then Student's t with one degree of freedom less than runs (Tukey 1958).
- * The runs are independent, the fragments of one run are not (their masses sum to the body's). `statistic` is called on
- * choices of runs. From more than SAMPLE_GROUPS runs, groups of equal numbers of runs that follow each other are left
- * out, so that the cost stays in bounds. No random numbers: the same runs give the same bits.
+ * another and measure how far the statistic moves; then use Student's t, whose degrees of freedom are the number of
+ * runs minus one (Tukey 1958). The runs are independent, the fragments of one run are not (their masses sum to the
+ * body's). `statistic` is called with subsets of the runs. With more than SAMPLE_GROUPS runs, groups of consecutive
+ * runs of equal size are left out, which limits the cost. No random numbers are used: the same runs give the same bits.
  *
- * Errors are NaN for one run, and when the statistic has no value without one of the runs: so few runs cannot tell. A
- * bootstrap would need more runs: its percentile intervals cover 0.79 with 3 runs and 0.85 with 5, where these cover
- * 0.93 to 0.97 (tests/verification/intervals.md). */
+ * Errors are NaN for one run, and when the statistic has no value without one of the runs. A bootstrap would need more
+ * runs: the coverage of its percentile intervals is 0.79 with 3 runs and 0.85 with 5, compared with 0.93 to 0.97 here
+ * (tests/verification/intervals.md). */
 typedef double (*sample_statistic)(size_t n, const uint32_t *runs, void *context);
 struct sample_interval {
   double estimate, standard_error;
-  double half_width; /* of the interval of the level wanted, about the estimate */
+  double half_width; /* of the interval of the requested level, about the estimate */
 };
 enum { SAMPLE_GROUPS = 100 };
-/* Number of groups that are left out, and of runs in each (the last one may have fewer). */
+/* Returns the number of groups that are left out in turn. *each: runs per group (the last one may have fewer). */
 size_t sample_groups(size_t runs, size_t *each);
 /* theta[g]: the statistic without group g; `estimate`: of all runs. */
 struct sample_interval sample_jackknife_of(size_t runs, double level, double estimate, const double *theta);
@@ -57,13 +57,13 @@ struct sample_interval sample_jackknife(size_t runs, double level, sample_statis
 /* Stopping at a fixed width (Chow & Robbins 1965, doi 10.1214/aoms/1177700156): stop when the interval's half width is
  * at most `half_width`.
  *
- * The rule judges a prefix of replicate numbers, never "the first n that finished": with 32 workers that biases the
- * mean by 2.8 standard errors. It judges the first n0 replicates and then each further SAMPLE_BATCH.
+ * The rule tests a prefix of replicate numbers, never "the first n that finished": with 32 workers that biases the mean
+ * by 2.8 standard errors. It tests the first n0 replicates, and again after each further SAMPLE_BATCH.
  *
  * Chow and Robbins add 1/n to the variance, so that a chance run of equal values does not stop too early. Here 1/n is
  * in units of (SAMPLE_GUARD half_width)^2, so that the rule does not depend on the unit of the values. Measured with
  * values that are 1 in a tenth of the runs and else 0, at a nominal level of 95 %: n0 = 3 without this guard covers
- * .68-.74, n0 = 30 without it .85-.89, n0 = 30 with it .91-.96 (normal data .968). The guard costs 15 % more runs at
+ * .68-.74, n0 = 30 without it .85-.89, n0 = 30 with it .91-.96 (normal data .968). The guard needs 15 % more runs at
  * 100 and 5 % at 220. Values that never vary stop at 50. */
 enum { SAMPLE_FIRST = 30, SAMPLE_BATCH = 10, SAMPLE_GUARD = 20 };
 

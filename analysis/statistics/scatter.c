@@ -30,8 +30,8 @@ static double deviation(size_t n, const uint32_t *chosen, void *context) {
   return n > 1 ? sqrt(moments.squares / (double)(n - 1)) : (double)NAN;
 }
 
-/* The interval is from the low-th to the high-th value, counted from 1: as many or fewer than low - 1 values lie below
- * the quantile with probability 0.025 at most, and the same above. */
+/* The interval is from the low-th to the high-th value, counted from 1. The probability that at most low - 1 values are
+ * below the quantile is at most 0.025, and likewise above. */
 static struct scatter_quantile quantile(size_t n, const double *sorted, double share) {
   struct scatter_quantile q = {NAN, NAN, NAN};
   if (n == 0)
@@ -55,8 +55,8 @@ static struct scatter_quantile quantile(size_t n, const double *sorted, double s
   return q;
 }
 
-/* Of a bell of whole numbers the largest step holds a share of 0.4 / deviation of the values, and costs half of that as
- * a dip. Chance reaches 0.47 / sqrt(n). The bound leaves a factor of five between both. */
+/* In a bell-shaped sample of whole numbers, the largest step contains a share of 0.4 / deviation of the values, which
+ * adds half of that to the dip. Chance alone reaches 0.47 / sqrt(n). The bound leaves a factor of five between both. */
 bool scatter_in_steps(size_t n, const double *sorted) {
   struct sample_moments moments = {0};
   for (size_t i = 0; i < n; i++) {
@@ -67,12 +67,12 @@ bool scatter_in_steps(size_t n, const double *sorted) {
   return n > 1 && moments.squares / (double)(n - 1) < 4 * (double)n;
 }
 
-/* Two classes of ascending values with the least sum of squares in them. */
+/* Splits the ascending values into two classes with the smallest sum of squares within them. */
 void scatter_find_modes(struct scatter *s) {
   double sum = 0, whole = 0, best = -1;
   size_t lower = 0;
   for (size_t i = 0; i < s->n; i++)
-    whole += s->sorted[i] - s->sorted[0]; /* from the least value: no cancellation */
+    whole += s->sorted[i] - s->sorted[0]; /* relative to the smallest value: no cancellation */
   for (size_t i = 1; i < s->n; i++) {
     sum += s->sorted[i - 1] - s->sorted[0];
     const double a = sum / (double)i, b = (whole - sum) / (double)(s->n - i);
@@ -106,7 +106,7 @@ status scatter_make(size_t n, const double *values, struct scatter *out, struct 
   for (size_t i = 0; i < n; i++)
     if (isfinite(values[i]))
       out->sorted[out->n++] = values[i];
-  double *kept = out->sorted; /* in the order of the runs: the jackknife leaves out neighbours */
+  double *kept = out->sorted; /* in the order of the runs, because the jackknife leaves out consecutive runs */
   out->mean = sample_summarise(out->n, kept, 0.95);
   out->deviation = sample_jackknife(out->n, 0.95, deviation, kept);
   out->skewness = sample_jackknife(out->n, 0.95, third_moment, kept);
@@ -136,7 +136,7 @@ size_t scatter_runs_needed(double standard_deviation, double half_width) {
     low = high;
     high *= 2;
   }
-  while (high - low > 1) { /* low is too few, high is enough */
+  while (high - low > 1) { /* invariant: `low` runs are too few, `high` are enough */
     const size_t middle = low + (high - low) / 2;
     if (sample_student(middle, 0.95) * ratio > sqrt((double)middle))
       low = middle;

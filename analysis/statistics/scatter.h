@@ -1,4 +1,4 @@
-/* How runs of one point scatter over seeds: moments, quantiles and modes, each with its interval. */
+/* The scatter of a point's runs over seeds: moments, quantiles and modes, each with its interval. */
 #ifndef CLAST_ANALYSIS_STATISTICS_SCATTER_H
 #define CLAST_ANALYSIS_STATISTICS_SCATTER_H
 
@@ -12,16 +12,16 @@ extern const double scatter_shares[SCATTER_QUANTILES]; /* 0.05, 0.25, 0.5, 0.75,
 
 struct scatter_quantile {
   double value;     /* interpolated between the two nearest values */
-  double low, high; /* 95 % interval from two of the values, by the binomial law; NaN: so few values cannot tell */
+  double low, high; /* 95 % interval between two of the values, by the binomial law; NaN: too few values */
 };
 struct scatter {
-  size_t n;                                   /* values that are not NaN */
-  double *sorted;                             /* they, ascending; owned */
+  size_t n;                                   /* number of values that are not NaN */
+  double *sorted;                             /* these values, ascending; owned */
   struct sample_summary mean;                 /* with the half width of its 95 % interval */
   struct sample_interval deviation, skewness; /* by the jackknife */
   struct scatter_quantile quantile[SCATTER_QUANTILES];
-  double dip, dip_share; /* dip.h. Below 0.05 the values have two modes at least. NaN: cannot be told */
-  /* The two classes with the least scatter in them (Fisher 1958), told only if dip_share is below 0.05: their means,
+  double dip, dip_share; /* dip.h. Below 0.05 the values have at least two modes. NaN: not known */
+  /* The two classes with the least scatter within them (Fisher 1958), set only if dip_share is below 0.05: their means,
    * the value between them, and the share of the upper one with its 95 % interval (Wilson 1927). Else NaN. */
   double lower_mode, upper_mode, between;
   double upper_share, upper_low, upper_high;
@@ -30,14 +30,14 @@ struct scatter {
 status scatter_make(size_t n, const double *values, struct scatter *out, struct error *error);
 void scatter_release(struct scatter *scatter); /* a zeroed one is fine */
 
-/* Whole numbers in so few steps that the steps themselves look like modes: a dip tells nothing then. sorted: ascending.
- */
+/* Are the values whole numbers in so few steps that the steps themselves look like modes? Then the dip has no meaning.
+ * sorted: ascending. */
 bool scatter_in_steps(size_t n, const double *sorted);
-/* Fills in the two modes of scatter->sorted, two values at least that are not all equal. */
+/* Sets the two modes of scatter->sorted, which needs at least two values that are not all equal. */
 void scatter_find_modes(struct scatter *scatter);
 
-/* Runs that a 95 % interval of the mean of at most this half width needs, with this standard deviation. 0: cannot be
- * told. The deviation itself is uncertain: ask with both ends of its interval. */
+/* The number of runs for a 95 % interval of the mean with at most this half width, given this standard deviation. 0:
+ * not known. The deviation itself is uncertain: call it for both ends of its interval. */
 size_t scatter_runs_needed(double deviation, double half_width);
 
 /* Edges of a histogram: Freedman and Diaconis's width 2 (q75 - q25)/n^(1/3), rounded to 1, 2 or 5 times a power of ten;
@@ -50,21 +50,21 @@ struct scatter_histogram {
 };
 struct scatter_histogram scatter_histogram_of(const struct scatter *scatter);
 
-/* The split of a variance over points and runs into inputs and seeds. y(point, run) is a table: run r has in all points
- * the same seed, or seeds that have nothing to do with each other. Products of different runs have no error of seeds in
- * common, so that the parts are unbiased in both cases. */
+/* The split of a variance over points and runs into inputs and seeds. y(point, run) is a table. Run r has the same seed
+ * at all points, or all seeds are independent. Products of different runs have no common error from seeds, so the parts
+ * are unbiased in both cases. */
 struct scatter_table {
   size_t points, runs, axes;
   const uint32_t *level; /* level[p * axes + a]: number of the value that axis a has at point p, from 0 */
   const double *value;   /* value[p * runs + r] */
 };
 struct scatter_part {
-  double variance, share; /* of the whole variance; every point counts the same */
+  double variance, share; /* of the whole variance; every point has the same weight */
   double half_width;      /* of the 95 % interval of the share over seeds (jackknife); NaN below 3 runs */
 };
-/* parts: axes + 4: every axis by itself (variance of its means), inputs together, seeds, of these what a seed does in
- * all points alike, and the whole. Parts of single axes are NaN unless the points are a full grid: elsewhere
- * sensitivity.h tells. STATUS_USAGE: fewer than two runs or points. */
+/* parts: an array of axes + 4: every axis alone (variance of its means), all inputs together, seeds, the part of the
+ * seeds that is the same at all points, and the whole. Parts of single axes are NaN unless the points are a full grid;
+ * for other designs see sensitivity.h. STATUS_USAGE: fewer than two runs or points. */
 enum { SCATTER_INPUTS, SCATTER_SEEDS, SCATTER_SEEDS_ALIKE, SCATTER_WHOLE, SCATTER_PARTS };
 status scatter_split(const struct scatter_table *table, struct scatter_part *parts, struct error *error);
 

@@ -4,15 +4,15 @@
 
 #include "analysis/statistics/scatter.h"
 
-/* Variance between the means of levels, each with the weight of its points, over a choice of runs, without the error
- * that the seeds leave in the means: sum over runs r != s of w_l m_l(r) m_l(s), less the same of the whole mean.
- * m: work space of levels. level NULL: every point is one. */
+/* Variance between the means of levels, weighted by their number of points, over a subset of the runs, without the
+ * error of the means from the seeds: the sum over runs r != s of w_l m_l(r) m_l(s), minus the same for the whole mean.
+ * m: work space of levels. level NULL: every point is a level. */
 struct split {
   const struct scatter_table *table;
-  size_t axis; /* axes: all inputs together */
+  size_t axis; /* `axes`: all inputs together */
   size_t levels;
   double *sum, *product, *weight; /* by level */
-  int part;                       /* beyond the axes: enum of scatter.h */
+  int part;                       /* parts after the axes: enum in scatter.h */
 };
 
 static size_t level_of(const struct split *s, size_t p) {
@@ -51,8 +51,8 @@ static double between(struct split *s, size_t n, const uint32_t *runs) {
   return variance - (whole * whole - whole_squares) / pairs;
 }
 
-/* Mean variance over the runs of a point; alike: covariance of the same runs in two points, which is that of the mean
- * of all points without the points' own part. */
+/* Mean variance over the runs of a point. `alike`: covariance of the same runs at two points, which is the variance of
+ * the mean of all points without the points' own part. */
 static double seeds(const struct scatter_table *t, size_t n, const uint32_t *runs, bool alike) {
   double own = 0;
   struct sample_moments together = {0};
@@ -99,8 +99,8 @@ static size_t count_levels(const struct scatter_table *t, size_t axis) {
   return levels;
 }
 
-/* Every combination of the values of the axes occurs once: only then the means over the others tell an axis by itself.
- */
+/* Does every combination of the values of the axes occur exactly once? Only then the means over the others isolate one
+ * axis. */
 static bool is_grid(const struct scatter_table *t) {
   double points = 1;
   for (size_t a = 0; a < t->axes; a++)
@@ -113,7 +113,7 @@ static struct scatter_part part_of(struct split *s, const uint32_t *all) {
   return (struct scatter_part){variance_of(s, s->table->runs, all), share.estimate, share.half_width};
 }
 
-/* What each axis explains by itself. */
+/* Sets the part of each axis alone. */
 static void fill_axes(struct split *s, const uint32_t *all, struct scatter_part *parts) {
   const bool grid = is_grid(s->table);
   s->part = SCATTER_INPUTS;
@@ -126,7 +126,7 @@ static void fill_axes(struct split *s, const uint32_t *all, struct scatter_part 
   }
 }
 
-/* What all inputs and the seeds explain; the whole is the sum of both. */
+/* Sets the parts of all inputs and of the seeds; the whole is their sum. */
 static void fill_parts(struct split *s, const uint32_t *all, struct scatter_part parts[SCATTER_PARTS]) {
   s->axis = s->table->axes;
   s->levels = s->table->points;

@@ -4,13 +4,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* One index over a choice of blocks and seeds. */
+/* Computes one index over a subset of blocks and seeds. */
 struct asking {
   const struct sensitivity_table *table;
-  const double *centred; /* values less their mean: smaller errors of the products */
-  size_t input;          /* inputs: the seed */
+  const double *centred; /* values minus their mean: this reduces the rounding errors of the products */
+  size_t input;          /* index of the input; `inputs`: the seed */
   bool total;
-  size_t blocks, seeds; /* of the choice */
+  size_t blocks, seeds; /* of the subset */
   const uint32_t *block, *seed;
 };
 
@@ -19,7 +19,7 @@ static double at(const struct asking *a, size_t b, size_t point, size_t r) {
   return a->centred[(a->block[b] * (t->inputs + 2) + point) * t->seeds + a->seed[r]];
 }
 
-/* Variance between the points A and B of the choice for one seed, mean over the seeds. */
+/* Variance between the points A and B of the subset for one seed, averaged over the seeds. */
 static double between_points(const struct asking *a) {
   double mean = 0;
   for (size_t r = 0; r < a->seeds; r++) {
@@ -33,7 +33,7 @@ static double between_points(const struct asking *a) {
   return mean;
 }
 
-/* Mean variance of the seeds at a point; alike: covariance of the same seeds at two points. */
+/* Mean variance over the seeds at a point. `alike`: covariance of the same seeds at two points. */
 static double of_seeds(const struct asking *a, bool alike) {
   const double points = 2 * (double)a->blocks;
   double own = 0;
@@ -56,7 +56,7 @@ static double of_seeds(const struct asking *a, bool alike) {
   return (points * together.squares / (double)(a->seeds - 1) - own) / (points - 1);
 }
 
-/* Mean over blocks and pairs of different seeds of f(r) g(s), from sums over the seeds; one seed: of f g. */
+/* Mean over blocks and pairs of different seeds of f(r) g(s), from sums over the seeds; with one seed: of f g. */
 struct product {
   double sum;
   size_t seeds;
@@ -102,7 +102,7 @@ static double index_of(const struct asking *a) {
   const bool seed = a->input == a->table->inputs;
   if (a->blocks < 2 || a->seeds < 1 || (seed && a->seeds < 2))
     return NAN;
-  /* The whole variance: between points of one seed, and what a seed does everywhere alike. */
+  /* The whole variance: between points with one seed, plus the effect of a seed that is the same at all points. */
   const double alike = a->seeds > 1 ? of_seeds(a, true) : 0, whole = between_points(a) + alike;
   if (seed)
     return (a->total ? of_seeds(a, false) : alike) / whole;
@@ -191,7 +191,7 @@ status sensitivity_morris(const struct sensitivity_table *t, const size_t *order
       for (size_t r = 0; r < t->seeds; r++)
         sample_add(&change, (y[t->seeds + r] - y[r]) / step[b * t->inputs + i]);
       effects[input * t->blocks + b] = change.mean;
-      if (t->seeds > 1) /* a normal error of this size has this mean absolute value */
+      if (t->seeds > 1) /* the mean absolute value of a normal error of this size */
         effect[input].noise += sample_summarise_moments(&change, 0.95).standard_error * sqrt(2 / M_PI) /
                                (double)t->blocks;
     }

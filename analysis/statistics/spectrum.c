@@ -43,7 +43,8 @@ double spectrum_edge(int bin) {
 int spectrum_bin(double mass) {
   if (!(mass > 0) || !isfinite(mass))
     return SPECTRUM_NO_BIN;
-  /* The logarithm is right to a few units in the last place, so the guess is at most one bin off, next to an edge. */
+  /* The logarithm is accurate to a few units in the last place, so the guess is at most one bin off, and only next to
+   * an edge. */
   int bin = (int)floor(log10(mass) * SPECTRUM_BINS_PER_DECADE);
   while (mass < spectrum_edge(bin))
     bin--;
@@ -64,7 +65,7 @@ double spectrum_size_mass(const struct spectrum_size *size, double place) {
   return M_PI * size->density * (size->dimensions == 2 ? place * place / 4 : place * place * place / 6);
 }
 
-/* How many bins hold something, by stepping from bin to bin: slow, only for callers whose rows are too few. */
+/* Counts the non-empty bins by stepping from bin to bin: slow, used only when the caller's rows are too few. */
 static size_t count_bins(size_t n, const double *masses) {
   size_t count = 0;
   for (int last = SPECTRUM_NO_BIN, next;; last = next, count++) {
@@ -79,12 +80,12 @@ static size_t count_bins(size_t n, const double *masses) {
   }
 }
 
-/* Rows stay sorted while they fill. Fragments come by descending mass, so a fragment nearly always belongs to the row
- * of the last one or to a new row below it. */
+/* Rows stay sorted while they fill. Fragments arrive in descending order of mass, so a fragment nearly always belongs
+ * to the row of the last one or to a new row below it. */
 size_t spectrum_fill(size_t n, const double *masses, struct spectrum_bin_row *rows, size_t capacity) {
   size_t count = 0, at = 0;
   int bin = SPECTRUM_NO_BIN;
-  double lower = HUGE_VAL, upper = 0; /* of the last mass's bin */
+  double lower = HUGE_VAL, upper = 0; /* edges of the last mass's bin */
   for (size_t i = 0; i < n; i++) {
     if (!(masses[i] >= lower && masses[i] < upper)) {
       bin = spectrum_bin(masses[i]);

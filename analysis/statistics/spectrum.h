@@ -22,7 +22,7 @@ struct spectrum_size {
   double density; /* kg/m^3; 0: no sizes, an axis of masses */
   int dimensions; /* 2: masses are kg per metre of thickness; else 3 */
 };
-/* Where a mass stands on the axis: kg, or m. spectrum_size_mass() is the inverse. */
+/* Position of a mass on the axis: kg, or m. spectrum_size_mass() is the inverse. */
 double spectrum_size_of(const struct spectrum_size *size, double mass);
 double spectrum_size_mass(const struct spectrum_size *size, double place);
 
@@ -32,9 +32,9 @@ struct spectrum_bin_row {
   double mass; /* sum, kg */
 };
 
-/* Non-empty bins in ascending order; masses in any order (descending is fastest), those without a bin are left out.
- * Returns how many there are. When that is more than `capacity`, the rows are not filled: call again with that many
- * rows. The order of summation is the order of `masses`. */
+/* Fills the non-empty bins in ascending order. Masses are in any order (descending is fastest); those without a bin are
+ * left out. Returns the number of bins. When that is more than `capacity`, the rows are not filled: call again with
+ * that many rows. The order of summation is the order of `masses`. */
 size_t spectrum_fill(size_t n, const double *masses, struct spectrum_bin_row *rows, size_t capacity);
 
 #endif

@@ -35,8 +35,8 @@ static double place_of_maximum(enum tempered_kind kind, double k, double s, doub
   return fmin(top, span);
 }
 
-/* The u beyond which the integrand is below e^-42 of its maximum and falls at least exponentially: a double sees
- * nothing of the rest. */
+/* The u beyond which the integrand is below e^-42 of its maximum and falls at least exponentially: the rest is below a
+ * double's precision. */
 static double reach(enum tempered_kind kind, double k, double s, double span) {
   double top = place_of_maximum(kind, k, s, span);
   double low = top, peak = exponent_at(kind, k, s, top), step = 1;
@@ -59,8 +59,8 @@ static double reach(enum tempered_kind kind, double k, double s, double span) {
 double tempered_log_normalisation(enum tempered_kind kind, double k, double s, double span, double mean[2],
                                   double covariance[3]) {
   double end = reach(kind, k, s, span), peak = exponent_at(kind, k, s, place_of_maximum(kind, k, s, span));
-  /* Panels are short against the scale of u (about 1/|k|, and 1 for e^u): the error of 16 points is then below 1e-12
-   * (tested). */
+  /* Panels are short compared with the scale of u (about 1/|k|, and 1 for e^u): the error of 16 points is then below
+   * 1e-12 (tested). */
   double length = 2 / (1 + fabs(k) / 4);
   int panels = (int)fmin(fmax(ceil(end / length), 1), 400);
   length = end / panels;
