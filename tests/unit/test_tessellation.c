@@ -217,7 +217,7 @@ static void disc_equals_qhull(void **state) {
 
 static void neighbours_share_vertices(void **state) {
   (void)state;
-  /* for all lattices except square ones: their corners lie nearer to each other than rounding can resolve */
+  /* also nearly square lattices: their corners lie nearer to each other than rounding can resolve */
   const double disorders[] = {1, 0, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11};
   for (uint64_t seed = 0; seed < 35; seed++) {
     struct dem_lattice lattice = {DEM_OUTLINE_BLOCK, 0.01069, disorders[seed % 7], 0, 30, 20, {3.7, -11.1}, seed, 2};
