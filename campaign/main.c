@@ -40,7 +40,7 @@ static status check_environment(struct error *error) {
   return status_fail(error, STATUS_USAGE, "CLAST_CPU=%.64s is in the environment: expected baseline, v3 or v4", class);
 }
 
-/* argv[0] is the command's name, and stands behind the program's. */
+/* argv[0] is the command's name, which follows the program's name. */
 static status run_named(int argc, char **argv, struct error *error) {
   alignas(max_align_t) static char options[OPTION_STRUCT_MAXIMUM];
   const struct command *command = commands_find(argv[0], error);
@@ -77,8 +77,8 @@ static status run_command_line(int argc, char **argv, struct error *error) {
   return run_named(argc - 1, argv + 1, error);
 }
 
-/* Opens /dev/null for standard files that are closed. Else the first file opened, the store, would get the number of
- * one of them, and messages would be printed into it. */
+/* Opens /dev/null for standard files that are closed. Otherwise the first file opened, the store, would get the number
+ * of a standard file, and messages would be printed into it. */
 static void keep_standard_files(void) {
   int file = open("/dev/null", O_RDWR);
   while (file >= 0 && file <= STDERR_FILENO)
@@ -89,8 +89,8 @@ static void keep_standard_files(void) {
 
 int main(int argc, char **argv) {
   keep_standard_files();
-  signal(SIGPIPE, SIG_IGN); /* a reader that goes away (`| head`) must not end the program in the middle of a commit */
-  signal(SIGXFSZ, SIG_IGN); /* a file at its limit (`ulimit -f`) is a full disk: write says so */
+  signal(SIGPIPE, SIG_IGN); /* a closed pipe (`| head`) must not end the program in the middle of a commit */
+  signal(SIGXFSZ, SIG_IGN); /* a file at its limit (`ulimit -f`) then gives a write error, like a full disk */
   analysis_init();
   struct error error = {.status = STATUS_OK};
   status code = run_command_line(argc, argv, &error);

@@ -1,4 +1,4 @@
-/* From the rows of a store to rows of tiles. Inputs with more than ten values are cut into ten ranges. */
+/* Makes rows of tiles from the rows of a store. Inputs with more than ten values are divided into ten ranges. */
 #include "campaign/charts/extremes_map.h"
 
 #include <stdlib.h>
@@ -35,7 +35,7 @@ static status add_value(struct row *row, const struct query_value *values, struc
   if (values[2].kind == QUERY_TEXT)
     snprintf(value->text, sizeof value->text, "%s", values[2].text);
   else
-    snprintf(value->text, sizeof value->text, "%.8g", values[2].real); /* tells 1.0000001 from 1 */
+    snprintf(value->text, sizeof value->text, "%.8g", values[2].real); /* keeps 1.0000001 different from 1 */
   for (int c = 0; c < 3; c++)
     value->runs[c] = values[3 + c].real;
   return STATUS_OK;
@@ -56,7 +56,7 @@ static status take(void *context, size_t count, const struct query_value *values
   return add_value(row, values, error);
 }
 
-/* A tile per value, or per range of values, which begins at the value that it shows. */
+/* Makes a tile per value or per range of values. The tile of a range shows the range's first value. */
 static size_t make_tiles(struct row *row) {
   const size_t tiles = row->count < TILES ? row->count : TILES;
   for (size_t v = 0; v < row->count; v++) {

@@ -1,5 +1,5 @@
-/* The stability map of a store as a picture: of each value of each varied input, how many runs are safe, warned and
- * refused. */
+/* The stability map of a store as a picture: how many runs are safe, warned and refused, for each value of each varied
+ * input. */
 #ifndef CLAST_CAMPAIGN_CHARTS_EXTREMES_MAP_H
 #define CLAST_CAMPAIGN_CHARTS_EXTREMES_MAP_H
 

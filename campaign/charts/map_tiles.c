@@ -12,7 +12,7 @@ struct map_tiles {
   struct quantity quantity;
   double (*points)[3]; /* x, y, value */
   size_t count;
-  double widest; /* half width of the widest interval; 0: there is none */
+  double widest; /* half width of the widest interval, in the quantity's unit; 0: there is none */
 };
 
 static bool is_number(const struct query_value *value) {
@@ -24,7 +24,7 @@ static status add(void *context, const struct quantity_row *row, struct error *e
   if (map->count == MOST_GROUPS)
     return status_fail(error, STATUS_USAGE, "a map has at most %d points: choose axes with fewer values", MOST_GROUPS);
   if (!is_number(&row->input[0]) || !is_number(&row->input[1]))
-    return STATUS_OK; /* off, or does not apply: it has no place on an axis of numbers */
+    return STATUS_OK; /* off, or does not apply: an axis of numbers cannot show it */
 
   const double x = row->input[0].real;
   const double y = row->input[1].real;

@@ -1,4 +1,4 @@
-/* Draws the body of a fields file by what the file holds: grains in the plane, or particles in space. */
+/* Draws the body of a fields file: grains in the plane or particles in space, as the file holds them. */
 #include "campaign/charts/picture_draw.h"
 
 #include <math.h>
@@ -40,7 +40,7 @@ static status choose_view(const char *name, enum picture_view *view, struct erro
   return status_fail(error, STATUS_USAGE, "--view is cut, outside, apart or profile, not '%s'", name);
 }
 
-/* x, y or z; without it a body is seen from outside askew. */
+/* x, y or z; without it the picture is an oblique view from outside. */
 static status choose_axis(const char *axis, struct picture_look *look, struct error *error) {
   if (!axis) {
     look->axis = look->view == PICTURE_OUTSIDE ? -1 : 1;
@@ -87,7 +87,7 @@ static void name_look(const struct picture_look *look, const struct picture_clou
     snprintf(text + used, size - used, ", fragments drawn apart");
 }
 
-/* Reads the quantity to colour by: --what, else damage, or the pressure of what cannot crack. NULL: fragments. */
+/* Reads the quantity for the colours: --what, else damage, or pressure for bodies without damage. NULL: fragments. */
 static status read_quantity(const char *fields, bool chosen, struct picture_cloud *cloud, const char **what,
                             char unit[32], struct error *error) {
   if (!*what)

@@ -7,11 +7,11 @@
 /* The options of the command; NULL: not given. */
 struct picture_choice {
   const char *caption, *what, *view, *axis, *at;
-  struct chart_options chart; /* of a profile */
-  double width;               /* of a body, pixels; 0: as usual */
+  struct chart_options chart; /* options of a profile's chart */
+  double width;               /* width of a body's picture, pixels; 0: default */
 };
 
-/* STATUS_USAGE: options that do not suit the file; what the pictures return (analysis/pictures/picture.h). */
+/* STATUS_USAGE: options that do not suit the file; also the statuses of analysis/pictures/picture.h. */
 status picture_draw(const char *fields, const char *picture, const struct picture_choice *options, struct error *error);
 
 #endif

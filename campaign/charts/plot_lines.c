@@ -8,8 +8,8 @@
 enum { MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, LABEL = 600 };
 
 struct line {
-  char value[200]; /* of the input with one line for each value */
-  int64_t version; /* results of another version are another line, they are never mixed */
+  char value[200]; /* value of the input that has one line for each value */
+  int64_t version; /* results of different versions are different lines, never mixed */
   char label[LABEL];
   struct picture_mean *means; /* owned; room for MOST_MEANS */
   size_t count;
@@ -21,7 +21,7 @@ struct plot_lines {
   size_t count;
 };
 
-/* The line of this value and version, made if it is new. */
+/* Finds the line of this value and version, or makes it. */
 static status find_line(struct plot_lines *plot, const char *value, int64_t version, struct line **found,
                         struct error *error) {
   for (size_t i = 0; i < plot->count; i++) {
@@ -70,7 +70,7 @@ static status add(void *context, const struct quantity_row *row, struct error *e
     return status_fail(error, STATUS_USAGE, "%s is no number, so it cannot be an axis: give it to --by",
                        plot->quantity.column[0]);
   if (x->kind == QUERY_NULL)
-    return STATUS_OK; /* off, or does not apply: it has no place on an axis of numbers */
+    return STATUS_OK; /* off, or does not apply: an axis of numbers cannot show it */
 
   char value[sizeof plot->line[0].value];
   struct line *line = NULL;

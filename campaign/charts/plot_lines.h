@@ -5,8 +5,8 @@
 #include "campaign/charts/quantity.h"
 #include "campaign/terminal/chart_option.h"
 
-/* Reads the quantity over `x`, a line for each value of `by` (may be NULL), and draws it. STATUS_USAGE: x is no number,
- * too many lines or points, unknown names. */
+/* Reads the quantity over `x`, a line for each value of `by` (may be NULL), and draws it. STATUS_USAGE: x is not a
+ * number, too many lines or points, unknown names. */
 status plot_lines_draw(struct store *store, const char *x, const char *by, const char *quantity,
                        const struct picture_page *page, struct error *error);
 

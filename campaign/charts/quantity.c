@@ -24,7 +24,7 @@ struct reading {
   enum estimates_window window;
   struct ask_column written[QUANTITY_AXES]; /* the varied inputs, in the units that the campaign gives */
   size_t written_count;
-  const struct ask_column *axis[2]; /* of them; NULL: SI */
+  const struct ask_column *axis[2]; /* the written unit of each axis; NULL: SI */
   status (*each)(void *context, const struct quantity_row *row, struct error *error);
   void *context;
 };
@@ -36,7 +36,7 @@ static const struct ask_column *written_axis(const struct reading *reading, cons
   return NULL;
 }
 
-/* Gives a row away, its inputs in the campaign's units. */
+/* Passes a row to the caller, its inputs in the campaign's units. */
 static status give(const struct reading *reading, struct quantity_row *row, struct error *error) {
   struct query_value inputs[2];
   for (size_t i = 0; i < reading->quantity->axes; i++)
@@ -126,7 +126,7 @@ status quantity_read(struct store *store, const struct quantity_choice *choice, 
     return STATUS_OK;
 
   const char *inputs[2] = {quantity->column[0], quantity->column[1]};
-  quantity->pooled[0] = '\0'; /* exponents are of single points */
+  quantity->pooled[0] = '\0'; /* exponents belong to single points */
   return ask_points_rows(store, &(struct ask_points_choice){0}, choice->newest, quantity->axes, inputs, take_point,
                          &reading, error);
 }

@@ -20,34 +20,34 @@
 struct quantity_choice {
   const char *axis[2]; /* varied inputs by path or unique ending; the second may be NULL */
   const char *name;    /* a result column, beta, or beta_METHOD_WINDOW */
-  bool newest;         /* exponents: of each point's newest results_version only, points without runs included */
+  bool newest;         /* exponents: only of each point's newest results_version, including points without runs */
   const char *refusal; /* message when these are not one or two different inputs and one quantity */
 };
 
 struct quantity {
   bool exponent;
   size_t axes;                   /* 1 or 2 */
-  char column[2][256];           /* of the axes in the views */
+  char column[2][256];           /* the axes' columns in the views */
   char name[256];                /* column of the quantity, or the exponent's name */
-  char pooled[ASK_GROUP_POOLED]; /* varied inputs that means are over as well, points as units; "": none */
+  char pooled[ASK_GROUP_POOLED]; /* other varied inputs that the means average over, with points as units; "": none */
 };
 
 struct quantity_row {
-  const struct query_value *input; /* one for each axis, in the campaign's unit; borrowed for the call */
+  const struct query_value *input; /* one value for each axis, in the campaign's unit; borrowed for the call */
   int64_t results_version;
-  double value, lower, upper; /* the bounds are of the 95 % interval; NaN: unknown */
-  double resolution;          /* how far finer settings may move the value; NaN: unknown */
+  double value, lower, upper; /* bounds of the 95 % interval; NaN: unknown */
+  double resolution;          /* possible change of the value by finer settings; NaN: unknown */
 };
 
-/* Passes every value to `each`; `quantity` is filled in before the first call. What `each`
- * returns when it is not STATUS_OK. STATUS_USAGE: unknown names. */
+/* Passes every value to `each`; `quantity` is filled in before the first call. A status of `each` other than STATUS_OK
+ * ends the reading and is returned. STATUS_USAGE: unknown names. */
 status quantity_read(struct store *store, const struct quantity_choice *choice, struct quantity *quantity,
                      status (*each)(void *context, const struct quantity_row *row, struct error *error), void *context,
                      struct error *error);
 
-/* A line on stderr: the meaning of the intervals, and the error of the resolution. pooled: of ask_group. */
+/* Prints a line on stderr: the meaning of the intervals, and the error of the resolution. pooled: from ask_group. */
 void quantity_tell_resolution(struct store *store, const char *name, const char *pooled);
-/* A line for each of several, comma-separated; "main": the default one. */
+/* Prints a line for each of several comma-separated names; "main": the default quantity. */
 void quantity_tell_resolutions(struct store *store, const char *names, const char *pooled);
 
 #endif

@@ -17,7 +17,7 @@ status spectrum_curves_measured(struct store *store, const char *path, struct sp
   return code ? code : measured_read(path, &size, measured, error);
 }
 
-/* "beta = 2.03 +- 0.05 (seeds, 95 %)" by the name that the exponent has in the form. */
+/* "beta = 2.03 +- 0.05 (seeds, 95 %)" with the name of the exponent in this form. */
 static void label_fit(struct spectrum_curve *curve, double beta, double half_width) {
   static const char *const names[2][2] = {{"\xce\xb2", "\xce\xb2 \xe2\x88\x92 1"}, {"D + 1", "D"}};
   const char *name = names[curve->form.size.density > 0][curve->form.cumulative];
@@ -83,7 +83,7 @@ status spectrum_curves_make(const struct spectrum_choice *choice, bool with_riva
     code = fit_curve(pool, with_rivals, curve, error);
   if (code == STATUS_OK && choice->runs)
     code = make_thin(pool, curve, error);
-  curve->form.first_run = NULL; /* of the pool, which goes */
+  curve->form.first_run = NULL; /* belongs to the pool, which is released */
   if (code)
     spectrum_curves_release(curve);
   return code;
@@ -124,9 +124,9 @@ static void print_rivals(const struct pooled_rivals *rivals) {
 
 struct curves {
   const struct spectrum_choice *choice;
-  bool with_rivals, several; /* several: a pool is of more than one point */
+  bool with_rivals, several; /* several: a pool has more than one point */
   size_t count, most;
-  bool more; /* than are drawn */
+  bool more; /* there are more pools than are drawn */
   int64_t point;
   struct spectrum_curve curve[PICTURE_SERIES];
 };

@@ -9,12 +9,12 @@
 
 struct spectrum_choice {
   struct ask_pool_choice pool;
-  bool cumulative, runs;           /* runs: also every run by itself */
-  double density;                  /* kg/m^3: sizes in place of masses; 0: masses */
+  bool cumulative, runs;           /* runs: also every single run */
+  double density;                  /* kg/m^3: sizes are shown instead of masses; 0: masses */
   const struct measured *measured; /* NULL: none */
 };
 
-/* Reads a measured spectrum for the choice; sizes by the choice's density, in the dimensions of the store. */
+/* Reads a measured spectrum for the choice. The choice's density and the store's dimensions relate sizes and masses. */
 status spectrum_curves_measured(struct store *store, const char *path, struct spectrum_choice *choice,
                                 struct measured *measured, struct error *error);
 
@@ -27,10 +27,10 @@ struct spectrum_curve {
   double complete_mass; /* kg; NaN: not known */
   struct picture_fit fit;
   struct pooled_rivals rivals; /* n 0: not requested */
-  struct picture_thin *thin;   /* of each run; owned with their bins */
+  struct picture_thin *thin;   /* one for each run; owned with their bins */
   size_t thin_count;
 };
-/* with_rivals: likelihood ratios of the pure power law against others. */
+/* with_rivals: also computes likelihood ratios of the pure power law against other laws. */
 status spectrum_curves_make(const struct spectrum_choice *choice, bool with_rivals, const struct ask_pool *pool,
                             struct spectrum_curve *curve, struct error *error);
 void spectrum_curves_release(struct spectrum_curve *curve);                       /* a zeroed one is fine */

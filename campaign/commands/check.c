@@ -1,4 +1,4 @@
-/* `clast check STORE`: is everything in it whole and consistent? */
+/* `clast check STORE`: checks that the store is complete and consistent. */
 #include <stdio.h>
 
 #include "campaign/commands/commands.h"

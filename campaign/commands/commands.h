@@ -17,19 +17,19 @@ extern const struct command help_command, version_command, completion_command;
 
 size_t commands_count(void);
 const struct command *const *commands_all(void);
-/* NULL: *error says so (STATUS_USAGE) with the nearest known name. */
+/* Finds a command by name. NULL: unknown; *error is STATUS_USAGE with the nearest known name. */
 const struct command *commands_find(const char *name, struct error *error);
 
-/* ---- what commands share ---- */
+/* ---- shared by the commands ---- */
 
 struct store;
 
-/* What a command asks of an open store, and how it prints the answer. `format` is that of the command's table. */
+/* Queries an open store and prints the answer. `format`: format of the command's table. */
 typedef status commands_question(struct store *store, const struct command_line *line, enum table_format format,
                                  struct error *error);
 
-/* Opens the store that the first argument names as a reader, calls `question` and closes the store. `table` has the
- * command's table options; NULL: it has none, and `format` is TABLE_TEXT. */
+/* Opens the store that the first argument names as a reader, calls `question` and closes the store. `table`: the
+ * command's table options; NULL: the command has none, and `format` is TABLE_TEXT. */
 status commands_ask(const struct command_line *line, const struct table_options *table, commands_question *question,
                     struct error *error);
 
@@ -41,7 +41,7 @@ struct campaign_option;
 status commands_plan(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
                      bool no_trial, bool json, struct error *error);
 
-/* Options of several commands: which points and runs a question is about. */
+/* Options of several commands: the points and runs that they read. */
 #define COMMANDS_POINT(type_, member_)                                                                                 \
   OPTION_ROW_INTEGER("point", 'p', "N", type_, member_, 0, INT64_MAX, "0",                                             \
                      "Only this point (point_id in the view points); 0: all.")

@@ -5,7 +5,7 @@
 #include "campaign/terminal/shells.h"
 #include "engine/engine.h"
 
-/* Paths of all inputs, each once: what may follow --set. */
+/* Writes the paths of all inputs, each once: the possible values of --set. */
 static void write_inputs(FILE *out) {
   for (size_t e = 0; e < engine_count(); e++) {
     const struct field_table *inputs = engine_at(e)->inputs;
@@ -22,7 +22,7 @@ static void write_inputs(FILE *out) {
 
 static status run(const struct command_line *line, struct error *error) {
   static const struct {
-    const char *name, *before, *after; /* what stands around the list of inputs */
+    const char *name, *before, *after; /* text around the list of inputs */
     void (*print)(size_t count, const struct command *const *commands, FILE *out);
   } shells[] = {
       {"bash", "_clast_inputs=\"", "\"\n", option_completion},

@@ -1,4 +1,4 @@
-/* `clast converge SCENE|CAMPAIGN`: how far results are from those of finer settings, and what that costs. */
+/* `clast converge SCENE|CAMPAIGN`: differences between results and those of finer settings, and their cost. */
 #include <stdlib.h>
 
 #include "campaign/commands/commands.h"

@@ -1,5 +1,5 @@
 /* `clast estimates STORE`: the share of the largest fragment and the exponents of every point, pooled over seeds.
- * Made from the masses in the store each time, so that they are of the runs that are there now. */
+ * Computed from the masses in the store each time, so that they include all present runs. */
 #include "campaign/print/estimates_table.h"
 
 #include "campaign/commands/commands.h"

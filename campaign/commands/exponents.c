@@ -1,4 +1,4 @@
-/* `clast exponents STORE`: the exponent of every point under its four names, and whether a power law fits at all. */
+/* `clast exponents STORE`: the exponent of every point under its four names, and a test of the power law. */
 #include <stdio.h>
 
 #include "campaign/commands/commands.h"

@@ -1,4 +1,4 @@
-/* `clast fit MEASURED CAMPAIGN`: the inputs of a campaign that give the measured values. */
+/* `clast fit MEASURED CAMPAIGN`: finds the inputs of a campaign that reproduce the measured values. */
 
 #include "campaign/commands/commands.h"
 #include "campaign/fit/fit_launch.h"

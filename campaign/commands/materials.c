@@ -45,7 +45,7 @@ static status list(enum table_format format, struct error *error) {
   return code ? code : ended;
 }
 
-/* A name, or a file: then it is checked, and printed as it is. */
+/* Prints the document of a named material, or checks a file and prints it unchanged. */
 static status print_document(const char *name, struct error *error) {
   struct sph_material material;
   char *text = NULL;

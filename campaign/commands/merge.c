@@ -1,4 +1,4 @@
-/* `clast merge TARGET SOURCE...`: stores from several machines into one. */
+/* `clast merge TARGET SOURCE...`: merges stores from several machines into one. */
 #include <inttypes.h>
 
 #include "campaign/commands/commands.h"

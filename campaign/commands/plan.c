@@ -1,4 +1,4 @@
-/* `clast plan CAMPAIGN`: what a campaign would do and cost. */
+/* `clast plan CAMPAIGN`: predicts the runs and the cost of a campaign. */
 #include <stdlib.h>
 #include <unistd.h>
 

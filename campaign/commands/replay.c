@@ -13,7 +13,7 @@ struct options {
   struct table_options table;
 };
 
-/* The table of differences. For people there is none when nothing differs. */
+/* Prints the table of differences. For people it is left out when nothing differs. */
 static status print_differences(struct store *store, int64_t run_id, const struct engine_kind *kind,
                                 const struct run_result *result, enum table_format format,
                                 struct replay_compare *comparison, struct error *error) {
@@ -28,7 +28,7 @@ static status print_differences(struct store *store, int64_t run_id, const struc
   return code ? code : ended;
 }
 
-/* The table for people: the compared means. */
+/* Explains the result of the comparison to people. */
 static void tell(int64_t run_id, const struct ask_run *stored, const struct replay_compare *comparison,
                  size_t fragments) {
   char build[PROVENANCE_BUILD_SIZE];

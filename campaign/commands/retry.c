@@ -14,7 +14,7 @@ struct options {
   int64_t campaign;
 };
 
-/* Name and document of the campaign, and how often its run that failed most has been tried. */
+/* Reads name and document of the campaign, and the largest number of attempts of a failed run. */
 static status read_store(const char *path, int64_t campaign, char **name, char **document, int64_t *attempts,
                          struct error *error) {
   struct store *store = NULL;

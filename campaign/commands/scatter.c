@@ -1,4 +1,4 @@
-/* `clast scatter STORE`: how runs scatter over seeds, and what share of a variance seeds and inputs have. */
+/* `clast scatter STORE`: the scatter of runs over seeds, and the shares of seeds and inputs in a variance. */
 #include <math.h>
 #include <stdlib.h>
 

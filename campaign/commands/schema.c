@@ -11,8 +11,8 @@ struct options {
 };
 
 /* document/campaign.schema.in.json, embedded by CMakeLists.txt. It holds the keys that have several forms (vary, set,
- * design, keep, seeds); the plain keys are filled in from their tables. A value stands there as number, string or
- * boolean: its unit and range are checked by the input's own row when the document is read. */
+ * design, keep, seeds); the plain keys are filled in from their tables. A value there is a number, string or boolean;
+ * the input's own row checks unit and range when the document is read. */
 extern const char campaign_schema_template[];
 
 /* Writes the part of the template that ends at `mark` and returns what follows the mark. */

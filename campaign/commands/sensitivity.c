@@ -1,4 +1,4 @@
-/* `clast sensitivity`: writes a design that asks which input matters, and answers it from a store. */
+/* `clast sensitivity`: writes a design for sensitivity indices, and computes the indices from a store. */
 #include <stdio.h>
 #include <string.h>
 

@@ -12,7 +12,7 @@ struct options {
   int64_t port, wait;
 };
 
-struct serving { /* context of the farm's body */
+struct serving { /* context of the function that the farm runs */
   const struct serve_model *model;
   struct serve_options options;
   int slots;

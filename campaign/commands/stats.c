@@ -32,7 +32,7 @@ static status refuse_exponents(const char *names, const char *store, struct erro
   return STATUS_OK;
 }
 
-/* Means count the runs of twins as if they were independent: say so. */
+/* Warns that means count the runs of twin points as if they were independent. */
 static status warn_of_twins(struct store *store, struct error *error) {
   struct ask_group_twins twins;
   const status code = ask_group_twins(store, &twins, error);

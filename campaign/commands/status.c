@@ -1,4 +1,4 @@
-/* `clast status STORE`: how far each campaign of a store is. */
+/* `clast status STORE`: the progress of each campaign of a store. */
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/rows.h"
 #include "db/ask/campaign.h"

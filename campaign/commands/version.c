@@ -1,4 +1,4 @@
-/* `clast version`, also as `clast --version`: what this program was built from and with, and what it runs on. */
+/* `clast version`, also as `clast --version`: sources and build of this program, and the machine that it runs on. */
 #include "campaign/build_facts.h"
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/table.h"

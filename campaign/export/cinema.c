@@ -16,8 +16,8 @@ struct cinema {
   struct store *store;
   const char *folder;
   struct table *table;
-  int64_t point; /* whose spectrum is drawn */
-  bool spectrum; /* it has one */
+  int64_t point; /* point whose spectrum is drawn */
+  bool spectrum; /* the point has a spectrum */
   size_t rows, not_drawn;
 };
 
@@ -31,7 +31,7 @@ static status take_names(void *context, size_t count, const char *const *names, 
   return STATUS_OK;
 }
 
-/* A point without fragments has no spectrum: nothing is drawn then. */
+/* Draws the spectrum of a point. A point without fragments has none. */
 static status draw_spectrum(struct cinema *cinema, int64_t point, struct error *error) {
   char path[PATH];
   snprintf(path, sizeof path, "%s/point%" PRId64 ".png", cinema->folder, point);
@@ -72,7 +72,7 @@ static status take_run(void *context, size_t count, const struct query_value *va
   return STATUS_OK;
 }
 
-/* The table, and while it is written the pictures that it names. */
+/* Writes the table, and during this draws the pictures that it names. */
 static status write_table(struct cinema *cinema, struct error *error) {
   const struct query_sink sink = {cinema, take_names, take_run};
   const status code = ask_kept(cinema->store, &sink, error);

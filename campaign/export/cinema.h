@@ -6,9 +6,9 @@
 
 #include "db/store/store.h"
 
-/* One row per run whose fields are kept: its inputs and main results, FILE (its broken body) and FILE_spectrum (of its
- * point). data.csv is written last. Tells how many runs have no picture because their fields cannot be read.
- * STATUS_USAGE: the store has no run with fields. STATUS_MISSING: no gnuplot. STATUS_IO. */
+/* One row per run whose fields are kept: its inputs and main results, FILE (its broken body) and FILE_spectrum
+ * (spectrum of its point). data.csv is written last. Reports how many runs have no picture because their fields cannot
+ * be read. STATUS_USAGE: the store has no run with fields. STATUS_MISSING: no gnuplot. STATUS_IO. */
 status cinema_write(struct store *store, const char *folder, struct error *error);
 
 #endif

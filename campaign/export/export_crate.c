@@ -25,10 +25,10 @@ enum { PATH_SIZE = 4096, PROGRAMS = 64 };
 
 struct crate {
   const struct export_crate_options *options;
-  FILE *graph, *parts, *actions; /* entities; the lists hasPart and mentions */
+  FILE *graph, *parts, *actions; /* text of the entities; of the lists hasPart and mentions */
   char *graph_text, *parts_text, *actions_text;
   size_t graph_size, parts_size, actions_size;
-  char programs[PROGRAMS][96]; /* ids that were written */
+  char programs[PROGRAMS][96]; /* ids of programs that were written */
   size_t program_count;
 };
 
@@ -61,7 +61,7 @@ static void end(struct crate *crate) {
   fputc('}', crate->graph);
 }
 
-/* "@id" of one more entity into a list. */
+/* Adds the "@id" of an entity to a list. */
 static void list(FILE *out, const char *id) {
   fputs(ftell(out) > 0 ? ", {\"@id\": " : "{\"@id\": ", out);
   text_json_string(id, out);
@@ -83,7 +83,7 @@ static void file_entity(struct crate *crate, const char *name, const char *forma
   list(crate->parts, name);
 }
 
-/* The program's entity, once for each version; its id. */
+/* Writes the program's entity, once for each version, and returns its id. */
 static const char *program(struct crate *crate, const char *version, const char *commit) {
   char id[96];
   snprintf(id, sizeof id, "#clast-%.32s-%.40s", version, commit);
@@ -101,7 +101,7 @@ static const char *program(struct crate *crate, const char *version, const char 
   return crate->programs[place];
 }
 
-/* ---- what the store knows ---- */
+/* ---- from the store ---- */
 
 static const char *text_of(const struct query_value *value) {
   return value->kind == QUERY_TEXT ? value->text : "";
@@ -195,7 +195,7 @@ static status tables(struct crate *crate, struct store *store, struct error *err
   return STATUS_OK;
 }
 
-/* Author and licence. */
+/* Writes author and licence. */
 static void people(struct crate *crate) {
   const char *author = crate->options->author, *license = crate->options->license;
   if (author) {
@@ -211,7 +211,7 @@ static void people(struct crate *crate) {
   }
 }
 
-/* The metadata. Everything else has been written. */
+/* Writes the metadata, after all other files. */
 static status finish(struct crate *crate, const char *title, struct error *error) {
   const char *license = crate->options->license;
   char path[PATH_SIZE], date[32];
@@ -249,7 +249,7 @@ static status finish(struct crate *crate, const char *title, struct error *error
   return STATUS_OK;
 }
 
-/* The folder is made, or is empty. */
+/* Makes the folder, or checks that it is empty. */
 static status take_folder(const char *folder, struct error *error) {
   if (mkdir(folder, 0777) == 0)
     return STATUS_OK;

@@ -6,8 +6,8 @@
 #include "db/store/store.h"
 
 /* Writes the rows of a view (runs, points, ...; NULL: the bits) into a file; path NULL: to standard output. The file is
- * written under a temporary name and renamed: a file with its final name is whole. A pipe or a device (/dev/stdout) is
- * written itself. */
+ * written under a temporary name and renamed: a file with its final name is complete. A pipe or a device (/dev/stdout)
+ * is written directly. */
 status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
                           struct error *error);
 

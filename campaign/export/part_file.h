@@ -1,4 +1,4 @@
-/* A file that gets its name when it is whole: it is written as NAME.part and renamed. */
+/* A file that has its final name only when it is complete: it is written as NAME.part and renamed. */
 #ifndef CLAST_CAMPAIGN_EXPORT_PART_FILE_H
 #define CLAST_CAMPAIGN_EXPORT_PART_FILE_H
 
@@ -11,17 +11,17 @@ enum { PART_FILE_PATH = 4096 };
 
 struct part_file {
   FILE *out;
-  bool in_place; /* a device or a pipe: it is written as it is */
+  bool in_place; /* a device or a pipe: written directly */
   char path[PART_FILE_PATH], temporary[PART_FILE_PATH + 8];
 };
 
 /* STATUS_USAGE: the name is too long; STATUS_IO. */
 status part_file_open(struct part_file *file, const char *path, struct error *error);
-/* Closes the file. With STATUS_OK it gets its name, else it is removed. Returns `code`, or why the file is not there.
- */
+/* Closes the file. With STATUS_OK it is renamed, else it is removed. Returns `code`, or an error of closing or
+ * renaming. */
 status part_file_close(struct part_file *file, status code, struct error *error);
 
-/* Makes a folder, unless it is there. */
+/* Makes a folder, unless it exists. */
 status part_file_folder(const char *folder, struct error *error);
 
 #endif

@@ -1,4 +1,4 @@
-/* The farm of a command, and what is said of its runs. */
+/* The farm of a command, and the messages about its runs. */
 #include "campaign/launch/launch.h"
 
 #include <inttypes.h>

@@ -1,4 +1,4 @@
-/* What the commands that compute with a farm share: their options, and the farm from its start to its end. */
+/* Shared by the commands that compute with a farm: their options, and the farm from its start to its end. */
 #ifndef CLAST_CAMPAIGN_LAUNCH_LAUNCH_H
 #define CLAST_CAMPAIGN_LAUNCH_LAUNCH_H
 
@@ -25,14 +25,14 @@ struct launch_options {
       OPTION_ROW_FLAG("quiet", 'q', type_, member_.quiet,                                                              \
                       "Print no progress and no remarks on stderr. Warnings and errors are printed.")
 
-/* What a remark needs to reach the user: context of launch_note. */
+/* Context of launch_note, which prints remarks for the user. */
 struct launch_notes {
   struct progress *progress; /* NULL: none is shown */
   bool quiet;                /* warnings only */
 };
 void launch_note(void *notes, const char *text);
 
-/* What runs on every rank between the farm's start and its end. */
+/* Argument of the function that every rank runs between the farm's start and end. */
 struct launch {
   struct farm *farm;
   struct driver_options driver; /* facts, notes and slots are filled in; the body adds the store */
@@ -47,10 +47,10 @@ status launch_farm(const struct campaign *limits, const struct launch_options *o
                    status (*body)(void *context, struct launch *launch, struct error *error), void *context,
                    struct error *error);
 
-/* A line on stderr: how many runs were computed and found (-1: nothing is said of it). */
+/* Prints a line on stderr: how many runs were computed, and how many were found in the store (-1: left out). */
 void launch_tell_runs(const char *store, int64_t computed, int64_t found, double cpu_s, double wall_s);
 
-/* Is this a rank other than 0? Before MPI_Init only the launcher's environment tells. */
+/* True on a rank other than 0. Before MPI_Init only the launcher's environment tells. */
 bool launch_other_rank(void);
 
 /* Under mpirun only rank 0 prints errors: on other ranks this clears the message. It also lets the process live a

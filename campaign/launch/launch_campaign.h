@@ -1,4 +1,4 @@
-/* From a campaign to its finished store: what `clast run` and `clast retry` share. */
+/* From a campaign to its finished store: shared by `clast run` and `clast retry`. */
 #ifndef CLAST_CAMPAIGN_LAUNCH_LAUNCH_CAMPAIGN_H
 #define CLAST_CAMPAIGN_LAUNCH_LAUNCH_CAMPAIGN_H
 

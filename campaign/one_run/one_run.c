@@ -1,4 +1,4 @@
-/* Computes a scene with what watches it: snapshots, restart file, a percentage on a terminal. */
+/* Computes a scene, and during the run writes snapshots, restart file and a percentage on a terminal. */
 #include "campaign/one_run/one_run.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@ enum { BLOCK = 8 }; /* steps between two calls of look(): less than a second, ev
 
 struct watch {
   struct snapshots *snapshots; /* NULL: none wanted */
-  struct resume *resume;       /* NULL: it ends where it is stopped */
+  struct resume *resume;       /* NULL: a signal ends the run without a restart file */
   bool terminal;
   int percent;
 };
@@ -38,7 +38,7 @@ static status look(void *context, const struct engine_kind *kind, void *run, str
   return code;
 }
 
-/* Can the files be written? An error is found before the run, not after it. */
+/* Checks that the files can be written, so that an error is found before the run. */
 static status try_files(const struct one_run_options *options, struct error *error) {
   const char *const files[][2] = {{options->picture, "picture"},
                                   {options->fields, "fields file"},
@@ -58,7 +58,7 @@ static status try_files(const struct one_run_options *options, struct error *err
   return STATUS_OK;
 }
 
-/* `fields`: where the fields at the end go; NULL: nowhere. */
+/* `fields`: file for the fields at the end; NULL: none. */
 static status compute(const struct scene *scene, const struct one_run_options *options, const char *fields,
                       struct run_result *result, struct error *error) {
   struct watch watch = {.percent = -1, .terminal = !options->quiet && isatty(STDERR_FILENO)};

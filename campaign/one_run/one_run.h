@@ -7,15 +7,17 @@
 
 /* Files that are NULL are not written. */
 struct one_run_options {
-  int64_t seed, snapshots; /* so many fields files during the run */
-  const char *fields;      /* at the end */
-  const char *picture;     /* of the end */
-  const char *restart;     /* goes on from it if it exists; written every few minutes and after a signal */
-  bool quiet;              /* no percentage on the terminal */
+  int64_t seed, snapshots; /* number of fields files during the run */
+  const char *fields;      /* fields at the end */
+  const char *picture;     /* picture of the end */
+  const char
+      *restart; /* restart file; if it exists, the run goes on from it. Written every few minutes and after a signal */
+  bool quiet;   /* no percentage on the terminal */
 };
 
-/* Tries the files before the run. *result is the caller's, also on errors: a run whose picture could not be drawn has
- * its results. STATUS_STOPPED after a signal, with a restart file; what run_simulate returns. */
+/* Checks before the run that the files can be written. The caller owns *result, also on errors: if only the picture
+ * failed, it holds the results. STATUS_STOPPED after a signal, with a restart file; also the statuses of
+ * run_simulate. */
 status one_run(const struct scene *scene, const struct one_run_options *options, struct run_result *result,
                struct error *error);
 

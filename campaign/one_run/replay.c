@@ -48,7 +48,7 @@ struct comparison {
   char (*names)[128]; /* of the columns */
   struct replay_compare *out;
   struct table *table;
-  const struct field **doubtful; /* rows that have a value now and none in the store, `doubtful_count` of them */
+  const struct field **doubtful; /* `doubtful_count` rows that have a value now and none in the store */
   size_t doubtful_count;
 };
 
@@ -129,8 +129,8 @@ static status compare_row(void *context, size_t count, const struct query_value 
   return STATUS_OK;
 }
 
-/* Results without a value in the store: a program that knew the result stored a value of it in some run; then the run
- * differs. */
+/* Judges results without a value in the store. If some stored run has a value of the result, the program knew the
+ * result then, and this run differs. */
 static status judge_doubtful(struct comparison *comparison, struct store *store, int64_t run_id, struct error *error) {
   struct replay_compare *out = comparison->out;
   for (size_t i = 0; i < comparison->doubtful_count; i++) {

@@ -1,4 +1,4 @@
-/* A stored run beside the same run computed again: every result and every fragment mass, bit by bit. */
+/* Compares a stored run with the same run computed again: every result and every fragment mass, bit by bit. */
 #ifndef CLAST_CAMPAIGN_ONE_RUN_REPLAY_H
 #define CLAST_CAMPAIGN_ONE_RUN_REPLAY_H
 
@@ -8,14 +8,14 @@
 #include "engine/scene.h"
 
 struct replay_compare {
-  size_t compared, different; /* results; the fragment masses together are one of them */
-  size_t absent;              /* results that the program that stored the run did not know, as it seems: not compared */
-  char absent_names[256];     /* the first of them */
+  size_t compared, different; /* number of results; all fragment masses together count as one */
+  size_t absent;              /* results that the storing program probably did not know: not compared */
+  char absent_names[256];     /* names of the first ones */
 };
 
-/* Computes the run again. Its scene is parsed into *scene; result and scene are the caller's, also on errors. `fields`:
- * NULL, or where its fields go. STATUS_USAGE: there is no such run; STATUS_CONTENT: another results_version than this
- * program's. */
+/* Computes the run again. Its scene is parsed into *scene; the caller owns result and scene, also on errors. `fields`:
+ * NULL, or the file for its fields. STATUS_USAGE: there is no such run; STATUS_CONTENT: another results_version than
+ * this program's. */
 status replay_compute(const struct ask_run *from, int64_t run_id, const char *fields, struct scene **scene,
                       struct run_result *result, struct error *error);
 
@@ -25,8 +25,8 @@ status replay_compare(struct store *store, int64_t run_id, const struct engine_k
                       const struct run_result *result, struct table *table, struct replay_compare *out,
                       struct error *error);
 
-/* STATUS_CONTENT: a bit of the run has changed since it was stored, or results differ. For after the table of
- * differences, which shows the values that it had. */
+/* STATUS_CONTENT: a bit of the run has changed since it was stored, or results differ. Call it after the table of
+ * differences, which shows the stored values. */
 status replay_verdict(struct store *store, int64_t run_id, const struct ask_run *stored,
                       const struct replay_compare *comparison, struct error *error);
 

@@ -10,7 +10,7 @@
 
 enum { EVERY_S = 300 };
 
-static volatile sig_atomic_t stopped; /* a handler can reach nothing else */
+static volatile sig_atomic_t stopped; /* a signal handler can use only a global variable */
 
 static void note(int number) {
   stopped = number;

@@ -6,16 +6,16 @@
 #include "engine/engine.h"
 
 struct resume {
-  const char *path; /* of the restart file */
+  const char *path; /* path of the restart file */
   double saved;     /* s, monotonic: when it was last written */
 };
 
 /* From now on the first signal is only noted. A second one ends the process at once. */
 void resume_begin(struct resume *resume, const char *path);
-/* To be called between blocks of steps. STATUS_STOPPED after a signal, when the file is written; or what save returns.
- */
+/* Must be called between blocks of steps. STATUS_STOPPED after a signal, when the file is written; or the status of
+ * save. */
 status resume_look(struct resume *resume, const struct engine_kind *kind, void *run, struct error *error);
-/* The run came to its end: the file is removed. */
+/* Removes the file after the run has ended. */
 void resume_end(const char *path);
 
 #endif

@@ -1,4 +1,4 @@
-/* Writes the snapshot that is due, and the list of all. */
+/* Writes the snapshot that is due, and the list of all snapshots. */
 #include "campaign/one_run/snapshots.h"
 
 #include <math.h>
@@ -13,8 +13,8 @@
 
 struct snapshots {
   char name[FIELD_TEXT_SIZE];
-  int64_t count, next; /* next: number of the first that is still to come */
-  bool resumed;        /* and not looked yet */
+  int64_t count, next; /* next: number of the next snapshot */
+  bool resumed;        /* the run was restored, and snapshots_look() was not called yet */
   double *time;        /* s, by number; NaN: there is no such file */
 };
 
@@ -46,7 +46,7 @@ static void path_of(const struct snapshots *s, int64_t number, char *path, size_
   snprintf(path, size, "%s_%06lld.hdf", s->name, (long long)number);
 }
 
-/* The first snapshots of a restored run are on the disk already: reads their times. */
+/* Reads the times of the earlier snapshots of a restored run, which are on the disk. */
 static void find_earlier(struct snapshots *s, double progress) {
   s->resumed = false;
   s->next = (int64_t)ceil(progress * (double)s->count);
@@ -109,8 +109,8 @@ status snapshots_look(struct snapshots *s, const struct engine_kind *kind, void 
   s->time[number] = kind->time(run);
   s->next = number + 1;
   while (s->next < s->count && progress < 1 && progress * (double)s->count >= (double)s->next)
-    s->next++; /* the step was so long that some were missed: they are left out */
+    s->next++; /* a step longer than the interval: the missed snapshots are left out */
   if (progress >= 1)
-    s->next = s->count; /* the run has ended, perhaps before its longest time: this was the last */
+    s->next = s->count; /* the run has ended, perhaps before its longest time: this was the last snapshot */
   return write_series(s, error);
 }
