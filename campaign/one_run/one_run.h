@@ -10,9 +10,8 @@ struct one_run_options {
   int64_t seed, snapshots; /* number of fields files during the run */
   const char *fields;      /* fields at the end */
   const char *picture;     /* picture of the end */
-  const char
-      *restart; /* restart file; if it exists, the run goes on from it. Written every few minutes and after a signal */
-  bool quiet;   /* no percentage on the terminal */
+  const char *restart;     /* if it exists, the run goes on from it; written every few minutes and after a signal */
+  bool quiet;              /* no percentage on the terminal */
 };
 
 /* Checks before the run that the files can be written. The caller owns *result, also on errors: if only the picture

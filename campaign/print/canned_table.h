@@ -1,4 +1,4 @@
-/* The canned queries of `clast query --list`: name, parameters and what they answer; for programs their SQL, too. */
+/* The canned queries of `clast query --list`: name, parameters and meaning; for programs also the SQL. */
 #ifndef CLAST_CAMPAIGN_PRINT_CANNED_TABLE_H
 #define CLAST_CAMPAIGN_PRINT_CANNED_TABLE_H
 

@@ -15,11 +15,11 @@ struct printing {
   struct store *store;
   enum table_format format;
   struct table *table;
-  bool studied; /* some exponent has a study: else no point is asked for its own */
+  bool studied; /* some exponent has a study; otherwise no point's study is read */
   size_t axes;
   struct ask_column axis[AXES_MAXIMUM];
   size_t shown;   /* axes that fit into a terminal */
-  bool hidden[3]; /* methods that do not */
+  bool hidden[3]; /* methods that do not fit */
 };
 
 /* Order of the methods in point_estimates. */
@@ -51,7 +51,7 @@ static void columns_for_programs(struct printing *printing) {
   }
 }
 
-/* What finer settings may move in the exponent of a method and window at a point. */
+/* Reads the possible change by finer settings of the exponent of a method and window at a point. */
 static status read_resolution(const struct printing *printing, const struct ask_points_row *row, int method, int window,
                               struct ask_resolution *resolution, struct error *error) {
   char name[64];
@@ -90,7 +90,12 @@ static status row_for_programs(struct printing *printing, const struct ask_point
 
 /* ---- for people: values with their intervals, and no wider than a terminal ---- */
 
-enum { WIDTH = 100, FIXED = 54, METHOD = 11, GAP = 2 }; /* columns: of all but axes and methods; of a method */
+enum {
+  WIDTH = 100,
+  FIXED = 54,
+  METHOD = 11,
+  GAP = 2
+}; /* widths: table; columns other than axes and methods; a method; gap */
 
 /* A heading for the axis: the last word of its path where no other axis has it, else its whole name. */
 static const char *short_axis(const struct printing *printing, size_t axis) {
@@ -103,7 +108,7 @@ static const char *short_axis(const struct printing *printing, size_t axis) {
     if (i != axis && length >= tail && strcmp(printing->axis[i].name + length - tail, word) == 0)
       return name;
   }
-  return strlen(word) > 1 ? word : name; /* "m" and "k" alone say too little */
+  return strlen(word) > 1 ? word : name; /* "m" and "k" alone are not clear enough */
 }
 
 enum { NUMBER = 5 }; /* width of most values */
@@ -126,7 +131,7 @@ static void axis_cell(struct table *table, const struct ask_column *axis, const 
   table_text(table, text);
 }
 
-/* As many axes as fit beside one method (maximum likelihood on masses), then as many methods. */
+/* Shows as many axes as fit beside one method (maximum likelihood on masses), then as many other methods as fit. */
 static void choose_columns(struct printing *printing) {
   size_t used = FIXED + METHOD;
   printing->shown = 0;
@@ -174,7 +179,7 @@ static void resolution_cell(struct table *table, enum ask_resolution_verdict ver
 static status row_for_people(struct printing *printing, const struct ask_points_row *row, int window,
                              const struct point_estimate *fits, struct error *error) {
   struct table *table = printing->table;
-  if (window > 0) { /* the point and its runs stand in its first row only */
+  if (window > 0) { /* only the point's first row shows its inputs and runs */
     for (size_t i = 0; i < printing->shown + 4; i++)
       table_text(table, "");
   } else {
@@ -218,7 +223,7 @@ static status print_point(void *context, const struct ask_points_row *row, struc
     if (printing->format != TABLE_TEXT)
       code = row_for_programs(printing, row, window, fits, error);
     else if (window == 0 || fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n > 0)
-      code = row_for_people(printing, row, window, fits, error); /* an empty line tells people nothing */
+      code = row_for_people(printing, row, window, fits, error); /* people do not need an empty row */
   }
   if (code)
     return code;

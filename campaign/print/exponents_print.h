@@ -7,7 +7,7 @@
 
 struct exponents_print {
   struct table *table;
-  size_t draws; /* of the bootstrap */
+  size_t draws; /* number of bootstrap samples */
 };
 
 void exponents_print_headings(struct table *table);

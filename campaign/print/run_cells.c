@@ -1,4 +1,4 @@
-/* Collects the runs of cells and leaves the seeds that all of them have. */
+/* Collects the runs of cells and keeps the seeds that all cells have. */
 #include "campaign/print/run_cells.h"
 
 #include <math.h>
@@ -67,7 +67,7 @@ static size_t find_shared(size_t count, struct run_cell *const *cell, struct run
   return common;
 }
 
-/* Keeps the runs of a cell with these seeds; it has them all, and both ascend. */
+/* Keeps the runs of a cell with these seeds. The cell has all of them; both lists are ascending. */
 static void keep_shared(struct run_cell *cell, const struct run_cells_run *shared, size_t common) {
   size_t from = 0;
   for (size_t r = 0; r < common; r++, from++) {

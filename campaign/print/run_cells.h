@@ -1,5 +1,5 @@
-/* The values of a result in cells, one for each set of varied inputs, with the seeds that the cells share: what the
- * split of a variance and sensitivity indices are made from. */
+/* The values of a result in cells, one for each set of varied inputs, with the seeds that the cells share: the input of
+ * variance splits and sensitivity indices. */
 #ifndef CLAST_CAMPAIGN_PRINT_RUN_CELLS_H
 #define CLAST_CAMPAIGN_PRINT_RUN_CELLS_H
 
@@ -26,8 +26,9 @@ struct run_cells {
 status run_cells_take(void *cells, const struct ask_pool *pool, struct error *error);
 void run_cells_release(struct run_cells *cells);
 
-/* Makes the first runs of these cells a table: the seeds that all of them have, if there are two at least (or one, and
- * no cell has two); else as many runs as every cell has, whatever their seeds. Returns how many runs these are. */
+/* Puts runs with the same seeds first in all cells: the seeds that all cells have, if there are at least two (or one,
+ * and some cell has only one run). Otherwise takes as many runs as every cell has, with any seeds. Returns the number
+ * of runs per cell. */
 size_t run_cells_balance(size_t count, struct run_cell *const *cell, bool *same_seeds);
 
 #endif

@@ -14,7 +14,7 @@ struct printing {
   const struct scatter_choice *choice;
   enum table_format format;
   struct table *table;
-  bool several; /* a pool is of more than one point */
+  bool several; /* a pool has more than one point */
 };
 
 static void start(struct printing *printing, const struct ask_pool *pool) {
@@ -41,7 +41,7 @@ static void about(const struct printing *printing, const struct ask_pool *pool, 
   row(printing, pool, name, value, value - half_width, value + half_width);
 }
 
-/* Runs for the interval that is wanted, from the deviation and from both ends of its interval. 0: cannot be told. */
+/* Number of runs for the wanted interval, from the standard deviation. NaN: not known. */
 static double needed(double deviation, double half_width) {
   const size_t runs = scatter_runs_needed(deviation, half_width);
   return runs ? (double)runs : (double)NAN;

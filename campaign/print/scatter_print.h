@@ -9,18 +9,18 @@
 struct scatter_choice {
   struct ask_pool_choice pool;
   const char *quantity;
-  double half_width; /* wanted of the mean, in the quantity's unit; NaN: none */
+  double half_width; /* wanted half width of the mean's interval, in the quantity's unit; NaN: none */
 };
 
-/* A row per statistic of each pool. */
+/* Prints a row per statistic of each pool. */
 status scatter_print_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,
                           struct error *error);
-/* A histogram as text of each pool. */
+/* Prints a text histogram of each pool. */
 status scatter_print_plots(struct store *store, const struct scatter_choice *choice, bool ascii, struct error *error);
-/* Histograms and distribution functions of the first eight pools. */
+/* Draws histograms and distribution functions of the first eight pools. */
 status scatter_print_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
                              struct error *error);
-/* A row per part of the variance over all points. */
+/* Prints a row per part of the variance over all points. */
 status scatter_print_split(struct store *store, const struct scatter_choice *choice, enum table_format format,
                            struct error *error);
 

@@ -14,14 +14,14 @@ struct reading {
   enum design_sensitivity_kind kind;
   size_t blocks, points; /* points of a block */
   struct run_cells cells;
-  struct run_cell **place; /* of each row of the design; NULL: the store has no run of it */
-  size_t *block;           /* those that are whole, in their order */
+  struct run_cell **place; /* cell of each row of the design; NULL: the store has no run of it */
+  size_t *block;           /* the complete blocks, in their order */
   size_t whole;
   double *value;
   struct sensitivity_table table;
 };
 
-/* As run_cells has it. */
+/* Writes an input in the same form as run_cells. */
 static void write_input(const struct campaign *campaign, size_t a, size_t i, char text[ASK_POOL_TEXT]) {
   const struct design_axis *axis = &campaign->axes[a];
   const struct field_value *value = &axis->levels[i];
@@ -45,7 +45,7 @@ static int by_inputs(const void *a, const void *b) {
   return 0;
 }
 
-/* The cell of every row, and the blocks that have all of theirs. */
+/* Finds the cell of every row, and the blocks of which all cells exist. */
 static void find_places(struct reading *r) {
   const size_t n = r->campaign->axis_count;
   char text[ASK_POOL_AXES][ASK_POOL_TEXT];
@@ -67,7 +67,7 @@ static void find_places(struct reading *r) {
   }
 }
 
-/* Two rows may be one point, which run_cells_balance may meet once only. */
+/* Two rows may be the same point, which run_cells_balance may get only once. */
 static int by_address(const void *a, const void *b) {
   const struct run_cell *p = *(struct run_cell *const *)a, *q = *(struct run_cell *const *)b;
   return p < q ? -1 : p > q;

@@ -51,7 +51,7 @@ static void name_bins(struct printing *printing, const struct ask_pool *pool) {
   table_column(table, "mass_share", NULL);
 }
 
-/* The bins of a pool, or with run_id of one of its runs. */
+/* Prints the bins of a pool, or with run_id those of one of its runs. */
 static status print_bins(struct printing *printing, const struct ask_pool *pool, const struct pooled_runs *runs,
                          const int64_t *run_id, struct error *error) {
   struct pooled_form form = ask_pool_form(pool, printing->choice->cumulative, printing->choice->density);
@@ -97,7 +97,7 @@ static status print_pool(void *context, const struct ask_pool *pool, struct erro
   return code;
 }
 
-/* What was printed before an error stays. */
+/* Ends the table. Rows printed before an error are kept. */
 static status end_table(struct table *table, status code, struct error *error) {
   if (code && !table_broken(table)) {
     (void)table_end(table, NULL);
@@ -144,11 +144,11 @@ static status print_match(void *context, const struct ask_pool *pool, struct err
   return STATUS_OK;
 }
 
-/* Likelihoods can be compared only from one mass on. */
+/* Finds the largest complete mass of all pools: likelihoods can be compared only above the same mass. */
 static status find_complete(void *context, const struct ask_pool *pool, struct error *error) {
   struct printing *printing = context;
   (void)error;
-  printing->complete = fmax(printing->complete, pool->data.complete_mass); /* NaN: the other */
+  printing->complete = fmax(printing->complete, pool->data.complete_mass); /* fmax ignores a NaN */
   return STATUS_OK;
 }
 

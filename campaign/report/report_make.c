@@ -1,4 +1,5 @@
-/* What goes into a page: the stores' data, the names of their columns, and pictures of runs whose fields are kept. */
+/* Makes the content of a page: the stores' data, the names of their columns, and pictures of runs whose fields are
+ * kept. */
 #include "campaign/report/report_make.h"
 
 #include <stdio.h>
@@ -15,7 +16,7 @@
 #include "engine/atomic_file.h"
 #include "engine/outcome.h"
 
-enum { PICTURES = 24, PICTURE_WIDTH = 400, PICTURE_BYTES = 330000 /* of one page */ };
+enum { PICTURES = 24, PICTURE_WIDTH = 400, PICTURE_BYTES = 330000 /* most pictures of one page */ };
 
 struct making {
   const struct report_choice *choice;
@@ -63,8 +64,8 @@ static status add_difference(void *context, const struct ask_pairs_row *row, str
                              error);
 }
 
-/* The main results less those of the first store, as `clast compare` has them. Stores without a point in common have
- * none. */
+/* The main results less those of the first store, as `clast compare` has them. Stores without common points have no
+ * differences. */
 static status add_differences(struct making *making, const char *name, struct error *error) {
   status code = STATUS_OK;
   const char *first = making->choice->stores[0];
@@ -79,7 +80,7 @@ static status add_differences(struct making *making, const char *name, struct er
   return code == STATUS_USAGE ? STATUS_OK : code;
 }
 
-/* Draws into a file beside the page. A fields file that is gone or damaged has no picture: the page says so. */
+/* Draws into a file beside the page. For a missing or damaged fields file the page reports that there is no picture. */
 static status add_picture(void *context, const struct ask_page_kept *run, struct error *error) {
   struct making *making = context;
   unsigned char *png = NULL;

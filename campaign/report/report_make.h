@@ -11,7 +11,7 @@
 enum { REPORT_STORES = 8 };
 
 struct report_choice {
-  size_t count; /* of stores, at most REPORT_STORES */
+  size_t count; /* paths of stores, at most REPORT_STORES */
   char *const *stores;
   const char *output;
   int64_t refresh; /* s, after which an open page loads itself again; 0: never */
@@ -20,7 +20,7 @@ struct report_choice {
 /* *size: bytes of the page. */
 status report_make(const struct report_choice *choice, size_t *size, struct error *error);
 
-/* Is a campaign writing one of the stores? */
+/* True while a campaign writes one of the stores. */
 bool report_make_running(const struct report_choice *choice);
 
 #endif

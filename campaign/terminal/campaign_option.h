@@ -1,4 +1,4 @@
-/* What the commands that take a campaign share: changes of it for this time, by --set and --seeds. */
+/* Shared by the commands that take a campaign: changes for this invocation by --set and --seeds. */
 #ifndef CLAST_CAMPAIGN_TERMINAL_CAMPAIGN_OPTION_H
 #define CLAST_CAMPAIGN_TERMINAL_CAMPAIGN_OPTION_H
 
@@ -17,7 +17,7 @@ struct campaign_option {
       OPTION_ROW_INTEGER("seeds", 0, "N", type_, member_.seeds, 0, 1000000000000, "0",                                 \
                          "Number of seeds for every point, instead of the campaign's; 0: the campaign's.")
 
-/* campaign_load with the changes. STATUS_USAGE when a change is at fault. */
+/* campaign_load with the changes. STATUS_USAGE when a change is wrong. */
 status campaign_option_load(const char *path, const struct campaign_option *option, struct campaign **campaign,
                             struct error *error);
 

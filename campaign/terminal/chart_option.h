@@ -1,4 +1,4 @@
-/* What the commands that draw charts share: their options, and the names of quantities for people. */
+/* Shared by the commands that draw charts: their options, and the names of quantities for people. */
 #ifndef CLAST_CAMPAIGN_TERMINAL_CHART_OPTION_H
 #define CLAST_CAMPAIGN_TERMINAL_CHART_OPTION_H
 
@@ -31,7 +31,8 @@ status chart_option_axis(struct store *store, const char *column, char label[CHA
 void chart_option_labels(const char *paths, char *labels, size_t size);
 /* "95 % intervals over seeds", or over points that differ in the pooled inputs (of ask_group; "": none). */
 void chart_option_intervals(const char *pooled, char *text, size_t size);
-/* What is known of the resolution of a quantity at the points of the store; `adds` goes before it when something is. */
+/* Describes the known error of the resolution of a quantity at the points of the store, after `adds` if there is
+ * one. */
 void chart_option_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size);
 
 #endif

@@ -126,7 +126,7 @@ status explain_path(const char *path, struct error *error) {
                      path, nearest ? "; did you mean " : ";", nearest ? nearest : "", nearest ? "?" : "");
 }
 
-/* The row's default as text; empty for what has none. */
+/* The row's default as text; empty for a row without default. */
 static void default_text(const struct field_table *of, const struct field *row, char *text, size_t size) {
   text[0] = '\0';
   if (of == &outcome_table || of == &estimates_table || (row->flags & (FIELD_REQUIRED | FIELD_DERIVED)))

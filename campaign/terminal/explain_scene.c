@@ -1,4 +1,4 @@
-/* What is modelled, and the inputs that are active. */
+/* Explains the model of a scene and its active inputs. */
 #include "campaign/terminal/explain_scene.h"
 
 #include <stdlib.h>
@@ -23,7 +23,7 @@ static void explain_inputs(const struct scene *scene, FILE *out) {
     struct field_value value;
     char text[FIELD_TEXT_SIZE], doc[FIELD_TEXT_SIZE];
     field_get(row, scene->inputs, &value);
-    if (row->kind == FIELD_REAL && !field_is_off(value.number)) /* six digits are enough for the eye */
+    if (row->kind == FIELD_REAL && !field_is_off(value.number)) /* six digits are enough for people */
       snprintf(text, sizeof text, "%.6g%s%s", value.number, strcmp(row->unit, "1") == 0 ? "" : " ",
                strcmp(row->unit, "1") == 0 ? "" : row->unit);
     else

@@ -41,13 +41,13 @@ static void print_escaped(char c, FILE *out) {
     fputc(c, out);
 }
 
-/* roff takes a line that begins with a point for a command. */
+/* roff reads a line that begins with a full stop as a command. */
 static void begin_line(const char *text, FILE *out) {
   if (*text == '.')
     fputs("\\&", out);
 }
 
-/* As it is, line for line. */
+/* Prints text unchanged, line by line. */
 static void print_literal(const char *text, FILE *out) {
   begin_line(text, out);
   for (const char *c = text; *c; c++) {
@@ -135,7 +135,7 @@ static void print_command(const struct command *command, FILE *out) {
 void manual_write(const struct manual_texts *texts, size_t count, const struct command *const *commands, FILE *out) {
   fputs(".\\\" Made by `clast help --man` from the tables of the commands: change those.\n"
         ".TH CLAST 1 " BUILD_DATE " \"clast " BUILD_VERSION "\" \"User Commands\"\n"
-        ".nr HY 0\n.ad l\n" /* a name is never broken at a line's end, so that it can be searched for */
+        ".nr HY 0\n.ad l\n" /* names are not hyphenated, so that they can be searched for */
         ".SH NAME\nclast \\- ensembles of brittle-fragmentation simulations\n"
         ".SH SYNOPSIS\n\\fBclast\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR] ...\n"
         ".br\n\\fBclast\\fR \\fICOMMAND\\fR \\fB\\-\\-help\\fR\n.br\n\\fBclast \\-\\-version\\fR\n"

@@ -1,4 +1,4 @@
-/* Parsing over getopt_long, and everything else that follows from the option tables. */
+/* Parses by getopt_long, and makes all other output from the option tables. */
 #include "campaign/terminal/option.h"
 
 #include <errno.h>
@@ -84,7 +84,7 @@ static status prepare(const struct command *command, struct getopt_tables *table
     return status_fail(error, STATUS_INTERNAL, "the option table of %s is too large", command->name);
   memset(options, 0, command->options_size);
   char *letter = tables->letters;
-  *letter++ = ':'; /* tells a missing value apart from an unknown option */
+  *letter++ = ':'; /* distinguishes a missing value from an unknown option */
   *letter++ = 'h';
   for (size_t i = 0; i < command->option_count; i++) {
     const struct option_row *row = &command->options[i];

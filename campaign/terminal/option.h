@@ -1,5 +1,5 @@
-/* The command line as tables: one row per option, one record per command. From them come parsing, `--help`, the nearest
- * known name after a typing error, bash completion and the manual page; nothing else lists the same names.
+/* The command line as tables: one row per option, one record per command. The tables give parsing, `--help`, the
+ * nearest known name after a typing error, bash completion and the manual page. No other place lists these names.
  *
  * A command declares a plain struct for its options, rows with offsetof into it, and a function that runs. */
 #ifndef CLAST_CAMPAIGN_TERMINAL_OPTION_H
@@ -28,7 +28,7 @@ struct option_row {
   const char *name; /* long name without dashes */
   char letter;      /* short form, or 0 */
   enum option_kind kind;
-  const char *argument;     /* what help calls the value: "FILE", "N"; NULL for a flag */
+  const char *argument;     /* name of the value in the help: "FILE", "N"; NULL for a flag */
   size_t offset;            /* in the command's options struct */
   int64_t minimum, maximum; /* OPTION_INTEGER */
   const char *initial;      /* default, as a user would type it; NULL: zero, false, NULL */
@@ -54,7 +54,7 @@ struct option_row {
     .offset = offsetof(type_, member_), .minimum = minimum_, .maximum = maximum_, .initial = initial_, .doc = doc_     \
   }
 
-/* What a command gets. */
+/* Argument of a command. */
 struct command_line {
   const void *options; /* the command's struct, filled */
   size_t count;        /* operands, within the command's bounds */
@@ -69,7 +69,7 @@ struct command {
   const char *arguments; /* "STORE [SQL]"; optional ones in brackets, "..." for repeated ones */
   const char *summary;   /* one line for `clast help` */
   const char *doc;       /* what it does and what it prints, two or three sentences, lines broken by hand */
-  const char *examples;  /* two lines, each a command that works as it stands in a folder with such files */
+  const char *examples;  /* two lines, each a command that works unchanged in a folder with such files */
   size_t minimum_arguments, maximum_arguments;
   const struct option_row *options;
   size_t option_count;
@@ -82,15 +82,15 @@ struct command {
 #define COMMAND_OPTIONS(type_, rows_)                                                                                  \
   .options = (rows_), .option_count = sizeof(rows_) / sizeof(rows_)[0], .options_size = sizeof(type_)
 
-enum { OPTION_STRUCT_MAXIMUM = 4096 }; /* no options struct is larger */
+enum { OPTION_STRUCT_MAXIMUM = 4096 }; /* largest size of an options struct */
 
 /* argv[0] is the command's name. Fills *options (options_size bytes) and leaves the operands, in order, in *arguments
- * (pointing into argv, which is permuted). *help: --help was given; nothing else was checked then.
- * STATUS_USAGE names what is wrong and the nearest known option. */
+ * (pointing into argv, which is permuted). *help: --help was given; then no other argument was checked. STATUS_USAGE:
+ * *error names the wrong argument and the nearest known option. */
 status option_parse(const struct command *command, int argc, char **argv, void *options, size_t *count,
                     char ***arguments, bool *help, struct error *error);
 
-/* The lines of `lines`, indented by two spaces. */
+/* Prints the lines of `lines`, indented by two spaces. */
 void option_lines(const char *lines, FILE *out);
 
 void option_help(const struct command *command, FILE *out);

@@ -14,8 +14,8 @@ struct progress {
   enum progress_style style;
   bool colour, drawn;
   int columns;
-  double last_time; /* of the last line or redraw */
-  int last_share;   /* twentieths said so far (plain) */
+  double last_time; /* time of the last line or redraw */
+  int last_share;   /* twentieths reported so far (plain lines) */
 };
 
 enum progress_style progress_style_of(FILE *out) {
@@ -87,7 +87,7 @@ static void cut(char *text, int columns) {
   int seen = 0;
   for (char *c = text; *c; c++) {
     if (((unsigned char)*c & 0xC0) == 0x80)
-      continue; /* the rest of a character */
+      continue; /* a continuation byte of UTF-8 */
     if (seen++ == columns) {
       *c = '\0';
       return;
@@ -120,7 +120,7 @@ void progress_update(struct progress *progress, const struct progress_state *sta
     return;
   }
   int share = (int)floor(share_of(state) * 20);
-  bool first = progress->last_share < 0; /* nothing is said before something has happened */
+  bool first = progress->last_share < 0; /* the first update prints no line */
   if (first)
     progress->last_time = now;
   if (!last && (first || share <= progress->last_share) && now - progress->last_time < 60) {

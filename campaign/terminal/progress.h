@@ -8,26 +8,27 @@
 #include <stdio.h>
 
 struct progress_state {
-  int64_t done; /* runs finished, found ones included */
+  int64_t done; /* finished runs, including those found in the store */
   int64_t failed, running;
-  int64_t total;           /* at least this many (exactly, without `until`) */
-  bool total_is_minimum;   /* `until`: more may come */
+  int64_t total;           /* least number of runs (exact without `until`) */
+  bool total_is_minimum;   /* `until`: the total may grow */
   double rate;             /* runs/s of this invocation; NaN = not known yet */
   double seconds_left;     /* NaN = not known yet */
   const char *quantity;    /* the main quantity's name */
-  double mean, half_width; /* of it over the runs so far, 95 %; NaN = none yet, or runs of several points */
+  double mean, half_width; /* mean of `quantity` over the runs so far, half width of its 95 % interval; NaN = none yet,
+                              or runs of several points */
 };
 
 enum progress_style { PROGRESS_PLAIN, PROGRESS_BAR };
 
 struct progress;
-/* PROGRESS_BAR when `out` is a terminal that can (TERM set and not dumb). */
+/* PROGRESS_BAR when `out` is a terminal that can redraw a line (TERM set and not dumb). */
 enum progress_style progress_style_of(FILE *out);
 /* `out` is borrowed. columns: width of the terminal, 0 = ask it. NULL when memory is out. */
 struct progress *progress_create(FILE *out, enum progress_style style, bool colour, int columns);
 /* now: seconds of any monotonic clock. Draws only when it is time to, or when `last`. */
 void progress_update(struct progress *progress, const struct progress_state *state, double now, bool last);
-/* A line for a person that does not get mixed up with the bar. */
+/* Prints a line for a person without disturbing the bar. */
 void progress_note(struct progress *progress, const char *text);
 void progress_free(struct progress *progress); /* ends the bar's line. NULL is fine */
 

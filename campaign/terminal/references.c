@@ -1,4 +1,4 @@
-/* The list of papers, and BibTeX from it. Papers without a DOI have none here. */
+/* The list of papers, and BibTeX from it. Entries without `doi` are papers without a DOI. */
 #include "campaign/terminal/references.h"
 
 #include <string.h>
@@ -79,15 +79,15 @@ size_t references_count(void) {
   return sizeof papers / sizeof papers[0];
 }
 
-/* Is what stands at `at` in the source the end or the beginning of a longer list of names? "Monaghan" is not "Gray,
- * Monaghan & Swift". */
+/* True when the names at `at` in the source are part of a longer list of names: "Monaghan" is not "Gray, Monaghan &
+ * Swift". */
 static bool is_longer(const char *source, const char *at, size_t length) {
   const char *behind = at + length;
   const bool ends = at >= source + 2 && (strncmp(at - 2, ", ", 2) == 0 || strncmp(at - 2, "& ", 2) == 0);
   return ends || ((behind[0] == ',' || behind[0] == ' ') && behind[1] == '&');
 }
 
-/* A year stands behind the names, perhaps after others of them: "Benz & Asphaug (1994, 1995)". */
+/* True when the year follows the names, perhaps after other years: "Benz & Asphaug (1994, 1995)". */
 static bool year_follows(const char *rest, const char *year) {
   static const char more_names[] = ", D'Addetta, Herrmann & Ramm";
   if (strncmp(rest, more_names, sizeof more_names - 1) == 0)

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 size_t references_count(void);
-/* Does the source ("Benz & Asphaug 1995, eq. 6", "K99 table 1") name the paper? */
+/* True when the source ("Benz & Asphaug 1995, eq. 6", "K99 table 1") names the paper. */
 bool references_named(size_t index, const char *source);
 /* The DOIs of all papers that the source names, with blanks between; empty when none has one. */
 void references_doi(const char *source, char *text, size_t size);

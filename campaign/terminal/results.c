@@ -44,7 +44,7 @@ static void list(struct table *table, const struct field_table *fields, const vo
   }
 }
 
-/* Columns are called as in the store. */
+/* Columns have the same names as in the store. */
 static void heading(struct table *table, const struct field *row) {
   char name[FIELD_TEXT_SIZE];
   field_column_name(row->path, name, sizeof name);

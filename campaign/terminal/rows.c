@@ -73,7 +73,7 @@ static status row(void *context, size_t count, const struct query_value *values,
                                                          : values[i];
     rows_cell(rows->table, &shown);
   }
-  return table_broken(rows->table) ? STATUS_IO : STATUS_OK; /* rows_end says what it was */
+  return table_broken(rows->table) ? STATUS_IO : STATUS_OK; /* rows_end reports the error */
 }
 
 struct query_sink rows_sink(struct rows *rows, struct store *store, enum table_format format, FILE *out) {
@@ -98,7 +98,7 @@ status rows_end(struct rows *rows, status code, struct error *error) {
   if (!rows->table)
     return code;
   bool broken = table_broken(rows->table);
-  if (code && !broken) { /* an error of the query itself: what was printed so far stays */
+  if (code && !broken) { /* an error of the query itself: the printed rows stay */
     (void)table_end(rows->table, NULL);
     return code;
   }

@@ -10,7 +10,7 @@ static status set_input(struct scene *scene, const char *text, struct error *err
   if (code)
     return code;
   code = scene_set_text(scene, path, value, error);
-  return code == STATUS_CONTENT ? STATUS_USAGE : code; /* the content is that of the command line */
+  return code == STATUS_CONTENT ? STATUS_USAGE : code; /* the wrong content is on the command line */
 }
 
 status scene_option_apply(struct scene *scene, const struct option_list *set, struct error *error) {

@@ -20,7 +20,7 @@ static bool absent(const struct field *row, const void *inputs) {
   return false;
 }
 
-/* Sources of the values of a named material: of a section where it has one source. */
+/* Sources of the values of a named material; one for a section whose values have the same source. */
 static void cite_materials(const struct scene *scene, scene_sources_each each, void *context) {
   const struct field_table *inputs = scene->kind->inputs;
   char name[FIELD_TEXT_SIZE] = "", before[FIELD_TEXT_SIZE] = "";

@@ -6,12 +6,13 @@
 
 #include "schemas/text.h"
 
-/* Its value begins with the path of an input. */
+/* True when the option's value begins with the path of an input. */
 static bool takes_input(const struct option_row *row) {
   return row->argument && strcmp(row->argument, "PATH=VALUE") == 0;
 }
 
-/* The first sentence of `doc` inside single quotes. zsh reads brackets and colons of it, so they are left out there. */
+/* The first sentence of `doc` inside single quotes. zsh gives brackets and colons a meaning, so they are left out for
+ * zsh. */
 static void quoted(const char *doc, const char *leave_out, FILE *out) {
   char sentence[512];
   text_sentence(doc, sentence, sizeof sentence);

@@ -14,7 +14,7 @@ enum { SAMPLE_ROWS = 500, COLUMNS_MAXIMUM = 2000 }; /* SQLite's own limit on col
 
 struct column {
   char *name, *unit;
-  size_t width; /* of the aligned table, in characters */
+  size_t width; /* width in the aligned table, characters */
   bool text;    /* aligned left */
 };
 
@@ -334,7 +334,7 @@ status table_flush(FILE *out, struct error *error) {
 
 void table_drop(struct table *table) {
   if (!table->out)
-    return; /* the one that could not be made */
+    return; /* the copy that could not be made */
   for (size_t i = 0; i < table->kept_count; i++)
     free(table->kept[i]);
   for (size_t c = 0; c < table->column_count; c++) {

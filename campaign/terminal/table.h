@@ -1,7 +1,7 @@
 /* Rows on stdout, four ways: an aligned table for people; CSV (RFC 4180), JSON (one array of objects) and JSON Lines
  * (one object on each line) for programs.
  *
- * Cells are added in column order, row after row. What programs read is written row by row as it comes; the aligned
+ * Cells are added in column order, row after row. Formats for programs are written row by row immediately; the aligned
  * table keeps the first rows to find its widths. Numbers for programs read back as the same bits; the aligned table
  * shows five significant digits and the unit in the heading. Missing values and NaN: empty in CSV, null in JSON, "-" in
  * the table. */
@@ -23,24 +23,24 @@ struct table *table_new(enum table_format format, FILE *out);
 
 /* Before the first cell. unit: NULL or "1" for none. Texts are copied. */
 void table_column(struct table *table, const char *name, const char *unit);
-/* Several without a unit; NULL ends the names. */
+/* Adds several columns without unit; NULL ends the names. */
 void table_columns(struct table *table, const char *const *names);
 
 void table_text(struct table *table, const char *text); /* NULL: missing */
 void table_real(struct table *table, double number);
-/* The same with so many decimals in the aligned table. */
+/* The same with this number of decimals in the aligned table. */
 void table_fixed(struct table *table, double number, int decimals);
 void table_integer(struct table *table, int64_t number);
 void table_boolean(struct table *table, bool value);
 void table_missing(struct table *table);
 
-/* Writes what is left, frees the table. STATUS_IO when stdout could not take it (disk full); a reader that went away
- * (EPIPE: `| head`) is fine. */
+/* Writes the remaining rows and frees the table. STATUS_IO when writing failed (disk full). A closed pipe (EPIPE: `|
+ * head`) is not an error. */
 status table_end(struct table *table, struct error *error);
 
-void table_drop(struct table *table); /* frees it, prints nothing that was not printed yet */
+void table_drop(struct table *table); /* frees the table without printing the remaining rows */
 
-/* True when the reader has gone or writing has failed: more rows are not needed. */
+/* True when the pipe is closed or writing has failed: more rows are not needed. */
 bool table_broken(const struct table *table);
 
 /* Flushes stdout; returns the same statuses as table_end. For commands that print text. */

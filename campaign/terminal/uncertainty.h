@@ -1,4 +1,4 @@
-/* The two errors of a mean in words: what other seeds may change, and what a finer resolution may change. */
+/* The two errors of a mean in words: the possible changes by other seeds and by a finer resolution. */
 #ifndef CLAST_CAMPAIGN_TERMINAL_UNCERTAINTY_H
 #define CLAST_CAMPAIGN_TERMINAL_UNCERTAINTY_H
 
