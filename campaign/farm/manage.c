@@ -10,9 +10,9 @@
 #include "schemas/clock.h"
 
 #define TICK_NS (100 * CLOCK_MS)
-#define SECOND_SIGNAL_NS                                                                                               \
-  (100 * CLOCK_MS)                    /* a signal this soon is a copy: `timeout` and shells signal child and group */
-#define LAST_ANSWER_NS (10 * CLOCK_S) /* longest wait for the last answer of the other ranks */
+/* A second signal this soon is a copy: `timeout` and shells signal both the child and its group. */
+#define SECOND_SIGNAL_NS (100 * CLOCK_MS)
+#define LAST_ANSWER_NS   (10 * CLOCK_S) /* longest wait for the last answer of the other ranks */
 
 void farm_manage_drain(struct manager *m, status reason, double grace_s) {
   if (m->final == STATUS_OK)
