@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "db/store/guard.h"
+#include "db/store/inspect.h"
 #include "db/store/internal.h"
 #include "db/store/paths.h"
 #include "db/store/schema.h"
@@ -292,103 +293,52 @@ static status merge_paths(struct store *store, const char *source, const struct 
   return result;
 }
 
-static status merge_attached(struct store *store, const char *source, int64_t *added, int64_t *differing,
-                             struct error *error) {
-  struct merged merged = {0};
-  /* The sums of a million runs are sorted in files, not in memory. */
-  status result = sql_execute(store->db, "PRAGMA temp_store = FILE; BEGIN IMMEDIATE", doing, error);
-  if (result != STATUS_OK)
-    return result;
-  result = find_runs(store->db, &merged, error);
-  if (result == STATUS_OK && merged.common)
+/* Copies what is missing, within a transaction that the caller ends. */
+static status copy_missing(struct store *store, const char *source, struct merged *merged, int64_t *differing,
+                           struct error *error) {
+  status result = find_runs(store->db, merged, error);
+  if (result == STATUS_OK && merged->common)
     result = count_differing(store->db, differing, error);
   if (result == STATUS_OK)
-    result = merge(store, &merged, error);
+    result = merge(store, merged, error);
+  return result == STATUS_OK ? merge_paths(store, source, merged, error) : result;
+}
+
+/* Copies while the inspection runs. If the source is damaged, that is the error, whatever the copying met. */
+static status merge_inspected(struct store *store, const char *source, struct inspection *inspection,
+                              struct merged *merged, int64_t *differing, struct error *error) {
+  struct error damage = {0};
+  /* The sums of a million runs are sorted in files, not in memory. */
+  status result = guard_attach(store->db, source, doing, error);
   if (result == STATUS_OK)
-    result = merge_paths(store, source, &merged, error);
+    result = sql_execute(store->db, "PRAGMA temp_store = FILE; BEGIN IMMEDIATE", doing, error);
+  if (result == STATUS_OK)
+    result = copy_missing(store, source, merged, differing, error);
+  const status inspected = inspect_end(inspection, &damage);
+  if (inspected != STATUS_OK && error)
+    *error = damage;
+  if (inspected != STATUS_OK)
+    result = inspected;
   if (result == STATUS_OK)
     result = sql_execute(store->db, "COMMIT", doing, error);
-  if (result == STATUS_OK) {
-    *added = merged.added;
-    return STATUS_OK;
-  }
-  sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
-  return result;
-}
-
-struct damage {
-  int64_t first, count;
-};
-
-static void take_damage(void *context, int64_t number) {
-  struct damage *damage = context;
-  if (damage->count++ == 0)
-    damage->first = number;
-}
-
-static status refuse_damaged(const char *source, const char *what, const struct damage *damage, struct error *error) {
-  return damage->count == 0
-             ? STATUS_OK
-             : status_fail(error, STATUS_CONTENT,
-                           "%s: %s %lld is damaged: a bit has changed since it was stored; %lld in all. Nothing was "
-                           "taken from it; `clast check` lists them. Restore a copy.",
-                           source, what, (long long)damage->first, (long long)damage->count);
-}
-
-/* Checks all pages and the types of all rows. Rows of table spectrum, the longest table, are checked one by one when
- * they are copied. */
-static status check_pages(struct store *other, const char *source, struct error *error) {
-  sqlite3_stmt *rows = NULL;
-  status result = sql_prepare(other->db,
-                              "SELECT c.quick_check FROM main.sqlite_schema s JOIN pragma_quick_check(s.name) c WHERE "
-                              "s.type = 'table' AND s.name <> 'spectrum' AND c.quick_check <> 'ok' LIMIT 1",
-                              &rows, doing, error);
-  if (sql_next(rows, &result, doing, error))
-    result = status_fail(error, STATUS_CONTENT,
-                         "%s is damaged: %.500s. Nothing was taken from it; `clast check` tells more. Restore a copy.",
-                         source, sql_text(rows, 0));
-  sqlite3_finalize(rows);
-  return result;
-}
-
-/* Checks pages, types and digests. */
-static status read_through(struct store *other, const char *source, struct error *error) {
-  struct damage runs = {0}, points = {0};
-  status result = check_pages(other, source, error);
-  if (result == STATUS_OK)
-    result = digest_rows_compare(other->db, DIGEST_RUNS, 0, take_damage, &runs, error);
-  if (result == STATUS_OK)
-    result = refuse_damaged(source, "run", &runs, error);
-  if (result == STATUS_OK)
-    result = digest_rows_compare(other->db, DIGEST_POINTS, 0, take_damage, &points, error);
-  return result == STATUS_OK ? refuse_damaged(source, "point", &points, error) : result;
-}
-
-/* Opens the source as a store, which refuses a missing, foreign, newer or older file and one with unexpected objects.
- * Then checks its contents. */
-static status inspect(const char *source, struct error *error) {
-  struct store *other = NULL;
-  status result = store_open_reader(source, &other, error);
   if (result != STATUS_OK)
-    return result;
-  result = read_through(other, source, error);
-  status closed = store_close(other, result == STATUS_OK ? error : NULL);
-  return result == STATUS_OK ? closed : result;
+    sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+  return result;
 }
 
 status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
+  struct inspection *inspection = NULL;
+  struct merged merged = {0};
   *added = 0;
   *differing = 0;
-  status result = inspect(source, error);
+  status result = store_flush(store, error);
+  if (result == STATUS_OK)
+    result = inspect_begin(source, &inspection, error);
   if (result != STATUS_OK)
     return result;
-  result = store_flush(store, error);
-  if (result != STATUS_OK)
-    return result;
-  result = guard_attach(store->db, source, doing, error);
-  if (result != STATUS_OK)
-    return result;
-  result = merge_attached(store, source, added, differing, error);
+  result = merge_inspected(store, source, inspection, &merged, differing, error);
+  if (result == STATUS_OK)
+    *added = merged.added;
   sqlite3_exec(store->db,
                "DROP TABLE IF EXISTS temp.merge_point; DROP TABLE IF EXISTS temp.merge_session; DROP TABLE IF EXISTS "
                "temp.merge_run; DETACH other; PRAGMA temp_store = MEMORY",
