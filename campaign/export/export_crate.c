@@ -116,7 +116,8 @@ static status take_campaign(void *context, size_t count, const struct query_valu
   if (!join(path, crate->options->folder, name))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
   FILE *out = fopen(path, "w");
-  if (!out || fputs(text_of(&values[2]), out) < 0 || fclose(out) != 0)
+  const bool written = out && fputs(text_of(&values[2]), out) >= 0;
+  if ((out && fclose(out) != 0) || !written)
     return status_fail(error, STATUS_IO, "cannot write %s: %s", path, strerror(errno));
   snprintf(description, sizeof description, "The campaign \"%.400s\" as it was read", text_of(&values[1]));
   file_entity(crate, name, "application/yaml", description);
