@@ -44,6 +44,39 @@ size_t text_utf8_length(const char *text, size_t left) {
   return overlong || surrogate || character > 0x10FFFF ? 0 : length;
 }
 
+/* Length of the plain character at `text`; 0: there is none. */
+static size_t plain_length(const char *text, size_t left) {
+  const size_t length = text_utf8_length(text, left);
+  const uint32_t character = length ? text_utf8_character(text, length) : 0;
+  return character < 0x20 || (character >= 0x7F && character < 0xA0) ? 0 : length;
+}
+
+bool text_is_plain(const char *text) {
+  size_t length;
+  for (size_t left = strlen(text); left > 0; text += length, left -= length)
+    if ((length = plain_length(text, left)) == 0)
+      return false;
+  return true;
+}
+
+void text_make_plain(char *text, const char *kept) {
+  char *to = text;
+  for (size_t left = strlen(text); left > 0;) {
+    size_t length = strchr(kept, *text) ? 1 : plain_length(text, left);
+    if (length > 0) {
+      memmove(to, text, length);
+      to += length;
+    } else {
+      *to++ = ' ';
+      length = text_utf8_length(text, left);
+      length += length == 0;
+    }
+    text += length;
+    left -= length;
+  }
+  *to = '\0';
+}
+
 void text_json_string(const char *text, FILE *out) {
   size_t left = strlen(text);
   fputc('"', out);
@@ -59,8 +92,8 @@ void text_json_string(const char *text, FILE *out) {
       fputs("\\n", out);
     } else if (byte == '\t') {
       fputs("\\t", out);
-    } else if (byte < 0x20 || byte == 0x7F) {
-      fprintf(out, "\\u%04x", (unsigned)byte);
+    } else if (plain_length(text, left) == 0) {
+      fprintf(out, "\\u%04x", (unsigned)text_utf8_character(text, length));
     } else {
       fwrite(text, 1, length, out);
     }

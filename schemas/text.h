@@ -18,6 +18,13 @@ uint32_t text_utf8_character(const char *text, size_t length);
 /* Writes `text` as a JSON string with its quotes. Bytes that are not UTF-8 become U+FFFD. */
 void text_json_string(const char *text, FILE *out);
 
+/* Is `text` well-formed UTF-8 without control characters (U+0000 to U+001F, U+007F to U+009F)? */
+bool text_is_plain(const char *text);
+
+/* Makes `text` harmless for a terminal: control characters other than those in `kept`, and bytes that are not UTF-8,
+ * become spaces. It does not grow. */
+void text_make_plain(char *text, const char *kept);
+
 /* Is `text` one of the words of a NULL-terminated list? An absent list has no words. */
 bool text_is_one_of(const char *text, const char *const *words);
 

@@ -71,7 +71,8 @@ status picture_cloud_read(const char *path, struct picture_cloud *cloud, struct 
     return code;
 
   const char *why = read_particles(file, cloud);
-  snapshot_read_text(file, "run", "engine", cloud->engine, sizeof cloud->engine);
+  if (!why && !snapshot_read_text(file, "run", "engine", cloud->engine, sizeof cloud->engine))
+    why = "its engine has no name that can be shown";
   snapshot_read_integer(file, "run", "seed", &cloud->seed);
   if (!snapshot_read_real(file, "run", "time", &cloud->time))
     cloud->time = NAN;
@@ -123,9 +124,8 @@ status picture_cloud_read_column(const char *path, const struct picture_cloud *c
   snprintf(at, sizeof at, COLUMN "%.40s", name);
   double *read = is_name(name) && has_particles(file) ? snapshot_read_rows(file, at, 0, SNAPSHOT_READ_REAL, &rows)
                                                       : NULL;
-  if (read && rows == cloud->n) {
+  if (read && rows == cloud->n && snapshot_read_text(file, at, "units", unit, 32)) {
     *values = read;
-    snapshot_read_text(file, at, "units", unit, 32);
   } else {
     free(read);
     code = refuse_column(file, path, name, error);
@@ -148,7 +148,7 @@ status picture_cloud_read_axis(const char *path, const char *name, double **valu
   if (kept && is_name(name))
     *values = snapshot_read_rows(file, at, 0, SNAPSHOT_READ_REAL, rows);
   if (*values)
-    snapshot_read_text(file, at, "units", unit, 32);
+    code = snapshot_read_text(file, at, "units", unit, 32) ? STATUS_OK : snapshot_read_refuse(path, error);
   else if (!kept)
     code = status_fail(error, STATUS_CONTENT, "%s has no profile: only runs with an impact or a piston keep one", path);
   else

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "analysis/pictures/snapshot_hdf5.h"
+#include "schemas/text.h"
 
 enum { NAME_SIZE = 128 };
 
@@ -200,7 +201,10 @@ bool snapshot_read_text(struct snapshot_read *f, const char *at, const char *nam
   size_t kept = length < size ? length : size - 1;
   memcpy(text, a.text, kept);
   text[kept] = 0;
-  return true;
+  if (text_is_plain(text))
+    return true;
+  text[0] = 0;
+  return false;
 }
 
 bool snapshot_read_real(struct snapshot_read *f, const char *at, const char *name, double *value) {

@@ -49,6 +49,18 @@ expect 64 "$clast" picture end.hdf x.png --view outside --at "1 cm"
 head -c 40000 end.hdf >cut.hdf
 expect 65 "$clast" picture cut.hdf x.png
 one_error
+# a file from someone else: the engine's name is no UTF-8, or it controls a terminal
+for byte in ff 1b; do
+  python - "$byte" <<'PY'
+import sys
+byte = bytes.fromhex(sys.argv[1])
+whole = open("end.hdf", "rb").read()
+at = whole.index(b"sph", whole.index(b"engine\0"))
+open("alien.hdf", "wb").write(whole[:at] + byte + whole[at + 1:])
+PY
+  expect 65 "$clast" picture alien.hdf x.png
+  says "its engine has no name that can be shown"
+done
 [ ! -e x.png ] || fail "a picture was left behind"
 expect 0 "$clast" simulate disc-explosion --set "body.diameter=8 cm" --set "stop.end_time=0.2 ms" --quiet --fields disc.hdf
 expect 64 "$clast" picture disc.hdf x.png --what damage
@@ -98,4 +110,4 @@ got=0 # the disk fills up at the end (a limit on file size gives such an error):
 same $got 74 "fields file too large"
 cmp -s out whole.json || fail "the results are lost with the fields file"
 [ -z "$(find . -name 'full.hdf*')" ] || fail "half a fields file is left"
-done_after 46
+done_after 48
