@@ -12,6 +12,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/table.h"
 #include "engine/cpu_class.h"
+#include "schemas/text.h"
 
 static bool colour(void) {
   const char *no_colour = getenv("NO_COLOR"), *terminal = getenv("TERM");
@@ -19,7 +20,8 @@ static bool colour(void) {
 }
 
 /* Prints an error. A report on a document has its own "file:line:col: error:" lines and is printed as it is. */
-static void print_error(const struct error *error) {
+static void print_error(struct error *error) {
+  text_make_plain(error->message, "\n\t"); /* it may quote a file from an untrusted source */
   size_t line = strcspn(error->message, "\n");
   const char *located = strstr(error->message, ": error: ");
   bool report = located && (size_t)(located - error->message) < line;

@@ -86,4 +86,5 @@ void provenance_other_build(const char *version, const char *commit, const char 
   if (!same && *version)
     snprintf(text, PROVENANCE_BUILD_SIZE, "clast %s, commit %s, %s", version, *commit ? commit : "unknown",
              *compiler ? compiler : "unknown compiler");
+  text_make_plain(text, ""); /* a store from an untrusted source has any text here */
 }

@@ -57,6 +57,14 @@ static char *copy(struct table *table, const char *text) {
   return made;
 }
 
+/* A name or a unit can come from a store, too. */
+static char *copy_plain(struct table *table, const char *text) {
+  char *made = copy(table, text);
+  if (made && table->format == TABLE_TEXT)
+    text_make_plain(made, "");
+  return made;
+}
+
 void table_column(struct table *table, const char *name, const char *unit) {
   if (table->broken)
     return;
@@ -68,9 +76,9 @@ void table_column(struct table *table, const char *name, const char *unit) {
     return;
   }
   table->columns = columns;
-  columns[table->column_count] = (struct column){.name = copy(table, name)};
+  columns[table->column_count] = (struct column){.name = copy_plain(table, name)};
   if (unit && strcmp(unit, "1") != 0 && *unit)
-    columns[table->column_count].unit = copy(table, unit);
+    columns[table->column_count].unit = copy_plain(table, unit);
   table->column_count++;
 }
 
@@ -251,16 +259,14 @@ void table_text(struct table *table, const char *text) {
     table_missing(table);
     return;
   }
-  if (table->format != TABLE_TEXT || !strpbrk(text, "\n\r\t\033")) {
+  if (table->format != TABLE_TEXT || text_is_plain(text)) {
     add_cell(table, (struct cell){CELL_TEXT, text, text});
     return;
   }
   char *line = copy(table, text); /* a row stays one line, and a text from a file cannot control the terminal */
   if (!line)
     return;
-  for (char *c = line; *c; c++)
-    if ((unsigned char)*c < 0x20)
-      *c = ' ';
+  text_make_plain(line, "");
   add_cell(table, (struct cell){CELL_TEXT, line, line});
   free(line);
 }

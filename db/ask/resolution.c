@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
+#include "schemas/text.h"
 
 /* With one scene, its name. With several, "SCENE" stays. */
 static status take_scene(void *context, size_t count, const struct query_value *values, struct error *error) {
@@ -13,6 +14,7 @@ static status take_scene(void *context, size_t count, const struct query_value *
   struct ask_resolution *out = context;
   if (values[0].integer == 1 && values[1].kind == QUERY_TEXT)
     snprintf(out->scene, sizeof out->scene, "%s", values[1].text);
+  text_make_plain(out->scene, "");
   return STATUS_OK;
 }
 
@@ -46,6 +48,7 @@ static status take_knobs(void *context, size_t count, const struct query_value *
   struct ask_resolution *out = context;
   if (values[0].kind == QUERY_TEXT)
     snprintf(out->knobs, sizeof out->knobs, "%s", values[0].text);
+  text_make_plain(out->knobs, "");
   return STATUS_OK;
 }
 

@@ -64,6 +64,32 @@ static void test_text(void **state) {
   }
 }
 
+/* A table for people cannot control the terminal: neither its cells nor its names and units. */
+static void test_text_is_harmless(void **state) {
+  (void)state;
+  static const char *const hostile[] = {"a\x1b[2J\x07", "b\x08\x7f", "\xc2\x9b\x9b\xc3\xa9", "\r\n\t"};
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  struct table *table = table_new(TABLE_TEXT, out);
+  for (int i = 0; i < 4; i++)
+    table_column(table, hostile[i], hostile[i]);
+  for (int i = 0; i < 4; i++)
+    table_text(table, hostile[i]);
+  assert_int_equal(table_end(table, NULL), STATUS_OK);
+  fclose(out);
+  size_t lines = 0, letters = 0;
+  for (const char *c = text; *c; c++) {
+    lines += *c == '\n';
+    letters += (unsigned char)*c == 0xc3;
+    assert_true(*c == '\n' || ((unsigned char)*c >= ' ' && *c != 127));
+    assert_false((unsigned char)*c == 0x9b || (unsigned char)*c == 0xc2);
+  }
+  assert_int_equal(lines, 2);
+  assert_int_equal(letters, 3);
+  free(text);
+}
+
 static void test_numbers_round_trip(void **state) {
   (void)state;
   static const double numbers[] = {0.1, 1.0 / 3, 1e300, 5e-324, -0.0, 123456789.123456789, 2.0000000000000004};
@@ -94,6 +120,7 @@ static void test_strings(void **state) {
       {"\xf4\x90\x80\x80", "\"\\ufffd\\ufffd\\ufffd\\ufffd\""}, /* beyond U+10FFFF */
       {"a\xe2\x82", "\"a\\ufffd\\ufffd\""},                     /* truncated */
       {"\001\n\t\\", "\"\\u0001\\n\\t\\\\\""},
+      {"\x7f\xc2\x9b\xc2\xa0", "\"\\u007f\\u009b\xc2\xa0\""}, /* a terminal obeys U+009B */
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char *text = NULL;
@@ -123,9 +150,13 @@ static void test_full_disk(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_csv),     cmocka_unit_test(test_json),
-      cmocka_unit_test(test_text),    cmocka_unit_test(test_numbers_round_trip),
-      cmocka_unit_test(test_strings), cmocka_unit_test(test_full_disk),
+      cmocka_unit_test(test_csv),
+      cmocka_unit_test(test_json),
+      cmocka_unit_test(test_text),
+      cmocka_unit_test(test_text_is_harmless),
+      cmocka_unit_test(test_numbers_round_trip),
+      cmocka_unit_test(test_strings),
+      cmocka_unit_test(test_full_disk),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
