@@ -227,6 +227,7 @@ static void forget(struct dump *dump) {
 /* The query about the engine's own results. */
 static status find_results(struct dump *dump, const char *engine, const struct rows **rows, struct error *error) {
   char table[SCHEMA_NAME_SIZE];
+  bool has = false;
   for (size_t i = 0; i < dump->result_count; i++)
     if (strcmp(dump->results[i].engine, engine) == 0) {
       *rows = &dump->results[i].rows;
@@ -234,16 +235,22 @@ static status find_results(struct dump *dump, const char *engine, const struct r
     }
   if (dump->result_count == STORE_KINDS)
     return status_fail(error, STATUS_CONTENT, "%s: more than %d engines in one store", doing, STORE_KINDS);
+  snprintf(table, sizeof table, "result_%s", engine);
+  status code = schema_has_column(dump->db, table, "run_id", &has, error);
+  if (code == STATUS_OK && !has)
+    code = status_fail(error, STATUS_CONTENT, "%s: the store has no table %s, but a point of that engine", doing,
+                       table);
+  if (code)
+    return code;
   struct rows *own = &dump->results[dump->result_count++].rows;
   snprintf(dump->results[dump->result_count - 1].engine, SCHEMA_NAME_SIZE, "%s", engine);
-  snprintf(table, sizeof table, "result_%s", engine);
   *rows = own;
   return prepare_columns(dump->db, table, "", "WHERE run_id = ?1", own, error);
 }
 
 static status print_run(struct dump *dump, int64_t run_id, const char *engine, struct error *error) {
   const struct rows *results = NULL;
-  status code = find_results(dump, engine, &results, error);
+  status code = find_results(dump, engine ? engine : "", &results, error);
   const struct {
     const struct rows *rows;
     const char *head;

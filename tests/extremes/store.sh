@@ -47,6 +47,32 @@ expect 65 "$clast" check flipped.db
 expect 65 "$clast" replay flipped.db 1
 prints "fragment masses"
 
+# texts from someone else do not control the terminal
+cp tiny.db texts.db
+python - <<'PY'
+import json, sqlite3
+d = sqlite3.connect("texts.db")
+text = "\x1b]0;x\x07\x1b[2J\x08\x7f\u009b2J"
+for column in ("campaign.name", "session.host", "session.outcome", "point.scene_name", "run.message", "column_doc.unit"):
+    d.execute("update {} set {} = ?".format(*column.split(".")), (text,))
+d.execute("update session set facts = ?", (json.dumps({"version": text, "commit": text, "compiler": text}),))
+d.commit()
+PY
+for command in "status texts.db" "estimates texts.db" "stats texts.db" "extremes texts.db" "compare texts.db texts.db" "replay texts.db 1" \
+  "check texts.db" "merge texts.db missing.db" "run tiny.yaml --store texts.db" "plot texts.db x.png -x threshold.strain"; do
+  "$clast" $command >out 2>err || true
+  [ -s out ] || [ -s err ] || fail "$command prints nothing"
+  cat out err >both
+  ! LC_ALL=C grep -qP '[\x00-\x08\x0b-\x1f\x7f]|\xc2[\x80-\x9f]' both || fail "$command prints control characters"
+done
+ok "no control characters"
+
+# points of an engine that the store has no table of
+cp tiny.db engine.db
+python -c "import sqlite3; d = sqlite3.connect('engine.db'); d.execute('update point set engine = \'none\' where point_id = 2'); d.commit()"
+expect 65 "$clast" export engine.db --bits engine.bits
+says "no table result_none"
+
 # read-only: needs a user other than root
 chmod 755 .
 cp tiny.db locked.db; chmod 444 locked.db; mkdir fixed; cp tiny.db fixed/; chmod 555 fixed
@@ -92,4 +118,4 @@ rm -f slow.db*
 expect 0 "$clast" run slow.yaml --quiet
 bits slow.db >slow.bits
 if [ -s x.db ]; then expect 0 "$clast" run slow.yaml --store x.db --quiet; same_bits x.db slow.bits "after room was made"; else ok "nothing"; ok "committed"; ok "yet"; fi
-done_after 38
+done_after 40
