@@ -88,7 +88,7 @@ def open(path):
 class Store:
     def __init__(self, path):
         self.path = os.fspath(path)
-        if not os.path.exists(self.path):
+        if not os.path.isfile(self.path):  # SQLite would wait for a pipe
             raise Error(f"{self.path}: there is no such store", 66)
         quoted = self.path.replace("%", "%25").replace("?", "%3f").replace("#", "%23")
         self.connection = sqlite3.connect(f"file:{quoted}?mode=ro", uri=True)
@@ -149,6 +149,8 @@ class Store:
         row = self.connection.execute("SELECT masses FROM fragment_mass WHERE run_id = ?", (int(run),)).fetchone()
         if not row:
             raise Error(f"{self.path}: there is no run {run} with fragments", 66)
+        if not isinstance(row[0], bytes) or len(row[0]) % 8:
+            raise Error(f"{self.path}: the masses of run {run} are damaged", 65)
         if numpy:
             return numpy.frombuffer(row[0], dtype="<f8")
         masses = array.array("d")
@@ -168,7 +170,7 @@ class Store:
         if not row:
             raise Error(f"{self.path}: there is no run {run}", 66)
         kept = os.path.join(os.path.dirname(self.path), row[0]) if row[0] else None
-        if kept and os.path.exists(kept) and not path:
+        if kept and os.path.isfile(kept) and not path:
             return _read_hdf5(kept)
         with tempfile.TemporaryDirectory() as folder:
             target = os.fspath(path) if path else os.path.join(folder, "run.h5")
@@ -231,17 +233,45 @@ class Store:
         return {"databases": {name: {"description": "A store of clast. Units are SI.", "tables": tables}}}
 
 
-# ---- HDF5 without h5py: the C library, which clast itself needs
+# ---- fields files, with the C library of HDF5, which clast itself needs
+
+_MOST_OBJECTS, _MOST_DEEP, _MOST_COMPRESSED = 10000, 8, 1100  # in a file, in each other, and deflate's limit
+
 
 def _read_hdf5(path):
-    try:
-        import h5py
-    except ImportError:
-        return _read_hdf5_by_c(path)
-    found = {}
-    with h5py.File(path, "r") as file:
-        file.visititems(lambda name, item: found.update({name: item[()]}) if hasattr(item, "dtype") else None)
+    """Every dataset of numbers, as doubles. The file may come from an untrusted source, and HDF5 can crash on a damaged
+    one: another process reads it. It refuses links and storage that lead to other files, and loads no plug-in filters.
+    """
+    if not os.path.isfile(path):
+        raise Error(f"{path}: there is no such file", 66)
+    done = subprocess.run([sys.executable, os.path.abspath(__file__), path], capture_output=True,
+                          env={**os.environ, "HDF5_PLUGIN_PRELOAD": "::"})  # "::" forbids plug-ins
+    if done.returncode in (65, 66, 74):
+        raise Error(done.stderr.decode(errors="replace").strip(), done.returncode)
+    if done.returncode:
+        raise Error(f"{path}: HDF5 fails on it; the file is damaged", 65)
+    head, _, body = done.stdout.partition(b"\n")
+    found, at = {}, 0
+    for name, shape, count in json.loads(head):
+        values = array.array("d", body[at:at + 8 * count])
+        found[name] = numpy.array(values).reshape(shape) if numpy else values
+        at += 8 * count
     return found
+
+
+def _send_hdf5(path):
+    """The other process: a line that lists the datasets, then their numbers."""
+    found = []  # name, shape, numbers
+    try:
+        _walk(path, found)
+    except Error as error:
+        sys.stderr.write(str(error))
+        return error.code
+    out = sys.stdout.buffer
+    out.write(json.dumps([(name, shape, len(values)) for name, shape, values in found]).encode() + b"\n")
+    for _, _, values in found:
+        out.write(values)
+    return 0
 
 
 def _hdf5_library():
@@ -249,62 +279,81 @@ def _hdf5_library():
         found = ctypes.util.find_library(name)
         if found:
             return ctypes.CDLL(found)
-    raise Error("to read fields, install h5py, or the HDF5 library", 66)
+    raise Error("to read fields, install the HDF5 library", 66)
 
 
-def _read_hdf5_by_c(path):
-    """Every dataset of numbers, as doubles."""
+def _hdf5_calls():
+    """The library with the types of the calls below."""
     h5 = _hdf5_library()
-    identifier, count = ctypes.c_int64, ctypes.c_uint64  # hid_t since HDF5 1.10; hsize_t
-    for name in ("H5Fopen", "H5Oopen", "H5Dget_space", "H5Dget_type"):
-        getattr(h5, name).restype = identifier
-    for name, kinds in {"H5Fopen": (ctypes.c_char_p, ctypes.c_uint, identifier), "H5Dread": (identifier,) * 5 + (ctypes.c_void_p,),
-                        "H5Oopen": (identifier, ctypes.c_char_p, identifier), "H5Dget_space": (identifier,),
-                        "H5Dget_type": (identifier,), "H5Tget_class": (identifier,), "H5Iget_type": (identifier,),
-                        "H5Oclose": (identifier,), "H5Sclose": (identifier,), "H5Tclose": (identifier,), "H5Fclose": (identifier,),
-                        "H5Sget_simple_extent_ndims": (identifier,),
-                        "H5Sget_simple_extent_dims": (identifier, ctypes.POINTER(count), ctypes.POINTER(count)),
-                        "H5Lget_name_by_idx": (identifier, ctypes.c_char_p, ctypes.c_int, ctypes.c_int, count,
-                                               ctypes.c_char_p, ctypes.c_size_t, identifier)}.items():
-        getattr(h5, name).argtypes = kinds
-    h5.H5Lget_name_by_idx.restype = ctypes.c_ssize_t
+    identifier, count, text = ctypes.c_int64, ctypes.c_uint64, ctypes.c_char_p  # hid_t since HDF5 1.10; hsize_t
+    if not hasattr(h5, "H5Lget_info"):
+        h5.H5Lget_info = h5.H5Lget_info1  # since HDF5 1.12
+    for name, result, kinds in (
+            ("H5Fopen", identifier, (text, ctypes.c_uint, identifier)), ("H5Oopen", identifier, (identifier, text, identifier)),
+            ("H5Dget_space", identifier, (identifier,)), ("H5Dget_type", identifier, (identifier,)),
+            ("H5Dget_create_plist", identifier, (identifier,)), ("H5Dread", ctypes.c_int, (identifier,) * 5 + (ctypes.c_void_p,)),
+            ("H5Pget_external_count", ctypes.c_int, (identifier,)), ("H5Pget_layout", ctypes.c_int, (identifier,)),
+            ("H5Tget_class", ctypes.c_int, (identifier,)), ("H5Tget_size", ctypes.c_size_t, (identifier,)),
+            ("H5Iget_type", ctypes.c_int, (identifier,)), ("H5Sget_simple_extent_ndims", ctypes.c_int, (identifier,)),
+            ("H5Sget_simple_extent_dims", ctypes.c_int, (identifier, ctypes.POINTER(count), ctypes.POINTER(count))),
+            ("H5Lget_info", ctypes.c_int, (identifier, text, ctypes.c_void_p, identifier)),
+            ("H5Lget_name_by_idx", ctypes.c_ssize_t, (identifier, text, ctypes.c_int, ctypes.c_int, count, text, ctypes.c_size_t,
+                                                      identifier)),
+            ("H5Eset_auto2", ctypes.c_int, (identifier, ctypes.c_void_p, ctypes.c_void_p))):
+        getattr(h5, name).restype, getattr(h5, name).argtypes = result, kinds
     h5.H5open()
-    h5.H5Eset_auto2.argtypes = (identifier, ctypes.c_void_p, ctypes.c_void_p)
     h5.H5Eset_auto2(0, None, None)  # the end of a group is found by asking for one link too many
-    double = identifier.in_dll(h5, "H5T_NATIVE_DOUBLE_g").value
-    group, dataset, integers, reals = 2, 5, 0, 1  # H5I_GROUP, H5I_DATASET, H5T_INTEGER, H5T_FLOAT
-    found = {}
+    return h5
+
+
+def _walk(path, found):
+    """Reads the data sets. The process ends afterwards, so nothing is closed."""
+    h5, most, objects = _hdf5_calls(), os.path.getsize(path) * _MOST_COMPRESSED, 0
+    double = ctypes.c_int64.in_dll(h5, "H5T_NATIVE_DOUBLE_g").value
+    group, dataset, numbers, virtual = 2, 5, (0, 1), 3  # H5I_GROUP, H5I_DATASET; H5T_INTEGER, H5T_FLOAT; H5D_VIRTUAL
+
+    def refuse_if(truth, name, what):
+        if truth:
+            raise Error(f"{path}: {name} {what}; clast writes no such files", 65)
 
     def read(place, name):
-        space, kind = h5.H5Dget_space(place), h5.H5Dget_type(place)
-        rank = h5.H5Sget_simple_extent_ndims(space)
-        sides = (count * max(rank, 1))(*[1] * max(rank, 1))
+        kind, layout = h5.H5Dget_type(place), h5.H5Dget_create_plist(place)
+        if h5.H5Tget_class(kind) not in numbers:
+            return
+        refuse_if(h5.H5Tget_size(kind) > 8, name, "has numbers of more than 8 bytes")
+        # before the shape, which can lie in other files, too
+        outside = h5.H5Pget_external_count(layout) != 0 or h5.H5Pget_layout(layout) == virtual
+        refuse_if(outside, name, "keeps its numbers in another file")
+        space = h5.H5Dget_space(place)
+        rank = max(h5.H5Sget_simple_extent_ndims(space), 0)
+        sides = (ctypes.c_uint64 * (rank + 1))(*[1] * (rank + 1))
         h5.H5Sget_simple_extent_dims(space, sides, None)
-        numbers = array.array("d", bytes(8 * math.prod(sides)))
-        if h5.H5Tget_class(kind) in (integers, reals):
-            if len(numbers) and h5.H5Dread(place, double, 0, 0, 0, numbers.buffer_info()[0]) < 0:
-                raise Error(f"{path}: {name} cannot be read", 74)
-            found[name] = numpy.array(numbers).reshape(sides[:rank]) if numpy else numbers
-        h5.H5Tclose(kind)
-        h5.H5Sclose(space)
+        count = math.prod(sides)
+        refuse_if(count > most, name, "claims more numbers than the file can hold")
+        values = array.array("d", bytes(8 * count))
+        refuse_if(count and h5.H5Dread(place, double, 0, 0, 0, values.buffer_info()[0]) < 0, name, "cannot be read")
+        found.append((name, sides[:rank], values))
 
-    def walk(place, prefix):
-        text = ctypes.create_string_buffer(1024)
+    def look(place, prefix):
+        nonlocal objects
+        text, info = ctypes.create_string_buffer(1024), (ctypes.c_int * 64)()  # H5L_info_t begins with the link's type
         index = 0
         while h5.H5Lget_name_by_idx(place, b".", 0, 0, index, text, len(text), 0) >= 0:
+            name = prefix + text.value.decode(errors="replace")
+            index, objects = index + 1, objects + 1
+            refuse_if(objects > _MOST_OBJECTS or name.count("/") > _MOST_DEEP, name, "is too much or too deep")
+            refuse_if(h5.H5Lget_info(place, text.value, info, 0) < 0 or info[0] != 0, name, "is a link to elsewhere")
             inner = h5.H5Oopen(place, text.value, 0)
-            name = prefix + text.value.decode()
             if inner >= 0 and h5.H5Iget_type(inner) == group:
-                walk(inner, name + "/")
+                look(inner, name + "/")
             elif inner >= 0 and h5.H5Iget_type(inner) == dataset:
                 read(inner, name)
-            if inner >= 0:
-                h5.H5Oclose(inner)
-            index += 1
 
     file = h5.H5Fopen(os.fsencode(path), 0, 0)
     if file < 0:
-        raise Error(f"{path}: no HDF5 file", 65)
-    walk(file, "")
-    h5.H5Fclose(file)
-    return found
+        raise Error(f"{path}: no HDF5 file, or it is damaged", 65)
+    look(file, "")
+
+
+if __name__ == "__main__":
+    sys.exit(_send_hdf5(sys.argv[1]))
