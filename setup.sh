@@ -17,7 +17,7 @@ gnuplot-nox
 python3 python3-jsonschema python3-ruamel.yaml sqlite3"
 # The page of `clast report` is bundled by npm; its tests open it in a browser. The demo needs neither.
 page_packages="nodejs npm"
-test_packages="chromium"
+test_packages="chromium file" # cpack needs file
 
 say() { printf '\n== %s\n' "$*" >&2; }
 
@@ -67,7 +67,8 @@ build() { # build PRESET [TARGET]
   # ninja prints [STEP/STEPS] before each step: a line for every tenth of them
   if ! NINJA_STATUS='[%f/%t] ' watched "build/$1/build.log" '
     split($1, step, /[][\/]/) == 4 && int(10 * step[2] / step[3]) > tenths {
-      tenths = int(10 * step[2] / step[3]); print "  " step[2] " of " step[3] " steps"; fflush() }' \
+      tenths = int(10 * step[2] / step[3]); print "  " step[2] " of " step[3] " steps"; fflush() }
+    /^npm (ci failed|ERR!)/' \
     cmake --build --preset "$1" -j "$(nproc)" --target "${2:-all}"; then
     grep -E -A12 "^FAILED|error" "build/$1/build.log" >&2
     say "the build failed; all it printed is in build/$1/build.log" >&2
@@ -86,7 +87,7 @@ case "${1:-}" in
     ;;
   deb) # a build folder of its own: build/ may have come along from a machine with other paths
     [ -n "${2:-}" ] || usage 64 >&2
-    install_missing $packages $page_packages file git # cpack needs file; git: the program tells its commit, stores keep it
+    install_missing $packages $page_packages file git # git: the program tells its commit, stores keep it
     build=$(mktemp -d)
     say "building the package in $build"
     cmake --preset release -B "$build"

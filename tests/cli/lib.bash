@@ -12,13 +12,14 @@ cd "$work"
 export NO_COLOR=1 TERM=dumb
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 unset CDPATH
+mkdir bin
+PATH=$work/bin:$PATH
+ln -s /usr/bin/python3 bin/python # Debian's, which has the packages of the tests; another python may come first in PATH
 sanitized=$("$clast" version | grep -c fsanitize || true)
 if [ "$sanitized" -ne 0 ]; then # Open MPI itself leaks; without it, leaks are checked
   export LSAN_OPTIONS="suppressions=$source/tests/leaks.supp:print_suppressions=0"
-  mkdir bin
   printf '#!/bin/sh\nASAN_OPTIONS=detect_leaks=0 exec %s "$@"\n' "$(command -v mpirun)" >bin/mpirun
   chmod +x bin/mpirun
-  PATH=$work/bin:$PATH
 fi
 checks=0
 
@@ -45,8 +46,6 @@ silent() { [ ! -s "$1" ] || fail "$1 should be empty"; }
 one_error() { [ "$(grep -c 'error: ' err)" -eq 1 ] || fail "expected one error line"; }
 same() { [ "$1" = "$2" ] || fail "${3:-values}: \"$1\" is not \"$2\""; ok "${3:-same}: $1"; }
 done_after() { [ "$checks" -eq "$1" ] || fail "made $checks checks, expected $1"; echo "$checks checks"; }
-
-python() { /usr/bin/python3 "$@"; }
 
 # A campaign of 4 points and 3 seeds that takes a fraction of a second. tiny NAME [LINE...]: writes NAME.yaml.
 tiny() {

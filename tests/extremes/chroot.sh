@@ -18,13 +18,17 @@ ok "a minimal Debian $(cat "$root/etc/debian_version")"
 git clone -q "$source" "$root/root/clast" 2>err || fail "no clone of $source"
 chmod 700 "$root/root"
 cp /etc/resolv.conf "$root/etc/"
+if [ -n "${NODE_EXTRA_CA_CERTS:-}" ]; then # this host trusts more certificates, perhaps of a proxy: npm must do so, too
+  cp "$NODE_EXTRA_CA_CERTS" "$root/etc/certificates-of-host.crt"
+  certificates=NODE_EXTRA_CA_CERTS=/etc/certificates-of-host.crt
+fi
 same "$(chroot "$root" sh -c 'command -v gcc cmake git python3 || true')" "" "tools that are there already"
 
 # A failing test of ./setup.sh test must be readable: all output goes to the terminal, too.
 got=0
 unshare --mount --pid --fork sh -c "
   mount -t proc proc '$root/proc' && mount --rbind /dev '$root/dev' &&
-  exec chroot '$root' env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin \
+  exec chroot '$root' env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin ${certificates:-} \
     sh -c 'cd && cd clast && exec ./setup.sh $setup'" </dev/null 2>&1 | tee log || got=$?
 [ "$got" -eq 0 ] || fail "exit $got: ./setup.sh $setup"
 ok "./setup.sh $setup in a 0700 home"
