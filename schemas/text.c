@@ -48,7 +48,9 @@ size_t text_utf8_length(const char *text, size_t left) {
 static size_t plain_length(const char *text, size_t left) {
   const size_t length = text_utf8_length(text, left);
   const uint32_t character = length ? text_utf8_character(text, length) : 0;
-  return character < 0x20 || (character >= 0x7F && character < 0xA0) ? 0 : length;
+  const bool control = character < 0x20 || (character >= 0x7F && character < 0xA0);
+  const bool reverses = (character >= 0x202A && character <= 0x202E) || (character >= 0x2066 && character <= 0x2069);
+  return control || reverses ? 0 : length;
 }
 
 bool text_is_plain(const char *text) {

@@ -18,7 +18,8 @@ uint32_t text_utf8_character(const char *text, size_t length);
 /* Writes `text` as a JSON string with its quotes. Bytes that are not UTF-8 become U+FFFD. */
 void text_json_string(const char *text, FILE *out);
 
-/* Is `text` well-formed UTF-8 without control characters (U+0000 to U+001F, U+007F to U+009F)? */
+/* Is `text` well-formed UTF-8 without control characters: U+0000 to U+001F, U+007F to U+009F, and those that change the
+ * direction of the text after them (U+202A to U+202E, U+2066 to U+2069)? */
 bool text_is_plain(const char *text);
 
 /* Makes `text` harmless for a terminal: control characters other than those in `kept`, and bytes that are not UTF-8,

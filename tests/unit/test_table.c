@@ -120,7 +120,8 @@ static void test_strings(void **state) {
       {"\xf4\x90\x80\x80", "\"\\ufffd\\ufffd\\ufffd\\ufffd\""}, /* beyond U+10FFFF */
       {"a\xe2\x82", "\"a\\ufffd\\ufffd\""},                     /* truncated */
       {"\001\n\t\\", "\"\\u0001\\n\\t\\\\\""},
-      {"\x7f\xc2\x9b\xc2\xa0", "\"\\u007f\\u009b\xc2\xa0\""}, /* a terminal obeys U+009B */
+      {"\x7f\xc2\x9b\xc2\xa0", "\"\\u007f\\u009b\xc2\xa0\""},                     /* a terminal obeys U+009B */
+      {"\xe2\x80\xae\xe2\x81\xa6\xe2\x80\xaf", "\"\\u202e\\u2066\xe2\x80\xaf\""}, /* U+202E reverses what follows */
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char *text = NULL;
