@@ -18,10 +18,53 @@ const char *place_refused(const char *path) {
   return NULL;
 }
 
+/* Does the journal name a super-journal? It ends with the sum and length of that name and these 8 bytes (SQLite's file
+ * format, 3.0). clast writes none. SQLite deletes the file of that name when it rolls the journal back. */
+static bool names_another_file(const char *journal) {
+  static const unsigned char magic[8] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
+  unsigned char tail[sizeof magic] = {0};
+  const int file = open(journal, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0)
+    return false;
+  const bool whole = lseek(file, -(off_t)sizeof tail, SEEK_END) > 0 &&
+                     read(file, tail, sizeof tail) == (ssize_t)sizeof tail;
+  close(file);
+  return whole && memcmp(tail, magic, sizeof magic) == 0;
+}
+
+static status judge_beside(const char *name, struct error *error) {
+  struct stat file;
+  if (lstat(name, &file) != 0)
+    return STATUS_OK;
+  if (!S_ISREG(file.st_mode))
+    return status_fail(error, STATUS_IO, "%s is a folder, link, pipe, socket or device: remove it.", name);
+  if (!names_another_file(name))
+    return STATUS_OK;
+  return status_fail(error, STATUS_CONTENT,
+                     "%s is no journal of clast: it names a file, which SQLite would delete. Remove it, and do not "
+                     "trust the store beside it.",
+                     name);
+}
+
+/* Checks the files that SQLite opens beside the store. */
+static status judge_companions(const char *path, struct error *error) {
+  static const char *const endings[] = {"-journal", "-wal", "-shm"};
+  char *real = realpath(path, NULL), *name = NULL; /* SQLite follows links to the store */
+  status result = STATUS_OK;
+  for (size_t i = 0; result == STATUS_OK && i < sizeof endings / sizeof *endings; i++) {
+    if (asprintf(&name, "%s%s", real ? real : path, endings[i]) < 0)
+      break;
+    result = judge_beside(name, error);
+    free(name);
+  }
+  free(real);
+  return result;
+}
+
 status place_is_file(const char *path, struct error *error) {
   struct stat file;
   if (stat(path, &file) != 0 || S_ISREG(file.st_mode))
-    return STATUS_OK;
+    return judge_companions(path, error);
   if (S_ISDIR(file.st_mode))
     return status_fail(error, STATUS_IO, "%s is a folder: name the store's file.", path);
   return status_fail(error, STATUS_IO, "%s is a pipe, socket or device: name the store's file.", path);

@@ -13,7 +13,8 @@ struct sqlite3;
  * "" for no file, or for a database in memory, so results would be lost at the end. */
 const char *place_refused(const char *path);
 /* STATUS_IO when the path leads to something other than a file: a folder, a pipe, a device (opening a pipe would
- * block). STATUS_OK for a file or a free path. */
+ * block), or when something else than a file lies at FILE-journal, FILE-wal or FILE-shm. STATUS_CONTENT when
+ * FILE-journal would make SQLite delete another file. STATUS_OK for a file or a free path. */
 status place_is_file(const char *path, struct error *error);
 /* STATUS_IO when the open file is no longer at its path: moved, removed or replaced. Data written then would be
  * lost. */

@@ -195,6 +195,17 @@ static void pipes_and_devices_are_no_stores(void **state) {
     assert_non_null(strstr(error.message, "is a pipe, socket or device"));
   }
   unlink(pipe);
+  /* a pipe beside a store */
+  char path[64], beside[80];
+  snprintf(beside, sizeof beside, "%s-journal", populated(path, "hostile-beside"));
+  assert_int_equal(mkfifo(beside, 0600), 0);
+  alarm(60); /* without the check, SQLite waits for a writer */
+  assert_int_equal(store_open_reader(path, &store, &error), STATUS_IO);
+  assert_non_null(strstr(error.message, "-journal is a folder, link, pipe"));
+  assert_int_equal(store_open_writer(path, &store, NULL, 0, &error), STATUS_IO);
+  assert_non_null(strstr(error.message, "-journal is a folder, link, pipe"));
+  alarm(0);
+  unlink(beside);
 }
 
 /* The journal of another store is not read into this one; the message says why it cannot be read. */
@@ -222,6 +233,38 @@ static void journal_of_another_store_is_named(void **state) {
   OK(store_open_reader(path, &store, &error));
   OK(store_check(store, NULL, NULL, &error));
   OK(store_close(store, &error));
+}
+
+/* A journal with the name of a super-journal: SQLite deletes the file of that name after the rollback. */
+static void journal_deletes_nothing(void **state) {
+  (void)state;
+  static const unsigned char magic[8] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
+  char path[64], journal[80], victim[64];
+  populated(path, "hostile-super");
+  fixture_path(victim, "hostile-victim");
+  FILE *file = fopen(victim, "w");
+  assert_non_null(file);
+  assert_true(fputs("to be kept", file) >= 0 && fclose(file) == 0);
+  snprintf(journal, sizeof journal, "%s-journal", path);
+  file = fopen(journal, "w");
+  assert_non_null(file);
+  unsigned char bytes[512 + 4] = {0};
+  memcpy(bytes, magic, sizeof magic);
+  memcpy(bytes + 20, (const unsigned char[]){0, 0, 2, 0, 0, 0, 16}, 7); /* sectors of 512, pages of 4096 bytes */
+  memcpy(bytes + 512, (const unsigned char[]){4, 0, 0, 0}, 4);
+  fwrite(bytes, 1, sizeof bytes, file);
+  unsigned sum = 0, length = (unsigned)strlen(victim);
+  for (unsigned i = 0; i < length; i++)
+    sum += (unsigned char)victim[i];
+  fputs(victim, file);
+  fwrite((const unsigned char[]){0, 0, 0, (unsigned char)length, 0, 0, (unsigned char)(sum >> 8), (unsigned char)sum},
+         1, 8, file);
+  fwrite(magic, 1, sizeof magic, file);
+  assert_int_equal(fclose(file), 0);
+  refused(path, "-journal");
+  assert_int_equal(access(victim, F_OK), 0);
+  unlink(journal);
+  unlink(victim);
 }
 
 static void collect(void *context, const char *text) {
@@ -362,6 +405,7 @@ int main(void) {
       cmocka_unit_test(utf16_is_refused),
       cmocka_unit_test(pipes_and_devices_are_no_stores),
       cmocka_unit_test(journal_of_another_store_is_named),
+      cmocka_unit_test(journal_deletes_nothing),
       cmocka_unit_test(huge_and_odd_rows_are_found),
       cmocka_unit_test(corrupt_pages_are_errors),
   };
