@@ -85,6 +85,16 @@ def check_grid(path, **config):
     assert len(points) == 8 and len({json.dumps(output) for output in outputs}) == 8
 
 
+def own_address():
+    """The address at which other machines reach this one, or None. Its name need not have one. Nothing is sent."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))
+        except OSError:
+            return None
+        return None if probe.getsockname()[0].startswith("127.") else probe.getsockname()[0]
+
+
 def protocol():
     name, vector = {"name": "disc"}, [0.02, 0.05, 1e9]
     assert ask("GET", "/Info") == {"protocolVersion": 1.0, "models": ["disc"]}
@@ -167,8 +177,8 @@ def protocol():
         body = json.dumps({**name, "input": [[0.041, 0.2, 1e9]]}).encode()
         raw.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body) + body)
     assert evaluate("disc", vector)
-    own = socket.gethostbyname(socket.gethostname())
-    if not own.startswith("127."):
+    own = own_address()
+    if own:
         try:
             socket.create_connection((own, int(port)), timeout=2)
             raise SystemExit(f"reached at {own}")
