@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -139,10 +140,13 @@ static struct snapshot_read *start(const char *path) {
 
 status snapshot_read_open(const char *path, struct snapshot_read **out, struct error *error) {
   struct answer opened;
+  struct stat about;
   *out = NULL;
   if (access(path, R_OK))
     return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "cannot read %s: %s", path,
                        strerror(errno));
+  if (stat(path, &about) != 0 || !S_ISREG(about.st_mode)) /* HDF5 would wait for a pipe */
+    return status_fail(error, STATUS_IO, "cannot read %s: it is a folder, pipe, socket or device", path);
   struct snapshot_read *f = start(path);
   if (!f)
     return status_fail(error, STATUS_MEMORY, "no memory or no process to read %s", path);

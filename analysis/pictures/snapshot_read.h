@@ -16,7 +16,7 @@ enum {
 
 struct snapshot_read; /* opaque */
 
-/* STATUS_MISSING, STATUS_IO, STATUS_MEMORY; STATUS_CONTENT: the file is no HDF5 file. */
+/* STATUS_MISSING; STATUS_IO, also for a pipe or device; STATUS_MEMORY; STATUS_CONTENT: the file is no HDF5 file. */
 status snapshot_read_open(const char *path, struct snapshot_read **out, struct error *error);
 /* False: HDF5 crashed on the file, and the data read before must not be used. */
 bool snapshot_read_close(struct snapshot_read *file);

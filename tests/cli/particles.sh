@@ -49,6 +49,9 @@ expect 64 "$clast" picture end.hdf x.png --view outside --at "1 cm"
 head -c 40000 end.hdf >cut.hdf
 expect 65 "$clast" picture cut.hdf x.png
 one_error
+mkfifo pipe.hdf
+expect 74 timeout 20 "$clast" picture pipe.hdf x.png
+says "pipe.hdf: it is a folder, pipe"
 # a file from someone else: the engine's name is no UTF-8, or it controls a terminal
 for byte in ff 1b; do
   python - "$byte" <<'PY'
@@ -110,4 +113,4 @@ got=0 # the disk fills up at the end (a limit on file size gives such an error):
 same $got 74 "fields file too large"
 cmp -s out whole.json || fail "the results are lost with the fields file"
 [ -z "$(find . -name 'full.hdf*')" ] || fail "half a fields file is left"
-done_after 48
+done_after 49
