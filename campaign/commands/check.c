@@ -3,11 +3,15 @@
 
 #include "campaign/commands/commands.h"
 #include "db/store/store.h"
+#include "schemas/text.h"
 
 static void print_problem(void *context, const char *text) {
   size_t *count = context;
+  char line[4096];
   ++*count;
-  puts(text);
+  snprintf(line, sizeof line, "%s", text);
+  text_make_plain(line, "");
+  puts(line);
 }
 
 static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {

@@ -53,7 +53,7 @@ python - <<'PY'
 import json, sqlite3
 d = sqlite3.connect("texts.db")
 text = "\x1b]0;x\x07\x1b[2J\x08\x7f\u009b2J"
-for column in ("campaign.name", "session.host", "session.outcome", "point.scene_name", "run.message", "column_doc.unit"):
+for column in ("campaign.name", "session.host", "session.outcome", "point.scene_name", "run.message", "run.fields_path", "column_doc.unit"):
     d.execute("update {} set {} = ?".format(*column.split(".")), (text,))
 d.execute("update session set facts = ?", (json.dumps({"version": text, "commit": text, "compiler": text}),))
 d.commit()
