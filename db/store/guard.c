@@ -313,6 +313,17 @@ static status judge_objects(struct guard *guard, struct error *error) {
   return result;
 }
 
+enum { MOST_AXES = 1000 }; /* SQLite's views have 2000 columns */
+
+/* Is it the name that views_axis_column() gives the column of this path? */
+static bool is_axis_column(const char *path, const char *name) {
+  char plain[SCHEMA_NAME_SIZE];
+  if (!path || !name || !schema_text_is_plain(name, strlen(name)))
+    return false;
+  field_column_name(path, plain, sizeof plain);
+  return strcmp(name, plain) == 0 || (strncmp(name, "input_", 6) == 0 && strcmp(name + 6, plain) == 0);
+}
+
 /* Rows of table axis name columns of the views. */
 static status judge_axes(struct guard *guard, struct error *error) {
   sqlite3_stmt *rows = NULL;
@@ -321,10 +332,10 @@ static status judge_axes(struct guard *guard, struct error *error) {
   if (result != STATUS_OK || !has)
     return result;
   result = sql_prepare(guard->db, "SELECT path, column_name FROM main.axis", &rows, "reading the axes", error);
-  int code = SQLITE_DONE;
+  int code = SQLITE_DONE, count = 0;
   while (result == STATUS_OK && (code = sqlite3_step(rows)) == SQLITE_ROW) {
     const char *path = (const char *)sqlite3_column_text(rows, 0), *name = (const char *)sqlite3_column_text(rows, 1);
-    if (!path || !name || !schema_text_is_plain(name, strlen(name)))
+    if (++count > MOST_AXES || !is_axis_column(path, name))
       stranger(guard, "the column of axis", path, NULL);
   }
   if (result == STATUS_OK && code != SQLITE_DONE)

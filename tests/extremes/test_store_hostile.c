@@ -136,6 +136,12 @@ static void names_are_names(void **state) {
   change(populated(path, "hostile-names"),
          "UPDATE axis SET column_name = 'm\", (SELECT scene FROM point) AS \"n' WHERE path = 'material.m'");
   refused(path, "material.m");
+  change(populated(path, "hostile-names"), "UPDATE axis SET column_name = 'run_id' WHERE path = 'material.m'");
+  refused(path, "material.m");
+  change(populated(path, "hostile-names"),
+         "WITH RECURSIVE n (i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 2500) INSERT INTO axis (path, "
+         "column_name, meaning) SELECT 'p' || i, 'p' || i, '' FROM n");
+  refused(path, "the column of axis");
 }
 
 static void generated_columns_are_refused(void **state) {
