@@ -1,10 +1,11 @@
 /* Which values of inputs are safe: a row of tiles per input, each tile divided by the shares of safe, warned and
  * refused runs. */
+#include <math.h>
 
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"
 
-static const double font = 11, row_height = 19, head_height = 26, margin = 14, label_width = 300;
+static const double font = 11, row_height = 19, head_height = 26, margin = 14, indent = 12;
 
 enum { SAFE, WARNED, REFUSED, CLASSES };
 static const char *const names[CLASSES] = {"safe", "warned", "refused"};
@@ -44,12 +45,20 @@ static void draw_legend(cairo_t *cairo, double width, double y) {
   }
 }
 
-static void draw_row(cairo_t *cairo, double width, double y, const struct picture_margin *row) {
+/* Where the tiles begin: right of the widest label. */
+static double left_of_tiles(cairo_t *cairo, size_t count, const struct picture_margin *row) {
+  double widest = 0;
+  for (size_t k = 0; k < count; k++)
+    widest = fmax(widest, picture_canvas_text_width(cairo, font, false, row[k].label));
+  return margin + indent + widest + font;
+}
+
+static void draw_row(cairo_t *cairo, double left, double width, double y, const struct picture_margin *row) {
   cairo_set_source_rgb(cairo, 0, 0, 0);
-  picture_canvas_text(cairo, margin + 12, y + row_height - 7, font, PICTURE_LEFT, false, row->label);
-  const double each = (width - label_width - margin) / (double)row->count;
+  picture_canvas_text(cairo, margin + indent, y + row_height - 7, font, PICTURE_LEFT, false, row->label);
+  const double each = (width - left - margin) / (double)row->count;
   for (size_t t = 0; t < row->count; t++)
-    draw_tile(cairo, label_width + each * (double)t, y, each - 2, &row->tile[t]);
+    draw_tile(cairo, left + each * (double)t, y, each - 2, &row->tile[t]);
 }
 
 status picture_margins(const char *path, double width, const char *title, size_t count,
@@ -66,6 +75,7 @@ status picture_margins(const char *path, double width, const char *title, size_t
   cairo_set_source_rgb(canvas.cairo, 0, 0, 0);
   picture_canvas_text(canvas.cairo, margin, margin + font, 1.2 * font, PICTURE_LEFT, true, title);
   draw_legend(canvas.cairo, width, margin + font);
+  const double left = left_of_tiles(canvas.cairo, count, row);
   double y = margin + 2 * font;
   for (size_t k = 0; k < count; k++) {
     if (row[k].heading) {
@@ -73,7 +83,7 @@ status picture_margins(const char *path, double width, const char *title, size_t
       picture_canvas_text(canvas.cairo, margin, y + head_height - 8, font, PICTURE_LEFT, true, row[k].heading);
       y += head_height;
     }
-    draw_row(canvas.cairo, width, y, &row[k]);
+    draw_row(canvas.cairo, left, width, y, &row[k]);
     y += row_height;
   }
   return picture_canvas_close(&canvas, STATUS_OK, error);
