@@ -33,7 +33,7 @@ struct sample_summary sample_summarise_moments(const struct sample_moments *mome
   struct sample_summary summary = {moments->n, NAN, NAN, NAN, NAN};
   if (summary.n > 0)
     summary.mean = moments->mean;
-  if (summary.n < 2)
+  if (summary.n < 2 || isnan(moments->squares)) /* NaN: a value is infinite */
     return summary;
   double n = (double)summary.n;
   summary.standard_deviation = sqrt(fmax(moments->squares, 0) / (n - 1));

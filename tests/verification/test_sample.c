@@ -165,14 +165,21 @@ static void jackknife_refuses_what_it_cannot_tell(void **state) {
   assert_true(isfinite(sample_jackknife(5, 0.9, mean_of_four_at_least, &clusters).half_width));
 }
 
+/* An infinite value, which only a damaged store has: no scatter is known. It is not 0, which would end a campaign. */
+static void infinite_values_have_no_interval(void **state) {
+  (void)state;
+  const double values[] = {1, HUGE_VAL, 2};
+  const struct sample_summary summary = sample_summarise(3, values, 0.95);
+  assert_true(isinf(summary.mean));
+  assert_true(isnan(summary.standard_deviation) && isnan(summary.standard_error) && isnan(summary.half_width));
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(summaries_are_exact),
-      cmocka_unit_test(stopping_keeps_its_level),
-      cmocka_unit_test(stopping_waits),
-      cmocka_unit_test(jackknife_of_a_mean_is_students),
-      cmocka_unit_test(jackknife_refuses_what_it_cannot_tell),
+      cmocka_unit_test(infinite_values_have_no_interval), cmocka_unit_test(summaries_are_exact),
+      cmocka_unit_test(stopping_keeps_its_level),         cmocka_unit_test(stopping_waits),
+      cmocka_unit_test(jackknife_of_a_mean_is_students),  cmocka_unit_test(jackknife_refuses_what_it_cannot_tell),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
