@@ -111,28 +111,26 @@ static bool is_partial_copy(const struct store *store, int version) {
 static status open_locked(struct store *store, struct error *error) {
   int version = -1;
   status result = open_database(store, SQLITE_OPEN_READWRITE, error);
-  if (result == STATUS_OK)
-    result = migrate_inspect(store->db, store->path, &version, error);
+  if (result != STATUS_OK)
+    return result;
+  result = migrate_inspect(store->db, store->path, &version, error);
   if (result != STATUS_OK)
     return result;
   store->lacks_wal = is_partial_copy(store, version);
   result = sql_execute(store->db,
-                       "PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA temp_store = MEMORY; "
-                       "PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
+                       "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; "
+                       "PRAGMA temp_store = MEMORY; PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
                        "opening for writing", error);
-  /* A new store gets its tables first: a file in WAL mode without a table would look like a copy without its -wal. */
-  if (result == STATUS_OK && version >= 0)
-    result = sql_execute(store->db, "PRAGMA journal_mode = WAL", "opening for writing", error);
-  if (result == STATUS_OK)
-    result = migrate_bring_forward(store->db, store->path, version, error);
-  if (result == STATUS_OK && version < 0)
-    result = sql_execute(store->db, "PRAGMA journal_mode = WAL", "opening for writing", error);
+  if (result != STATUS_OK)
+    return result;
+  result = migrate_bring_forward(store->db, store->path, version, error);
   if (result == STATUS_OK)
     result = write_holder(store, error);
   return result == STATUS_OK ? identities_load(store, error) : result;
 }
 
-/* Undoes a failed call that made no table. `before`: bytes of the file, -1 if there was none. */
+/* Undoes a failed call that made no table: leaves no file or an empty one, as before. Otherwise a file in WAL mode
+ * without a table would look like a copy without its -wal file. `before`: bytes of the file, -1 if there was none. */
 static void leave_empty(const char *path, off_t before) {
   struct stat file;
   if (before > 0 || stat(path, &file) != 0 || file.st_size > EMPTY_STORE)
@@ -181,6 +179,7 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
     release(store);
     return held ? refuse_held(path, error) : result;
   }
+
   result = open_locked(store, error);
   write_warning(store, warning, warning_size);
   if (result != STATUS_OK) {

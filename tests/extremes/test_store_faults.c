@@ -174,54 +174,6 @@ static void no_room_for_a_table_leaves_no_file(void **state) {
   OK(fill(path, RUNS, &error));
 }
 
-/* The store's maker is killed at its n-th statement, for growing n. A store without tables is not said to be a copy. */
-static int64_t statements_left;
-
-static int kill_at_last(unsigned kind, void *context, void *statement, void *text) {
-  (void)kind, (void)context, (void)statement, (void)text;
-  if (--statements_left == 0)
-    raise(SIGKILL);
-  return 0;
-}
-
-static int watch_statements(sqlite3 *db, char **message, const void *api) {
-  (void)message, (void)api;
-  return sqlite3_trace_v2(db, SQLITE_TRACE_STMT, kill_at_last, NULL);
-}
-
-/* Makes a store in a child process. Was the child killed? */
-static bool killed_while_making(const char *path, int64_t statement) {
-  int ended = 0;
-  const pid_t child = fork();
-  assert_true(child >= 0);
-  if (child == 0) {
-    struct store *store = NULL;
-    statements_left = statement;
-    sqlite3_auto_extension((void (*)(void))watch_statements);
-    _exit(store_open_writer(path, &store, NULL, 0, &error));
-  }
-  assert_int_equal(waitpid(child, &ended, 0), child);
-  return WIFSIGNALED(ended);
-}
-
-static void killed_maker_leaves_no_copy(void **state) {
-  (void)state;
-  char path[64], text[512];
-  int64_t n = 1;
-  while (killed_while_making(fixture_path(path, "made"), n)) {
-    struct store *store = NULL;
-    struct error said = {.status = STATUS_OK};
-    if (store_open_reader(path, &store, &said) != STATUS_OK)
-      assert_null(strstr(said.message, "-wal"));
-    store_close(store, NULL);
-    OK(store_open_writer(path, &store, text, sizeof text, &error));
-    assert_string_equal(text, "");
-    OK(store_close(store, &error));
-    n += 1 + n / 8;
-  }
-  assert_true(n > 100); /* a new store takes hundreds of statements */
-}
-
 static const char disk[] = "test-store-disk";
 static void nothing(void) {}
 static void enlarge_disk(void) {
@@ -350,7 +302,6 @@ int main(void) {
       cmocka_unit_test(killed_writer_loses_at_most_its_batch),
       cmocka_unit_test(file_size_limit_loses_nothing_committed),
       cmocka_unit_test(no_room_for_a_table_leaves_no_file),
-      cmocka_unit_test(killed_maker_leaves_no_copy),
       cmocka_unit_test(full_disk_loses_nothing_committed),
       cmocka_unit_test(without_permission),
       cmocka_unit_test(reader_never_blocks_the_writer),
