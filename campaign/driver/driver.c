@@ -266,15 +266,24 @@ static status no_tick(void *context, int running, struct error *error) {
   return STATUS_OK;
 }
 
+/* The end after fields could not be written. The same full disk may refuse the last commit, which is then the error. */
+static status end_without_fields(struct driver *driver, struct error *error) {
+  const status code = driver_end(driver, error);
+  if (code != STATUS_OK)
+    return code;
+  if (error)
+    *error = driver->stop;
+  return driver->stop.status;
+}
+
 static status manage(struct driver *driver, struct farm *farm, struct driver_summary *summary, struct error *error) {
   struct farm_manager manager = driver_manager(driver);
   status code = farm_run(farm, &manager, error);
-  status ended = driver_end(driver, code == STATUS_OK ? error : NULL);
-  code = code != STATUS_OK ? code : ended;
   if (code == STATUS_STOPPED && driver->stop.status != STATUS_OK) {
-    code = driver->stop.status;
-    if (error)
-      *error = driver->stop;
+    code = end_without_fields(driver, error);
+  } else {
+    status ended = driver_end(driver, code == STATUS_OK ? error : NULL);
+    code = code != STATUS_OK ? code : ended;
   }
   driver_summarise(driver, summary);
   if (code == STATUS_OK) /* a stopped campaign pools in its next invocation */

@@ -116,9 +116,12 @@ static status finish_run(struct driver *driver, const struct flight *flight, con
   driver->summary.runs_failed += !usable;
   driver->summary.runs_censored += result.outcome.state == OUTCOME_END_TIME;
   driver->summary.cpu_s += report->cpu_s;
-  if (result.unwritten.status != STATUS_OK)
+  if (result.unwritten.status != STATUS_OK) {
     stop_without_fields(driver, &result.unwritten);
-  code = judge_failures(driver, !usable, error);
+    code = store_flush(driver->store, error); /* before fields of other runs fill the disk */
+  }
+  if (code == STATUS_OK)
+    code = judge_failures(driver, !usable, error);
 cleanup:
   run_result_clear(&result);
   return code;

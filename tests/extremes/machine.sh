@@ -89,6 +89,18 @@ same_bits fields.db fields.bits "after a full disk"
 for file in fields-fields/*.h5; do cmp -s "$file" "whole-fields/$(basename "$file")" || fail "$file differs"; done
 ok "the fields are those of a run without a full disk"
 
+# the same on one small disk with the store: what is said to be stored is stored (mounting needs root)
+mkdir small
+if mount -t tmpfs -o size=1500k none small 2>err; then
+  trap '[ "$BASHPID" != $$ ] || { umount "$work/small"; rm -rf "$work"; }' EXIT
+  sed 's/per_point: 2/per_point: 12/; s/45 cm/30 cm/' fields.yaml >small.yaml
+  expect 74 "$clast" run small.yaml --store small/s.db -j 2 --quiet
+  ! grep -qF "The results are stored" err || [ "$(ask small/s.db 'select count(*) from run')" -ge 1 ] || fail "not stored"
+  ok "results beside fields that fill the disk"
+else
+  ok "no right to mount: skipped"; ok "skipped"
+fi
+
 # a limit on file sizes (ulimit -f, SIGXFSZ) counts as a full disk: a message, exit code 74
 tiny tiny
 sed -i 's/per_point: 3/per_point: 600/' tiny.yaml
@@ -173,4 +185,4 @@ pid=$!
 sleep 1.5; kill -TERM "$pid"
 got=0; wait "$pid" || got=$?
 case $got in 75 | 143) ok "bench_farm ended with $got after SIGTERM" ;; *) fail "bench_farm ended with $got after SIGTERM" ;; esac
-done_after 42
+done_after 44
