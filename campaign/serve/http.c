@@ -7,6 +7,7 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "engine/grow.h"
 #include "schemas/clock.h"
@@ -51,14 +52,30 @@ static enum MHD_Result refuse(struct exchange *exchange, unsigned http, const ch
   return send_answer(exchange);
 }
 
+/* Is the Host of a request an address or localhost, with a port or without? A web page can make the name of its own
+ * server lead to this machine (DNS rebinding), but its browser then sends that name. */
+static bool is_address(const char *host) {
+  char name[INET6_ADDRSTRLEN] = "";
+  unsigned char bytes[sizeof(struct in6_addr)];
+  const bool bracket = *host == '[';
+  const size_t length = strcspn(host + bracket, bracket ? "]" : ":");
+  if (length >= sizeof name)
+    return false;
+  memcpy(name, host + bracket, length);
+  return bracket ? inet_pton(AF_INET6, name, bytes) == 1
+                 : strcasecmp(name, "localhost") == 0 || inet_pton(AF_INET, name, bytes) == 1;
+}
+
 /* A web page in a browser on this machine could also send requests to a loopback port. Browsers send the origin of the
  * page, other clients do not. */
-static const char *refused_at_once(struct MHD_Connection *connection, unsigned *http) {
+static const char *refused_at_once(const struct serve_http *server, struct MHD_Connection *connection, unsigned *http) {
   const char *length = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
-  if (MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN)) {
-    *http = MHD_HTTP_FORBIDDEN;
+  const char *host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_HOST);
+  *http = MHD_HTTP_FORBIDDEN;
+  if (MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN))
     return "requests of web pages (with an Origin) are refused";
-  }
+  if (server->loopback && host && !is_address(host))
+    return "the server is for this machine alone: call it localhost or by its address";
   if (length && strtoull(length, NULL, 10) > SERVE_HTTP_BODY) {
     *http = MHD_HTTP_CONTENT_TOO_LARGE;
     return "the body is larger than 1 MiB";
@@ -81,7 +98,7 @@ static enum MHD_Result begin(struct serve_http *http, struct MHD_Connection *con
   *exchange = (struct exchange){.http = http, .connection = connection};
   http->exchanges++;
   unsigned code = 0;
-  const char *why = refused_at_once(connection, &code);
+  const char *why = refused_at_once(http, connection, &code);
   return why ? refuse(exchange, code, why) : MHD_YES;
 }
 

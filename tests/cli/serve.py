@@ -161,21 +161,25 @@ def protocol():
 
     # limits of size; pages of browsers
     with socket.create_connection((host, int(port))) as raw:  # refused before it is sent
-        raw.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % ((1 << 20) + 1))
+        raw.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Length: %d\r\n\r\n" % ((1 << 20) + 1))
         assert b" 413 " in raw.recv(65536).split(b"\r\n")[0]
     assert wrong(b" " * (1 << 20)).startswith("the body is no JSON")
     with socket.create_connection((host, int(port))) as raw:  # no length given: a chunk of 2 MiB
-        raw.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n200000\r\n" + b" " * (1 << 21)
+        raw.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n200000\r\n" + b" " * (1 << 21)
                     + b"\r\n0\r\n\r\n")
         assert b" 413 " in raw.recv(65536).split(b"\r\n")[0]
     wrong({**name, "input": [vector]}, code=403, headers={"Origin": "http://example.org"})
+    for called in ("example.org", f"example.org:{port}", "localhost.example.org", "127.0.0.1.example.org", "x" * 100):
+        wrong({**name, "input": [vector]}, code=403, headers={"Host": called})
+    for called in ("localhost", f"LOCALHOST:{port}", "127.0.0.1", "[::1]:1"):
+        ask("GET", "/Info", headers={"Host": called})
     with socket.create_connection((host, int(port))) as raw:  # no HTTP
         raw.sendall(b"\x00\x01hello\r\n\r\n")
     with socket.create_connection((host, int(port))) as raw:  # goes away in the middle
-        raw.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\n{")
+        raw.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Length: 100\r\n\r\n{")
     with socket.create_connection((host, int(port))) as raw:  # goes away while its run is computed
         body = json.dumps({**name, "input": [[0.041, 0.2, 1e9]]}).encode()
-        raw.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body) + body)
+        raw.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Length: %d\r\n\r\n" % len(body) + body)
     assert evaluate("disc", vector)
     own = own_address()
     if own:
