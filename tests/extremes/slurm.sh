@@ -99,6 +99,7 @@ grep -q "Restarts=1" <(scontrol show job "$job") || fail "the job was not requeu
 ok "exit 75 after SIGUSR1: requeued"
 stored=$(runs_in slow.db)
 [ "$stored" -ge "$before" ] || fail "runs were lost: $before, then $stored"
+sleep 5 # slurmd refuses a job that it ended a moment ago
 scontrol update JobId="$job" StartTime=now # or Slurm waits two minutes
 wait_for "$job" COMPLETED
 same_bits slow.db reference.bits "after a requeue"
@@ -150,6 +151,7 @@ ends_well() {
 }
 start_again() { # for a job that would wait two minutes
   wait_for "$job" PENDING
+  sleep 5 # slurmd refuses a job that it ended a moment ago
   scontrol update JobId="$job" StartTime=now
 }
 
