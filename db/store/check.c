@@ -302,7 +302,8 @@ static status check_questions(struct report *report, struct error *error) {
 static status check_copy(struct report *report, struct error *error) {
   (void)error;
   if (report->store->lacks_wal)
-    say(report, "the store was copied without its -wal file while it was being written: its last runs are missing");
+    say(report, "the store has no -wal file, or an empty one: if it is a copy, its last runs are missing; if clast was "
+                "killed here when it had just begun, give the same command again");
   return STATUS_OK;
 }
 

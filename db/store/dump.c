@@ -1,5 +1,6 @@
 /* The deterministic content of a store as text, to compare two stores of the same campaign: sorted by identity, doubles
  * in hexadecimal. */
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,12 +14,18 @@ static const char doing[] = "writing the deterministic content";
  * time. */
 struct text {
   FILE *out;
+  int problem; /* errno of the first write that failed; 0: none */
   size_t used;
   char bytes[1 << 16];
 };
 
+static void write_bytes(struct text *text, const char *bytes, size_t size) {
+  if (fwrite(bytes, 1, size, text->out) != size && !text->problem)
+    text->problem = errno;
+}
+
 static void flush(struct text *text) {
-  fwrite(text->bytes, 1, text->used, text->out);
+  write_bytes(text, text->bytes, text->used);
   text->used = 0;
 }
 
@@ -26,7 +33,7 @@ static void put(struct text *text, const char *bytes, size_t size) {
   if (size > sizeof text->bytes - text->used)
     flush(text);
   if (size > sizeof text->bytes) {
-    fwrite(bytes, 1, size, text->out);
+    write_bytes(text, bytes, size);
     return;
   }
   memcpy(text->bytes + text->used, bytes, size);
@@ -294,6 +301,7 @@ status store_dump(struct store *store, FILE *out, struct error *error) {
   if (!text)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   text->out = out;
+  text->problem = 0;
   text->used = 0;
   struct dump dump = {.db = store->db, .text = text};
   status result = print_points(&dump, error);
@@ -303,8 +311,8 @@ status store_dump(struct store *store, FILE *out, struct error *error) {
     result = print_runs(&dump, error);
   forget(&dump);
   flush(text);
+  if (result == STATUS_OK && text->problem)
+    result = status_fail(error, STATUS_IO, "%s failed: %s", doing, strerror(text->problem));
   free(text);
-  if (result == STATUS_OK && ferror(out))
-    result = status_fail(error, STATUS_IO, "%s failed", doing);
   return result;
 }

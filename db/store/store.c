@@ -16,8 +16,9 @@
 #include "schemas/clock.h"
 
 static const char lacks_wal_text[] =
-    "was copied without its -wal file while it was being written: what that file held is missing here. Copy both "
-    "files, or make a copy with `clast export`.";
+    "has no -wal file, or an empty one. If it is a copy, it was copied while it was being written, and its last runs "
+    "are missing: copy both files, or make a copy with `clast export`. If clast was killed here when it had just "
+    "begun, nothing is missing: give the same command again.";
 
 enum { EMPTY_STORE = 4096 }; /* bytes: SQLite's first page, without any table */
 

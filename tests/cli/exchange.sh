@@ -17,6 +17,8 @@ cp out points.jsonl
 expect 0 "$clast" export rows.db runs.csv --per run
 says "runs.csv written"
 silent out
+expect 74 "$clast" export rows.db --bits /dev/full
+says "No space left on device"
 expect 0 python - <<'PY'
 import csv, json, sqlite3
 store = sqlite3.connect("file:rows.db?mode=ro", uri=True)
@@ -128,4 +130,4 @@ done
 cd ..
 [ "$(ls guide/block-*.sh | wc -l)" -ge 2 ] && [ "$(ls guide/block-*.python | wc -l)" -ge 2 ] || fail "too few blocks in the guide"
 ok "blocks of the guide"
-done_after 40
+done_after 41
