@@ -1,0 +1,61 @@
+/* Every input of every engine: a number that has a unit is never accepted without it. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/engine.h"
+
+/* Has the row a unit? Answered from the row itself, not with the reader's own rule. */
+static bool has_unit(const struct field *row) {
+  const bool number = row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
+  return number && (row->flags & FIELD_PERCENT || strcmp(row->unit, "1") != 0);
+}
+
+/* "4", "-4", "4e-3" and the row's own limits without the unit: each is refused, and the message names path and unit. */
+static void refuses_bare_numbers(const struct field *row) {
+  char limits[2][40];
+  snprintf(limits[0], sizeof limits[0], "%.17g", row->minimum);
+  snprintf(limits[1], sizeof limits[1], "%.17g", row->maximum);
+  const char *const bare[] = {"4", "-4", " 4e-3 ", limits[0], limits[1]};
+  const char *unit = row->flags & FIELD_PERCENT ? "%" : row->unit;
+
+  for (size_t i = 0; i < sizeof bare / sizeof bare[0]; i++) {
+    const double number = strtod(bare[i], NULL);
+    if (number == 0 || !isfinite(number))
+      continue; /* 0 is 0 in any unit; without a limit there is no number */
+    struct field_value value;
+    struct error error = {.status = STATUS_OK};
+    if (field_parse(row, bare[i], &value, &error) != STATUS_CONTENT)
+      fail_msg("%s accepts %s without the unit %s", row->path, bare[i], unit);
+    char end[60];
+    snprintf(end, sizeof end, " %s'", unit);
+    if (!strstr(error.message, row->path) || !strstr(error.message, end))
+      fail_msg("%s: the message does not name the unit %s: %s", row->path, unit, error.message);
+  }
+}
+
+static void inputs_with_a_unit_refuse_bare_numbers(void **state) {
+  (void)state;
+  for (size_t e = 0; e < engine_count(); e++) {
+    const struct field_table *inputs = engine_at(e)->inputs;
+    size_t tried = 0;
+    for (size_t i = 0; i < inputs->count; i++)
+      if (has_unit(&inputs->rows[i])) {
+        refuses_bare_numbers(&inputs->rows[i]);
+        tried++;
+      }
+    assert_true(tried >= 10); /* otherwise the loop tests nothing */
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(inputs_with_a_unit_refuse_bare_numbers)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
