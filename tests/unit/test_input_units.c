@@ -1,4 +1,5 @@
-/* Every input of every engine: a number that has a unit is never accepted without it. */
+/* Every input of every engine: a number that has a unit is never accepted without it. No engine has an integer input
+ * with a unit so far, so a fault that concerns integers only is not seen here; test_field.c has such a row. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
