@@ -39,6 +39,16 @@ static void grains_that_cannot_part_stay_one_body(void **state) {
   }
 }
 
+/* The weakest charge that is allowed, in place of a body at rest: no beam breaks, and the ledger closes. */
+static void a_charge_of_nothing_breaks_nothing(void **state) {
+  (void)state;
+  const struct dem_inputs inputs = DISC("charge.energy=1e-12 J/m");
+  struct ran ran = run_case_run(&dem_engine, &inputs, 3);
+  one_piece(&ran, 2e-3, 1e-11);
+  assert_int_equal(ran.results.dem.broken, 0);
+  release(&ran);
+}
+
 /* Beams without strength: each grain is a fragment, and the largest fragment is the largest grain. */
 static void beams_of_no_strength_leave_dust(void **state) {
   (void)state;
@@ -136,6 +146,7 @@ static void no_speed_changes_nothing(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(grains_that_cannot_part_stay_one_body),
+      cmocka_unit_test(a_charge_of_nothing_breaks_nothing),
       cmocka_unit_test(beams_of_no_strength_leave_dust),
       cmocka_unit_test(thresholds_of_large_modulus_are_all_alike),
       cmocka_unit_test(solids_without_flaws_stay_whole),
