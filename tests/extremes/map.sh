@@ -21,6 +21,7 @@ for file in "${campaigns[@]}"; do
 done
 ok "${#campaigns[@]} campaigns in one store"
 
+expect 0 "$clast" check "$store" # masses, sums, ranges of results
 expect 0 "$clast" extremes "$store" --picture map.png
 cat out
 [ "$(head -c 4 map.png | tail -c 3)" = PNG ] || fail "no picture"
@@ -47,4 +48,4 @@ for run in runs:
 print(len(runs), "runs judged")
 PY
 ok "every run is usable within its bound, or says what to do"
-done_after 3
+done_after 4

@@ -100,6 +100,7 @@ static void results_out_of_range_are_found(void **state) {
       {"UPDATE result_sph SET limited_courant = 1.5, limited_force = -0.25",
        ", out of range: limited_courant is 1.5 limited_force is -0.25\n"},
       {"UPDATE result_sph SET limited_courant = NULL, limited_force = 1", NULL},
+      {"UPDATE result_sph SET compaction_mass_fraction = 1 + 5e-15, limited_force = -5e-15", NULL}, /* rounding */
       {"UPDATE run SET second_fraction = 2, results_version = results_version + 1000", NULL},
       {"UPDATE run SET second_fraction = 2, counts = 0, state = 'energy'", NULL},
   };
