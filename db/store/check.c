@@ -100,7 +100,7 @@ static bool range_columns(struct store *store, const char *table, const struct f
     if (sqlite3_table_column_metadata(store->db, NULL, table, name, NULL, NULL, NULL, NULL, NULL) != SQLITE_OK)
       continue;
     /* A share is a quotient of two sums over particles, and rounding alone can put it above 1: by 5e-15 for 200
-     * particles. The bound of that is their number times 1e-16. */
+     * particles, at most by their number times 1e-16. 1e-9 is enough for 1e7 particles. */
     const double range = row->maximum - row->minimum, rounding = isfinite(range) ? 1e-9 * range : 0;
     fprintf(sql, "%siif(\"%s\" < %.17g OR \"%s\" > %.17g, ' %s is ' || \"%s\", '')", any ? " || " : "", name,
             fmax(row->minimum - rounding, -DBL_MAX), name, fmin(row->maximum + rounding, DBL_MAX), name, name);

@@ -44,7 +44,7 @@ static void a_charge_of_nothing_breaks_nothing(void **state) {
   (void)state;
   const struct dem_inputs inputs = DISC("charge.energy=1e-12 J/m");
   struct ran ran = run_case_run(&dem_engine, &inputs, 3);
-  one_piece(&ran, 2e-3, 1e-11);
+  one_piece(&ran, 2e-3, 1e-11); /* bounds as in the case above */
   assert_int_equal(ran.results.dem.broken, 0);
   release(&ran);
 }
