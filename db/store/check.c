@@ -101,7 +101,8 @@ static bool range_columns(struct store *store, const char *table, const struct f
       continue;
     /* A share is a quotient of two sums over particles, and rounding alone can put it above 1: by 5e-15 for 200
      * particles, at most by their number times 1e-16. 1e-9 is enough for 1e7 particles. */
-    const double range = row->maximum - row->minimum, rounding = isfinite(range) ? 1e-9 * range : 0;
+    const bool share = row->kind == FIELD_REAL && row->minimum == 0 && row->maximum == 1;
+    const double rounding = share ? 1e-9 : 0;
     fprintf(sql, "%siif(\"%s\" < %.17g OR \"%s\" > %.17g, ' %s is ' || \"%s\", '')", any ? " || " : "", name,
             fmax(row->minimum - rounding, -DBL_MAX), name, fmin(row->maximum + rounding, DBL_MAX), name, name);
     any = true;
@@ -109,8 +110,8 @@ static bool range_columns(struct store *store, const char *table, const struct f
   return any;
 }
 
-/* Results of runs that count must be in the ranges of their field rows; a share above 1 means an error in the sums.
- * Results of another results_version cannot be checked. */
+/* Results of runs that count must be in the ranges of their field rows; a share above 1 by more than rounding means an
+ * error in the sums. Results of another results_version cannot be checked. */
 static status check_ranges(struct report *report, struct error *error) {
   status result = STATUS_OK;
   for (size_t k = 0; result == STATUS_OK && k < 2 * engine_count(); k++) {
