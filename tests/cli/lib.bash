@@ -14,7 +14,9 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_
 unset CDPATH
 mkdir bin
 PATH=$work/bin:$PATH
-ln -s /usr/bin/python3 bin/python # Debian's, which has the packages of the tests; another python may come first in PATH
+# Both names are Debian's python, which has the packages of the tests; another one may come first in PATH.
+ln -s /usr/bin/python3 bin/python
+ln -s /usr/bin/python3 bin/python3
 sanitized=$("$clast" version | grep -c fsanitize || true)
 if [ "$sanitized" -ne 0 ]; then # Open MPI itself leaks; without it, leaks are checked
   export LSAN_OPTIONS="suppressions=$source/tests/leaks.supp:print_suppressions=0"

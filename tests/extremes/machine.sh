@@ -156,7 +156,7 @@ expect 0 env SLURM_STEP_NUM_TASKS=4 SLURM_PROCID=0 mpirun --oversubscribe -n 2 "
 segment() { echo "/dev/shm/vader_segment.$(hostname).$(id -u).test$$.$1"; }
 for kind in dead used young; do head -c 4096 /dev/zero >"$(segment $kind)"; done
 touch -d '5 minutes ago' "$(segment dead)" "$(segment used)"
-command python3 -c "
+python -c "
 import mmap, sys, time
 with open(sys.argv[1], 'r+b') as file:
     kept = mmap.mmap(file.fileno(), 0)
