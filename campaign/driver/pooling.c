@@ -1,27 +1,85 @@
-/* Fits the exponents of every point that has runs and no estimates yet. */
+/* Fits the exponents of every point that has runs and no estimates yet. A thread fits one point while the next one is
+ * read: in a large store both take about as long. */
 #include "campaign/driver/pooling.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 
 #include "db/ask/point.h"
 #include "db/ask/points.h"
 
-static status pool(struct store *store, const struct ask_points_version *which, struct error *error) {
-  struct point_data point = {0};
+struct fit {
+  const struct ask_points_version *which;
+  struct point_data point;
+  pthread_t thread;
+  bool begun, has_thread; /* without has_thread, no thread could be started: the fit was made at once */
   struct point_estimate fits[POINT_ESTIMATES];
+  status result;
+  struct error error;
+};
+
+static void *make_fit(void *context) {
+  struct fit *fit = context;
+  fit->result = point_estimates(&fit->point, 0.95, fit->fits, &fit->error);
+  return NULL;
+}
+
+static void begin(struct fit *fit) {
+  fit->begun = true;
+  fit->has_thread = pthread_create(&fit->thread, NULL, make_fit, fit) == 0;
+  if (!fit->has_thread)
+    make_fit(fit);
+}
+
+static status write_fit(struct store *store, const struct fit *fit, struct error *error) {
   struct estimate rows[POINT_ESTIMATES];
-  status code = point_read(store, which->point_id, which->results_version, &point, error);
-  if (!code)
-    code = point_estimates(&point, 0.95, fits, error);
-  for (int i = 0; i < POINT_ESTIMATES && !code; i++) {
-    rows[i] = (struct estimate){.window = fits[i].window, .fit = fits[i].exponent.fit};
-    rows[i].fit.standard_error = fits[i].exponent.interval.standard_error;
-    rows[i].half_width = fits[i].exponent.interval.half_width;
+  for (int i = 0; i < POINT_ESTIMATES; i++) {
+    const struct point_estimate *made = &fit->fits[i];
+    rows[i] = (struct estimate){.window = made->window, .fit = made->exponent.fit};
+    rows[i].fit.standard_error = made->exponent.interval.standard_error;
+    rows[i].half_width = made->exponent.interval.half_width;
     rows[i].headline = rows[i].window == ESTIMATES_HEADLINE_WINDOW && rows[i].fit.method == ESTIMATES_HEADLINE_METHOD;
   }
-  if (!code)
-    code = store_set_estimates(store, which->point_id, 0, which->results_version, POINT_ESTIMATES, rows, error);
-  point_release(&point);
+  return store_set_estimates(store, fit->which->point_id, 0, fit->which->results_version, POINT_ESTIMATES, rows, error);
+}
+
+/* Waits for the fit and frees its point. Writes its estimates if `code` is STATUS_OK; else returns `code`. */
+static status end(struct store *store, struct fit *fit, status code, struct error *error) {
+  if (!fit->begun)
+    return code;
+  if (fit->has_thread)
+    pthread_join(fit->thread, NULL);
+  if (code == STATUS_OK && fit->result != STATUS_OK && error)
+    *error = fit->error;
+  if (code == STATUS_OK)
+    code = fit->result;
+  if (code == STATUS_OK)
+    code = write_fit(store, fit, error);
+  point_release(&fit->point);
+  *fit = (struct fit){0};
+  return code;
+}
+
+static status pool_all(struct store *store, const struct ask_points_version *points, size_t count,
+                       struct error *error) {
+  struct fit *fit = calloc(1, sizeof *fit);
+  if (!fit)
+    return status_fail(error, STATUS_MEMORY, "memory ran out: the exponents of the points were not fitted");
+  status code = STATUS_OK;
+  for (size_t i = 0; i < count && code == STATUS_OK; i++) {
+    struct point_data point = {0};
+    code = point_read(store, points[i].point_id, points[i].results_version, &point, error);
+    code = end(store, fit, code, error);
+    if (code == STATUS_OK) {
+      fit->which = &points[i];
+      fit->point = point;
+      begin(fit);
+    } else {
+      point_release(&point);
+    }
+  }
+  code = end(store, fit, code, error);
+  free(fit);
   return code;
 }
 
@@ -33,8 +91,8 @@ status pooling_store(struct store *store, int64_t campaign_id, struct error *err
     return code;
 
   code = ask_points_without_estimates(store, campaign_id, &points, &count, error);
-  for (size_t i = 0; i < count && !code; i++)
-    code = pool(store, &points[i], error);
+  if (code == STATUS_OK)
+    code = pool_all(store, points, count, error);
   free(points);
   return code ? code : store_flush(store, error);
 }

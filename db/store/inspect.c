@@ -1,7 +1,8 @@
-/* Checks a source of a merge: its pages at once, its digests in a thread. */
+/* Checks a source of a merge in a thread: its pages, then its digests. */
 #include "db/store/inspect.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "db/store/internal.h"
@@ -12,7 +13,8 @@ struct inspection {
   const char *source; /* borrowed */
   struct store *store;
   pthread_t thread;
-  bool has_thread; /* false: no thread could be started, and the comparison is already done */
+  bool has_thread;    /* false: no thread could be started, and the check is already done */
+  atomic_bool failed; /* set by the thread while the caller copies */
   status result;
   struct error error;
 };
@@ -59,12 +61,19 @@ static status compare(const struct inspection *inspection, enum digest_kind kind
   return result == STATUS_OK ? refuse_damaged(inspection->source, what, &damage, error) : result;
 }
 
-static void *compare_all(void *context) {
+static void *check_all(void *context) {
   struct inspection *inspection = context;
-  inspection->result = compare(inspection, DIGEST_RUNS, "run", &inspection->error);
+  inspection->result = check_pages(inspection->store, inspection->source, &inspection->error);
+  if (inspection->result == STATUS_OK)
+    inspection->result = compare(inspection, DIGEST_RUNS, "run", &inspection->error);
   if (inspection->result == STATUS_OK)
     inspection->result = compare(inspection, DIGEST_POINTS, "point", &inspection->error);
+  inspection->failed = inspection->result != STATUS_OK;
   return NULL;
+}
+
+int inspect_failed(void *inspection) {
+  return ((struct inspection *)inspection)->failed;
 }
 
 status inspect_begin(const char *source, struct inspection **out, struct error *error) {
@@ -73,16 +82,15 @@ status inspect_begin(const char *source, struct inspection **out, struct error *
   status result = store_open_reader(source, &store, error);
   if (result != STATUS_OK)
     return result;
-  result = check_pages(store, source, error);
-  struct inspection *inspection = result == STATUS_OK ? calloc(1, sizeof *inspection) : NULL;
+  struct inspection *inspection = calloc(1, sizeof *inspection);
   if (!inspection) {
     store_close(store, NULL);
-    return result == STATUS_OK ? status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing) : result;
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   }
   *inspection = (struct inspection){.source = source, .store = store};
-  inspection->has_thread = pthread_create(&inspection->thread, NULL, compare_all, inspection) == 0;
+  inspection->has_thread = pthread_create(&inspection->thread, NULL, check_all, inspection) == 0;
   if (!inspection->has_thread)
-    compare_all(inspection);
+    check_all(inspection);
   *out = inspection;
   return STATUS_OK;
 }

@@ -307,13 +307,16 @@ static status copy_missing(struct store *store, const char *source, struct merge
 /* Copies while the inspection runs. If the source is damaged, that is the error, whatever the copying met. */
 static status merge_inspected(struct store *store, const char *source, struct inspection *inspection,
                               struct merged *merged, int64_t *differing, struct error *error) {
+  enum { STEPS_BETWEEN = 100000 }; /* of SQLite's virtual machine: about a millisecond */
   struct error damage = {0};
+  sqlite3_progress_handler(store->db, STEPS_BETWEEN, inspect_failed, inspection);
   /* The sums of a million runs are sorted in files, not in memory. */
   status result = guard_attach(store->db, source, doing, error);
   if (result == STATUS_OK)
     result = sql_execute(store->db, "PRAGMA temp_store = FILE; BEGIN IMMEDIATE", doing, error);
   if (result == STATUS_OK)
     result = copy_missing(store, source, merged, differing, error);
+  sqlite3_progress_handler(store->db, 0, NULL, NULL);
   const status inspected = inspect_end(inspection, &damage);
   if (inspected != STATUS_OK && error)
     *error = damage;
