@@ -399,6 +399,75 @@ static void corrupt_pages_are_errors(void **state) {
   assert_in_range(found_whole, 0, 10);
 }
 
+static void put_16(uint8_t *place, size_t value) {
+  place[0] = (uint8_t)(value >> 8);
+  place[1] = (uint8_t)value;
+}
+
+static void put_32(uint8_t *place, size_t value) {
+  put_16(place, value >> 16);
+  put_16(place + 2, value & 0xffff);
+}
+
+/* An interior page of a table (sqlite.org/fileformat2.html, section 1.6) whose five children are all the page `child`.
+ */
+static void branch(uint8_t page[4096], size_t child) {
+  enum { CELLS = 4, CELL_SIZE = 5, HEADER = 12 };
+  memset(page, 0, 4096);
+  page[0] = 5;
+  put_16(page + 3, CELLS);
+  put_16(page + 5, 4096 - CELLS * CELL_SIZE);
+  put_32(page + 8, child);
+  for (size_t i = 0; i < CELLS; i++) {
+    const size_t cell = 4096 - (i + 1) * CELL_SIZE;
+    put_16(page + HEADER + 2 * i, cell);
+    put_32(page + cell, child);
+    page[cell + 4] = (uint8_t)(i + 1); /* the key */
+  }
+}
+
+/* The table run seems to have 5^16 times its rows: each of 16 levels of pages refers to the next one five times. */
+static void runs_without_end(const char *path) {
+  enum { LEVELS = 16 };
+  int64_t root = 0;
+  sqlite3 *db = NULL;
+  uint8_t page[4096];
+  char text[200];
+  assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+  OK(sql_integer(db, "SELECT rootpage FROM sqlite_schema WHERE name = 'run'", 0, &root, &error));
+  sqlite3_close(db);
+  FILE *file = fopen(path, "r+b");
+  fseek(file, 0, SEEK_END);
+  const size_t pages = (size_t)ftell(file) / sizeof page;
+  for (size_t level = 0; level < LEVELS; level++) {
+    branch(page, level + 1 < LEVELS ? pages + level + 2 : (size_t)root);
+    assert_int_equal(fwrite(page, sizeof page, 1, file), 1);
+  }
+  put_32(page, pages + LEVELS);
+  fseek(file, 28, SEEK_SET); /* the number of pages, in the header of the file */
+  fwrite(page, 4, 1, file);
+  fclose(file);
+  snprintf(text, sizeof text, "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = %zu WHERE name = 'run'",
+           pages + 1);
+  change(path, text);
+}
+
+/* Pages that refer to each other make a statement endless. The merge ends as soon as the pages have been checked. */
+static void endless_pages_end_a_merge(void **state) {
+  (void)state;
+  char path[64], target[64], found[8000] = "";
+  struct store *store = NULL;
+  int64_t added = 0, differing = 0;
+  runs_without_end(populated(path, "hostile-endless"));
+  OK(store_open_writer(fixture_path(target, "hostile-target"), &store, NULL, 0, &error));
+  said(store_merge(store, path, &added, &differing, &error), "merge", "is damaged");
+  assert_int_equal(added, 0);
+  OK(store_close(store, &error));
+  OK(store_open_reader(path, &store, &error));
+  assert_int_equal(store_check(store, collect, found, &error), STATUS_CONTENT);
+  OK(store_close(store, &error));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(triggers_are_refused),
@@ -414,6 +483,7 @@ int main(void) {
       cmocka_unit_test(journal_deletes_nothing),
       cmocka_unit_test(huge_and_odd_rows_are_found),
       cmocka_unit_test(corrupt_pages_are_errors),
+      cmocka_unit_test(endless_pages_end_a_merge),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
