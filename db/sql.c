@@ -1,6 +1,7 @@
 /* SQLite errors as statuses with remedies, and statements bound from tables of columns. */
 #include "db/sql.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -8,7 +9,10 @@
 
 #include "schemas/text.h"
 
-static const char *remedy(int code) {
+/* `system`: errno of the failed call, or 0 */
+static const char *remedy(int code, int system) {
+  if (system == EMFILE || system == ENFILE)
+    return "Allow the process more open files (`ulimit -n 1024`), then give the same command again.";
   if (code == SQLITE_READONLY_ROLLBACK)
     return "A file with -journal after the store's name lies beside it: another program ended while it wrote the "
            "store, or the journal is another store's. Open the store with that program once more; or, if it is "
@@ -64,7 +68,7 @@ status sql_fail(sqlite3 *db, int code, const char *doing, struct error *error) {
   int system = db ? sqlite3_system_errno(db) : 0;
   return status_fail(error, status_of(code), "%s: %s failed: %s%s%s%s. %s", file, doing,
                      db ? sqlite3_errmsg(db) : sqlite3_errstr(code), system ? " (" : "", system ? strerror(system) : "",
-                     system ? ")" : "", remedy(code));
+                     system ? ")" : "", remedy(code, system));
 }
 
 status sql_execute(sqlite3 *db, const char *sql, const char *doing, struct error *error) {

@@ -19,7 +19,15 @@ status part_file_open(struct part_file *file, const char *path, struct error *er
   return file->out ? STATUS_OK : cannot_write(file->temporary, error);
 }
 
+/* Puts the file's name before the message. */
+static void name_file(const struct part_file *file, struct error *error) {
+  struct error why = *error;
+  status_fail(error, STATUS_IO, "%s: %s", file->path, why.message);
+}
+
 status part_file_close(struct part_file *file, status code, struct error *error) {
+  if (code == STATUS_IO && error)
+    name_file(file, error);
   const bool closed = fclose(file->out) == 0;
   if (!code && !closed)
     code = cannot_write(file->temporary, error);

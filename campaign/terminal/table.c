@@ -323,10 +323,11 @@ void table_fixed(struct table *table, double number, int decimals) {
   add_cell(table, (struct cell){CELL_NUMBER, digits, shown});
 }
 
-static status verdict(int write_error, struct error *error) {
+static status verdict(const FILE *out, int write_error, struct error *error) {
   if (write_error == 0 || write_error == EPIPE)
     return STATUS_OK;
-  return status_fail(error, STATUS_IO, "cannot write to standard output: %s", strerror(write_error));
+  return status_fail(error, STATUS_IO, "cannot write to %s: %s", out == stdout ? "standard output" : "the file",
+                     strerror(write_error));
 }
 
 status table_flush(FILE *out, struct error *error) {
@@ -335,7 +336,7 @@ status table_flush(FILE *out, struct error *error) {
     return STATUS_OK;
   int code = failure_of(out, errno);
   clearerr(out);
-  return verdict(code, error);
+  return verdict(out, code, error);
 }
 
 void table_drop(struct table *table) {
@@ -368,11 +369,12 @@ status table_end(struct table *table, struct error *error) {
     check_output(table);
   }
   int write_error = table->write_error;
+  const FILE *out = table->out;
   clearerr(table->out); /* reported here, once */
   table_drop(table);
   if (out_of_memory)
     return status_fail(error, STATUS_MEMORY, "out of memory while printing a table");
-  return verdict(write_error, error);
+  return verdict(out, write_error, error);
 }
 
 status table_choose(const struct table_options *options, enum table_format *format, struct error *error) {

@@ -107,6 +107,17 @@ sed -i 's/per_point: 3/per_point: 600/' tiny.yaml
 expect 74 bash -c "ulimit -f 700; '$clast' run tiny.yaml -j 2 --quiet"
 one_error
 
+# too few open files: the message says so, and the same command goes on
+tiny tiny
+rm -f tiny.db*
+expect 74 bash -c "ulimit -n 7; exec '$clast' run tiny.yaml --quiet 3>&- 4>&- 5>&- 6>&-"
+says "ulimit -n 1024"
+expect 0 "$clast" run tiny.yaml --quiet
+
+# a device that is full is named
+expect 74 "$clast" export tiny.db /dev/full --per run
+says "/dev/full"
+
 # a store that is moved, removed or replaced under a running campaign
 for how in moved removed replaced; do
   begin $how.db "$clast" run slow.yaml --store $how.db -j 2
@@ -185,4 +196,4 @@ pid=$!
 sleep 1.5; kill -TERM "$pid"
 got=0; wait "$pid" || got=$?
 case $got in 75 | 143) ok "bench_farm ended with $got after SIGTERM" ;; *) fail "bench_farm ended with $got after SIGTERM" ;; esac
-done_after 44
+done_after 47
