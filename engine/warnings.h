@@ -18,7 +18,13 @@
   X(HELD, "held", "the density was held at its lower limit in more than 1 % of all particle steps (sph)")              \
   X(CONTRAST, "contrast",                                                                                              \
     "the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph)")    \
-  X(PISTON, "piston", "matter of the plate went through the piston (sph)")
+  X(PISTON, "piston", "matter of the plate went through the piston (sph)")                                             \
+  X(GAIN, "gain",                                                                                                      \
+    "contacts gave the grains more than 1 % of the energy put in, as contact.law printed and contact.bonded false "    \
+    "can; the energy ledger books this as work (dem)")                                                                 \
+  X(LINKS, "links",                                                                                                    \
+    "nearest neighbours of the lattice stand farther apart than fragments.link_length times h, so that a whole body "  \
+    "counts as many fragments (sph)")
 
 #define WARNINGS_BIT(name_, word_, doc_) WARNINGS_PLACE_##name_,
 enum warnings_place { WARNINGS(WARNINGS_BIT) WARNINGS_COUNT };

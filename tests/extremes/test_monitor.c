@@ -175,6 +175,48 @@ static void drift_within_a_wide_bound_is_flagged(void **state) {
   dem_run_free(run);
 }
 
+/* The closed ledger books what contacts give as work, so a drift does not show it: the printed law is no gradient, and
+ * contacts that wait for a break begin at full force. */
+static void energy_that_contacts_give_is_flagged(void **state) {
+  (void)state;
+  const struct {
+    const char *law, *bonded, *words;
+  } cases[] = {
+      {"contact.law=conservative", "contact.bonded=true", ""},
+      {"contact.law=conservative", "contact.bonded=false", "gain"},
+      {"contact.law=printed", "contact.bonded=true", "gain"},
+      {"contact.law=off", NULL, ""},
+  };
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+    const struct dem_inputs in = DEM_CASE("disc-explosion", "body.diameter=8 cm", "stop.end_time=2 ms",
+                                          "charge.energy=2 kJ/m", cases[c].law, cases[c].bonded);
+    const struct ran ran = finished(&dem_engine, &in);
+    assert_string_equal(ran.outcome.warnings, cases[c].words);
+    assert_true(ran.outcome.energy_error < WARNINGS_LARGEST_DRIFT);
+    assert_true(ran.results.dem.broken > 20);
+  }
+}
+
+/* Particles at rest that stand farther apart than the search for fragments looks: a whole body would count as dust. */
+static void links_too_short_for_the_lattice_are_flagged(void **state) {
+  (void)state;
+#define AT_REST(...)                                                                                                   \
+  SPH_CASE("basalt-sphere", "fidelity.particles=60", "fidelity.projectile_spacing=1", "impact.speed=0 m/s",            \
+           "impact.mass=20 g", "stop.end_time=1 us", "fragments.static_strength=off", __VA_ARGS__)
+  const struct sph_inputs cases[] = {
+      AT_REST("fragments.link_length=1"),  AT_REST("fragments.link_length=0.99"),
+      AT_REST("fidelity.smoothing=0.92"),  AT_REST("fidelity.smoothing=0.95"),
+      AT_REST("target.lattice=cubic"),     AT_REST("target.lattice=cubic", "fragments.link_length=0.88"),
+      AT_REST("target.lattice=irregular"), AT_REST("target.lattice=irregular", "fragments.link_length=0.9"),
+  };
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+    const struct ran ran = finished(&sph_engine, &cases[c]);
+    const bool whole = ran.outcome.fragment_count == 1;
+    assert_int_equal(sph_engine.warn(&cases[c], NULL) != 0, !whole);
+    assert_string_equal(ran.outcome.warnings, whole ? "" : "links");
+  }
+}
+
 /* Bodies of very different density: the heavy particles' forces are too strong for the time step of the light ones;
  * volume weights remove the problem. */
 static void bodies_of_unlike_density_need_volume_weights(void **state) {
@@ -237,6 +279,8 @@ int main(void) {
       cmocka_unit_test(steps_that_collapse_end_a_run),
       cmocka_unit_test(doubts_are_in_the_result),
       cmocka_unit_test(drift_within_a_wide_bound_is_flagged),
+      cmocka_unit_test(energy_that_contacts_give_is_flagged),
+      cmocka_unit_test(links_too_short_for_the_lattice_are_flagged),
       cmocka_unit_test(bodies_of_unlike_density_need_volume_weights),
       cmocka_unit_test(the_monitor_is_cheap),
   };

@@ -77,7 +77,9 @@ void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int l
   const double power = (tension * ux - shear * uy) * vx + (tension * uy + shear * ux) * vy + m1 * s->c.spin[i] +
                        m2 * s->c.spin[j];
   energy += 0.5 * s->in->fidelity.time_step * power;
-  s->now.broken_beam += energy - contact_begins(s, pair);
+  const double begun = contact_begins(s, pair);
+  s->now.broken_beam += energy - begun;
+  s->now.begun += begun;
   const double strain = stretch / block->length[lane];
   s->log[s->now.break_count++] = (struct dem_break){
       .time = s->now.time,

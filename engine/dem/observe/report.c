@@ -185,14 +185,22 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
     dem_loading_results(run, results);
 }
 
+/* Energy that contacts gave without having taken it, J/m: a lower bound with the printed law, where what contacts still
+ * store hides a part. */
+static double given(const struct dem_ledger *ledger) {
+  return ledger->begun - fmin(ledger->contact, 0);
+}
+
 /* The words of warnings. When grains met too fast, a message says so, unless a fault has its own message. */
-static void warn(const struct dem_run *run, struct outcome *outcome) {
+static void warn(const struct dem_run *run, const struct dem_ledger *ledger, double input, struct outcome *outcome) {
   const double fastest = dem_system_fastest_approach(run->system);
   unsigned set = dem_warn_known(&run->inputs, run->stable_time_step);
   if (outcome->energy_error > WARNINGS_LARGEST_DRIFT)
     set |= WARNINGS_DRIFT;
   if (run->passing_speed > 0 && fastest > run->passing_speed)
     set |= WARNINGS_PASSING;
+  if (given(ledger) > WARNINGS_LARGEST_DRIFT * input)
+    set |= WARNINGS_GAIN;
   warnings_words(set, outcome->warnings, sizeof outcome->warnings);
   if (set & WARNINGS_PASSING && outcome->state <= OUTCOME_END_TIME)
     snprintf(outcome->message, sizeof outcome->message,
@@ -268,6 +276,6 @@ status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct de
     return code;
   }
   fill_balance(run, &ledger, input, translation(*count, *fragments), outcome);
-  warn(run, outcome);
+  warn(run, &ledger, input, outcome);
   return STATUS_OK;
 }

@@ -39,7 +39,10 @@ static const struct field rows[] = {
          .doc = "Estimate sqrt(E/rho): beams alone, aligned with the wave (the square lattice's value)."),
     REAL(sound_speed_compression, "m/s", 0,
          .doc = "Estimate sqrt((E + Y sqrt(pi)/2)/rho): beams and contacts, aligned with the wave."),
-    REAL(overlap_share, "1", 0, .doc = "Neighbour pairs that overlap over all neighbour pairs, at the end."),
+    REAL(overlap_share, "1", 0,
+         .doc =
+             "Pairs of grains that overlap, at the end, over the pairs that were neighbours at the start. Above 1 if "
+             "many grains overlap that were none."),
     REAL(passing_share, "1", 0,
          .doc = "Fastest approach of two near grains that no beam joins and whose paths meet, over the speed at which "
                 "they pass through each other. Above 1 the model has no answer for them. Off without contacts."),

@@ -194,6 +194,7 @@ struct dem_ledger dem_system_ledger(struct dem_system *s) {
                               .damping = s->now.damping,
                               .friction = s->now.friction,
                               .broken_beam = s->now.broken_beam,
+                              .begun = s->now.begun,
                               .external_work = s->now.external_work};
   if (s->in->contact.law == DEM_CONTACT_CONSERVATIVE)
     ledger.contact = 0.0;

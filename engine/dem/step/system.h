@@ -21,6 +21,7 @@ struct dem_break {
  * conservative law `contact` is its potential, for the printed law the work done on contacts. */
 struct dem_ledger {
   double kinetic, beam, contact, damping, friction, broken_beam, external_work;
+  double begun; /* given by contacts that began with a break; broken_beam is less by this */
 };
 
 struct dem_system; /* opaque; layout in system_layout.h, for this folder only */

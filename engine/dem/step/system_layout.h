@@ -72,6 +72,7 @@ struct dem_progress {
   double fastest_approach; /* m/s: largest speed so far of two near grains without a beam on paths that meet */
   uint64_t steps, rebuilds;
   double contact, damping, friction, broken_beam, external_work; /* booked so far, J/m (contact: printed law) */
+  double begun; /* J/m, of contacts that began with a break; a part of broken_beam, with the other sign */
   uint64_t break_count, bond_blocks, near_count;
   uint64_t ready; /* forces belong to the positions */
   uint64_t gear_started;

@@ -19,6 +19,17 @@ double sph_warn_contrast(const struct sph_inputs *in) {
   return fmax(target, projectile) / fmin(target, projectile);
 }
 
+/* Distance of nearest neighbours at rest over the spacing. Of irregular bodies, the distance from which all particles
+ * hang together: 1.07 with 300 particles, 1.11 with 10 000. */
+static double nearest_spacings(const struct sph_inputs *in) {
+  return in->target.lattice == SPH_LATTICE_CUBIC ? 1 : 1.122462048309373;
+}
+
+/* Distance over the spacing up to which particles at rest belong together. */
+static double reach_spacings(const struct sph_inputs *in) {
+  return in->fragments.link_length * in->fidelity.smoothing;
+}
+
 /* Compression of the exact shock; NaN without one. */
 static double compression(const struct sph_inputs *in) {
   struct sph_plane_shock exact;
@@ -38,6 +49,8 @@ unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
     set |= WARNINGS_CONTRAST;
   if (compressed > largest_compression)
     set |= WARNINGS_PISTON;
+  if (reach_spacings(in) <= nearest_spacings(in))
+    set |= WARNINGS_LINKS;
   if (!out)
     return set;
   if (set & WARNINGS_STEP)
@@ -57,5 +70,11 @@ unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
         "piston: the shock compresses the plate %.3g-fold, and above %g-fold matter leaks through the piston: lower "
         "piston.speed\n",
         compressed, largest_compression);
+  if (set & WARNINGS_LINKS)
+    fprintf(out,
+            "links: particles up to %.4g spacings apart belong together (fragments.link_length times "
+            "fidelity.smoothing), but nearest neighbours stand %.4g apart: a whole body counts as many fragments; give "
+            "a link_length of %.2g\n",
+            reach_spacings(in), nearest_spacings(in), 1.36 / in->fidelity.smoothing);
   return set;
 }
