@@ -23,7 +23,7 @@
     "contacts gave the grains more than 1 % of the energy put in, as contact.law printed and contact.bonded false "    \
     "can; the energy ledger books this as work (dem)")                                                                 \
   X(LINKS, "links",                                                                                                    \
-    "nearest neighbours of the lattice stand farther apart than fragments.link_length times h, so that a whole body "  \
+    "particles at the start stand farther apart than fragments.link_length times h, so that a whole body "             \
     "counts as many fragments (sph)")
 
 #define WARNINGS_BIT(name_, word_, doc_) WARNINGS_PLACE_##name_,

@@ -217,6 +217,36 @@ static void links_too_short_for_the_lattice_are_flagged(void **state) {
   }
 }
 
+/* A tube whose wall is thinner than the particles are apart: its particles have gaps, whatever the lattice. */
+static void bodies_thinner_than_their_particles_are_flagged(void **state) {
+  (void)state;
+#define TUBE(...)                                                                                                      \
+  SPH_CASE("elastic-bar", "fidelity.particles=190", "target.radius=0.89 mm", "target.length=8 mm",                     \
+           "vibration.speed=1 mm/s", "stop.end_time=1 us", __VA_ARGS__)
+  const struct sph_inputs thin = TUBE("target.inner_radius=0.74 mm"), full = TUBE("target.inner_radius=0 m");
+  struct ran ran = finished(&sph_engine, &thin);
+  assert_true(ran.outcome.fragment_count > 1);
+  assert_string_equal(ran.outcome.warnings, "links");
+  ran = finished(&sph_engine, &full);
+  assert_true(ran.outcome.fragment_count == 1 && !*ran.outcome.warnings);
+}
+
+/* The longest message of a run fits with its remedy. */
+static void long_messages_keep_their_remedy(void **state) {
+  (void)state;
+  const struct sph_inputs in = SPH_CASE("basalt-sphere", "fidelity.particles=100", "fidelity.projectile_spacing=0.5",
+                                        "impact.mass=2 g", "fidelity.energy_bound=1.23456e-5 %");
+  struct sph_run *run = NULL;
+  assert_int_equal(sph_run_create(&in, 3, &run, NULL), STATUS_OK);
+  assert_int_equal(sph_run_advance(run, 1), STATUS_OK);
+  run->system->now.clamped = 1e300; /* cold matter got most of the drift */
+  run->state.energy_start *= 1.123456789e10;
+  assert_int_equal(sph_run_advance(run, LATE), STATUS_OK);
+  assert_int_equal(run->state.outcome_state, OUTCOME_ENERGY);
+  names(run->state.message, (const char *const[]){"energy.clamped", "or take more particles", NULL});
+  sph_run_free(run);
+}
+
 /* Bodies of very different density: the heavy particles' forces are too strong for the time step of the light ones;
  * volume weights remove the problem. */
 static void bodies_of_unlike_density_need_volume_weights(void **state) {
@@ -281,6 +311,8 @@ int main(void) {
       cmocka_unit_test(drift_within_a_wide_bound_is_flagged),
       cmocka_unit_test(energy_that_contacts_give_is_flagged),
       cmocka_unit_test(links_too_short_for_the_lattice_are_flagged),
+      cmocka_unit_test(bodies_thinner_than_their_particles_are_flagged),
+      cmocka_unit_test(long_messages_keep_their_remedy),
       cmocka_unit_test(bodies_of_unlike_density_need_volume_weights),
       cmocka_unit_test(the_monitor_is_cheap),
   };

@@ -182,7 +182,7 @@ static void pressure_strength(void **state) {
   assert_true(granite->intact_cohesion == 90e6 && granite->intact_friction == 2 && granite->intact_limit == 1.5e9);
   assert_true(granite->broken_cohesion == 0 && off.target.material.pressure_strength.broken_friction == 0.8);
   refused("target: {material: {pressure_strength: {law: lundborg, intact_limit: 90 MPa}}}",
-          "not above intact_cohesion");
+          "not above intact_cohesion 9e+07 Pa: raise");
   accepted("target: {material: {pressure_strength: {law: lundborg}}}");
 }
 
@@ -199,7 +199,7 @@ static void missing_values_are_named(void **state) {
   accepted("target: {fracture: on, material: {name: aluminium, weibull: {m: 9, k: 1e35 1/m^3}}}");
   accepted("target: {strength: false}\nprojectile: {strength: false}");
   refused("projectile: {material: {name: custom}}", "projectile.material.density");
-  refused("target: {material: {tillotson: {E_cv: 1 MJ/kg}}}", "E_cv");
+  refused("target: {material: {tillotson: {E_cv: 1 MJ/kg}}}", "J/kg: raise E_cv");
   /* off means absent: its parameters are refused */
   assert_non_null(strstr(read_text("target: {strength: false, material: {yield_stress: 1 GPa}}").report,
                          "target.strength is true"));

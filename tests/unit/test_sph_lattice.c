@@ -446,6 +446,7 @@ static void thin_bodies_are_filled_or_refused(void **state) {
             if (code) {
               assert_int_equal(code, STATUS_CONTENT);
               assert_non_null(strstr(error.message, "too thin"));
+              assert_non_null(strstr(error.message, "raise fidelity.particles"));
               assert_true(thin < 0.5);
             } else {
               assert_true((double)points.n >= 0.5 * wanted && (double)points.n <= 2 * wanted + 2);

@@ -171,11 +171,10 @@ static status decide(const struct sph_lattice *lattice, struct sph_grading *g, s
     g->growth = 0;
     const double most = count(g, shells), particles = lattice->particles;
     if (!(particles >= fewest && particles <= most))
-      return status_fail(
-          error, STATUS_CONTENT,
-          "spacing from %g m at the point of impact gives %.0f to %.0f particles, not %.0f: change their number, "
-          "the finest spacing, or its radius.",
-          g->fine, ceil(fewest), floor(most), particles);
+      return status_fail(error, STATUS_CONTENT,
+                         "spacing from %g m at the point of impact gives %.0f to %.0f particles, not %.0f: change "
+                         "fidelity.particles, fine_spacing or fine_radius, or set fidelity.graded: false",
+                         g->fine, ceil(fewest), floor(most), particles);
     double low = 0, high = steepest;
     for (int k = 0; k < 60; k++) {
       g->growth = 0.5 * (low + high);
@@ -270,8 +269,9 @@ static status fill_graded(const struct sph_lattice *lattice, const struct sph_sh
     goto cleanup;
   }
   if (throw_points(lattice, shape, shells, n, at) < n) {
-    code = status_fail(error, STATUS_CONTENT,
-                       "a body is too thin, or too far from its point of impact, for graded particles.");
+    code = status_fail(
+        error, STATUS_CONTENT,
+        "a body is too thin, or too far from its point of impact, for graded particles: set fidelity.graded: false");
     goto cleanup;
   }
   code = sort(n, at, error);

@@ -185,7 +185,8 @@ static status too_soft(const struct sph_palpha_law *law, struct error *error) {
 static status prepare_two_power(struct sph_palpha_law *law, double ratio, struct error *error) {
   const struct sph_palpha *given = &law->given;
   if (!set_stiffness(law, ratio, given->elastic_distention))
-    return refuse(error, "distention", given->distention, "it is too far above elastic_distention for sound_speed");
+    return refuse(error, "distention", given->distention,
+                  "it is too far above elastic_distention for sound_speed: lower it, or raise one of the others");
   const double begin = sph_palpha_elastic(law, given->distention, given->elastic_pressure);
   if (begin > given->elastic_distention * (1 + 1e-6))
     return refuse(error, "distention", given->distention,

@@ -29,8 +29,8 @@ static status check_material(const struct sph_material *m, struct error *error) 
     return STATUS_OK;
   return status_fail(
       error, STATUS_CONTENT,
-      "pressure_strength.intact_limit is %.4g Pa, not above intact_cohesion %.4g Pa: strength grows with "
-      "pressure",
+      "pressure_strength.intact_limit is %.4g Pa, not above intact_cohesion %.4g Pa: raise it, as strength "
+      "grows with pressure",
       p->intact_limit, p->intact_cohesion);
 }
 

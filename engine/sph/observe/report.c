@@ -15,8 +15,9 @@ enum { INITIAL_H = 0, ROD_PARTS = 100 };
 /* Shares above which a run gets a warning (engine/warnings.h). */
 static const double largest_clamped = 0.01, largest_held = 0.01;
 
-status sph_report_fragments(const struct sph_run *run, double static_strength, bool layer, struct sph_fragments *out,
-                            struct error *error) {
+/* The fragments of `particles`: those of the run as they are now, or as they were at the start. */
+static status fragments_of(const struct sph_run *run, const struct sph_particles *particles, double static_strength,
+                           bool layer, struct sph_fragments *out, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   if (!sph_derived_cracks(&in->target)) /* other damage is no crack */
     static_strength = NAN;
@@ -34,7 +35,24 @@ status sph_report_fragments(const struct sph_run *run, double static_strength, b
   memcpy(options.periodic, run->periodic, sizeof options.periodic);
   options.bodies = bodies;
   options.body_count = (size_t)run->body_count;
-  return sph_fragments_find(run->now, &options, out, error);
+  return sph_fragments_find(particles, &options, out, error);
+}
+
+status sph_report_fragments(const struct sph_run *run, double static_strength, bool layer, struct sph_fragments *out,
+                            struct error *error) {
+  return fragments_of(run, run->now, static_strength, layer, out, error);
+}
+
+/* Do particles that belong together stand too far apart at the start? Then a whole body counts as many fragments. */
+static status find_gaps(const struct sph_run *run, bool *gaps, struct error *error) {
+  const size_t bodies = (size_t)run->body_count - sph_derived_has_intruder(&run->inputs);
+  struct sph_fragments found;
+  const status code = fragments_of(run, run->start, NAN, true, &found, error);
+  if (code)
+    return code;
+  *gaps = found.count > bodies;
+  sph_fragments_clear(&found);
+  return STATUS_OK;
 }
 
 static double norm(const double v[3]) {
@@ -290,9 +308,16 @@ static void fill_outcome(const struct sph_run *run, const struct sph_ledger *led
   outcome->momentum_error = closed(run) ? sph_results_share(norm(change), momentum_scale(run, ledger)) : (double)NAN;
 }
 
-/* The words of warnings. A leaking piston shows in the state only, not in the inputs. */
-static void warn(const struct sph_run *run, const struct sph_results *results, struct outcome *outcome) {
-  unsigned set = sph_warn_inputs(&run->inputs, NULL) & ~(unsigned)WARNINGS_PISTON;
+/* The words of warnings. A leaking piston and gaps between particles show in the state only, not in the inputs. */
+static status warn(const struct sph_run *run, const struct sph_results *results, struct outcome *outcome,
+                   struct error *error) {
+  unsigned set = sph_warn_inputs(&run->inputs, NULL) & ~(unsigned)(WARNINGS_PISTON | WARNINGS_LINKS);
+  bool gaps;
+  const status code = find_gaps(run, &gaps, error);
+  if (code)
+    return code;
+  if (gaps)
+    set |= WARNINGS_LINKS;
   if (outcome->energy_error > WARNINGS_LARGEST_DRIFT)
     set |= WARNINGS_DRIFT;
   if (results->clamped_share > largest_clamped)
@@ -302,6 +327,7 @@ static void warn(const struct sph_run *run, const struct sph_results *results, s
   if (run->inputs.kind == SPH_PISTON && sph_plate_leaks(run))
     set |= WARNINGS_PISTON;
   warnings_words(set, outcome->warnings, sizeof outcome->warnings);
+  return STATUS_OK;
 }
 
 status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,
@@ -320,7 +346,9 @@ status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sp
   code = fill_results(run, &ledger, input, &found, results, error);
   if (!code) {
     fill_outcome(run, &ledger, input, &found, outcome);
-    warn(run, results, outcome);
+    code = warn(run, results, outcome, error);
+  }
+  if (!code) {
     *fragments = found.fragments;
     *count = found.count;
     found.fragments = NULL;

@@ -172,7 +172,7 @@ static const char *remedy_of_drift(const struct sph_run *run, const struct sph_l
   if (sph_warn_inputs(&run->inputs, NULL) & WARNINGS_CONTRAST)
     return "bodies differ much in density: set method.volume_weights: true";
   if (fabs(ledger->clamped) > drift / 2)
-    return "most of it is energy.clamped, of cold matter held at u = 0: raise the bound, or take more particles";
+    return "most is energy.clamped, of cold matter: raise the bound, or take more particles";
   return "lower fidelity.cfl, or take more particles";
 }
 

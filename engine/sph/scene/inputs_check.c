@@ -99,8 +99,8 @@ static status check_material(const char *body_name, const struct sph_body_inputs
     return code;
   if (!(m->tillotson.E_cv > m->tillotson.E_iv))
     REFUSE(
-        "%s.material.tillotson.E_cv is %.4g J/kg, not above tillotson.E_iv %.4g J/kg: vaporisation begins before it is "
-        "complete",
+        "%s.material.tillotson.E_cv is %.4g J/kg, not above tillotson.E_iv %.4g J/kg: raise E_cv, as vaporisation ends "
+        "after it begins",
         body_name, m->tillotson.E_cv, m->tillotson.E_iv);
   code = check_flaws(body_name, body, error);
   if (code)
