@@ -46,7 +46,7 @@ static status run(const struct command_line *line, struct error *error) {
   if (code)
     return code;
   if (*warning)
-    fprintf(stderr, "clast: warning: %s\n", warning);
+    fprintf(stderr, "clast: %s\n", warning);
   code = merge(store, line, &disagreeing, error);
   status closed = store_close(store, code ? NULL : error);
   if (code || closed)

@@ -323,14 +323,6 @@ static status check_questions(struct report *report, struct error *error) {
   return result;
 }
 
-static status check_copy(struct report *report, struct error *error) {
-  (void)error;
-  if (report->store->lacks_wal)
-    say(report, "the store has no -wal file, or an empty one: if it is a copy, its last runs are missing; if clast was "
-                "killed here when it had just begun, give the same command again");
-  return STATUS_OK;
-}
-
 static void say_run(void *context, int64_t run_id) {
   say(context, "run %lld: a bit of its results, masses, estimates or identity has changed since it was stored",
       (long long)run_id);
@@ -367,12 +359,11 @@ static status check_sums(struct report *report, struct error *error) {
 
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error) {
-  static status (*const checks[])(struct report *, struct error *) = {check_copy,      check_pages,
-                                                                      check_questions, check_fragment_counts,
-                                                                      check_results,   check_ranges,
-                                                                      check_files,     check_sums,
-                                                                      check_masses,    check_digests,
-                                                                      check_identities};
+  static status (*const checks[])(struct report *,
+                                  struct error *) = {check_pages,     check_questions, check_fragment_counts,
+                                                     check_results,   check_ranges,    check_files,
+                                                     check_sums,      check_masses,    check_digests,
+                                                     check_identities};
   struct report report = {.store = store, .line = line, .context = context};
   status result = store_flush(store, error);
   for (size_t i = 0; result == STATUS_OK && !report.pages_damaged && i < sizeof checks / sizeof checks[0]; i++)

@@ -18,7 +18,7 @@
 static const char lacks_wal_text[] =
     "has no -wal file, or an empty one. If it is a copy, it was copied while it was being written, and its last runs "
     "are missing: copy both files, or make a copy with `clast export`. If clast was killed here when it had just "
-    "begun, nothing is missing: give the same command again.";
+    "begun, nothing is missing. `clast run`, or `clast merge` into this store, goes on with what is there.";
 
 enum { EMPTY_STORE = 4096 }; /* bytes: SQLite's first page, without any table */
 
@@ -100,12 +100,20 @@ static status write_holder(struct store *store, struct error *error) {
                       host, (long long)getpid());
 }
 
-/* A copy of a store that was being written contains its writer's row in table holder, or no tables. */
+/* A copy of a store that was being written contains its writer's row in table holder. Stores that an older clast began
+ * have no tables at first. */
 static bool is_partial_copy(const struct store *store, int version) {
   int64_t holders = 0;
   if (!store->lacks_wal || version < 0)
     return store->lacks_wal;
   return sql_integer(store->db, "SELECT count(*) FROM holder", 0, &holders, NULL) == STATUS_OK && holders > 0;
+}
+
+/* A new store gets its tables and its holder before WAL mode: until then, the file of a killed program does not look
+ * like a copy without its -wal file, and afterwards every copy shows its holder. */
+static status make_tables(struct store *store, int version, struct error *error) {
+  status result = migrate_bring_forward(store->db, store->path, version, error);
+  return result == STATUS_OK ? write_holder(store, error) : result;
 }
 
 /* With the file locked: opens it, upgrades it and reads the data that a writer needs. */
@@ -119,12 +127,15 @@ static status open_locked(struct store *store, struct error *error) {
     return result;
   store->lacks_wal = is_partial_copy(store, version);
   result = sql_execute(store->db,
-                       "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; "
-                       "PRAGMA temp_store = MEMORY; PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
+                       "PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA temp_store = MEMORY; "
+                       "PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
                        "opening for writing", error);
-  if (result != STATUS_OK)
-    return result;
-  result = migrate_bring_forward(store->db, store->path, version, error);
+  if (result == STATUS_OK && version < 0)
+    result = make_tables(store, version, error);
+  if (result == STATUS_OK)
+    result = sql_execute(store->db, "PRAGMA journal_mode = WAL", "opening for writing", error);
+  if (result == STATUS_OK && version >= 0)
+    result = migrate_bring_forward(store->db, store->path, version, error);
   if (result == STATUS_OK)
     result = write_holder(store, error);
   return result == STATUS_OK ? identities_load(store, error) : result;
@@ -148,11 +159,11 @@ static void write_warning(const struct store *store, char *warning, size_t size)
   if (store->lacks_wal)
     snprintf(warning, size, "warning: %s %s", store->path, lacks_wal_text);
   else if (network)
-    snprintf(
-        warning, size,
-        "%s is on a network file system (%s), where locks and shared memory may fail and damage a store: write to a "
-        "local disk and copy the file when it is done.",
-        store->path, network);
+    snprintf(warning, size,
+             "warning: %s is on a network file system (%s), where locks and shared memory may fail and damage a store: "
+             "write to a "
+             "local disk and copy the file when it is done.",
+             store->path, network);
   else
     warning[0] = '\0';
 }
@@ -201,6 +212,8 @@ static status make_readable(struct store *store, struct error *error) {
 
 /* Is it a store that this program can read? */
 static status check_version(const struct store *store, int version, struct error *error) {
+  if (store->lacks_wal)
+    return status_fail(error, STATUS_CONTENT, "%s %s", store->path, lacks_wal_text);
   if (version >= SCHEMA_READABLE)
     return STATUS_OK;
   if (version >= 0)
@@ -209,8 +222,6 @@ static status check_version(const struct store *store, int version, struct error
         "%s was written by an older clast (store version %d, now %d). Run its campaign once more, or merge it into a "
         "new store (`clast merge NEW.db FILE`): opening for writing upgrades it and keeps a copy.",
         store->path, version, SCHEMA_VERSION);
-  if (store->lacks_wal)
-    return status_fail(error, STATUS_CONTENT, "%s %s", store->path, lacks_wal_text);
   return status_fail(error, STATUS_CONTENT, "%s is empty: no campaign was stored in it yet.", store->path);
 }
 

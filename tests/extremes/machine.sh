@@ -150,6 +150,10 @@ grep -q -- "-wal" out err || fail "it does not say what is missing"
 ok "a copy without its -wal is said to be one"
 expect 65 "$clast" status copy.db
 says "-wal"
+expect 65 "$clast" merge merged.db copy.db
+expect 0 "$clast" merge copy.db writing.db
+says "clast: warning: copy.db has no -wal"
+expect 0 "$clast" check copy.db
 
 # programs that a launcher started side by side without MPI: refused before anything is written
 # (Open MPI keeps memory: leaks are not checked)
@@ -196,4 +200,4 @@ pid=$!
 sleep 1.5; kill -TERM "$pid"
 got=0; wait "$pid" || got=$?
 case $got in 75 | 143) ok "bench_farm ended with $got after SIGTERM" ;; *) fail "bench_farm ended with $got after SIGTERM" ;; esac
-done_after 47
+done_after 50
