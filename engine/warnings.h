@@ -22,6 +22,9 @@
   X(GAIN, "gain",                                                                                                      \
     "contacts gave the grains more than 1 % of the energy put in, as contact.law printed and contact.bonded false "    \
     "can; the energy ledger books this as work (dem)")                                                                 \
+  X(KERNEL, "kernel",                                                                                                  \
+    "fidelity.smoothing is below 0.9 without method.gradient_correction: stresses and wave speeds are too small, up "  \
+    "to 39 % (sph)")                                                                                                   \
   X(LINKS, "links",                                                                                                    \
     "particles at the start stand farther apart than fragments.link_length times h, so that a whole body "             \
     "counts as many fragments (sph)")

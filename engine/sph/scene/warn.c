@@ -19,6 +19,9 @@ double sph_warn_contrast(const struct sph_inputs *in) {
   return fmax(target, projectile) / fmin(target, projectile);
 }
 
+/* Without the gradient correction a plate's shock is 2.5 % too weak at 0.9, 5 % at 0.85 and 20 % at 0.7. */
+static const double least_smoothing = 0.9;
+
 /* Distance of nearest neighbours at rest over the spacing. Of irregular bodies, the distance from which all particles
  * hang together: 1.07 with 300 particles, 1.11 with 10 000. */
 static double nearest_spacings(const struct sph_inputs *in) {
@@ -49,6 +52,8 @@ unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
     set |= WARNINGS_CONTRAST;
   if (compressed > largest_compression)
     set |= WARNINGS_PISTON;
+  if (in->fidelity.smoothing < least_smoothing && !in->method.gradient_correction)
+    set |= WARNINGS_KERNEL;
   if (reach_spacings(in) <= nearest_spacings(in))
     set |= WARNINGS_LINKS;
   if (!out)
@@ -70,6 +75,12 @@ unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
         "piston: the shock compresses the plate %.3g-fold, and above %g-fold matter leaks through the piston: lower "
         "piston.speed\n",
         compressed, largest_compression);
+  if (set & WARNINGS_KERNEL)
+    fprintf(
+        out,
+        "kernel: fidelity.smoothing %g is below %g without method.gradient_correction: stresses and wave speeds are "
+        "too small; give 1.13, or set method.gradient_correction: true\n",
+        in->fidelity.smoothing, least_smoothing);
   if (set & WARNINGS_LINKS)
     fprintf(out,
             "links: particles up to %.4g spacings apart belong together (fragments.link_length times "
