@@ -8,12 +8,13 @@
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 
-/* Sessions with their campaigns. A read-only store of an older program does not name the campaign: it is then one of
- * the campaigns of the session's runs. */
-static const char sessions_named[] = "SELECT campaign_id, started_at, ended_at, outcome FROM session";
+/* Sessions with their campaigns. The last one has the largest number: clocks are set back at times. A read-only store
+ * of an older program does not name the campaign: it is then one of the campaigns of the session's runs. */
+static const char sessions_named[] = "SELECT campaign_id, session_id, started_at, ended_at, outcome FROM session";
 static const char sessions_of_runs[] =
-    "SELECT max(c.campaign_id) AS campaign_id, started_at, ended_at, outcome FROM (SELECT DISTINCT session_id, point_id"
-    " FROM run) JOIN session USING (session_id) JOIN campaign_point p USING (point_id) JOIN campaign c ON"
+    "SELECT max(c.campaign_id) AS campaign_id, session_id, started_at, ended_at, outcome FROM"
+    " (SELECT DISTINCT session_id, point_id FROM run) JOIN session USING (session_id) JOIN campaign_point p USING "
+    "(point_id) JOIN campaign c ON"
     " c.campaign_id = p.campaign_id WHERE ended_at IS NULL OR substr(c.added_at, 1, 19) <= substr(ended_at, 1, 19)"
     " GROUP BY session_id";
 
@@ -35,7 +36,7 @@ status ask_campaign_progress(struct store *store, bool writing, const struct que
       "   FROM campaign_point JOIN attempt USING (point_id)"
       "   WHERE NOT EXISTS (SELECT 1 FROM run WHERE run.identity = attempt.identity) GROUP BY campaign_id),"
       " sessions AS (%s),"
-      " last AS (SELECT campaign_id, max(started_at) AS started_at, ended_at, outcome FROM sessions"
+      " last AS (SELECT campaign_id, max(session_id) AS session_id, started_at, ended_at, outcome FROM sessions"
       "   GROUP BY campaign_id),"
       " planned AS (SELECT campaign_id, plan ->> '$.points' AS points, plan ->> '$.replicates_least' AS least,"
       "   plan ->> '$.replicates_most' AS most FROM campaign WHERE json_valid(plan)),"
@@ -43,7 +44,7 @@ status ask_campaign_progress(struct store *store, bool writing, const struct que
       "   FROM campaign_point JOIN run USING (point_id) GROUP BY campaign_id, point_id) JOIN planned"
       "   USING (campaign_id) WHERE n >= least AND least = most GROUP BY campaign_id)"
       " SELECT campaign_id AS campaign, name,"
-      "   CASE WHEN %d AND last.ended_at IS NULL AND last.started_at = (SELECT max(started_at) FROM session)"
+      "   CASE WHEN %d AND last.ended_at IS NULL AND last.session_id = (SELECT max(session_id) FROM session)"
       "     THEN 'running'"
       "   WHEN last.outcome = 'finished' OR filled.points = planned.points THEN 'finished'"
       "   WHEN last.outcome IS NOT NULL THEN last.outcome WHEN last.started_at IS NULL THEN 'not known'"

@@ -55,12 +55,16 @@ same "$(state all.db)" "tiny=finished tiny=finished wide=killed" "states after a
 "$clast" merge all.db wide.db >/dev/null 2>&1 || fail "merge again"
 same "$(state all.db)" "tiny=finished tiny=finished wide=finished" "states when the missing runs came"
 slow slow
-"$clast" run slow.yaml -j 1 --quiet >/dev/null 2>&1 &
-for _ in $(seq 100); do sleep 0.05; [ "$(state slow.db 2>/dev/null)" = slow=running ] && break; done
-same "$(state slow.db)" "slow=running" "state while it runs"
-kill -TERM $! # a shell script starts background jobs with SIGINT ignored
-wait $! || true
-same "$(state slow.db)" "slow=stopped" "state after an interrupt"
+for clock in right "set back"; do
+  "$clast" run slow.yaml -j 1 --quiet >/dev/null 2>&1 &
+  for _ in $(seq 100); do sleep 0.05; [ "$(state slow.db 2>/dev/null)" = slow=running ] && break; done
+  same "$(state slow.db)" "slow=running" "state while it runs, clock $clock"
+  kill -TERM $! # a shell script starts background jobs with SIGINT ignored
+  wait $! || true
+  same "$(state slow.db)" "slow=stopped" "state after an interrupt, clock $clock"
+  # as if the clock was fast then and is set back now
+  sqlite3 slow.db "update session set started_at = '2099-01-01T00:00:00.000Z', ended_at = '2099-01-01T00:00:09.000Z', outcome = 'failed'"
+done
 
 # one name for each quantity, and only columns of the engine
 columns=$(sqlite3 tiny.db "select count(*) from pragma_table_info('runs')")
@@ -81,4 +85,4 @@ expect 65 "$clast" explain windw
 says "did you mean window"
 sed -i 's/seeds: .*/seeds: {until: {quantity: energy_kinetic, half_width: 1e9}}/' tiny.yaml
 expect 0 "$clast" plan tiny.yaml --no-trial
-done_after 30
+done_after 32
