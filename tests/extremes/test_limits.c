@@ -1,5 +1,7 @@
 /* Limits with exact answers, on small bodies: nothing breaks, everything breaks, all flaws are equal, no pores, no
  * speed. */
+#include "engine/dem/run/run.h"
+#include "engine/dem/step/system_layout.h"
 #include "tests/support/run_case.h"
 
 static void release(struct ran *ran) {
@@ -49,17 +51,46 @@ static void a_charge_of_nothing_breaks_nothing(void **state) {
   release(&ran);
 }
 
-/* Beams without strength: each grain is a fragment, and the largest fragment is the largest grain. */
+/* Beams without strength: each grain is a fragment, and the largest fragment is the largest grain. Each of the two
+ * thresholds is enough. */
 static void beams_of_no_strength_leave_dust(void **state) {
   (void)state;
-  const struct dem_inputs inputs = DISC("threshold.strain=1e-7 %", "threshold.angle=1e-6 deg");
-  struct ran ran = run_case_run(&dem_engine, &inputs, 3);
-  assert_true(ran.outcome.state <= OUTCOME_END_TIME);
-  assert_int_equal(ran.outcome.fragment_count, ran.results.dem.grains);
-  assert_int_equal(ran.outcome.single_count, ran.results.dem.grains);
-  assert_true(ran.outcome.dust_fraction == 1);
-  assert_int_equal(ran.fragments[0].count, 1);
-  release(&ran);
+  const struct dem_inputs cases[] = {
+      DISC("threshold.strain=1e-7 %", "threshold.angle=1e-6 deg"),
+      DISC("threshold.strain=1e-7 %", "threshold.angle=1000 rad"),
+      DISC("threshold.strain=100000 %", "threshold.angle=1e-6 deg"),
+  };
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+    struct ran ran = run_case_run(&dem_engine, &cases[c], 3);
+    assert_true(ran.outcome.state <= OUTCOME_END_TIME);
+    assert_int_equal(ran.outcome.fragment_count, ran.results.dem.grains);
+    assert_int_equal(ran.outcome.single_count, ran.results.dem.grains);
+    assert_true(ran.outcome.dust_fraction == 1);
+    assert_int_equal(ran.fragments[0].count, 1);
+    release(&ran);
+  }
+}
+
+/* The thresholds themselves: with modulus m the logarithm of a factor is ln(-ln(1 - u))/m. Of 1e3 draws of u the
+ * smallest is about 1e-3, and 20 bounds the other logarithm up to u = 2e-9. Weights are 1/strain^2 and 1/angle. */
+static void thresholds_of_large_modulus_have_one_value(void **state) {
+  (void)state;
+  const double modulus = 1e6;
+  const struct dem_inputs inputs[] = {DISC("threshold.modulus=off"), DISC("threshold.modulus=1e6")};
+  struct dem_run *run[2] = {NULL, NULL};
+  struct error error = {0};
+  for (int k = 0; k < 2; k++)
+    if (dem_run_create(&inputs[k], 3, &run[k], &error))
+      fail_msg("%s", error.message);
+  const struct dem_system *all = run[0]->system, *drawn = run[1]->system;
+  for (size_t slot = 0; slot < all->bond_capacity * DEM_BLOCK; slot++) {
+    const struct dem_bond_block *a = &all->bond[slot / DEM_BLOCK], *b = &drawn->bond[slot / DEM_BLOCK];
+    const size_t lane = slot % DEM_BLOCK;
+    assert_true(fabs(b->weight_strain[lane] - a->weight_strain[lane]) <= 40 / modulus * a->weight_strain[lane]);
+    assert_true(fabs(b->weight_angle[lane] - a->weight_angle[lane]) <= 20 / modulus * a->weight_angle[lane]);
+  }
+  for (int k = 0; k < 2; k++)
+    dem_run_free(run[k]);
 }
 
 /* m to infinity: thresholds drawn from a law with a single value equal that value. */
@@ -83,6 +114,8 @@ static void solids_without_flaws_stay_whole(void **state) {
   const struct sph_inputs cases[] = {
       IMPACT("target.fracture=off"),
       IMPACT("target.material.weibull.k=1 1/m^3", "target.material.weibull.m=1"), /* strains of 1e4 */
+      /* without damage there is no crack that tension could open */
+      IMPACT("target.material.weibull.k=1 1/m^3", "target.material.weibull.m=1", "fragments.static_strength=1 Pa"),
   };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
     struct ran ran = run_case_run(&sph_engine, &cases[c], 3);
@@ -92,17 +125,24 @@ static void solids_without_flaws_stay_whole(void **state) {
   }
 }
 
-/* Flaws that open at zero strain: the target breaks completely. */
+/* Flaws that open at zero strain: the target breaks completely, also at 1 m/s, which strong flaws would bear. */
 static void solids_of_no_strength_become_dust(void **state) {
   (void)state;
-  const struct sph_inputs inputs = IMPACT("target.material.weibull.k=1e200 1/m^3", "target.material.weibull.m=8.5",
-                                          "fracture.cap=none", "fragments.dust_mass=20 g");
-  struct ran ran = run_case_run(&sph_engine, &inputs, 3);
-  assert_true(ran.outcome.state <= OUTCOME_END_TIME);
-  assert_true(ran.results.sph.undamaged_fraction == 0);
-  assert_int_equal(ran.outcome.fragment_count, ran.results.sph.particles); /* single particles */
-  assert_true(ran.outcome.dust_fraction == 1);
-  release(&ran);
+#define WEAK(...)                                                                                                      \
+  IMPACT("target.material.weibull.k=1e200 1/m^3", "target.material.weibull.m=8.5", "fracture.cap=none",                \
+         "fragments.dust_mass=20 g", __VA_ARGS__)
+  const struct sph_inputs cases[] = {
+      WEAK("impact.speed=3.2 km/s"),
+      WEAK("impact.speed=1 m/s", "impact.gap=0", "stop.end_time=60 us", "stop.quiet_time=60 us"),
+  };
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+    struct ran ran = run_case_run(&sph_engine, &cases[c], 3);
+    assert_true(ran.outcome.state <= OUTCOME_END_TIME);
+    assert_true(ran.results.sph.undamaged_fraction == 0);
+    assert_int_equal(ran.outcome.fragment_count, ran.results.sph.particles); /* single particles */
+    assert_true(ran.outcome.dust_fraction == 1);
+    release(&ran);
+  }
 }
 
 /* alpha_0 to 1 from above: a sphere with ever fewer pores approaches the solid one; at 1 it equals it bit by bit. */
@@ -149,6 +189,7 @@ int main(void) {
       cmocka_unit_test(a_charge_of_nothing_breaks_nothing),
       cmocka_unit_test(beams_of_no_strength_leave_dust),
       cmocka_unit_test(thresholds_of_large_modulus_are_all_alike),
+      cmocka_unit_test(thresholds_of_large_modulus_have_one_value),
       cmocka_unit_test(solids_without_flaws_stay_whole),
       cmocka_unit_test(solids_of_no_strength_become_dust),
       cmocka_unit_test(pores_that_vanish_leave_the_solid),
