@@ -109,9 +109,9 @@ static bool is_partial_copy(const struct store *store, int version) {
   return sql_integer(store->db, "SELECT count(*) FROM holder", 0, &holders, NULL) == STATUS_OK && holders > 0;
 }
 
-/* A new store gets its tables and its holder before WAL mode: until then, the file of a killed program does not look
- * like a copy without its -wal file, and afterwards every copy shows its holder. */
-static status make_tables(struct store *store, int version, struct error *error) {
+/* The tables and the holder are written before WAL mode: until then, the file of a killed program does not look like a
+ * copy without its -wal file, and afterwards every copy shows its holder. */
+static status prepare_file(struct store *store, int version, struct error *error) {
   status result = migrate_bring_forward(store->db, store->path, version, error);
   return result == STATUS_OK ? write_holder(store, error) : result;
 }
@@ -130,14 +130,12 @@ static status open_locked(struct store *store, struct error *error) {
                        "PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA temp_store = MEMORY; "
                        "PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
                        "opening for writing", error);
-  if (result == STATUS_OK && version < 0)
-    result = make_tables(store, version, error);
+  if (result == STATUS_OK)
+    result = prepare_file(store, version, error);
   if (result == STATUS_OK)
     result = sql_execute(store->db, "PRAGMA journal_mode = WAL", "opening for writing", error);
-  if (result == STATUS_OK && version >= 0)
-    result = migrate_bring_forward(store->db, store->path, version, error);
   if (result == STATUS_OK)
-    result = write_holder(store, error);
+    result = write_holder(store, error); /* the first page of the -wal file */
   return result == STATUS_OK ? identities_load(store, error) : result;
 }
 

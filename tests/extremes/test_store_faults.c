@@ -174,6 +174,28 @@ static void no_room_for_a_table_leaves_no_file(void **state) {
   OK(fill(path, RUNS, &error));
 }
 
+static void copy_file(const char *from, const char *to) {
+  char command[256];
+  snprintf(command, sizeof command, "cp %s %s", from, to);
+  assert_int_equal(system(command), 0);
+}
+
+/* A copy without the -wal file is refused, also if the store had runs already when its writer opened it. */
+static void copies_without_their_log_are_refused(void **state) {
+  (void)state;
+  char path[64], copy[64];
+  struct store *store = NULL;
+  fixture_path(copy, "log-copy");
+  OK(fill(fixture_path(path, "log"), 10, &error));
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  copy_file(path, copy);
+  OK(store_close(store, &error));
+  assert_int_equal(store_open_reader(copy, &store, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "has no -wal file"));
+  OK(store_open_reader(path, &store, &error));
+  OK(store_close(store, &error));
+}
+
 static const char disk[] = "test-store-disk";
 static void nothing(void) {}
 static void enlarge_disk(void) {
@@ -302,6 +324,7 @@ int main(void) {
       cmocka_unit_test(killed_writer_loses_at_most_its_batch),
       cmocka_unit_test(file_size_limit_loses_nothing_committed),
       cmocka_unit_test(no_room_for_a_table_leaves_no_file),
+      cmocka_unit_test(copies_without_their_log_are_refused),
       cmocka_unit_test(full_disk_loses_nothing_committed),
       cmocka_unit_test(without_permission),
       cmocka_unit_test(reader_never_blocks_the_writer),
