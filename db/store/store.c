@@ -106,7 +106,10 @@ static bool is_partial_copy(const struct store *store, int version) {
   int64_t holders = 0;
   if (!store->lacks_wal || version < 0)
     return store->lacks_wal;
-  return sql_integer(store->db, "SELECT count(*) FROM holder", 0, &holders, NULL) == STATUS_OK && holders > 0;
+  /* a journal that was rolled back has taken the file out of WAL mode */
+  return sql_integer(store->db, "SELECT count(*) FROM holder, pragma_journal_mode WHERE journal_mode = 'wal'", 0,
+                     &holders, NULL) == STATUS_OK &&
+         holders > 0;
 }
 
 /* The tables and the holder are written before WAL mode: until then, the file of a killed program does not look like a
