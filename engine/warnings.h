@@ -25,6 +25,9 @@
   X(KERNEL, "kernel",                                                                                                  \
     "fidelity.smoothing is below 0.9 without method.gradient_correction: stresses and wave speeds are too small, up "  \
     "to 39 % (sph)")                                                                                                   \
+  X(ARRIVAL, "arrival",                                                                                                \
+    "a wave reaches the far side of the plate before the end, so that speeds and plateaus of its fronts are wrong "    \
+    "(sph)")                                                                                                           \
   X(LINKS, "links",                                                                                                    \
     "particles at the start stand farther apart than fragments.link_length times h, so that a whole body "             \
     "counts as many fragments (sph)")

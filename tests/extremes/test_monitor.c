@@ -253,6 +253,23 @@ static void short_smoothing_lengths_are_flagged(void **state) {
   }
 }
 
+/* A wave that has left the plate has no place, and the speed of a front through its last places means nothing. */
+static void waves_at_the_far_side_are_flagged(void **state) {
+  (void)state;
+  const struct sph_inputs early = SMALL_PLATE("stop.end_time=3 us"), late = SMALL_PLATE("stop.end_time=9 us");
+  const struct ran good = finished(&sph_engine, &early), bad = finished(&sph_engine, &late);
+  assert_string_equal(good.outcome.warnings, "");
+  assert_string_equal(bad.outcome.warnings, "arrival");
+  assert_int_equal(sph_engine.warn(&early, NULL), 0);
+  assert_int_equal(sph_engine.warn(&late, NULL), WARNINGS_ARRIVAL);
+  const double exact = good.results.sph.precursor.speed_exact;
+  print_message("precursor at %g, %g of its exact speed\n", good.results.sph.precursor.speed / exact,
+                bad.results.sph.precursor.speed / exact);
+  assert_true(fabs(good.results.sph.precursor.speed / exact - 1) < 0.1);
+  assert_false(fabs(bad.results.sph.precursor.speed / exact - 1) < 0.1); /* wrong, or off */
+  assert_false(bad.results.sph.precursor.speed < 0);
+}
+
 /* The longest message of a run fits with its remedy. */
 static void long_messages_keep_their_remedy(void **state) {
   (void)state;
@@ -335,6 +352,7 @@ int main(void) {
       cmocka_unit_test(links_too_short_for_the_lattice_are_flagged),
       cmocka_unit_test(bodies_thinner_than_their_particles_are_flagged),
       cmocka_unit_test(short_smoothing_lengths_are_flagged),
+      cmocka_unit_test(waves_at_the_far_side_are_flagged),
       cmocka_unit_test(long_messages_keep_their_remedy),
       cmocka_unit_test(bodies_of_unlike_density_need_volume_weights),
       cmocka_unit_test(the_monitor_is_cheap),

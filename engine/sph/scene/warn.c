@@ -33,31 +33,24 @@ static double reach_spacings(const struct sph_inputs *in) {
   return in->fragments.link_length * in->fidelity.smoothing;
 }
 
-/* Compression of the exact shock; NaN without one. */
-static double compression(const struct sph_inputs *in) {
+/* Of the exact fronts in a plate: compression by the shock, and the time at which the first one reaches the far side,
+ * s. NaN where there is none. */
+static void fronts(const struct sph_inputs *in, double *compression, double *arrival) {
   struct sph_plane_shock exact;
-  if (in->kind != SPH_PISTON || sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL) ||
-      !exact.has_shock)
-    return (double)NAN;
-  return exact.shock.density / exact.first_density;
+  *compression = *arrival = NAN;
+  if (in->kind != SPH_PISTON || sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL))
+    return;
+  if (exact.has_shock)
+    *compression = exact.shock.density / exact.first_density;
+  *arrival = in->target.width / (exact.has_precursor ? exact.precursor.speed : exact.shock.speed);
 }
 
-unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
-  const double contrast = sph_warn_contrast(in), compressed = compression(in);
-  const double most = in->viscosity.alpha < least_viscosity ? largest_undamped_cfl : largest_cfl;
-  unsigned set = 0;
-  if (in->fidelity.cfl > most)
-    set |= WARNINGS_STEP;
-  if (contrast > largest_contrast)
-    set |= WARNINGS_CONTRAST;
-  if (compressed > largest_compression)
-    set |= WARNINGS_PISTON;
-  if (in->fidelity.smoothing < least_smoothing && !in->method.gradient_correction)
-    set |= WARNINGS_KERNEL;
-  if (reach_spacings(in) <= nearest_spacings(in))
-    set |= WARNINGS_LINKS;
-  if (!out)
-    return set;
+static double largest_step(const struct sph_inputs *in) {
+  return in->viscosity.alpha < least_viscosity ? largest_undamped_cfl : largest_cfl;
+}
+
+static void tell(const struct sph_inputs *in, unsigned set, double compressed, double arrival, FILE *out) {
+  const double most = largest_step(in);
   if (set & WARNINGS_STEP)
     fprintf(out,
             "step: fidelity.cfl %g is above %g with viscosity.alpha %g: energy may drift; give a cfl of %g, or more "
@@ -68,7 +61,7 @@ unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
         out,
         "contrast: the densities of target and projectile differ by a factor of %.3g, above %g: energy may drift; set "
         "method.volume_weights: true\n",
-        contrast, largest_contrast);
+        sph_warn_contrast(in), largest_contrast);
   if (set & WARNINGS_PISTON)
     fprintf(
         out,
@@ -81,11 +74,37 @@ unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
         "kernel: fidelity.smoothing %g is below %g without method.gradient_correction: stresses and wave speeds are "
         "too small; give 1.13, or set method.gradient_correction: true\n",
         in->fidelity.smoothing, least_smoothing);
+  if (set & WARNINGS_ARRIVAL)
+    fprintf(
+        out,
+        "arrival: a wave reaches the far side of the plate at %.4g s, and speeds and plateaus are wrong after that: "
+        "give a stop.end_time below, or a larger target.width\n",
+        arrival);
   if (set & WARNINGS_LINKS)
     fprintf(out,
             "links: particles up to %.4g spacings apart belong together (fragments.link_length times "
             "fidelity.smoothing), but nearest neighbours stand %.4g apart: a whole body counts as many fragments; give "
             "a link_length of %.2g\n",
             reach_spacings(in), nearest_spacings(in), 1.36 / in->fidelity.smoothing);
+}
+
+unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
+  double compressed, arrival;
+  fronts(in, &compressed, &arrival);
+  unsigned set = 0;
+  if (in->fidelity.cfl > largest_step(in))
+    set |= WARNINGS_STEP;
+  if (sph_warn_contrast(in) > largest_contrast)
+    set |= WARNINGS_CONTRAST;
+  if (compressed > largest_compression)
+    set |= WARNINGS_PISTON;
+  if (in->fidelity.smoothing < least_smoothing && !in->method.gradient_correction)
+    set |= WARNINGS_KERNEL;
+  if (in->stop.end_time > arrival)
+    set |= WARNINGS_ARRIVAL;
+  if (reach_spacings(in) <= nearest_spacings(in))
+    set |= WARNINGS_LINKS;
+  if (out)
+    tell(in, set, compressed, arrival, out);
   return set;
 }
