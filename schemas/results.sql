@@ -354,13 +354,13 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   cracks REAL, -- [1] Stretch: number of parts of more than 1 % of the rod's mass, minus one. Parts are found without static strength and without damaged layers. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.
   frequency REAL, -- [1/s] Vibration: frequency of the first mode, from its zero crossings.
   rebound REAL, -- [1] Collision: speed of separation of the bodies over their speed of approach.
-  shock_speed REAL, -- [m/s] Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.
+  shock_speed REAL, -- [m/s] Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock. Of no use, and maybe below 0, with the warning arrival.
   shock_speed_exact REAL, -- [m/s] Piston: speed of the shock by the jump conditions.
   shock_density REAL, -- [kg/m^3] Piston: mean density behind the shock, in the middle half between piston and shock.
   shock_density_exact REAL, -- [kg/m^3] Piston: density behind the shock by the jump conditions.
   shock_pressure REAL, -- [Pa] Piston: mean pressure behind the shock, in the same region.
   shock_pressure_exact REAL, -- [Pa] Piston: pressure behind the shock by the jump conditions.
-  precursor_speed REAL, -- [m/s] Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster.
+  precursor_speed REAL, -- [m/s] Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster. Of no use, and maybe below 0, with the warning arrival.
   precursor_speed_exact REAL, -- [m/s] Piston: speed of the precursor by the jump conditions.
   precursor_pressure REAL, -- [Pa] Piston: mean pressure between precursor and shock.
   precursor_pressure_exact REAL, -- [Pa] Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.
@@ -1174,7 +1174,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure', 'Pa', 'Piston
 
 INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure_exact', 'Pa', 'Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster. Of no use, and maybe below 0, with the warning arrival.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed_exact', 'm/s', 'Piston: speed of the precursor by the jump conditions.', 1);
 
@@ -1202,7 +1202,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'shock_pressure', 'Pa', 'Piston: me
 
 INSERT INTO column_doc VALUES ('result_sph', 'shock_pressure_exact', 'Pa', 'Piston: pressure behind the shock by the jump conditions.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'shock_speed', 'm/s', 'Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'shock_speed', 'm/s', 'Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock. Of no use, and maybe below 0, with the warning arrival.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'shock_speed_exact', 'm/s', 'Piston: speed of the shock by the jump conditions.', 1);
 
@@ -1464,7 +1464,7 @@ INSERT INTO column_doc VALUES ('runs', 'precursor_pressure', 'Pa', 'Piston: mean
 
 INSERT INTO column_doc VALUES ('runs', 'precursor_pressure_exact', 'Pa', 'Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster.', 0);
+INSERT INTO column_doc VALUES ('runs', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster. Of no use, and maybe below 0, with the warning arrival.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'precursor_speed_exact', 'm/s', 'Piston: speed of the precursor by the jump conditions.', 0);
 
@@ -1518,7 +1518,7 @@ INSERT INTO column_doc VALUES ('runs', 'shock_pressure', 'Pa', 'Piston: mean pre
 
 INSERT INTO column_doc VALUES ('runs', 'shock_pressure_exact', 'Pa', 'Piston: pressure behind the shock by the jump conditions.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'shock_speed', 'm/s', 'Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.', 0);
+INSERT INTO column_doc VALUES ('runs', 'shock_speed', 'm/s', 'Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock. Of no use, and maybe below 0, with the warning arrival.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'shock_speed_exact', 'm/s', 'Piston: speed of the shock by the jump conditions.', 0);
 

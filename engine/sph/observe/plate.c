@@ -99,8 +99,7 @@ static double speed(const struct sph_run *run, size_t offset) {
     tt += time * time;
     tx += time * place;
   }
-  const double slope = n > 2 ? (tx - t * x / n) / (tt - t * t / n) : (double)NAN;
-  return slope > 0 ? slope : (double)NAN; /* a front that comes back has left the plate */
+  return n > 2 ? (tx - t * x / n) / (tt - t * t / n) : (double)NAN;
 }
 
 /* Width of the shock's rise, taken as linear: twice the distance from a quarter of it to three quarters. */

@@ -111,12 +111,12 @@ static const struct field rows[] = {
              "even if the rod no longer carries load."),
     REAL(frequency, "1/s", 0, .doc = "Vibration: frequency of the first mode, from its zero crossings."),
     REAL(rebound, "1", -HUGE_VAL, .doc = "Collision: speed of separation of the bodies over their speed of approach."),
-    REAL(shock.speed, "m/s", 0,
+    REAL(shock.speed, "m/s", -HUGE_VAL,
          .doc =
              "Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. "
              "The "
              "front is where density passes the mean of the values ahead and behind. Off when the piston is too slow "
-             "for a shock.",
+             "for a shock. Of no use, and maybe below 0, with the warning arrival.",
          .source = "Jutzi, Benz & Michel 2008"),
     REAL(shock.speed_exact, "m/s", 0, .doc = "Piston: speed of the shock by the jump conditions.",
          .source = "Rankine; Hugoniot"),
@@ -125,9 +125,9 @@ static const struct field rows[] = {
     REAL(shock.density_exact, "kg/m^3", 0, .doc = "Piston: density behind the shock by the jump conditions."),
     REAL(shock.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure behind the shock, in the same region."),
     REAL(shock.pressure_exact, "Pa", 0, .doc = "Piston: pressure behind the shock by the jump conditions."),
-    REAL(precursor.speed, "m/s", 0,
+    REAL(precursor.speed, "m/s", -HUGE_VAL,
          .doc = "Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there "
-                "is none, and when the shock is faster."),
+                "is none, and when the shock is faster. Of no use, and maybe below 0, with the warning arrival."),
     REAL(precursor.speed_exact, "m/s", 0, .doc = "Piston: speed of the precursor by the jump conditions."),
     REAL(precursor.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure between precursor and shock."),
     REAL(precursor.pressure_exact, "Pa", 0,
