@@ -15,9 +15,8 @@ static const char *remedy(int code, int system) {
     return "Allow the process more open files (`ulimit -n 1024`), then give the same command again.";
   if (code == SQLITE_READONLY_ROLLBACK)
     return "A file with -journal after the store's name lies beside it: a program was stopped while it wrote the "
-           "store, "
-           "or the journal is another store's. Give that program's command again, such as `clast run`: it brings the "
-           "store in order. If the journal is another store's, move it away.";
+           "store, or the journal is another store's. Give that program's command again, such as `clast run`: it "
+           "brings the store in order. If the journal is another store's, move it away.";
   switch (code & 0xff) {
   case SQLITE_FULL:
     return "The disk is full (or a quota or file size limit is reached). What was committed is safe; free some space "

@@ -17,8 +17,8 @@ struct part_file {
 
 /* STATUS_USAGE: the name is too long; STATUS_IO. */
 status part_file_open(struct part_file *file, const char *path, struct error *error);
-/* Closes the file. With STATUS_OK it is renamed, else it is removed; with STATUS_IO its name is put
- * before the message of `error`. Returns `code`, or an error of closing or renaming. */
+/* Closes the file. With STATUS_OK it is renamed, else it is removed. With STATUS_IO its name is put before the
+ * message of `error`. Returns `code`, or an error of closing or renaming. */
 status part_file_close(struct part_file *file, status code, struct error *error);
 
 /* Makes a folder, unless it exists. */

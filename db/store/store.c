@@ -142,8 +142,8 @@ static status open_locked(struct store *store, struct error *error) {
   return result == STATUS_OK ? identities_load(store, error) : result;
 }
 
-/* Undoes a failed call that made no table: leaves no file or an empty one, as before. Otherwise a file in WAL mode
- * without a table would look like a copy without its -wal file. `before`: bytes of the file, -1 if there was none. */
+/* Undoes a failed call that made no table: leaves no file or an empty one, as before. `before`: bytes of the
+ * file, -1 if there was none. */
 static void leave_empty(const char *path, off_t before) {
   struct stat file;
   if (before > 0 || stat(path, &file) != 0 || file.st_size > EMPTY_STORE)
@@ -162,8 +162,7 @@ static void write_warning(const struct store *store, char *warning, size_t size)
   else if (network)
     snprintf(warning, size,
              "warning: %s is on a network file system (%s), where locks and shared memory may fail and damage a store: "
-             "write to a "
-             "local disk and copy the file when it is done.",
+             "write to a local disk and copy the file when it is done.",
              store->path, network);
   else
     warning[0] = '\0';

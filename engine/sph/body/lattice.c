@@ -43,8 +43,7 @@ status sph_lattice_allocate(struct sph_points *points, size_t n, struct error *e
 status sph_lattice_too_thin(double wanted, double spacing, struct error *error) {
   return status_fail(
       error, STATUS_CONTENT,
-      "a body is too thin for %.0f particles of spacing %.3g m: raise fidelity.particles, or take a thicker "
-      "body",
+      "a body is too thin for %.0f particles of spacing %.3g m: raise fidelity.particles, or take a thicker body",
       wanted, spacing);
 }
 
