@@ -36,4 +36,13 @@ status status_fail(struct error *error, status code, const char *format, ...) __
 
 const char *status_meaning(status code);
 
+/* Returns from the calling function with the status of `call` unless it is STATUS_OK. Only where that function owns
+ * nothing which it would have to free. */
+#define TRY(call)                                                                                                      \
+  do {                                                                                                                 \
+    const status try_status = (call);                                                                                  \
+    if (try_status)                                                                                                    \
+      return try_status;                                                                                               \
+  } while (0)
+
 #endif

@@ -1,0 +1,25 @@
+/* Small memory that is there or ends the process. */
+#include "schemas/memory.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "schemas/status.h"
+
+void *memory_small(size_t count, size_t size) {
+  static const char refused[] = "clast: the system refused memory; the process ends\n";
+  assert(size == 0 || count <= MEMORY_SMALL / size);
+  void *memory = calloc(count ? count : 1, size ? size : 1);
+  if (!memory) { /* exit() would run handlers that need memory, also those of MPI and HDF5 */
+    (void)!write(STDERR_FILENO, refused, sizeof refused - 1);
+    _exit(STATUS_MEMORY);
+  }
+  return memory;
+}
+
+char *memory_small_text(const char *text) {
+  const size_t size = strlen(text) + 1;
+  return memcpy(memory_small(size, 1), text, size);
+}

@@ -1,0 +1,17 @@
+/* Small memory: allocations whose size constants of the program bound. When the system refuses one, the process ends
+ * with the exit code STATUS_MEMORY; the farm counts such a run as lost and tries it again, and a store survives the end
+ * of any process. So the caller checks nothing. Whatever grows with a file, a store or the particles of a scene uses
+ * malloc() and returns STATUS_MEMORY instead. */
+#ifndef CLAST_SCHEMAS_MEMORY_H
+#define CLAST_SCHEMAS_MEMORY_H
+
+#include <stddef.h>
+
+enum { MEMORY_SMALL = 1 << 16 }; /* bytes, the largest allocation here */
+
+/* `count` items of `size` bytes, all zero; never NULL. The caller frees them. */
+void *memory_small(size_t count, size_t size) __attribute__((malloc, returns_nonnull));
+/* A copy of a text of less than MEMORY_SMALL bytes; never NULL. The caller frees it. */
+char *memory_small_text(const char *text) __attribute__((malloc, returns_nonnull));
+
+#endif
