@@ -103,7 +103,7 @@ int main(void) {
       if (pores < 2) {
         sph_hook hook = s->ranges->module[pores ? SPH_MODULE_palpha : SPH_MODULE_tillotson][SPH_RESPOND];
         for (size_t k = 0; pores && k < s->block_count; k++)
-          if (!(s->solid[s->block[k].body].modules >> SPH_MODULE_palpha & 1))
+          if (!set_has(s->solid[s->block[k].body].modules.word, SPH_MODULE_palpha))
             s->block[k].high = s->block[k].low; /* the projectile has no pores */
         loops[pores] = fmin(loops[pores], loop(s, hook));
         if (pores)

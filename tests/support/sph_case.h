@@ -109,7 +109,7 @@ static CASE_UNUSED void case_loops(struct sph_system *s, const struct case_loop 
     block->sums = &sums;
     block->terms = &terms;
     for (size_t l = 0; l < count; l++)
-      if (!only_on || body->modules >> loops[l].module & 1)
+      if (!only_on || set_has(body->modules.word, (size_t)loops[l].module))
         s->ranges->module[loops[l].module][loops[l].stage](s, body, block);
     block->sums = NULL;
     block->terms = NULL;

@@ -13,30 +13,31 @@ const struct sph_module *sph_modules_at(size_t index) {
   return list[index];
 }
 
-uint64_t sph_modules_of(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
-  uint64_t on = 0, taken = 0;
+struct sph_module_set sph_modules_of(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  struct sph_module_set on = {0};
+  unsigned taken = 0;
   for (size_t m = SPH_MODULES; m-- > 0;) { /* the last module that sets a quantity is the one that acts */
-    const uint64_t quantity = list[m]->sets ? UINT64_C(1) << list[m]->sets : 0;
+    const unsigned quantity = list[m]->sets ? 1U << list[m]->sets : 0;
     if (quantity & taken || !list[m]->on(body, inputs))
       continue;
     taken |= quantity;
-    on |= UINT64_C(1) << m;
+    set_add(on.word, m, 1);
   }
   return on;
 }
 
-uint64_t sph_modules_columns(uint64_t modules, const struct sph_body_physics *body) {
-  uint64_t columns = 0;
-  FOR_MODULES(m, modules)
+struct sph_column_set sph_modules_columns(const struct sph_module_set *modules, const struct sph_body_physics *body) {
+  struct sph_column_set columns = {0};
+  FOR_MODULES(m, *modules)
     for (const struct sph_column_need *c = list[m]->columns; c && c->count; c++)
       if (!c->needed || c->needed(body))
-        columns |= ((UINT64_C(1) << c->count) - 1) << c->first;
+        set_add(columns.word, c->first, c->count);
   return columns;
 }
 
 void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_inputs *inputs,
                         struct sph_particles *particles, size_t first, size_t last) {
-  const uint64_t modules = sph_modules_of(body, inputs);
+  const struct sph_module_set modules = sph_modules_of(body, inputs);
   FOR_MODULES(m, modules)
     if (list[m]->set_up)
       list[m]->set_up(body, particles, first, last);
@@ -44,7 +45,9 @@ void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_in
 
 bool sph_modules_damage_scales_shear(const struct sph_body_inputs *body, const struct sph_inputs *inputs) {
   const struct sph_body_physics physics = sph_derived_physics(body, NULL);
-  return !(sph_modules_columns(sph_modules_of(&physics, inputs), &physics) >> SPH_COLUMN(shear_damage) & 1);
+  const struct sph_module_set modules = sph_modules_of(&physics, inputs);
+  const struct sph_column_set columns = sph_modules_columns(&modules, &physics);
+  return !set_has(columns.word, SPH_COLUMN(shear_damage));
 }
 
 void sph_modules_complete_material(struct sph_material *material, const bool *given) {
@@ -54,24 +57,24 @@ void sph_modules_complete_material(struct sph_material *material, const bool *gi
 }
 
 void sph_modules_report(const struct sph_run *run, struct sph_results *results) {
-  uint64_t modules = 0;
+  struct sph_module_set modules = {0};
   for (size_t b = 0; b < run->system->body_count; b++)
-    modules |= run->system->solid[b].modules;
+    set_unite(modules.word, run->system->solid[b].modules.word, SPH_MODULES);
   FOR_MODULES(m, modules)
     if (list[m]->report)
       list[m]->report(run, results);
 }
 
-size_t sph_modules_bytes_in_pairs(uint64_t modules) {
+size_t sph_modules_bytes_in_pairs(const struct sph_module_set *modules) {
   size_t bytes = 0;
-  FOR_MODULES(m, modules)
+  FOR_MODULES(m, *modules)
     bytes += (size_t)list[m]->bytes_in_pairs;
   return bytes;
 }
 
-size_t sph_modules_bytes_linked(uint64_t modules) {
+size_t sph_modules_bytes_linked(const struct sph_module_set *modules) {
   size_t bytes = 0;
-  FOR_MODULES(m, modules)
+  FOR_MODULES(m, *modules)
     bytes += (size_t)list[m]->bytes_linked;
   return bytes;
 }

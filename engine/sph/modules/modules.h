@@ -18,12 +18,17 @@
 #define CLAST_ENGINE_SPH_MODULES_MODULES_H
 
 #include "engine/sph/modules/list.h"
+#include "engine/sph/modules/set.h"
 #include "engine/sph/step/system.h"
 
 enum sph_module_index {
 #define SPH_MODULE_INDEX(name) SPH_MODULE_##name,
   SPH_MODULE_LIST(SPH_MODULE_INDEX, SPH_MODULE_INDEX) SPH_MODULES
 };
+struct sph_module_set {
+  uint64_t word[SET_WORDS(SPH_MODULES)];
+};
+struct sph_column_set; /* step/system_layout.h */
 
 enum sph_stage {
   SPH_PREDICT,       /* carries the module's own variables to the new time, by the rates of the old one */
@@ -97,17 +102,12 @@ SPH_MODULE_LIST(SPH_MODULE_EXTERN, SPH_MODULE_EXTERN)
 
 const struct sph_module *sph_modules_at(size_t index); /* by enum sph_module_index */
 
-/* The modules of a set of bits, in their order: FOR_MODULES(m, body->modules). */
-static inline size_t sph_modules_next(uint64_t set, size_t from) {
-  while (from < SPH_MODULES && !(set >> from & 1))
-    from++;
-  return from;
-}
-#define FOR_MODULES(m, set) for (size_t m = sph_modules_next(set, 0); m < SPH_MODULES; m = sph_modules_next(set, m + 1))
-/* The modules that act in a body, a bit each. */
-uint64_t sph_modules_of(const struct sph_body_physics *body, const struct sph_inputs *inputs);
-/* The columns that these modules need in a body, a bit each (SPH_COLUMNS_OF). */
-uint64_t sph_modules_columns(uint64_t modules, const struct sph_body_physics *body);
+/* The modules of a set, in their order: FOR_MODULES(m, body->modules). */
+#define FOR_MODULES(m, set) FOR_SET(m, (set).word, SPH_MODULES)
+/* The modules that act in a body. */
+struct sph_module_set sph_modules_of(const struct sph_body_physics *body, const struct sph_inputs *inputs);
+/* The columns that these modules need in a body. */
+struct sph_column_set sph_modules_columns(const struct sph_module_set *modules, const struct sph_body_physics *body);
 /* Sets up the particles of a body at rest, by all of its modules. */
 void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_inputs *inputs,
                         struct sph_particles *particles, size_t first, size_t last);
@@ -118,8 +118,8 @@ bool sph_modules_damage_scales_shear(const struct sph_body_inputs *body, const s
 void sph_modules_complete_material(struct sph_material *material, const bool *given);
 void sph_modules_report(const struct sph_run *run, struct sph_results *results);
 /* Bytes per particle that they link (sph_module.bytes_linked). */
-size_t sph_modules_bytes_linked(uint64_t modules);
+size_t sph_modules_bytes_linked(const struct sph_module_set *modules);
 /* Bytes per particle that they add to the pair loop's records. */
-size_t sph_modules_bytes_in_pairs(uint64_t modules);
+size_t sph_modules_bytes_in_pairs(const struct sph_module_set *modules);
 
 #endif

@@ -96,7 +96,7 @@ status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph
   code = make_system(run, error);
   if (code)
     goto cleanup;
-  code = sph_particles_make(run->start->n, sph_system_columns_arrays(run->system->columns), &run->now, error);
+  code = sph_particles_make(run->start->n, sph_system_columns_arrays(&run->system->columns), &run->now, error);
   if (code)
     goto cleanup;
   code = sph_protocol_record_start(run, error);

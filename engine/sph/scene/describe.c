@@ -33,36 +33,36 @@ enum { BODIES = 2 };
 
 /* Needs of the bodies of a scene in the moving system. */
 struct need {
-  uint64_t modules[BODIES], columns; /* bits (modules.h): of each body, of all */
-  size_t pairs;                      /* bytes per particle of the pair loop's options */
-  size_t linked;                     /* bytes per particle that modules prepare */
-  size_t bytes;                      /* per particle, of modules alone */
+  struct sph_module_set modules[BODIES]; /* of each body */
+  struct sph_column_set columns;         /* of all */
+  size_t pairs;                          /* bytes per particle of the pair loop's options */
+  size_t linked;                         /* bytes per particle that modules prepare */
+  size_t bytes;                          /* per particle, of modules alone */
 };
 
 static struct need need_of(const struct sph_inputs *in) {
   static const struct sph_flaws some = {.particles = 1};
   const bool damped = in->target.shape == SPH_SHAPE_BOX && in->sides.far;
   struct need need = {.columns = sph_system_columns_of_all(damped)};
-  uint64_t of_modules = 0;
+  struct sph_column_set of_modules = {0};
   for (int b = 0; b < 1 + sph_derived_has_projectile(in); b++) {
     const struct sph_body_inputs *body = b ? &in->projectile : &in->target;
     const struct sph_body_physics physics = sph_derived_physics(body, sph_derived_cracks(body) ? &some : NULL);
     need.modules[b] = sph_modules_of(&physics, in);
-    of_modules |= sph_modules_columns(need.modules[b], &physics);
-    need.linked += sph_modules_bytes_linked(need.modules[b]);
-    need.pairs = sph_modules_bytes_in_pairs(need.modules[b]); /* options of the pair loop: the same for all bodies */
+    const struct sph_column_set own = sph_modules_columns(&need.modules[b], &physics);
+    set_unite(of_modules.word, own.word, SPH_COLUMNS);
+    need.linked += sph_modules_bytes_linked(&need.modules[b]);
+    need.pairs = sph_modules_bytes_in_pairs(&need.modules[b]); /* options of the pair loop: the same for all bodies */
   }
-  need.columns |= of_modules;
-  need.bytes = need.pairs + need.linked;
-  for (; of_modules; of_modules &= of_modules - 1)
-    need.bytes += sizeof(double);
+  set_unite(need.columns.word, of_modules.word, SPH_COLUMNS);
+  need.bytes = need.pairs + need.linked + set_size(of_modules.word, SPH_COLUMNS) * sizeof(double);
   return need;
 }
 
 size_t sph_describe_memory(const struct sph_inputs *in) {
   const struct need need = need_of(in);
   const double particles = sph_derived_particles(in);
-  double bytes = BYTES_ANYWAY + particles * (sph_system_columns_bytes(need.columns, need.pairs, &in->fidelity) +
+  double bytes = BYTES_ANYWAY + particles * (sph_system_columns_bytes(&need.columns, need.pairs, &in->fidelity) +
                                              BYTES_BESIDE + (double)need.linked);
   if (sph_derived_cracks(&in->target))
     bytes += flaws_expected(in) * BYTES_PER_FLAW;
@@ -81,7 +81,7 @@ static double speed_expected(const struct sph_inputs *in) {
   const struct need need = need_of(in);
   double cost = in->fidelity.precision == SPH_FLOAT ? COST_FLOAT : COST_DOUBLE;
   for (size_t m = 0; m < SPH_MODULES; m++)
-    if ((need.modules[0] | need.modules[1]) >> m & 1)
+    if (set_has(need.modules[0].word, m) || set_has(need.modules[1].word, m))
       cost += sph_modules_at(m)->cost;
   return 1e9 / cost;
 }
@@ -164,7 +164,7 @@ static void modules(const struct sph_inputs *in, FILE *out) {
   const struct need need = need_of(in);
   for (size_t m = 0; m < SPH_MODULES; m++) {
     const struct sph_module *module = sph_modules_at(m);
-    const unsigned on = (unsigned)(need.modules[0] >> m & 1) | (unsigned)(need.modules[1] >> m & 1) << 1;
+    const unsigned on = set_has(need.modules[0].word, m) + 2U * set_has(need.modules[1].word, m);
     if (on)
       fprintf(out, "  %s (%s): %s [%s]\n", module->name, who[on], module->doc, module->source);
     else

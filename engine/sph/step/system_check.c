@@ -91,14 +91,15 @@ static status check_particles(const struct sph_particles *p, size_t body_count, 
 /* Refused before anything is allocated. */
 static status check_memory(const struct sph_particles *p, size_t body_count, const struct sph_body_physics *bodies,
                            const struct sph_inputs *inputs, struct error *error) {
-  uint64_t columns = sph_system_columns_of_all(p->damping != NULL);
+  struct sph_column_set columns = sph_system_columns_of_all(p->damping != NULL);
   size_t pairs = 0;
   for (size_t b = 0; b < body_count; b++) {
-    const uint64_t modules = sph_modules_of(&bodies[b], inputs);
-    columns |= sph_modules_columns(modules, &bodies[b]);
-    pairs = sph_modules_bytes_in_pairs(modules); /* options of the pair loop: the same for all bodies */
+    const struct sph_module_set modules = sph_modules_of(&bodies[b], inputs);
+    const struct sph_column_set own = sph_modules_columns(&modules, &bodies[b]);
+    set_unite(columns.word, own.word, SPH_COLUMNS);
+    pairs = sph_modules_bytes_in_pairs(&modules); /* options of the pair loop: the same for all bodies */
   }
-  const double bytes = (double)p->n * sph_system_columns_bytes(columns, pairs, &inputs->fidelity);
+  const double bytes = (double)p->n * sph_system_columns_bytes(&columns, pairs, &inputs->fidelity);
   const double there = (double)sph_particles_memory();
   if (bytes > there)
     return status_fail(error, STATUS_MEMORY,

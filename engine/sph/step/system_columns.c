@@ -1,5 +1,5 @@
 /* The columns of a system: which exist, their memory, and copying particles into them and back. The arrays of the
- * state, of a restart file and of the estimate of memory are all made from the bits of sph_system.columns. */
+ * state, of a restart file and of the estimate of memory are all made from the set sph_system.columns. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,18 +44,21 @@ static double *member_of(const struct sph_particles *p, size_t member) {
   return array;
 }
 
-uint64_t sph_system_columns_of_all(bool damped) {
-  const uint64_t first = UINT64_C(1) << SPH_COLUMN(x), end = UINT64_C(1) << (SPH_COLUMN(pressure_term) + 1);
-  return (end - first) | (damped ? UINT64_C(1) << SPH_COLUMN(damping) : 0);
+struct sph_column_set sph_system_columns_of_all(bool damped) {
+  struct sph_column_set columns = {0};
+  set_add(columns.word, SPH_COLUMN(x), SPH_COLUMN(pressure_term) + 1 - SPH_COLUMN(x));
+  if (damped)
+    set_add(columns.word, SPH_COLUMN(damping), 1);
+  return columns;
 }
 
-int sph_system_columns_arrays(uint64_t columns) {
+int sph_system_columns_arrays(const struct sph_column_set *columns) {
   int arrays = 0;
-  if (columns >> SPH_COLUMN(stress) & 1)
+  if (set_has(columns->word, SPH_COLUMN(stress)))
     arrays |= SPH_WITH_STRESS;
-  if (columns >> SPH_COLUMN(damage) & 1)
+  if (set_has(columns->word, SPH_COLUMN(damage)))
     arrays |= SPH_WITH_DAMAGE;
-#define PARTICLE_ARRAYS(FLAG, column) arrays |= columns >> SPH_COLUMN(column) & 1 ? SPH_WITH_##FLAG : 0;
+#define PARTICLE_ARRAYS(FLAG, column) arrays |= set_has(columns->word, SPH_COLUMN(column)) ? SPH_WITH_##FLAG : 0;
 #include "engine/sph/modules/declarations.h"
   return arrays;
 }
@@ -63,9 +66,8 @@ int sph_system_columns_arrays(uint64_t columns) {
 size_t sph_system_columns_list(const struct sph_system *s, double *column[SPH_COLUMNS]) {
   struct sph_columns columns = s->c;
   size_t count = 0;
-  for (size_t k = 0; k < SPH_COLUMNS; k++)
-    if (s->columns >> k & 1)
-      column[count++] = *slot_of(&columns, k);
+  FOR_SET(k, s->columns.word, SPH_COLUMNS)
+  column[count++] = *slot_of(&columns, k);
   return count;
 }
 
@@ -82,15 +84,8 @@ static double *huge_pages(size_t bytes) {
   return memory;
 }
 
-static size_t count_of(uint64_t columns) {
-  size_t count = 0;
-  for (; columns; columns &= columns - 1)
-    count++;
-  return count;
-}
-
 static bool has(const struct sph_system *s, size_t column) {
-  return s->columns >> column & 1;
+  return set_has(s->columns.word, column);
 }
 
 static void fill_column(struct sph_system *s, size_t column, double value) {
@@ -107,7 +102,7 @@ static void set_initial(struct sph_system *s, size_t module) {
 }
 
 status sph_system_columns_take(struct sph_system *s, const struct sph_particles *p, struct error *error) {
-  const size_t count = count_of(s->columns);
+  const size_t count = set_size(s->columns.word, SPH_COLUMNS);
   s->stride = (s->n + 7) / 8 * 8 + 8; /* columns must not share sets of the cache */
   s->arena_doubles = count * s->stride;
   s->arena = huge_pages(s->arena_doubles * sizeof(double));
@@ -120,9 +115,7 @@ status sph_system_columns_take(struct sph_system *s, const struct sph_particles 
                        (double)(s->arena_doubles * sizeof(double)) / 1e9);
   memset(s->arena, 0, s->arena_doubles * sizeof(double));
   double *next = s->arena;
-  for (size_t k = 0; k < SPH_COLUMNS; k++) {
-    if (!has(s, k))
-      continue;
+  FOR_SET(k, s->columns.word, SPH_COLUMNS) {
     *slot_of(&s->c, k) = next;
     next += s->stride;
   }
@@ -145,10 +138,11 @@ void sph_system_columns_fill(struct sph_system *s, const struct sph_particles *p
         sph_modules_at(m)->fill(s, &s->solid[b], p);
 }
 
-double sph_system_columns_bytes(uint64_t columns, size_t pairs, const struct sph_fidelity *fidelity) {
+double sph_system_columns_bytes(const struct sph_column_set *columns, size_t pairs,
+                                const struct sph_fidelity *fidelity) {
   enum { RECORDS = 378, LISTS = 108 }; /* of the pair loop at the usual h, without options; measured */
   const double reach = fidelity->smoothing / SPH_BODIES_H * (1 + fidelity->skin);
-  return (double)(count_of(columns) * sizeof(double) + 2 * sizeof(uint32_t) + pairs + RECORDS) +
+  return (double)(set_size(columns->word, SPH_COLUMNS) * sizeof(double) + 2 * sizeof(uint32_t) + pairs + RECORDS) +
          LISTS * reach * reach * reach;
 }
 

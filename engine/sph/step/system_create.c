@@ -138,8 +138,8 @@ static void find_bodies(struct sph_system *s, const struct sph_particles *p, con
     struct sph_solid *solid = &s->solid[b];
     solid->physics = bodies[b];
     solid->modules = sph_modules_of(&bodies[b], &s->in);
-    solid->columns = sph_modules_columns(solid->modules, &bodies[b]);
-    s->columns |= solid->columns;
+    solid->columns = sph_modules_columns(&solid->modules, &bodies[b]);
+    set_unite(s->columns.word, solid->columns.word, SPH_COLUMNS);
   }
 }
 

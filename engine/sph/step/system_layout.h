@@ -34,7 +34,9 @@ struct sph_columns {
 #define SPH_COLUMN(name)     (offsetof(struct sph_columns, name) / sizeof(double *))
 #define SPH_COLUMNS_OF(name) SPH_COLUMN(name), sizeof(((struct sph_columns *)NULL)->name) / sizeof(double *)
 enum { SPH_COLUMNS = sizeof(struct sph_columns) / sizeof(double *) };
-_Static_assert(SPH_COLUMNS <= 64, "a bit per column");
+struct sph_column_set {
+  uint64_t word[SET_WORDS(SPH_COLUMNS)];
+};
 
 struct sph_solid;
 struct sph_block;
@@ -66,10 +68,11 @@ struct sph_block {
 /* A body: its modules, and the data that they prepared from its material. */
 struct sph_solid {
   struct sph_body_physics physics; /* flaws is NULL (modules/weibull.c has them) */
-  uint64_t modules, columns;       /* a bit each, by enum sph_module_index and by SPH_COLUMN */
-  void *prepared[SPH_MODULES];     /* by its modules (sph_module.prepare) */
-  size_t first, last;              /* its particles */
-  double density;                  /* kg/m^3 at the start, bulk */
+  struct sph_module_set modules;
+  struct sph_column_set columns; /* those that its modules need */
+  void *prepared[SPH_MODULES];   /* by its modules (sph_module.prepare) */
+  size_t first, last;            /* its particles */
+  double density;                /* kg/m^3 at the start, bulk */
   double lowest_density;
   sph_hook before[SPH_HOOKS], after[SPH_HOOKS]; /* loops of a step, in order: before and after the pair loop */
   size_t before_count, after_count;
@@ -78,7 +81,7 @@ struct sph_solid {
 };
 
 static inline bool sph_solid_has(const struct sph_solid *body, size_t column) {
-  return body->columns >> column & 1;
+  return set_has(body->columns.word, column);
 }
 
 /* Values that change from step to step, beside the columns. */
@@ -112,17 +115,17 @@ struct sph_system {
   size_t body_count, block_count;
   struct sph_solid *solid; /* its bodies */
   struct sph_block *block;
-  uint64_t columns; /* columns that some body needs, a bit each */
+  struct sph_column_set columns; /* that some body needs */
   struct sph_pairs *pairs;
   const struct sph_ranges *ranges;
   int fault; /* enum sph_fault; `failure` has the message */
   char failure[256];
 };
 
-/* system_columns.c: which columns every body has, a bit each. */
-uint64_t sph_system_columns_of_all(bool damped);
+/* system_columns.c: which columns every body has. */
+struct sph_column_set sph_system_columns_of_all(bool damped);
 /* The arrays of particles (enum sph_particle_arrays) that go with such columns. */
-int sph_system_columns_arrays(uint64_t columns);
+int sph_system_columns_arrays(const struct sph_column_set *columns);
 /* Allocates the system's columns and the arrays beside them, at their initial values. STATUS_MEMORY. */
 status sph_system_columns_take(struct sph_system *system, const struct sph_particles *particles, struct error *error);
 /* Pointers to the columns that exist, in a fixed order. Returns how many. */
@@ -130,9 +133,10 @@ size_t sph_system_columns_list(const struct sph_system *system, double *column[S
 /* Copies the initial values of particles into the columns, and columns back into particles (sph_system_read). */
 void sph_system_columns_fill(struct sph_system *system, const struct sph_particles *particles);
 void sph_system_columns_read(const struct sph_system *system, struct sph_particles *out);
-/* Estimated bytes per particle of a system with these columns (a bit each, of all bodies) and `pairs` bytes
- * for options of the pair loop. Flaws are not in it. */
-double sph_system_columns_bytes(uint64_t columns, size_t pairs, const struct sph_fidelity *fidelity);
+/* Estimated bytes per particle of a system with these columns (of all bodies) and `pairs` bytes for options of the pair
+ * loop. Flaws are not in it. */
+double sph_system_columns_bytes(const struct sph_column_set *columns, size_t pairs,
+                                const struct sph_fidelity *fidelity);
 
 /* x wrapped into the periodic box; unchanged when `length` is NaN. */
 double sph_system_columns_wrapped(double x, double length);
