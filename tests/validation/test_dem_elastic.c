@@ -21,7 +21,7 @@ static struct moduli measure(double beam_modulus, bool extension, bool contact, 
   in.grain.disorder = disorder;
   in.loading.direction = extension ? DEM_EXTENSION : DEM_SHORTENING;
   if (!contact)
-    in.contact.law = 2; /* off */
+    in.contact.law = DEM_CONTACT_OFF;
   /* Slow compared with sound: the load takes 10 times as long as a wave along the body, after a rise of 5 such times.
    */
   double wave = (double)in.body.rows * in.grain.spacing / sqrt(beam_modulus / in.grain.density);

@@ -16,7 +16,7 @@
 #define CLAST_ENGINE_DEM_BEAMS_BOND_RANGE_H
 
 #include "engine/dem/beams/breaking.h"
-#include "engine/dem/contacts/contact_law.h"
+#include "engine/dem/contacts/contact_force.h"
 
 /* Sides nearer to one line than this share of their length count as in one line; the share is above the rounding of
  * positions. */
@@ -256,8 +256,8 @@ LANES_INLINE struct bond_forces bond_beam_forces(struct dem_system *s, const str
  * that no window decides go to the general list. */
 LANES_INLINE void bond_contacts(struct dem_system *s, const struct dem_bond_block *block, int at, uint32_t lane,
                                 const uint32_t *const index[2], const struct bond_ends *ends,
-                                const struct bond_beams *b, enum bond_work work, bool velocities,
-                                struct bond_forces *forces) {
+                                const struct bond_beams *b, enum bond_work work, enum dem_contact_law law,
+                                bool velocities, struct bond_forces *forces) {
   const struct dem_columns *c = &s->c;
   struct contact_sums sums;
   struct contact_pairs pairs = {.apart_x = b->dx, .apart_y = b->dy, .stiffness = lanes_load(block->stiffness + at)};
@@ -286,7 +286,8 @@ LANES_INLINE void bond_contacts(struct dem_system *s, const struct dem_bond_bloc
       pairs.spin[k] = lanes_gather(c->guess_spin, index[k]);
     }
   }
-  const struct contact_force f = contact_force(&sums, &pairs, touching, &s->in->contact, velocities, &s->sums, at);
+  const struct contact_force f = contact_force(&sums, &pairs, touching, law, s->in->contact.friction, velocities,
+                                               &s->sums, at);
   forces->x += f.x;
   forces->y += f.y;
   forces->torque_1 += f.torque[0];
@@ -307,7 +308,9 @@ LANES_INLINE void bond_scatter(double *fx, double *fy, double *torque, const uin
   }
 }
 
-LANES_INLINE void bond_range(struct dem_system *s, enum bond_work work, bool contact, bool velocities) {
+/* Work, law and velocities are constants of a call. */
+LANES_INLINE void bond_range(struct dem_system *s, enum bond_work work, enum dem_contact_law law, bool velocities) {
+  const bool contact = law != DEM_CONTACT_OFF;
   double *restrict fx = s->c.fx, *restrict fy = s->c.fy, *restrict torque = s->c.torque;
   for (size_t k = 0; k < s->now.bond_blocks; k++) {
     struct dem_bond_block *block = &s->bond[k];
@@ -319,7 +322,7 @@ LANES_INLINE void bond_range(struct dem_system *s, enum bond_work work, bool con
         bond_break(s, block, at, &beams);
       struct bond_forces forces = bond_beam_forces(s, block, at, &beams, work);
       if (contact)
-        bond_contacts(s, block, at, (uint32_t)(k * DEM_BLOCK + (size_t)at), index, &ends, &beams, work, velocities,
+        bond_contacts(s, block, at, (uint32_t)(k * DEM_BLOCK + (size_t)at), index, &ends, &beams, work, law, velocities,
                       &forces);
       if (work == BOND_FORCES)
         bond_scatter(fx, fy, torque, index, &forces);

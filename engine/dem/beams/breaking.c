@@ -38,7 +38,8 @@ static void remove_beam(struct dem_system *s, struct dem_bond_block *block, int 
  * half a step, as for the beam (dem_breaking_lane). The energy booked for the break is reduced by this;
  * else the ledger would gain it. */
 static double contact_begins(const struct dem_system *s, int32_t pair) {
-  if (s->in->contact.law != DEM_CONTACT_CONSERVATIVE || s->in->contact.bonded)
+  const struct dem_law *law = dem_laws_at(s->in->contact.law);
+  if (!law || !law->stores_energy || s->in->contact.bonded)
     return 0.0;
   const uint32_t i = s->pair[pair][0], j = s->pair[pair][1];
   const double dx = s->c.x[j] - s->c.x[i], dy = s->c.y[j] - s->c.y[i];

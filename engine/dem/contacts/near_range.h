@@ -45,7 +45,8 @@ struct near_batch {
   double column[NEAR_COLUMNS][LANES]; /* sums, origin, coefficients: the order of near_add */
 };
 
-LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, bool measure, bool velocities) {
+LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, bool measure, enum dem_contact_law law,
+                             bool velocities) {
   if (!batch->count)
     return;
   for (int lane = batch->count; lane < LANES; lane++) {
@@ -79,7 +80,8 @@ LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, boo
         pairs.vy[k] = lanes_gather(c->guess_vy, index[k]);
         pairs.spin[k] = lanes_gather(c->guess_spin, index[k]);
       }
-    const struct contact_force f = contact_force(&sums, &pairs, v[0] > 0.0, &s->in->contact, velocities, &s->sums, 0);
+    const struct contact_force f = contact_force(&sums, &pairs, v[0] > 0.0, law, s->in->contact.friction, velocities,
+                                                 &s->sums, 0);
     for (int lane = 0; lane < batch->count; lane++) {
       const uint32_t i = batch->first[lane], j = batch->second[lane];
       c->fx[i] += f.x[lane];
@@ -135,7 +137,7 @@ LANES_INLINE void near_add(struct near_batch *batch, const struct near_candidate
 
 /* Evaluates the pairs one by one with the general overlap. A near pair that is apart gets a new cached side (unless
  * measuring). */
-LANES_INLINE void near_general(struct dem_system *s, bool measure, bool velocities) {
+LANES_INLINE void near_general(struct dem_system *s, bool measure, enum dem_contact_law law, bool velocities) {
   struct near_batch batch = {0};
   struct dem_ring ring[2];
   for (size_t k = 0; k < s->general_count; k++) {
@@ -155,9 +157,9 @@ LANES_INLINE void near_general(struct dem_system *s, bool measure, bool velociti
       continue;
     near_add(&batch, &candidate, &overlap);
     if (batch.count == LANES)
-      near_flush(s, &batch, measure, velocities);
+      near_flush(s, &batch, measure, law, velocities);
   }
-  near_flush(s, &batch, measure, velocities);
+  near_flush(s, &batch, measure, law, velocities);
 }
 
 #endif

@@ -23,7 +23,7 @@ struct dem_overlap {
   int owner;                 /* whose side it is: 0 or 1 */
   size_t side, vertex;       /* that side, and the vertex of the other that is nearest to it */
   double origin_x, origin_y; /* of the sums */
-  double twice_area, chord_x, chord_y, moment, xx, xy, yy; /* see contact_law.h */
+  double twice_area, chord_x, chord_y, moment, xx, xy, yy; /* see contact_force.h */
 };
 
 /* Makes the near list and repacks the bond blocks, from the present positions. Every pair whose gap is less than the

@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#include "engine/dem/contacts/contact_law.h"
+#include "engine/dem/contacts/contact_force.h"
 #include "engine/dem/contacts/neighbours.h"
 
 /* Finds the side of either polygon that best separates the two, i.e. with the largest gap; several sides at a time. */

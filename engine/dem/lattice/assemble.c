@@ -20,9 +20,8 @@ struct dem_contact dem_assemble_contact(const struct dem_system *s, uint32_t i, 
   const struct dem_contact_inputs *contact = &s->in->contact;
   const double per_length = 0.5 * (1.0 / s->diameter[i] + 1.0 / s->diameter[j]); /* 1 / L_c */
   const double mass = s->mass[i] * s->mass[j] / (s->mass[i] + s->mass[j]);       /* m_eff, K99 eq 6 */
-  double stiffness = s->in->grain.young_modulus * per_length;
-  if (contact->law != DEM_CONTACT_PRINTED)
-    stiffness /= dem_assemble_reference_side(side, s->diameter[i], s->diameter[j]);
+  const double reference = dem_assemble_reference_side(side, s->diameter[i], s->diameter[j]);
+  const double stiffness = dem_laws_coefficient(contact->law, s->in->grain.young_modulus * per_length, reference);
   return (struct dem_contact){stiffness, mass * contact->normal_damping, mass * contact->tangential_damping};
 }
 

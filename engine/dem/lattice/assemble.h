@@ -9,7 +9,7 @@
 status dem_assemble(struct dem_system *system, const struct dem_tessellation *tessellation, uint64_t seed,
                     struct error *error);
 
-/* S_ref of the conservative law, kappa = Y / (L_c S_ref), m; it never changes during a run.
+/* S_ref of a pair (conservative law: kappa = Y / (L_c S_ref)), m; it never changes during a run.
  * Pairs that were never bonded (side = 0): 0.27 (d_i + d_j). Bonded pairs: the common side, but at least half of that
  * value. The floor is needed because the lattice makes arbitrarily short sides, and kappa acts on any later overlap of
  * the two grains: without it, about 1 run in 100 had a pair too stiff for its time step after its beam had broken, and

@@ -27,17 +27,15 @@ void dem_describe_sound_speeds(const struct dem_inputs *in, double *extension, d
                       in->grain.density);
 }
 
-/* Two squares of side s face on, with d = 2 s/sqrt(pi). Pushed through each other they store at most half kappa s^4
- * with kappa = Y/(d S_ref) (printed law: half Y s^3/d of work). Their kinetic energy is rho s^2 v^2 / 4. Here s = 1. */
+/* Two squares of side s face on, with d = 2 s/sqrt(pi). Pushed through each other they take up at most the work of the
+ * law's spring over the way s. Their kinetic energy is rho s^2 v^2 / 4. Here s = 1. */
 double dem_describe_passing_speed(const struct dem_inputs *in) {
   const double d = 2 / sqrt(M_PI);
-  switch ((enum dem_contact_law)in->contact.law) {
-  case DEM_CONTACT_CONSERVATIVE:
-    return sqrt(2 / (dem_assemble_reference_side(0, d, d) * d) * in->grain.young_modulus / in->grain.density);
-  case DEM_CONTACT_PRINTED: return sqrt(2 / d * in->grain.young_modulus / in->grain.density);
-  case DEM_CONTACT_OFF: break;
-  }
-  return 0;
+  const double spring = dem_laws_spring(in->contact.law,
+                                        dem_laws_coefficient(in->contact.law, 1 / d,
+                                                             dem_assemble_reference_side(0, d, d)),
+                                        1);
+  return sqrt(2 * spring * in->grain.young_modulus / in->grain.density);
 }
 
 static void protocol(const struct dem_inputs *in, FILE *out) {
@@ -83,9 +81,8 @@ static void model(const struct dem_inputs *in, FILE *out) {
     fprintf(out, "  contact: no (contact.law is off): grains pass through each other\n");
     return;
   }
-  fprintf(out, "  contact: %s law, Y %.4g Pa, bonded neighbours %s\n",
-          in->contact.law == DEM_CONTACT_PRINTED ? "printed" : "conservative", in->grain.young_modulus,
-          in->contact.bonded ? "too" : "not");
+  fprintf(out, "  contact: %s law, Y %.4g Pa, bonded neighbours %s\n", dem_laws_names[in->contact.law],
+          in->grain.young_modulus, in->contact.bonded ? "too" : "not");
   fprintf(out, "  limit of the model: single grains that close in faster than about %.0f m/s pass through each other\n",
           dem_describe_passing_speed(in));
   bool damped = in->contact.normal_damping > 0 || in->contact.tangential_damping > 0;

@@ -9,7 +9,6 @@
 
 static const char *const kinds[] = {"disc-explosion", "block-impact",   "uniaxial",
                                     "compression",    "disc-collision", NULL};
-static const char *const laws[] = {"conservative", "printed", "off", NULL};
 static const char *const directions[] = {"extension", "compression", NULL};
 static const char *const integrators[] = {"verlet", "gear", NULL};
 
@@ -21,7 +20,7 @@ static const char *const integrators[] = {"verlet", "gear", NULL};
 #define BLOCKS   "kind=block-impact|uniaxial|compression"
 #define LOADED   "kind=uniaxial|compression"
 #define FREE     "kind=disc-explosion|block-impact|disc-collision"
-#define TOUCHING "contact.law=conservative|printed"
+#define TOUCHING "contact.law=" DEM_LAWS(DEM_LAWS_NAME, "|")
 
 static const struct field rows[] = {
     CHOICE(kind, kinds,
@@ -69,10 +68,9 @@ static const struct field rows[] = {
                 "off: all beams have the same thresholds.",
          .source = "off is K99 section 2.3; the law is an option beyond the paper"),
 
-    CHOICE(contact.law, laws,
-           .choice_docs = "the gradient of an overlap potential: an undamped contact returns the energy put in\n"
-                          "force Y A/L_c as in the paper: not a potential force\n"
-                          "grains pass through each other: the pure beam lattice",
+    CHOICE(contact.law, dem_laws_names,
+           .choice_docs = DEM_LAWS(DEM_LAWS_DOC, "\n") "\n"
+                                                       "grains pass through each other: the pure beam lattice",
            .doc = "Repulsion of overlapping grains.", .source = "K99 eq. 2 for `printed`"),
     SWITCH(contact.bonded, 1, .when = TOUCHING,
            .doc = "Repulsion acts between grains that a beam joins, too: the paper's stiffer compression needs it.",

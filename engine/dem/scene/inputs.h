@@ -4,6 +4,7 @@
 #ifndef CLAST_ENGINE_DEM_SCENE_INPUTS_H
 #define CLAST_ENGINE_DEM_SCENE_INPUTS_H
 
+#include "engine/dem/contacts/laws.h"
 #include "schemas/field.h"
 
 enum dem_kind {
@@ -14,7 +15,6 @@ enum dem_kind {
   DEM_DISC_COLLISION,
 };
 enum dem_direction { DEM_EXTENSION, DEM_SHORTENING };
-enum dem_contact_law { DEM_CONTACT_CONSERVATIVE, DEM_CONTACT_PRINTED, DEM_CONTACT_OFF };
 enum dem_integrator { DEM_VERLET, DEM_GEAR };
 
 struct dem_inputs {

@@ -3,56 +3,63 @@
 #include "engine/dem/contacts/near_range.h"
 #include "engine/dem/step/motion_range.h"
 
-static void kernels_beams_only(struct dem_system *s) {
-  bond_range(s, BOND_FORCES, false, false);
-}
-static void kernels_conservative(struct dem_system *s) {
-  bond_range(s, BOND_FORCES, true, false);
-}
-static void kernels_with_velocities(struct dem_system *s) {
-  bond_range(s, BOND_FORCES, true, true);
+static void kernels_rest(struct dem_system *s) {
+  bond_rest(s);
 }
 static void kernels_near(struct dem_system *s) {
   near_range(s);
 }
-static void kernels_general(struct dem_system *s) {
-  near_general(s, false, false);
-}
-static void kernels_general_velocities(struct dem_system *s) {
-  near_general(s, false, true);
-}
-static void kernels_measure_beams(struct dem_system *s) {
-  bond_range(s, BOND_MEASURE, false, false);
-}
-static void kernels_measure_bonds(struct dem_system *s) {
-  bond_range(s, BOND_MEASURE, true, false);
-}
-static void kernels_measure_general(struct dem_system *s) {
-  near_general(s, true, false);
-}
 
-static void kernels_rest(struct dem_system *s) {
-  bond_rest(s);
-}
+/* The loops of each law, with velocities and without. */
+#define KERNELS_OF_LAW(number, name, doc)                                                                              \
+  static void kernels_bonds_##number(struct dem_system *s) {                                                           \
+    bond_range(s, BOND_FORCES, DEM_CONTACT_##number, true);                                                            \
+  }                                                                                                                    \
+  static void kernels_general_##number(struct dem_system *s) {                                                         \
+    near_general(s, false, DEM_CONTACT_##number, true);                                                                \
+  }                                                                                                                    \
+  static void kernels_still_bonds_##number(struct dem_system *s) {                                                     \
+    if (!dem_laws[DEM_CONTACT_##number].needs_velocities)                                                              \
+      bond_range(s, BOND_FORCES, DEM_CONTACT_##number, false);                                                         \
+  }                                                                                                                    \
+  static void kernels_still_general_##number(struct dem_system *s) {                                                   \
+    if (!dem_laws[DEM_CONTACT_##number].needs_velocities)                                                              \
+      near_general(s, false, DEM_CONTACT_##number, false);                                                             \
+  }
+DEM_LAWS(KERNELS_OF_LAW, )
+#undef KERNELS_OF_LAW
+
+typedef void kernels_loop(struct dem_system *s);
+#define KERNELS_BONDS(number, name, doc)                                                                               \
+  { kernels_still_bonds_##number, kernels_bonds_##number }
+#define KERNELS_GENERAL(number, name, doc)                                                                             \
+  { kernels_still_general_##number, kernels_general_##number }
+static kernels_loop *const kernels_bonds[][2] = {DEM_LAWS(KERNELS_BONDS, DEM_LAWS_COMMA)}; /* [1]: velocities */
+static kernels_loop *const kernels_general[][2] = {DEM_LAWS(KERNELS_GENERAL, DEM_LAWS_COMMA)};
+#undef KERNELS_BONDS
+#undef KERNELS_GENERAL
 
 static void kernels_forces(struct dem_system *s) {
   if (s->in->contact.law == DEM_CONTACT_OFF) {
-    kernels_beams_only(s);
+    bond_range(s, BOND_FORCES, DEM_CONTACT_OFF, false);
     return;
   }
-  (s->velocities ? kernels_with_velocities : kernels_conservative)(s);
+  kernels_bonds[s->in->contact.law][s->velocities](s);
   kernels_near(s);
-  (s->velocities ? kernels_general_velocities : kernels_general)(s);
+  kernels_general[s->in->contact.law][s->velocities](s);
 }
 
-static void kernels_measure(struct dem_system *s) {
-  if (s->in->contact.law == DEM_CONTACT_OFF) {
-    kernels_measure_beams(s);
-    return;
-  }
-  kernels_measure_bonds(s);
+static void kernels_measure_beams(struct dem_system *s) {
+  bond_range(s, BOND_MEASURE, DEM_CONTACT_OFF, false);
+}
+/* Overlaps and their energy: the same for all laws. */
+static void kernels_measure_contacts(struct dem_system *s) {
+  bond_range(s, BOND_MEASURE, DEM_CONTACT_CONSERVATIVE, false);
   kernels_near(s);
-  kernels_measure_general(s);
+  near_general(s, true, DEM_CONTACT_CONSERVATIVE, false);
+}
+static void kernels_measure(struct dem_system *s) {
+  (s->in->contact.law == DEM_CONTACT_OFF ? kernels_measure_beams : kernels_measure_contacts)(s);
 }
 
 static bool kernels_verlet_drift(struct dem_system *s, bool *moved) {

@@ -38,11 +38,12 @@ static bool make_ready(struct dem_system *s) {
   return true;
 }
 
-/* Do contact forces need velocities? They do for damping and friction, and for the work of the printed law. */
+/* Do contact forces need velocities? They do for damping and friction, and for some laws. */
 static bool needs_velocities(const struct dem_contact_inputs *contact) {
-  if (contact->law == DEM_CONTACT_OFF)
+  const struct dem_law *law = dem_laws_at(contact->law);
+  if (!law)
     return false;
-  if (contact->law == DEM_CONTACT_PRINTED || contact->normal_damping > 0.0)
+  if (law->needs_velocities || contact->normal_damping > 0.0)
     return true;
   return contact->tangential_damping > 0.0 && contact->friction > 0.0;
 }
@@ -196,12 +197,14 @@ struct dem_ledger dem_system_ledger(struct dem_system *s) {
                               .broken_beam = s->now.broken_beam,
                               .begun = s->now.begun,
                               .external_work = s->now.external_work};
-  if (s->in->contact.law == DEM_CONTACT_CONSERVATIVE)
+  const struct dem_law *law = dem_laws_at(s->in->contact.law);
+  const bool stores_energy = law && law->stores_energy;
+  if (stores_energy)
     ledger.contact = 0.0;
   measure(s);
   for (int lane = 0; lane < DEM_BLOCK; lane++) {
     ledger.beam += s->sums.beam[lane];
-    if (s->in->contact.law == DEM_CONTACT_CONSERVATIVE)
+    if (stores_energy)
       ledger.contact += s->sums.contact[lane];
   }
   for (uint32_t i = 0; i < s->count; i++)

@@ -17,8 +17,8 @@ struct dem_break {
   bool bending;            /* mode: the bending term was the larger one */
 };
 
-/* Energy per term, J/m. closed = kinetic + beam + contact + broken_beam + damping + friction - external_work; for the
- * conservative law `contact` is its potential, for the printed law the work done on contacts. */
+/* Energy per term, J/m. closed = kinetic + beam + contact + broken_beam + damping + friction - external_work; for a law
+ * that stores energy `contact` is that energy, for another the work done on contacts. */
 struct dem_ledger {
   double kinetic, beam, contact, damping, friction, broken_beam, external_work;
   double begun; /* given by contacts that began with a break; broken_beam is less by this */

@@ -17,7 +17,7 @@ enum { DEM_BLOCK = 8, DEM_MAX_VERTICES = 64, DEM_NO_PAIR = -1 };
 /* Per-block fields are eight doubles, one a lane. */
 typedef double dem_lane[DEM_BLOCK] DEM_ALIGNED;
 
-/* Eight tessellation pairs. `stiffness` is kappa (conservative) or Y/L_c (printed); 0 = no contact in this lane. */
+/* Eight tessellation pairs. `stiffness` is the law's coefficient (contacts/laws.h); 0 = no contact in this lane. */
 struct dem_bond_block {
   uint32_t first[DEM_BLOCK] DEM_ALIGNED;
   uint32_t second[DEM_BLOCK];
@@ -45,7 +45,7 @@ struct dem_near_block {
 
 /* Coefficients of one contact. */
 struct dem_contact {
-  double stiffness;                          /* kappa (conservative law) or Y/L_c (printed law); 0 = no contact */
+  double stiffness;                          /* the law's coefficient (contacts/laws.h); 0 = no contact */
   double normal_damping, tangential_damping; /* m_eff gamma, kg/s; 0 = none */
 };
 
@@ -71,8 +71,9 @@ struct dem_progress {
   double time, last_break;
   double fastest_approach; /* m/s: largest speed so far of two near grains without a beam on paths that meet */
   uint64_t steps, rebuilds;
-  double contact, damping, friction, broken_beam, external_work; /* booked so far, J/m (contact: printed law) */
-  double begun; /* J/m, of contacts that began with a break; a part of broken_beam, with the other sign */
+  double contact, damping, friction, broken_beam,
+      external_work; /* booked so far, J/m (contact: laws that store none) */
+  double begun;      /* J/m, of contacts that began with a break; a part of broken_beam, with the other sign */
   uint64_t break_count, bond_blocks, near_count;
   uint64_t ready; /* forces belong to the positions */
   uint64_t gear_started;
@@ -155,7 +156,7 @@ struct dem_system {
   size_t arena_doubles;
   size_t held_count, general_count; /* entries of held, of general */
   uint32_t ghost;                   /* the first of two ghosts */
-  bool velocities;                  /* contact forces need velocities (damping, friction, printed law's ledger) */
+  bool velocities;                  /* contact forces need velocities (damping, friction, some laws) */
   double mean_diameter;             /* m */
   struct dem_columns c;
 #define DEM_ARRAY(type, name, allocated, saved) type *name;

@@ -29,10 +29,8 @@ static void add_bond(const struct dem_system *s, size_t slot, const double *u, d
   add(f, j, fx, fy, m2);
   if (!(b->stiffness[lane] > 0.0))
     return;
-  /* A face-on overlap of depth d has area S d: kappa S^2 is the conservative law's spring, (Y/L_c) S the printed one's.
-   */
   const double hx = b->half_x[0][lane], hy = b->half_y[0][lane], side = 2.0 * sqrt(hx * hx + hy * hy);
-  const double k = b->stiffness[lane] * side * (s->in->contact.law == DEM_CONTACT_PRINTED ? 1.0 : side);
+  const double k = dem_laws_spring(s->in->contact.law, b->stiffness[lane], side);
   const double nx = 2.0 * hy / side, ny = -2.0 * hx / side; /* from i to j */
   const double r1x = b->middle_x[0][lane], r1y = b->middle_y[0][lane], r2x = b->middle_x[1][lane],
                r2y = b->middle_y[1][lane];

@@ -5,10 +5,11 @@
  * is C turned left by 90 degrees (it points from 2 to 1): moving grain 1 by d changes the overlap area A by
  * -|C| n . d. So the potential kappa A^2 / 2 gives grain 1 the force kappa A |C| n, with the moment kappa A W about the
  * origin, W = sum of (|p1|^2 - |p0|^2)/2 over the pieces = C . (chord's middle): the force acts at the chord's middle.
- * The printed law has the same direction and place with magnitude Y A / L_c. */
-#ifndef CLAST_ENGINE_DEM_CONTACTS_CONTACT_LAW_H
-#define CLAST_ENGINE_DEM_CONTACTS_CONTACT_LAW_H
+ * Other laws (laws.h) have the same direction and place. */
+#ifndef CLAST_ENGINE_DEM_CONTACTS_CONTACT_FORCE_H
+#define CLAST_ENGINE_DEM_CONTACTS_CONTACT_FORCE_H
 
+#include "engine/dem/contacts/laws.h"
 #include "engine/dem/step/lanes.h"
 #include "engine/dem/step/system_layout.h"
 
@@ -49,17 +50,18 @@ struct contact_force {
   lanes_d x, y, torque[2]; /* force on grain 1; torques on either about its own centre */
 };
 
-/* `touching`: lanes that overlap. Powers are added to block lanes `at`... of *booked. */
+/* `law` and `velocities` are constants of the loop. `touching`: lanes that overlap. `friction_limit`: mu. Powers are
+ * added to block lanes `at`... of *booked. */
 LANES_INLINE struct contact_force contact_force(const struct contact_sums *sums, const struct contact_pairs *pairs,
-                                                lanes_i touching, const struct dem_contact_inputs *law, bool velocities,
-                                                struct dem_sums *booked, int at) {
+                                                lanes_i touching, enum dem_contact_law law, double friction_limit,
+                                                bool velocities, struct dem_sums *booked, int at) {
   const lanes_d area = lanes_mask(touching, 0.5 * sums->twice_area);
   const lanes_d cx = lanes_mask(touching, sums->chord_x), cy = lanes_mask(touching, sums->chord_y);
   const lanes_d moment = lanes_mask(touching, sums->moment);
   const lanes_d away_x = pairs->origin_x - pairs->apart_x, away_y = pairs->origin_y - pairs->apart_y;
   struct contact_force force;
   if (!velocities) {
-    const lanes_d f = pairs->stiffness * area;
+    const lanes_d f = dem_laws_elastic(law, pairs->stiffness, area, lanes_all(1.0));
     force.x = -f * cy;
     force.y = f * cx;
     force.torque[0] = f * moment + (pairs->origin_x * force.y - pairs->origin_y * force.x);
@@ -80,15 +82,13 @@ LANES_INLINE struct contact_force contact_force(const struct contact_sums *sums,
   const lanes_d ux = (pairs->vx[1] - pairs->spin[1] * r2y) - (pairs->vx[0] - pairs->spin[0] * r1y); /* K99 eq 5 */
   const lanes_d uy = (pairs->vy[1] + pairs->spin[1] * r2x) - (pairs->vy[0] + pairs->spin[0] * r1x);
   const lanes_d approach = ux * nx + uy * ny, slip = ux * tx + uy * ty;
-  lanes_d elastic = pairs->stiffness * area; /* K99 eq 2 */
-  if (law->law == DEM_CONTACT_CONSERVATIVE)
-    elastic *= length;
+  const lanes_d elastic = dem_laws_elastic(law, pairs->stiffness, area, length);
   /* K99 eq 3 with the sign that takes energy out; never attractive. */
   const lanes_d damped = elastic + pairs->normal_damping * approach;
   const lanes_d normal = lanes_mask(touching, lanes_max(damped, damped * 0.0));
   /* K99 eq 4, corrected: -sign(v_T) min(m gamma_T |v_T|, mu |F_N|). */
   const lanes_d speed = lanes_abs(slip);
-  const lanes_d friction = lanes_min(pairs->tangential_damping * speed, law->friction * normal);
+  const lanes_d friction = lanes_min(pairs->tangential_damping * speed, friction_limit * normal);
   const lanes_d signed_friction = lanes_select(slip < 0.0, -friction, friction);
   force.x = normal * nx + signed_friction * tx;
   force.y = normal * ny + signed_friction * ty;
