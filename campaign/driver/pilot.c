@@ -102,6 +102,10 @@ double pilot_whole(const struct pilot_run *piece, const struct pilot_run *coarse
   return piece->prepare_s + piece->step_s * coarse->steps / steps + piece->finish_s;
 }
 
+double pilot_to_hard_end(const struct pilot_run *piece) {
+  return piece->prepare_s + piece->step_s / piece->progress + piece->finish_s;
+}
+
 /* The first knob of the engine with a step that applies to the scene: its number of particles or grains. */
 static const struct knob *size_knob(const struct scene *scene, double *own) {
   for (size_t i = 0; i < knob_count(); i++) {

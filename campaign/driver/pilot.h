@@ -26,6 +26,9 @@ status pilot_try(const struct scene *scene, uint64_t seed, double seconds, struc
  * not reach this time. */
 double pilot_whole(const struct pilot_run *piece, const struct pilot_run *coarse);
 
+/* The same without a coarse run: time up to the hard end of the run, which most runs do not reach. */
+double pilot_to_hard_end(const struct pilot_run *piece);
+
 /* Coarsens the scene by the first knob of its engine that has a step (particles, grains), so that a whole run takes
  * about `seconds`. `rate`: upper bound of processor seconds per unit of the engine's work. The caller owns *coarse;
  * NULL: there is no such scene. `setting`: value of that knob, for other points of the campaign. */

@@ -123,7 +123,7 @@ static void extrapolate(const struct looking *looking, uint64_t seed, double sec
   struct error ignored;
   struct scene *coarse = NULL;
   struct pilot_run *coarse_run = calloc(1, sizeof *coarse_run);
-  plan->run_s_most = run->prepare_s + run->step_s / run->progress + run->finish_s;
+  plan->run_s_most = pilot_to_hard_end(run);
   if (coarse_run && looking->work_most > 0)
     pilot_coarsen(looking->costliest, plan->run_s_most / looking->work_most, seconds / 4, &coarse, setting);
   if (coarse && pilot_try(coarse, seed, seconds / 2, coarse_run, &ignored) == STATUS_OK) {

@@ -73,9 +73,12 @@ static inline status case_solve(struct case_fit *fit, case_model model, const st
   double gamma[POSTERIOR_OUTPUTS * POSTERIOR_OUTPUTS];
   struct ensemble_kalman e =
       {.members = CASE_MEMBERS, .inputs = p, .outputs = d, .z = members, .g = g, .y = y, .gamma = gamma, .seed = seed};
-  for (size_t i = 0; i < p; i++) /* a Latin hypercube: each stratum j of input i is given to one member */
+  /* A Latin hypercube: each stratum j of input i is given to one member. The strides have no divisor in common with the
+   * number of members, so no member is left out. */
+  static const size_t stride[] = {5, 7, 11, 13, 17, 19, 23, 1};
+  for (size_t i = 0; i < p; i++)
     for (size_t j = 0; j < CASE_MEMBERS; j++) {
-      const size_t place = (j * (2 * i + 1) * 5 + i) % CASE_MEMBERS;
+      const size_t place = (j * stride[i % 8] + i) % CASE_MEMBERS;
       members[place * p + i] = gsl_cdf_ugaussian_Pinv(((double)j + 0.5) / CASE_MEMBERS);
     }
   for (size_t k = 0; k < d; k++)

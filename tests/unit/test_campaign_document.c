@@ -105,6 +105,35 @@ static void every_kind_of_axis(void **state) {
   campaign_free(campaign);
 }
 
+/* Values of axes are checked where a point is made: the point's scene is freed then (the leak check sees it). */
+static void values_that_do_not_fit_make_no_point(void **state) {
+  (void)state;
+  static const struct {
+    const char *vary;
+    struct field_value values[2];
+    const char *expected;
+  } cases[] = {
+      {"vary: {strain: [1 %]}\n", {{.kind = FIELD_REAL, .number = -1}}, "threshold.strain"},
+      {"vary: {contact.bonded: [true], strain: [1 %]}\n",
+       {{.kind = FIELD_BOOLEAN, .number = 1}, {.kind = FIELD_REAL, .number = 1e9}},
+       "threshold.strain"},
+      {"vary: {body.diameter: [1 m], grain.spacing: [1 cm]}\n", /* each is in its range */
+       {{.kind = FIELD_REAL, .number = 1e3}, {.kind = FIELD_REAL, .number = 1e-3}},
+       "too large"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char text[200];
+    struct error error = {0};
+    snprintf(text, sizeof text, HEAD "%s", cases[i].vary);
+    struct campaign *campaign = good(text);
+    assert_null(campaign_point_scene(campaign, cases[i].values, &error));
+    assert_int_equal(error.status, STATUS_CONTENT);
+    if (!strstr(error.message, cases[i].expected))
+      fail_msg("%s", error.message);
+    campaign_free(campaign);
+  }
+}
+
 static void independent_seeds_follow_the_point(void **state) {
   (void)state;
   struct campaign *campaign = good(HEAD "seeds: {first: 10, independent: true}\nvary: {strain: [1 %, 3 %]}\n");
@@ -311,6 +340,7 @@ int main(void) {
       cmocka_unit_test(every_kind_of_axis),
       cmocka_unit_test(stored_numbers_are_si),
       cmocka_unit_test(axes_are_shown_with_units),
+      cmocka_unit_test(values_that_do_not_fit_make_no_point),
       cmocka_unit_test(independent_seeds_follow_the_point),
       cmocka_unit_test(bad_documents_are_told_what_to_do),
       cmocka_unit_test(all_errors_come_at_once),

@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/analysis.h"
 #include "campaign/driver/cost.h"
@@ -50,6 +51,7 @@ static void whole_runs(void **state) {
     coarse->mark_progress[i] = progress[i];
   }
   NEAR(pilot_whole(piece, coarse), 1 + 2 * 20.0 / 5 + 0.5, 1e-12);
+  NEAR(pilot_to_hard_end(piece), 1 + 2 * 4 + 0.5, 1e-12); /* without a coarse run: four times the steps */
   piece->progress = 0.7;
   assert_true(isnan(pilot_whole(piece, coarse)));
   piece->progress = 0.25;
@@ -92,6 +94,49 @@ static void a_run_told_by_its_beginning(void **state) {
   scene_free(scene);
 }
 
+/* Programs read these keys and their meanings. */
+static void keys_of_a_plan(void **state) {
+  (void)state;
+  static const char
+      text[] = "name: keys\nscene: disc-explosion\nvary: {threshold.strain: [1 %, 2 %], contact.law: [off]}\n";
+  struct campaign *campaign = NULL;
+  struct error error = {0};
+  assert_int_equal(campaign_parse("keys.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_OK);
+  struct plan plan = {.points = 1,
+                      .points_looked_at = 2,
+                      .runs_least = 3,
+                      .runs_most = 4,
+                      .runs_there = 5,
+                      .store_exists = true,
+                      .trial_finished = true,
+                      .run_s_mean = 6,
+                      .run_s_most = 7,
+                      .cpu_s_least = 8,
+                      .cpu_s_most = 9,
+                      .wall_s_least = 10,
+                      .wall_s_most = 11,
+                      .memory_most = 12,
+                      .disk_bytes = NAN,
+                      .fields_bytes = 14};
+  char model[] = "grains", *json = plan_print_json(campaign, &plan, 15);
+  assert_string_equal(
+      json,
+      "{\"campaign\": \"keys\", \"scene\": \"disc-explosion\", \"store\": \"keys.db\", \"axes\": [{\"path\": "
+      "\"threshold.strain\", \"unit\": \"1\", \"values\": \"1 %, 2 %\"}, {\"path\": \"contact.law\", \"unit\": \"\", "
+      "\"values\": \"off\"}], \"points\": 1, \"points_looked_at\": 2, \"runs_least\": 3, \"runs_most\": 4, "
+      "\"runs_there\": 5, \"store_exists\": true, \"trial_made\": false, \"trial_finished\": true, \"slots\": 15, "
+      "\"run_s_mean\": 6, \"run_s_most\": 7, \"cpu_s_least\": 8, \"cpu_s_most\": 9, \"wall_s_least\": 10, "
+      "\"wall_s_most\": 11, \"memory_most_bytes\": 12, \"disk_bytes\": null, \"fields_bytes\": 14, \"model\": \"\"}\n");
+  free(json);
+  plan.model = model;
+  char alternatives[] = "[16]";
+  plan.alternatives = alternatives;
+  json = plan_print_json(campaign, &plan, 15);
+  assert_non_null(strstr(json, ", \"alternatives\": [16], \"model\": \"grains\"}\n"));
+  free(json);
+  campaign_free(campaign);
+}
+
 /* A run of two threads takes half of its processor time; the trial itself runs on one. */
 static void threads_share_the_time(void **state) {
   (void)state;
@@ -118,7 +163,7 @@ static void threads_share_the_time(void **state) {
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(time_left), cmocka_unit_test(whole_runs),
-                                     cmocka_unit_test(a_run_told_by_its_beginning),
+                                     cmocka_unit_test(a_run_told_by_its_beginning), cmocka_unit_test(keys_of_a_plan),
                                      cmocka_unit_test(threads_share_the_time)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

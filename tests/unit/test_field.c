@@ -145,12 +145,53 @@ static void distances_count_slips(void **state) {
   assert_int_equal(text_distance("", 0, "abc"), 3);
   assert_int_equal(text_distance("abc", 3, "abc"), 0);
   assert_int_equal(text_distance("simulate", 8, "simualte"), 1); /* a swap of two letters counts as one error */
-  assert_int_equal(text_distance_limit(1), 0);
-  assert_int_equal(text_distance_limit(12), 4);
   char lengthy[400];
   memset(lengthy, 'a', sizeof lengthy);
   lengthy[399] = 0;
   assert_true(text_distance(lengthy, 399, "a") == SIZE_MAX);
+}
+
+/* How many slips a word may have, by its number of letters, and the guess that follows: `near` has as many slips as are
+ * allowed, `far` one more. A name that shares no letter with the word is no guess, however short both are. */
+static void guesses_by_length(void **state) {
+  (void)state;
+  static const struct {
+    const char *typed, *near, *far;
+    size_t limit;
+  } cases[] = {
+      {"a", "a", "b", 0},
+      {"ab", "ax", "xy", 1},
+      {"abc", "abx", "axy", 1},
+      {"abcd", "abxy", "axyz", 2},
+      {"abcde", "abcxy", "abxyz", 2},
+      {"abcdef", "abcdxy", "abcxyz", 2},
+      {"abcdefg", "abcdexy", "abcdxyz", 2},
+      {"abcdefgh", "abcdefxy", "abcdexyz", 2},
+      {"abcdefghi", "abcdefxyz", "abcdewxyz", 3},
+      {"abcdefghijkl", "abcdefghwxyz", "abcdefgvwxyz", 4},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    assert_int_equal(text_distance_limit(strlen(cases[i].typed)), cases[i].limit);
+    struct text_guess guess = text_guess(cases[i].typed);
+    text_guess_offer(&guess, cases[i].far);
+    assert_null(guess.nearest);
+    text_guess_offer(&guess, cases[i].near);
+    assert_ptr_equal(guess.nearest, cases[i].near);
+  }
+  struct text_guess guess = text_guess("abcd");
+  text_guess_offer(&guess, "xy"); /* four slips */
+  text_guess_offer(&guess, "bc"); /* two, as many as it has letters */
+  assert_null(guess.nearest);
+  guess = text_guess("strain");
+  const char *far = "threshold.strxyn", *part = "threshold.strian", *whole = "strein";
+  text_guess_offer_part(&guess, far + 10, far); /* as many slips as are allowed */
+  assert_ptr_equal(guess.nearest, far);
+  text_guess_offer_part(&guess, part + 10, part);
+  assert_ptr_equal(guess.nearest, part);
+  text_guess_offer(&guess, whole); /* as near, and a whole name */
+  assert_ptr_equal(guess.nearest, whole);
+  text_guess_offer(&guess, "streen");
+  assert_ptr_equal(guess.nearest, whole);
 }
 
 static void conditions_chain(void **state) {
@@ -470,6 +511,7 @@ int main(void) {
       cmocka_unit_test(defaults_fill_everything),
       cmocka_unit_test(finds_by_suffix),
       cmocka_unit_test(distances_count_slips),
+      cmocka_unit_test(guesses_by_length),
       cmocka_unit_test(conditions_chain),
       cmocka_unit_test(parses_or_says_why),
       cmocka_unit_test(percentages_are_written_as_such),

@@ -188,6 +188,23 @@ static void kriging_knows_what_seeds_leave(void **state) {
   kriging_free(k);
 }
 
+/* Values so noisy that they tell nothing leave the priors: the middle of the values everywhere, with the variance 1 of
+ * the process and 10 (1 + x^2) of the trend, in variances of the values; the error of a point over its noise. */
+static void kriging_of_noise_keeps_its_priors(void **state) {
+  (void)state;
+  const double x[3] = {-1, 0, 1}, y[3] = {1, 3, 8}, noise = 1e10, scale = sqrt(13); /* of 1, 3, 8 about 4 */
+  double variance, errors[3];
+  struct kriging *k = surface_of(3, x, y, noise, 0);
+  for (double at = 0; at < 4; at += 1.5) {
+    assert_near(kriging_predict(k, &at, &variance), 4, 1e-6);
+    assert_near(variance / (scale * scale), 11 + 10 * at * at, 0.03); /* the search ends 2 % from the prior's mode */
+  }
+  kriging_left_out(k, errors);
+  for (int i = 0; i < 3; i++)
+    assert_near(errors[i] * sqrt(noise), y[i] - 4, 1e-6);
+  kriging_free(k);
+}
+
 /* Surfaces of y = a0 z0 + a1 z1, exact, and a scatter of 0.3. */
 static double linear(const double *u, size_t k, uint64_t seed) {
   const double a[2][2] = {{2, -1}, {1, 1}};
@@ -228,6 +245,93 @@ static void posterior_is_that_of_a_linear_model(void **state) {
                   posterior_predicted(&fit.surfaces.model, &fit.posterior, 0, 0.5),
               1.645 * sqrt(spread), 0.15);
   case_clear(&fit);
+}
+
+/* Statistics of four nodes by hand, of either input. */
+static void statistics_of_weighted_nodes(void **state) {
+  (void)state;
+  double z[] = {0, 3, 10, -1, 20, 1, 30, -1}, weight[] = {0.1, 0.2, 0.4, 0.3}, mean[2], c[4];
+  const struct posterior nodes = {.count = 4, .inputs = 2, .z = z, .weight = weight};
+  static const struct {
+    size_t input;
+    double share, z;
+  } cases[] = {
+      {0, 0.01, 0},  {0, 0.05, 0},  {0, 0.35, 15}, {0, 0.85, 30}, {0, 0.99, 30}, /* middles at 0.05, 0.2, 0.5, 0.85 */
+      {1, 0.25, -1}, {1, 0.475, 0}, {1, 0.7, 1},   {1, 0.825, 2}, {1, 0.99, 3},  /* two of the nodes are at -1 */
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+    assert_near(posterior_quantile(&nodes, cases[i].input, cases[i].share), cases[i].z, 1e-12);
+  posterior_moments(&nodes, mean, c);
+  assert_near(mean[0], 19, 1e-12);
+  assert_near(mean[1], 0.2, 1e-12);
+  const double expected[4] = {89, -6.8, -6.8, 1.76};
+  for (int i = 0; i < 4; i++)
+    assert_near(c[i], expected[i], 1e-12);
+  for (int i = 0; i < 4; i++) /* shares below 0.1, 0.3, 0.7, 1 */
+    assert_int_equal(posterior_node(&nodes, (const double[]){0.05, 0.25, 0.65, 0.95}[i]), i);
+  assert_int_equal(posterior_node(&nodes, 1), 3);
+}
+
+/* A surface through exact values of slope[0] z0 + slope[1] z1 + slope[2] z2 on a grid. */
+static struct kriging *plane_of(const double slope[3]) {
+  enum { N = 27 };
+  double x[3 * N], y[N];
+  static double noise[N * N];
+  for (size_t n = 0; n < N; n++) {
+    y[n] = 0;
+    for (size_t i = 0, rest = n; i < 3; i++, rest /= 3) {
+      x[3 * n + i] = 2 * (double)(rest % 3) - 2;
+      y[n] += slope[i] * x[3 * n + i];
+    }
+  }
+  struct kriging *k = NULL;
+  struct error error;
+  const struct kriging_data data = {.points = N, .inputs = 3, .x = x, .mean = y, .noise = noise};
+  assert_int_equal(kriging_fit(&data, &k, &error), STATUS_OK);
+  return k;
+}
+
+/* 3 z0 + 4 z1 known within 0.5, s z2 within 1: information 100 along (3, 4, 0)/5, s^2 along z2, none along (4, -3,
+ * 0)/5. With both values 0 the posterior is normal about 0, of variance 1/(1 + information) along each. */
+static void directions_of_a_linear_model(void **state) {
+  (void)state;
+  static const double slopes[2] = {2, 0.8}; /* more information than the prior's 1, and less */
+  for (int c = 0; c < 2; c++) {
+    const double s = slopes[c];
+    const struct seed_scatter none = {.constant = -100, .inputs = 3};
+    const struct posterior_datum data[2] =
+        {{.error = 0.5, .specimens = 1, .shot = 0, .surface = plane_of((const double[]){3, 4, 0}), .scatter = &none},
+         {.error = 1, .specimens = 1, .shot = 1, .surface = plane_of((const double[]){0, 0, s}), .scatter = &none}};
+    const double correlation[4] = {1, 0, 0, 1};
+    const struct posterior_model model = {.inputs = 3, .outputs = 2, .data = data, .correlation = correlation};
+    struct posterior posterior;
+    struct error error;
+    struct identify found;
+    assert_int_equal(posterior_make(&model, 1, &posterior, &error), STATUS_OK);
+    identify_find(&model, &posterior, &found);
+    const double information[3] = {100, s * s, 0}, along[3][3] = {{0.6, 0.8, 0}, {0, 0, 1}, {0.8, -0.6, 0}};
+    assert_int_equal(found.inputs, 3);
+    assert_int_equal(found.determined, s > 1 ? 2 : 1);
+    for (int d = 0; d < 3; d++) {
+      /* the surfaces are exact to their jitter of 1e-6 of a variance of about 70 */
+      assert_near(found.direction[d].information, information[d], 0.01 * information[d] + 1e-3);
+      /* the grid has 22 nodes per input over some 7 deviations */
+      assert_near(found.direction[d].deviation, 1 / sqrt(1 + information[d]), 0.03);
+      for (int i = 0; i < 3; i++) {
+        assert_near(found.direction[d].along[i], along[d][i], 1e-3);
+        assert_int_equal(identify_mixed(&found, (size_t)d, (size_t)i), fabs(along[d][i]) > 0);
+      }
+      assert_near(found.centre[d], 0, 0.01);
+    }
+    /* The 90 % interval of z2 has the share 2 Phi(1.645 sd) - 1 of the prior, that of the prior itself 0.9. */
+    const double half = gsl_cdf_ugaussian_Pinv(0.95) / sqrt(1 + s * s);
+    assert_near(found.kept[2], (2 * gsl_cdf_ugaussian_P(half) - 1) / 0.9, 0.02);
+    posterior_clear(&posterior);
+    kriging_free(data[0].surface);
+    kriging_free(data[1].surface);
+  }
+  struct identify parts = {.inputs = 3, .direction[1].along = {0.25, -0.24, -0.26}};
+  assert_true(identify_mixed(&parts, 1, 0) && !identify_mixed(&parts, 1, 1) && identify_mixed(&parts, 1, 2));
 }
 
 /* A product and a sum: only u0 + u1 is determined, or only a ring. */
@@ -370,6 +474,9 @@ int main(void) {
       cmocka_unit_test(scatter_knows_two_heaps_and_too_few_runs),
       cmocka_unit_test(kriging_passes_through_a_smooth_function),
       cmocka_unit_test(kriging_knows_what_seeds_leave),
+      cmocka_unit_test(kriging_of_noise_keeps_its_priors),
+      cmocka_unit_test(statistics_of_weighted_nodes),
+      cmocka_unit_test(directions_of_a_linear_model),
       cmocka_unit_test(posterior_is_that_of_a_linear_model),
       cmocka_unit_test(ridges_are_seen),
       cmocka_unit_test(ridges_follow_unequal_slopes),

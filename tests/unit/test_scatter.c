@@ -167,6 +167,29 @@ static void split_of_a_variance(void **state) {
   free(value);
 }
 
+/* Small tables: variances and covariances over n - 1, products over all pairs of different runs. */
+static void split_by_hand(void **state) {
+  (void)state;
+  static const uint32_t line[] = {0, 1}, square[] = {0, 0, 0, 1, 1, 0, 1, 1};
+  static const double two[] = {1, 2, 6, 9, 4, 8}, four[] = {1, 4, 2, 6, 3, 9, 7, 2, 6, 11, 14, 17};
+  static const struct {
+    struct scatter_table table;
+    double variance[2 + SCATTER_PARTS];
+  } cases[] = {
+      {{2, 3, 1, line, two}, {3, 3, 7, 1, 10}}, /* axis, inputs, seeds, seeds alike, whole */
+      {{4, 3, 2, square, four}, {113 / 16.0, 153 / 16.0, 833 / 48.0, 41 / 6.0, 7 / 12.0, 387 / 16.0}},
+  };
+  struct scatter_part parts[2 + SCATTER_PARTS];
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+    const size_t count = cases[c].table.axes + SCATTER_PARTS;
+    assert_int_equal(scatter_split(&cases[c].table, parts, NULL), STATUS_OK);
+    for (size_t i = 0; i < count; i++) {
+      assert_true(fabs(parts[i].variance - cases[c].variance[i]) < 1e-12);
+      assert_true(fabs(parts[i].share - cases[c].variance[i] / cases[c].variance[count - 1]) < 1e-12);
+    }
+  }
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(known_samples),
@@ -174,6 +197,7 @@ int main(void) {
                                      cmocka_unit_test(counts_in_few_steps),
                                      cmocka_unit_test(runs_for_an_interval),
                                      cmocka_unit_test(coverage),
-                                     cmocka_unit_test(split_of_a_variance)};
+                                     cmocka_unit_test(split_of_a_variance),
+                                     cmocka_unit_test(split_by_hand)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -115,6 +115,36 @@ static void the_share_of_the_seed(void **state) {
   }
 }
 
+/* Small tables, whose indices are fractions: variances and covariances over n - 1, products over all pairs of different
+ * seeds, values counted from the mean of all. */
+static void indices_by_hand(void **state) {
+  (void)state;
+  static const double one[] = {1, 4, 2, 3, /* A, B, A with the first input of B, with the second */
+                               5, 2, 7, 1};
+  static const double three[] = {1, 4, 2, 6, 3, 8, 2, 9, 4, 5, 1, 3, /* of three seeds each */
+                                 7, 2, 6, 3, 5, 1, 8, 8, 2, 4, 6, 9};
+  static const struct {
+    struct sensitivity_table table;
+    double first[3], total[3];
+  } cases[] = {
+      {{2, 2, 1, one, true}, {-33 / 160.0, 15 / 16.0, NAN}, {3 / 8.0, 3 / 2.0, NAN}},
+      {{2, 2, 3, three, true}, {-35 / 768.0, -43 / 128.0, -25 / 96.0}, {83 / 64.0, 15 / 16.0, 59 / 64.0}},
+      {{2, 2, 3, three, false}, {-35 / 768.0, -43 / 128.0, -25 / 96.0}, {-5 / 64.0, -5 / 16.0, 59 / 64.0}},
+  };
+  struct sensitivity_index index[3];
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+    assert_int_equal(sensitivity_sobol(&cases[c].table, index, NULL), STATUS_OK);
+    for (int i = 0; i < 3; i++)
+      if (isnan(cases[c].first[i])) {
+        assert_true(isnan(index[i].first.estimate) && isnan(index[i].total.estimate));
+      } else {
+        assert_true(fabs(index[i].first.estimate - cases[c].first[i]) < 1e-12);
+        assert_true(fabs(index[i].total.estimate - cases[c].total[i]) < 1e-12);
+      }
+  }
+  assert_int_equal(sensitivity_sobol(&(struct sensitivity_table){2, 1, 1, one, true}, index, NULL), STATUS_USAGE);
+}
+
 /* Intervals of a small design hold the true index. */
 static void coverage(void **state) {
   (void)state;
@@ -169,6 +199,22 @@ static void elementary_effects(void **state) {
   }
 }
 
+/* Two trajectories of two inputs, the second in the other order and downwards: effects 6 and 2 of the first input, -4
+ * and -8 of the second. One trajectory is refused: it has no scatter. */
+static void effects_by_hand(void **state) {
+  (void)state;
+  static const double value[] = {1, 4, 2, 5, 9, 8}, step[] = {0.5, 0.5, -0.5, -0.5};
+  static const size_t order[] = {0, 1, 1, 0};
+  struct sensitivity_effect effect[2];
+  struct sensitivity_table table = {2, 2, 1, value, true};
+  assert_int_equal(sensitivity_morris(&table, order, step, effect, NULL), STATUS_OK);
+  assert_true(effect[0].mean == 4 && effect[0].mean_absolute.estimate == 4);
+  assert_true(effect[1].mean == -6 && effect[1].mean_absolute.estimate == 6);
+  assert_true(fabs(effect[0].deviation - sqrt(8)) < 1e-12 && fabs(effect[1].deviation - sqrt(8)) < 1e-12);
+  table.blocks = 1;
+  assert_int_equal(sensitivity_morris(&table, order, step, effect, NULL), STATUS_USAGE);
+}
+
 /* A block of Saltelli: A, B, and A with one input of B. A trajectory of Morris changes one input after another, each
  * once. */
 static void designs(void **state) {
@@ -214,7 +260,9 @@ int main(void) {
                                      cmocka_unit_test(ishigami_indices),
                                      cmocka_unit_test(g_function_indices),
                                      cmocka_unit_test(the_share_of_the_seed),
+                                     cmocka_unit_test(indices_by_hand),
                                      cmocka_unit_test(coverage),
-                                     cmocka_unit_test(elementary_effects)};
+                                     cmocka_unit_test(elementary_effects),
+                                     cmocka_unit_test(effects_by_hand)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,8 @@
 #include "tests/bench/dem_disc.h"
 #include "tests/verification/dem_fixture.h"
 
+#include <gsl/gsl_eigen.h>
+
 #ifndef __SANITIZE_ADDRESS__ /* the sanitizer brings its own */
 static size_t allocations;   /* counted for the test that the step loop allocates nothing */
 void *__libc_malloc(size_t size);
@@ -228,6 +230,63 @@ static void stable_steps_are_stable(void **state) {
     assert_true(at > 0.008 && at < 0.010); /* 0.95 % and 0.84 % by the eigenvalues of one step */
     assert_true(below < 0.003);
   }
+}
+
+/* 2 / omega_max of two bonded parallelograms, by the eigenvalues of their 6 x 6 matrix: Timoshenko's beam between the
+ * centres, and where bonded grains are in contact a spring of stiffness E S / L_c across the common side, 1/L_c the
+ * mean of the inverse diameters. The side leans, so that the spring also turns the grains. */
+static void stable_step_of_two_bonded_grains(void **state) {
+  (void)state;
+  const double width[2] = {0.01, 0.016}, h = 0.01, lean = 0.004, side = hypot(h, lean);
+  struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
+  struct dem_inputs in = fixture_inputs();
+  in.fidelity.integrator = DEM_VERLET;
+  in.grain.young_modulus = 20 * in.beam.young_modulus; /* so that the spring decides */
+  double mass[6], inverse_length = 0.0;
+  for (int i = 0; i < 2; i++) {
+    const double left = i ? width[0] : 0.0, right = left + width[i];
+    const struct dem_point corner[4] = {{left, 0.0}, {right, 0.0}, {right + lean, h}, {left + lean, h}};
+    memcpy(t->vertex + 4 * i, corner, sizeof corner);
+    t->centroid[i] = (struct dem_point){0.5 * (left + right + lean), 0.5 * h};
+    t->area[i] = width[i] * h;
+    t->polar_moment[i] = t->area[i] * (width[i] * width[i] + side * side) / 12.0;
+    inverse_length += 0.25 / sqrt(t->area[i] / M_PI);
+    mass[3 * i] = mass[3 * i + 1] = in.grain.density * t->area[i];
+    mass[3 * i + 2] = in.grain.density * t->polar_moment[i];
+  }
+  t->side[0] = side;
+  const double l = t->centroid[1].x - t->centroid[0].x, e = in.beam.young_modulus, i = side * side * side / 12.0;
+  const double phi = 12.0 * e * i / (0.5 * e * side * l * l), axial = e * side / l;
+  const double q = 12.0 * e * i / (l * l * l * (1.0 + phi)), near = q * l * l * (4.0 + phi) / 12.0,
+               far = q * l * l * (2.0 - phi) / 12.0, arm = q * l / 2.0;
+  const double beam[6][6] = {{axial, 0, 0, -axial, 0, 0}, {0, q, arm, 0, -q, arm},   {0, arm, near, 0, -arm, far},
+                             {-axial, 0, 0, axial, 0, 0}, {0, -q, -arm, 0, q, -arm}, {0, arm, far, 0, -arm, near}};
+  /* The gap of the side opens by n (u2 - u1) at its middle, which is width/2 from either centre: row B, spring B^T k B.
+   */
+  const double nx = h / side, ny = -lean / side;
+  const double gap[6] = {-nx, -ny, -0.5 * width[0] * ny, nx, ny, -0.5 * width[1] * ny};
+  const double spring = in.grain.young_modulus * side * inverse_length;
+  gsl_eigen_symm_workspace *work = gsl_eigen_symm_alloc(6);
+  gsl_vector *values = gsl_vector_alloc(6);
+  for (int c = 0; c < 4; c++) {
+    in.contact.law = (const int[]){DEM_CONTACT_CONSERVATIVE, DEM_CONTACT_PRINTED, DEM_CONTACT_OFF,
+                                   DEM_CONTACT_CONSERVATIVE}[c];
+    in.contact.bonded = c < 3;
+    gsl_matrix *k = gsl_matrix_alloc(6, 6);
+    for (size_t a = 0; a < 6; a++)
+      for (size_t b = 0; b < 6; b++)
+        gsl_matrix_set(k, a, b, (beam[a][b] + (c < 2 ? spring * gap[a] * gap[b] : 0.0)) / sqrt(mass[a] * mass[b]));
+    gsl_eigen_symm(k, values, work);
+    struct dem_system *s = fixture_create(t, &in);
+    const double expected = 2.0 / sqrt(gsl_vector_max(values));
+    /* the power iteration ends at a change of 1e-7; grains are smaller than their cells by 1e-11 */
+    fixture_near(dem_system_stable_time_step(s), expected, 1e-5 * expected, "longest step");
+    dem_system_free(s);
+    gsl_matrix_free(k);
+  }
+  gsl_vector_free(values);
+  gsl_eigen_symm_free(work);
+  dem_tessellation_free(t);
 }
 
 /* One step from a made-up state: Pascal's triangle, and every coefficient of the corrector by its published value (Gear
@@ -553,6 +612,7 @@ int main(void) {
                                      cmocka_unit_test(gear_has_its_coefficients),
                                      cmocka_unit_test(gear_has_its_order_with_damping),
                                      cmocka_unit_test(stable_steps_are_stable),
+                                     cmocka_unit_test(stable_step_of_two_bonded_grains),
                                      cmocka_unit_test(turning_grains_meet),
                                      cmocka_unit_test(gear_starts_with_the_derivatives),
                                      cmocka_unit_test(ledger_closes),
