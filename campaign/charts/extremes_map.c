@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "analysis/pictures/picture.h"
-#include "db/ask/extremes.h"
+#include "db/ask/campaign.h"
 
-enum { TILES = 10, MOST_ROWS = 400, NAME = 128, COLUMNS = 6 };
+enum { TILES = 10, MOST_ROWS = 400, NAME = 128 };
 
 struct value {
   char text[24];
@@ -24,7 +24,7 @@ struct collecting {
   size_t count;
 };
 
-static status add_value(struct row *row, const struct query_value *values, struct error *error) {
+static status add_value(struct row *row, const struct answer *runs, struct error *error) {
   if ((row->count & (row->count + 1)) == 0) { /* 1, 3, 7...: grows */
     struct value *grown = realloc(row->value, (2 * row->count + 1) * sizeof *grown);
     if (!grown)
@@ -32,28 +32,26 @@ static status add_value(struct row *row, const struct query_value *values, struc
     row->value = grown;
   }
   struct value *value = &row->value[row->count++];
-  if (values[2].kind == QUERY_TEXT)
-    snprintf(value->text, sizeof value->text, "%s", values[2].text);
+  if (answer_value(runs, 2).kind == QUERY_TEXT)
+    snprintf(value->text, sizeof value->text, "%s", answer_text(runs, 2));
   else
-    snprintf(value->text, sizeof value->text, "%.8g", values[2].real); /* keeps 1.0000001 different from 1 */
-  for (int c = 0; c < 3; c++)
-    value->runs[c] = values[3 + c].real;
+    snprintf(value->text, sizeof value->text, "%.8g", answer_real(runs, 2)); /* keeps 1.0000001 different from 1 */
+  for (size_t c = 0; c < 3; c++)
+    value->runs[c] = answer_real(runs, 3 + c);
   return STATUS_OK;
 }
 
-static status take(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct collecting *all = context;
-  if (count != COLUMNS || values[0].kind != QUERY_TEXT || values[1].kind != QUERY_TEXT)
-    return status_fail(error, STATUS_CONTENT, "the store's runs have no campaign");
+static status add_row(struct collecting *all, const struct answer *runs, struct error *error) {
+  const char *campaign = answer_text(runs, 0), *path = answer_text(runs, 1);
   struct row *last = all->count ? &all->row[all->count - 1] : NULL;
-  if (last && !strncmp(last->campaign, values[0].text, NAME - 1) && !strncmp(last->path, values[1].text, NAME - 1))
-    return add_value(last, values, error);
+  if (last && !strncmp(last->campaign, campaign, NAME - 1) && !strncmp(last->path, path, NAME - 1))
+    return add_value(last, runs, error);
   if (all->count == MOST_ROWS)
     return status_fail(error, STATUS_USAGE, "more than %d varied inputs in one picture", MOST_ROWS);
   struct row *row = &all->row[all->count++];
-  snprintf(row->campaign, sizeof row->campaign, "%s", values[0].text);
-  snprintf(row->path, sizeof row->path, "%s", values[1].text);
-  return add_value(row, values, error);
+  snprintf(row->campaign, sizeof row->campaign, "%s", campaign);
+  snprintf(row->path, sizeof row->path, "%s", path);
+  return add_value(row, runs, error);
 }
 
 /* Makes a tile per value or per range of values. The tile of a range shows the range's first value. */
@@ -93,8 +91,12 @@ status extremes_map_draw(struct store *store, const char *path, double width, st
   struct collecting all = {.row = calloc(MOST_ROWS, sizeof *all.row)};
   if (!all.row)
     return status_fail(error, STATUS_MEMORY, "no memory for the picture");
-  const struct query_sink sink = {.context = &all, .row = take};
-  status code = ask_extremes_values(store, &sink, error);
+  ANSWER runs = ask_campaign_values(store, error);
+  status code = STATUS_OK;
+  while (code == STATUS_OK && answer_next(&runs))
+    code = add_row(&all, &runs, error);
+  if (code == STATUS_OK)
+    code = answer_end(&runs);
   if (code == STATUS_OK)
     code = draw(&all, path, width, error);
   for (size_t k = 0; k < all.count; k++)

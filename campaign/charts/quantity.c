@@ -7,6 +7,7 @@
 #include "analysis/statistics/estimates.h"
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/columns.h"
+#include "db/ask/group.h"
 #include "db/ask/point.h"
 #include "db/ask/points.h"
 #include "engine/outcome.h"
@@ -45,60 +46,64 @@ static status give(const struct reading *reading, struct quantity_row *row, stru
   return reading->each(reading->context, row, error);
 }
 
-static status take_columns(void *context, size_t count, const char *const *names, struct error *error) {
-  struct reading *reading = context;
+/* Takes the names of the inputs and of the quantity from the columns of ask_group. */
+static status read_names(struct reading *reading, const struct answer *groups, struct error *error) {
   struct quantity *quantity = reading->quantity;
   const size_t axes = quantity->axes;
-  if (count != axes + COLUMNS || (axes == 2 && strcmp(names[0], names[1]) == 0))
+  if (answer_count(groups) != axes + COLUMNS ||
+      (axes == 2 && strcmp(answer_name(groups, 0), answer_name(groups, 1)) == 0))
     return status_fail(error, STATUS_USAGE, "%s", reading->choice->refusal);
 
   for (size_t i = 0; i < axes; i++) {
-    snprintf(quantity->column[i], sizeof quantity->column[i], "%s", names[i]);
-    reading->axis[i] = written_axis(reading, names[i]);
+    snprintf(quantity->column[i], sizeof quantity->column[i], "%s", answer_name(groups, i));
+    reading->axis[i] = written_axis(reading, quantity->column[i]);
   }
-  const char *mean = names[axes + MEAN];
+  const char *mean = answer_name(groups, axes + MEAN);
   if (!quantity->exponent)
     snprintf(quantity->name, sizeof quantity->name, "%.*s", (int)(strlen(mean) - strlen("_mean")), mean);
   return STATUS_OK;
 }
 
-static status take_group(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)count;
-  const struct reading *reading = context;
-  if (reading->quantity->exponent)
-    return STATUS_OK; /* ask_group only resolved the names of the inputs */
-
-  const struct query_value *rest = values + reading->quantity->axes;
-  const double mean = rest[MEAN].real;
-  const double half_width = rest[HALF_WIDTH].real; /* NaN for one run */
-  struct quantity_row row =
-      {values, rest[VERSION].integer, mean, mean - half_width, mean + half_width, rest[RESOLUTION].real};
-  return give(reading, &row, error);
+static status read_groups(struct reading *reading, struct answer *groups, struct error *error) {
+  const size_t axes = reading->quantity->axes;
+  while (answer_next(groups)) {
+    const struct query_value inputs[2] = {answer_value(groups, 0), answer_value(groups, axes - 1)};
+    const double mean = answer_real(groups, axes + MEAN);
+    const double half_width = answer_real(groups, axes + HALF_WIDTH); /* NaN for one run */
+    struct quantity_row row = {inputs,
+                               answer_integer(groups, axes + VERSION),
+                               mean,
+                               mean - half_width,
+                               mean + half_width,
+                               answer_real(groups, axes + RESOLUTION)};
+    TRY(give(reading, &row, error));
+  }
+  return answer_end(groups);
 }
 
-static status take_point(void *context, const struct ask_points_row *point, struct error *error) {
-  const struct reading *reading = context;
+static status read_exponents(struct reading *reading, struct error *error) {
+  const char *inputs[2] = {reading->quantity->column[0], reading->quantity->column[1]};
   const bool newest = reading->choice->newest;
-  if (point->n == 0 && !newest)
-    return STATUS_OK;
-
-  struct pooled_exponent fit;
-  status code = point_exponent(reading->store, point->point_id, newest ? 0 : point->results_version, reading->method,
-                               reading->window, 0.95, &fit, error);
-  if (code)
-    return code;
-  struct ask_resolution resolution;
-  code = ask_resolution(reading->store, point->point_id, reading->choice->name, &resolution, error);
-  if (code)
-    return code;
-  const double half_width = fit.interval.half_width;
-  struct quantity_row row = {point->inputs,
-                             point->results_version,
-                             fit.fit.beta,
-                             fit.fit.beta - half_width,
-                             fit.fit.beta + half_width,
-                             resolution.half_width};
-  return give(reading, &row, error);
+  ANSWER points = ask_points_rows(reading->store, &(struct ask_points_choice){0}, newest, reading->quantity->axes,
+                                  inputs, error);
+  for (struct ask_points_row point; ask_points_next(&points, &point);) {
+    struct pooled_exponent fit;
+    struct ask_resolution resolution;
+    if (point.n == 0 && !newest)
+      continue;
+    TRY(point_exponent(reading->store, point.point_id, newest ? 0 : point.results_version, reading->method,
+                       reading->window, 0.95, &fit, error));
+    TRY(ask_resolution(reading->store, point.point_id, reading->choice->name, &resolution, error));
+    const double half_width = fit.interval.half_width;
+    struct quantity_row row = {point.inputs,
+                               point.results_version,
+                               fit.fit.beta,
+                               fit.fit.beta - half_width,
+                               fit.fit.beta + half_width,
+                               resolution.half_width};
+    TRY(give(reading, &row, error));
+  }
+  return answer_end(&points);
 }
 
 status quantity_read(struct store *store, const struct quantity_choice *choice, struct quantity *quantity,
@@ -107,28 +112,18 @@ status quantity_read(struct store *store, const struct quantity_choice *choice, 
   struct reading reading = {.store = store, .choice = choice, .quantity = quantity, .each = each, .context = context};
   *quantity = (struct quantity){.axes = choice->axis[1] ? 2 : 1};
   snprintf(quantity->name, sizeof quantity->name, "%s", choice->name);
-  status code = estimates_named(choice->name, &quantity->exponent, &reading.method, &reading.window, error);
-  if (code)
-    return code;
-
-  code = ask_columns_axes(store, true, QUANTITY_AXES, reading.written, &reading.written_count, error);
-  if (code)
-    return code;
+  TRY(estimates_named(choice->name, &quantity->exponent, &reading.method, &reading.window, error));
+  TRY(ask_columns_axes(store, true, QUANTITY_AXES, reading.written, &reading.written_count, error));
   char by[600];
   snprintf(by, sizeof by, "%s%s%s", choice->axis[0], choice->axis[1] ? "," : "",
            choice->axis[1] ? choice->axis[1] : "");
-  const struct query_sink groups = {&reading, take_columns, take_group};
-  code = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : choice->name, &groups, quantity->pooled, error);
-  if (code)
-    return code;
-
+  ANSWER groups = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : choice->name, quantity->pooled, error);
+  TRY(answer_status(&groups));
+  TRY(read_names(&reading, &groups, error));
   if (!quantity->exponent)
-    return STATUS_OK;
-
-  const char *inputs[2] = {quantity->column[0], quantity->column[1]};
+    return read_groups(&reading, &groups, error);
   quantity->pooled[0] = '\0'; /* exponents belong to single points */
-  return ask_points_rows(store, &(struct ask_points_choice){0}, choice->newest, quantity->axes, inputs, take_point,
-                         &reading, error);
+  return read_exponents(&reading, error);
 }
 
 void quantity_tell_resolution(struct store *store, const char *name, const char *pooled) {

@@ -5,7 +5,7 @@
 
 #include "analysis/statistics/exponent.h"
 #include "campaign/terminal/option.h"
-#include "db/ask/query.h"
+#include "db/ask/group.h"
 #include "engine/outcome.h"
 
 /* Options of both commands: the input on the horizontal axis, and the quantity. */

@@ -131,23 +131,6 @@ struct curves {
   struct spectrum_curve curve[PICTURE_SERIES];
 };
 
-static status take_pool(void *context, const struct ask_pool *pool, struct error *error) {
-  struct curves *curves = context;
-  if (curves->count == curves->most) {
-    curves->more = true;
-    return STATUS_STOPPED; /* enough */
-  }
-  const status code = spectrum_curves_make(curves->choice, curves->with_rivals, pool, &curves->curve[curves->count],
-                                           error);
-  if (code)
-    return code;
-  struct spectrum_curve *curve = &curves->curve[curves->count];
-  curve->fit.label = curve->fit_label;
-  curves->several |= pool->points > 1;
-  curves->point = curves->count++ == 0 ? pool->data.point_id : 0;
-  return STATUS_OK;
-}
-
 /* The meaning of axes and intervals, and the error of the resolution. */
 static void write_caption(struct store *store, const struct curves *curves, char caption[800]) {
   static const char *const laws[2][2] = {{"F(m) ~ m^-\xce\xb2, N(>m) ~ m^-(\xce\xb2 \xe2\x88\x92 1)",
@@ -212,9 +195,18 @@ static void print_plots(const struct curves *curves, bool ascii) {
 }
 
 static status take_curves(struct store *store, struct curves *curves, struct error *error) {
-  const status code = ask_pools(store, &curves->choice->pool, take_pool, curves, error);
-  if (code != STATUS_OK && !(code == STATUS_STOPPED && curves->more))
-    return code;
+  ASK_POOLS pools = ask_pools(store, &curves->choice->pool, NULL, error);
+  for (const struct ask_pool *pool; !curves->more && (pool = ask_pools_next(&pools));) {
+    curves->more = curves->count == curves->most; /* enough */
+    if (curves->more)
+      break;
+    struct spectrum_curve *curve = &curves->curve[curves->count];
+    TRY(spectrum_curves_make(curves->choice, curves->with_rivals, pool, curve, error));
+    curve->fit.label = curve->fit_label;
+    curves->several |= pool->points > 1;
+    curves->point = curves->count++ == 0 ? pool->data.point_id : 0;
+  }
+  TRY(ask_pools_end(&pools));
   if (curves->count > 0)
     return STATUS_OK;
   return status_fail(error, STATUS_USAGE, "no finished run to draw: the store has none, or none meets --where");

@@ -10,9 +10,7 @@ struct options {
   struct table_options table;
 };
 
-static status print(void *context, const struct ask_pairs_row *row, struct error *error) {
-  struct table *table = context;
-  (void)error;
+static void print(struct table *table, const struct ask_pairs_row *row) {
   table_integer(table, row->point[0]);
   table_integer(table, row->point[1]);
   table_text(table, row->inputs);
@@ -23,7 +21,6 @@ static status print(void *context, const struct ask_pairs_row *row, struct error
     table_real(table, row->difference.mean[k]);
   table_real(table, row->difference.difference);
   table_real(table, row->difference.half_width);
-  return STATUS_OK;
 }
 
 static status run(const struct command_line *line, struct error *error) {
@@ -39,7 +36,9 @@ static status run(const struct command_line *line, struct error *error) {
   struct table *table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"point_a", "point_b", "inputs", "n_a", "n_b", "pairs", "mean_a", "mean_b",
                                              "difference", "hw95", NULL});
-  code = ask_pairs_each(pairs, print, table, error);
+  for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
+    print(table, &row);
+  code = ask_pairs_end(pairs, error);
   if (code)
     table_drop(table);
   else

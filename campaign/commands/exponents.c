@@ -14,16 +14,20 @@ struct options {
 static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
   const struct options *options = line->options;
   const struct ask_pool_choice choice = {.point = options->point, .where = options->where};
-  struct exponents_print printing = {table_new(format, stdout), (size_t)options->draws};
-  exponents_print_headings(printing.table);
-  status code = ask_points_known(store, options->point, error);
+  TRY(ask_points_known(store, options->point, error));
+  struct table *table = table_new(format, stdout);
+  exponents_print_headings(table);
+  ASK_POOLS pools = ask_pools(store, &choice, NULL, error);
+  status code = STATUS_OK;
+  for (const struct ask_pool *pool; code == STATUS_OK && !table_broken(table) && (pool = ask_pools_next(&pools));)
+    code = exponents_print_pool(table, (size_t)options->draws, pool, error);
   if (code == STATUS_OK)
-    code = ask_pools(store, &choice, exponents_print_pool, &printing, error);
-  if (code && !table_broken(printing.table)) {
-    table_drop(printing.table);
+    code = ask_pools_end(&pools);
+  if (code && !table_broken(table)) {
+    table_drop(table);
     return code;
   }
-  code = table_end(printing.table, error);
+  code = table_end(table, error);
   if (code == STATUS_OK && format == TABLE_TEXT)
     fputs("clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete mass. "
           "p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better\n",

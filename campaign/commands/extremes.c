@@ -1,8 +1,8 @@
 /* `clast extremes STORE`: which runs of a store are safe, warned or refused, and why. */
-#include "db/ask/extremes.h"
 #include "campaign/charts/extremes_map.h"
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/rows.h"
+#include "db/ask/campaign.h"
 
 enum { PICTURE_WIDTH = 1200 };
 
@@ -12,27 +12,16 @@ struct options {
   struct table_options table;
 };
 
-typedef status (*rows_question)(struct store *store, const struct query_sink *sink, struct error *error);
-
-static status print(struct store *store, rows_question question, enum table_format format, struct error *error) {
-  struct rows rows;
-  const struct query_sink sink = rows_sink(&rows, store, format, stdout);
-  return rows_end(&rows, question(store, &sink, error), error);
-}
-
 static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
   const struct options *options = line->options;
   const bool both = format == TABLE_TEXT; /* programs get one table */
-  status code = STATUS_OK;
   if (both || !options->why)
-    code = print(store, ask_extremes_campaigns, format, error);
-  if (both && code == STATUS_OK)
+    TRY(rows_print(ask_campaign_extremes(store, error), false, format, stdout));
+  if (both)
     putchar('\n');
-  if (code == STATUS_OK && (both || options->why))
-    code = print(store, ask_extremes_reasons, format, error);
-  if (code == STATUS_OK && options->picture)
-    code = extremes_map_draw(store, options->picture, PICTURE_WIDTH, error);
-  return code;
+  if (both || options->why)
+    TRY(rows_print(ask_campaign_reasons(store, error), false, format, stdout));
+  return options->picture ? extremes_map_draw(store, options->picture, PICTURE_WIDTH, error) : STATUS_OK;
 }
 
 static status run(const struct command_line *line, struct error *error) {

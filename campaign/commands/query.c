@@ -4,6 +4,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/print/canned_table.h"
 #include "campaign/terminal/rows.h"
+#include "db/ask/canned.h"
 
 enum { PARAMETERS_MAXIMUM = 64 };
 
@@ -38,16 +39,11 @@ static status ask(struct store *store, const struct command_line *line, enum tab
   struct parameters parameters;
   if (options->named && !canned)
     return STATUS_USAGE;
-  status code = read_parameters(options, &parameters, error);
-  if (code == STATUS_OK)
-    code = ask_register_functions(store, error);
-  if (code)
-    return code;
-  struct rows rows;
-  struct query_sink sink = rows_sink(&rows, store, format, stdout);
-  code = query_run(store, canned ? canned->sql : line->arguments[1], options->with.count, parameters.all,
-                   (double)options->seconds, &sink, error);
-  return rows_end(&rows, code, error);
+  TRY(read_parameters(options, &parameters, error));
+  TRY(ask_register_functions(store, error));
+  return rows_print(answer_to_user(store, canned ? canned->sql : line->arguments[1], options->with.count,
+                                   parameters.all, (double)options->seconds, error),
+                    false, format, stdout);
 }
 
 static status run(const struct command_line *line, struct error *error) {

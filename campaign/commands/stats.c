@@ -6,6 +6,7 @@
 #include "campaign/charts/quantity.h"
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/rows.h"
+#include "db/ask/group.h"
 #include "engine/outcome.h"
 
 struct options {
@@ -49,13 +50,8 @@ static status warn_of_twins(struct store *store, struct error *error) {
 static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
   const struct options *options = line->options;
   const char *quantity = strcmp(options->quantity, "main") == 0 ? NULL : options->quantity;
-  struct rows rows;
   char pooled[ASK_GROUP_POOLED] = "";
-  struct query_sink sink = rows_sink_written(&rows, store, format, stdout);
-  status code = ask_group(store, options->by, quantity, &sink, pooled, error);
-  code = rows_end(&rows, code, error);
-  if (code)
-    return code;
+  TRY(rows_print(ask_group(store, options->by, quantity, pooled, error), true, format, stdout));
   if (*pooled)
     fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
   if (format == TABLE_TEXT)

@@ -8,10 +8,8 @@ struct options {
 };
 
 static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
-  struct rows rows;
   const bool writing = store_is_being_written(line->arguments[0]);
-  const struct query_sink sink = rows_sink(&rows, store, format, stdout);
-  return rows_end(&rows, ask_campaign_progress(store, writing, &sink, error), error);
+  return rows_print(ask_campaign_progress(store, writing, error), false, format, stdout);
 }
 
 static status run(const struct command_line *line, struct error *error) {

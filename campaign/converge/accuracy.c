@@ -65,9 +65,8 @@ static bool is_varied(const struct campaign *campaign, const struct knob *knob, 
 }
 
 /* First pass: finds the knobs without a limit at the scene's own setting. */
-static status take_open(void *context, const struct convergence_row *row, struct error *error) {
+static status take_open(struct finding *finding, const struct convergence_row *row, struct error *error) {
   (void)error;
-  struct finding *finding = context;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   finding->studied = true;
   if (knob && row->base && row->open)
@@ -97,8 +96,7 @@ static bool has_own(const struct accuracy *accuracy) {
 }
 
 /* Second pass: a level as an option. */
-static status take_option(void *context, const struct convergence_row *row, struct error *error) {
-  struct finding *finding = context;
+static status take_option(struct finding *finding, const struct convergence_row *row, struct error *error) {
   struct accuracy *accuracy = finding->accuracy;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   if (!is_choice(knob, row))
@@ -146,18 +144,20 @@ static void choose(struct accuracy *accuracy) {
 
 /* Reads the study of this scene, if there is one. */
 static status read_study(struct finding *finding, struct store *store, const struct scene *scene, struct error *error) {
+  static status (*const passes[])(struct finding *, const struct convergence_row *, struct error *) = {take_open,
+                                                                                                       take_option};
   struct study_quantity quantity;
   int64_t point = 0;
   if (study_quantity_find(scene->kind, finding->campaign->accuracy_quantity, &quantity, error) != STATUS_OK)
     return STATUS_CONTENT;
-  status code = store_point_find(store, scene, &point, error);
-  if (code != STATUS_OK || point == 0)
-    return code;
-  code = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, take_open, finding, error);
-  if (code == STATUS_OK)
-    code = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, take_option, finding,
-                                  error);
-  return code;
+  TRY(store_point_find(store, scene, &point, error));
+  for (size_t pass = 0; point && pass < sizeof passes / sizeof passes[0]; pass++) {
+    ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, error);
+    for (struct convergence_row row; ask_convergence_next(&levels, &row);)
+      TRY(passes[pass](finding, &row, error));
+    TRY(answer_end(&levels));
+  }
+  return STATUS_OK;
 }
 
 static status read_points(struct finding *finding, struct store *store, struct error *error) {

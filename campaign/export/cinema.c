@@ -3,12 +3,13 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "campaign/charts/picture_draw.h"
 #include "campaign/charts/spectrum_curves.h"
 #include "campaign/export/part_file.h"
 #include "campaign/terminal/rows.h"
-#include "db/ask/kept.h"
+#include "db/ask/run.h"
 
 enum { PATH = 4096, WIDTH = 600 };
 
@@ -20,16 +21,6 @@ struct cinema {
   bool spectrum; /* the point has a spectrum */
   size_t rows, not_drawn;
 };
-
-static status take_names(void *context, size_t count, const char *const *names, struct error *error) {
-  (void)error;
-  struct cinema *cinema = context;
-  for (size_t i = 0; i + 1 < count; i++)
-    table_column(cinema->table, names[i], NULL);
-  table_column(cinema->table, "FILE", NULL);
-  table_column(cinema->table, "FILE_spectrum", NULL);
-  return STATUS_OK;
-}
 
 /* Draws the spectrum of a point. A point without fragments has none. */
 static status draw_spectrum(struct cinema *cinema, int64_t point, struct error *error) {
@@ -48,25 +39,29 @@ static void file_cell(struct cinema *cinema, bool there, const char *kind, int64
   table_text(cinema->table, there ? name : NULL);
 }
 
-/* run_id, point_id, ..., fields */
-static status take_run(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct cinema *cinema = context;
-  const int64_t run = values[0].integer, point = values[1].integer;
+/* Draws a run, and the spectrum of its point if the run is the first of it; then writes their row. `runs`: run_id,
+ * point_id, ..., fields. */
+static status write_run(struct cinema *cinema, const struct answer *runs, struct error *error) {
+  const int64_t run = answer_integer(runs, 0), point = answer_integer(runs, 1);
+  const size_t fields = answer_count(runs) - 1;
   char path[PATH];
-  status code = STATUS_OK;
   if (point != cinema->point)
-    code = draw_spectrum(cinema, point, error);
-  if (code)
-    return code;
+    TRY(draw_spectrum(cinema, point, error));
   cinema->point = point;
   snprintf(path, sizeof path, "%s/run%" PRId64 ".png", cinema->folder, run);
-  code = picture_draw(values[count - 1].text, path, &(struct picture_choice){.width = WIDTH}, error);
+  char *file = ask_run_fields(runs, fields);
+  if (!file)
+    return status_fail(error, STATUS_MEMORY, "no memory for the runs");
+  const status code = picture_draw(file, path, &(struct picture_choice){.width = WIDTH}, error);
+  free(file);
   if (code == STATUS_IO)
     return code;
   cinema->rows++;
   cinema->not_drawn += code != STATUS_OK;
-  for (size_t i = 0; i + 1 < count; i++)
-    rows_cell(cinema->table, &values[i]);
+  for (size_t i = 0; i < fields; i++) {
+    const struct query_value value = answer_value(runs, i);
+    rows_cell(cinema->table, &value);
+  }
   file_cell(cinema, code == STATUS_OK, "run", run);
   file_cell(cinema, cinema->spectrum, "point", point);
   return STATUS_OK;
@@ -74,8 +69,15 @@ static status take_run(void *context, size_t count, const struct query_value *va
 
 /* Writes the table, and during this draws the pictures that it names. */
 static status write_table(struct cinema *cinema, struct error *error) {
-  const struct query_sink sink = {cinema, take_names, take_run};
-  const status code = ask_kept(cinema->store, &sink, error);
+  ANSWER runs = ask_run_kept(cinema->store, error);
+  status code = STATUS_OK;
+  for (size_t i = 0; i + 1 < answer_count(&runs); i++)
+    table_column(cinema->table, answer_name(&runs, i), NULL);
+  table_columns(cinema->table, (const char *const[]){"FILE", "FILE_spectrum", NULL});
+  while (code == STATUS_OK && answer_next(&runs))
+    code = write_run(cinema, &runs, error);
+  if (code == STATUS_OK)
+    code = answer_end(&runs);
   const status ended = table_end(cinema->table, code ? NULL : error);
   if (code || ended)
     return code ? code : ended;

@@ -14,7 +14,7 @@
 
 #include "campaign/build_facts.h"
 #include "campaign/export/export_files.h"
-#include "db/ask/sessions.h"
+#include "db/ask/campaign.h"
 #include "schemas/text.h"
 
 #define SPECIFICATION "https://w3id.org/ro/crate/1.1"
@@ -103,54 +103,45 @@ static const char *program(struct crate *crate, const char *version, const char 
 
 /* ---- from the store ---- */
 
-static const char *text_of(const struct query_value *value) {
-  return value->kind == QUERY_TEXT ? value->text : "";
-}
-
 /* campaign, name, document */
-static status take_campaign(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct crate *crate = context;
+static status add_campaign(struct crate *crate, const struct answer *row, struct error *error) {
   char name[64], path[PATH_SIZE], description[512];
-  (void)count;
-  snprintf(name, sizeof name, "campaign-%" PRId64 ".yaml", values[0].integer);
+  snprintf(name, sizeof name, "campaign-%" PRId64 ".yaml", answer_integer(row, 0));
   if (!join(path, crate->options->folder, name))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
   FILE *out = fopen(path, "w");
-  const bool written = out && fputs(text_of(&values[2]), out) >= 0;
+  const bool written = out && fputs(answer_text(row, 2), out) >= 0;
   if ((out && fclose(out) != 0) || !written)
     return status_fail(error, STATUS_IO, "cannot write %s: %s", path, strerror(errno));
-  snprintf(description, sizeof description, "The campaign \"%.400s\" as it was read", text_of(&values[1]));
+  snprintf(description, sizeof description, "The campaign \"%.400s\" as it was read", answer_text(row, 1));
   file_entity(crate, name, "application/yaml", description);
   return STATUS_OK;
 }
 
 /* session, campaign, started, ended, outcome, version, commit, command */
-static status take_session(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct crate *crate = context;
+static void add_session(struct crate *crate, const struct answer *row) {
   char id[64], campaign[64], name[96];
-  (void)count, (void)error;
-  snprintf(id, sizeof id, "#session-%" PRId64, values[0].integer);
-  snprintf(name, sizeof name, "Session %" PRId64 " of the store", values[0].integer);
-  snprintf(campaign, sizeof campaign, "campaign-%" PRId64 ".yaml", values[1].integer);
-  const char *tool = program(crate, text_of(&values[5]), text_of(&values[6]));
+  snprintf(id, sizeof id, "#session-%" PRId64, answer_integer(row, 0));
+  snprintf(name, sizeof name, "Session %" PRId64 " of the store", answer_integer(row, 0));
+  snprintf(campaign, sizeof campaign, "campaign-%" PRId64 ".yaml", answer_integer(row, 1));
+  const char *tool = program(crate, answer_text(row, 5), answer_text(row, 6));
   entity(crate, id, "CreateAction");
   member(crate, "name", name);
-  member(crate, "description", text_of(&values[7]));
-  member(crate, "startTime", text_of(&values[2]));
-  if (*text_of(&values[3]))
-    member(crate, "endTime", text_of(&values[3]));
+  member(crate, "description", answer_text(row, 7));
+  member(crate, "startTime", answer_text(row, 2));
+  if (*answer_text(row, 3))
+    member(crate, "endTime", answer_text(row, 3));
   link_to(crate, "instrument", tool);
-  if (values[1].kind == QUERY_INTEGER)
+  if (answer_value(row, 1).kind == QUERY_INTEGER)
     link_to(crate, "object", campaign);
   link_to(crate, "result", STORE);
   if (crate->options->author)
     link_to(crate, "agent", "#author");
-  const bool failed = strcmp(text_of(&values[4]), "failed") == 0;
+  const bool failed = strcmp(answer_text(row, 4), "failed") == 0;
   link_to(crate, "actionStatus",
           failed ? "http://schema.org/FailedActionStatus" : "http://schema.org/CompletedActionStatus");
   end(crate);
   list(crate->actions, id);
-  return STATUS_OK;
 }
 
 /* ---- the crate ---- */
@@ -268,21 +259,19 @@ static status fill(struct crate *crate, struct store *store, const char *title, 
   char path[PATH_SIZE];
   if (!join(path, crate->options->folder, STORE))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
-  const struct query_sink campaigns = {.context = crate, .row = take_campaign};
-  const struct query_sink sessions = {.context = crate, .row = take_session};
-  status code = store_export(store, path, error);
-  if (code)
-    return code;
+  TRY(store_export(store, path, error));
   file_entity(crate, STORE, "application/vnd.sqlite3",
               "Every run with its inputs, results and fragment masses; any SQLite tool reads it, and its table "
               "column_doc explains it");
-  code = ask_sessions_campaigns(store, &campaigns, error);
-  if (!code)
-    code = ask_sessions(store, &sessions, error);
-  if (!code)
-    code = tables(crate, store, error);
-  if (code)
-    return code;
+  ANSWER campaigns = ask_campaign_documents(store, error);
+  while (answer_next(&campaigns))
+    TRY(add_campaign(crate, &campaigns, error));
+  TRY(answer_end(&campaigns));
+  ANSWER sessions = ask_campaign_sessions(store, error);
+  while (answer_next(&sessions))
+    add_session(crate, &sessions);
+  TRY(answer_end(&sessions));
+  TRY(tables(crate, store, error));
   people(crate);
   if (fflush(crate->graph) | fflush(crate->parts) | fflush(crate->actions))
     return status_fail(error, STATUS_MEMORY, "no memory for the metadata");

@@ -8,11 +8,7 @@ static const char *const exported[] = {"runs", "points", "spectra", "estimates",
 
 static status write_rows(struct store *store, const char *view, enum table_format format, FILE *out,
                          struct error *error) {
-  struct rows rows;
-  if (!view)
-    return store_dump(store, out, error);
-  const struct query_sink sink = rows_sink(&rows, store, format, out);
-  return rows_end(&rows, ask_columns_view(store, view, &sink, error), error);
+  return view ? rows_print(ask_columns_view(store, view, error), false, format, out) : store_dump(store, out, error);
 }
 
 status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,

@@ -45,23 +45,11 @@ status replay_compute(const struct ask_run *from, int64_t run_id, const char *fi
 struct comparison {
   const struct run_result *result;
   const struct engine_kind *kind;
-  char (*names)[128]; /* of the columns */
   struct replay_compare *out;
   struct table *table;
   const struct field **doubtful; /* `doubtful_count` rows that have a value now and none in the store */
   size_t doubtful_count;
 };
-
-static status take_names(void *context, size_t count, const char *const *names, struct error *error) {
-  struct comparison *comparison = context;
-  comparison->names = calloc(count, sizeof *comparison->names);
-  comparison->doubtful = calloc(count, sizeof *comparison->doubtful);
-  if (!comparison->names || !comparison->doubtful)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
-  for (size_t i = 0; i < count; i++)
-    snprintf(comparison->names[i], sizeof comparison->names[i], "%s", names[i]);
-  return STATUS_OK;
-}
 
 static bool same_value(const struct field *row, const struct field_value *computed, const struct query_value *stored) {
   switch (row->kind) {
@@ -109,24 +97,30 @@ static void compare_value(struct comparison *comparison, const struct field *row
 }
 
 static void compare_table(struct comparison *comparison, const struct field_table *table, const void *object,
-                          size_t count, const struct query_value *values) {
+                          const struct answer *stored) {
+  const size_t count = answer_count(stored);
   for (size_t i = 0; i < table->count; i++) {
-    char name[sizeof *comparison->names];
+    char name[FIELD_TEXT_SIZE];
     field_column_name(table->rows[i].path, name, sizeof name);
     size_t column = 0;
-    while (column < count && strcmp(name, comparison->names[column]) != 0)
+    while (column < count && strcmp(name, answer_name(stored, column)) != 0)
       column++;
+    const struct query_value value = column < count ? answer_value(stored, column) : (struct query_value){0};
     if (column < count)
-      compare_value(comparison, &table->rows[i], object, &values[column]);
+      compare_value(comparison, &table->rows[i], object, &value);
   }
 }
 
-static status compare_row(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)error;
-  struct comparison *comparison = context;
-  compare_table(comparison, &outcome_table, &comparison->result->outcome, count, values);
-  compare_table(comparison, comparison->kind->results, comparison->result->result, count, values);
-  return STATUS_OK;
+static status compare_results(struct comparison *comparison, struct store *store, int64_t run_id, struct error *error) {
+  ANSWER stored = ask_run_results(store, run_id, comparison->kind->name, error);
+  if (answer_next(&stored)) {
+    comparison->doubtful = calloc(answer_count(&stored), sizeof *comparison->doubtful);
+    if (!comparison->doubtful)
+      return status_fail(error, STATUS_MEMORY, "out of memory");
+    compare_table(comparison, &outcome_table, &comparison->result->outcome, &stored);
+    compare_table(comparison, comparison->kind->results, comparison->result->result, &stored);
+  }
+  return answer_end(&stored);
 }
 
 /* Judges results without a value in the store. If some stored run has a value of the result, the program knew the
@@ -134,7 +128,7 @@ static status compare_row(void *context, size_t count, const struct query_value 
 static status judge_doubtful(struct comparison *comparison, struct store *store, int64_t run_id, struct error *error) {
   struct replay_compare *out = comparison->out;
   for (size_t i = 0; i < comparison->doubtful_count; i++) {
-    char name[sizeof *comparison->names];
+    char name[FIELD_TEXT_SIZE];
     bool used = false;
     field_column_name(comparison->doubtful[i]->path, name, sizeof name);
     status code = ask_run_column_used(store, run_id, comparison->kind->name, name, &used, error);
@@ -145,8 +139,7 @@ static status judge_doubtful(struct comparison *comparison, struct store *store,
       difference(comparison, comparison->doubtful[i]->path, NULL, "a value");
       continue;
     }
-    const size_t length = strlen(out->absent_names);
-    snprintf(out->absent_names + length, sizeof out->absent_names - length, "%s%s", length ? ", " : "", name);
+    text_append(out->absent_names, sizeof out->absent_names, "%s%s", *out->absent_names ? ", " : "", name);
     out->absent++;
   }
   return STATUS_OK;
@@ -167,10 +160,9 @@ status replay_compare(struct store *store, int64_t run_id, const struct engine_k
                       struct error *error) {
   *out = (struct replay_compare){0};
   struct comparison comparison = {.result = result, .kind = kind, .out = out, .table = table};
-  const struct query_sink sink = {&comparison, take_names, compare_row};
   double *masses = NULL;
   size_t count = 0;
-  status code = ask_run_results(store, run_id, kind->name, &sink, error);
+  status code = compare_results(&comparison, store, run_id, error);
   if (code == STATUS_OK)
     code = judge_doubtful(&comparison, store, run_id, error);
   if (code == STATUS_OK)
@@ -178,7 +170,6 @@ status replay_compare(struct store *store, int64_t run_id, const struct engine_k
   if (code == STATUS_OK && masses)
     compare_masses(&comparison, masses, count);
   free(masses);
-  free(comparison.names);
   free(comparison.doubtful);
   if (code == STATUS_OK && out->compared < 3)
     return status_fail(error, STATUS_CONTENT, "the store keeps no results of run %" PRId64, run_id);

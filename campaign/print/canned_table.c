@@ -1,7 +1,7 @@
 /* Lists the canned queries. */
 #include "campaign/print/canned_table.h"
 
-#include "db/ask/query.h"
+#include "db/ask/canned.h"
 
 status canned_table_print(enum table_format format, struct error *error) {
   struct table *table = table_new(format, stdout);

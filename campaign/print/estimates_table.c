@@ -8,8 +8,7 @@
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/columns.h"
 #include "db/ask/point.h"
-
-enum { AXES_MAXIMUM = 16 };
+#include "db/ask/points.h"
 
 struct printing {
   struct store *store;
@@ -17,7 +16,7 @@ struct printing {
   struct table *table;
   bool studied; /* some exponent has a study; otherwise no point's study is read */
   size_t axes;
-  struct ask_column axis[AXES_MAXIMUM];
+  struct ask_column axis[ASK_POINTS_INPUTS];
   size_t shown;   /* axes that fit into a terminal */
   bool hidden[3]; /* methods that do not fit */
 };
@@ -207,27 +206,20 @@ static status row_for_people(struct printing *printing, const struct ask_points_
   return code;
 }
 
-static status print_point(void *context, const struct ask_points_row *row, struct error *error) {
-  struct printing *printing = context;
+static status print_point(struct printing *printing, const struct ask_points_row *row, struct error *error) {
   struct point_estimate fits[POINT_ESTIMATES];
   struct point_data point;
-  status code = point_read(printing->store, row->point_id, row->results_version, &point, error);
-  if (code)
-    return code;
-  code = point_estimates(&point, 0.95, fits, error);
+  TRY(point_read(printing->store, row->point_id, row->results_version, &point, error));
+  const status code = point_estimates(&point, 0.95, fits, error);
   point_release(&point);
-  if (code)
-    return code;
-
-  for (int window = 0; window < ESTIMATES_WINDOWS && !code; window++) {
+  TRY(code);
+  for (int window = 0; window < ESTIMATES_WINDOWS; window++) {
     if (printing->format != TABLE_TEXT)
-      code = row_for_programs(printing, row, window, fits, error);
+      TRY(row_for_programs(printing, row, window, fits, error));
     else if (window == 0 || fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n > 0)
-      code = row_for_people(printing, row, window, fits, error); /* people do not need an empty row */
+      TRY(row_for_people(printing, row, window, fits, error)); /* people do not need an empty row */
   }
-  if (code)
-    return code;
-  return table_broken(printing->table) ? STATUS_IO : STATUS_OK;
+  return STATUS_OK;
 }
 
 static const char *const estimates_legend =
@@ -248,13 +240,13 @@ void estimates_table_explain(struct store *store) {
 status estimates_table_print(struct store *store, const struct ask_points_choice *choice, enum table_format format,
                              FILE *out, struct error *error) {
   struct printing printing = {.store = store, .format = format};
-  status code = ask_columns_axes(store, format == TABLE_TEXT, AXES_MAXIMUM, printing.axis, &printing.axes, error);
+  status code = ask_columns_axes(store, format == TABLE_TEXT, ASK_POINTS_INPUTS, printing.axis, &printing.axes, error);
   if (code)
     return code;
   code = ask_resolution_of_exponents(store, &printing.studied, error);
   if (code)
     return code;
-  const char *inputs[AXES_MAXIMUM];
+  const char *inputs[ASK_POINTS_INPUTS];
   for (size_t i = 0; i < printing.axes; i++)
     inputs[i] = printing.axis[i].name;
 
@@ -263,7 +255,11 @@ status estimates_table_print(struct store *store, const struct ask_points_choice
     columns_for_people(&printing);
   else
     columns_for_programs(&printing);
-  code = ask_points_rows(store, choice, true, printing.axes, inputs, print_point, &printing, error);
+  ANSWER points = ask_points_rows(store, choice, true, printing.axes, inputs, error);
+  for (struct ask_points_row row; code == STATUS_OK && !table_broken(printing.table) && ask_points_next(&points, &row);)
+    code = print_point(&printing, &row, error);
+  if (code == STATUS_OK)
+    code = answer_end(&points);
   if (code && !table_broken(printing.table)) {
     table_drop(printing.table);
     return code;

@@ -5,13 +5,8 @@
 #include "campaign/terminal/table.h"
 #include "db/ask/pool.h"
 
-struct exponents_print {
-  struct table *table;
-  size_t draws; /* number of bootstrap samples */
-};
-
 void exponents_print_headings(struct table *table);
-/* An ask_pool_each of ask_pools; the context is a struct exponents_print. Points without estimates have no row. */
-status exponents_print_pool(void *context, const struct ask_pool *pool, struct error *error);
+/* The row of a pool, with `draws` samples of the bootstrap. Points without estimates have no row. */
+status exponents_print_pool(struct table *table, size_t draws, const struct ask_pool *pool, struct error *error);
 
 #endif

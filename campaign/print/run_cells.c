@@ -17,8 +17,7 @@ static status no_memory(struct error *error) {
   return status_fail(error, STATUS_MEMORY, "no memory for the runs of the points");
 }
 
-status run_cells_take(void *context, const struct ask_pool *pool, struct error *error) {
-  struct run_cells *cells = context;
+static status add_cell(struct run_cells *cells, const struct ask_pool *pool, struct error *error) {
   if (!grow_room(&cells->cell, &cells->room, cells->count + 1, sizeof *cells->cell))
     return no_memory(error);
   struct run_cell *cell = &cells->cell[cells->count++];
@@ -42,6 +41,14 @@ status run_cells_take(void *context, const struct ask_pool *pool, struct error *
       cell->run[cell->runs++] = (struct run_cells_run){pool->seed[r], pool->value[r]};
   qsort(cell->run, cell->runs, sizeof *cell->run, by_seed);
   return STATUS_OK;
+}
+
+status run_cells_read(struct store *store, const struct ask_pool_choice *choice, const char *quantity,
+                      struct run_cells *cells, struct error *error) {
+  ASK_POOLS pools = ask_pools(store, choice, quantity, error);
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));)
+    TRY(add_cell(cells, pool, error));
+  return ask_pools_end(&pools);
 }
 
 void run_cells_release(struct run_cells *cells) {

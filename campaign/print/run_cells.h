@@ -22,8 +22,9 @@ struct run_cells {
   struct run_cell *cell;
 };
 
-/* An ask_pool_each of ask_pool_values, with a zeroed struct run_cells as its context. */
-status run_cells_take(void *cells, const struct ask_pool *pool, struct error *error);
+/* Adds a cell per pool of ask_pools to `cells`, which is zeroed before the first call. */
+status run_cells_read(struct store *store, const struct ask_pool_choice *choice, const char *quantity,
+                      struct run_cells *cells, struct error *error);
 void run_cells_release(struct run_cells *cells);
 
 /* Puts runs with the same seeds first in all cells: the seeds that all cells have, if there are at least two (or one,

@@ -69,12 +69,9 @@ static void print_scatter(const struct printing *printing, const struct ask_pool
         needed(deviation + room, wanted));
 }
 
-static status print_pool(void *context, const struct ask_pool *pool, struct error *error) {
-  struct printing *printing = context;
+static status print_pool(struct printing *printing, const struct ask_pool *pool, struct error *error) {
   struct scatter scatter;
-  const status code = scatter_make(pool->data.runs.count, pool->value, &scatter, error);
-  if (code)
-    return code;
+  TRY(scatter_make(pool->data.runs.count, pool->value, &scatter, error));
   if (!printing->table)
     start(printing, pool);
   printing->several |= pool->points > 1;
@@ -86,7 +83,12 @@ static status print_pool(void *context, const struct ask_pool *pool, struct erro
 status scatter_print_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,
                           struct error *error) {
   struct printing printing = {.choice = choice, .format = format};
-  const status code = ask_pool_values(store, &choice->pool, choice->quantity, print_pool, &printing, error);
+  ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
+  status code = STATUS_OK;
+  for (const struct ask_pool *pool; code == STATUS_OK && (pool = ask_pools_next(&pools));)
+    code = print_pool(&printing, pool, error);
+  if (code == STATUS_OK)
+    code = ask_pools_end(&pools);
   if (code && !printing.table)
     return code;
   if (!printing.table)
@@ -107,15 +109,12 @@ status scatter_print_rows(struct store *store, const struct scatter_choice *choi
   return table_end(printing.table, error);
 }
 
-static status plot_pool(void *context, const struct ask_pool *pool, struct error *error) {
-  const bool *ascii = context;
+static status plot_pool(bool ascii, const struct ask_pool *pool, struct error *error) {
   struct scatter scatter;
-  const status code = scatter_make(pool->data.runs.count, pool->value, &scatter, error);
-  if (code)
-    return code;
+  TRY(scatter_make(pool->data.runs.count, pool->value, &scatter, error));
   const struct scatter_histogram histogram = scatter_histogram_of(&scatter);
   printf("%s, %zu runs\n", pool->label, scatter.n);
-  text_histogram_print(stdout, COLUMNS, !*ascii, &histogram);
+  text_histogram_print(stdout, COLUMNS, !ascii, &histogram);
   if (isfinite(scatter.between))
     printf("two modes: %.4g and %.4g, apart at %.4g; %.0f %% of the runs are in the upper one (%.0f to %.0f %%)\n",
            scatter.lower_mode, scatter.upper_mode, scatter.between, 100 * scatter.upper_share, 100 * scatter.upper_low,
@@ -125,7 +124,10 @@ static status plot_pool(void *context, const struct ask_pool *pool, struct error
 }
 
 status scatter_print_plots(struct store *store, const struct scatter_choice *choice, bool ascii, struct error *error) {
-  return ask_pool_values(store, &choice->pool, choice->quantity, plot_pool, &ascii, error);
+  ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));)
+    TRY(plot_pool(ascii, pool, error));
+  return ask_pools_end(&pools);
 }
 
 struct samples {
@@ -135,30 +137,22 @@ struct samples {
   char label[PICTURE_SERIES][ASK_POOL_LABEL + 64];
 };
 
-static status take_sample(void *context, const struct ask_pool *pool, struct error *error) {
-  struct samples *samples = context;
-  if (samples->count == PICTURE_SERIES) {
-    samples->more = true;
-    return STATUS_STOPPED; /* enough */
-  }
-  struct scatter *scatter = &samples->scatter[samples->count];
-  const status code = scatter_make(pool->data.runs.count, pool->value, scatter, error);
-  if (code)
-    return code;
-  if (scatter->n == 0) {
-    scatter_release(scatter);
-    return STATUS_OK;
-  }
-  snprintf(samples->label[samples->count++], sizeof samples->label[0], "%s, %zu runs%s", pool->label, scatter->n,
-           isfinite(scatter->between) ? ", two modes" : "");
-  return STATUS_OK;
-}
-
 static status take_samples(struct store *store, const struct scatter_choice *choice, struct samples *samples,
                            struct error *error) {
-  const status code = ask_pool_values(store, &choice->pool, choice->quantity, take_sample, samples, error);
-  if (code != STATUS_OK && !(code == STATUS_STOPPED && samples->more))
-    return code;
+  ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
+  for (const struct ask_pool *pool; !samples->more && (pool = ask_pools_next(&pools));) {
+    samples->more = samples->count == PICTURE_SERIES; /* enough */
+    if (samples->more)
+      break;
+    struct scatter *scatter = &samples->scatter[samples->count];
+    TRY(scatter_make(pool->data.runs.count, pool->value, scatter, error));
+    if (scatter->n == 0)
+      scatter_release(scatter);
+    else
+      snprintf(samples->label[samples->count++], sizeof samples->label[0], "%s, %zu runs%s", pool->label, scatter->n,
+               isfinite(scatter->between) ? ", two modes" : "");
+  }
+  TRY(ask_pools_end(&pools));
   if (samples->count > 0)
     return STATUS_OK;
   return status_fail(error, STATUS_USAGE, "no finished run has a value of %s", choice->quantity);

@@ -77,7 +77,7 @@ status scatter_print_split(struct store *store, const struct scatter_choice *cho
   if (!pool.by)
     pool.by = by;
   if (code == STATUS_OK)
-    code = ask_pool_values(store, &pool, choice->quantity, run_cells_take, &cells, error);
+    code = run_cells_read(store, &pool, choice->quantity, &cells, error);
   if (code == STATUS_OK)
     code = split(&cells, parts, &runs, error);
   if (code == STATUS_OK)

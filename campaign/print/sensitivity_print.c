@@ -107,9 +107,7 @@ static status read_runs(struct store *store, const char *quantity, struct readin
   for (size_t a = 0, used = 0; a < n && used < sizeof by; a++)
     used += (size_t)snprintf(by + used, sizeof by - used, "%s%s", a ? "," : "", campaign->axes[a].row->path);
   const struct ask_pool_choice choice = {.by = by};
-  status code = ask_pool_values(store, &choice, quantity, run_cells_take, &r->cells, error);
-  if (code)
-    return code;
+  TRY(run_cells_read(store, &choice, quantity, &r->cells, error));
   r->place = calloc(r->blocks * r->points + 1, sizeof *r->place);
   r->block = calloc(r->blocks + 1, sizeof *r->block);
   if (!r->place || !r->block)

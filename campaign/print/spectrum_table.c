@@ -83,8 +83,7 @@ static status print_bins(struct printing *printing, const struct ask_pool *pool,
   return table_broken(table) ? STATUS_IO : STATUS_OK;
 }
 
-static status print_pool(void *context, const struct ask_pool *pool, struct error *error) {
-  struct printing *printing = context;
+static status print_pool(struct printing *printing, const struct ask_pool *pool, struct error *error) {
   const struct pooled_runs *runs = &pool->data.runs;
   if (!printing->table)
     name_bins(printing, pool);
@@ -95,6 +94,15 @@ static status print_pool(void *context, const struct ask_pool *pool, struct erro
     code = print_bins(printing, pool, &(struct pooled_runs){1, runs->first + r, runs->masses}, &pool->data.run_id[r],
                       error);
   return code;
+}
+
+static status each_pool(struct store *store,
+                        status (*print)(struct printing *printing, const struct ask_pool *pool, struct error *error),
+                        struct printing *printing, struct error *error) {
+  ASK_POOLS pools = ask_pools(store, &printing->choice->pool, NULL, error);
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));)
+    TRY(print(printing, pool, error));
+  return ask_pools_end(&pools);
 }
 
 /* Ends the table. Rows printed before an error are kept. */
@@ -109,7 +117,7 @@ static status end_table(struct table *table, status code, struct error *error) {
 status spectrum_table_print(struct store *store, const struct spectrum_choice *choice, enum table_format format,
                             struct error *error) {
   struct printing printing = {.choice = choice, .format = format};
-  const status code = ask_pools(store, &choice->pool, print_pool, &printing, error);
+  const status code = each_pool(store, print_pool, &printing, error);
   if (!printing.table && code)
     return code;
   if (!printing.table)
@@ -124,8 +132,7 @@ static void name_matches(struct printing *printing, const struct ask_pool *pool)
                                                        "distance", "runs_as_far", "log_likelihood", NULL});
 }
 
-static status print_match(void *context, const struct ask_pool *pool, struct error *error) {
-  struct printing *printing = context;
+static status print_match(struct printing *printing, const struct ask_pool *pool, struct error *error) {
   struct measured_match match;
   const status code = measured_compare(printing->choice->measured, &pool->data.runs, printing->complete, &match, error);
   if (code)
@@ -144,20 +151,14 @@ static status print_match(void *context, const struct ask_pool *pool, struct err
   return STATUS_OK;
 }
 
-/* Finds the largest complete mass of all pools: likelihoods can be compared only above the same mass. */
-static status find_complete(void *context, const struct ask_pool *pool, struct error *error) {
-  struct printing *printing = context;
-  (void)error;
-  printing->complete = fmax(printing->complete, pool->data.complete_mass); /* fmax ignores a NaN */
-  return STATUS_OK;
-}
-
 status spectrum_table_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
                             struct error *error) {
   struct printing printing = {.choice = choice, .format = format, .complete = choice->measured->complete};
-  status code = ask_pools(store, &choice->pool, find_complete, &printing, error);
-  if (code == STATUS_OK)
-    code = ask_pools(store, &choice->pool, print_match, &printing, error);
+  ASK_POOLS pools = ask_pools(store, &choice->pool, NULL, error);
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));)      /* likelihoods are compared above one mass */
+    printing.complete = fmax(printing.complete, pool->data.complete_mass); /* fmax ignores a NaN */
+  TRY(ask_pools_end(&pools));
+  const status code = each_pool(store, print_match, &printing, error);
   if (!printing.table && code)
     return code;
   if (!printing.table)

@@ -13,6 +13,7 @@
 #include "db/ask/columns.h"
 #include "db/ask/page.h"
 #include "db/ask/pairs.h"
+#include "db/ask/run.h"
 #include "engine/atomic_file.h"
 #include "engine/outcome.h"
 
@@ -53,17 +54,6 @@ static status add_label(void *context, const char *column, struct error *error) 
   return ask_page_label(making->page, column, label, unit, written.factor, error);
 }
 
-struct comparing {
-  struct ask_page *page;
-  const char *quantity;
-};
-
-static status add_difference(void *context, const struct ask_pairs_row *row, struct error *error) {
-  const struct comparing *comparing = context;
-  return ask_page_difference(comparing->page, comparing->quantity, row->point[0], row->point[1], &row->difference,
-                             error);
-}
-
 /* The main results less those of the first store, as `clast compare` has them. Stores without common points have no
  * differences. */
 static status add_differences(struct making *making, const char *name, struct error *error) {
@@ -71,25 +61,30 @@ static status add_differences(struct making *making, const char *name, struct er
   const char *first = making->choice->stores[0];
   for (size_t i = 0; code == STATUS_OK && name != first && outcome_main(i); i++) {
     struct ask_pairs *pairs = NULL;
-    struct comparing comparing = {making->page, outcome_main(i)->path};
-    code = ask_pairs_read(first, name, comparing.quantity, &pairs, error);
+    const char *quantity = outcome_main(i)->path;
+    code = ask_pairs_read(first, name, quantity, &pairs, error);
+    for (struct ask_pairs_row row; code == STATUS_OK && ask_pairs_next(pairs, &row);)
+      code = ask_page_difference(making->page, quantity, row.point[0], row.point[1], &row.difference, error);
     if (code == STATUS_OK)
-      code = ask_pairs_each(pairs, add_difference, &comparing, error);
+      code = ask_pairs_end(pairs, error);
     ask_pairs_free(pairs);
   }
   return code == STATUS_USAGE ? STATUS_OK : code;
 }
 
 /* Draws into a file beside the page. For a missing or damaged fields file the page reports that there is no picture. */
-static status add_picture(void *context, const struct ask_page_kept *run, struct error *error) {
-  struct making *making = context;
+static status add_picture(struct making *making, const struct answer *kept, struct error *error) {
   unsigned char *png = NULL;
   size_t size = 0;
   char path[4096];
   if (making->picture_bytes >= PICTURE_BYTES)
     return STATUS_OK;
   snprintf(path, sizeof path, "%s.%ld.png", making->choice->output, (long)getpid());
-  status code = picture_draw(run->fields, path, &(struct picture_choice){.width = PICTURE_WIDTH}, NULL);
+  char *fields = ask_run_fields(kept, 3);
+  if (!fields)
+    return status_fail(error, STATUS_MEMORY, "no memory for the page");
+  status code = picture_draw(fields, path, &(struct picture_choice){.width = PICTURE_WIDTH}, NULL);
+  free(fields);
   if (code) {
     making->not_drawn++;
     return STATUS_OK;
@@ -98,32 +93,32 @@ static status add_picture(void *context, const struct ask_page_kept *run, struct
   unlink(path);
   if (code == STATUS_OK && making->picture_bytes + size <= PICTURE_BYTES) {
     making->picture_bytes += size;
-    code = ask_page_picture(making->page, run, png, size, error);
+    code = ask_page_picture(making->page, kept, png, size, error);
   }
   free(png);
   return code;
 }
 
-static status add_store(struct making *making, const char *name, struct page_data *data, struct error *error) {
+static status fill_page(struct making *making, const char *name, struct page_data *data, struct error *error) {
   char not_drawn[32];
   making->not_drawn = 0;
-  status code = store_open_reader(name, &making->store, error);
-  if (code)
-    return code;
-  code = ask_page_make(making->store, &making->page, error);
-  if (code == STATUS_OK)
-    code = add_facts(making, name, error);
-  if (code == STATUS_OK)
-    code = ask_page_columns(making->page, add_label, making, error);
-  if (code == STATUS_OK)
-    code = add_differences(making, name, error);
-  if (code == STATUS_OK)
-    code = ask_page_kept(making->store, PICTURES, add_picture, making, error);
+  TRY(add_facts(making, name, error));
+  TRY(ask_page_columns(making->page, add_label, making, error));
+  TRY(add_differences(making, name, error));
+  ANSWER kept = ask_page_kept(making->store, PICTURES, error);
+  while (answer_next(&kept))
+    TRY(add_picture(making, &kept, error));
+  TRY(answer_end(&kept));
   snprintf(not_drawn, sizeof not_drawn, "%zu", making->not_drawn);
+  TRY(ask_page_fact(making->page, "pictures_not_drawn", not_drawn, error));
+  return ask_page_file(making->page, &data->bytes, &data->size, error);
+}
+
+static status add_store(struct making *making, const char *name, struct page_data *data, struct error *error) {
+  TRY(store_open_reader(name, &making->store, error));
+  status code = ask_page_make(making->store, &making->page, error);
   if (code == STATUS_OK)
-    code = ask_page_fact(making->page, "pictures_not_drawn", not_drawn, error);
-  if (code == STATUS_OK)
-    code = ask_page_file(making->page, &data->bytes, &data->size, error);
+    code = fill_page(making, name, data, error);
   ask_page_free(making->page);
   making->page = NULL;
   store_close(making->store, NULL);

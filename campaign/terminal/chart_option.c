@@ -6,6 +6,7 @@
 
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/columns.h"
+#include "db/ask/group.h"
 #include "db/ask/resolution.h"
 #include "engine/engine.h"
 #include "engine/outcome.h"

@@ -4,7 +4,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOB_SHOWN = 64 }; /* bytes shown in the aligned table: an identity fits, a list of masses does not */
+enum {
+  ROWS_AXES = 64,
+  BLOB_SHOWN = 64
+}; /* bytes shown in the aligned table: an identity fits, a list of masses does not */
+
+struct rows {
+  struct table *table;
+  enum table_format format;
+  struct ask_column written[ROWS_AXES]; /* varied inputs, in the campaign's units */
+  size_t written_count;
+  int *place; /* per column: index of `written`, or -1; owned */
+};
 
 /* The varied input of this name, or -1. */
 static int written_place(const struct rows *rows, const char *name) {
@@ -14,20 +25,31 @@ static int written_place(const struct rows *rows, const char *name) {
   return -1;
 }
 
-static status columns(void *context, size_t count, const char *const *names, struct error *error) {
-  struct rows *rows = context;
+/* The headings, with the units of the store's columns: people see varied inputs in the campaign's units (`written`). */
+static status name_columns(struct rows *rows, const struct answer *answer, bool written) {
+  const bool people = rows->format == TABLE_TEXT;
+  struct ask_column *units = NULL;
+  size_t unit_count = 0;
+  const size_t count = answer_count(answer);
+  if (people) /* on an error headings have no units, and values stay in SI */
+    (void)ask_columns_units(answer->store, &units, &unit_count, NULL);
+  if (people && written)
+    (void)ask_columns_axes(answer->store, true, ROWS_AXES, rows->written, &rows->written_count, NULL);
   rows->place = calloc(count + 1, sizeof *rows->place);
-  if (!rows->place)
-    return status_fail(error, STATUS_MEMORY, "no memory for a table");
-  rows->table = table_new(rows->format, rows->out);
-  for (size_t i = 0; i < count; i++) {
-    rows->place[i] = written_place(rows, names[i]);
-    const char *unit = rows->place[i] >= 0 ? rows->written[rows->place[i]].unit : NULL;
-    for (size_t k = 0; k < rows->unit_count && !unit; k++)
-      if (strcmp(rows->units[k].name, names[i]) == 0)
-        unit = rows->units[k].unit;
-    table_column(rows->table, names[i], unit);
+  if (!rows->place) {
+    free(units);
+    return status_fail(answer->error, STATUS_MEMORY, "no memory for a table");
   }
+  for (size_t i = 0; i < count; i++) {
+    const char *name = answer_name(answer, i);
+    rows->place[i] = written_place(rows, name);
+    const char *unit = rows->place[i] >= 0 ? rows->written[rows->place[i]].unit : NULL;
+    for (size_t k = 0; k < unit_count && !unit; k++)
+      if (strcmp(units[k].name, name) == 0)
+        unit = units[k].unit;
+    table_column(rows->table, name, unit);
+  }
+  free(units);
   return STATUS_OK;
 }
 
@@ -61,48 +83,32 @@ void rows_cell(struct table *table, const struct query_value *value) {
   }
 }
 
-static status row(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)error;
-  struct rows *rows = context;
-  for (size_t i = 0; i < count; i++) {
-    if (values[i].kind == QUERY_BLOB) {
-      print_blob(rows, values[i].blob, values[i].size);
-      continue;
-    }
-    const struct query_value shown = rows->place[i] >= 0 ? ask_columns_value(&rows->written[rows->place[i]], &values[i])
-                                                         : values[i];
-    rows_cell(rows->table, &shown);
+static void print_row(struct rows *rows, const struct answer *answer) {
+  for (size_t i = 0; i < answer_count(answer); i++) {
+    const struct query_value value = answer_value(answer, i);
+    const struct query_value shown = rows->place[i] >= 0 ? ask_columns_value(&rows->written[rows->place[i]], &value)
+                                                         : value;
+    if (shown.kind == QUERY_BLOB)
+      print_blob(rows, shown.blob, shown.size);
+    else
+      rows_cell(rows->table, &shown);
   }
-  return table_broken(rows->table) ? STATUS_IO : STATUS_OK; /* rows_end reports the error */
 }
 
-struct query_sink rows_sink(struct rows *rows, struct store *store, enum table_format format, FILE *out) {
-  *rows = (struct rows){.format = format, .out = out};
-  if (format == TABLE_TEXT)
-    (void)ask_columns_units(store, &rows->units, &rows->unit_count, NULL); /* on an error headings have no units */
-  return (struct query_sink){rows, columns, row};
-}
-
-struct query_sink rows_sink_written(struct rows *rows, struct store *store, enum table_format format, FILE *out) {
-  const struct query_sink sink = rows_sink(rows, store, format, out);
-  if (format == TABLE_TEXT) /* on an error they stay in SI */
-    (void)ask_columns_axes(store, true, ROWS_AXES, rows->written, &rows->written_count, NULL);
-  return sink;
-}
-
-status rows_end(struct rows *rows, status code, struct error *error) {
-  free(rows->units);
-  free(rows->place);
-  rows->units = NULL;
-  rows->place = NULL;
-  if (!rows->table)
-    return code;
-  bool broken = table_broken(rows->table);
-  if (code && !broken) { /* an error of the query itself: the printed rows stay */
-    (void)table_end(rows->table, NULL);
+status rows_print(struct answer answer, bool written, enum table_format format, FILE *out) {
+  struct rows rows = {.format = format};
+  if (answer_status(&answer)) /* the question itself failed: no table */
+    return answer_end(&answer);
+  rows.table = table_new(format, out);
+  status code = name_columns(&rows, &answer, written);
+  while (code == STATUS_OK && !table_broken(rows.table) && answer_next(&answer))
+    print_row(&rows, &answer);
+  free(rows.place);
+  const status end = answer_end(&answer);
+  code = code ? code : end;
+  if (code && !table_broken(rows.table)) { /* the printed rows stay */
+    (void)table_end(rows.table, NULL);
     return code;
   }
-  if (error)
-    error->message[0] = '\0';
-  return table_end(rows->table, error);
+  return table_end(rows.table, answer.error);
 }

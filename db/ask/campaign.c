@@ -1,4 +1,4 @@
-/* The state of the campaigns of a store. */
+/* The campaigns and sessions of a store, and how safe their runs are. */
 #include "db/ask/campaign.h"
 
 #include <math.h>
@@ -7,6 +7,8 @@
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "engine/outcome.h"
+#include "engine/warnings.h"
 
 /* Sessions with their campaigns. The last one has the largest number: clocks are set back at times. A read-only store
  * of an older program does not name the campaign: it is then one of the campaigns of the session's runs. */
@@ -18,14 +20,13 @@ static const char sessions_of_runs[] =
     " c.campaign_id = p.campaign_id WHERE ended_at IS NULL OR substr(c.added_at, 1, 19) <= substr(ended_at, 1, 19)"
     " GROUP BY session_id";
 
-status ask_campaign_progress(struct store *store, bool writing, const struct query_sink *sink, struct error *error) {
+struct answer ask_campaign_progress(struct store *store, bool writing, struct error *error) {
   bool named = false;
-  char sql[3600];
   const status code = schema_has_column(store->db, "session", "campaign_id", &named, error);
-  if (code != STATUS_OK)
-    return code;
-  snprintf(
-      sql, sizeof sql,
+  if (code)
+    return answer_failed(code, error);
+  return answer_to(
+      store, error,
       "WITH done AS (SELECT campaign_id, count(*) AS runs, sum(counts) AS counted,"
       "   sum(counts AND state = 'end-time') AS censored,"
       "   sum(state NOT IN ('completed', 'end-time')) AS failed, sum(surplus) AS surplus, sum(cpu_time) AS cpu_time"
@@ -58,43 +59,101 @@ status ask_campaign_progress(struct store *store, bool writing, const struct que
       " LEFT JOIN given_up USING (campaign_id) LEFT JOIN last USING (campaign_id) LEFT JOIN planned"
       " USING (campaign_id) LEFT JOIN filled USING (campaign_id) ORDER BY campaign_id",
       named ? sessions_named : sessions_of_runs, writing);
-  return query_run(store, sql, 0, NULL, 0, sink, error);
-}
-
-struct document {
-  char *name, *text;
-};
-
-static status take_document(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct document *document = context;
-  if (count != 2 || values[0].kind != QUERY_TEXT || values[1].kind != QUERY_TEXT)
-    return status_fail(error, STATUS_CONTENT, "the store keeps no campaign document");
-  document->name = strdup(values[0].text);
-  document->text = strdup(values[1].text);
-  if (!document->name || !document->text)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
-  return STATUS_OK;
 }
 
 status ask_campaign_document(struct store *store, int64_t campaign, char **name, char **document, struct error *error) {
-  struct document found = {0};
-  const struct query_sink sink = {.context = &found, .row = take_document};
-  char sql[256];
-  snprintf(sql, sizeof sql,
-           "SELECT name, document FROM campaign WHERE %lld IN (0, campaign_id) ORDER BY campaign_id DESC LIMIT 1",
-           (long long)campaign);
-  status code = query_run(store, sql, 0, NULL, 0, &sink, error);
-  *name = found.name;
-  *document = found.text;
-  return code;
+  ANSWER
+  answer = answer_to(store, error,
+                     "SELECT name, document FROM campaign WHERE %lld IN (0, campaign_id) ORDER BY campaign_id DESC "
+                     "LIMIT 1",
+                     (long long)campaign);
+  *name = *document = NULL;
+  if (!answer_next(&answer))
+    return answer_end(&answer);
+  if (answer_value(&answer, 0).kind != QUERY_TEXT || answer_value(&answer, 1).kind != QUERY_TEXT)
+    return status_fail(error, STATUS_CONTENT, "the store keeps no campaign document");
+  *name = strdup(answer_text(&answer, 0));
+  *document = strdup(answer_text(&answer, 1));
+  return *name && *document ? STATUS_OK : status_fail(error, STATUS_MEMORY, "out of memory");
 }
 
 status ask_campaign_attempts(struct store *store, int64_t *attempts, struct error *error) {
   double most = NAN;
-  status code = query_number(store,
-                             "SELECT max(n) FROM (SELECT count(*) AS n FROM attempt WHERE NOT EXISTS"
-                             " (SELECT 1 FROM run WHERE run.identity = attempt.identity) GROUP BY identity)",
-                             0, NULL, &most, error);
+  const status code = answer_number(store, &most, error,
+                                    "SELECT max(n) FROM (SELECT count(*) AS n FROM attempt WHERE NOT EXISTS"
+                                    " (SELECT 1 FROM run WHERE run.identity = attempt.identity) GROUP BY identity)");
   *attempts = isnan(most) ? 0 : (int64_t)most;
   return code;
+}
+
+struct answer ask_campaign_sessions(struct store *store, struct error *error) {
+  bool named = false; /* sessions of older programs do not name their campaign */
+  const status code = schema_has_column(store->db, "session", "campaign_id", &named, error);
+  if (code)
+    return answer_failed(code, error);
+  return answer_to(
+      store, error,
+      "SELECT session_id, %s, started_at, ended_at, outcome, facts ->> '$.version', facts ->> '$.commit',"
+      " (SELECT group_concat(value, ' ') FROM json_each(facts, '$.command')) FROM session ORDER BY session_id",
+      named ? "campaign_id" : "NULL");
+}
+
+struct answer ask_campaign_documents(struct store *store, struct error *error) {
+  return answer_to(store, error, "SELECT campaign_id, name, document FROM campaign ORDER BY campaign_id");
+}
+
+/* The runs of each campaign with their class: safe (usable, no warnings), warned (usable, with warnings), refused
+ * (another state). A store of an older program has no warnings. */
+static const char judged[] =
+    "WITH judged AS (SELECT campaign_id, point_id, identity, state, message, %s AS drift, %g AS drift_allowed, %s AS "
+    "warnings,"
+    " CASE WHEN state NOT IN ('completed', 'end-time') THEN 'refused' WHEN %s <> '' THEN 'warned' ELSE 'safe' END"
+    " AS class FROM campaign_point JOIN run USING (point_id))";
+
+/* `question` has no format. */
+static struct answer ask_judged(struct store *store, const char *question, struct error *error) {
+  bool warns = false;
+  const status code = schema_has_column(store->db, "run", "warnings", &warns, error);
+  if (code)
+    return answer_failed(code, error);
+  const char *warnings = warns ? "coalesce(warnings, '')" : "''";
+  char *with = sqlite3_mprintf(judged, OUTCOME_NAME(energy_error), WARNINGS_LARGEST_DRIFT, warnings, warnings);
+  struct answer answer = with ? answer_to(store, error, "%s %s", with, question)
+                              : answer_failed(status_fail(error, STATUS_MEMORY, "no memory for a question"), error);
+  sqlite3_free(with);
+  return answer;
+}
+
+struct answer ask_campaign_extremes(struct store *store, struct error *error) {
+  return ask_judged(
+      store,
+      "SELECT name AS campaign, count(*) AS runs, sum(class = 'safe') AS safe, sum(class = 'warned') AS warned,"
+      " sum(class = 'refused') AS refused, (SELECT count(DISTINCT attempt.identity) FROM campaign_point"
+      "   JOIN attempt USING (point_id) WHERE campaign_point.campaign_id = judged.campaign_id AND NOT EXISTS"
+      "   (SELECT 1 FROM run WHERE run.identity = attempt.identity)) AS given_up,"
+      " max(CASE WHEN class <> 'refused' THEN drift END) AS largest_drift,"
+      " sum(class = 'safe' AND coalesce(drift, 0) > drift_allowed) AS silent_drift"
+      " FROM judged JOIN campaign USING (campaign_id) GROUP BY campaign_id ORDER BY campaign_id",
+      error);
+}
+
+struct answer ask_campaign_reasons(struct store *store, struct error *error) {
+  return ask_judged(store,
+                    "SELECT name AS campaign, class, CASE class WHEN 'refused' THEN state ELSE warnings END AS why,"
+                    " count(*) AS runs, min(message) AS example FROM judged JOIN campaign USING (campaign_id)"
+                    " WHERE class <> 'safe' GROUP BY campaign_id, class, why ORDER BY campaign_id, runs DESC, why",
+                    error);
+}
+
+struct answer ask_campaign_values(struct store *store, struct error *error) {
+  return ask_judged(
+      store,
+      ", input AS (SELECT campaign_id, path, value, class FROM judged JOIN point_input USING (point_id)"
+      " WHERE path IN (SELECT path FROM axis)),"
+      " varied AS (SELECT campaign_id, path FROM input GROUP BY campaign_id, path"
+      "   HAVING count(DISTINCT value) > 1)"
+      " SELECT name AS campaign, path, value, sum(class = 'safe') AS safe, sum(class = 'warned') AS warned,"
+      " sum(class = 'refused') AS refused FROM input JOIN varied USING (campaign_id, path)"
+      " JOIN campaign USING (campaign_id) GROUP BY campaign_id, path, value ORDER BY campaign_id, path, value",
+      error);
 }

@@ -1,10 +1,12 @@
 /* Canned queries. People also learn the tables from them: they are plain SQL without functions of our own, so that each
  * can be pasted into any tool. */
+#include "db/ask/canned.h"
+
 #include <string.h>
 
-#include "db/ask/query.h"
 #include "db/store/views_statistics.h"
 #include "engine/outcome.h"
+#include "schemas/text.h"
 
 static struct query_canned queries[] = {
     {"points", "Statistics of every point: n, failed, censored, mean, scatter and interval of the main results.",
@@ -121,8 +123,7 @@ const struct query_canned *ask_canned_find(const char *name, struct error *error
   for (size_t i = 0; i < ask_canned_count(); i++) {
     if (strcmp(queries[i].name, name) == 0)
       return ask_canned_at(i);
-    size_t used = strlen(known);
-    snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", queries[i].name);
+    text_append(known, sizeof known, "%s%s", i ? ", " : "", queries[i].name);
   }
   status_fail(error, STATUS_USAGE, "There is no ready query '%.60s'. Ready queries are: %s.", name, known);
   return NULL;

@@ -10,28 +10,13 @@
 #include "engine/grow.h"
 #include "schemas/unit.h"
 
-struct list {
-  struct ask_column *columns;
-  size_t count, capacity;
-  bool grows;
-};
-
-/* name, unit */
-static status take_column(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct list *list = context;
-  if (count != 2 || values[0].kind != QUERY_TEXT)
-    return STATUS_OK;
-
-  if (list->count == list->capacity && !list->grows)
-    return STATUS_OK;
-  if (!grow_room(&list->columns, &list->capacity, list->count + 1, sizeof *list->columns))
-    return status_fail(error, STATUS_MEMORY, "no memory for the units of the columns");
-
-  struct ask_column *column = &list->columns[list->count++];
-  column->factor = 1;
-  snprintf(column->name, sizeof column->name, "%s", values[0].text);
-  snprintf(column->unit, sizeof column->unit, "%s", values[1].kind == QUERY_TEXT ? values[1].text : "");
-  return STATUS_OK;
+/* Reads a column from a row of name, SI unit and written unit, of which the last two may be missing. */
+static void read_column(const struct answer *answer, struct ask_column *column) {
+  *column = (struct ask_column){.factor = 1};
+  snprintf(column->name, sizeof column->name, "%s", answer_text(answer, 0));
+  snprintf(column->unit, sizeof column->unit, "%s", answer_text(answer, 1));
+  if (answer_value(answer, 2).kind == QUERY_TEXT)
+    ask_columns_write_in(column, answer_text(answer, 2));
 }
 
 /* A written unit comes from the file. It is used only if it is a valid unit of the input's dimension. */
@@ -44,29 +29,16 @@ void ask_columns_write_in(struct ask_column *column, const char *written) {
   column->factor = other.factor / own.factor;
 }
 
-/* name, SI unit, written unit */
-static status take_axis(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct list *list = context;
-  const size_t before = list->count;
-  const status code = take_column(context, count - 1, values, error);
-  if (code == STATUS_OK && list->count > before && values[2].kind == QUERY_TEXT)
-    ask_columns_write_in(&list->columns[before], values[2].text);
-  return code;
-}
-
 status ask_columns_axes(struct store *store, bool written, size_t most, struct ask_column *axes, size_t *count,
                         struct error *error) {
-  struct list list = {.columns = axes, .capacity = most};
-  const struct query_sink sink = {.context = &list, .row = take_axis};
-  char sql[128];
   bool has = false; /* false: a read-only store of an older program has no written units */
-  status code = written ? schema_has_column(store->db, "axis", "written_unit", &has, error) : STATUS_OK;
-  if (code != STATUS_OK)
-    return code;
-  snprintf(sql, sizeof sql, "SELECT column_name, unit, %s FROM axis ORDER BY path", has ? "written_unit" : "NULL");
-  code = query_run(store, sql, 0, NULL, 0, &sink, error);
-  *count = list.count;
-  return code;
+  if (written)
+    TRY(schema_has_column(store->db, "axis", "written_unit", &has, error));
+  ANSWER answer = answer_to(store, error, "SELECT column_name, unit, %s FROM axis ORDER BY path",
+                            has ? "written_unit" : "NULL");
+  for (*count = 0; *count < most && answer_next(&answer);)
+    read_column(&answer, &axes[(*count)++]);
+  return answer_end(&answer);
 }
 
 status ask_columns_written(struct store *store, const char *column, struct ask_column *out, struct error *error) {
@@ -99,29 +71,27 @@ struct query_value ask_columns_value(const struct ask_column *column, const stru
 }
 
 status ask_columns_unit(struct store *store, const char *column, char *unit, size_t size, struct error *error) {
-  static const char sql[] = "SELECT '', min(unit) FROM column_doc WHERE column_name = :column AND unit <> '1'";
-  struct ask_column found = {.unit = ""};
-  struct list list = {.columns = &found, .capacity = 1};
-  const struct query_parameter parameter = {"column", column};
-  const struct query_sink sink = {.context = &list, .row = take_column};
-  status code = query_run(store, sql, 1, &parameter, 0, &sink, error);
-  snprintf(unit, size, "%s", found.unit);
-  return code;
+  ANSWER answer = answer_to(store, error, "SELECT min(unit) FROM column_doc WHERE column_name = %Q AND unit <> '1'",
+                            column);
+  snprintf(unit, size, "%s", answer_next(&answer) ? answer_text(&answer, 0) : "");
+  return answer_end(&answer);
 }
 
 status ask_columns_units(struct store *store, struct ask_column **columns, size_t *count, struct error *error) {
-  static const char sql[] = "SELECT column_name, min(unit) FROM column_doc WHERE unit <> '1' GROUP BY column_name "
-                            "HAVING count(DISTINCT unit) = 1";
-  struct list list = {.grows = true};
-  const struct query_sink sink = {.context = &list, .row = take_column};
-  status code = query_run(store, sql, 0, NULL, 0, &sink, error);
-  *columns = list.columns;
-  *count = list.count;
-  return code;
+  size_t room = 0;
+  ANSWER
+  answer = answer_to(store, error,
+                     "SELECT column_name, min(unit), NULL FROM column_doc WHERE unit <> '1' GROUP BY column_name "
+                     "HAVING count(DISTINCT unit) = 1");
+  *columns = NULL;
+  for (*count = 0; answer_next(&answer);) {
+    if (!grow_room(columns, &room, *count + 1, sizeof **columns))
+      return status_fail(error, STATUS_MEMORY, "no memory for the units of the columns");
+    read_column(&answer, &(*columns)[(*count)++]);
+  }
+  return answer_end(&answer);
 }
 
-status ask_columns_view(struct store *store, const char *view, const struct query_sink *sink, struct error *error) {
-  char sql[160];
-  snprintf(sql, sizeof sql, "SELECT * FROM %.128s", view);
-  return query_run(store, sql, 0, NULL, 0, sink, error);
+struct answer ask_columns_view(struct store *store, const char *view, struct error *error) {
+  return answer_to(store, error, "SELECT * FROM \"%w\"", view);
 }

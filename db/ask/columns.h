@@ -2,7 +2,7 @@
 #ifndef CLAST_DB_ASK_COLUMNS_H
 #define CLAST_DB_ASK_COLUMNS_H
 
-#include "db/ask/query.h"
+#include "db/ask/answer.h"
 
 /* A column of the views and its unit. */
 struct ask_column {
@@ -29,7 +29,7 @@ status ask_columns_unit(struct store *store, const char *column, char *unit, siz
  * left out. STATUS_MEMORY. */
 status ask_columns_units(struct store *store, struct ask_column **columns, size_t *count, struct error *error);
 
-/* All rows of a view: runs, points, spectra, estimates, or of the table column_doc. The name is not checked. */
-status ask_columns_view(struct store *store, const char *view, const struct query_sink *sink, struct error *error);
+/* All rows of a view: runs, points, spectra, estimates, or of the table column_doc. */
+struct answer ask_columns_view(struct store *store, const char *view, struct error *error);
 
 #endif

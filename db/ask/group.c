@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/ask/query.h"
+#include "db/ask/group.h"
 #include "db/store/internal.h"
 #include "db/store/views_statistics.h"
 #include "engine/engine.h"
@@ -34,14 +34,11 @@ struct choice { /* possible meanings of a word */
 };
 
 static void append(char *list, size_t size, const char *name) {
-  const size_t used = strlen(list);
-  snprintf(list + used, size - used, "%s%s", used ? ", " : "", name);
+  text_append(list, size, "%s%s", *list ? ", " : "", name);
 }
 
-static status consider(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)error;
-  struct choice *choice = context;
-  const char *column = values[0].text, *path = count > 1 ? values[1].text : NULL, *name = path ? path : column;
+static void consider(struct choice *choice, const char *column, const char *path) {
+  const char *name = path ? path : column;
   text_guess_offer(&choice->guess, name);
   if (choice->guess.nearest == name) { /* the row owns the name: keep a copy */
     snprintf(choice->near, sizeof choice->near, "%s", name);
@@ -50,12 +47,11 @@ static status consider(void *context, size_t count, const struct query_value *va
   append(choice->known, sizeof choice->known, name);
   bool exact = strcmp(column, choice->wanted) == 0 || (path && strcmp(path, choice->wanted) == 0);
   if (choice->exact || !(exact || ends_in(column, choice->wanted) || (path && ends_in(path, choice->wanted))))
-    return STATUS_OK;
+    return;
   choice->matches = exact ? 1 : choice->matches + 1;
   choice->exact = exact;
   append(choice->matching, sizeof choice->matching, name);
   snprintf(choice->found, sizeof choice->found, "%s", column);
-  return STATUS_OK;
 }
 
 /* "energy_kinetic" for "result_dem_energy_kinetic", its name in a store with two engines; else `column`. */
@@ -75,15 +71,16 @@ static status look_for(struct store *store, const char *columns_sql, const char 
   char column[NAME];
   field_column_name(name, column, sizeof column);
   const char *const forms[] = {name, column, without_engine(column)};
-  const struct query_sink sink = {.context = choice, .row = consider};
-  status result = STATUS_OK;
   *choice = (struct choice){.guess = text_guess(name)};
-  for (size_t i = 0; result == STATUS_OK && choice->matches == 0 && i < sizeof forms / sizeof forms[0]; i++) {
+  for (size_t i = 0; choice->matches == 0 && i < sizeof forms / sizeof forms[0]; i++) {
     choice->wanted = forms[i];
     choice->known[0] = '\0';
-    result = query_run(store, columns_sql, 0, NULL, 0, &sink, error);
+    ANSWER answer = answer_to(store, error, "%s", columns_sql);
+    while (answer_next(&answer))
+      consider(choice, answer_text(&answer, 0), answer_count(&answer) > 1 ? answer_text(&answer, 1) : NULL);
+    TRY(answer_end(&answer));
   }
-  return result;
+  return STATUS_OK;
 }
 
 static status judge(const struct choice *choice, const char *what, const char *name, struct error *error) {
@@ -116,11 +113,8 @@ static status resolve(struct store *store, const char *list, const char *what, c
     list = next_word(list, word);
     if (!*word)
       continue;
-    status result = look_for(store, columns_sql, word, &choice, error);
-    if (result == STATUS_OK)
-      result = judge(&choice, what, word, error);
-    if (result != STATUS_OK)
-      return result;
+    TRY(look_for(store, columns_sql, word, &choice, error));
+    TRY(judge(&choice, what, word, error));
     if (out->count == NAMES)
       return status_fail(error, STATUS_USAGE, "More than %d of them: %s", NAMES, what);
     snprintf(out->name[out->count++], NAME, "%s", choice.found);
@@ -207,36 +201,27 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   return text_close(out, &sql);
 }
 
-static status take_pooled(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)count, (void)error;
-  append(context, ASK_GROUP_POOLED, values[0].text);
-  return STATUS_OK;
-}
-
 /* Varied inputs that differ within a group; "other inputs" when the points of a group differ in none of them. */
 static status find_pooled(struct store *store, const struct names *axes, char pooled[ASK_GROUP_POOLED],
                           struct error *error) {
-  char *sql = NULL;
-  size_t size = 0;
-  FILE *out = open_memstream(&sql, &size);
-  if (!out)
-    return status_fail(error, STATUS_MEMORY, "the statistics: memory ran out");
+  sqlite3_str *order = sqlite3_str_new(NULL);
   pooled[0] = '\0';
-  fputs("WITH grouped AS (SELECT point_id, dense_rank() OVER (ORDER BY ", out);
-  write_names(out, axes);
-  fputs("engine, results_version) AS grp FROM points WHERE n > 0),\n"
-        "differing AS (SELECT path FROM (SELECT grp, a.path, count(*) AS points, count(i.value) AS given, "
-        "count(DISTINCT i.value) AS kinds FROM grouped g CROSS JOIN axis a LEFT JOIN point_input i ON i.point_id = "
-        "g.point_id AND i.path = a.path GROUP BY grp, a.path) WHERE kinds > 1 OR (kinds = 1 AND given < points))\n"
-        "SELECT DISTINCT path FROM differing UNION ALL SELECT 'other inputs' WHERE NOT EXISTS (SELECT 1 FROM "
-        "differing) AND EXISTS (SELECT 1 FROM grouped GROUP BY grp HAVING count(DISTINCT point_id) > 1)",
-        out);
-  if (!text_close(out, &sql))
-    return status_fail(error, STATUS_MEMORY, "the statistics: memory ran out");
-  const struct query_sink sink = {.context = pooled, .row = take_pooled};
-  const status code = query_run(store, sql, 0, NULL, 0, &sink, error);
-  free(sql);
-  return code;
+  for (size_t i = 0; i < axes->count; i++)
+    sqlite3_str_appendf(order, "\"%w\", ", axes->name[i]);
+  ANSWER answer = answer_to(
+      store, error,
+      "WITH grouped AS (SELECT point_id, dense_rank() OVER (ORDER BY %zengine, results_version) AS grp FROM points "
+      "WHERE "
+      "n > 0),\n"
+      "differing AS (SELECT path FROM (SELECT grp, a.path, count(*) AS points, count(i.value) AS given, "
+      "count(DISTINCT i.value) AS kinds FROM grouped g CROSS JOIN axis a LEFT JOIN point_input i ON i.point_id = "
+      "g.point_id AND i.path = a.path GROUP BY grp, a.path) WHERE kinds > 1 OR (kinds = 1 AND given < points))\n"
+      "SELECT DISTINCT path FROM differing UNION ALL SELECT 'other inputs' WHERE NOT EXISTS (SELECT 1 FROM "
+      "differing) AND EXISTS (SELECT 1 FROM grouped GROUP BY grp HAVING count(DISTINCT point_id) > 1)",
+      sqlite3_str_finish(order));
+  while (answer_next(&answer))
+    append(pooled, ASK_GROUP_POOLED, answer_text(&answer, 0));
+  return answer_end(&answer);
 }
 
 static const char axes_sql[] = "SELECT column_name, path FROM axis ORDER BY path";
@@ -245,8 +230,8 @@ static const char quantities_sql[] =
     "('run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus', 'counts', "
     "'rank', 'attempt', 'finished_at') AND c.name NOT IN (SELECT column_name FROM axis)";
 
-status ask_group_quantities(struct store *store, const struct query_sink *sink, struct error *error) {
-  return query_run(store, quantities_sql, 0, NULL, 0, sink, error);
+struct answer ask_group_quantities(struct store *store, struct error *error) {
+  return answer_to(store, error, "%s", quantities_sql);
 }
 
 status ask_group_quantity(struct store *store, const char *quantity, char name[ASK_GROUP_NAME], struct error *error) {
@@ -262,9 +247,7 @@ status ask_group_columns(struct store *store, const char *by, size_t most, char 
                          size_t *count, struct error *error) {
   struct names names = {.count = 0};
   *count = 0;
-  const status code = resolve(store, by, "Axis", axes_sql, &names, error);
-  if (code)
-    return code;
+  TRY(resolve(store, by, "Axis", axes_sql, &names, error));
   if (names.count > most)
     return status_fail(error, STATUS_USAGE, "at most %zu inputs, not %zu", most, names.count);
   for (; *count < names.count; ++*count)
@@ -272,18 +255,21 @@ status ask_group_columns(struct store *store, const char *by, size_t most, char 
   return STATUS_OK;
 }
 
-status ask_group(struct store *store, const char *by, const char *quantities, const struct query_sink *sink,
-                 char pooled[ASK_GROUP_POOLED], struct error *error) {
+static status find_names(struct store *store, const char *by, const char *quantities, struct names *axes,
+                         struct names *results, char pooled[ASK_GROUP_POOLED], struct error *error) {
+  TRY(ask_register_functions(store, error));
+  TRY(resolve(store, by, "Axis", axes_sql, axes, error));
+  if (quantities)
+    TRY(resolve(store, quantities, "Quantity", quantities_sql, results, error));
+  return find_pooled(store, axes, pooled, error);
+}
+
+struct answer ask_group(struct store *store, const char *by, const char *quantities, char pooled[ASK_GROUP_POOLED],
+                        struct error *error) {
   struct names axes = {.count = 0}, results = {.count = 0};
-  status result = ask_register_functions(store, error);
-  if (result == STATUS_OK)
-    result = resolve(store, by, "Axis", axes_sql, &axes, error);
-  if (result == STATUS_OK && quantities)
-    result = resolve(store, quantities, "Quantity", quantities_sql, &results, error);
-  if (result == STATUS_OK)
-    result = find_pooled(store, &axes, pooled, error);
-  if (result != STATUS_OK)
-    return result;
+  const status code = find_names(store, by, quantities, &axes, &results, pooled, error);
+  if (code)
+    return answer_failed(code, error);
   if (!quantities) {
     const char *names[VIEWS_STATISTICS_MAIN];
     results.count = views_statistics_main(names);
@@ -292,28 +278,17 @@ status ask_group(struct store *store, const char *by, const char *quantities, co
   }
   char *sql = group_sql(&axes, &results);
   if (!sql)
-    return status_fail(error, STATUS_MEMORY, "the statistics: memory ran out");
-  result = query_run(store, sql, 0, NULL, 0, sink, error);
+    return answer_failed(status_fail(error, STATUS_MEMORY, "the statistics: memory ran out"), error);
+  const struct answer answer = answer_to(store, error, "%s", sql);
   free(sql);
-  return result;
-}
-
-static status take_twins(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)count, (void)error;
-  struct ask_group_twins *twins = context;
-  twins->pairs = values[0].integer;
-  twins->point[0] = values[1].integer;
-  twins->point[1] = values[2].integer;
-  snprintf(twins->input, sizeof twins->input, "%s", values[3].kind == QUERY_TEXT ? values[3].text : "");
-  return STATUS_OK;
+  return answer;
 }
 
 /* Points are compared input by input only where their varied inputs agree; other points differ anyway. */
 status ask_group_twins(struct store *store, struct ask_group_twins *twins, struct error *error) {
   *twins = (struct ask_group_twins){.pairs = 0};
-  const struct query_sink sink = {.context = twins, .row = take_twins};
-  return query_run(
-      store,
+  ANSWER answer = answer_to(
+      store, error,
       "WITH varied AS MATERIALIZED (SELECT point_id, engine || ifnull((SELECT group_concat(v) FROM (SELECT path || '=' "
       "|| quote(value) AS v FROM axis JOIN point_input i USING (path) WHERE i.point_id = p.point_id ORDER BY path)), "
       "'') AS inputs FROM point p), twin AS (SELECT a.point_id AS a, b.point_id AS b FROM varied a JOIN varied b USING "
@@ -321,6 +296,12 @@ status ask_group_twins(struct store *store, struct ask_group_twins *twins, struc
       "(path) WHERE i.point_id = a.point_id AND j.point_id = b.point_id AND i.value IS NOT j.value) AND EXISTS (SELECT "
       "1 FROM run r JOIN run s USING (seed, results_version) WHERE r.point_id = a.point_id AND s.point_id = b.point_id "
       "AND r.surplus = 0 AND s.surplus = 0)) SELECT count(*) OVER (), a, b, (SELECT path FROM point_input WHERE "
-      "point_id IN (a, b) GROUP BY path HAVING count(*) = 1 LIMIT 1) FROM twin ORDER BY a, b LIMIT 1",
-      0, NULL, 0, &sink, error);
+      "point_id IN (a, b) GROUP BY path HAVING count(*) = 1 LIMIT 1) FROM twin ORDER BY a, b LIMIT 1");
+  if (answer_next(&answer)) {
+    twins->pairs = answer_integer(&answer, 0);
+    twins->point[0] = answer_integer(&answer, 1);
+    twins->point[1] = answer_integer(&answer, 2);
+    snprintf(twins->input, sizeof twins->input, "%s", answer_text(&answer, 3));
+  }
+  return answer_end(&answer);
 }

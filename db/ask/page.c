@@ -1,16 +1,44 @@
-/* The small file of a page: tables that are copied from the store, facts, labels, pictures. */
+/* The small file of a page: tables that are copied from the store, statistics of points, facts, labels, pictures. */
 #include "db/ask/page.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/ask/page_private.h"
+#include "analysis/statistics/dip.h"
+#include "analysis/statistics/sample.h"
+#include "analysis/statistics/scatter.h"
+#include "db/ask/canned.h"
+#include "db/ask/columns.h"
+#include "db/ask/group.h"
+#include "db/ask/pool.h"
+#include "db/ask/run.h"
+#include "db/sql.h"
 #include "db/store/internal.h"
-#include "db/store/paths.h"
+#include "db/store/views_statistics.h"
+#include "engine/grow.h"
 #include "engine/outcome.h"
 #include "schemas/text.h"
 
 static const char doing[] = "making the page";
+
+/* Upper limits of a page, so that it stays below 3 MB with 10 000 runs. */
+enum {
+  RUNS = ASK_PAGE_RUNS, /* single runs */
+  VALUES = 120000,      /* results of single runs */
+  MEANS = 40000,        /* rows of the table means */
+  SPECTRUM = 12000,     /* rows of the table spectra */
+  QUANTILES = 200,      /* points with quantiles */
+  JUDGED_RUNS = 100000, /* runs of a point in the test for two modes: the first ones */
+  JUDGED = 20000,       /* fragments of points whose fit is tested: some 5 s of CPU time */
+  DRAWS = 1000,         /* samples per test; they give p within 0.016 */
+  ATTEMPTS = 500,       /* failed attempts, and failed runs */
+};
+
+struct ask_page {
+  sqlite3 *db; /* in memory */
+};
 
 /* Tables that are copied, and the first column from which on numbers are rounded. */
 static const struct {
@@ -27,102 +55,420 @@ static const struct {
                   "ORDER BY point_id, ordinal"},
 };
 
-struct copying {
-  struct ask_page *page;
-  const char *table;
-  size_t rounded;
-  sqlite3_stmt *insert;
-};
-
-/* "a", "b", "c"; without names ?, ?, ?. NULL: no memory. */
-static char *write_list(size_t count, const char *const *names) {
-  char *text = NULL;
-  size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
-  if (!out)
-    return NULL;
-  for (size_t i = 0; i < count; i++) {
-    fputs(i ? ", " : "", out);
-    if (names)
-      sql_write_name(names[i], out);
-    else
-      fputc('?', out);
-  }
-  return text_close(out, &text);
-}
-
-static status make_table(void *context, size_t count, const char *const *names, struct error *error) {
-  struct copying *copying = context;
-  sqlite3 *db = copying->page->db;
-  char *columns = write_list(count, names), *marks = write_list(count, NULL);
-  status code = columns && marks ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the page");
-  if (code == STATUS_OK)
-    code = sql_executef(db, doing, error, "CREATE TABLE \"%w\" (%s)", copying->table, columns);
-  if (code == STATUS_OK)
-    code = sql_preparef(db, &copying->insert, doing, error, "INSERT INTO \"%w\" VALUES (%s)", copying->table, marks);
-  free(columns);
-  free(marks);
-  return code;
-}
-
-static void bind_value(sqlite3_stmt *statement, int index, const struct query_value *value, bool rounded) {
-  switch (value->kind) {
+static void bind_value(sqlite3_stmt *statement, int index, struct query_value value, bool rounded) {
+  switch (value.kind) {
   case QUERY_NULL: sqlite3_bind_null(statement, index); break;
-  case QUERY_INTEGER: sqlite3_bind_int64(statement, index, value->integer); break;
-  case QUERY_REAL: sqlite3_bind_double(statement, index, rounded ? (double)(float)value->real : value->real); break;
-  case QUERY_TEXT: sqlite3_bind_text(statement, index, value->text, (int)value->size, SQLITE_TRANSIENT); break;
-  case QUERY_BLOB: sqlite3_bind_blob(statement, index, value->blob, (int)value->size, SQLITE_TRANSIENT); break;
+  case QUERY_INTEGER: sqlite3_bind_int64(statement, index, value.integer); break;
+  case QUERY_REAL: sqlite3_bind_double(statement, index, rounded ? (double)(float)value.real : value.real); break;
+  case QUERY_TEXT: sqlite3_bind_text(statement, index, value.text, (int)value.size, SQLITE_TRANSIENT); break;
+  case QUERY_BLOB: sqlite3_bind_blob(statement, index, value.blob, (int)value.size, SQLITE_TRANSIENT); break;
   }
 }
 
-static status copy_row(void *context, size_t count, const struct query_value *values, struct error *error) {
-  const struct copying *copying = context;
-  for (size_t i = 0; i < count; i++)
-    bind_value(copying->insert, (int)i + 1, &values[i], i >= copying->rounded);
-  return sql_run(copying->insert, doing, error);
+/* Makes a table of the rows of an answer. Real numbers from column `rounded` (counted from 0) on are rounded to single
+ * precision: 7 digits, and they compress well. */
+enum { EXACT = 1000 }; /* no column is rounded */
+static status copy(struct ask_page *page, struct answer answer, const char *table, size_t rounded) {
+  struct error *error = answer.error;
+  sqlite3_stmt *insert = NULL;
+  sqlite3_str *columns = sqlite3_str_new(NULL), *marks = sqlite3_str_new(NULL);
+  const size_t count = answer_count(&answer);
+  for (size_t i = 0; i < count; i++) {
+    sqlite3_str_appendf(columns, "%s\"%w\"", i ? ", " : "", answer_name(&answer, i));
+    sqlite3_str_appendall(marks, i ? ", ?" : "?");
+  }
+  char *names = sqlite3_str_finish(columns), *places = sqlite3_str_finish(marks);
+  status code = answer_status(&answer);
+  if (code == STATUS_OK)
+    code = sql_executef(page->db, doing, error, "CREATE TABLE \"%w\" (%s)", table, names);
+  if (code == STATUS_OK)
+    code = sql_preparef(page->db, &insert, doing, error, "INSERT INTO \"%w\" VALUES (%s)", table, places);
+  while (code == STATUS_OK && answer_next(&answer)) {
+    for (size_t i = 0; i < count; i++)
+      bind_value(insert, (int)i + 1, answer_value(&answer, i), i >= rounded);
+    code = sql_run(insert, doing, error);
+  }
+  sqlite3_free(names);
+  sqlite3_free(places);
+  sqlite3_finalize(insert);
+  const status end = answer_end(&answer);
+  return code ? code : end;
 }
 
-status ask_page_copy(struct ask_page *page, struct store *store, const char *table, const char *sql, size_t rounded,
-                     struct error *error) {
-  struct copying copying = {page, table, rounded, NULL};
-  const struct query_sink sink = {&copying, make_table, copy_row};
-  const status code = query_run(store, sql, 0, NULL, 0, &sink, error);
-  sqlite3_finalize(copying.insert);
-  return code;
+static status set_fact(struct ask_page *page, const char *name, size_t value, struct error *error) {
+  char text[32];
+  snprintf(text, sizeof text, "%zu", value);
+  return ask_page_fact(page, name, text, error);
 }
 
 /* Spectra of points, newest version only: of all points, or of every n-th point when there are more rows than the
  * limit. */
 static status copy_spectra(struct ask_page *page, struct store *store, struct error *error) {
   double rows = 0;
-  char sql[400], number[32];
-  status code = query_number(store, "SELECT count(*) FROM point_spectrum", 0, NULL, &rows, error);
-  if (code)
-    return code;
-  const int every = (int)(rows / ASK_PAGE_SPECTRUM) + 1;
-  snprintf(sql, sizeof sql,
-           "SELECT point_id, results_version, n, bin, lower, upper, runs, count, count_mean, count_sd, count_hw95, "
-           "density FROM spectra WHERE point_id %% %d = %d ORDER BY point_id, results_version, bin",
-           every, every > 1 ? 1 : 0);
-  code = ask_page_copy(page, store, "spectra", sql, 8, error);
-  snprintf(number, sizeof number, "%d", every);
-  return code ? code : ask_page_fact(page, "spectra_of_every_nth_point", number, error);
+  TRY(answer_number(store, &rows, error, "SELECT count(*) FROM point_spectrum"));
+  const int every = (int)(rows / SPECTRUM) + 1;
+  TRY(copy(page,
+           answer_to(
+               store, error,
+               "SELECT point_id, results_version, n, bin, lower, upper, runs, count, count_mean, count_sd, count_hw95, "
+               "density FROM spectra WHERE point_id %% %d = %d ORDER BY point_id, results_version, bin",
+               every, every > 1 ? 1 : 0),
+           "spectra", 8));
+  return set_fact(page, "spectra_of_every_nth_point", (size_t)every, error);
 }
 
 /* Points: exact inputs, rounded statistics. The inputs come first in the view. */
 static status copy_points(struct ask_page *page, struct store *store, struct error *error) {
   double axes = 0;
-  const status code = query_number(store, "SELECT count(*) FROM axis", 0, NULL, &axes, error);
-  return code ? code : ask_page_copy(page, store, "points", "SELECT * FROM points", 3 + (size_t)axes, error);
+  TRY(answer_number(store, &axes, error, "SELECT count(*) FROM axis"));
+  return copy(page, answer_to(store, error, "SELECT * FROM points"), "points", 3 + (size_t)axes);
 }
 
-static status copy_attempts(struct ask_page *page, struct store *store, struct error *error) {
-  char sql[300];
-  snprintf(sql, sizeof sql,
-           "SELECT point_id, replicate, seed, session_id, number, reason, exit_code, signal, wall_time, limited_to, "
-           "message, host FROM attempt ORDER BY attempt_id DESC LIMIT %d",
-           ASK_PAGE_ATTEMPTS);
-  return ask_page_copy(page, store, "attempt", sql, ASK_PAGE_EXACT, error);
+/* ---- results whose runs have two modes at a point, by the rule of `clast scatter` ---- */
+
+struct modes {
+  sqlite3_stmt *insert;
+  size_t n;     /* values of the previous sample */
+  double limit; /* dip above which a sample of that size has two modes */
+};
+
+static status add_mode(const struct modes *modes, int64_t point, const char *quantity, const struct scatter *s,
+                       struct error *error) {
+  const double numbers[] = {s->lower_mode, s->upper_mode, s->between, s->upper_share, s->upper_low, s->upper_high};
+  sqlite3_bind_int64(modes->insert, 1, point);
+  sql_bind_text(modes->insert, 2, quantity);
+  for (int k = 0; k < 6; k++)
+    sqlite3_bind_double(modes->insert, 3 + k, numbers[k]);
+  return sql_run(modes->insert, doing, error);
+}
+
+/* One result of the counted runs of a point; sorts the values. */
+static status add_modes(struct modes *modes, int64_t point, const char *quantity, size_t n, double *values,
+                        struct error *error) {
+  struct scatter scatter = {.n = n, .sorted = values};
+  if (n < 4)
+    return STATUS_OK;
+  qsort(values, n, sizeof *values, sample_ascending);
+  if (!(values[n - 1] > values[0]) || scatter_in_steps(n, values))
+    return STATUS_OK;
+  if (n != modes->n) {
+    modes->n = n;
+    modes->limit = dip_limit(n);
+  }
+  if (!(dip_of(n, values) > modes->limit))
+    return STATUS_OK;
+  scatter_find_modes(&scatter);
+  return add_mode(modes, point, quantity, &scatter, error);
+}
+
+/* ---- the runs of a page, thinned, and the statistics of all of their results ---- */
+
+enum { COLUMNS = 256, NAME = 128 };
+
+struct column {
+  char name[NAME];
+  bool main, number, varies; /* of the view points; has a value; has two values */
+  double first;
+  struct sample_moments moments; /* of the current point */
+  double *values;                /* of the current point; owned */
+  size_t values_count, values_room;
+};
+
+struct reading {
+  struct ask_page *page;
+  sqlite3_stmt *insert; /* into means */
+  struct modes modes;
+  size_t count;
+  struct column column[COLUMNS];
+  bool begun;
+  int64_t point_id, results_version; /* the current ones */
+};
+
+static bool is_main(const char *name) {
+  const char *names[VIEWS_STATISTICS_MAIN];
+  const size_t count = views_statistics_main(names);
+  for (size_t i = 0; i < count; i++)
+    if (strcmp(names[i], name) == 0)
+      return true;
+  return false;
+}
+
+static status add_mean(struct reading *reading, const struct column *column, const struct sample_summary *summary,
+                       struct error *error) {
+  sqlite3_bind_int64(reading->insert, 1, reading->point_id);
+  sqlite3_bind_int64(reading->insert, 2, reading->results_version);
+  sqlite3_bind_text(reading->insert, 3, column->name, -1, SQLITE_STATIC);
+  sqlite3_bind_int64(reading->insert, 4, (int64_t)summary->n);
+  sqlite3_bind_double(reading->insert, 5, (double)(float)summary->mean); /* NaN is NULL */
+  sqlite3_bind_double(reading->insert, 6, (double)(float)summary->standard_deviation);
+  sqlite3_bind_double(reading->insert, 7, (double)(float)summary->half_width);
+  return sql_run(reading->insert, doing, error);
+}
+
+/* Writes the statistics of the current point: means of the results that the view points lacks, and modes of all
+ * results. `newest`: the point has no newer version of results. */
+static status end_point(struct reading *reading, bool newest, struct error *error) {
+  status code = STATUS_OK;
+  for (size_t i = 0; code == STATUS_OK && reading->begun && i < reading->count; i++) {
+    struct column *column = &reading->column[i];
+    const struct sample_summary summary = sample_summarise_moments(&column->moments, 0.95);
+    if (summary.n > 0 && !column->main)
+      code = add_mean(reading, column, &summary, error);
+    if (code == STATUS_OK && newest)
+      code = add_modes(&reading->modes, reading->point_id, column->name, column->values_count, column->values, error);
+    column->moments = (struct sample_moments){.n = 0};
+    column->values_count = 0;
+  }
+  return code;
+}
+
+static status add_value(struct column *column, double value, struct error *error) {
+  if (!column->number)
+    column->first = value;
+  column->number = true;
+  column->varies = column->varies || value != column->first;
+  sample_add(&column->moments, value);
+  if (column->values_count == JUDGED_RUNS)
+    return STATUS_OK;
+  if (!grow_room(&column->values, &column->values_room, column->values_count + 1, sizeof *column->values))
+    return status_fail(error, STATUS_MEMORY, "no memory for the page");
+  column->values[column->values_count++] = value;
+  return STATUS_OK;
+}
+
+static status add_run(struct reading *reading, const struct answer *run, struct error *error) {
+  const int64_t point = answer_integer(run, 0), version = answer_integer(run, 1);
+  if (!reading->begun || point != reading->point_id || version != reading->results_version) {
+    TRY(end_point(reading, point != reading->point_id, error));
+    reading->begun = true;
+    reading->point_id = point;
+    reading->results_version = version;
+  }
+  for (size_t i = 0; i < reading->count; i++) {
+    const double value = answer_real(run, 2 + i);
+    if (isfinite(value))
+      TRY(add_value(&reading->column[i], value, error));
+  }
+  return STATUS_OK;
+}
+
+/* One pass over all runs that count, point by point, in a fixed order of the runs. */
+static status read_results(struct reading *reading, struct store *store, struct error *error) {
+  sqlite3_str *columns = sqlite3_str_new(NULL);
+  for (size_t i = 0; i < reading->count; i++)
+    sqlite3_str_appendf(columns, ", \"%w\"", reading->column[i].name);
+  ANSWER
+  runs = answer_to(store, error,
+                   "SELECT point_id, results_version%z FROM runs WHERE counts ORDER BY point_id, results_version, "
+                   "replicate, seed",
+                   sqlite3_str_finish(columns));
+  while (answer_next(&runs))
+    TRY(add_run(reading, &runs, error));
+  TRY(answer_end(&runs));
+  return end_point(reading, true, error);
+}
+
+/* Removes results with the same value everywhere, and the last rows beyond the limit. */
+static status thin_means(struct reading *reading, struct error *error) {
+  status code = STATUS_OK;
+  for (size_t i = 0; code == STATUS_OK && i < reading->count; i++)
+    if (reading->column[i].number && !reading->column[i].varies)
+      code = sql_executef(reading->page->db, doing, error, "DELETE FROM means WHERE quantity = %Q",
+                          reading->column[i].name);
+  int64_t rows = 0, points = 0;
+  if (code == STATUS_OK)
+    code = sql_integer(reading->page->db, "SELECT count(*) FROM means", 0, &rows, error);
+  if (code == STATUS_OK)
+    code = sql_integer(reading->page->db, "SELECT count(DISTINCT point_id) FROM means", 0, &points, error);
+  for (size_t i = reading->count; code == STATUS_OK && rows > MEANS && i-- > 0;) {
+    if (reading->column[i].main || !reading->column[i].varies)
+      continue;
+    code = sql_executef(reading->page->db, doing, error, "DELETE FROM means WHERE quantity = %Q",
+                        reading->column[i].name);
+    rows -= points;
+  }
+  return code;
+}
+
+/* Chooses the runs to keep within the limit: the first `replicates` of every point or, with more points than the limit,
+ * of every n-th point. */
+static status choose_room(struct store *store, int *replicates, int *every, struct error *error) {
+  double points = 0, kept = 0, runs = 0;
+  TRY(answer_number(store, &points, error, "SELECT count(*) FROM point_total"));
+  TRY(answer_number(store, &runs, error, "SELECT max(runs + failed) FROM point_total"));
+  *every = (int)(points / RUNS) + 1;
+  int low = 1, high = isfinite(runs) && runs > 1 ? (int)runs : 1; /* invariant: `low` fits, or is 1 */
+  while (low < high) {
+    const int middle = low + (high - low + 1) / 2;
+    TRY(answer_number(store, &kept, error, "SELECT sum(min(runs + failed, %d)) FROM point_total", middle));
+    if (kept / *every <= RUNS)
+      low = middle;
+    else
+      high = middle - 1;
+  }
+  *replicates = low;
+  return STATUS_OK;
+}
+
+/* Results of single runs: the main ones, then the others in their order, up to the limit. */
+static void write_results(const struct reading *reading, double runs, sqlite3_str *sql, size_t *left_out) {
+  size_t room = runs > 0 ? (size_t)(VALUES / runs) : COLUMNS;
+  for (int main = 1; main >= 0; main--)
+    for (size_t i = 0; i < reading->count; i++) {
+      const struct column *column = &reading->column[i];
+      if (column->main != main || (!main && !column->varies))
+        continue;
+      if (!main && room == 0) {
+        ++*left_out;
+        continue;
+      }
+      sqlite3_str_appendf(sql, ", \"%w\"", column->name);
+      room -= room > 0;
+    }
+}
+
+static status copy_runs(struct reading *reading, struct store *store, struct error *error) {
+  int replicates = 1, every = 1;
+  double all = 0;
+  struct ask_column axes[COLUMNS];
+  size_t axis_count = 0, left_out = 0;
+  TRY(choose_room(store, &replicates, &every, error));
+  TRY(answer_number(store, &all, error, "SELECT sum(runs + failed) FROM point_total"));
+  TRY(ask_columns_axes(store, false, COLUMNS, axes, &axis_count, error));
+  sqlite3_str *columns = sqlite3_str_new(NULL);
+  for (size_t i = 0; i < axis_count; i++)
+    sqlite3_str_appendf(columns, ", \"%w\"", axes[i].name);
+  write_results(reading, fmin(all, RUNS), columns, &left_out);
+  TRY(copy(
+      reading->page,
+      answer_to(store, error,
+                "SELECT run_id, point_id, replicate, seed, results_version, counts, surplus, state, engine, scene, "
+                "message, session_id, host, attempt%z FROM runs WHERE run_id IN (SELECT run_id FROM (SELECT run_id, "
+                "row_number() OVER (PARTITION BY point_id, results_version ORDER BY replicate, seed) AS place FROM run "
+                "WHERE surplus = 0 AND point_id %% %d = %d) WHERE place <= %d) ORDER BY point_id, results_version, "
+                "replicate, seed",
+                sqlite3_str_finish(columns), every, every > 1 ? 1 : 0, replicates),
+      "runs", 14 + axis_count));
+  TRY(set_fact(reading->page, "results_left_out", left_out, error));
+  TRY(set_fact(reading->page, "replicates_kept", (size_t)replicates, error));
+  return set_fact(reading->page, "runs_of_every_nth_point", (size_t)every, error);
+}
+
+static status fill_runs(struct reading *reading, struct store *store, struct error *error) {
+  sqlite3 *db = reading->page->db;
+  TRY(sql_execute(db,
+                  "CREATE TABLE means (point_id, results_version, quantity, n, mean, sd, hw95);"
+                  "CREATE TABLE modes (point_id, quantity, lower_mode, upper_mode, between_modes, "
+                  "upper_share, upper_low, upper_high)",
+                  doing, error));
+  TRY(sql_prepare(db, "INSERT INTO means VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)", &reading->insert, doing, error));
+  TRY(sql_prepare(db, "INSERT INTO modes VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", &reading->modes.insert, doing,
+                  error));
+  ANSWER names = ask_group_quantities(store, error);
+  while (reading->count < COLUMNS && answer_next(&names)) {
+    struct column *column = &reading->column[reading->count++];
+    snprintf(column->name, NAME, "%s", answer_text(&names, 0));
+    column->main = is_main(column->name);
+  }
+  TRY(answer_end(&names));
+  TRY(read_results(reading, store, error));
+  TRY(thin_means(reading, error));
+  return copy_runs(reading, store, error);
+}
+
+/* Fills in `runs`, `means` and `modes`. */
+static status add_runs(struct ask_page *page, struct store *store, struct error *error) {
+  struct reading *reading = calloc(1, sizeof *reading);
+  if (!reading)
+    return status_fail(error, STATUS_MEMORY, "no memory for the page");
+  reading->page = page;
+  reading->modes.limit = NAN;
+  const status code = fill_runs(reading, store, error);
+  sqlite3_finalize(reading->insert);
+  sqlite3_finalize(reading->modes.insert);
+  for (size_t i = 0; i < reading->count; i++)
+    free(reading->column[i].values);
+  free(reading);
+  return code;
+}
+
+/* ---- quantiles of the first main result, the mass share of the largest fragment, at every point, as `clast scatter`
+ * gives them; other results and further points are left out to keep the page small ---- */
+
+static status add_scatter(sqlite3_stmt *insert, int64_t point, const struct scatter *scatter, struct error *error) {
+  status code = STATUS_OK;
+  for (size_t i = 0; code == STATUS_OK && i < SCATTER_QUANTILES; i++) {
+    const struct scatter_quantile *quantile = &scatter->quantile[i];
+    const double numbers[] = {scatter_shares[i], quantile->value, quantile->low, quantile->high};
+    sqlite3_bind_int64(insert, 1, point);
+    sql_bind_text(insert, 2, OUTCOME_DEFAULT);
+    for (int k = 0; k < 4; k++)
+      sqlite3_bind_double(insert, 3 + k, numbers[k]); /* NaN is NULL */
+    code = sql_run(insert, doing, error);
+  }
+  return code;
+}
+
+static status add_quantiles(struct ask_page *page, struct store *store, struct error *error) {
+  sqlite3_stmt *insert = NULL;
+  double points = 0;
+  TRY(sql_execute(page->db, "CREATE TABLE quantile (point_id, quantity, share, value, low, high)", doing, error));
+  TRY(answer_number(store, &points, error, "SELECT count(*) FROM point"));
+  if (points > QUANTILES)
+    return STATUS_OK;
+  TRY(sql_prepare(page->db, "INSERT INTO quantile VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &insert, doing, error));
+  ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, OUTCOME_DEFAULT, error);
+  const struct ask_pool *pool;
+  status code = STATUS_OK;
+  while (code == STATUS_OK && (pool = ask_pools_next(&pools))) {
+    struct scatter scatter = {0};
+    code = scatter_make(pool->data.runs.count, pool->value, &scatter, error);
+    if (code == STATUS_OK && scatter.n > 1)
+      code = add_scatter(insert, pool->point[0], &scatter, error);
+    scatter_release(&scatter);
+  }
+  sqlite3_finalize(insert);
+  return code ? code : ask_pools_end(&pools);
+}
+
+/* ---- does a power law fit the fragments of a point? the same test as in `clast exponents` ---- */
+
+/* *enough: the next test would take too long. */
+static status add_fit(sqlite3_stmt *insert, const struct ask_pool *pool, int64_t *fragments, bool *enough,
+                      struct error *error) {
+  const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
+  const struct pooled_runs *runs = &pool->data.runs;
+  struct pooled_exponent fit;
+  struct pooled_goodness goodness;
+  if (!(lower > 0))
+    return STATUS_OK; /* the store has no estimates of its runs */
+  TRY(pooled_exponent(runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &fit, error));
+  if (!isfinite(fit.fit.beta))
+    return STATUS_OK;
+  *fragments += fit.fit.n;
+  *enough = *fragments > JUDGED;
+  if (*enough)
+    return STATUS_OK;
+  TRY(pooled_goodness(runs, lower, DRAWS, &goodness, error));
+  sqlite3_bind_int64(insert, 1, pool->data.point_id);
+  sqlite3_bind_int64(insert, 2, fit.fit.n);
+  sqlite3_bind_double(insert, 3, goodness.p); /* NaN is NULL */
+  return sql_run(insert, doing, error);
+}
+
+static status add_goodness(struct ask_page *page, struct store *store, struct error *error) {
+  sqlite3_stmt *insert = NULL;
+  int64_t fragments = 0; /* tested so far */
+  bool enough = false;
+  TRY(sql_execute(page->db, "CREATE TABLE goodness (point_id, n, p)", doing, error));
+  TRY(sql_prepare(page->db, "INSERT INTO goodness VALUES (?1, ?2, ?3)", &insert, doing, error));
+  ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, NULL, error);
+  const struct ask_pool *pool;
+  status code = STATUS_OK;
+  while (code == STATUS_OK && !enough && (pool = ask_pools_next(&pools)))
+    code = add_fit(insert, pool, &fragments, &enough, error);
+  sqlite3_finalize(insert);
+  return code ? code : ask_pools_end(&pools);
 }
 
 /* The canned queries that the page's tables can answer. */
@@ -147,32 +493,33 @@ static status add_questions(struct ask_page *page, struct error *error) {
 }
 
 static status fill(struct ask_page *page, struct store *store, struct error *error) {
-  status code = sql_execute(page->db,
-                            "PRAGMA page_size = 4096;"
-                            "CREATE TABLE fact (name TEXT PRIMARY KEY, value) WITHOUT ROWID;"
-                            "CREATE TABLE label (column_name TEXT PRIMARY KEY, label, unit, factor) WITHOUT ROWID;"
-                            "CREATE TABLE question (name, doc, sql, parameters);"
-                            "CREATE TABLE picture (run_id, point_id, quantile, png);"
-                            "CREATE TABLE difference (quantity, first_point, point_id, pairs, difference, hw95);"
-                            "BEGIN",
-                            doing, error);
-  for (size_t i = 0; code == STATUS_OK && i < sizeof tables / sizeof tables[0]; i++)
-    code = ask_page_copy(page, store, tables[i].name, tables[i].sql, ASK_PAGE_EXACT, error);
-  if (code == STATUS_OK)
-    code = copy_points(page, store, error);
-  if (code == STATUS_OK)
-    code = copy_spectra(page, store, error);
-  if (code == STATUS_OK)
-    code = copy_attempts(page, store, error);
-  if (code == STATUS_OK)
-    code = ask_page_runs(page, store, error);
-  if (code == STATUS_OK)
-    code = ask_page_scatter(page, store, error);
-  if (code == STATUS_OK)
-    code = ask_page_goodness(page, store, error);
-  if (code == STATUS_OK) /* canned queries also use the table's name in the store */
-    code = sql_execute(page->db, "CREATE VIEW run AS SELECT * FROM runs", doing, error);
-  return code ? code : add_questions(page, error);
+  TRY(sql_execute(page->db,
+                  "PRAGMA page_size = 4096;"
+                  "CREATE TABLE fact (name TEXT PRIMARY KEY, value) WITHOUT ROWID;"
+                  "CREATE TABLE label (column_name TEXT PRIMARY KEY, label, unit, factor) WITHOUT ROWID;"
+                  "CREATE TABLE question (name, doc, sql, parameters);"
+                  "CREATE TABLE picture (run_id, point_id, quantile, png);"
+                  "CREATE TABLE difference (quantity, first_point, point_id, pairs, difference, hw95);"
+                  "BEGIN",
+                  doing, error));
+  for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++)
+    TRY(copy(page, answer_to(store, error, "%s", tables[i].sql), tables[i].name, EXACT));
+  TRY(copy_points(page, store, error));
+  TRY(copy_spectra(page, store, error));
+  TRY(copy(
+      page,
+      answer_to(
+          store, error,
+          "SELECT point_id, replicate, seed, session_id, number, reason, exit_code, signal, wall_time, limited_to, "
+          "message, host FROM attempt ORDER BY attempt_id DESC LIMIT %d",
+          ATTEMPTS),
+      "attempt", EXACT));
+  TRY(add_runs(page, store, error));
+  TRY(add_quantiles(page, store, error));
+  TRY(add_goodness(page, store, error));
+  /* canned queries also use the table's name in the store */
+  TRY(sql_execute(page->db, "CREATE VIEW run AS SELECT * FROM runs", doing, error));
+  return add_questions(page, error);
 }
 
 status ask_page_make(struct store *store, struct ask_page **out, struct error *error) {
@@ -223,51 +570,26 @@ status ask_page_columns(struct ask_page *page, status (*each)(void *context, con
   return code;
 }
 
-struct giving {
-  struct store *store;
-  status (*each)(void *context, const struct ask_page_kept *run, struct error *error);
-  void *context;
-};
-
-static status give_kept(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)count;
-  const struct giving *giving = context;
-  if (values[3].kind != QUERY_TEXT)
-    return STATUS_OK;
-  char *fields = paths_of_fields(giving->store->path, values[3].text);
-  if (!fields)
-    return status_fail(error, STATUS_MEMORY, "no memory for the page");
-  const struct ask_page_kept run = {values[0].integer, values[1].integer, values[2].real, fields};
-  const status code = giving->each(giving->context, &run, error);
-  free(fields);
-  return code;
-}
-
-status ask_page_kept(struct store *store, size_t most,
-                     status (*each)(void *context, const struct ask_page_kept *run, struct error *error), void *context,
-                     struct error *error) {
-  static const char sql[] =
+struct answer ask_page_kept(struct store *store, size_t most, struct error *error) {
+  return answer_to(
+      store, error,
       "WITH ranked AS (SELECT run_id, point_id, fields_path, row_number() OVER point - 1 AS place, count(*) OVER "
       "(PARTITION BY point_id) - 1 AS last FROM run WHERE counts AND results_version = (SELECT max(results_version) "
       "FROM run AS newest WHERE newest.point_id = run.point_id) WINDOW point AS (PARTITION BY point_id ORDER BY %s, "
       "run_id)) SELECT run_id, point_id, iif(last = 0, 0.5, 1.0 * place / last) AS quantile, fields_path FROM ranked "
-      "WHERE fields_path IS NOT NULL AND place IN (0, (last + 1) / 2, last) ORDER BY abs(quantile - 0.5) > 0.25, "
-      "point_id, quantile LIMIT %zu";
-  struct giving giving = {store, each, context};
-  const struct query_sink sink = {.context = &giving, .row = give_kept};
-  char text[900];
-  snprintf(text, sizeof text, sql, OUTCOME_DEFAULT, most);
-  return query_run(store, text, 0, NULL, 0, &sink, error);
+      "WHERE typeof(fields_path) = 'text' AND place IN (0, (last + 1) / 2, last) ORDER BY abs(quantile - 0.5) > 0.25, "
+      "point_id, quantile LIMIT %lld",
+      OUTCOME_DEFAULT, (long long)most);
 }
 
-status ask_page_picture(struct ask_page *page, const struct ask_page_kept *run, const void *png, size_t size,
+status ask_page_picture(struct ask_page *page, const struct answer *kept, const void *png, size_t size,
                         struct error *error) {
   sqlite3_stmt *insert = NULL;
   status code = sql_prepare(page->db, "INSERT INTO picture VALUES (?1, ?2, ?3, ?4)", &insert, doing, error);
   if (code == STATUS_OK) {
-    sqlite3_bind_int64(insert, 1, run->run_id);
-    sqlite3_bind_int64(insert, 2, run->point_id);
-    sqlite3_bind_double(insert, 3, run->quantile);
+    sqlite3_bind_int64(insert, 1, answer_integer(kept, 0));
+    sqlite3_bind_int64(insert, 2, answer_integer(kept, 1));
+    sqlite3_bind_double(insert, 3, answer_real(kept, 2));
     sqlite3_bind_blob64(insert, 4, png, size, SQLITE_STATIC);
     code = sql_run(insert, doing, error);
   }

@@ -15,7 +15,9 @@
 #define CLAST_DB_ASK_PAGE_H
 
 #include "analysis/statistics/difference.h"
-#include "db/ask/query.h"
+#include "db/ask/answer.h"
+
+enum { ASK_PAGE_RUNS = 10000 }; /* most single runs of a page */
 
 struct ask_page; /* opaque */
 
@@ -33,19 +35,12 @@ status ask_page_label(struct ask_page *page, const char *column, const char *lab
 status ask_page_columns(struct ask_page *page, status (*each)(void *context, const char *column, struct error *error),
                         void *context, struct error *error);
 
-/* A run whose fields are kept, and its quantile among the runs of its point by the main quantity: 0 is the smallest
- * value, 0.5 the median, 1 the largest. */
-struct ask_page_kept {
-  int64_t run_id, point_id;
-  double quantile;
-  const char *fields; /* path as this process can open it; borrowed for the call */
-};
-/* The runs nearest to the quantiles 0, 0.5 and 1 of every point, if their fields are kept; at most `most` runs, the
- * medians of all points first. */
-status ask_page_kept(struct store *store, size_t most,
-                     status (*each)(void *context, const struct ask_page_kept *run, struct error *error), void *context,
-                     struct error *error);
-status ask_page_picture(struct ask_page *page, const struct ask_page_kept *run, const void *png, size_t size,
+/* The runs nearest to the quantiles 0, 0.5 and 1 of every point by the main quantity (0: the smallest value), if their
+ * fields are kept; at most `most` runs, the medians of all points first. A row: run, point, quantile, and the file
+ * (ask_run_fields). */
+struct answer ask_page_kept(struct store *store, size_t most, struct error *error);
+/* Adds the picture of the current row of ask_page_kept. */
+status ask_page_picture(struct ask_page *page, const struct answer *kept, const void *png, size_t size,
                         struct error *error);
 
 /* The difference of a result: a point of this store minus a point of the page's first store. */

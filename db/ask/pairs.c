@@ -7,8 +7,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "db/ask/group.h"
 #include "db/ask/points.h"
-#include "db/ask/values.h"
+#include "db/sql.h"
 #include "engine/grow.h"
 
 struct group { /* the runs of one point */
@@ -24,49 +25,93 @@ struct side {
 };
 struct ask_pairs {
   struct side side[2];
+  size_t at[2], found; /* the next group of each side; pairs so far */
 };
 
-static status take(void *context, const struct ask_values_row *row, struct error *error) {
-  struct side *side = context;
-  if (isnan(row->value))
-    return STATUS_OK;
-  if (side->group_count == 0 || side->groups[side->group_count - 1].point != row->point_id) {
-    char *inputs = strdup(side->one_point ? "" : row->inputs);
+static status no_memory(struct error *error) {
+  return status_fail(error, STATUS_MEMORY, "no memory for the runs");
+}
+
+/* The values of a column of the runs that count, of the newest results_version, ordered by inputs, point and seed.
+ * `point` 0: all; `campaign` NULL: all. */
+static struct answer ask_values(struct store *store, int64_t point, const char *campaign, const char *column,
+                                struct error *error) {
+  char of_point[64] = "";
+  if (point)
+    snprintf(of_point, sizeof of_point, " AND point_id = %lld", (long long)point);
+  char *of_campaign = sqlite3_mprintf(!campaign
+                                          ? ""
+                                          : " AND point_id IN (SELECT point_id FROM campaign_point JOIN campaign USING "
+                                            "(campaign_id) WHERE name = %Q)",
+                                      campaign);
+  if (!of_campaign)
+    return answer_failed(no_memory(error), error);
+  return answer_to(
+      store, error,
+      "WITH varied AS MATERIALIZED (SELECT point_id, (SELECT group_concat(v, ', ') FROM (SELECT path || ' = ' || "
+      "CAST(value AS TEXT) AS v FROM axis JOIN point_input i USING (path) WHERE i.point_id = p.point_id ORDER BY "
+      "path)) AS inputs FROM point p)\nSELECT inputs, point_id, seed, \"%w\" FROM runs JOIN varied USING (point_id) "
+      "WHERE counts = 1 AND results_version = (SELECT max(results_version) FROM run WHERE counts = 1)%s%z "
+      "ORDER BY inputs, point_id, seed, replicate",
+      column, of_point, of_campaign);
+}
+
+/* Adds a run to its point, which is the last one or a new one. */
+static status add_run(struct side *side, const struct answer *row, struct error *error) {
+  const int64_t point = answer_integer(row, 1);
+  if (side->group_count == 0 || side->groups[side->group_count - 1].point != point) {
+    char *inputs = strdup(side->one_point ? "" : answer_text(row, 0));
     if (!inputs || !grow_room(&side->groups, &side->group_room, side->group_count + 1, sizeof *side->groups)) {
       free(inputs);
-      return status_fail(error, STATUS_MEMORY, "no memory for the points");
+      return no_memory(error);
     }
-    side->groups[side->group_count++] = (struct group){inputs, row->point_id, side->value_count, 0};
+    side->groups[side->group_count++] = (struct group){inputs, point, side->value_count, 0};
   }
   if (!grow_room(&side->values, &side->value_room, side->value_count + 1, sizeof *side->values))
-    return status_fail(error, STATUS_MEMORY, "no memory for the runs");
-  side->values[side->value_count++] = (struct difference_value){row->seed, row->value};
+    return no_memory(error);
+  side->values[side->value_count++] = (struct difference_value){answer_integer(row, 2), answer_real(row, 3)};
   side->groups[side->group_count - 1].count++;
   return STATUS_OK;
 }
 
+static status read_values(struct store *store, int64_t point, const char *campaign, const char *quantity,
+                          struct side *side, struct error *error) {
+  char column[ASK_GROUP_NAME];
+  double there = 1;
+  TRY(ask_points_known(store, point, error));
+  TRY(ask_group_quantity(store, quantity, column, error));
+  if (campaign)
+    TRY(answer_number(store, &there, error, "SELECT count(*) FROM campaign WHERE name = %Q", campaign));
+  if (!(there > 0))
+    return status_fail(error, STATUS_USAGE, "the store has no campaign '%.128s'; `clast status` lists them", campaign);
+  ANSWER answer = ask_values(store, point, campaign, column, error);
+  while (answer_next(&answer))
+    if (!isnan(answer_real(&answer, 3)))
+      TRY(add_run(side, &answer, error));
+  return answer_end(&answer);
+}
+
 static status read_side(const char *operand, const char *quantity, struct side *side, struct error *error) {
-  char path[4096], column[ASK_GROUP_NAME];
-  struct ask_values_choice choice = {0};
+  char path[4096];
+  int64_t point = 0;
+  const char *campaign = NULL;
   const char *colon = strrchr(operand, ':');
   snprintf(path, sizeof path, "%s", operand);
   if (colon && access(operand, F_OK) != 0) {
     snprintf(path, sizeof path, "%.*s", (int)(colon - operand), operand);
     char *end = NULL;
-    choice.point = strtoll(colon + 1, &end, 10);
-    if (*end || choice.point < 1)
-      choice = (struct ask_values_choice){.campaign = colon + 1};
+    point = strtoll(colon + 1, &end, 10);
+    if (*end || point < 1) {
+      point = 0;
+      campaign = colon + 1;
+    }
   }
-  side->one_point = choice.point > 0;
+  side->one_point = point > 0;
   struct store *store = NULL;
   status code = store_open_reader(path, &store, error);
   if (code)
     return code;
-  code = ask_points_known(store, choice.point, error);
-  if (code == STATUS_OK)
-    code = ask_group_quantity(store, quantity, column, error);
-  if (code == STATUS_OK)
-    code = ask_values(store, &choice, column, take, side, error);
+  code = read_values(store, point, campaign, quantity, side, error);
   store_close(store, NULL);
   if (code == STATUS_OK && side->group_count == 0)
     code = status_fail(error, STATUS_USAGE, "%s: no run that counts has a value of %s", operand, quantity);
@@ -103,30 +148,29 @@ void ask_pairs_free(struct ask_pairs *pairs) {
 }
 
 /* Both sides are in the order of their inputs. */
-status ask_pairs_each(const struct ask_pairs *pairs,
-                      status (*each)(void *context, const struct ask_pairs_row *row, struct error *error),
-                      void *context, struct error *error) {
+bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
   const struct side *a = &pairs->side[0], *b = &pairs->side[1];
-  size_t found = 0;
-  for (size_t i = 0, j = 0; i < a->group_count && j < b->group_count;) {
-    const struct group *first = &a->groups[i], *second = &b->groups[j];
+  while (pairs->at[0] < a->group_count && pairs->at[1] < b->group_count) {
+    const struct group *first = &a->groups[pairs->at[0]], *second = &b->groups[pairs->at[1]];
     const int order = strcmp(first->inputs, second->inputs);
-    i += order <= 0;
-    j += order >= 0;
+    pairs->at[0] += order <= 0;
+    pairs->at[1] += order >= 0;
     if (order)
       continue;
-    const struct ask_pairs_row row = {{first->point, second->point},
-                                      first->inputs,
-                                      difference_between(first->count, a->values + first->first, second->count,
-                                                         b->values + second->first, 0.95)};
-    const status code = each(context, &row, error);
-    if (code)
-      return code;
-    found++;
+    *row = (struct ask_pairs_row){{first->point, second->point},
+                                  first->inputs,
+                                  difference_between(first->count, a->values + first->first, second->count,
+                                                     b->values + second->first, 0.95)};
+    pairs->found++;
+    return true;
   }
-  if (found == 0)
-    return status_fail(error, STATUS_USAGE,
-                       "no point of A has the varied inputs of a point of B (%s; %s): name two points, STORE:POINT",
-                       a->groups[0].inputs, b->groups[0].inputs);
-  return STATUS_OK;
+  return false;
+}
+
+status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
+  if (pairs->found > 0)
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE,
+                     "no point of A has the varied inputs of a point of B (%s; %s): name two points, STORE:POINT",
+                     pairs->side[0].groups[0].inputs, pairs->side[1].groups[0].inputs);
 }

@@ -2,6 +2,8 @@
 #ifndef CLAST_DB_ASK_PAIRS_H
 #define CLAST_DB_ASK_PAIRS_H
 
+#include <stdbool.h>
+
 #include "analysis/statistics/difference.h"
 #include "engine/outcome.h"
 #include "schemas/status.h"
@@ -18,10 +20,10 @@ struct ask_pairs_row {
  * such store. */
 status ask_pairs_read(const char *first, const char *second, const char *quantity, struct ask_pairs **out,
                       struct error *error);
-/* STATUS_USAGE: the sides have no point in common. */
-status ask_pairs_each(const struct ask_pairs *pairs,
-                      status (*each)(void *context, const struct ask_pairs_row *row, struct error *error),
-                      void *context, struct error *error);
+/* The next pair; its texts are borrowed from `pairs`. False at the end. */
+bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row);
+/* After the last pair. STATUS_USAGE: the sides have no point in common. */
+status ask_pairs_end(const struct ask_pairs *pairs, struct error *error);
 void ask_pairs_free(struct ask_pairs *pairs); /* NULL is fine */
 
 #endif

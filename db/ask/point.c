@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/ask/query.h"
+#include "db/ask/answer.h"
+#include "db/sql.h"
 #include "engine/engine.h"
 #include "engine/grow.h"
-#include "schemas/text.h"
 
 struct growing {
   struct point_data *point;
@@ -34,92 +34,77 @@ static status make_room(struct growing *growing, size_t masses) {
   return STATUS_OK;
 }
 
-/* Blobs are little-endian float64, which is the native format of every supported machine. */
-static status take_run(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct growing *growing = context;
-  struct point_data *point = growing->point;
-  if (count != 3 || values[0].kind != QUERY_BLOB || values[0].size % sizeof(double) != 0)
-    return status_fail(error, STATUS_CONTENT,
-                       "the fragment masses of a run of point %lld are damaged; `clast check` tells more",
-                       (long long)point->point_id);
-  const size_t n = values[0].size / sizeof(double), have = point->first[point->runs.count];
-  if (make_room(growing, have + n))
-    return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)point->point_id);
-  if (n > 0)
-    memcpy(point->masses + have, values[0].blob, n * sizeof(double));
-  point->run_id[point->runs.count] = values[1].integer;
-  point->seed[point->runs.count] = (uint64_t)values[2].integer;
-  point->first[++point->runs.count] = have + n;
-  return STATUS_OK;
-}
-
-/* A read-only store from before this column was added lacks it. */
-static status read_complete_mass(struct store *store, struct query_parameter parameters[2], double *mass,
-                                 struct error *error) {
-  const struct query_parameter column = {"column", OUTCOME_NAME(complete_mass)};
-  char text[256];
-  double there = 0;
-  *mass = NAN;
-  status code = query_number(store, "SELECT count(*) FROM pragma_table_info('run') WHERE name = :column", 1, &column,
-                             &there, error);
-  if (code || !(there > 0))
-    return code;
-  snprintf(text, sizeof text,
-           "SELECT avg(%s) FROM run WHERE point_id = :point AND results_version = :version AND counts = 1",
-           OUTCOME_NAME(complete_mass));
-  return query_number(store, text, 2, parameters, mass, error);
-}
-
-/* A row of results_version and engine; the engine becomes its dimensions. */
-static status take_version(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)count, (void)error;
-  struct query_value *row = context;
-  row[0].integer = values[0].integer;
-  const struct engine_kind *kind = values[1].kind == QUERY_TEXT ? engine_find(values[1].text, NULL) : NULL;
-  row[1].integer = kind && kind->dimensions == 2 ? 2 : 3;
-  return STATUS_OK;
-}
-
-/* The newest version with runs that count (0: none), and the dimensions of the engine. */
-static status read_version(struct store *store, const struct query_parameter *id, struct point_data *out,
-                           struct error *error) {
-  struct query_value row[2] = {{0}};
-  const struct query_sink sink = {row, NULL, take_version};
-  const status code = query_run(store,
-                                "SELECT (SELECT max(results_version) FROM run WHERE point_id = p.point_id AND "
-                                "counts = 1), engine FROM point AS p WHERE point_id = :point",
-                                1, id, 0, &sink, error);
-  if (out->results_version == 0)
-    out->results_version = row[0].integer;
-  out->dimensions = (int)row[1].integer;
-  return code;
-}
-
-static status read_runs(struct store *store, const struct query_parameter parameters[2], const char *where,
-                        struct point_data *out, struct error *error) {
-  struct growing growing = {.point = out};
-  const struct query_sink sink = {.context = &growing, .row = take_run};
-  char *sql = NULL;
-  size_t size = 0;
-  FILE *text = open_memstream(&sql, &size);
-  if (!text || make_room(&growing, 0)) {
-    if (text)
-      fclose(text);
-    free(sql);
-    return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)out->point_id);
+/* The newest version with runs that count (0: none), unless one is given, and the dimensions of the engine. */
+static status read_version(struct store *store, struct point_data *out, struct error *error) {
+  ANSWER
+  answer = answer_to(store, error,
+                     "SELECT (SELECT max(results_version) FROM run WHERE point_id = p.point_id AND counts = 1), engine "
+                     "FROM point AS p WHERE point_id = %lld",
+                     (long long)out->point_id);
+  if (answer_next(&answer)) {
+    if (out->results_version == 0)
+      out->results_version = answer_integer(&answer, 0);
+    const struct engine_kind *kind = engine_find(answer_text(&answer, 1), NULL);
+    out->dimensions = kind && kind->dimensions == 2 ? 2 : 3;
   }
-  out->first[0] = 0;
-  fputs("SELECT masses, run_id, seed FROM run JOIN fragment_mass USING (run_id) WHERE point_id = :point AND "
-        "results_version = :version AND counts = 1",
-        text);
-  if (where)
-    fprintf(text, " AND run_id IN (SELECT run_id FROM runs WHERE point_id = :point AND (%s\n))", where);
-  fputs(" ORDER BY replicate, seed", text);
-  if (!text_close(text, &sql))
-    return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
-  const status code = query_run(store, sql, 2, parameters, 0, &sink, error);
-  free(sql);
-  return code;
+  return answer_end(&answer);
+}
+
+static status read_runs(struct store *store, const char *where, struct point_data *out, struct error *error) {
+  const long long point = out->point_id, version = out->results_version;
+  struct growing growing = {.point = out};
+  char *condition = where ? sqlite3_mprintf(" AND run_id IN (SELECT run_id FROM runs WHERE point_id = %lld AND (%s\n))",
+                                            point, where)
+                          : sqlite3_mprintf("");
+  char of[64];
+  snprintf(of, sizeof of, "a run of point %lld", point);
+  ANSWER answer =
+      !condition || make_room(&growing, 0)
+          ? answer_failed(status_fail(error, STATUS_MEMORY, "no memory for %s", of), error)
+          : answer_to(store, error,
+                      "SELECT masses, run_id, seed FROM run JOIN fragment_mass USING (run_id) WHERE point_id = "
+                      "%lld AND results_version = %lld AND counts = 1%s ORDER BY replicate, seed",
+                      point, version, condition);
+  sqlite3_free(condition);
+  if (answer_status(&answer) == STATUS_OK)
+    out->first[0] = 0;
+  const void *masses;
+  size_t n;
+  while (answer_next(&answer) && answer_masses(&answer, 0, of, &masses, &n)) {
+    const size_t run = out->runs.count, have = out->first[run];
+    if (make_room(&growing, have + n))
+      return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", point);
+    if (n > 0)
+      memcpy(out->masses + have, masses, n * sizeof(double));
+    out->run_id[run] = answer_integer(&answer, 1);
+    out->seed[run] = (uint64_t)answer_integer(&answer, 2);
+    out->first[++out->runs.count] = have + n;
+  }
+  return answer_end(&answer);
+}
+
+/* The mean over the runs; NaN in a read-only store from before this column was added. */
+static status read_complete_mass(struct store *store, struct point_data *out, struct error *error) {
+  double there = 0;
+  TRY(answer_number(store, &there, error, "SELECT count(*) FROM pragma_table_info('run') WHERE name = %Q",
+                    OUTCOME_NAME(complete_mass)));
+  if (!(there > 0))
+    return STATUS_OK;
+  return answer_number(store, &out->complete_mass, error,
+                       "SELECT avg(%s) FROM run WHERE point_id = %lld AND results_version = %lld AND counts = 1",
+                       OUTCOME_NAME(complete_mass), (long long)out->point_id, (long long)out->results_version);
+}
+
+static status read_point(struct store *store, const char *where, struct point_data *out, struct error *error) {
+  TRY(read_version(store, out, error));
+  TRY(read_runs(store, where, out, error));
+  /* The window from_10 of a run begins at a known number of its mean element masses: complete_mass is never above. */
+  TRY(answer_number(store, &out->element_mass, error,
+                    "SELECT avg(lower) FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = %lld "
+                    "AND r.results_version = %lld AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_10'",
+                    (long long)out->point_id, (long long)out->results_version));
+  out->element_mass /= estimates_window_elements(ESTIMATES_FROM_10);
+  return read_complete_mass(store, out, error);
 }
 
 status point_read_where(struct store *store, int64_t point_id, int64_t results_version, const char *where,
@@ -127,32 +112,14 @@ status point_read_where(struct store *store, int64_t point_id, int64_t results_v
   *out = (struct point_data){.point_id = point_id,
                              .results_version = results_version,
                              .element_mass = NAN,
-                             .complete_mass = NAN};
-  char id[32], version[32];
-  snprintf(id, sizeof id, "%lld", (long long)point_id);
-  struct query_parameter parameters[2] = {{"point", id}, {"version", version}};
-  status code = read_version(store, parameters, out, error);
+                             .complete_mass = NAN,
+                             .dimensions = 3};
+  const status code = read_point(store, where, out, error);
   if (code)
-    return code;
-  snprintf(version, sizeof version, "%lld", (long long)out->results_version);
-  code = read_runs(store, parameters, where, out, error);
-  /* The window from_10 of a run begins at a known number of its mean element masses: complete_mass is never above. */
-  if (!code)
-    code = query_number(
-        store,
-        "SELECT avg(lower) FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = :point "
-        "AND r.results_version = :version AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_10'",
-        2, parameters, &out->element_mass, error);
-  if (!code)
-    code = read_complete_mass(store, parameters, &out->complete_mass, error);
-  out->element_mass /= estimates_window_elements(ESTIMATES_FROM_10);
-  if (code) {
     point_release(out);
-    return code;
-  }
-  out->runs.first = out->first;
-  out->runs.masses = out->masses;
-  return STATUS_OK;
+  else
+    out->runs = (struct pooled_runs){out->runs.count, out->first, out->masses};
+  return code;
 }
 
 status point_read(struct store *store, int64_t point_id, int64_t results_version, struct point_data *out,
@@ -198,10 +165,8 @@ status point_exponent_of_runs(const struct point_data *point, enum exponent_meth
 status point_exponent(struct store *store, int64_t point_id, int64_t results_version, enum exponent_method method,
                       enum estimates_window window, double level, struct pooled_exponent *out, struct error *error) {
   struct point_data point;
-  status code = point_read(store, point_id, results_version, &point, error);
-  if (code)
-    return code;
-  code = estimate(&point, method, window, level, out, error);
+  TRY(point_read(store, point_id, results_version, &point, error));
+  const status code = estimate(&point, method, window, level, out, error);
   point_release(&point);
   return code;
 }

@@ -3,8 +3,10 @@
 #ifndef CLAST_DB_ASK_POINTS_H
 #define CLAST_DB_ASK_POINTS_H
 
-#include "db/ask/query.h"
+#include "db/ask/answer.h"
 #include "db/ask/resolution.h"
+
+enum { ASK_POINTS_INPUTS = 16 };
 
 /* A point's runs of one results_version. */
 struct ask_points_row {
@@ -16,10 +18,9 @@ struct ask_points_row {
   double resolution;       /* error that the resolution leaves in it; NaN: not known */
   enum ask_resolution_verdict resolution_verdict;
   size_t input_count;
-  const struct query_value *inputs; /* values of the requested inputs, in their order; borrowed for the call */
+  struct query_value inputs[ASK_POINTS_INPUTS]; /* values of the requested inputs, in their order; texts are borrowed
+                                                   until the next row */
 };
-/* A status other than STATUS_OK ends the query with that status. The callback may query the store itself. */
-typedef status (*ask_points_each)(void *context, const struct ask_points_row *row, struct error *error);
 
 /* Selects points; 0 means all. */
 struct ask_points_choice {
@@ -33,10 +34,12 @@ status ask_points_count(struct store *store, const struct ask_points_choice *cho
 /* STATUS_USAGE, with the known numbers, when the store has no point of this number. 0 means every point. */
 status ask_points_known(struct store *store, int64_t point, struct error *error);
 
-/* These points with the named input columns (ask_columns_axes), in the order of their numbers. Each point comes with
- * its newest results_version only (`newest`), or once for every results_version. */
-status ask_points_rows(struct store *store, const struct ask_points_choice *choice, bool newest, size_t input_count,
-                       const char *const *inputs, ask_points_each each, void *context, struct error *error);
+/* These points with the named input columns (ask_columns_axes; at most ASK_POINTS_INPUTS), in the order of their
+ * numbers. Each point comes with its newest results_version only (`newest`), or once for every results_version. */
+struct answer ask_points_rows(struct store *store, const struct ask_points_choice *choice, bool newest,
+                              size_t input_count, const char *const *inputs, struct error *error);
+/* The next row. False at the end and after an error; then answer_end(). */
+bool ask_points_next(struct answer *answer, struct ask_points_row *row);
 
 /* The varied inputs of a point by the last words of their paths, last path first: "strain 3 %, angle 4 deg".
  * Inputs that do not fit are left out. "point 7" when nothing was varied. */

@@ -13,76 +13,52 @@
 #include "engine/grow.h"
 #include "schemas/text.h"
 
-struct member { /* a point, in the order of the pools */
+struct ask_pool_member { /* a point, in the order of the pools */
   int64_t point, version;
   struct query_value input[ASK_POOL_AXES]; /* texts point to `text` */
   char text[ASK_POOL_AXES][ASK_POOL_TEXT];
-};
-
-struct members {
-  const struct ask_pool_choice *choice;
-  size_t axes;
-  char column[ASK_POOL_AXES][ASK_GROUP_NAME];
-  struct member *list;
-  size_t count, room;
 };
 
 static status no_memory(struct error *error) {
   return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
 }
 
-/* point_id, results_version, inputs */
-static status take_member(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct members *members = context;
-  (void)count;
-  if (!grow_room(&members->list, &members->room, members->count + 1, sizeof *members->list))
-    return no_memory(error);
-  struct member *member = &members->list[members->count++];
-  *member = (struct member){.point = values[0].integer, .version = values[1].integer};
-  for (size_t a = 0; a < members->axes; a++) {
-    member->input[a] = values[2 + a];
-    if (values[2 + a].kind == QUERY_TEXT)
-      snprintf(member->text[a], ASK_POOL_TEXT, "%s", values[2 + a].text);
-  }
-  return STATUS_OK;
-}
-
-static void write_axes(FILE *sql, const struct members *members, bool first) {
-  for (size_t a = 0; a < members->axes; a++) {
-    fputs(first && a == 0 ? "" : ", ", sql);
-    sql_write_name(members->column[a], sql);
-  }
+static void write_axes(sqlite3_str *sql, const struct ask_pools *pools, bool first) {
+  for (size_t a = 0; a < pools->axes; a++)
+    sqlite3_str_appendf(sql, "%s\"%w\"", first && a == 0 ? "" : ", ", pools->column[a]);
 }
 
 /* The points with runs, ordered by their inputs. With a condition, the query reads the runs themselves. */
-static status find_members(struct store *store, struct members *members, struct error *error) {
-  const struct ask_pool_choice *choice = members->choice;
-  const struct query_sink sink = {members, NULL, take_member};
-  char *text = NULL;
-  size_t size = 0;
-  FILE *sql = open_memstream(&text, &size);
-  if (!sql)
-    return no_memory(error);
-  fputs("SELECT point_id, max(results_version)", sql);
-  write_axes(sql, members, false);
-  fputs(choice->where ? " FROM runs WHERE counts = 1" : " FROM points WHERE n > 0", sql);
+static status find_members(struct ask_pools *pools, struct error *error) {
+  const struct ask_pool_choice *choice = &pools->choice;
+  sqlite3_str *sql = sqlite3_str_new(NULL);
+  sqlite3_str_appendall(sql, "SELECT point_id, max(results_version)");
+  write_axes(sql, pools, false);
+  sqlite3_str_appendall(sql, choice->where ? " FROM runs WHERE counts = 1" : " FROM points WHERE n > 0");
   if (choice->point)
-    fprintf(sql, " AND point_id = %lld", (long long)choice->point);
+    sqlite3_str_appendf(sql, " AND point_id = %lld", (long long)choice->point);
   if (choice->where)
-    fprintf(sql, " AND (%s\n)", choice->where);
-  fputs(" GROUP BY point_id", sql);
-  write_axes(sql, members, false);
-  fputs(" ORDER BY ", sql);
-  write_axes(sql, members, true);
-  fputs(members->axes ? ", point_id" : "point_id", sql);
-  if (!text_close(sql, &text))
-    return no_memory(error);
-  const status code = query_run(store, text, 0, NULL, 0, &sink, error);
-  free(text);
-  for (size_t i = 0; i < members->count; i++) /* only now: the list no longer moves in memory */
-    for (size_t a = 0; a < members->axes; a++)
-      members->list[i].input[a].text = members->list[i].text[a];
-  return code;
+    sqlite3_str_appendf(sql, " AND (%s\n)", choice->where);
+  sqlite3_str_appendall(sql, " GROUP BY point_id");
+  write_axes(sql, pools, false);
+  sqlite3_str_appendall(sql, " ORDER BY ");
+  write_axes(sql, pools, true);
+  sqlite3_str_appendall(sql, pools->axes ? ", point_id" : "point_id");
+  ANSWER answer = answer_to(pools->store, error, "%z", sqlite3_str_finish(sql));
+  while (answer_next(&answer)) {
+    if (!grow_room(&pools->list, &pools->room, pools->count + 1, sizeof *pools->list))
+      return no_memory(error);
+    struct ask_pool_member *member = &pools->list[pools->count++];
+    *member = (struct ask_pool_member){.point = answer_integer(&answer, 0), .version = answer_integer(&answer, 1)};
+    for (size_t a = 0; a < pools->axes; a++) {
+      member->input[a] = answer_value(&answer, 2 + a);
+      snprintf(member->text[a], ASK_POOL_TEXT, "%s", answer_text(&answer, 2 + a));
+    }
+  }
+  for (size_t i = 0; i < pools->count; i++) /* only now: the list no longer moves in memory */
+    for (size_t a = 0; a < pools->axes; a++)
+      pools->list[i].input[a].text = pools->list[i].text[a];
+  return answer_end(&answer);
 }
 
 static bool same_input(const struct query_value *a, const struct query_value *b) {
@@ -92,82 +68,61 @@ static bool same_input(const struct query_value *a, const struct query_value *b)
 }
 
 /* Index after the last member of the pool that begins at `from`. *version: the newest results_version of the pool. */
-static size_t end_of_pool(const struct members *members, size_t from, int64_t *version) {
-  *version = members->list[from].version;
+static size_t end_of_pool(const struct ask_pools *pools, size_t from, int64_t *version) {
+  *version = pools->list[from].version;
   size_t end = from + 1;
-  for (; members->choice->by && end < members->count; end++) {
-    for (size_t a = 0; a < members->axes; a++)
-      if (!same_input(&members->list[from].input[a], &members->list[end].input[a]))
+  for (; pools->choice.by && end < pools->count; end++) {
+    for (size_t a = 0; a < pools->axes; a++)
+      if (!same_input(&pools->list[from].input[a], &pools->list[end].input[a]))
         return end;
-    if (members->list[end].version > *version)
-      *version = members->list[end].version;
+    if (pools->list[end].version > *version)
+      *version = pools->list[end].version;
   }
   return end;
 }
 
 struct values {
-  struct point_data *point;
   double *value;
   int64_t *seed;
-  size_t room;
 };
 
-static status take_value(void *context, size_t count, const struct query_value *row, struct error *error) {
-  struct values *values = context;
-  struct point_data *point = values->point;
-  (void)count;
-  if (point->runs.count == values->room) {
-    const size_t room = values->room ? 2 * values->room : 32;
-    if (!grow_block(&point->run_id, room * sizeof *point->run_id) ||
-        !grow_block(&values->value, room * sizeof *values->value) ||
-        !grow_block(&values->seed, room * sizeof *values->seed))
-      return no_memory(error);
-    values->room = room;
+static status read_values(const struct ask_pools *pools, struct point_data *point, struct values *values,
+                          struct error *error) {
+  size_t room = 0;
+  char *condition = pools->choice.where ? sqlite3_mprintf(" AND (%s\n)", pools->choice.where) : sqlite3_mprintf("");
+  if (!condition)
+    return no_memory(error);
+  ANSWER
+  answer = answer_to(pools->store, error,
+                     "SELECT run_id, seed, \"%w\" FROM runs WHERE point_id = %lld AND results_version = %lld AND "
+                     "counts = 1%z ORDER BY replicate, seed",
+                     pools->quantity, (long long)point->point_id, (long long)point->results_version, condition);
+  for (; answer_next(&answer); point->runs.count++) {
+    const size_t run = point->runs.count;
+    if (run == room) {
+      room = room ? 2 * room : 32;
+      if (!grow_block(&point->run_id, room * sizeof *point->run_id) ||
+          !grow_block(&values->value, room * sizeof *values->value) ||
+          !grow_block(&values->seed, room * sizeof *values->seed))
+        return no_memory(error);
+    }
+    point->run_id[run] = answer_integer(&answer, 0);
+    values->seed[run] = answer_integer(&answer, 1);
+    values->value[run] = answer_real(&answer, 2);
   }
-  point->run_id[point->runs.count] = row[0].integer;
-  values->seed[point->runs.count] = row[1].integer;
-  values->value[point->runs.count++] = row[2].real;
-  return STATUS_OK;
+  return answer_end(&answer);
 }
 
-static status read_values(struct store *store, const struct ask_pool_choice *choice, const char *column,
-                          struct point_data *point, struct values *values, struct error *error) {
-  *values = (struct values){.point = point};
-  const struct query_sink sink = {values, NULL, take_value};
-  char *text = NULL;
-  size_t size = 0;
-  FILE *sql = open_memstream(&text, &size);
-  if (!sql)
-    return no_memory(error);
-  fputs("SELECT run_id, seed, ", sql);
-  sql_write_name(column, sql);
-  fprintf(sql, " FROM runs WHERE point_id = %lld AND results_version = %lld AND counts = 1", (long long)point->point_id,
-          (long long)point->results_version);
-  if (choice->where)
-    fprintf(sql, " AND (%s\n)", choice->where);
-  fputs(" ORDER BY replicate, seed", sql);
-  if (!text_close(sql, &text))
-    return no_memory(error);
-  const status code = query_run(store, text, 0, NULL, 0, &sink, error);
-  free(text);
-  return code;
-}
-
-/* A pool under construction. */
-struct growing {
-  struct ask_pool pool;
-  int64_t *point;
-  size_t *first_run;
-  double *value;
-  int64_t *seed;
-};
-
-static void release(struct growing *growing) {
-  point_release(&growing->pool.data);
-  free(growing->point);
-  free(growing->first_run);
-  free(growing->value);
-  free(growing->seed);
+static void release(struct ask_pools *pools) {
+  point_release(&pools->pool.data);
+  free(pools->point);
+  free(pools->first_run);
+  free(pools->value);
+  free(pools->seed);
+  pools->point = NULL;
+  pools->first_run = NULL;
+  pools->value = NULL;
+  pools->seed = NULL;
 }
 
 /* Appends `count` elements to the array. False: no memory. */
@@ -181,13 +136,13 @@ static bool append(void **array, size_t have, const void *more, size_t count, si
 }
 
 /* Adds the runs of a point to the pool. `point` and `values` stay the caller's. */
-static status add_point(struct growing *growing, const struct point_data *point, const struct values *values,
+static status add_point(struct ask_pools *pools, const struct point_data *point, const struct values *values,
                         struct error *error) {
-  struct point_data *all = &growing->pool.data;
+  struct point_data *all = &pools->pool.data;
   const size_t have = all->runs.count, more = point->runs.count;
   if (!append((void **)&all->run_id, have, point->run_id, more, sizeof *all->run_id) ||
-      (values->value && (!append((void **)&growing->value, have, values->value, more, sizeof *values->value) ||
-                         !append((void **)&growing->seed, have, values->seed, more, sizeof *values->seed))))
+      (values->value && (!append((void **)&pools->value, have, values->value, more, sizeof *values->value) ||
+                         !append((void **)&pools->seed, have, values->seed, more, sizeof *values->seed))))
     return no_memory(error);
   if (point->first) {
     const size_t masses = all->first ? all->first[have] : 0;
@@ -203,34 +158,34 @@ static status add_point(struct growing *growing, const struct point_data *point,
   all->element_mass = fmax(all->element_mass, point->element_mass); /* fmax ignores a NaN */
   all->complete_mass = fmax(all->complete_mass, point->complete_mass);
   all->dimensions = point->dimensions;
-  growing->point[growing->pool.points++] = point->point_id;
-  growing->first_run[growing->pool.points] = have + more;
+  pools->point[pools->pool.points++] = point->point_id;
+  pools->first_run[pools->pool.points] = have + more;
   return STATUS_OK;
 }
 
 /* Reads the members from .. end - 1 that have runs of the version. */
-static status read_pool(struct store *store, const struct members *members, size_t from, size_t end, int64_t version,
-                        const char *column, struct growing *growing, struct error *error) {
-  growing->point = calloc(end - from, sizeof *growing->point);
-  growing->first_run = calloc(end - from + 1, sizeof *growing->first_run);
-  if (!growing->point || !growing->first_run)
+static status read_pool(struct ask_pools *pools, size_t from, size_t end, int64_t version, struct error *error) {
+  pools->point = calloc(end - from, sizeof *pools->point);
+  pools->first_run = calloc(end - from + 1, sizeof *pools->first_run);
+  if (!pools->point || !pools->first_run)
     return no_memory(error);
-  growing->pool.data = (struct point_data){.results_version = version, .element_mass = NAN, .complete_mass = NAN};
+  pools->pool.data = (struct point_data){.results_version = version, .element_mass = NAN, .complete_mass = NAN};
   status code = STATUS_OK;
   for (size_t i = from; i < end && code == STATUS_OK; i++) {
-    struct point_data point = {.point_id = members->list[i].point, .results_version = version};
+    struct point_data point = {.point_id = pools->list[i].point, .results_version = version};
     struct values values = {0};
-    if (members->list[i].version != version)
+    if (pools->list[i].version != version)
       continue;
-    code = column ? read_values(store, members->choice, column, &point, &values, error)
-                  : point_read_where(store, point.point_id, version, members->choice->where, &point, error);
+    code = pools->of_values
+               ? read_values(pools, &point, &values, error)
+               : point_read_where(pools->store, point.point_id, version, pools->choice.where, &point, error);
     if (code == STATUS_OK && point.runs.count > 0)
-      code = add_point(growing, &point, &values, error);
+      code = add_point(pools, &point, &values, error);
     point_release(&point);
     free(values.value);
     free(values.seed);
   }
-  growing->pool.data.point_id = growing->pool.points == 1 ? growing->point[0] : 0;
+  pools->pool.data.point_id = pools->pool.points == 1 ? pools->point[0] : 0;
   return code;
 }
 
@@ -238,84 +193,80 @@ static status read_pool(struct store *store, const struct members *members, size
 static status write_label(struct store *store, struct ask_pool *pool, struct error *error) {
   if (pool->points == 1)
     return ask_points_label(store, pool->point[0], pool->label, sizeof pool->label, error);
-  size_t used = 0;
-  snprintf(pool->label, sizeof pool->label, "all points");
-  for (size_t a = 0; a < pool->axes && used < sizeof pool->label; a++) {
+  snprintf(pool->label, sizeof pool->label, "%s", pool->axes ? "" : "all points");
+  for (size_t a = 0; a < pool->axes; a++) {
     char unit[64] = "", value[ASK_POOL_TEXT] = "off";
     const struct query_value *input = &pool->input[a];
-    const status code = ask_columns_unit(store, pool->column[a], unit, sizeof unit, error);
-    if (code)
-      return code;
+    TRY(ask_columns_unit(store, pool->column[a], unit, sizeof unit, error));
     if (input->kind == QUERY_TEXT)
       snprintf(value, sizeof value, "%s", input->text);
     else if (input->kind != QUERY_NULL)
       snprintf(value, sizeof value, "%.3g", input->real);
     const char *word = strrchr(pool->column[a], '_');
-    used += (size_t)snprintf(pool->label + used, sizeof pool->label - used, "%s%s %s%s%s", a ? ", " : "",
-                             word ? word + 1 : pool->column[a], value, *unit ? " " : "", unit);
+    text_append(pool->label, sizeof pool->label, "%s%s %s%s%s", a ? ", " : "", word ? word + 1 : pool->column[a], value,
+                *unit ? " " : "", unit);
   }
   return STATUS_OK;
 }
 
-static status give_pools(struct store *store, const struct members *members, const char *column, ask_pool_each each,
-                         void *context, struct error *error) {
-  status code = STATUS_OK;
-  for (size_t from = 0, end = 0; from < members->count && code == STATUS_OK; from = end) {
-    int64_t version = 0;
-    end = end_of_pool(members, from, &version);
-    struct growing growing = {.pool = {.axes = members->axes}};
-    code = read_pool(store, members, from, end, version, column, &growing, error);
-    growing.pool.point = growing.point;
-    growing.pool.first_run = growing.first_run;
-    growing.pool.value = growing.value;
-    growing.pool.seed = growing.seed;
-    memcpy(growing.pool.column, members->column, sizeof growing.pool.column);
-    memcpy(growing.pool.input, members->list[from].input, sizeof growing.pool.input);
-    if (code == STATUS_OK && growing.pool.points > 0)
-      code = write_label(store, &growing.pool, error);
-    if (code == STATUS_OK && growing.pool.points > 0)
-      code = each(context, &growing.pool, error);
-    release(&growing);
+/* The next pool, also one without runs. */
+static status read_next(struct ask_pools *pools, struct error *error) {
+  int64_t version = 0;
+  const size_t from = pools->next;
+  pools->next = end_of_pool(pools, from, &version);
+  release(pools);
+  pools->pool = (struct ask_pool){.axes = pools->axes};
+  memcpy(pools->pool.column, pools->column, sizeof pools->pool.column);
+  memcpy(pools->pool.input, pools->list[from].input, sizeof pools->pool.input);
+  TRY(read_pool(pools, from, pools->next, version, error));
+  pools->pool.point = pools->point;
+  pools->pool.first_run = pools->first_run;
+  pools->pool.value = pools->value;
+  pools->pool.seed = pools->seed;
+  return pools->pool.points > 0 ? write_label(pools->store, &pools->pool, error) : STATUS_OK;
+}
+
+const struct ask_pool *ask_pools_next(struct ask_pools *pools) {
+  while (pools->code == STATUS_OK && pools->next < pools->count) {
+    pools->code = read_next(pools, pools->error);
+    if (pools->code == STATUS_OK && pools->pool.points > 0)
+      return &pools->pool;
   }
-  return code;
+  return NULL;
 }
 
-static status ask(struct store *store, const struct ask_pool_choice *choice, const char *column, ask_pool_each each,
-                  void *context, struct error *error) {
-  struct members members = {.choice = choice};
-  status code = choice->by ? ask_group_columns(store, choice->by, ASK_POOL_AXES, members.column, &members.axes, error)
-                           : STATUS_OK;
-  if (code == STATUS_OK)
-    code = find_members(store, &members, error);
-  if (code == STATUS_OK)
-    code = give_pools(store, &members, column, each, context, error);
-  free(members.list);
-  return code;
+status ask_pools_end(struct ask_pools *pools) {
+  release(pools);
+  free(pools->list);
+  pools->list = NULL;
+  pools->count = 0;
+  return pools->code;
 }
 
-status ask_pools(struct store *store, const struct ask_pool_choice *choice, ask_pool_each each, void *context,
-                 struct error *error) {
-  return ask(store, choice, NULL, each, context, error);
+void ask_pools_drop(struct ask_pools *pools) {
+  (void)ask_pools_end(pools);
 }
 
-status ask_pool_values(struct store *store, const struct ask_pool_choice *choice, const char *quantity,
-                       ask_pool_each each, void *context, struct error *error) {
-  char column[ASK_GROUP_NAME];
-  const status code = ask_group_quantity(store, quantity, column, error);
-  return code ? code : ask(store, choice, column, each, context, error);
+static status begin(struct ask_pools *pools, const char *quantity, struct error *error) {
+  if (quantity)
+    TRY(ask_group_quantity(pools->store, quantity, pools->quantity, error));
+  if (pools->choice.by)
+    TRY(ask_group_columns(pools->store, pools->choice.by, ASK_POOL_AXES, pools->column, &pools->axes, error));
+  return find_members(pools, error);
 }
 
-static status take_engine(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)count, (void)error;
-  const struct engine_kind *kind = values[0].kind == QUERY_TEXT ? engine_find(values[0].text, NULL) : NULL;
-  *(int *)context = kind && kind->dimensions == 2 ? 2 : 3;
-  return STATUS_OK;
+struct ask_pools ask_pools(struct store *store, const struct ask_pool_choice *choice, const char *quantity,
+                           struct error *error) {
+  struct ask_pools pools = {.store = store, .error = error, .choice = *choice, .of_values = quantity != NULL};
+  pools.code = begin(&pools, quantity, error);
+  return pools;
 }
 
 status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error) {
-  const struct query_sink sink = {dimensions, NULL, take_engine};
-  *dimensions = 3;
-  return query_run(store, "SELECT engine FROM point ORDER BY point_id LIMIT 1", 0, NULL, 0, &sink, error);
+  ANSWER answer = answer_to(store, error, "SELECT engine FROM point ORDER BY point_id LIMIT 1");
+  const struct engine_kind *kind = answer_next(&answer) ? engine_find(answer_text(&answer, 0), NULL) : NULL;
+  *dimensions = kind && kind->dimensions == 2 ? 2 : 3;
+  return answer_end(&answer);
 }
 
 struct pooled_form ask_pool_form(const struct ask_pool *pool, bool cumulative, double density) {

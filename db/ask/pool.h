@@ -4,8 +4,8 @@
 #ifndef CLAST_DB_ASK_POOL_H
 #define CLAST_DB_ASK_POOL_H
 
+#include "db/ask/group.h"
 #include "db/ask/point.h"
-#include "db/ask/query.h"
 
 struct ask_pool_choice {
   int64_t point;     /* only this point; 0: all */
@@ -24,23 +24,44 @@ struct ask_pool {
   size_t axes;             /* of `by` */
   char column[ASK_POOL_AXES][ASK_GROUP_NAME];
   struct query_value input[ASK_POOL_AXES];
-  /* ask_pools: fragments of all runs, point after point; complete_mass and element_mass are those of the point where
-   * they are largest; point_id is 0 if there are several. ask_pool_values: only the run ids, no fragments. */
+  /* without a quantity: fragments of all runs, point after point; complete_mass and element_mass are those of the point
+   * where they are largest; point_id is 0 if there are several. With a quantity: only the run ids, no fragments. */
   struct point_data data;
-  const double *value; /* ask_pool_values: of each run, NaN: off; NULL with ask_pools */
-  const int64_t *seed; /* ask_pool_values: of each run */
+  const double *value; /* with a quantity: of each run, NaN: off; else NULL */
+  const int64_t *seed; /* with a quantity: of each run */
 };
-/* The pool is borrowed for the call. A status other than STATUS_OK ends the query with that status. */
-typedef status (*ask_pool_each)(void *context, const struct ask_pool *pool, struct error *error);
+/* Pools under way. A variable of type ASK_POOLS frees itself where its block is left. */
+struct ask_pools {
+  struct store *store;
+  struct error *error;
+  struct ask_pool_choice choice;
+  bool of_values;
+  char quantity[ASK_GROUP_NAME]; /* column of the values */
+  size_t axes;
+  char column[ASK_POOL_AXES][ASK_GROUP_NAME];
+  struct ask_pool_member *list;
+  size_t count, room, next;
+  status code;
+  /* memory of the current pool */
+  struct ask_pool pool;
+  int64_t *point;
+  size_t *first_run;
+  double *value;
+  int64_t *seed;
+};
+#define ASK_POOLS __attribute__((cleanup(ask_pools_drop))) struct ask_pools
 
-/* Calls `each` for every pool that has a run, one at a time in memory, in the order of the inputs of `by` or of the
- * points. STATUS_USAGE: an input is unknown, or the condition is no valid SQL. */
-status ask_pools(struct store *store, const struct ask_pool_choice *choice, ask_pool_each each, void *context,
-                 struct error *error);
-/* The same for the values of a result column of the view runs (its name or a unique ending of it), without
- * fragments. */
-status ask_pool_values(struct store *store, const struct ask_pool_choice *choice, const char *quantity,
-                       ask_pool_each each, void *context, struct error *error);
+/* Asks for every pool that has a run, in the order of the inputs of `by` or of the points; one pool at a time is in
+ * memory. `quantity` NULL: with the fragments of the runs; else with the values of a result column of the view runs
+ * (its name or a unique ending of it), without fragments. STATUS_USAGE, at ask_pools_end(): an input or quantity is
+ * unknown, or the condition is no valid SQL. */
+struct ask_pools ask_pools(struct store *store, const struct ask_pool_choice *choice, const char *quantity,
+                           struct error *error);
+/* The next pool, borrowed until the next call. NULL at the end and after an error. */
+const struct ask_pool *ask_pools_next(struct ask_pools *pools);
+/* The last call: frees the pools and returns their status. */
+status ask_pools_end(struct ask_pools *pools);
+void ask_pools_drop(struct ask_pools *pools); /* for ASK_POOLS */
 
 /* Dimensions of the engine of the store's first point, 2 or 3: masses in the plane are kg per metre. */
 status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error);

@@ -5,7 +5,7 @@
 #include "analysis/statistics/pooled.h"
 #include "analysis/statistics/sample.h"
 #include "analysis/statistics/spectrum.h"
-#include "db/ask/query.h"
+#include "db/ask/answer.h"
 #include "db/store/internal.h"
 #include "engine/grow.h"
 

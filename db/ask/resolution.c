@@ -8,22 +8,6 @@
 #include "analysis/statistics/estimates.h"
 #include "schemas/text.h"
 
-/* With one scene, its name. With several, "SCENE" stays. */
-static status take_scene(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)count, (void)error;
-  struct ask_resolution *out = context;
-  if (values[0].integer == 1 && values[1].kind == QUERY_TEXT)
-    snprintf(out->scene, sizeof out->scene, "%s", values[1].text);
-  text_make_plain(out->scene, "");
-  return STATUS_OK;
-}
-
-static const char of_points[] =
-    "SELECT count(*), count(half_width), max(half_width), max(verdict = 'diverges'), max(verdict = 'at-least')"
-    " FROM (SELECT point_id, max(results_version) AS results_version FROM point_total"
-    "   WHERE runs > 0 AND :point IN (0, point_id) GROUP BY point_id)"
-    " LEFT JOIN (SELECT * FROM resolution WHERE quantity = :quantity) USING (point_id, results_version)";
-
 const char *const ask_resolution_names[] = {[ASK_RESOLUTION_NOT_STUDIED] = "not-studied",
                                             [ASK_RESOLUTION_KNOWN] = "known",
                                             [ASK_RESOLUTION_AT_LEAST] = "at-least",
@@ -36,67 +20,59 @@ enum ask_resolution_verdict ask_resolution_verdict(const char *verdict) {
   return ASK_RESOLUTION_NOT_STUDIED;
 }
 
-/* The knobs of the studies that a point belongs to. Run only where the view resolution has rows: stores of earlier
- * programs lack the columns. */
-static const char of_knobs[] =
-    "SELECT group_concat(knob, ', ') FROM (SELECT DISTINCT knob FROM convergence"
-    "   WHERE quantity = :quantity AND (resolution IS NOT NULL OR knob = 'settings')"
-    "   AND base_point_id IN (SELECT base_point_id FROM convergence WHERE :point IN (0, point_id)) ORDER BY knob)";
-
-static status take_knobs(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)count, (void)error;
-  struct ask_resolution *out = context;
-  if (values[0].kind == QUERY_TEXT)
-    snprintf(out->knobs, sizeof out->knobs, "%s", values[0].text);
-  text_make_plain(out->knobs, "");
-  return STATUS_OK;
-}
-
-static status take_found(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)count, (void)error;
-  struct ask_resolution *out = context;
-  out->points = values[0].integer;
-  out->studied = values[1].integer;
-  if (out->studied == 0)
-    return STATUS_OK;
-
-  out->half_width = values[2].real;
-  out->verdict = ASK_RESOLUTION_KNOWN;
-  if (values[4].integer)
-    out->verdict = ASK_RESOLUTION_AT_LEAST;
-  if (values[3].integer)
-    out->verdict = ASK_RESOLUTION_DIVERGES;
-  return STATUS_OK;
-}
-
 status ask_resolution(struct store *store, int64_t point_id, const char *quantity, struct ask_resolution *out,
                       struct error *error) {
   *out = (struct ask_resolution){.verdict = ASK_RESOLUTION_NOT_STUDIED, .half_width = NAN, .scene = "SCENE"};
   if (!store)
     return STATUS_OK;
+  const long long id = point_id;
+  quantity = estimates_short_name(quantity);
 
-  char id[32];
-  snprintf(id, sizeof id, "%lld", (long long)point_id);
-  const struct query_parameter parameters[] = {{"point", id}, {"quantity", estimates_short_name(quantity)}};
-  const struct query_sink scene = {.context = out, .row = take_scene}, found = {.context = out, .row = take_found};
-  const struct query_sink knobs = {.context = out, .row = take_knobs};
-  status code = query_run(store,
-                          "SELECT count(DISTINCT scene_name), min(scene_name) FROM point WHERE :point = 0 OR point_id "
-                          "= :point",
-                          1, parameters, 0, &scene, error);
-  if (code != STATUS_OK)
-    return code;
+  ANSWER scenes = answer_to(store, error,
+                            "SELECT count(DISTINCT scene_name), min(scene_name) FROM point WHERE %lld IN (0, "
+                            "point_id)",
+                            id);
+  if (answer_next(&scenes) && answer_integer(&scenes, 0) == 1 && answer_value(&scenes, 1).kind == QUERY_TEXT)
+    snprintf(out->scene, sizeof out->scene, "%s", answer_text(&scenes, 1));
+  text_make_plain(out->scene, "");
+  TRY(answer_end(&scenes));
 
-  code = query_run(store, of_points, 2, parameters, 0, &found, error);
-  if (code != STATUS_OK || out->studied == 0)
-    return code;
-  return query_run(store, of_knobs, 2, parameters, 0, &knobs, error);
+  ANSWER found = answer_to(
+      store, error,
+      "SELECT count(*), count(half_width), max(half_width), max(verdict = 'diverges'), max(verdict = 'at-least')"
+      " FROM (SELECT point_id, max(results_version) AS results_version FROM point_total"
+      "   WHERE runs > 0 AND %lld IN (0, point_id) GROUP BY point_id)"
+      " LEFT JOIN (SELECT * FROM resolution WHERE quantity = %Q) USING (point_id, results_version)",
+      id, quantity);
+  if (answer_next(&found)) {
+    out->points = answer_integer(&found, 0);
+    out->studied = answer_integer(&found, 1);
+    out->half_width = answer_real(&found, 2);
+    if (out->studied > 0)
+      out->verdict = answer_integer(&found, 3)   ? ASK_RESOLUTION_DIVERGES
+                     : answer_integer(&found, 4) ? ASK_RESOLUTION_AT_LEAST
+                                                 : ASK_RESOLUTION_KNOWN;
+  }
+  TRY(answer_end(&found));
+  if (out->studied == 0) /* a store of an earlier program lacks the columns of the next question */
+    return STATUS_OK;
+
+  ANSWER knobs = answer_to(
+      store, error,
+      "SELECT group_concat(knob, ', ') FROM (SELECT DISTINCT knob FROM convergence"
+      "   WHERE quantity = %Q AND (resolution IS NOT NULL OR knob = 'settings')"
+      "   AND base_point_id IN (SELECT base_point_id FROM convergence WHERE %lld IN (0, point_id)) ORDER BY knob)",
+      quantity, id);
+  if (answer_next(&knobs))
+    snprintf(out->knobs, sizeof out->knobs, "%s", answer_text(&knobs, 0));
+  text_make_plain(out->knobs, "");
+  return answer_end(&knobs);
 }
 
 status ask_resolution_of_exponents(struct store *store, bool *studied, struct error *error) {
   double count = 0;
-  const status code = query_number(store, "SELECT count(*) FROM resolution WHERE quantity GLOB 'beta*'", 0, NULL,
-                                   &count, error);
+  const status code = answer_number(store, &count, error,
+                                    "SELECT count(*) FROM resolution WHERE quantity GLOB 'beta*'");
   *studied = count > 0;
   return code;
 }

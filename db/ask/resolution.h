@@ -3,7 +3,7 @@
 #ifndef CLAST_DB_ASK_RESOLUTION_H
 #define CLAST_DB_ASK_RESOLUTION_H
 
-#include "db/ask/query.h"
+#include "db/ask/answer.h"
 
 enum ask_resolution_verdict {
   ASK_RESOLUTION_NOT_STUDIED, /* the store has no study of the point's scene */

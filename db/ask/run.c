@@ -1,4 +1,4 @@
-/* One stored run, and how long runs take. */
+/* One stored run, how long runs take, and which runs have their fields kept. */
 #include "db/ask/run.h"
 
 #include <math.h>
@@ -6,41 +6,38 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "db/ask/columns.h"
+#include "db/store/internal.h"
+#include "db/store/paths.h"
 #include "db/store/shapes.h"
+#include "db/store/views_statistics.h"
 
-static void take_fact(const struct query_value *value, char *text, size_t size) {
-  snprintf(text, size, "%s", value->kind == QUERY_TEXT ? value->text : "");
-}
-
-static status take_run(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct ask_run *run = context;
-  if (count != 7 || values[0].kind != QUERY_TEXT)
-    return status_fail(error, STATUS_CONTENT, "the store has no scene for this run");
-  run->scene = strdup(values[0].text);
-  if (!run->scene)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
-
-  run->seed = (uint64_t)values[1].integer;
-  run->results_version = values[2].integer;
-  take_fact(&values[3], run->cpu_class, sizeof run->cpu_class);
-  take_fact(&values[4], run->version, sizeof run->version);
-  take_fact(&values[5], run->commit, sizeof run->commit);
-  take_fact(&values[6], run->compiler, sizeof run->compiler);
-  return STATUS_OK;
-}
+enum { AXES = 64 };
 
 status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, struct error *error) {
   *run = (struct ask_run){0};
-  const struct query_sink sink = {.context = run, .row = take_run};
-  char sql[512];
-  snprintf(sql, sizeof sql,
-           "SELECT scene, seed, results_version, json_extract(facts, '$.cpu_class'), json_extract(facts, '$.version'), "
-           "json_extract(facts, '$.commit') || iif(json_extract(facts, '$.dirty'), ' with local changes', ''), "
-           "json_extract(facts, '$.compiler') FROM run JOIN point USING (point_id) LEFT JOIN session USING "
-           "(session_id) WHERE run_id = %lld",
-           (long long)run_id);
-  const status code = query_run(store, sql, 0, NULL, 0, &sink, error);
-  return code ? code : shapes_load(store, run_id, error);
+  ANSWER answer = answer_to(
+      store, error,
+      "SELECT scene, seed, results_version, json_extract(facts, '$.cpu_class'), json_extract(facts, '$.version'), "
+      "json_extract(facts, '$.commit') || iif(json_extract(facts, '$.dirty'), ' with local changes', ''), "
+      "json_extract(facts, '$.compiler') FROM run JOIN point USING (point_id) LEFT JOIN session USING "
+      "(session_id) WHERE run_id = %lld",
+      (long long)run_id);
+  if (answer_next(&answer)) {
+    if (answer_value(&answer, 0).kind != QUERY_TEXT)
+      return status_fail(error, STATUS_CONTENT, "the store has no scene for this run");
+    run->scene = strdup(answer_text(&answer, 0));
+    if (!run->scene)
+      return status_fail(error, STATUS_MEMORY, "out of memory");
+    run->seed = (uint64_t)answer_integer(&answer, 1);
+    run->results_version = answer_integer(&answer, 2);
+    snprintf(run->cpu_class, sizeof run->cpu_class, "%s", answer_text(&answer, 3));
+    snprintf(run->version, sizeof run->version, "%s", answer_text(&answer, 4));
+    snprintf(run->commit, sizeof run->commit, "%s", answer_text(&answer, 5));
+    snprintf(run->compiler, sizeof run->compiler, "%s", answer_text(&answer, 6));
+  }
+  TRY(answer_end(&answer));
+  return shapes_load(store, run_id, error);
 }
 
 void ask_run_release(struct ask_run *run) {
@@ -48,61 +45,63 @@ void ask_run_release(struct ask_run *run) {
   run->scene = NULL;
 }
 
-status ask_run_results(struct store *store, int64_t run_id, const char *engine, const struct query_sink *sink,
-                       struct error *error) {
-  char sql[256];
-  snprintf(sql, sizeof sql, "SELECT * FROM run JOIN result_%.64s USING (run_id) WHERE run_id = %lld", engine,
-           (long long)run_id);
-  return query_run(store, sql, 0, NULL, 0, sink, error);
+struct answer ask_run_results(struct store *store, int64_t run_id, const char *engine, struct error *error) {
+  return answer_to(store, error, "SELECT * FROM run JOIN \"result_%w\" USING (run_id) WHERE run_id = %lld", engine,
+                   (long long)run_id);
 }
 
 status ask_run_column_used(struct store *store, int64_t run_id, const char *engine, const char *column, bool *used,
                            struct error *error) {
-  char sql[512];
   double count = 0;
-  snprintf(sql, sizeof sql,
-           "SELECT count(\"%.128s\") FROM run JOIN result_%.64s USING (run_id) WHERE session_id IS (SELECT session_id "
-           "FROM run WHERE run_id = %lld)",
-           column, engine, (long long)run_id);
-  status code = query_number(store, sql, 0, NULL, &count, error);
+  const status code = answer_number(
+      store, &count, error,
+      "SELECT count(\"%w\") FROM run JOIN \"result_%w\" USING (run_id) WHERE session_id IS (SELECT session_id "
+      "FROM run WHERE run_id = %lld)",
+      column, engine, (long long)run_id);
   *used = count > 0;
   return code;
 }
 
-struct masses {
-  double *list;
-  size_t count;
-};
-
-static status take_masses(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct masses *masses = context;
-  if (count != 1 || values[0].kind != QUERY_BLOB || values[0].size % sizeof(double) != 0)
-    return status_fail(error, STATUS_CONTENT, "the fragment masses of this run are damaged; `clast check` tells more");
-  masses->list = malloc(values[0].size + sizeof(double));
-  if (!masses->list)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
-
-  masses->count = values[0].size / sizeof(double);
-  if (values[0].size > 0) /* the blob is little-endian float64, which is the machine's own format */
-    memcpy(masses->list, values[0].blob, values[0].size);
-  return STATUS_OK;
-}
-
 status ask_run_masses(struct store *store, int64_t run_id, double **masses, size_t *count, struct error *error) {
-  struct masses found = {0};
-  const struct query_sink sink = {.context = &found, .row = take_masses};
-  char sql[128];
-  snprintf(sql, sizeof sql, "SELECT masses FROM fragment_mass WHERE run_id = %lld", (long long)run_id);
-  status code = query_run(store, sql, 0, NULL, 0, &sink, error);
-  *masses = found.list;
-  *count = found.count;
-  return code;
+  const void *stored;
+  *masses = NULL;
+  *count = 0;
+  ANSWER answer = answer_to(store, error, "SELECT masses FROM fragment_mass WHERE run_id = %lld", (long long)run_id);
+  if (!answer_next(&answer) || !answer_masses(&answer, 0, "this run", &stored, count))
+    return answer_end(&answer);
+  *masses = malloc((*count + 1) * sizeof **masses);
+  if (!*masses)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  if (*count > 0)
+    memcpy(*masses, stored, *count * sizeof **masses);
+  return STATUS_OK;
 }
 
 status ask_run_wall_times(struct store *store, double *mean, double *longest, struct error *error) {
   *longest = NAN;
-  status code = query_number(store, "SELECT avg(wall_time) FROM run", 0, NULL, mean, error);
+  TRY(answer_number(store, mean, error, "SELECT avg(wall_time) FROM run"));
+  return answer_number(store, longest, error, "SELECT max(wall_time) FROM run");
+}
+
+struct answer ask_run_kept(struct store *store, struct error *error) {
+  struct ask_column axes[AXES];
+  const char *results[VIEWS_STATISTICS_MAIN];
+  const size_t result_count = views_statistics_main(results);
+  size_t axis_count = 0;
+  const status code = ask_columns_axes(store, false, AXES, axes, &axis_count, error);
   if (code)
-    return code;
-  return query_number(store, "SELECT max(wall_time) FROM run", 0, NULL, longest, error);
+    return answer_failed(code, error);
+  sqlite3_str *columns = sqlite3_str_new(NULL);
+  for (size_t i = 0; i < axis_count + result_count; i++)
+    sqlite3_str_appendf(columns, ", \"%w\"", i < axis_count ? axes[i].name : results[i - axis_count]);
+  return answer_to(
+      store, error,
+      "SELECT run_id, point_id, seed%z, fields_path AS fields FROM runs WHERE counts AND typeof(fields_path) = "
+      "'text' AND results_version = (SELECT max(results_version) FROM run AS newest WHERE newest.point_id = "
+      "runs.point_id) ORDER BY point_id, replicate",
+      sqlite3_str_finish(columns));
+}
+
+char *ask_run_fields(const struct answer *answer, size_t column) {
+  return paths_of_fields(answer->store->path, answer_text(answer, column));
 }

@@ -1,8 +1,9 @@
-/* One stored run: its inputs and seed, its results and its fragment masses. Also the wall time of all runs. */
+/* One stored run: its inputs and seed, its results and its fragment masses. Also the wall time of all runs, and the
+ * runs whose fields are kept as files. */
 #ifndef CLAST_DB_ASK_RUN_H
 #define CLAST_DB_ASK_RUN_H
 
-#include "db/ask/query.h"
+#include "db/ask/answer.h"
 
 struct ask_run {
   char *scene; /* resolved scene as JSON; owned. NULL: the store has no such run */
@@ -17,8 +18,7 @@ status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, st
 void ask_run_release(struct ask_run *run); /* a zeroed one is fine */
 
 /* One row: all columns of the tables run and result_<engine>. */
-status ask_run_results(struct store *store, int64_t run_id, const char *engine, const struct query_sink *sink,
-                       struct error *error);
+struct answer ask_run_results(struct store *store, int64_t run_id, const char *engine, struct error *error);
 
 /* Did the program that computed this run store a value in a column of run or result_<engine>, for this run or another
  * one of the same session? If not, it may not have had that result. */
@@ -30,5 +30,12 @@ status ask_run_masses(struct store *store, int64_t run_id, double **masses, size
 
 /* Wall time of all stored runs in s: mean and longest. NaN: there are none. */
 status ask_run_wall_times(struct store *store, double *mean, double *longest, struct error *error);
+
+/* One row per run that counts and has its fields kept, of each point's newest results_version: run_id, point_id, seed,
+ * the varied inputs, the main results, and last `fields`. */
+struct answer ask_run_kept(struct store *store, struct error *error);
+/* The path of the file that a row names in this column, as this process can open it: the store holds it relative to its
+ * own folder. The caller frees it; NULL: no memory. */
+char *ask_run_fields(const struct answer *answer, size_t column);
 
 #endif

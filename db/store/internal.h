@@ -24,8 +24,9 @@ struct store {
   sqlite3 *db;
   bool writer, functions;
   char *path;
-  int lock;       /* descriptor, -1 for readers */
-  bool lacks_wal; /* in WAL mode without its -wal file when it was opened (db/store/place.h) */
+  int lock;        /* descriptor, -1 for readers */
+  double deadline; /* s, monotonic: end of the time limit of a user's query (db/ask/answer.c) */
+  bool lacks_wal;  /* in WAL mode without its -wal file when it was opened (db/store/place.h) */
 
   struct identities identities; /* a writer reads them when it opens, a reader at first use */
   bool identities_loaded;

@@ -1,6 +1,7 @@
 /* Opening, closing, batches and sessions of a store. */
 #include "db/store/store.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -51,6 +52,7 @@ static void release(struct store *store) {
   digest_names_clear(&store->estimate_names);
   sums_clear(&store->sums);
   identities_clear(&store->identities);
+  assert(!store->db || !sqlite3_next_stmt(store->db, NULL)); /* every statement and answer was ended */
   sqlite3_close(store->db);
   if (store->lock >= 0)
     close(store->lock); /* after SQLite has closed the file (db/store/lock.h) */

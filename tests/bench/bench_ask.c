@@ -7,8 +7,8 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/difference.h"
 #include "analysis/statistics/scatter.h"
+#include "db/ask/pairs.h"
 #include "db/ask/pool.h"
-#include "db/ask/values.h"
 #include "schemas/clock.h"
 #include "tests/support/store_fixture.h"
 
@@ -23,7 +23,9 @@ static void need(status result) {
   exit(70);
 }
 
-static void load(const char *path, int64_t runs) {
+static char path[512]; /* of the store */
+
+static void load(int64_t runs) {
   static struct fixture_run f;
   static struct fragment fragments[MOST];
   struct fixture_inputs inputs;
@@ -58,22 +60,20 @@ static void load(const char *path, int64_t runs) {
   need(store_close(store, &error));
 }
 
-static status count_row(void *context, size_t count, const struct query_value *values, struct error *unused) {
-  (void)count, (void)values, (void)unused;
-  ++*(size_t *)context;
-  return STATUS_OK;
+static void count_rows(struct answer answer, size_t *rows) {
+  while (answer_next(&answer))
+    ++*rows;
+  need(answer_end(&answer));
 }
 
 static void stats(struct store *store, size_t *rows) {
   char pooled[ASK_GROUP_POOLED];
-  const struct query_sink sink = {rows, NULL, count_row};
-  need(ask_group(store, "m,k", "largest_fraction", &sink, pooled, &error));
+  count_rows(ask_group(store, "m,k", "largest_fraction", pooled, &error), rows);
 }
 
 static void stats_of_one(struct store *store, size_t *rows) {
   char pooled[ASK_GROUP_POOLED];
-  const struct query_sink sink = {rows, NULL, count_row};
-  need(ask_group(store, "m", "largest_fraction", &sink, pooled, &error));
+  count_rows(ask_group(store, "m", "largest_fraction", pooled, &error), rows);
 }
 
 static void twins(struct store *store, size_t *rows) {
@@ -82,54 +82,49 @@ static void twins(struct store *store, size_t *rows) {
   *rows += 1;
 }
 
-static status add_bins(void *context, const struct ask_pool *pool, struct error *unused) {
-  (void)unused;
-  const struct pooled_form form = ask_pool_form(pool, false, 0);
-  struct pooled_bin *bins;
-  size_t count;
-  need(pooled_spectrum(&pool->data.runs, &form, &bins, &count, &error));
-  *(size_t *)context += count;
-  free(bins);
-  return STATUS_OK;
+static void count_bins(struct store *store, const struct ask_pool_choice *choice, size_t *rows) {
+  ASK_POOLS pools = ask_pools(store, choice, NULL, &error);
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
+    const struct pooled_form form = ask_pool_form(pool, false, 0);
+    struct pooled_bin *bins;
+    size_t count;
+    need(pooled_spectrum(&pool->data.runs, &form, &bins, &count, &error));
+    *rows += count;
+    free(bins);
+  }
+  need(ask_pools_end(&pools));
 }
 
 static void spectrum(struct store *store, size_t *rows) {
-  need(ask_pools(store, &(struct ask_pool_choice){.point = 17}, add_bins, rows, &error));
+  count_bins(store, &(struct ask_pool_choice){.point = 17}, rows);
 }
 
 static void spectra(struct store *store, size_t *rows) {
-  need(ask_pools(store, &(struct ask_pool_choice){0}, add_bins, rows, &error));
+  count_bins(store, &(struct ask_pool_choice){0}, rows);
 }
 
 static void where(struct store *store, size_t *rows) {
-  need(ask_pools(store, &(struct ask_pool_choice){.where = "material_m = 3 AND replicate < 100"}, add_bins, rows,
-                 &error));
+  count_bins(store, &(struct ask_pool_choice){.where = "material_m = 3 AND replicate < 100"}, rows);
 }
 
-static status count_value(void *context, const struct ask_values_row *row, struct error *unused) {
-  (void)row, (void)unused;
-  ++*(size_t *)context;
-  return STATUS_OK;
-}
-
-/* A comparison reads both of its sides with this function. */
 static void compare(struct store *store, size_t *rows) {
-  const struct ask_values_choice all = {0};
-  for (int side = 0; side < 2; side++)
-    need(ask_values(store, &all, "largest_fraction", count_value, rows, &error));
-}
-
-static status add_scatter(void *context, const struct ask_pool *pool, struct error *unused) {
-  (void)unused;
-  struct scatter scatter;
-  need(scatter_make(pool->data.runs.count, pool->value, &scatter, &error));
-  *(size_t *)context += scatter.n;
-  scatter_release(&scatter);
-  return STATUS_OK;
+  (void)store;
+  struct ask_pairs *pairs;
+  need(ask_pairs_read(path, path, "largest_fraction", &pairs, &error));
+  for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
+    ++*rows;
+  ask_pairs_free(pairs);
 }
 
 static void scatters(struct store *store, size_t *rows) {
-  need(ask_pool_values(store, &(struct ask_pool_choice){0}, "largest_fraction", add_scatter, rows, &error));
+  ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, "largest_fraction", &error);
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
+    struct scatter scatter;
+    need(scatter_make(pool->data.runs.count, pool->value, &scatter, &error));
+    *rows += scatter.n;
+    scatter_release(&scatter);
+  }
+  need(ask_pools_end(&pools));
 }
 
 static double processor_s(void) {
@@ -155,12 +150,11 @@ static void measure(struct store *store, const char *name, void (*ask)(struct st
 
 int main(int argc, char **argv) {
   const int64_t runs = argc > 1 ? atoll(argv[1]) : 100000;
-  char path[512];
   snprintf(path, sizeof path, "%s/bench-ask.db", argc > 2 ? argv[2] : ".");
   analysis_init();
   if (argc <= 2 || access(path, F_OK) != 0) {
     unlink(path);
-    load(path, runs);
+    load(runs);
   }
   struct store *store = NULL;
   const double start = clock_s();

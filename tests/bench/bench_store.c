@@ -74,19 +74,15 @@ static double load(const char *path, int64_t runs, size_t estimates, double *cpu
   return spent + clock_s() - start;
 }
 
-static status count_row(void *context, size_t count, const struct query_value *values, struct error *unused) {
-  (void)count, (void)values, (void)unused;
-  ++*(int *)context;
-  return STATUS_OK;
-}
-
 static void ask(struct store *store, const char *name, const char *sql, int rows_expected) {
   double best = HUGE_VAL;
   for (int i = 0; i < REPEATS; i++) {
     int rows = 0;
-    const struct query_sink sink = {.context = &rows, .row = count_row};
     double start = clock_s();
-    need(query_run(store, sql, 0, NULL, 0, &sink, &error));
+    ANSWER answer = answer_to(store, &error, "%s", sql);
+    while (answer_next(&answer))
+      rows++;
+    need(answer_end(&answer));
     best = fmin(best, clock_s() - start);
     if (rows != rows_expected) {
       fprintf(stderr, "%s: %d rows instead of %d\n", name, rows, rows_expected);
@@ -133,8 +129,7 @@ int main(int argc, char **argv) {
   need(store_open_reader(path, &store, &error));
   printf("store_open_reader_ms %.2f ms\n", 1e3 * (clock_s() - start));
   double bytes = 0;
-  need(query_number(store, "SELECT page_count * page_size FROM pragma_page_count, pragma_page_size", 0, NULL, &bytes,
-                    &error));
+  need(answer_number(store, &bytes, &error, "SELECT page_count * page_size FROM pragma_page_count, pragma_page_size"));
   printf("store_bytes_per_run %.0f B\n", bytes / (double)runs);
   ask(store, "store_point_stats_ms", ask_canned_find("point-stats", NULL)->sql, POINTS);
   ask(store, "store_points_view_ms", "SELECT * FROM points", POINTS);

@@ -239,7 +239,7 @@ static void without_permission(void **state) {
     if (store_open_reader(path, &store, &said) != STATUS_OK)
       _exit(4); /* a finished store reads */
     double runs = 0;
-    if (query_number(store, "SELECT count(*) FROM run", 0, NULL, &runs, &said) != STATUS_OK || runs != 12)
+    if (answer_number(store, &runs, &said, "SELECT count(*) FROM run") != STATUS_OK || runs != 12)
       _exit(5);
     if (store_export(store, copy, &said) != STATUS_IO)
       _exit(6);

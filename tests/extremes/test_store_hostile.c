@@ -327,7 +327,7 @@ static void huge_and_odd_rows_are_found(void **state) {
       store_dump(store, nowhere, &error);
       fclose(nowhere);
       double count = 0;
-      query_number(store, "SELECT count(*) FROM points", 0, NULL, &count, &error);
+      answer_number(store, &count, &error, "SELECT count(*) FROM points");
       OK(store_close(store, &error));
     }
     OK(store_open_writer(fixture_path(target, "hostile-target"), &store, NULL, 0, &error));

@@ -55,11 +55,6 @@ static char *dump(struct store *store, status *code, struct error *error) {
   return text;
 }
 
-static status row(void *context, const struct ask_points_row *point, struct error *error) {
-  (void)context, (void)point, (void)error;
-  return STATUS_OK;
-}
-
 static void read_it(struct error *error) {
   struct store *store = NULL;
   status code = store_open_reader(damaged, &store, error);
@@ -70,10 +65,12 @@ static void read_it(struct error *error) {
   told(store_check(store, NULL, NULL, error), error);
   free(dump(store, &code, error));
   told(code, error);
-  told(query_number(store, "SELECT sum(beta) FROM estimates", 0, NULL, &number, error), error);
-  told(ask_points_rows(store, &(struct ask_points_choice){0}, true, 2,
-                       (const char *const[]){"material_m", "material_k"}, row, NULL, error),
-       error);
+  told(answer_number(store, &number, error, "SELECT sum(beta) FROM estimates"), error);
+  ANSWER points = ask_points_rows(store, &(struct ask_points_choice){0}, true, 2,
+                                  (const char *const[]){"material_m", "material_k"}, error);
+  for (struct ask_points_row row; ask_points_next(&points, &row);)
+    ;
+  told(answer_end(&points), error);
   told(store_close(store, error), error);
 }
 

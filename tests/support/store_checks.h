@@ -27,7 +27,7 @@ __attribute__((unused)) static char *dump(const char *path) {
 
 static inline double number(struct store *store, const char *sql) {
   double value = 0;
-  OK(query_number(store, sql, 0, NULL, &value, &error));
+  OK(answer_number(store, &value, &error, "%s", sql));
   return value;
 }
 

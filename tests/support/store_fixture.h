@@ -9,7 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "db/ask/query.h"
+#include "db/ask/canned.h"
+#include "db/ask/group.h"
 #include "db/store/store.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

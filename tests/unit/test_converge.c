@@ -175,7 +175,7 @@ static void named_settings_are_levels(void **state) {
 
 static double number(struct store *store, const char *sql) {
   double number = NAN;
-  assert_int_equal(query_number(store, sql, 0, NULL, &number, &error), STATUS_OK);
+  assert_int_equal(answer_number(store, &number, &error, "%s", sql), STATUS_OK);
   return number;
 }
 

@@ -12,7 +12,6 @@
 #include "analysis/report/page.h"
 #include "analysis/statistics/sample.h"
 #include "db/ask/page.h"
-#include "db/ask/page_private.h"
 #include "tests/support/store_checks.h"
 
 enum { M = 2, K = 2 };
@@ -58,20 +57,14 @@ struct values {
   size_t count;
 };
 
-static status take_value(void *context, size_t count, const struct query_value *row, struct error *e) {
-  (void)count, (void)e;
-  struct values *values = context;
-  values->value[values->count++] = row[0].real;
-  return STATUS_OK;
-}
-
 /* Mean and interval of a result that the view points does not have are those of all runs of the store. */
 static void check_means(struct store *store, sqlite3 *db) {
   static struct values values;
   values.count = 0;
-  const struct query_sink sink = {.context = &values, .row = take_value};
-  OK(query_run(store, "SELECT hardest FROM runs WHERE counts AND point_id = 2 ORDER BY replicate", 0, NULL, 0, &sink,
-               &error));
+  ANSWER runs = answer_to(store, &error, "SELECT hardest FROM runs WHERE counts AND point_id = 2 ORDER BY replicate");
+  while (answer_next(&runs))
+    values.value[values.count++] = answer_real(&runs, 0);
+  OK(answer_end(&runs));
   const struct sample_summary all = sample_summarise(values.count, values.value, 0.95);
   assert_true(all.n > 10);
   assert_near(asked(db, "SELECT n FROM means WHERE quantity = 'hardest' AND point_id = 2"), (double)all.n, 0);

@@ -15,12 +15,9 @@ struct seen {
   size_t pools, points, runs, fragments;
   char labels[600];
   double sum; /* of masses, or of values */
-  bool stop;
 };
 
-static status look(void *context, const struct ask_pool *pool, struct error *unused) {
-  struct seen *seen = context;
-  (void)unused;
+static void look(struct seen *seen, const struct ask_pool *pool) {
   seen->pools++;
   seen->points += pool->points;
   seen->runs += pool->data.runs.count;
@@ -39,7 +36,12 @@ static status look(void *context, const struct ask_pool *pool, struct error *unu
     for (size_t i = pool->data.runs.first[r]; i < pool->data.runs.first[r + 1]; i++)
       seen->sum += pool->data.runs.masses[i];
   }
-  return seen->stop ? STATUS_STOPPED : STATUS_OK;
+}
+
+static status look_at(struct ask_pools pools, struct seen *seen) {
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));)
+    look(seen, pool);
+  return ask_pools_end(&pools);
 }
 
 static struct store *fill(char path[64]) {
@@ -55,38 +57,42 @@ static void pools_of_runs(void **state) {
   char path[64];
   struct store *store = fill(path);
   struct seen all = {0}, by_m = {0}, some = {0}, none = {0}, one = {0}, everything = {0};
-  OK(ask_pools(store, &(struct ask_pool_choice){0}, look, &all, &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){0}, NULL, &error), &all));
   assert_true(all.pools == 6 && all.points == 6 && all.runs == 6 * RUNS);
   assert_int_equal(all.fragments, 6 * RUNS * FIXTURE_FRAGMENTS);
   assert_near(all.sum, number(store, "SELECT sum(total_mass) FROM run"), 1e-9);
 
-  OK(ask_pools(store, &(struct ask_pool_choice){.by = "m"}, look, &by_m, &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.by = "m"}, NULL, &error), &by_m));
   assert_true(by_m.pools == 2 && by_m.points == 6 && by_m.runs == 6 * RUNS);
   assert_string_equal(by_m.labels, "m 6; m 7; ");
   assert_near(by_m.sum, all.sum, 1e-9);
-  OK(ask_pools(store, &(struct ask_pool_choice){.by = ""}, look, &everything, &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.by = ""}, NULL, &error), &everything));
   assert_true(everything.pools == 1 && everything.points == 6);
   assert_string_equal(everything.labels, "all points; ");
 
   /* A condition leaves runs and points out. */
-  OK(ask_pools(store, &(struct ask_pool_choice){.by = "m", .where = "material_k > 5e30 AND replicate = 1"}, look, &some,
-               &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.by = "m", .where = "material_k > 5e30 AND replicate = 1"},
+                       NULL, &error),
+             &some));
   assert_true(some.pools == 2 && some.points == 4 && some.runs == 4);
   assert_near(some.sum, number(store, "SELECT sum(total_mass) FROM runs WHERE material_k > 5e30 AND replicate = 1"),
               1e-9);
-  OK(ask_pools(store, &(struct ask_pool_choice){.where = "replicate > 99"}, look, &none, &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.where = "replicate > 99"}, NULL, &error), &none));
   assert_int_equal(none.pools, 0);
-  OK(ask_pools(store, &(struct ask_pool_choice){.point = 2, .where = "replicate = 0 OR replicate = 2"}, look, &one,
-               &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.point = 2, .where = "replicate = 0 OR replicate = 2"}, NULL,
+                       &error),
+             &one));
   assert_true(one.pools == 1 && one.runs == 2);
   assert_string_equal(one.labels, "m 6, k 1e+31 1/m^3; ");
 
-  assert_int_equal(ask_pools(store, &(struct ask_pool_choice){.where = "no_such > 1"}, look, &none, &error),
+  assert_int_equal(look_at(ask_pools(store, &(struct ask_pool_choice){.where = "no_such > 1"}, NULL, &error), &none),
                    STATUS_USAGE);
-  assert_int_equal(ask_pools(store, &(struct ask_pool_choice){.by = "no_such"}, look, &none, &error), STATUS_USAGE);
-  struct seen first = {.stop = true};
-  assert_int_equal(ask_pools(store, &(struct ask_pool_choice){0}, look, &first, &error), STATUS_STOPPED);
-  assert_int_equal(first.pools, 1);
+  assert_int_equal(look_at(ask_pools(store, &(struct ask_pool_choice){.by = "no_such"}, NULL, &error), &none),
+                   STATUS_USAGE);
+  {
+    ASK_POOLS left = ask_pools(store, &(struct ask_pool_choice){0}, NULL, &error); /* leaving it early frees it */
+    assert_non_null(ask_pools_next(&left));
+  }
   OK(store_close(store, &error));
 }
 
@@ -95,36 +101,39 @@ static void pools_of_values(void **state) {
   char path[64];
   struct store *store = fill(path);
   struct seen by_k = {0}, some = {0};
-  OK(ask_pool_values(store, &(struct ask_pool_choice){.by = "k"}, "largest_fraction", look, &by_k, &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.by = "k"}, "largest_fraction", &error), &by_k));
   assert_true(by_k.pools == 3 && by_k.points == 6 && by_k.runs == 6 * RUNS);
   assert_near(by_k.sum, number(store, "SELECT sum(largest_fraction) FROM run"), 1e-12);
-  OK(ask_pool_values(store, &(struct ask_pool_choice){.where = "material_m > 6.5 AND replicate < 2"}, "hardest", look,
-                     &some, &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.where = "material_m > 6.5 AND replicate < 2"}, "hardest",
+                       &error),
+             &some));
   assert_true(some.pools == 3 && some.runs == 6);
   assert_near(some.sum, 3 * (0 + 0.5), 1e-12);
-  assert_int_equal(ask_pool_values(store, &(struct ask_pool_choice){0}, "no_such", look, &some, &error), STATUS_USAGE);
+  assert_int_equal(look_at(ask_pools(store, &(struct ask_pool_choice){0}, "no_such", &error), &some), STATUS_USAGE);
   OK(store_close(store, &error));
 }
 
 /* The units of a pool's interval: its runs, or its points. */
-static status units(void *context, const struct ask_pool *pool, struct error *unused) {
-  (void)context, (void)unused;
-  const struct pooled_form form = ask_pool_form(pool, true, 0);
-  struct pooled_bin *bins;
-  size_t count;
-  OK(pooled_spectrum(&pool->data.runs, &form, &bins, &count, &error));
-  assert_near(bins[0].value, FIXTURE_FRAGMENTS, 1e-9);
-  assert_int_equal(form.first_run != NULL, pool->points > 1);
-  free(bins);
-  return STATUS_OK;
+static void check_units(struct store *store, const struct ask_pool_choice *choice) {
+  ASK_POOLS pools = ask_pools(store, choice, NULL, &error);
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
+    const struct pooled_form form = ask_pool_form(pool, true, 0);
+    struct pooled_bin *bins;
+    size_t count;
+    OK(pooled_spectrum(&pool->data.runs, &form, &bins, &count, &error));
+    assert_near(bins[0].value, FIXTURE_FRAGMENTS, 1e-9);
+    assert_int_equal(form.first_run != NULL, pool->points > 1);
+    free(bins);
+  }
+  OK(ask_pools_end(&pools));
 }
 
 static void pools_as_forms(void **state) {
   (void)state;
   char path[64];
   struct store *store = fill(path);
-  OK(ask_pools(store, &(struct ask_pool_choice){.by = "m"}, units, NULL, &error));
-  OK(ask_pools(store, &(struct ask_pool_choice){0}, units, NULL, &error));
+  check_units(store, &(struct ask_pool_choice){.by = "m"});
+  check_units(store, &(struct ask_pool_choice){0});
   OK(store_close(store, &error));
 }
 

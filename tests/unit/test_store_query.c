@@ -10,6 +10,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "analysis/statistics/sample.h"
+#include "db/store/internal.h"
 #include "db/store/views_statistics.h"
 #include "tests/support/store_checks.h"
 
@@ -39,37 +40,26 @@ struct rows {
   size_t count, columns;
 };
 
-static status keep_names(void *context, size_t count, const char *const *names, struct error *e) {
-  (void)e;
-  struct rows *rows = context;
-  rows->columns = count;
-  for (size_t i = 0; i < count; i++)
-    snprintf(rows->text + strlen(rows->text), 200, "%s%s", i ? "," : "", names[i]);
-  strcat(rows->text, "\n");
-  return STATUS_OK;
-}
-
-static status keep_row(void *context, size_t count, const struct query_value *values, struct error *e) {
-  (void)e;
-  struct rows *rows = context;
-  rows->count++;
-  for (size_t i = 0; i < count; i++) {
-    char *end = rows->text + strlen(rows->text);
-    if (strlen(rows->text) > sizeof rows->text - 400)
-      return STATUS_OK;
-    if (values[i].kind == QUERY_TEXT)
-      snprintf(end, 200, "%s%s", i ? "," : "", values[i].text);
-    else
-      snprintf(end, 200, "%s%.6g", i ? "," : "", values[i].real);
+/* Reads a whole answer as text. */
+static status keep(struct answer answer, struct rows *rows) {
+  memset(rows, 0, sizeof *rows);
+  rows->columns = answer_count(&answer);
+  for (size_t i = 0; i < rows->columns; i++)
+    text_append(rows->text, sizeof rows->text, "%s%s", i ? "," : "", answer_name(&answer, i));
+  text_append(rows->text, sizeof rows->text, "\n");
+  for (; answer_next(&answer); rows->count++) {
+    for (size_t i = 0; i < rows->columns; i++)
+      if (answer_value(&answer, i).kind == QUERY_TEXT)
+        text_append(rows->text, sizeof rows->text, "%s%s", i ? "," : "", answer_text(&answer, i));
+      else
+        text_append(rows->text, sizeof rows->text, "%s%.6g", i ? "," : "", answer_real(&answer, i));
+    text_append(rows->text, sizeof rows->text, "\n");
   }
-  strcat(rows->text, "\n");
-  return STATUS_OK;
+  return answer_end(&answer);
 }
 
 static status ask(struct store *store, const char *sql, struct rows *rows) {
-  memset(rows, 0, sizeof *rows);
-  const struct query_sink sink = {.context = rows, .columns = keep_names, .row = keep_row};
-  return query_run(store, sql, 0, NULL, 5, &sink, &error);
+  return keep(answer_to_user(store, sql, 0, NULL, 5, &error), rows);
 }
 
 /* The values of one quantity of the runs of a point, computed again. */
@@ -166,8 +156,7 @@ static void groups_say_what_they_pool(void **state) {
   char pooled[ASK_GROUP_POOLED];
   struct store *store = reader();
   struct rows rows = {.count = 0};
-  const struct query_sink sink = {.context = &rows, .columns = keep_names, .row = keep_row};
-  OK(ask_group(store, "m", "hardest, largest_fraction", &sink, pooled, &error));
+  OK(keep(ask_group(store, "m", "hardest, largest_fraction", pooled, &error), &rows));
   assert_int_equal(rows.count, M);
   assert_string_equal(pooled, "material.k");
   double sd, first = two_pass(hardest, 6, 0, 1, &sd), second = two_pass(hardest, 6, 1, 1, &sd);
@@ -180,20 +169,18 @@ static void groups_say_what_they_pool(void **state) {
   assert_non_null(
       strstr(rows.text, "material_m,engine,results_version,points,n,failed,censored,hardest_mean,hardest_sd,hardest_se,"
                         "hardest_hw95,hardest_resolution,hardest_resolution_verdict,largest_fraction_mean"));
-  memset(&rows, 0, sizeof rows);
-  OK(ask_group(store, "material.k,m", NULL, &sink, pooled, &error));
+  OK(keep(ask_group(store, "material.k,m", NULL, pooled, &error), &rows));
   assert_int_equal(rows.count, M * K);
   assert_string_equal(pooled, "");
-  memset(&rows, 0, sizeof rows);
-  OK(ask_group(store, "", "broken_count", &sink, pooled, &error));
+  OK(keep(ask_group(store, "", "broken_count", pooled, &error), &rows));
   assert_int_equal(rows.count, 1);
   assert_string_equal(pooled, "material.k, material.m");
-  assert_int_equal(ask_group(store, "q", NULL, &sink, pooled, &error), STATUS_USAGE);
+  assert_int_equal(keep(ask_group(store, "q", NULL, pooled, &error), &rows), STATUS_USAGE);
   assert_non_null(strstr(error.message, "material.m"));
-  assert_int_equal(ask_group(store, "m", "fraction", &sink, pooled, &error), STATUS_USAGE);
+  assert_int_equal(keep(ask_group(store, "m", "fraction", pooled, &error), &rows), STATUS_USAGE);
   assert_non_null(strstr(error.message, "ambiguous"));
   assert_non_null(strstr(error.message, "largest_fraction, second_fraction"));
-  assert_int_equal(ask_group(store, "m", "largest_fracton", &sink, pooled, &error), STATUS_USAGE);
+  assert_int_equal(keep(ask_group(store, "m", "largest_fracton", pooled, &error), &rows), STATUS_USAGE);
   assert_string_equal(error.message, "Quantity 'largest_fracton' is unknown; did you mean 'largest_fraction'?");
   store_close(store, NULL);
 }
@@ -241,10 +228,12 @@ static void only_reading_is_allowed(void **state) {
 static void time_limit_stops(void **state) {
   (void)state;
   struct store *store = reader();
-  const struct query_sink sink = {.context = NULL};
-  assert_int_equal(query_run(store,
-                             "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT max(i) FROM n", 0,
-                             NULL, 0.05, &sink, &error),
+  struct rows rows;
+  assert_int_equal(keep(answer_to_user(store,
+                                       "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT max(i) "
+                                       "FROM n",
+                                       0, NULL, 0.05, &error),
+                        &rows),
                    STATUS_STOPPED);
   assert_near(number(store, "SELECT count(*) FROM run"), M * K * RUNS, 0); /* and the next query works */
   store_close(store, NULL);
@@ -254,15 +243,13 @@ static void every_canned_query_runs(void **state) {
   (void)state;
   struct store *store = reader();
   struct rows rows = {.count = 0};
-  const struct query_sink sink = {.context = &rows, .columns = keep_names, .row = keep_row};
   assert_true(ask_canned_count() >= 10);
   for (size_t i = 0; i < ask_canned_count(); i++) {
     const struct query_canned *canned = ask_canned_at(i);
     const struct query_parameter parameter = {.name = canned->parameters, .value = "1"};
     if (strcmp(canned->name, "run-exponents") == 0)
       continue; /* needs analysis' columns: see test_store_schema */
-    memset(&rows, 0, sizeof rows);
-    status result = query_run(store, canned->sql, *canned->parameters ? 1 : 0, &parameter, 0, &sink, &error);
+    status result = keep(answer_to_user(store, canned->sql, *canned->parameters ? 1 : 0, &parameter, 0, &error), &rows);
     if (result != STATUS_OK)
       fail_msg("%s: %s", canned->name, error.message);
     if (rows.count == 0 && strcmp(canned->name, "failures") != 0 && strcmp(canned->name, "censored") != 0 &&
@@ -270,8 +257,7 @@ static void every_canned_query_runs(void **state) {
       fail_msg("%s gave nothing", canned->name);
   }
   /* the documented query gives what the view gives */
-  memset(&rows, 0, sizeof rows);
-  OK(query_run(store, ask_canned_find("point-stats", NULL)->sql, 0, NULL, 0, &sink, &error));
+  OK(ask(store, ask_canned_find("point-stats", NULL)->sql, &rows));
   char first[200];
   snprintf(first, sizeof first, "\n1,3,25,%.6g,%.6g,%.6g\n",
            number(store, "SELECT largest_fraction_mean FROM points WHERE point_id = 1"),
@@ -307,12 +293,47 @@ static void parameters_are_bound(void **state) {
   (void)state;
   struct store *store = reader();
   const struct query_parameter two[] = {{"a", "3"}, {"b", "0.5"}};
-  double value;
-  OK(query_number(store, "SELECT :a * :b", 2, two, &value, &error));
-  assert_near(value, 1.5, 0);
-  OK(query_number(store, "SELECT typeof(:a) = 'text'", 1, &(struct query_parameter){"a", "x'; DROP"}, &value, &error));
-  assert_near(value, 1, 0);
-  assert_int_equal(query_number(store, "SELECT :a", 2, two, &value, &error), STATUS_USAGE);
+  const struct query_parameter text = {"a", "x'; DROP"};
+  struct rows rows;
+  OK(keep(answer_to_user(store, "SELECT :a * :b AS x", 2, two, 0, &error), &rows));
+  assert_string_equal(rows.text, "x\n1.5\n");
+  OK(keep(answer_to_user(store, "SELECT typeof(:a) = 'text' AS x", 1, &text, 0, &error), &rows));
+  assert_string_equal(rows.text, "x\n1\n");
+  assert_int_equal(keep(answer_to_user(store, "SELECT :a", 2, two, 0, &error), &rows), STATUS_USAGE);
+  store_close(store, NULL);
+}
+
+/* Answers nest, may be left early, and say nothing after their end. No statement stays open. */
+static void answers_close_themselves(void **state) {
+  (void)state;
+  struct store *store = reader();
+  {
+    ANSWER points = answer_to(store, &error, "SELECT point_id FROM point ORDER BY point_id");
+    double runs = 0;
+    assert_true(answer_next(&points));
+    OK(answer_number(store, &runs, &error, "SELECT count(*) FROM run WHERE point_id = %lld",
+                     (long long)answer_integer(&points, 0)));
+    assert_near(runs, RUNS, 0);
+    assert_true(answer_next(&points));
+    assert_int_equal(answer_integer(&points, 0), 2);
+  }
+  ANSWER one = answer_to(store, &error, "SELECT NULL, 2, 0.5, 'text', x'0102'");
+  assert_true(answer_next(&one));
+  assert_true(isnan(answer_real(&one, 0)) && answer_integer(&one, 0) == 0 && !*answer_text(&one, 0));
+  assert_true(answer_real(&one, 1) == 2 && answer_integer(&one, 1) == 2 && answer_real(&one, 2) == 0.5);
+  assert_true(answer_integer(&one, 2) == 0 && isnan(answer_real(&one, 3)));
+  assert_string_equal(answer_text(&one, 3), "text");
+  assert_int_equal(answer_value(&one, 4).size, 2);
+  assert_false(answer_next(&one));
+  assert_false(answer_next(&one));
+  OK(answer_end(&one));
+  const void *masses;
+  size_t n;
+  ANSWER blob = answer_to(store, &error, "SELECT x'0102'");
+  assert_true(answer_next(&blob) && !answer_masses(&blob, 0, "run 7", &masses, &n));
+  assert_int_equal(answer_end(&blob), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "run 7"));
+  assert_null(sqlite3_next_stmt(store->db, NULL));
   store_close(store, NULL);
 }
 
@@ -380,6 +401,7 @@ int main(void) {
       cmocka_unit_test(only_reading_is_allowed),
       cmocka_unit_test(time_limit_stops),
       cmocka_unit_test(every_canned_query_runs),
+      cmocka_unit_test(answers_close_themselves),
       cmocka_unit_test(our_aggregates),
       cmocka_unit_test(parameters_are_bound),
   };

@@ -62,8 +62,8 @@ static void identities_follow_from_the_scenes(void **state) {
   if (store_check(store, line, problems, &error) != STATUS_OK)
     fail_msg("%s", problems);
   double inputs = 0;
-  OK(query_number(store, "SELECT min((SELECT count(*) FROM point_input i WHERE i.point_id = p.point_id)) FROM point p",
-                  0, NULL, &inputs, &error));
+  OK(answer_number(store, &inputs, &error,
+                   "SELECT min((SELECT count(*) FROM point_input i WHERE i.point_id = p.point_id)) FROM point p"));
   assert_true(inputs > 10);
   store_close(store, NULL);
 }

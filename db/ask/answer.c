@@ -1,8 +1,9 @@
-/* Runs one read-only statement with a time limit. */
-#include "db/ask/query.h"
+/* Answers of a store, pulled row by row. */
+#include "db/ask/answer.h"
 
 #include <errno.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,15 +12,10 @@
 
 enum { STEPS_BETWEEN_LOOKS = 10000 };
 
-struct watch {     /* for the authorizer and the progress handler of a query */
-  double deadline; /* s, monotonic; 0 = none */
-  bool writes, late;
-};
-
-static int look(void *context) {
-  struct watch *watch = context;
-  watch->late = watch->deadline > 0 && clock_s() > watch->deadline;
-  return watch->late;
+/* SQLite calls this during long steps; true interrupts. */
+static int is_late(void *context) {
+  const struct store *store = context;
+  return clock_s() > store->deadline;
 }
 
 /* A pragma that describes the database. journal_mode with a value would change it. */
@@ -53,11 +49,11 @@ static bool only_reads(int action, const char *first, const char *second) {
 /* Allows reading only: no change, no other file, no transaction, and only pragmas that describe the database. */
 static int authorize(void *context, int action, const char *first, const char *second, const char *database,
                      const char *trigger) {
-  struct watch *watch = context;
+  bool *refused = context;
   (void)database, (void)trigger;
   if (only_reads(action, first, second))
     return SQLITE_OK;
-  watch->writes = true;
+  *refused = true;
   return SQLITE_DENY;
 }
 
@@ -83,14 +79,17 @@ static status refuse_sql(sqlite3 *db, const char *sql, struct error *error) {
   return status_fail(error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(db));
 }
 
-static status prepare(struct store *store, const char *sql, struct watch *watch, sqlite3_stmt **statement,
-                      struct error *error) {
+/* Prepares one statement that only reads. SQLite compiles it again when the tables change meanwhile; what it then names
+ * can only be other tables or views, which cannot write. */
+static status prepare(struct store *store, const char *sql, sqlite3_stmt **statement, struct error *error) {
   const char *tail = "";
+  bool refused = false;
   if (!*skip_space(sql))
     return status_fail(error, STATUS_USAGE, "The query is empty: give one SELECT.");
+  sqlite3_set_authorizer(store->db, authorize, &refused);
   const int code = sqlite3_prepare_v2(store->db, sql, -1, statement, &tail);
-  const bool writes = code == SQLITE_AUTH || watch->writes || (*statement && !sqlite3_stmt_readonly(*statement));
-  if (writes)
+  sqlite3_set_authorizer(store->db, NULL, NULL);
+  if (code == SQLITE_AUTH || refused || (*statement && !sqlite3_stmt_readonly(*statement)))
     return status_fail(error, STATUS_USAGE,
                        "A query may only read (SELECT): this statement would change something, or open another file.");
   if ((code & 0xff) == SQLITE_ERROR)
@@ -153,7 +152,94 @@ static status bind(sqlite3_stmt *statement, size_t count, const struct query_par
   return STATUS_OK;
 }
 
-static struct query_value value_of(sqlite3_stmt *statement, int i) {
+struct answer answer_to_user(struct store *store, const char *sql, size_t parameter_count,
+                             const struct query_parameter *parameters, double time_limit_s, struct error *error) {
+  struct answer answer = {.store = store, .error = error, .limited = time_limit_s > 0};
+  answer.code = prepare(store, sql, &answer.statement, error);
+  if (answer.code == STATUS_OK)
+    answer.code = bind(answer.statement, parameter_count, parameters, error);
+  if (answer.limited) {
+    store->deadline = clock_s() + time_limit_s;
+    sqlite3_progress_handler(store->db, STEPS_BETWEEN_LOOKS, is_late, store);
+  }
+  return answer;
+}
+
+static struct answer made(struct store *store, struct error *error, const char *format, va_list arguments) {
+  char *sql = sqlite3_vmprintf(format, arguments);
+  if (!sql)
+    return answer_failed(status_fail(error, STATUS_MEMORY, "no memory for a question to the store"), error);
+  const struct answer answer = answer_to_user(store, sql, 0, NULL, 0, error);
+  sqlite3_free(sql);
+  return answer;
+}
+
+struct answer answer_to(struct store *store, struct error *error, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  const struct answer answer = made(store, error, format, arguments);
+  va_end(arguments);
+  return answer;
+}
+
+struct answer answer_failed(status code, struct error *error) {
+  return (struct answer){.error = error, .code = code};
+}
+
+/* Finds out why there was no next row. */
+static status judge_end(const struct answer *answer, int code) {
+  sqlite3 *db = answer->store->db;
+  if (code == SQLITE_DONE)
+    return STATUS_OK;
+  if (code == SQLITE_INTERRUPT && answer->limited)
+    return status_fail(answer->error, STATUS_STOPPED,
+                       "The query took longer than its time limit and was stopped: narrow it, or "
+                       "raise the limit.");
+  if ((code & 0xff) == SQLITE_ERROR)
+    return status_fail(answer->error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(db));
+  return sql_fail(db, code, "the query", answer->error);
+}
+
+bool answer_next(struct answer *answer) {
+  if (answer->code || !answer->statement)
+    return false;
+  const int code = sqlite3_step(answer->statement);
+  if (code == SQLITE_ROW)
+    return true;
+  answer->code = judge_end(answer, code);
+  if (answer->code == STATUS_OK)
+    (void)answer_end(answer); /* a step beyond the end would begin anew */
+  return false;
+}
+
+status answer_end(struct answer *answer) {
+  sqlite3_finalize(answer->statement);
+  answer->statement = NULL;
+  if (answer->limited)
+    sqlite3_progress_handler(answer->store->db, 0, NULL, NULL);
+  answer->limited = false;
+  return answer->code;
+}
+
+status answer_status(const struct answer *answer) {
+  return answer->code;
+}
+
+void answer_drop(struct answer *answer) {
+  (void)answer_end(answer);
+}
+
+size_t answer_count(const struct answer *answer) {
+  return answer->statement ? (size_t)sqlite3_column_count(answer->statement) : 0;
+}
+
+const char *answer_name(const struct answer *answer, size_t column) {
+  return sqlite3_column_name(answer->statement, (int)column);
+}
+
+struct query_value answer_value(const struct answer *answer, size_t column) {
+  sqlite3_stmt *statement = answer->statement;
+  const int i = (int)column;
   struct query_value value = {.real = (double)NAN};
   switch (sqlite3_column_type(statement, i)) {
   case SQLITE_INTEGER:
@@ -180,83 +266,35 @@ static struct query_value value_of(sqlite3_stmt *statement, int i) {
   return value;
 }
 
-/* Finds out why there was no next row. */
-static status judge_end(sqlite3_stmt *statement, int code, const struct watch *watch, struct error *error) {
-  sqlite3 *db = sqlite3_db_handle(statement);
-  if (code == SQLITE_DONE)
-    return STATUS_OK;
-  if (watch->late)
-    return status_fail(error, STATUS_STOPPED,
-                       "The query took longer than its time limit and was stopped: narrow it, or "
-                       "raise the limit.");
-  if ((code & 0xff) == SQLITE_ERROR)
-    return status_fail(error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(db));
-  return sql_fail(db, code, "the query", error);
+int64_t answer_integer(const struct answer *answer, size_t column) {
+  return answer_value(answer, column).integer;
 }
 
-static status give_names(sqlite3_stmt *statement, size_t columns, const struct query_sink *sink, struct error *error) {
-  if (!sink->columns)
-    return STATUS_OK;
-  const char **names = calloc(columns + 1, sizeof *names);
-  if (!names)
-    return status_fail(error, STATUS_MEMORY, "the query: memory ran out");
-  for (size_t i = 0; i < columns; i++)
-    names[i] = sqlite3_column_name(statement, (int)i);
-  const status result = sink->columns(sink->context, columns, names, error);
-  free(names);
-  return result;
+double answer_real(const struct answer *answer, size_t column) {
+  return answer_value(answer, column).real;
 }
 
-static status give_rows(sqlite3_stmt *statement, const struct query_sink *sink, const struct watch *watch,
-                        struct error *error) {
-  const size_t columns = (size_t)sqlite3_column_count(statement);
-  status result = give_names(statement, columns, sink, error);
-  if (result != STATUS_OK)
-    return result;
-  struct query_value *values = calloc(columns + 1, sizeof *values);
-  if (!values)
-    return status_fail(error, STATUS_MEMORY, "the query: memory ran out");
-  int code = SQLITE_DONE;
-  while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW) {
-    for (size_t i = 0; i < columns; i++)
-      values[i] = value_of(statement, (int)i);
-    if (sink->row)
-      result = sink->row(sink->context, columns, values, error);
-  }
-  free(values);
-  return result == STATUS_OK ? judge_end(statement, code, watch, error) : result;
+const char *answer_text(const struct answer *answer, size_t column) {
+  const struct query_value value = answer_value(answer, column);
+  return value.text ? value.text : "";
 }
 
-status query_run(struct store *store, const char *sql, size_t parameter_count, const struct query_parameter *parameters,
-                 double time_limit_s, const struct query_sink *sink, struct error *error) {
-  struct watch watch = {.deadline = time_limit_s > 0 ? clock_s() + time_limit_s : 0};
-  sqlite3_stmt *statement = NULL;
-  sqlite3_set_authorizer(store->db, authorize, &watch);
-  sqlite3_progress_handler(store->db, STEPS_BETWEEN_LOOKS, time_limit_s > 0 ? look : NULL, &watch);
-  status result = prepare(store, sql, &watch, &statement, error);
-  if (result == STATUS_OK)
-    result = bind(statement, parameter_count, parameters, error);
-  if (result == STATUS_OK)
-    result = give_rows(statement, sink, &watch, error);
-  sqlite3_finalize(statement);
-  sqlite3_progress_handler(store->db, 0, NULL, NULL);
-  sqlite3_set_authorizer(store->db, NULL, NULL);
-  return result;
+bool answer_masses(struct answer *answer, size_t column, const char *of, const void **masses, size_t *count) {
+  const struct query_value value = answer_value(answer, column);
+  *masses = value.blob;
+  *count = value.size / sizeof(double);
+  if (value.kind == QUERY_BLOB && value.size % sizeof(double) == 0)
+    return true;
+  answer->code = status_fail(answer->error, STATUS_CONTENT,
+                             "the fragment masses of %s are damaged; `clast check` tells more", of);
+  return false;
 }
 
-static status keep_first(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)error;
-  struct query_value *first = context;
-  if (first->kind == QUERY_NULL && count > 0 && isnan(first->real))
-    *first = values[0];
-  return STATUS_OK;
-}
-
-status query_number(struct store *store, const char *sql, size_t parameter_count,
-                    const struct query_parameter *parameters, double *number, struct error *error) {
-  struct query_value first = {.real = (double)NAN};
-  const struct query_sink sink = {.context = &first, .row = keep_first};
-  status result = query_run(store, sql, parameter_count, parameters, 0, &sink, error);
-  *number = first.real;
-  return result;
+status answer_number(struct store *store, double *number, struct error *error, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  struct answer answer = made(store, error, format, arguments);
+  va_end(arguments);
+  *number = answer_next(&answer) ? answer_real(&answer, 0) : (double)NAN;
+  return answer_end(&answer);
 }
