@@ -28,12 +28,9 @@ enum field_flags {
   FIELD_BELOW_MAXIMUM = 8, /* maximum itself is out of range */
   FIELD_DERIVED = 16,      /* inputs only: when not given, it follows from other inputs (engine_kind.complete). `number`
                             * is a placeholder until then, and the doc text says what it follows from */
-  FIELD_SILENT_DEFAULT = 32, /* FIELD_CHOICE and FIELD_REAL: the first choice, or the default, is left out of the
-                              * identity. For an input that came later and whose first value changes no bit: stored runs
-                              * are still found */
-  FIELD_PERCENT = 64, /* FIELD_REAL of unit "1": a strain or share that users give in percent and that may exceed 1. A
+  FIELD_PERCENT = 32, /* FIELD_REAL of unit "1": a strain or share that users give in percent and that may exceed 1. A
                          number without % is refused */
-  FIELD_FILE = 128,   /* FIELD_TEXT of inputs: a scene's document names a file, and the value is its SHA-256
+  FIELD_FILE = 64,    /* FIELD_TEXT of inputs: a scene's document names a file, and the value is its SHA-256
                        * (engine/scene_files.h) */
 };
 
@@ -50,7 +47,11 @@ struct field {
   unsigned flags;
   const char *when; /* NULL, or "path=value|value" (a choice, boolean or integer of the same table, itself active): the
                        row is active only then; a value given otherwise is refused */
-  const char *doc;  /* meaning, one or more sentences */
+  const char *absent; /* inputs that came later, of any kind: the value that earlier runs had without the input, in SI
+                       * ("0", "off", "false", a choice). The identity leaves the row out while it has this value, so
+                       * those runs are still found. It must change no bit of them, and never changes itself: the
+                       * default may, this may not. NULL: the row was always there */
+  const char *doc;    /* meaning, one or more sentences */
   const char *source; /* paper and equation, or NULL */
   const char *label;  /* name on the axis of a chart, in lower case, without unit; NULL: field_label() makes one */
   int main_rank; /* results only: place among the main results, from 1; 0: not a main result. Old stores keep the CHECK
@@ -159,8 +160,8 @@ char *field_json(const struct field_table *table, const void *object);
 /* Parts of that text, for a caller that writes the outer object: the members without braces; one value. */
 void field_json_members(const struct field_table *table, const void *object, FILE *out);
 void field_json_value(const struct field *row, const struct field_value *value, FILE *out);
-/* Canonical identity text: sorted lines `path=%a\n` of the active rows (text and choices by name). The caller frees it;
- * NULL: no memory. */
+/* Canonical identity text: sorted lines `path=%a\n` of the active rows (text and choices by name), without those that
+ * have their value of absence. The caller frees it; NULL: no memory. */
 char *field_identity(const struct field_table *table, const void *object);
 /* `clast explain`: one row, or every row under a prefix ("" = all), as text for people. Returns how many rows. */
 size_t field_explain(const struct field_table *table, const char *prefix, FILE *out);

@@ -39,16 +39,13 @@ static void write_value(const struct field *row, const struct field_value *value
   }
 }
 
-static bool is_written(const struct field_table *table, const struct field *row, const void *object) {
-  struct field_value value;
-  if (!field_is_active(table, row, object))
+/* Has a row that came later the value of the runs before it? */
+static bool is_absent(const struct field *row, const void *object) {
+  struct field_value value, absent;
+  if (!row->absent || field_parse_si(row, row->absent, &absent, NULL))
     return false;
-  if (!(row->flags & FIELD_SILENT_DEFAULT))
-    return true;
   field_get(row, object, &value);
-  if (row->kind == FIELD_REAL)
-    return value.number != row->number;
-  return strcmp(value.text, row->choices[0]) != 0;
+  return field_same_value(row, &value, &absent);
 }
 
 char *field_identity(const struct field_table *table, const void *object) {
@@ -61,7 +58,7 @@ char *field_identity(const struct field_table *table, const void *object) {
     return NULL;
   }
   for (size_t i = 0; i < table->count; i++)
-    if (is_written(table, &table->rows[i], object))
+    if (field_is_active(table, &table->rows[i], object) && !is_absent(&table->rows[i], object))
       rows[count++] = &table->rows[i];
   qsort(rows, count, sizeof *rows, by_path);
 

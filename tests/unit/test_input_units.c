@@ -1,5 +1,6 @@
-/* Every input of every engine: a number that has a unit is never accepted without it. No engine has an integer input
- * with a unit so far, so a fault that concerns integers only is not seen here; test_field.c has such a row. */
+/* Every input of every engine: a number that has a unit is never accepted without it, and a value of absence is a
+ * value. No engine has an integer input with a unit so far, so a fault that concerns integers only is not seen here;
+ * test_field.c has such a row. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -56,7 +57,33 @@ static void inputs_with_a_unit_refuse_bare_numbers(void **state) {
   }
 }
 
+/* field.absent is text: the compiler does not see a choice that is not there, or a number out of range. */
+static void values_of_absence_are_values(void **state) {
+  (void)state;
+  size_t tried = 0;
+  for (size_t e = 0; e < engine_count(); e++) {
+    const struct field_table *const tables[] = {engine_at(e)->inputs, engine_at(e)->results, &outcome_table};
+    for (size_t t = 0; t < sizeof tables / sizeof *tables; t++)
+      for (size_t i = 0; i < tables[t]->count; i++) {
+        const struct field *row = &tables[t]->rows[i];
+        struct field_value value;
+        struct error error;
+        if (!row->absent)
+          continue;
+        tried++;
+        if (t > 0)
+          fail_msg("%s of the %s: only an input is part of an identity", row->path, tables[t]->name);
+        if (field_parse_si(row, row->absent, &value, &error))
+          fail_msg("%s: its value of absence is none of its values: %s", row->path, error.message);
+      }
+  }
+  assert_true(tried >= 5); /* fracture.cell and others */
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(inputs_with_a_unit_refuse_bare_numbers)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(inputs_with_a_unit_refuse_bare_numbers),
+      cmocka_unit_test(values_of_absence_are_values),
+  };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

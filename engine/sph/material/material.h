@@ -8,14 +8,14 @@
  *
  * MATERIAL_VALUE(member, unit, minimum, maximum, flags, need, doc, source): a number.
  *
- * MATERIAL_CHOICE(member, choices, flags, need, name, choice_docs, doc, source): a word. The first one is the default,
+ * MATERIAL_CHOICE(member, choices, absent, need, name, choice_docs, doc, source): a word. The first one is the default,
  * and no value counts with it. `name` is what messages call the choice.
  *
  * MATERIAL_CHOICE_VALUE(member, unit, default, minimum, maximum, flags, when, doc, source): a number that counts only
  * with certain words of a choice: `when` is "path=word|word". With default NAN the material must give it.
  *
- * `need` says which bodies use it: ALWAYS, STRENGTH, FRACTURE. Flags: OFF, it may be off; ABOVE its minimum; SILENT, a
- * choice that came later (FIELD_SILENT_DEFAULT). */
+ * `need` says which bodies use it: ALWAYS, STRENGTH, FRACTURE. Flags: OFF, it may be off; ABOVE its minimum. `absent`
+ * of a choice that came later: field.absent. */
 #ifndef CLAST_ENGINE_SPH_MATERIAL_MATERIAL_H
 #define CLAST_ENGINE_SPH_MATERIAL_MATERIAL_H
 
@@ -30,10 +30,9 @@ struct sph_material {
 #include "engine/sph/modules/declarations.h"
 };
 
-#define SPH_MATERIAL_OFF    FIELD_MAY_BE_OFF
-#define SPH_MATERIAL_ABOVE  FIELD_ABOVE_MINIMUM
-#define SPH_MATERIAL_SILENT FIELD_SILENT_DEFAULT
-#define SPH_CHOICES(...)    ((const char *const[]){__VA_ARGS__, NULL})
+#define SPH_MATERIAL_OFF   FIELD_MAY_BE_OFF
+#define SPH_MATERIAL_ABOVE FIELD_ABOVE_MINIMUM
+#define SPH_CHOICES(...)   ((const char *const[]){__VA_ARGS__, NULL})
 
 #define SPH_MATERIAL_COMMON(VALUE)                                                                                     \
   VALUE(density, "kg/m^3", 1e-3, 1e6, 0, ALWAYS, "rho_0: density at rest.", NULL)                                      \

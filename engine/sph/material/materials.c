@@ -23,13 +23,13 @@
    .source = source_},
 #define MATERIAL_VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                      \
   MATERIAL_CHOICE_VALUE(member_, unit_, NAN, low_, high_, flags_, NULL, doc_, source_)
-#define MATERIAL_CHOICE(member_, choices_, flags_, need_, name_, choice_docs_, doc_, source_)                          \
+#define MATERIAL_CHOICE(member_, choices_, absent_, need_, name_, choice_docs_, doc_, source_)                         \
   {.path = #member_,                                                                                                   \
    .kind = FIELD_CHOICE,                                                                                               \
    .offset = offsetof(struct sph_material, member_),                                                                   \
    .choices = choices_,                                                                                                \
    .choice_docs = choice_docs_,                                                                                        \
-   .flags = flags_,                                                                                                    \
+   .absent = absent_,                                                                                                  \
    .doc = doc_,                                                                                                        \
    .source = source_},
 

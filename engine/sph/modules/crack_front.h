@@ -13,8 +13,7 @@
  * largest tension is positive. The loops of `fracture` do it: they read the weakest threshold, the rate between two
  * thresholds and the cap. This module sets these as for a flaw of threshold 0. They act from the next step on. */
 
-INPUT_CHOICE(fracture, front, SPH_CHOICES("none", "plane"), .flags = FIELD_SILENT_DEFAULT,
-             .when = "target.fracture=auto|on",
+INPUT_CHOICE(fracture, front, SPH_CHOICES("none", "plane"), .absent = "none", .when = "target.fracture=auto|on",
              .choice_docs = "it ends at its particle, and each particle breaks by flaws of its own, as printed: "
                             "strength grows with the number of particles\n"
                             "it runs on in its plane at c_g",

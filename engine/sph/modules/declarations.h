@@ -4,7 +4,7 @@
  *
  *   MATERIAL_MEMBERS(...)        members of struct sph_material; then its rows, as in material/material.h:
  *   MATERIAL_VALUE(member, unit, minimum, maximum, flags, need, doc, source)
- *   MATERIAL_CHOICE(member, choices, flags, need, name, choice_docs, doc, source)
+ *   MATERIAL_CHOICE(member, choices, absent, need, name, choice_docs, doc, source)
  *   MATERIAL_CHOICE_VALUE(member, unit, default, minimum, maximum, flags, when, doc, source)
  *
  *   INPUT_REAL(section, member, unit, default, minimum, maximum, ...)   an input of the scene: member and row. Sections

@@ -21,7 +21,7 @@ MATERIAL_MEMBERS(struct sph_palpha {
 #define POROSITY_ON        "porosity.curve=quadratic|two-power"
 #define POROSITY_TWO_POWER "porosity.curve=two-power"
 MATERIAL_CHOICE(
-    porosity.curve, SPH_CHOICES("none", "quadratic", "two-power"), 0, ALWAYS, "crush curve",
+    porosity.curve, SPH_CHOICES("none", "quadratic", "two-power"), NULL, ALWAYS, "crush curve",
     "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"
     "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",
     "Crush curve: how pores far below the resolution close under pressure (P-alpha). The material's density "

@@ -14,7 +14,7 @@ MATERIAL_MEMBERS(struct sph_pressure_strength {
 } pressure_strength;)
 
 #define PRESSURE_STRENGTH_ON "pressure_strength.law=lundborg"
-MATERIAL_CHOICE(pressure_strength.law, SPH_CHOICES("none", "lundborg"), SPH_MATERIAL_SILENT, STRENGTH, "yield law",
+MATERIAL_CHOICE(pressure_strength.law, SPH_CHOICES("none", "lundborg"), "none", STRENGTH, "yield law",
                 "yield_stress at any pressure, and (1 - D) of the deviator acts\n"
                 "intact rock follows Lundborg, broken rock keeps friction, and damage acts on the deviator through the "
                 "yield stress alone; yield_stress is not used, melt_energy is",

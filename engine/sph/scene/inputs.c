@@ -41,12 +41,13 @@ static const char *const precisions[] = {"double", "float", NULL};
   OF_MATERIAL_REAL(B, member_, unit_, NAN, low_, high_, flags_, WHEN_##need_(B, exists_ALWAYS), doc_, source_)
 #define OF_MATERIAL_CHOICE_VALUE(B, member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)               \
   OF_MATERIAL_REAL(B, member_, unit_, default_, low_, high_, flags_, #B ".material." when_, doc_, source_)
-#define OF_MATERIAL_CHOICE(B, exists_ALWAYS, member_, choices_, flags_, need_, name_, choice_docs_, doc_, source_)     \
+#define OF_MATERIAL_CHOICE(B, exists_ALWAYS, member_, choices_, absent_, need_, name_, choice_docs_, doc_, source_)    \
   {.path = #B ".material." #member_,                                                                                   \
    .kind = FIELD_CHOICE,                                                                                               \
    .offset = offsetof(struct sph_inputs, B.material.member_),                                                          \
    .choices = choices_,                                                                                                \
-   .flags = (flags_) | FIELD_DERIVED,                                                                                  \
+   .absent = absent_,                                                                                                  \
+   .flags = FIELD_DERIVED,                                                                                             \
    .choice_docs = choice_docs_,                                                                                        \
    .when = WHEN_##need_(B, exists_ALWAYS),                                                                             \
    .doc = doc_ " The named material's unless given.",                                                                  \
@@ -231,7 +232,7 @@ static const struct field rows[] = {
                   "without it.",
            .source = "BA95 section 4.4"),
     REAL(
-        fragments.layer_width, "m", 0, 0, 1e9, .flags = FIELD_SILENT_DEFAULT | FIELD_DERIVED,
+        fragments.layer_width, "m", 0, 0, 1e9, .absent = "0", .flags = FIELD_DERIVED,
         .doc =
             "Depth of the damaged layer of a fragment (fragments.veneer). With 0 it is fragments.link_length smoothing "
             "lengths, and gets thinner with more particles. Unless given it is fracture.cell.",

@@ -22,7 +22,7 @@ static const struct {
   const char *choice_name; /* name of a choice in messages */
 } needs[] = {
 #define MATERIAL_VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_) {need_, NULL},
-#define MATERIAL_CHOICE(member_, choices_, flags_, need_, name_, ...)             {need_, name_},
+#define MATERIAL_CHOICE(member_, choices_, absent_, need_, name_, ...)            {need_, name_},
 #define MATERIAL_CHOICE_VALUE(...)                                                {BY_CHOICE, NULL},
     SPH_MATERIAL_COMMON(MATERIAL_VALUE)
 #include "engine/sph/modules/declarations.h"
