@@ -8,14 +8,17 @@
 
 #include "schemas/status.h"
 
-void *memory_small(size_t count, size_t size) {
+void memory_refused(void) {
   static const char refused[] = "clast: the system refused memory; the process ends\n";
+  (void)!write(STDERR_FILENO, refused, sizeof refused - 1);
+  _exit(STATUS_MEMORY); /* exit() would run handlers that need memory, also those of MPI and HDF5 */
+}
+
+void *memory_small(size_t count, size_t size) {
   assert(size == 0 || count <= MEMORY_SMALL / size);
   void *memory = calloc(count ? count : 1, size ? size : 1);
-  if (!memory) { /* exit() would run handlers that need memory, also those of MPI and HDF5 */
-    (void)!write(STDERR_FILENO, refused, sizeof refused - 1);
-    _exit(STATUS_MEMORY);
-  }
+  if (!memory)
+    memory_refused();
   return memory;
 }
 

@@ -13,5 +13,7 @@ enum { MEMORY_SMALL = 1 << 16 }; /* bytes, the largest allocation here */
 void *memory_small(size_t count, size_t size) __attribute__((malloc, returns_nonnull));
 /* A copy of a text of less than MEMORY_SMALL bytes; never NULL. The caller frees it. */
 char *memory_small_text(const char *text) __attribute__((malloc, returns_nonnull));
+/* Ends the process as above, where memory that constants bound was refused elsewhere. */
+void memory_refused(void) __attribute__((noreturn));
 
 #endif

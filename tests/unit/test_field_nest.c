@@ -1,0 +1,260 @@
+/* Tables that contain tables: paths, places, conditions, defaults and order of the rows, and tables made at run time.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/field.h"
+
+/* Two bodies of one kind, each of a material; a module has inputs in two sections. */
+struct rock {
+  double strength, grain;
+};
+struct body {
+  int shape;
+  double radius;
+  bool solid;
+  struct rock rock;
+};
+struct module {
+  int draw;
+  double step;
+};
+struct scene {
+  bool impact;
+  struct body target, projectile;
+  struct module module;
+  int64_t threads;
+};
+
+static const char *const shapes[] = {"sphere", "box", NULL};
+static const char *const draws[] = {"ranked", "random", NULL};
+
+#define IN(type, member) .offset = offsetof(struct type, member)
+static const struct field rock_rows[] = {
+    {.path = "strength",
+     .kind = FIELD_REAL,
+     .unit = "Pa",
+     IN(rock, strength),
+     .maximum = 1e9,
+     .number = NAN,
+     .flags = FIELD_REQUIRED,
+     .when = "../solid=true",
+     .doc = "Strength."},
+    {.path = "grain", .kind = FIELD_REAL, .unit = "m", IN(rock, grain), .maximum = 1, .number = 0.5, .doc = "Grain."},
+};
+static const struct field_table rocks = FIELD_TABLE(rock_rows, struct rock, "rock", "A rock.");
+
+static const struct field body_rows[] = {
+    {.path = "shape", .kind = FIELD_CHOICE, IN(body, shape), .choices = shapes, .doc = "Outline."},
+    {.path = "radius",
+     .kind = FIELD_REAL,
+     .unit = "m",
+     IN(body, radius),
+     .maximum = 9,
+     .number = 3,
+     .when = "shape=sphere",
+     .doc = "Radius."},
+    {.path = "solid", .kind = FIELD_BOOLEAN, IN(body, solid), .number = 1, .maximum = 1, .doc = "Solid."},
+    {.path = "rock", IN(body, rock), .nest = &rocks, .flags = FIELD_DERIVED, .doc = "The named rock's unless given."},
+};
+static const struct field_table bodies = FIELD_TABLE(body_rows, struct body, "body", "A body.");
+
+static const struct field module_rows[] = {
+    {.path = "speed.step",
+     .kind = FIELD_REAL,
+     .unit = "1",
+     IN(module, step),
+     .maximum = 1,
+     .number = 0.1,
+     .when = "/target.solid=true",
+     .doc = "Step."},
+    {.path = "flaws.draw", .kind = FIELD_CHOICE, IN(module, draw), .choices = draws, .number = 1, .doc = "Draw."},
+};
+static const struct field_table modules = FIELD_TABLE(module_rows, struct module, "module", "A module.");
+
+static const struct field scene_rows[] = {
+    {.path = "impact", .kind = FIELD_BOOLEAN, IN(scene, impact), .number = 1, .maximum = 1, .doc = "Impact."},
+    {.path = "target", IN(scene, target), .nest = &bodies},
+    {.path = "projectile",
+     IN(scene, projectile),
+     .nest = &bodies,
+     .when = "impact=true",
+     .own = (const struct field[]){{.path = "radius", .number = 0.25},
+                                   {.path = "rock.grain", .number = 0.125, .doc = "Grain of the projectile."},
+                                   {.path = "shape", .number = 1, .when = "target.solid=true"},
+                                   {0}}},
+    {IN(scene, module), .nest = &modules, .only = "!speed"},
+    {.path = "speed.threads",
+     .kind = FIELD_INTEGER,
+     .unit = "1",
+     IN(scene, threads),
+     .minimum = 1,
+     .maximum = 64,
+     .number = 1,
+     .doc = "Threads."},
+    {IN(scene, module), .nest = &modules, .only = "speed"},
+};
+static const struct field_table nested = FIELD_TABLE(scene_rows, struct scene, "scene", "Two bodies.");
+
+static struct field_table scene;
+FIELD_TABLE_AT_START(scene, nested)
+
+static const struct field *row(const char *path) {
+  for (size_t i = 0; i < scene.count; i++)
+    if (strcmp(scene.rows[i].path, path) == 0)
+      return &scene.rows[i];
+  fail_msg("no row %s", path);
+  return NULL;
+}
+
+static void rows_stand_in_order_at_their_places(void **state) {
+  (void)state;
+  static const struct {
+    const char *path;
+    size_t offset;
+  } expected[] = {
+      {"impact", offsetof(struct scene, impact)},
+      {"target.shape", offsetof(struct scene, target.shape)},
+      {"target.radius", offsetof(struct scene, target.radius)},
+      {"target.solid", offsetof(struct scene, target.solid)},
+      {"target.rock.strength", offsetof(struct scene, target.rock.strength)},
+      {"target.rock.grain", offsetof(struct scene, target.rock.grain)},
+      {"projectile.shape", offsetof(struct scene, projectile.shape)},
+      {"projectile.radius", offsetof(struct scene, projectile.radius)},
+      {"projectile.solid", offsetof(struct scene, projectile.solid)},
+      {"projectile.rock.strength", offsetof(struct scene, projectile.rock.strength)},
+      {"projectile.rock.grain", offsetof(struct scene, projectile.rock.grain)},
+      {"flaws.draw", offsetof(struct scene, module.draw)},
+      {"speed.threads", offsetof(struct scene, threads)},
+      {"speed.step", offsetof(struct scene, module.step)},
+  };
+  assert_int_equal(scene.count, sizeof expected / sizeof *expected);
+  assert_int_equal(scene.size, sizeof(struct scene));
+  assert_string_equal(scene.name, "scene");
+  for (size_t i = 0; i < scene.count; i++) {
+    assert_string_equal(scene.rows[i].path, expected[i].path);
+    assert_int_equal(scene.rows[i].offset, expected[i].offset);
+    assert_null(scene.rows[i].nest);
+  }
+}
+
+static void conditions_are_relative_to_the_table_of_their_row(void **state) {
+  (void)state;
+  assert_string_equal(row("target.radius")->when, "target.shape=sphere");
+  assert_string_equal(row("target.rock.strength")->when, "target.solid=true"); /* ../ */
+  assert_string_equal(row("speed.step")->when, "target.solid=true");           /* from the root */
+  assert_null(row("target.rock.grain")->when);
+  assert_string_equal(row("projectile.radius")->when, "projectile.shape=sphere");
+  assert_string_equal(row("projectile.solid")->when, "impact=true"); /* the nest's, also of tables in the table: */
+  assert_string_equal(row("projectile.rock.grain")->when, "impact=true");
+  assert_string_equal(row("projectile.shape")->when, "target.solid=true"); /* of the nest's own row */
+
+  struct field_table alone;
+  assert_int_equal(field_table_build(&rocks, &alone, NULL), STATUS_OK);
+  assert_null(alone.rows[0].when); /* it is about a body, and there is none */
+  field_table_free(&alone);
+
+  struct scene object;
+  field_defaults(&scene, &object);
+  assert_true(field_is_active(&scene, row("target.rock.strength"), &object));
+  object.target.solid = false;
+  assert_false(field_is_active(&scene, row("target.rock.strength"), &object));
+  assert_false(field_is_active(&scene, row("projectile.shape"), &object));
+}
+
+static void a_nest_changes_its_rows(void **state) {
+  (void)state;
+  struct scene object;
+  memset(&object, 0, sizeof object);
+  field_defaults(&scene, &object);
+  assert_true(object.target.radius == 3 && object.projectile.radius == 0.25);
+  assert_true(object.target.rock.grain == 0.5 && object.projectile.rock.grain == 0.125);
+  assert_true(object.target.shape == 0 && object.projectile.shape == 1 && object.module.draw == 1);
+  assert_string_equal(row("projectile.radius")->doc, "Radius.");
+  assert_string_equal(row("target.rock.grain")->doc, "Grain. The named rock's unless given.");
+  assert_string_equal(row("projectile.rock.grain")->doc, "Grain of the projectile. The named rock's unless given.");
+  assert_int_equal(row("target.rock.strength")->flags, FIELD_DERIVED); /* no longer required */
+  assert_int_equal(row("target.radius")->flags, 0);
+}
+
+/* A table whose source is gone, with rows of the kinds that have texts. */
+static void tables_are_made_at_run_time(void **state) {
+  (void)state;
+  struct thing {
+    int law;
+    char name[FIELD_TEXT_SIZE];
+  };
+  struct field_table table;
+  char *words[] = {strdup("weak"), strdup("strong")}, *doc = strdup("Which law."), *path = strdup("law");
+  const char **choices = calloc(3, sizeof *choices);
+  choices[0] = words[0];
+  choices[1] = words[1];
+  struct field rows[] = {
+      {.path = path, .kind = FIELD_CHOICE, .offset = offsetof(struct thing, law), .choices = choices, .doc = doc},
+      {.path = "name",
+       .kind = FIELD_TEXT,
+       .offset = offsetof(struct thing, name),
+       .text = words[1],
+       .when = "law=weak"},
+  };
+  const struct field_table source = FIELD_TABLE(rows, struct thing, doc, path);
+  assert_int_equal(field_table_build(&source, &table, NULL), STATUS_OK);
+  free(words[0]);
+  free(words[1]);
+  free(choices);
+  free(doc);
+  free(path);
+  memset(rows, 0xff, sizeof rows);
+
+  struct thing thing, back = {0};
+  uint8_t bytes[600];
+  field_defaults(&table, &thing);
+  assert_string_equal(thing.name, "strong");
+  char *text = field_json(&table, &thing);
+  assert_string_equal(text, "{\"law\":\"weak\",\"name\":\"strong\"}");
+  free(text);
+  const size_t size = field_encode(&table, &thing, bytes);
+  assert_int_equal(field_decode(&table, bytes, size, &back), size);
+  assert_string_equal(back.name, "strong");
+  assert_string_equal(table.rows[0].doc, "Which law.");
+  assert_string_equal(table.name, "Which law.");
+  field_table_free(&table);
+  assert_int_equal(table.count, 0);
+}
+
+static void paths_have_an_end(void **state) {
+  (void)state;
+  char lengthy[200];
+  memset(lengthy, 'a', sizeof lengthy);
+  lengthy[199] = 0;
+  const struct field inner[] = {{.path = lengthy, .kind = FIELD_BOOLEAN}};
+  const struct field_table small = FIELD_TABLE(inner, bool, "small", "");
+  const struct field outer[] = {{.path = lengthy, .nest = &small}};
+  const struct field_table source = FIELD_TABLE(outer, bool, "large", "");
+  struct field_table table;
+  struct error error;
+  assert_int_equal(field_table_build(&small, &table, &error), STATUS_OK);
+  field_table_free(&table);
+  assert_int_equal(field_table_build(&source, &table, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "is longer than 255 bytes"));
+  field_table_free(&table); /* nothing */
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rows_stand_in_order_at_their_places),
+      cmocka_unit_test(conditions_are_relative_to_the_table_of_their_row),
+      cmocka_unit_test(a_nest_changes_its_rows),
+      cmocka_unit_test(tables_are_made_at_run_time),
+      cmocka_unit_test(paths_have_an_end),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
