@@ -1,16 +1,15 @@
-/* Short forms of rows, for the tables of inputs. The including file defines INPUTS, the name of the struct. */
+/* Short forms of rows of inputs whose path is that of the member. The including file defines INPUTS, the name of the
+ * struct. */
 #ifndef CLAST_ENGINE_INPUT_ROWS_H
 #define CLAST_ENGINE_INPUT_ROWS_H
 
-#include "schemas/field.h"
+#include "engine/rows.h"
 
-#define ROW(path_, kind_, unit_, ...)                                                                                  \
-  { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct INPUTS, path_), __VA_ARGS__ }
-#define REAL(path_, unit_, default_, low, high, ...)                                                                   \
-  ROW(path_, FIELD_REAL, unit_, .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
-#define COUNT(path_, default_, low, high, ...)                                                                         \
-  ROW(path_, FIELD_INTEGER, "1", .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
-#define SWITCH(path_, default_, ...) ROW(path_, FIELD_BOOLEAN, NULL, .number = default_, .maximum = 1, __VA_ARGS__)
-#define CHOICE(path_, choices_, ...) ROW(path_, FIELD_CHOICE, NULL, .choices = choices_, __VA_ARGS__)
+#define ROW(path_, kind_, unit_, ...) ROW_OF(INPUTS, path_, path_, kind_, unit_, __VA_ARGS__)
+#define REAL(path_, unit_, ...)       INPUT_REAL(path_, path_, unit_, __VA_ARGS__)
+#define COUNT(path_, default_, low_, high_, ...)                                                                       \
+  ROW(path_, FIELD_INTEGER, "1", .number = default_, .minimum = low_, .maximum = high_, __VA_ARGS__)
+#define SWITCH(path_, ...) INPUT_SWITCH(path_, path_, __VA_ARGS__)
+#define CHOICE(path_, ...) INPUT_CHOICE(path_, path_, __VA_ARGS__)
 
 #endif

@@ -36,7 +36,7 @@ static status list(enum table_format format, struct error *error) {
     table_text(table, sph_materials_name(i));
     table_real(table, material.density);
     table_real(table, material.tillotson.A);
-    table_real(table, material.shear_modulus);
+    table_real(table, material.elastic.shear_modulus);
     table_real(table, material.weibull.m);
     table_real(table, material.weibull.k);
     table_text(table, what);

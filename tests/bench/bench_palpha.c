@@ -34,7 +34,7 @@ static struct sph_system *make(const struct sph_material *material, bool pores, 
     p->z[i] = dx * ((double)(k / side / side) + 0.5 + (i < large ? 0 : N));
     p->vz[i] = i < large ? 0 : -3000;
     p->body[i] = i >= large;
-    p->density[i] = material->density / (pores && i < large ? material->porosity.distention : 1);
+    p->density[i] = material->density / (pores && i < large ? material->palpha.distention : 1);
     p->mass[i] = p->density[i] * dx * dx * dx;
     p->h[i] = 1.2 * dx;
   }
@@ -44,9 +44,9 @@ static struct sph_system *make(const struct sph_material *material, bool pores, 
     exit(1);
   struct sph_body_physics bodies[2] = {{.material = *material, .strength = true, .flaws = list},
                                        {.material = *material, .strength = true}};
-  bodies[1].material.porosity.curve = SPH_CRUSH_NONE;
+  bodies[1].material.palpha.curve = SPH_CRUSH_NONE;
   if (!pores)
-    bodies[0].material.porosity.curve = SPH_CRUSH_NONE;
+    bodies[0].material.palpha.curve = SPH_CRUSH_NONE;
   struct case_parameters parameters = case_parameters_default();
   struct sph_system *s;
   struct error error;
@@ -93,7 +93,7 @@ int main(void) {
     for (int pores = 0; pores < 3; pores++) { /* without; with; alpha_0 = 1 */
       struct sph_material m = material;
       if (pores == 2)
-        m.porosity.distention = 1;
+        m.palpha.distention = 1;
       struct sph_system *s = make(&m, pores > 0, true);
       double start = now();
       for (int k = 0; k < STEPS; k++)

@@ -19,10 +19,10 @@
 
 static const struct sph_material case_basalt = {.density = 2700,
                                                 .tillotson = {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6, 1.82e7},
-                                                .shear_modulus = 2.27e10,
-                                                .yield_stress = 3.5e9,
+                                                .elastic.shear_modulus = 2.27e10,
+                                                .yield.stress = 3.5e9,
                                                 .melt_energy = 3.4e6,
-                                                .tension_limit = NAN,
+                                                .tension_limit.pressure = NAN,
                                                 .weibull = {8.5, 5e34}};
 
 struct case_block { /* particles at the centres of cubes of `spacing`, from `corner` on */

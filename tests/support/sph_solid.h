@@ -45,10 +45,10 @@ struct solid_case {
 UNUSED static struct sph_material solid_basalt(void) {
   return (struct sph_material){.density = 2700,
                                .tillotson = {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6, 1.82e7},
-                               .shear_modulus = 2.27e10,
-                               .yield_stress = 3.5e9,
+                               .elastic.shear_modulus = 2.27e10,
+                               .yield.stress = 3.5e9,
                                .melt_energy = 3.4e6,
-                               .tension_limit = NAN,
+                               .tension_limit.pressure = NAN,
                                .weibull = {8.5, 5e34}};
 }
 
@@ -56,18 +56,18 @@ UNUSED static struct sph_material solid_basalt(void) {
 UNUSED static struct sph_material solid_aluminium(void) {
   return (struct sph_material){.density = 2700,
                                .tillotson = {7.52e10, 6.5e10, 0.5, 1.63, 5, 5, 5e6, 3e6, 1.39e7},
-                               .shear_modulus = 2.69e10,
-                               .yield_stress = 2.76e8,
+                               .elastic.shear_modulus = 2.69e10,
+                               .yield.stress = 2.76e8,
                                .melt_energy = NAN,
-                               .tension_limit = NAN,
+                               .tension_limit.pressure = NAN,
                                .weibull = {NAN, NAN}};
 }
 
 UNUSED static double solid_young(const struct sph_material *m) {
-  return 9 * m->tillotson.A * m->shear_modulus / (3 * m->tillotson.A + m->shear_modulus);
+  return 9 * m->tillotson.A * m->elastic.shear_modulus / (3 * m->tillotson.A + m->elastic.shear_modulus);
 }
 UNUSED static double solid_poisson(const struct sph_material *m) {
-  return (3 * m->tillotson.A - 2 * m->shear_modulus) / (2 * (3 * m->tillotson.A + m->shear_modulus));
+  return (3 * m->tillotson.A - 2 * m->elastic.shear_modulus) / (2 * (3 * m->tillotson.A + m->elastic.shear_modulus));
 }
 
 struct solid_jump {

@@ -17,7 +17,7 @@ static struct solid_case pulled(double width, uint64_t seed, struct sph_flaws **
                                    .seed = seed,
                                    .cell_width = width};
   assert_int_equal(sph_flaws_place(&law, &c.body[0].shape, c.particles, c.range[0], NULL, flaws, &error), STATUS_OK);
-  c.parameters.in.fracture.cell = width;
+  c.parameters.in.crack_cell.width = width;
   c.physics[0].flaws = *flaws;
   return c;
 }
@@ -56,7 +56,7 @@ static void cubes(void **state) {
  * of 300 seeds, each weighted alike: the mean of n such numbers scatters by n^(-1/2). */
 static void weakest_flaw(void **state) {
   (void)state;
-  const struct sph_weibull law = solid_basalt().weibull;
+  const struct sph_weibull_material law = solid_basalt().weibull;
   double sum = 0, count = 0;
   for (uint64_t seed = 1; seed <= 300; seed++) {
     struct sph_flaws *flaws;

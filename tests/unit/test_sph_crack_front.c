@@ -30,8 +30,8 @@ static struct sph_flaws *one_flaw(const struct sph_particles *p, size_t *middle)
 
 static struct solid_case pulled(int front, double arrest, struct sph_flaws **flaws, size_t *middle) {
   struct solid_case c = solid_pulled_cube(side, load);
-  c.parameters.in.fracture.front = front;
-  c.parameters.in.fracture.front_arrest = arrest;
+  c.parameters.in.crack_front.front = front;
+  c.parameters.in.crack_front.arrest = arrest;
   *flaws = one_flaw(c.particles, middle);
   c.physics[0].flaws = *flaws;
   return c;

@@ -51,7 +51,7 @@ static void untouched(void **state) {
   struct sph_results c = {0};
   measure(p, p, &options, 2, &c);
   assert_true(c.crater.volume == 0 && c.crater.depth == 0 && c.crater.radius == 0 && c.ejecta.mass_fraction == 0 &&
-              c.compaction.volume == 0 && c.compaction.mass_fraction == 0);
+              c.palpha.compaction.volume == 0 && c.palpha.compaction.mass_fraction == 0);
   sph_particles_free(p);
 }
 
@@ -79,7 +79,7 @@ static void thrown_out(void **state) {
   near(c.crater.volume, (double)count * 1e-9, 0.15, "volume");
   near(c.crater.depth, 12e-3, 0.1, "depth");
   near(c.crater.radius, 12e-3, 0.1, "radius");
-  assert_true(c.compaction.volume == 0);
+  assert_true(c.palpha.compaction.volume == 0);
   assert_true(c.crater.compaction_share == 0);
   now->rest_distention[0] = 1; /* half a cubic millimetre of pores, against the ejecta's volume */
   measure(start, now, &options, 2, &c);
@@ -103,14 +103,14 @@ static void compacted(void **state) {
   struct sph_results c = {0};
   measure(start, now, &options, 2, &c);
   assert_true(c.ejecta.mass_fraction == 0);
-  near(c.compaction.mass_fraction * options.mass, (double)count * 1e-6, 1e-12, "compacted mass");
-  near(c.compaction.volume, (double)count * 0.5e-9, 1e-12, "closed pores");
+  near(c.palpha.compaction.mass_fraction * options.mass, (double)count * 1e-6, 1e-12, "compacted mass");
+  near(c.palpha.compaction.volume, (double)count * 0.5e-9, 1e-12, "closed pores");
   near(c.crater.depth, 10e-3, 0.05, "depth");
-  near(c.crater.volume, c.compaction.volume, 0.2,
+  near(c.crater.volume, c.palpha.compaction.volume, 0.2,
        "the crater is what pores left"); /* columns across the rim, 2 mm of 10, are not part of the crater */
   /* from the first compacted layer to the last one */
-  near(c.compaction.depth, 19e-3, 1e-9, "depth of compacted matter");
-  near(c.compaction.reach, hypot(19e-3, 10e-3), 0.05, "reach");
+  near(c.palpha.compaction.depth, 19e-3, 1e-9, "depth of compacted matter");
+  near(c.palpha.compaction.reach, hypot(19e-3, 10e-3), 0.05, "reach");
   struct sph_crater_layer layer[40];
   size_t layers = sph_crater_profile(start, now, &options, layer, 40);
   assert_int_equal(layers, HIGH);
@@ -155,7 +155,8 @@ static void hardly_porous(void **state) {
     start->distention[i] = start->rest_distention[i] = 1.005, now->rest_distention[i] = i ? 1.0049 : 1;
   struct sph_results c = {0};
   measure(start, now, &options, 1.005, &c);
-  assert_true(c.compaction.mass_fraction == 0 && c.compaction.depth == 0 && c.compaction.volume > 0);
+  assert_true(c.palpha.compaction.mass_fraction == 0 && c.palpha.compaction.depth == 0 &&
+              c.palpha.compaction.volume > 0);
   sph_particles_free(start);
   sph_particles_free(now);
 }

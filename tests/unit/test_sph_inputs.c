@@ -106,8 +106,8 @@ static void every_material_is_sound(void **state) {
     assert_true(isnan(m.weibull.m) == isnan(m.weibull.k));
     /* A limit of tension is necessary, or the cold curve reaches -A: flaws or tension_limit. Rubber is elastic on
      * purpose. */
-    assert_true(!isnan(m.weibull.m) || !isnan(m.tension_limit) || strcmp(name, "rubber") == 0);
-    assert_true(m.porosity.curve == SPH_CRUSH_NONE || m.porosity.distention > 1);
+    assert_true(!isnan(m.weibull.m) || !isnan(m.tension_limit.pressure) || strcmp(name, "rubber") == 0);
+    assert_true(m.palpha.curve == SPH_CRUSH_NONE || m.palpha.distention > 1);
   }
   struct sph_material basalt, granite, gabbro;
   assert_int_equal(sph_materials_load("basalt", &basalt, NULL), STATUS_OK);
@@ -178,7 +178,7 @@ static void pressure_strength(void **state) {
   free(without);
   free(none);
   free(with);
-  const struct sph_pressure_strength *granite = &on.target.material.pressure_strength;
+  const struct sph_pressure_strength_material *granite = &on.target.material.pressure_strength;
   assert_true(granite->intact_cohesion == 90e6 && granite->intact_friction == 2 && granite->intact_limit == 1.5e9);
   assert_true(granite->broken_cohesion == 0 && off.target.material.pressure_strength.broken_friction == 0.8);
   refused("target: {material: {pressure_strength: {law: lundborg, intact_limit: 90 MPa}}}",
@@ -268,15 +268,15 @@ static void sizes_follow(void **state) {
 static void pores(void **state) {
   (void)state;
   struct sph_inputs in = good("target: {material: {name: porous-ice}}");
-  assert_true(in.target.material.porosity.distention == 1.5 && sph_derived_solid_ratio(&in.target.material) == 1.5);
-  assert_true(fabs(in.target.material.porosity.fraction - 1.0 / 3) < 1e-15);
+  assert_true(in.target.material.palpha.distention == 1.5 && sph_derived_solid_ratio(&in.target.material) == 1.5);
+  assert_true(fabs(in.target.material.palpha.fraction - 1.0 / 3) < 1e-15);
   assert_true(fabs(sph_derived_density(&in.target) - 917 / 1.5) < 1e-12);
   assert_true(fabs(sph_derived_target_mass(&in) / (4.0 / 3 * M_PI * 2.7e-5 * 917 / 1.5) - 1) < 1e-12);
   accepted("target: {material: {name: porous-ice}}");
   in = good("target: {material: {name: porous-ice, porosity: {fraction: 0.6}}}");
-  assert_true(fabs(in.target.material.porosity.distention - 2.5) < 1e-12);
+  assert_true(fabs(in.target.material.palpha.distention - 2.5) < 1e-12);
   in = good("target: {material: {name: porous-ice, porosity: {distention: 2.5}}}");
-  assert_true(fabs(in.target.material.porosity.fraction - 0.6) < 1e-12);
+  assert_true(fabs(in.target.material.palpha.fraction - 0.6) < 1e-12);
   accepted("target: {material: {name: porous-ice, porosity: {distention: 2.5}}}");
   refused("target: {material: {name: porous-ice, porosity: {distention: 2.5, fraction: 0.5}}}", "give one of the two");
   /* flaws are of the solid: at the same radius 2.5 times as many pores as matter change kV, and with it the static
@@ -295,7 +295,7 @@ static void pores(void **state) {
   accepted("target: {material: {name: porous-ice, porosity: {distention: 1}}}");
   in = good("projectile: {material: {name: pumice, porosity: {distention: 3}}}\nimpact: {projectile: mass, mass: 1 g}");
   assert_true(fabs(sph_derived_projectile_mass(&in) / 1e-3 - 1) < 1e-12 &&
-              in.projectile.material.porosity.curve == SPH_CRUSH_TWO_POWER);
+              in.projectile.material.palpha.curve == SPH_CRUSH_TWO_POWER);
   refused("target: {material: {porosity: {curve: quadratic, distention: 1.5}}}",
           "target.material.porosity.elastic_pressure is needed by the crush curve, and the material 'basalt' has none: "
           "give it, or set "

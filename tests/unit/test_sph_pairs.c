@@ -62,7 +62,7 @@ static struct summed *sum(const struct cloud *c, const struct sph_pair_options *
     for (size_t i = 0; i < c->n; i++)
       s->correction[k][i] = k == 0 || k == 3 || k == 5;
   }
-  if (options->method.gradient_correction)
+  if (options->gradient_correction.on)
     sph_pairs_sum(pairs, c->n, &f, pair_sums_keep, &sums); /* the forces' correction is that of the pass before */
   sph_pairs_sum(pairs, c->n, &f, pair_sums_keep, &sums);
   s->neighbours = sph_pairs_neighbours(pairs);
@@ -95,7 +95,7 @@ static struct summed *reference(const struct cloud *c, const struct sph_pair_opt
     double sigma[6], r[6];
     for (int k = 0; k < 6; k++)
       stress[k][i] = acting(c, k, i), sigma[k] = stress[k][i] + (k == 0 || k == 3 || k == 5 ? c->a[10][i] : 0);
-    reference_sph_opposed(options->method.artificial_stress, sigma, r);
+    reference_sph_opposed(options->artificial_stress.epsilon, sigma, r);
     for (int k = 0; k < 6; k++)
       artificial[k][i] = r[k];
   }
@@ -104,7 +104,7 @@ static struct summed *reference(const struct cloud *c, const struct sph_pair_opt
   struct sph_pair_fields f = fields_of(c);
   struct sph_pair_sums sums = sums_of(s);
   reference_sph_sum(c->n, lists.start, lists.count, lists.j, options, &f, (const double *const *)stress,
-                    options->method.artificial_stress > 0 ? (const double *const *)artificial : NULL, &sums);
+                    options->artificial_stress.epsilon > 0 ? (const double *const *)artificial : NULL, &sums);
   reference_sph_lists_free(&lists);
   for (int k = 0; k < 6; k++)
     free(artificial[k]), free(stress[k]);
@@ -126,7 +126,7 @@ static void kernels_equal_plain_c(void **state) {
     if (variant & 4 && variant % 4 != 3)
       options.periodic[0] = options.periodic[2] = length;
     if (variant & 8 && options.strength)
-      options.method.artificial_stress = 0.3;
+      options.artificial_stress.epsilon = 0.3;
     struct summed *exact = reference(c, &options);
     for (int k = 0; k < 3; k++)
       for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
@@ -171,9 +171,9 @@ static void work_equals_strain_energy(void **state) {
     struct cloud *c = cloud_make(SIDE, 1, true, 2);
     struct sph_pair_options options = usual;
     options.method.volume_weights = variant & 1;
-    options.method.gradient_correction = variant & 2;
+    options.gradient_correction.on = variant & 2;
     options.fidelity.precision = variant & 4 ? SPH_FLOAT : SPH_DOUBLE;
-    options.method.artificial_stress = variant & 8 ? 0.3 : 0; /* its work is in the heating, of either sign */
+    options.artificial_stress.epsilon = variant & 8 ? 0.3 : 0; /* its work is in the heating, of either sign */
     struct summed *s = sum(c, &options);
     double work = 0, strain = 0, heat = 0, scale = 0;
     for (size_t i = 0; i < c->n; i++) {
@@ -186,11 +186,11 @@ static void work_equals_strain_energy(void **state) {
       }
       heat += m * s->a[12][i];
       scale += m * fabs(c->a[4][i] * s->a[0][i]);
-      assert_true(s->a[12][i] >= 0 || options.method.artificial_stress > 0);
+      assert_true(s->a[12][i] >= 0 || options.artificial_stress.epsilon > 0);
     }
     assert_true(heat > 0.01 * scale);
     assert_true(fabs(work + strain + heat) < (variant & 4 ? 1e-6 : 1e-12) * scale);
-    if (options.method.gradient_correction) { /* the same at the state at hand; in a run B has changed since */
+    if (options.gradient_correction.on) { /* the same at the state at hand; in a run B has changed since */
       double given = 0;
       for (size_t i = 0; i < c->n; i++)
         given += c->a[7][i] * s->power[i];
@@ -212,9 +212,9 @@ static void corrected_gradient_is_linear(void **state) {
       for (int a = 0; a < 3; a++)
         c->a[4 + a][i] = 5 + g[3 * a] * c->a[0][i] + g[3 * a + 1] * c->a[1][i] + g[3 * a + 2] * c->a[2][i];
     struct sph_pair_options options = usual;
-    options.method.gradient_correction = true;
+    options.gradient_correction.on = true;
     options.method.volume_weights = variant & 1;
-    options.method.artificial_stress = variant & 2 ? 0.3 : 0;
+    options.artificial_stress.epsilon = variant & 2 ? 0.3 : 0;
     options.fidelity.precision = variant & 4 ? SPH_FLOAT : SPH_DOUBLE;
     struct summed *s = sum(c, &options);
     for (size_t i = 0; i < c->n; i++)
@@ -256,7 +256,7 @@ static void angular_momentum_is_conserved(void **state) {
     struct cloud *c = cloud_make(SIDE, 1, !corrected, 10);
     struct sph_pair_options options = usual;
     options.strength = corrected;
-    options.method.gradient_correction = corrected;
+    options.gradient_correction.on = corrected;
     struct summed *s = sum(c, &options);
     double total[3] = {0}, scale = 0;
     for (size_t i = 0; i < c->n; i++)
@@ -276,7 +276,7 @@ static void angular_momentum_is_conserved(void **state) {
 static void debris_is_not_corrected(void **state) {
   (void)state;
   struct sph_pair_options options = usual;
-  options.method.gradient_correction = true;
+  options.gradient_correction.on = true;
   for (int layer = 0; layer < 2; layer++) {
     struct cloud *c = cloud_make(8, 1, false, 31);
     c->n = layer ? 64 : 5;
@@ -320,7 +320,7 @@ static void one_stress_over_a_cut(void **state) {
         c->stress[k][i] = sigma[k] - (k == 0 || k == 3 ? mean : 0);
     }
     struct sph_pair_options options = usual;
-    options.method.gradient_correction = corrected;
+    options.gradient_correction.on = corrected;
     struct summed *s = sum(c, &options);
     double force[3] = {0};
     for (size_t i = 0; i < c->n; i++)
@@ -466,8 +466,8 @@ static void bits_do_not_depend_on_threads(void **state) {
   for (int variant = 0; variant < 3; variant++) {
     struct sph_pair_options options = usual;
     options.fidelity.precision = variant == 1 ? SPH_FLOAT : SPH_DOUBLE;
-    options.method.gradient_correction = variant == 2;
-    options.method.artificial_stress = variant ? 0.3 : 0;
+    options.gradient_correction.on = variant == 2;
+    options.artificial_stress.epsilon = variant ? 0.3 : 0;
     struct summed *one = sum(c, &options);
     for (int threads = 2; threads <= 3; threads++) {
       options.fidelity.threads = threads;

@@ -15,33 +15,33 @@
 
 static const struct sph_material aluminium = {.density = 2700,
                                               .tillotson = {7.52e10, 6.5e10, 0.5, 1.63, 5, 5, 5e6, 3e6, 1.39e7}};
-static const struct sph_palpha porous_aluminium = {.distention = 1.275,
-                                                   .curve = SPH_CRUSH_QUADRATIC,
-                                                   .elastic_pressure = 80e6,
-                                                   .solid_pressure = 700e6,
-                                                   .sound_speed = 4110};
+static const struct sph_palpha_material porous_aluminium = {.distention = 1.275,
+                                                            .curve = SPH_CRUSH_QUADRATIC,
+                                                            .elastic_pressure = 80e6,
+                                                            .solid_pressure = 700e6,
+                                                            .sound_speed = 4110};
 static const struct sph_material pumice_matrix = {.density = 2327,
                                                   .tillotson = {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6,
                                                                 1.82e7}};
-static const struct sph_palpha pumice = {.distention = 4.64,
-                                         .curve = SPH_CRUSH_TWO_POWER,
-                                         .elastic_pressure = 1e6,
-                                         .solid_pressure = 213e6,
-                                         .sound_speed = NAN,
-                                         .elastic_distention = 4.64,
-                                         .transition_distention = 1.90,
-                                         .transition_pressure = 68e6,
-                                         .exponent_low = 12,
-                                         .exponent_high = 3};
+static const struct sph_palpha_material pumice = {.distention = 4.64,
+                                                  .curve = SPH_CRUSH_TWO_POWER,
+                                                  .elastic_pressure = 1e6,
+                                                  .solid_pressure = 213e6,
+                                                  .sound_speed = NAN,
+                                                  .elastic_distention = 4.64,
+                                                  .transition_distention = 1.90,
+                                                  .transition_pressure = 68e6,
+                                                  .exponent_low = 12,
+                                                  .exponent_high = 3};
 static const struct sph_material ice = {.density = 917,
                                         .tillotson = {9.47e9, 9.47e9, 0.3, 0.1, 10, 5, 1e7, 7.73e5, 3.04e6}};
-static const struct sph_palpha porous_ice = {.distention = 1.5,
-                                             .curve = SPH_CRUSH_QUADRATIC,
-                                             .elastic_pressure = 1e6,
-                                             .solid_pressure = 100e6,
-                                             .sound_speed = 1600};
+static const struct sph_palpha_material porous_ice = {.distention = 1.5,
+                                                      .curve = SPH_CRUSH_QUADRATIC,
+                                                      .elastic_pressure = 1e6,
+                                                      .solid_pressure = 100e6,
+                                                      .sound_speed = 1600};
 
-static struct sph_palpha_law law_of(const struct sph_palpha *given, const struct sph_material *solid) {
+static struct sph_palpha_law law_of(const struct sph_palpha_material *given, const struct sph_material *solid) {
   struct sph_palpha_law law;
   struct error error = {0};
   if (sph_palpha_prepare(given, solid, &law, &error) != STATUS_OK)
@@ -74,7 +74,7 @@ static void curve_slopes(void **state) {
                                   law_of(&porous_ice, &ice)};
   for (int l = 0; l < 3; l++)
     for (double p = 1.01e6; p < 8e8; p *= 1.013) {
-      const struct sph_palpha *g = &laws[l].given;
+      const struct sph_palpha_material *g = &laws[l].given;
       if (fabs(p / g->elastic_pressure - 1) < 1e-3 || fabs(p / g->solid_pressure - 1) < 1e-3)
         continue;
       double d = p * 1e-5;
@@ -88,7 +88,7 @@ static void curve_slopes(void **state) {
 /* The elastic branch against its own differential equation in 20 000 midpoint steps, and back. */
 static void elastic_branch(void **state) {
   (void)state;
-  const struct sph_palpha *given[] = {&porous_aluminium, &porous_ice};
+  const struct sph_palpha_material *given[] = {&porous_aluminium, &porous_ice};
   const struct sph_material *solid[] = {&aluminium, &ice};
   for (int l = 0; l < 2; l++) {
     struct sph_palpha_law law = law_of(given[l], solid[l]);
@@ -119,7 +119,7 @@ static void elastic_branch(void **state) {
  * hot. */
 static void derivatives(void **state) {
   (void)state;
-  const struct sph_palpha *given[] = {&porous_aluminium, &pumice, &porous_ice};
+  const struct sph_palpha_material *given[] = {&porous_aluminium, &pumice, &porous_ice};
   const struct sph_material *solid[] = {&aluminium, &pumice_matrix, &ice};
   int seen[4] = {0};
   for (int l = 0; l < 3; l++) {
@@ -301,7 +301,7 @@ static void solid_limit(void **state) {
   double last = 0;
   for (int k = 0; k < 3; k++) {
     const double a0[] = {1.01, 1.001, 1.0001};
-    struct sph_palpha given = porous_aluminium;
+    struct sph_palpha_material given = porous_aluminium;
     given.distention = a0[k];
     given.sound_speed = 5277.5 * (1 - 1.5 * (a0[k] - 1)); /* few pores change it little */
     given.elastic_pressure = 1e6 * (a0[k] - 1) / 0.01;
@@ -330,7 +330,7 @@ static void few_pores_do_little_harm(void **state) {
   (void)state;
   double last = 1;
   for (double pores = 0.1; pores > 1e-9; pores /= 1.01) {
-    struct sph_palpha given = porous_aluminium;
+    struct sph_palpha_material given = porous_aluminium;
     given.distention = 1 + pores;
     given.sound_speed = NAN;
     struct sph_palpha_law law = law_of(&given, &aluminium);
@@ -391,7 +391,7 @@ static void compaction_damage(void **state) {
  * largest slope), P_s(alpha rho, u)/alpha is the pressure, and alpha not above the crush curve. */
 static void random_paths(void **state) {
   (void)state;
-  const struct sph_palpha *given[] = {&porous_aluminium, &pumice, &porous_ice};
+  const struct sph_palpha_material *given[] = {&porous_aluminium, &pumice, &porous_ice};
   const struct sph_material *solid[] = {&aluminium, &pumice_matrix, &ice};
   uint64_t draw = 0;
   for (uint64_t path = 0; path < 300; path++) {
@@ -435,7 +435,7 @@ static void soft_pores_follow_their_branch(void **state) {
   int taken = 0, left = 0;
   for (double speed = 10; speed < 4000; speed *= 1.05)
     for (int k = 0; k < 2; k++) {
-      struct sph_palpha given = k ? pumice : porous_aluminium;
+      struct sph_palpha_material given = k ? pumice : porous_aluminium;
       struct sph_palpha_law law;
       given.sound_speed = k ? speed / 2 : speed;
       if (sph_palpha_prepare(&given, k ? &pumice_matrix : &aluminium, &law, NULL)) {
@@ -457,7 +457,7 @@ static void refused(void **state) {
   (void)state;
   struct sph_palpha_law law;
   struct error error;
-  struct sph_palpha bad[13];
+  struct sph_palpha_material bad[13];
   for (int i = 0; i < 13; i++)
     bad[i] = i < 6 ? porous_aluminium : pumice;
   bad[0].distention = 1;
@@ -479,7 +479,7 @@ static void refused(void **state) {
         !error.message[0])
       fail_msg("law %d should be refused", i);
   }
-  struct sph_palpha low = pumice; /* alpha_0 below the curve's start: stays until the curve is met */
+  struct sph_palpha_material low = pumice; /* alpha_0 below the curve's start: stays until the curve is met */
   low.distention = 3;
   law = law_of(&low, &pumice_matrix);
   struct sph_palpha_state s = sph_palpha_update(&law, 3, 3, 2327.0 / 3 * 1.0001, 0);

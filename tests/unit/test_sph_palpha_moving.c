@@ -6,21 +6,21 @@
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/material/tillotson.h"
 
-static const struct sph_palpha porous_basalt = {.distention = 1.5,
-                                                .curve = SPH_CRUSH_QUADRATIC,
-                                                .elastic_pressure = 5e6,
-                                                .solid_pressure = 3e8,
-                                                .sound_speed = 1800};
-static const struct sph_palpha two_power = {.distention = 1.5,
-                                            .curve = SPH_CRUSH_TWO_POWER,
-                                            .elastic_pressure = 1e6,
-                                            .solid_pressure = 213e6,
-                                            .sound_speed = NAN,
-                                            .elastic_distention = 1.5,
-                                            .transition_distention = 1.2,
-                                            .transition_pressure = 68e6,
-                                            .exponent_low = 12,
-                                            .exponent_high = 3};
+static const struct sph_palpha_material porous_basalt = {.distention = 1.5,
+                                                         .curve = SPH_CRUSH_QUADRATIC,
+                                                         .elastic_pressure = 5e6,
+                                                         .solid_pressure = 3e8,
+                                                         .sound_speed = 1800};
+static const struct sph_palpha_material two_power = {.distention = 1.5,
+                                                     .curve = SPH_CRUSH_TWO_POWER,
+                                                     .elastic_pressure = 1e6,
+                                                     .solid_pressure = 213e6,
+                                                     .sound_speed = NAN,
+                                                     .elastic_distention = 1.5,
+                                                     .transition_distention = 1.2,
+                                                     .transition_pressure = 68e6,
+                                                     .exponent_low = 12,
+                                                     .exponent_high = 3};
 
 static void near(double got, double want, double tolerance, const char *what) {
   if (!(fabs(got - want) <= tolerance))
@@ -28,14 +28,14 @@ static void near(double got, double want, double tolerance, const char *what) {
 }
 
 /* A cube of basalt with pores (or none), 6^3 particles, strength; flaws too strong to open. */
-static struct sph_system *cube(const struct sph_palpha *porosity, bool strength, bool flaws, size_t *count) {
+static struct sph_system *cube(const struct sph_palpha_material *porosity, bool strength, bool flaws, size_t *count) {
   struct case_block block = {.count = {6, 6, 6}, .spacing = 1e-3};
   struct sph_particles *p = case_make(&block, 1, 2700 / (porosity ? porosity->distention : 1), 1.05,
                                       SPH_WITH_STRESS | SPH_WITH_DAMAGE);
   struct sph_flaws *list = flaws ? case_flaws(p->n, 1e-30, 1, 0) : NULL;
   struct sph_body_physics body = {.material = case_basalt, .strength = strength, .flaws = list};
   if (porosity)
-    body.material.porosity = *porosity;
+    body.material.palpha = *porosity;
   struct case_parameters parameters = case_parameters_default();
   struct sph_system *s = case_system(p, 1, &body, &parameters);
   *count = p->n;
@@ -52,7 +52,7 @@ static void respond(struct sph_system *s) {
 /* Random states, all branches mixed within a block: the loop gives what sph_palpha_update gives. */
 static void loop_is_the_formula(void **state) {
   (void)state;
-  const struct sph_palpha *given[] = {&porous_basalt, &two_power};
+  const struct sph_palpha_material *given[] = {&porous_basalt, &two_power};
   for (uint64_t round = 0; round < 60; round++) {
     size_t n;
     struct sph_system *s = cube(given[round % 2], false, false, &n);
@@ -154,7 +154,7 @@ static void tension_limit_is_of_the_body(void **state) {
   (void)state;
   size_t n;
   struct sph_system *s = cube(&porous_basalt, false, false, &n);
-  s->solid[0].physics.material.tension_limit = 1e6;
+  s->solid[0].physics.material.tension_limit.pressure = 1e6;
   for (size_t i = 0; i < n; i++) {
     const double expanded = i % 3 == 0 ? 1 : i % 3 == 1 ? 0.95 : 0.9; /* of the solid: whole, half torn, torn */
     s->c.distention[i] = 1 + 0.002 * (double)i;
@@ -206,13 +206,14 @@ struct impact {
   struct sph_flaws *flaws[2];
 };
 
-static struct impact impact_of(const struct sph_palpha *target, const struct sph_palpha *projectile, bool strength) {
+static struct impact impact_of(const struct sph_palpha_material *target, const struct sph_palpha_material *projectile,
+                               bool strength) {
   struct case_block blocks[2] =
       {{.count = {10, 10, 6}, .spacing = 1e-3},
        {.count = {5, 5, 5}, .spacing = 1e-3, .corner = {2.5e-3, 2.5e-3, 6e-3}, .velocity = {0, 0, -1000}}};
   struct impact m = {.p = case_make(blocks, 2, 2700, 1.05, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_DISTENTION)};
   for (size_t i = 0; i < m.p->n; i++) {
-    const struct sph_palpha *pores = m.p->body[i] ? projectile : target;
+    const struct sph_palpha_material *pores = m.p->body[i] ? projectile : target;
     m.p->distention[i] = pores ? pores->distention : 1;
     m.p->density[i] = 2700 / m.p->distention[i];
     m.p->mass[i] = m.p->density[i] * 1e-9;
@@ -223,7 +224,7 @@ static struct impact impact_of(const struct sph_palpha *target, const struct sph
     m.flaws[b] = strength ? case_flaws(count[b], 1e-300, 1, (uint64_t)b) : NULL;
     bodies[b] = (struct sph_body_physics){.material = case_basalt, .strength = strength, .flaws = m.flaws[b]};
     if (b ? projectile : target)
-      bodies[b].material.porosity = b ? *projectile : *target;
+      bodies[b].material.palpha = b ? *projectile : *target;
   }
   struct case_parameters parameters = case_parameters_default();
   m.s = case_system(m.p, 2, bodies, &parameters);
@@ -247,7 +248,7 @@ static void *saved(const struct sph_system *s, size_t *size) {
 /* alpha_0 = 1 is the solid itself: the same bits and bytes, and no arrays for pores. */
 static void solid_bits(void **state) {
   (void)state;
-  struct sph_palpha none = porous_basalt;
+  struct sph_palpha_material none = porous_basalt;
   none.distention = 1;
   struct impact a = impact_of(&none, &none, true), b = impact_of(NULL, NULL, true);
   case_steps(a.s, 60);
@@ -338,7 +339,7 @@ static void tends_to_the_solid(void **state) {
   double last = 0;
   for (int k = 0; k < 3; k++) {
     const double a0[] = {1.01, 1.001, 1.0001};
-    struct sph_palpha few = porous_basalt;
+    struct sph_palpha_material few = porous_basalt;
     few.distention = a0[k], few.sound_speed = sqrt(2.67e10 / 2700) * (1 - 1.5 * (a0[k] - 1));
     few.elastic_pressure = 5e8 * (a0[k] - 1);
     struct impact m = impact_of(&few, NULL, false);
@@ -362,7 +363,7 @@ static void refused(void **state) {
   struct case_block block = {.count = {3, 3, 3}, .spacing = 1e-3};
   struct sph_particles *p = case_make(&block, 1, 1800, 1.05, SPH_WITH_DISTENTION);
   struct sph_body_physics body = {.material = case_basalt};
-  struct sph_palpha *bad = &body.material.porosity;
+  struct sph_palpha_material *bad = &body.material.palpha;
   *bad = porous_basalt;
   struct case_parameters parameters = case_parameters_default();
   struct sph_system *s;

@@ -61,8 +61,8 @@ static void seeds_are_specimens(void **state) {
   }
   /* a periodic slab has its lattice along its axes; the papers' choices are in their scenes */
   assert_false(SPH_CASE("colliding-cylinders", NULL).target.turned);
-  assert_int_equal(SPH_CASE("basalt-sphere", NULL).fracture.draw, SPH_FLAWS_RANKED);
-  assert_int_equal(SPH_CASE("tensile-rod", NULL).fracture.draw, SPH_FLAWS_RANKED);
+  assert_int_equal(SPH_CASE("basalt-sphere", NULL).weibull.draw, SPH_FLAWS_RANKED);
+  assert_int_equal(SPH_CASE("tensile-rod", NULL).weibull.draw, SPH_FLAWS_RANKED);
 }
 
 int main(void) {

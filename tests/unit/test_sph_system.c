@@ -84,7 +84,7 @@ static void limits_by_hand(void **state) {
     for (size_t i = 0; i < s->n; i++) {
       const double h = s->c.h[i], sound = s->c.sound_speed[i], left = 1 - pow(s->c.damage[i], 3),
                    signal = fmax(seen_signal[i], 0);
-      const double speed = sqrt(sound * sound + 4.0 / 3 * case_basalt.shear_modulus * left / s->c.density[i]);
+      const double speed = sqrt(sound * sound + 4.0 / 3 * case_basalt.elastic.shear_modulus * left / s->c.density[i]);
       const double pull = sqrt(pow(s->c.ax[i], 2) + pow(s->c.ay[i], 2) + pow(s->c.az[i], 2));
       if (seen_signal[i] < 0)
         continue;

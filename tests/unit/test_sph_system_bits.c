@@ -48,11 +48,11 @@ static void restarted(void **state) {
 /* Every module at once, on two chunks of the pair loop: a porous cracking cube, part of it held and part damped, hit by
  * a solid one. */
 static struct collision everything_on(int precision) {
-  static const struct sph_palpha pores = {.distention = 1.3,
-                                          .curve = SPH_CRUSH_QUADRATIC,
-                                          .elastic_pressure = 5e6,
-                                          .solid_pressure = 3e8,
-                                          .sound_speed = 2000};
+  static const struct sph_palpha_material pores = {.distention = 1.3,
+                                                   .curve = SPH_CRUSH_QUADRATIC,
+                                                   .elastic_pressure = 5e6,
+                                                   .solid_pressure = 3e8,
+                                                   .sound_speed = 2000};
   const struct case_block blocks[2] = {{{18, 18, 18}, {0, 0, 0}, {0, 0, 0}, spacing},
                                        {{SMALL, SMALL, SMALL}, {6.3e-3, 7.7e-3, 18.9e-3}, {0, 0, -3000}, spacing}};
   struct collision c = {.parameters = case_parameters_default()};
@@ -68,14 +68,14 @@ static struct collision everything_on(int precision) {
   }
   c.flaws[0] = case_flaws(target, (double)target * pow(spacing, 3), 7, 0);
   c.physics[0] = (struct sph_body_physics){.material = case_basalt, .strength = true, .flaws = c.flaws[0]};
-  c.physics[0].material.porosity = pores;
+  c.physics[0].material.palpha = pores;
   c.physics[1] = (struct sph_body_physics){.material = case_basalt, .strength = true};
-  c.physics[1].material.tension_limit = 1e8;
-  c.parameters.in.method.artificial_stress = 0.2;
+  c.physics[1].material.tension_limit.pressure = 1e8;
+  c.parameters.in.artificial_stress.epsilon = 0.2;
   c.parameters.domain.spacing_over_h = 1 / 1.21;
-  c.parameters.in.method.gradient_correction = true;
+  c.parameters.in.gradient_correction.on = true;
   c.parameters.in.method.volume_weights = true;
-  c.parameters.in.fidelity.flaws = SPH_FLAWS_COMPACT;
+  c.parameters.in.weibull.flaws = SPH_FLAWS_COMPACT;
   c.parameters.in.fidelity.precision = precision;
   return c;
 }

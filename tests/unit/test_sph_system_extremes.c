@@ -80,11 +80,11 @@ static void thin(void **state) {
  * share of what the body has at rest: matter of many pores keeps its density. */
 static void not_thinner_than_alone(void **state) {
   (void)state;
-  static const struct sph_palpha pores = {.distention = 50,
-                                          .curve = SPH_CRUSH_QUADRATIC,
-                                          .elastic_pressure = 1e6,
-                                          .solid_pressure = 1e8,
-                                          .sound_speed = NAN};
+  static const struct sph_palpha_material pores = {.distention = 50,
+                                                   .curve = SPH_CRUSH_QUADRATIC,
+                                                   .elastic_pressure = 1e6,
+                                                   .solid_pressure = 1e8,
+                                                   .sound_speed = NAN};
   const struct case_parameters parameters = case_parameters_default();
   const double alone = 1 / (M_PI * pow(SPH_HIGHEST_H * SPH_BODIES_H, 3)); /* of the density at rest */
   assert_true(parameters.domain.lowest_density > 0.8 * alone && parameters.domain.lowest_density < 2 * alone);
@@ -93,7 +93,7 @@ static void not_thinner_than_alone(void **state) {
   for (size_t i = 0; i < p->n; i++)
     p->distention[i] = 50;
   struct sph_body_physics body = {.material = case_basalt};
-  body.material.porosity = pores;
+  body.material.palpha = pores;
   struct sph_system *s = case_system(p, 1, &body, &parameters);
   case_steps(s, 3);
   assert_true(sph_system_ledger(s).density_held == 0);
@@ -135,7 +135,7 @@ static void refused(void **state) {
   struct sph_system *s = NULL;
   struct error error;
   struct sph_body_physics lacking[2] = {c.physics[0], c.physics[1]};
-  lacking[1].material.shear_modulus = NAN;
+  lacking[1].material.elastic.shear_modulus = NAN;
   assert_int_equal(sph_system_create(c.particles, 2, lacking, &c.parameters.in, &c.parameters.domain, &s, &error),
                    STATUS_CONTENT);
   assert_non_null(strstr(error.message, "body 1: shear_modulus"));

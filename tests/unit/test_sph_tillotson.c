@@ -4,7 +4,7 @@
 #include "engine/sph/material/tillotson.h"
 
 static const double basalt_density = 2700;
-static const struct sph_tillotson basalt = {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6, 1.82e7};
+static const struct sph_tillotson_material basalt = {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6, 1.82e7};
 
 static void expect_near(double got, double want, double relative, const char *what) {
   if (!(fabs(got - want) <= relative * fabs(want) + 1e-300))
@@ -15,7 +15,7 @@ static void expect_near(double got, double want, double relative, const char *wh
 static const struct {
   const char *name;
   double density;
-  struct sph_tillotson t;
+  struct sph_tillotson_material t;
 } materials[] = {
     {"basalt", 2700, {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6, 1.82e7}},
     {"nylon", 1185, {1.01e10, 3.38e10, 0.6, 2.0, 10, 5, 7e6, 2e6, 2.4e6}},
@@ -29,7 +29,8 @@ static const struct {
 enum { MATERIALS = sizeof materials / sizeof *materials };
 
 /* The equation of state written again from the papers, in long double, for differences that cost no digits. */
-static long double pressure_again(const struct sph_tillotson *t, long double rho0, long double rho, long double u) {
+static long double pressure_again(const struct sph_tillotson_material *t, long double rho0, long double rho,
+                                  long double u) {
   long double eta = rho / rho0, mu = eta - 1, z = 1 / eta - 1;
   long double squeezed = (t->a + t->b / (u / (t->E0 * eta * eta) + 1)) * rho * u + t->A * mu +
                          (mu > 0 ? t->B * mu * mu : 0);
@@ -51,7 +52,7 @@ static void derivatives(void **state) {
   const double densities[] = {0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.999, 1.001, 1.05, 1.2, 2, 4, 10, 100};
   int branch_seen[4] = {0}; /* compressed, cold, mixed, hot */
   for (int k = 0; k < MATERIALS; k++) {
-    const struct sph_tillotson *t = &materials[k].t;
+    const struct sph_tillotson_material *t = &materials[k].t;
     double rho0 = materials[k].density;
     const double energies[] = {0.01 * t->E_iv,
                                0.5 * t->E_iv,
@@ -102,7 +103,7 @@ static void extremes(void **state) {
   const struct case_block block = {.count = {SIDE, SIDE, 1}, .spacing = 1e-3};
   const struct case_parameters parameters = case_parameters_default();
   for (int k = 0; k < MATERIALS; k++) {
-    const struct sph_tillotson *t = &materials[k].t;
+    const struct sph_tillotson_material *t = &materials[k].t;
     double rho0 = materials[k].density;
     for (size_t r = 0; r < SIDE; r++)
       for (size_t e = 0; e < SIDE; e++) {
@@ -147,7 +148,7 @@ static void continuous(void **state) {
   (void)state;
   const double step = 1e-12;
   for (int k = 0; k < MATERIALS; k++) {
-    const struct sph_tillotson *t = &materials[k].t;
+    const struct sph_tillotson_material *t = &materials[k].t;
     double rho0 = materials[k].density;
     for (double eta = 0.1; eta < 1; eta += 0.0899)
       for (int e = 0; e < 2; e++) {

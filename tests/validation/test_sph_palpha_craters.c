@@ -74,22 +74,23 @@ static void ice(void **state) {
         "seed %2d: ejected %.4f kg of porous ice, %.4f kg of solid ice (%.2f), momentum %.1f and %.1f kg m/s; damage "
         "%.2f and %.2f; porous: %.3f kg compacted, crater %.3g m^3, share of compaction %.2f\n",
         seed, thrown, of_solid, thrown / of_solid, porous.sph.ejecta.momentum, solid.sph.ejecta.momentum,
-        porous.sph.mean_damage, solid.sph.mean_damage, porous.sph.compaction.mass_fraction * porous.sph.target_mass,
-        porous.sph.crater.volume, porous.sph.crater.compaction_share);
-    assert_true(isnan(solid.sph.compaction.mass_fraction)); /* no pores that could be compacted */
+        porous.sph.mean_damage, solid.sph.mean_damage,
+        porous.sph.palpha.compaction.mass_fraction * porous.sph.target_mass, porous.sph.crater.volume,
+        porous.sph.crater.compaction_share);
+    assert_true(isnan(solid.sph.palpha.compaction.mass_fraction)); /* no pores that could be compacted */
     for (size_t k = 0; seed == 1 && k < porous.layers; k++)
       print_message("  depth %.3f m: alpha %.4f, D %.2f\n", porous.axis[k].depth, porous.axis[k].distention,
                     porous.axis[k].damage);
     /* alpha = 1 near the crater only: within 3 cm of the first surface, while pores were lost far beyond. Layers refer
      * to the depth at the start. Matter above was pushed aside, so alpha need not rise from layer to layer. */
-    assert_true(porous.sph.compaction.mass_fraction > 0 && porous.sph.compaction.depth < 0.03);
-    assert_true(porous.sph.compaction.reach > 3 * porous.sph.compaction.depth);
+    assert_true(porous.sph.palpha.compaction.mass_fraction > 0 && porous.sph.palpha.compaction.depth < 0.03);
+    assert_true(porous.sph.palpha.compaction.reach > 3 * porous.sph.palpha.compaction.depth);
     assert_true(porous.layers > 5);
     double lowest = 1.5, last = porous.axis[porous.layers - 1].distention; /* rising to alpha_0 = 1.5 */
     for (size_t k = 0; k < porous.layers; k++)
       lowest = fmin(lowest, porous.axis[k].distention);
     assert_true(last > 1.45 && last > lowest);
-    assert_true(porous.sph.compaction.mass_fraction < 0.05); /* alpha = 1 near the crater only */
+    assert_true(porous.sph.palpha.compaction.mass_fraction < 0.05); /* alpha = 1 near the crater only */
   }
   double mean = sum / seeds, error = seeds > 1 ? sqrt(fmax(0, squares / seeds - mean * mean) / (seeds - 1)) : 0;
   print_message("ejected mass, porous over solid: %.3f (%.3f to %.3f, two standard errors, %d seeds)\n", exp(mean),
@@ -105,7 +106,7 @@ static void target(void **state) {
                 "compacted %.4f kg\n",
                 r.sph.crater.depth, r.sph.crater.radius, r.sph.crater.volume, r.sph.crater.compaction_share,
                 r.sph.ejecta.mass_fraction * r.sph.target_mass, r.sph.ejecta.momentum,
-                r.sph.compaction.mass_fraction * r.sph.target_mass);
+                r.sph.palpha.compaction.mass_fraction * r.sph.target_mass);
   assert_true(r.sph.crater.compaction_share > 0.5); /* mostly compaction */
   assert_true(r.sph.crater.volume > 0 && r.sph.crater.depth > 0.01);
 }

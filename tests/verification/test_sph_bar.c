@@ -21,7 +21,7 @@ static struct ring ring(double particles, bool correction) {
   struct solid_case c = solid_make(1);
   c.physics[0].material = solid_basalt();
   c.physics[0].strength = true;
-  c.parameters.in.method.gradient_correction = correction;
+  c.parameters.in.gradient_correction.on = correction;
   c.body[0].shape = (struct sph_shape){.kind = SPH_SHAPE_CYLINDER,
                                        .radius = radius,
                                        .length = length,

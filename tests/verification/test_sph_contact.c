@@ -6,7 +6,7 @@
 static struct sph_material nylon(void) { /* engine/sph/material/builtin/nylon.yaml */
   return (struct sph_material){.density = 1185,
                                .tillotson = {1.01e10, 3.38e10, 0.6, 2, 10, 5, 7e6, 2e6, 2.4e6},
-                               .tension_limit = NAN,
+                               .tension_limit.pressure = NAN,
                                .melt_energy = NAN,
                                .weibull = {NAN, NAN}};
 }
@@ -29,7 +29,7 @@ static void nylon_on_basalt(void **state) {
     const bool cubic = form < 4;
     struct solid_case c = solid_make(2);
     c.physics[0].material = target, c.physics[1].material = projectile;
-    c.parameters.in.method.gradient_correction = form & 1, c.parameters.in.method.volume_weights = form & 2;
+    c.parameters.in.gradient_correction.on = form & 1, c.parameters.in.method.volume_weights = form & 2;
     solid_bar(&c, cubic ? SPH_LATTICE_CUBIC : SPH_LATTICE_HEXAGONAL, 0, length, spacing, false);
     c.body[1].shape = c.body[0].shape, c.body[1].lattice = c.body[0].lattice;
     c.body[1].shape.side[0] = thickness, c.body[1].shape.centre[0] = length + thickness / 2;

@@ -90,9 +90,9 @@ static size_t by_particles(double wanted, double u0, double inner, bool correcte
                                ? u0
                                : 0;
   struct sph_body_physics debris = {.material = case_basalt};
-  debris.material.tension_limit = 0;
+  debris.material.tension_limit.pressure = 0;
   struct case_parameters parameters = case_parameters_default();
-  parameters.in.method.gradient_correction = corrected;
+  parameters.in.gradient_correction.on = corrected;
   struct sph_system *s = case_system(particles, 1, &debris, &parameters);
   const double total = sph_system_ledger(s).internal;
   for (int k = 0; k < TIMES; k++) {

@@ -48,7 +48,7 @@ static struct shock drive(const struct sph_material *m, double up, double spacin
   const double spacing = 1e-4, half = spacings * spacing, width = 1.5 * spacing;
   struct solid_case c = solid_make(1);
   c.physics[0].material = *m;
-  c.parameters.in.method.gradient_correction = correction;
+  c.parameters.in.gradient_correction.on = correction;
   solid_bar(&c, lattice, 0, piston ? half : 2 * half, spacing, false);
   solid_build(&c, piston ? SPH_WITH_HELD : 0);
   struct sph_particles *p = c.particles;
@@ -215,14 +215,14 @@ static void ramp(bool correction) {
   struct solid_case c = solid_make(1);
   struct sph_material *m = &c.physics[0].material;
   *m = solid_basalt();
-  m->yield_stress = 3.5e7;
+  m->yield.stress = 3.5e7;
   m->melt_energy = (double)NAN;
   c.physics[0].strength = true;
-  c.parameters.in.method.gradient_correction = correction;
+  c.parameters.in.gradient_correction.on = correction;
   solid_bar(&c, SPH_LATTICE_HEXAGONAL, 0, length, spacing, false);
   solid_build(&c, SPH_WITH_STRESS | SPH_WITH_HELD);
   struct sph_particles *p = c.particles;
-  const double K = m->tillotson.A, mu = m->shear_modulus, yield_strain = m->yield_stress / (2 * mu),
+  const double K = m->tillotson.A, mu = m->elastic.shear_modulus, yield_strain = m->yield.stress / (2 * mu),
                grip = 3 * c.range[0].h;
   const double rate = yield_strain / (15 * length / 4593); /* 15 passages of sound to yield */
   double *rest = malloc(p->n * sizeof *rest);
@@ -246,7 +246,7 @@ static void ramp(bool correction) {
       if (fabs(rest[i] - length / 2) < length / 4) {
         stress += p->pressure[i] - p->stress[0][i];
         if (strain > 1.3 * yield_strain)
-          surface = fmax(surface, fabs(p->stress[0][i] / (-2.0 / 3 * m->yield_stress) - 1));
+          surface = fmax(surface, fabs(p->stress[0][i] / (-2.0 / 3 * m->yield.stress) - 1));
         count++;
       }
     stress /= count;

@@ -20,7 +20,7 @@ static const double spacing = 1e-3;
 
 static struct sph_material elastic_basalt(void) {
   struct sph_material m = case_basalt;
-  m.yield_stress = HUGE_VAL;
+  m.yield.stress = HUGE_VAL;
   return m;
 }
 
@@ -90,7 +90,7 @@ static double turned(bool correction, double steps, bool whole_body) {
   }
   const struct sph_body_physics solid = {.material = elastic_basalt(), .strength = true};
   struct case_parameters parameters = case_parameters_default();
-  parameters.in.method.gradient_correction = correction;
+  parameters.in.gradient_correction.on = correction;
   parameters.domain.largest_time_step = M_PI / 2 / w / steps;
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
   /* about the axis (1, 1, 1)/sqrt(3): Rodrigues */
@@ -187,15 +187,16 @@ static void yield_ramp(void **state) {
   (void)state;
   struct sph_particles *p = strained(6, -100, 0, 0, 0);
   struct sph_material m = case_basalt;
-  m.yield_stress = 2e6;
+  m.yield.stress = 2e6;
   m.tillotson.B = 0;
   const struct sph_body_physics solid = {.material = m, .strength = true};
   struct case_parameters parameters = case_parameters_default();
-  parameters.in.method.gradient_correction = true;
+  parameters.in.gradient_correction.on = true;
   parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0;
   parameters.domain.largest_time_step = 2e-9;
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
-  const double K = m.tillotson.A, mu = m.shear_modulus, Y = m.yield_stress, limit = Y / (2 * mu); /* strain at yield */
+  const double K = m.tillotson.A, mu = m.elastic.shear_modulus, Y = m.yield.stress,
+               limit = Y / (2 * mu); /* strain at yield */
   const double at[4] = {0.2 * limit, 0.8 * limit, 1.5 * limit, 2.2 * limit};
   double load[4] = {0};
   for (int k = 0; k < 4; k++) {
@@ -240,12 +241,12 @@ static void shear(void **state) {
   struct sph_particles *p = strained(6, 0, 0, 0, 200);
   const struct sph_body_physics solid = {.material = elastic_basalt(), .strength = true};
   struct case_parameters parameters = case_parameters_default();
-  parameters.in.method.gradient_correction = true;
+  parameters.in.gradient_correction.on = true;
   parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0;
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
   case_run(s, 1e-5);
   sph_system_read(s, p);
-  const double gamma = 200 * 1e-5, mu = case_basalt.shear_modulus;
+  const double gamma = 200 * 1e-5, mu = case_basalt.elastic.shear_modulus;
   for (size_t i = 0; i < p->n; i++) {
     /* Jaumann: S_xy = mu sin(gamma), S_xx = mu (1 - cos(gamma)) */
     assert_true(fabs(p->stress[1][i] / (mu * sin(gamma)) - 1) < 1e-5);
@@ -277,14 +278,14 @@ static double stretch(int growth, int cap, bool compact, double damage_step, dou
   struct sph_material m = elastic_basalt();
   const struct sph_body_physics solid = {.material = m, .strength = true, .flaws = flaws};
   struct case_parameters parameters = case_parameters_default();
-  parameters.in.method.gradient_correction = true;
+  parameters.in.gradient_correction.on = true;
   parameters.in.fracture.growth = growth;
   parameters.in.fracture.cap = cap;
-  parameters.in.fidelity.flaws = compact;
-  parameters.in.fidelity.damage_step = damage_step;
+  parameters.in.weibull.flaws = compact;
+  parameters.in.fracture.damage_step = damage_step;
   parameters.domain.largest_time_step = 5e-9;
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
-  const double K = m.tillotson.A, mu = m.shear_modulus, young = 9 * K * mu / (3 * K + mu);
+  const double K = m.tillotson.A, mu = m.elastic.shear_modulus, young = 9 * K * mu / (3 * K + mu);
   const double speed = 0.4 * sqrt((K + 4 * mu / 3) / 2700), radius = spacing * cbrt(3 / (4 * M_PI));
   double *d = calloc(p->n, sizeof *d), *before = calloc(p->n, sizeof *before), peak = 0;
   *worst = 0;
@@ -370,7 +371,7 @@ static void damaged_stress(void **state) {
       m.tillotson.B = 0;
       const struct sph_body_physics solid = {.material = m, .strength = true, .flaws = flaws};
       struct case_parameters parameters = case_parameters_default();
-      parameters.in.method.gradient_correction = true;
+      parameters.in.gradient_correction.on = true;
       parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0;
       struct sph_system *s = case_system(p, 1, &solid, &parameters);
       case_run(s, 1e-6);
@@ -382,7 +383,7 @@ static void damaged_stress(void **state) {
       sph_flaws_free(flaws);
       sph_particles_free(p);
     }
-  const double K = case_basalt.tillotson.A, mu = case_basalt.shear_modulus;
+  const double K = case_basalt.tillotson.A, mu = case_basalt.elastic.shear_modulus;
   const double squeezed = (K + 0.5 * 4 * mu / 3) / (K + 4 * mu / 3);
   print_message("half damaged over whole: stretched %.4f, squeezed %.4f (%.4f)\n", work[0][1] / work[0][0],
                 work[1][1] / work[1][0], squeezed);
@@ -428,7 +429,7 @@ static void pressures(void **state) {
   struct sph_material m = case_basalt;
   for (int limited = 0; limited < 2; limited++) {
     if (limited)
-      m.tension_limit = 1e9;
+      m.tension_limit.pressure = 1e9;
     const struct sph_body_physics fluid = {.material = m};
     const struct case_parameters parameters = case_parameters_default();
     struct sph_system *s = case_system(p, 1, &fluid, &parameters);
@@ -455,7 +456,7 @@ static void torn_matter_bears_no_shear(void **state) {
   for (int kind = 0; kind < 3; kind++) {
     struct sph_material m = case_basalt;
     if (kind < 2)
-      m.tension_limit = 1e9;
+      m.tension_limit.pressure = 1e9;
     const struct sph_body_physics body = {.material = m, .strength = true, .flaws = kind == 1 ? flaws : NULL};
     const struct case_parameters parameters = case_parameters_default();
     struct sph_system *s = case_system(p, 1, &body, &parameters);
@@ -471,7 +472,7 @@ static void torn_matter_bears_no_shear(void **state) {
       const double xx = s->c.stress[0][i], xy = s->c.stress[1][i], xz = s->c.stress[2][i], yy = s->c.stress[3][i],
                    yz = s->c.stress[4][i];
       const double J2 = xx * xx + yy * yy + xx * yy + xy * xy + xz * xz + yz * yz;
-      assert_true(fabs(sqrt(3 * J2) - whole * 0.75 * m.yield_stress) < 1e-12 * m.yield_stress);
+      assert_true(fabs(sqrt(3 * J2) - whole * 0.75 * m.yield.stress) < 1e-12 * m.yield.stress);
     }
     sph_system_free(s);
   }
@@ -491,7 +492,7 @@ static void elastic_pair(void **state) {
     const struct sph_body_physics body = {.material = elastic_basalt(), .strength = strength};
     const struct sph_body_physics physics[2] = {body, body};
     struct case_parameters parameters = case_parameters_default();
-    parameters.in.method.gradient_correction = correction;
+    parameters.in.gradient_correction.on = correction;
     struct sph_system *s = case_system(p, 2, physics, &parameters);
     const struct sph_ledger first = sph_system_ledger(s);
     case_run(s, 12e-6);

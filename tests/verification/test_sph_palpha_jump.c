@@ -46,11 +46,11 @@ static void engine_agrees(void **state) {
   (void)state;
   const struct exact_matter *m = &exact_porous_aluminium;
   struct sph_material solid = {.density = 2700, .tillotson = {7.52e10, 6.5e10, 0.5, 1.63, 5, 5, 5e6, 3e6, 1.39e7}};
-  struct sph_palpha given = {.distention = 1.275,
-                             .curve = SPH_CRUSH_QUADRATIC,
-                             .elastic_pressure = 80e6,
-                             .solid_pressure = 700e6,
-                             .sound_speed = 4110};
+  struct sph_palpha_material given = {.distention = 1.275,
+                                      .curve = SPH_CRUSH_QUADRATIC,
+                                      .elastic_pressure = 80e6,
+                                      .solid_pressure = 700e6,
+                                      .sound_speed = 4110};
   struct sph_palpha_law law;
   assert_int_equal(sph_palpha_prepare(&given, &solid, &law, NULL), STATUS_OK);
   for (double piston = 20; piston < 1500; piston *= 1.2) {

@@ -19,7 +19,7 @@ static struct sph_material aluminium(double distention) {
   struct error error = {0};
   if (sph_materials_load("porous-aluminium", &m, &error))
     fail_msg("%s", error.message);
-  m.porosity.distention = distention;
+  m.palpha.distention = distention;
   return m;
 }
 
@@ -76,7 +76,7 @@ static void slow_and_fast_pistons(void **state) {
        "its pressure");
   assert_int_equal(sph_plane_shock(&m, 1e9, &got, &error), STATUS_CONTENT);
   /* a solid: the known Hugoniot state of Melosh's aluminium */
-  m.porosity.curve = SPH_CRUSH_NONE;
+  m.palpha.curve = SPH_CRUSH_NONE;
   assert_int_equal(sph_plane_shock(&m, 1000, &got, &error), STATUS_OK);
   near(got.shock.speed, 6753.5, 1e-4, "Us of solid aluminium");
   near(got.shock.pressure, 18.234e9, 1e-4, "P of solid aluminium");
@@ -103,7 +103,7 @@ static struct sph_results run(int points, double piston) {
                 "(%.1f) m/s "
                 "%.2f MPa; energy %.1e; %lld steps\n",
                 points, piston, r.shock.speed, r.shock.speed_exact, r.shock.density, r.shock.density_exact,
-                r.shock.pressure / 1e6, r.shock.pressure_exact / 1e6, r.shock.distention, r.shock.distention_exact,
+                r.shock.pressure / 1e6, r.shock.pressure_exact / 1e6, r.palpha.shock, r.palpha.shock_exact,
                 r.precursor.speed, r.precursor.speed_exact, r.precursor.pressure / 1e6, ran.outcome.energy_error,
                 (long long)ran.outcome.steps);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
@@ -134,18 +134,18 @@ static void check(const struct sph_results *r, double piston, int points) {
   near(r->shock.speed, r->shock.speed_exact, 0.01, "Us");
   near(r->shock.density, r->shock.density_exact, points < 400 ? 0.002 : 0.001, "density behind the shock");
   near(r->shock.pressure, r->shock.pressure_exact, piston < 1000 ? 0.01 : 0.006, "pressure behind the shock");
-  near(r->shock.distention, r->shock.distention_exact, 0.005 / r->shock.distention_exact, "alpha behind the shock");
+  near(r->palpha.shock, r->palpha.shock_exact, 0.005 / r->palpha.shock_exact, "alpha behind the shock");
   near(r->precursor.speed, r->precursor.speed_exact, 0.005, "precursor");
   near(r->precursor.pressure, r->precursor.pressure_exact, 0.01, "pressure of the precursor");
   const double on_curve = exact_alpha(&exact_porous_aluminium, r->precursor.pressure);
-  near(r->precursor.distention, on_curve, 1e-4, "alpha of the precursor at its pressure"); /* it changes by 1.1e-3 */
+  near(r->palpha.precursor, on_curve, 1e-4, "alpha of the precursor at its pressure"); /* it changes by 1.1e-3 */
   if (precursor_is_flat(piston, points))
-    near(r->precursor.distention, r->precursor.distention_exact, 1e-4, "alpha of the precursor");
+    near(r->palpha.precursor, r->palpha.precursor_exact, 1e-4, "alpha of the precursor");
 }
 
 /* Error of a result that depends only on the curve: the weak shock leaves alpha = 1.0334. It falls with the spacing. */
 static double weak_error(const struct sph_results *r) {
-  return fabs(r->shock.distention - r->shock.distention_exact);
+  return fabs(r->palpha.shock - r->palpha.shock_exact);
 }
 static double precursor_error(const struct sph_results *r) {
   return fabs(r->precursor.speed - r->precursor.speed_exact);
@@ -187,7 +187,7 @@ static void solid_and_elastic(void **state) {
   const struct sph_results solid = ran.results.sph;
   near(solid.shock.speed, 6753.5, 0.01, "Us of the solid");
   near(solid.shock.pressure, 18.234e9, 0.01, "P of the solid");
-  assert_true(isnan(solid.precursor.speed) && isnan(solid.shock.distention) && isnan(solid.shock.distention_exact));
+  assert_true(isnan(solid.precursor.speed) && isnan(solid.palpha.shock) && isnan(solid.palpha.shock_exact));
   inputs = SPH_CASE("porous-plate", "fidelity.points=100", "piston.speed=5 m/s");
   ran = run_case_run(&sph_engine, &inputs, 1);
   free(ran.fragments);

@@ -13,15 +13,15 @@ static const double spacing = 1e-3, rate = 1e5, time_step = 2e-9;
 
 static struct sph_material rock(void) {
   struct sph_material m = case_basalt;
-  m.pressure_strength = (struct sph_pressure_strength){SPH_PRESSURE_STRENGTH_LUNDBORG, 90e6, 2, 1.5e9, 0, 0.8};
-  m.yield_stress = 1; /* must not be read */
+  m.pressure_strength = (struct sph_pressure_strength_material){SPH_PRESSURE_STRENGTH_LUNDBORG, 90e6, 2, 1.5e9, 0, 0.8};
+  m.yield.stress = 1; /* must not be read */
   m.melt_energy = NAN;
   return m;
 }
 
 /* The published law, written independently: the bound of sqrt(J2). */
 static double bound(const struct sph_material *m, double pressure, double damage, double energy) {
-  const struct sph_pressure_strength *k = &m->pressure_strength;
+  const struct sph_pressure_strength_material *k = &m->pressure_strength;
   const double p = fmax(pressure, 0), friction = k->intact_friction * p;
   const double intact = k->intact_cohesion + friction / (1 + friction / (k->intact_limit - k->intact_cohesion));
   const double broken = fmin(k->broken_cohesion + k->broken_friction * p, intact);
@@ -59,7 +59,7 @@ static struct sph_system *cell(const struct sph_material *m, double pressure, do
   struct sph_flaws *flaws = case_flaws(p->n, volume, 1, 0);
   const struct sph_body_physics body = {.material = *m, .strength = true, .flaws = flaws};
   struct case_parameters parameters = case_parameters_default();
-  parameters.in.method.gradient_correction = true;
+  parameters.in.gradient_correction.on = true;
   parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0;
   parameters.domain.largest_time_step = time_step;
   struct sph_system *s = case_system(p, 1, &body, &parameters);
@@ -97,7 +97,7 @@ static double load(const struct sph_material *m, double pressure, double damage,
  * times the velocity gradient, which grows by its square times dt: mu (rate dt)^2 per component, 3 of them at most. The
  * energy that is read differs by as small a share of a step's heating: 1e-8 of u_melt, and less in Y. */
 static double arithmetic(void) {
-  return 3 * case_basalt.shear_modulus * pow(rate * time_step / (1 - 0.06), 2);
+  return 3 * case_basalt.elastic.shear_modulus * pow(rate * time_step / (1 - 0.06), 2);
 }
 
 static void triaxial_cell(void **state) {
@@ -156,9 +156,9 @@ static void von_mises(void **state) {
   (void)state;
   struct sph_material m = rock(), plain = case_basalt;
   double stress[2][6];
-  m.pressure_strength = (struct sph_pressure_strength){SPH_PRESSURE_STRENGTH_LUNDBORG, 2e8, 0, 1e9, 0, 0};
+  m.pressure_strength = (struct sph_pressure_strength_material){SPH_PRESSURE_STRENGTH_LUNDBORG, 2e8, 0, 1e9, 0, 0};
   plain.melt_energy = NAN;
-  plain.yield_stress = sqrt(3.0) * 2e8;
+  plain.yield.stress = sqrt(3.0) * 2e8;
   for (int k = 0; k < 2; k++) {
     struct sph_particles *p;
     struct sph_system *s = cell(k ? &plain : &m, 5e8, 0, 0, 1e-30, &p);
@@ -180,7 +180,7 @@ static void what_acts(void **state) {
     for (int tension = 0; tension < 2; tension++) {
       struct sph_material m = rock();
       m.pressure_strength.law = law;
-      m.yield_stress = 1e9;
+      m.yield.stress = 1e9;
       struct sph_particles *p;
       struct sph_system *s = cell(&m, tension ? -1e8 : 1e8, 0.75, 0, 1e-30, &p);
       case_steps(s, 1);
@@ -212,7 +212,7 @@ static void waves_of_broken_rock(void **state) {
       sph_particles_free(p);
     }
   /* h over c_L; c_L^2 = c^2 + 4/3 mu/rho, c^2 = (K/rho) to some per cent of pressure */
-  const double faster = sqrt(1 + 4.0 / 3 * case_basalt.shear_modulus / case_basalt.tillotson.A);
+  const double faster = sqrt(1 + 4.0 / 3 * case_basalt.elastic.shear_modulus / case_basalt.tillotson.A);
   assert_true(fabs(step[1][1] / step[1][0] - 1) < 1e-3);
   assert_true(fabs(step[0][1] / step[0][0] / faster - 1) < 0.03);
 }
@@ -225,7 +225,7 @@ static void strain_of_flaws(void **state) {
     for (int tension = 0; tension < 2; tension++) {
       struct sph_material m = rock();
       m.pressure_strength.law = law;
-      m.yield_stress = 1e9;
+      m.yield.stress = 1e9;
       struct sph_particles *p;
       struct sph_system *s = cell(&m, 1e8, 0.5, 0, 216 * pow(spacing, 3), &p);
       for (size_t i = 0; i < s->n; i++) {
@@ -254,11 +254,11 @@ static void strain_of_flaws(void **state) {
 static void pores(void **state) {
   (void)state;
   struct sph_material m = rock();
-  m.porosity = (struct sph_palpha){.distention = 1.5,
-                                   .curve = SPH_CRUSH_QUADRATIC,
-                                   .elastic_pressure = 5e6,
-                                   .solid_pressure = 3e8,
-                                   .sound_speed = 1800};
+  m.palpha = (struct sph_palpha_material){.distention = 1.5,
+                                          .curve = SPH_CRUSH_QUADRATIC,
+                                          .elastic_pressure = 5e6,
+                                          .solid_pressure = 3e8,
+                                          .sound_speed = 1800};
   const struct case_block block = {.count = {6, 6, 6}, .spacing = spacing};
   struct sph_particles *p = case_make(&block, 1, 2700 / 1.5, 1.21, SPH_WITH_STRESS);
   const struct sph_body_physics body = {.material = m, .strength = true};

@@ -31,10 +31,10 @@ static struct rings collide(double epsilon, double across, bool correction) {
     c.physics[b].material = (struct sph_material){
         .density = 1000,
         .tillotson = {.A = 1e7, .B = 0, .a = 0, .b = 0, .alpha = 5, .beta = 5, .E0 = 1e9, .E_iv = 1e9, .E_cv = 2e9},
-        .shear_modulus = 0.22e7,
-        .yield_stress = HUGE_VAL,
+        .elastic.shear_modulus = 0.22e7,
+        .yield.stress = HUGE_VAL,
         .melt_energy = (double)NAN,
-        .tension_limit = (double)NAN};
+        .tension_limit.pressure = (double)NAN};
     c.physics[b].strength = true;
     c.body[b].shape = (struct sph_shape){.kind = SPH_SHAPE_CYLINDER,
                                          .centre = {b ? 4.5 * cm : -4.5 * cm, 0, height / 2},
@@ -46,8 +46,8 @@ static struct rings collide(double epsilon, double across, bool correction) {
     c.body[b].lattice.periodic[2] = true;
   }
   c.parameters.domain.periodic[2] = height;
-  c.parameters.in.method.artificial_stress = epsilon;
-  c.parameters.in.method.gradient_correction = correction;
+  c.parameters.in.artificial_stress.epsilon = epsilon;
+  c.parameters.in.gradient_correction.on = correction;
   c.parameters.in.viscosity.alpha = 1; /* as in the paper */
   c.parameters.in.viscosity.beta = 2;
   solid_build(&c, SPH_WITH_STRESS);

@@ -83,10 +83,10 @@ static struct front run_crack(const struct form *form, double particles) {
     if (hypot(p->x[i], p->y[i]) < 3e-3 && fabs(p->z[i]) < spacing)
       p->damage_cbrt[i] = 1;
   }
-  c.parameters.in.method.gradient_correction = form->correction;
+  c.parameters.in.gradient_correction.on = form->correction;
   c.parameters.in.fracture.growth = SPH_GROWTH_CUBE_ROOT;
   c.parameters.in.fracture.crack_radius = form->support;
-  c.parameters.in.fracture.front = form->front;
+  c.parameters.in.crack_front.front = form->front;
   struct sph_flaws *flaws = one_flaw_each(p, form->ratio * strain, form->starter_only);
   c.physics[0].flaws = flaws;
   solid_start(&c);
@@ -222,7 +222,7 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
   struct sph_particles *p = c.particles;
   const struct sph_material *m = &c.physics[0].material;
   const double centre[3] = {0, 0, 0}, axis[3] = {0, 0, 1}, young = solid_young(m),
-               cg = 0.4 * sqrt((m->tillotson.A + 4 * m->shear_modulus / 3) / m->density);
+               cg = 0.4 * sqrt((m->tillotson.A + 4 * m->elastic.shear_modulus / 3) / m->density);
   const double alpha = 8 * M_PI * pow(cg, 3) * m->weibull.k /
                        ((m->weibull.m + 1) * (m->weibull.m + 2) * (m->weibull.m + 3)),
                q = m->weibull.m + 3;

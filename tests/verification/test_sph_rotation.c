@@ -28,9 +28,9 @@ static double turn(bool correction, bool inside_only, double *turned) {
   const double radius = 5e-3, spin = 1e5, step = M_PI / 120;
   struct solid_case c = solid_make(1);
   c.physics[0].material = solid_basalt();
-  c.physics[0].material.shear_modulus = 0;
+  c.physics[0].material.elastic.shear_modulus = 0;
   c.physics[0].strength = true;
-  c.parameters.in.method.gradient_correction = correction;
+  c.parameters.in.gradient_correction.on = correction;
   c.parameters.domain.largest_time_step = step / spin / 20;
   c.body[0].shape = (struct sph_shape){.kind = SPH_SHAPE_SPHERE, .radius = radius};
   c.body[0].lattice.particles = 600;
@@ -97,7 +97,7 @@ static double spin(bool correction, double turns, double *energy_error, double *
   struct solid_case c = solid_make(1);
   c.physics[0].material = solid_basalt();
   c.physics[0].strength = true;
-  c.parameters.in.method.gradient_correction = correction;
+  c.parameters.in.gradient_correction.on = correction;
   c.body[0].shape = (struct sph_shape){.kind = SPH_SHAPE_SPHERE, .radius = radius};
   c.body[0].lattice.particles = 600;
   solid_build(&c, SPH_WITH_STRESS);
@@ -153,7 +153,7 @@ static void impact(bool correction, int precision) {
     c.body[b].lattice.seed = 7;
     c.body[b].lattice.body = (uint64_t)b;
   }
-  c.parameters.in.method.gradient_correction = correction;
+  c.parameters.in.gradient_correction.on = correction;
   c.parameters.in.fidelity.precision = precision;
   double flight[3];
   const double direction[3] = {0, 0.2, 1};

@@ -18,8 +18,8 @@ static void speeds_are_as_printed(void **state) {
   (void)state;
   struct sph_material m = solid_basalt();
   assert_true(fabs(sqrt(solid_young(&m) / m.density) - 4433) < 0.5);
-  assert_true(fabs(sqrt((m.tillotson.A + 4 * m.shear_modulus / 3) / m.density) - 4593) < 0.5);
-  assert_true(fabs(sqrt(m.shear_modulus / m.density) - 2900) < 0.5);
+  assert_true(fabs(sqrt((m.tillotson.A + 4 * m.elastic.shear_modulus / 3) / m.density) - 4593) < 0.5);
+  assert_true(fabs(sqrt(m.elastic.shear_modulus / m.density) - 2900) < 0.5);
 }
 
 struct wave {
@@ -35,13 +35,14 @@ static struct wave plane_wave(int lattice, enum polarisation kind, int along, do
   struct solid_case c = solid_make(1);
   c.physics[0].material = solid_basalt();
   c.physics[0].strength = true;
-  c.parameters.in.method.gradient_correction = correction;
+  c.parameters.in.gradient_correction.on = correction;
   solid_bar(&c, lattice, along, length, spacing, true);
   solid_build(&c, SPH_WITH_STRESS);
   struct sph_particles *p = c.particles;
   const struct sph_material *m = &c.physics[0].material;
   const double exact = sqrt(
-      ((kind == SHEAR_WAVE ? 0 : m->tillotson.A) + (kind == SHEAR_WAVE ? 1 : 4.0 / 3) * m->shear_modulus) / m->density);
+      ((kind == SHEAR_WAVE ? 0 : m->tillotson.A) + (kind == SHEAR_WAVE ? 1 : 4.0 / 3) * m->elastic.shear_modulus) /
+      m->density);
   const int moves = kind == SHEAR_WAVE ? (along + 1) % 3 : along;
   const double k = 2 * M_PI / length;
   double *shape = malloc(p->n * sizeof *shape);
@@ -127,8 +128,9 @@ static double pochhammer(double k, double c, double ratio2) {
 
 /* Phase speed of the first longitudinal mode, m/s. */
 static double rod_speed(const struct sph_material *m, double radius, double length) {
-  double cs = sqrt(m->shear_modulus / m->density), bar = sqrt(solid_young(m) / m->density) / cs;
-  double ratio2 = (m->tillotson.A + 4 * m->shear_modulus / 3) / m->shear_modulus, k = 2 * M_PI / length * radius;
+  double cs = sqrt(m->elastic.shear_modulus / m->density), bar = sqrt(solid_young(m) / m->density) / cs;
+  double ratio2 = (m->tillotson.A + 4 * m->elastic.shear_modulus / 3) / m->elastic.shear_modulus,
+         k = 2 * M_PI / length * radius;
   double low = 0.8 * bar, high = 1.001 * bar;
   assert_true(pochhammer(k, low, ratio2) * pochhammer(k, high, ratio2) < 0);
   for (int it = 0; it < 60; it++) {
@@ -155,7 +157,7 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
   struct solid_case c = solid_make(1);
   c.physics[0].material = solid_basalt();
   c.physics[0].strength = true;
-  c.parameters.in.method.gradient_correction = correction;
+  c.parameters.in.gradient_correction.on = correction;
   struct sph_body *b = &c.body[0];
   b->shape = (struct sph_shape){.kind = SPH_SHAPE_CYLINDER,
                                 .centre = {0, 0, length / 2},

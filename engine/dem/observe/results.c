@@ -3,24 +3,23 @@
 
 #include <math.h>
 
+#include "engine/rows.h"
+
 static const char *const reasons[] = {"running", "quiet", "end-time", "strain", "failure", "fault", NULL};
 
-#define ROW(path_, kind_, unit_, ...)                                                                                  \
-  { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct dem_results, path_), __VA_ARGS__ }
-#define COUNT(path_, doc_) ROW(path_, FIELD_INTEGER, "1", .minimum = 0, .maximum = HUGE_VAL, .doc = doc_)
-#define REAL(path_, unit_, low, ...)                                                                                   \
-  ROW(path_, FIELD_REAL, unit_, .minimum = low, .maximum = HUGE_VAL, .number = NAN, .flags = FIELD_MAY_BE_OFF,         \
-      __VA_ARGS__)
+#define RESULTS            dem_results
+#define REAL(path_, ...)   RESULT_REAL(path_, path_, __VA_ARGS__)
+#define COUNT(path_, doc_) RESULT_COUNT(path_, path_, .doc = doc_)
 
 static const struct field rows[] = {
-    ROW(stop_reason, FIELD_CHOICE, NULL, .choices = reasons,
-        .choice_docs = "the run has not ended\n"
-                       "no beam broke for the scene's quiet time\n"
-                       "the hard end came\n"
-                       "the final strain was reached\n"
-                       "the stress fell below the scene's residual share of its maximum\n"
-                       "a numerical fault: the outcome's state says which",
-        .doc = "Why the run ended."),
+    ROW_OF(dem_results, stop_reason, stop_reason, FIELD_CHOICE, NULL, .choices = reasons,
+           .choice_docs = "the run has not ended\n"
+                          "no beam broke for the scene's quiet time\n"
+                          "the hard end came\n"
+                          "the final strain was reached\n"
+                          "the stress fell below the scene's residual share of its maximum\n"
+                          "a numerical fault: the outcome's state says which",
+           .doc = "Why the run ended."),
     COUNT(grains, "Number of grains, without the explosive one."),
     COUNT(beams, "Number of beams at the start, without those of the explosive grain."),
     COUNT(broken, "Beams broken."),

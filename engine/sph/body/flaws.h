@@ -23,7 +23,7 @@
 enum sph_flaw_draw { SPH_FLAWS_RANKED, SPH_FLAWS_POISSON };
 
 struct sph_flaw_law {
-  struct sph_weibull weibull;
+  struct sph_weibull_material weibull;
   double volume;      /* m^3, of solid matter */
   double solid_ratio; /* sph_flaws_place: density of the solid over that of the body; 0 counts as 1 */
   int draw;           /* enum sph_flaw_draw */

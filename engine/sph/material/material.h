@@ -1,43 +1,29 @@
-/* Values of a solid that the equation of state, strength and fracture need. The modules that are on
- * decide which of them a scene needs; a value that is not given is NaN, and the module that needs it refuses it.
+/* Values of a solid that the equation of state, strength and fracture need. The modules that are on decide which of
+ * them a scene needs; a value that is not given is NaN, and the module that needs it refuses it.
  *
- * To add a value or a choice that one module needs: MATERIAL_MEMBERS and a row in its header (modules/declarations.h);
- * values that several modules read are here, in SPH_MATERIAL_COMMON. The documents of engine/sph/material/builtin/ are
- * read through the rows (materials.c), and each body of a scene has them as inputs (scene/inputs.c), there with the
- * named material's values as defaults. A row is of one of three kinds:
+ * A value or a choice that one module needs is a member of its struct and a row of its table (modules/declarations.h);
+ * values that several modules read are here, and their rows in materials.c. The documents of
+ * engine/sph/material/builtin/ are read through the rows, and each body of a scene has them as inputs
+ * (scene/inputs.c), there with the named material's values as defaults.
  *
- * MATERIAL_VALUE(member, unit, minimum, maximum, flags, need, doc, source): a number.
- *
- * MATERIAL_CHOICE(member, choices, absent, need, name, choice_docs, doc, source): a word. The first one is the default,
- * and no value counts with it. `name` is what messages call the choice.
- *
- * MATERIAL_CHOICE_VALUE(member, unit, default, minimum, maximum, flags, when, doc, source): a number that counts only
- * with certain words of a choice: `when` is "path=word|word". With default NAN the material must give it.
- *
- * `need` says which bodies use it: ALWAYS, STRENGTH, FRACTURE. Flags: OFF, it may be off; ABOVE its minimum. `absent`
- * of a choice that came later: field.absent. */
+ * The default of a number is NAN: a material gives it (FIELD_REQUIRED), or it is off unless given (FIELD_MAY_BE_OFF).
+ * `.when` says which bodies use it: "../strength=true", "../fracture=auto|on", or a choice of the material. The first
+ * word of a choice is the default, and no value counts with it; its label is what messages call it. */
 #ifndef CLAST_ENGINE_SPH_MATERIAL_MATERIAL_H
 #define CLAST_ENGINE_SPH_MATERIAL_MATERIAL_H
 
-#include <math.h>
-
-#include "schemas/field.h"
+#include "engine/sph/modules/structs.h"
 
 struct sph_material {
   double density;     /* kg/m^3 at rest */
   double melt_energy; /* J/kg, NaN: yield does not depend on u */
-#define MATERIAL_MEMBERS(...) __VA_ARGS__
+#define MODULE_MATERIAL(name) struct sph_##name##_material name;
 #include "engine/sph/modules/declarations.h"
 };
 
-#define SPH_MATERIAL_OFF   FIELD_MAY_BE_OFF
-#define SPH_MATERIAL_ABOVE FIELD_ABOVE_MINIMUM
-#define SPH_CHOICES(...)   ((const char *const[]){__VA_ARGS__, NULL})
-
-#define SPH_MATERIAL_COMMON(VALUE)                                                                                     \
-  VALUE(density, "kg/m^3", 1e-3, 1e6, 0, ALWAYS, "rho_0: density at rest.", NULL)                                      \
-  VALUE(melt_energy, "J/kg", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH,                                                      \
-        "Energy at which the yield stress has fallen to zero, linearly. off: it does not depend on energy.",           \
-        "Benz & Asphaug 1995, section 2")
+/* Rows; the including file defines MATERIAL, the name of the struct (engine/rows.h). */
+#define MATERIAL_REAL(path_, member_, ...) REAL_OF(MATERIAL, path_, member_, __VA_ARGS__)
+#define MATERIAL_CHOICE(path_, member_, choices_, ...)                                                                 \
+  ROW_OF(MATERIAL, path_, member_, FIELD_CHOICE, NULL, .choices = choices_, __VA_ARGS__)
 
 #endif

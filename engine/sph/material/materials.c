@@ -8,42 +8,28 @@
 #include "schemas/document.h"
 #include "schemas/text.h"
 
-/* What may be off is off unless given; what else has no default must be given. */
-#define MATERIAL_CHOICE_VALUE(member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)                     \
-  {.path = #member_,                                                                                                   \
-   .kind = FIELD_REAL,                                                                                                 \
-   .unit = unit_,                                                                                                      \
-   .offset = offsetof(struct sph_material, member_),                                                                   \
-   .minimum = low_,                                                                                                    \
-   .maximum = high_,                                                                                                   \
-   .number = default_,                                                                                                 \
-   .flags = (flags_) | (isnan((double)(default_)) && !((flags_)&FIELD_MAY_BE_OFF) ? FIELD_REQUIRED : 0),               \
-   .when = when_,                                                                                                      \
-   .doc = doc_,                                                                                                        \
-   .source = source_},
-#define MATERIAL_VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                      \
-  MATERIAL_CHOICE_VALUE(member_, unit_, NAN, low_, high_, flags_, NULL, doc_, source_)
-#define MATERIAL_CHOICE(member_, choices_, absent_, need_, name_, choice_docs_, doc_, source_)                         \
-  {.path = #member_,                                                                                                   \
-   .kind = FIELD_CHOICE,                                                                                               \
-   .offset = offsetof(struct sph_material, member_),                                                                   \
-   .choices = choices_,                                                                                                \
-   .choice_docs = choice_docs_,                                                                                        \
-   .absent = absent_,                                                                                                  \
-   .doc = doc_,                                                                                                        \
-   .source = source_},
+#define MATERIAL sph_material
 
-static const struct field rows[] = {SPH_MATERIAL_COMMON(MATERIAL_VALUE)
+static const struct field rows[] = {
+    MATERIAL_REAL(density, density, "kg/m^3", NAN, 1e-3, 1e6, .flags = FIELD_REQUIRED,
+                  .doc = "rho_0: density at rest."),
+    MATERIAL_REAL(melt_energy, melt_energy, "J/kg", NAN, 1, 1e15, .flags = FIELD_MAY_BE_OFF, .when = "../strength=true",
+                  .doc = "Energy at which the yield stress has fallen to zero, linearly. off: it does not depend on "
+                         "energy.",
+                  .source = "Benz & Asphaug 1995, section 2"),
+#define MODULE_MATERIAL(name) {.offset = offsetof(struct sph_material, name), .nest = &sph_##name##_material},
 #include "engine/sph/modules/declarations.h"
 };
 
 const struct field_table
-    sph_materials_table = FIELD_TABLE(rows, struct sph_material, "sph material",
-                                      "The values of a solid that the scene's physics may ask for.");
+    sph_materials_nested = FIELD_TABLE(rows, struct sph_material, "sph material",
+                                       "The values of a solid that the scene's physics may ask for.");
+struct field_table sph_materials_table;
+FIELD_TABLE_AT_START(sph_materials_table, sph_materials_nested)
 
 size_t sph_materials_row(size_t offset) {
   size_t row = 0;
-  while (rows[row].offset != offset)
+  while (sph_materials_table.rows[row].offset != offset)
     row++;
   return row;
 }
@@ -69,9 +55,11 @@ const char *sph_materials_text(const char *name) {
 /* Is it a value, or a section of values? */
 static bool is_value(const char *path) {
   const size_t length = strlen(path);
-  for (size_t i = 0; i < sph_materials_table.count; i++)
-    if (strncmp(rows[i].path, path, length) == 0 && (rows[i].path[length] == '.' || rows[i].path[length] == '\0'))
+  for (size_t i = 0; i < sph_materials_table.count; i++) {
+    const char *known = sph_materials_table.rows[i].path;
+    if (strncmp(known, path, length) == 0 && (known[length] == '.' || known[length] == '\0'))
       return true;
+  }
   return false;
 }
 

@@ -7,7 +7,8 @@
 #include "engine/sph/material/material.h"
 #include "schemas/field.h"
 
-extern const struct field_table sph_materials_table; /* describes struct sph_material */
+extern const struct field_table sph_materials_nested; /* describes struct sph_material; a body of a scene contains it */
+extern struct field_table sph_materials_table;        /* the same, flat; constant once main() begins */
 
 /* The row of a member of struct sph_material, by its offset. */
 size_t sph_materials_row(size_t offset);

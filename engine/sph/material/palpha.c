@@ -9,7 +9,7 @@
 /* 1. Curves */
 
 double sph_palpha_crush(const struct sph_palpha_law *law, double p) {
-  const struct sph_palpha *g = &law->given;
+  const struct sph_palpha_material *g = &law->given;
   if (p <= g->elastic_pressure)
     return law->elastic_distention;
   if (p >= g->solid_pressure)
@@ -25,7 +25,7 @@ double sph_palpha_crush(const struct sph_palpha_law *law, double p) {
 }
 
 double sph_palpha_crush_slope(const struct sph_palpha_law *law, double p) {
-  const struct sph_palpha *g = &law->given;
+  const struct sph_palpha_material *g = &law->given;
   if (p <= g->elastic_pressure || p >= g->solid_pressure)
     return 0;
   double range = g->solid_pressure - g->elastic_pressure, left = (g->solid_pressure - p) / range;
@@ -112,7 +112,7 @@ static status refuse(struct error *error, const char *what, double value, const 
   return status_fail(error, STATUS_CONTENT, "porosity.%s is %.9g: %s", what, value, remedy);
 }
 
-static status check_curve(const struct sph_palpha *g, struct error *error) {
+static status check_curve(const struct sph_palpha_material *g, struct error *error) {
   if (g->curve != SPH_CRUSH_QUADRATIC && g->curve != SPH_CRUSH_TWO_POWER)
     return refuse(error, "curve", g->curve, "it must be quadratic or two-power");
   const struct {
@@ -183,7 +183,7 @@ static status too_soft(const struct sph_palpha_law *law, struct error *error) {
 
 /* alpha_e is given. */
 static status prepare_two_power(struct sph_palpha_law *law, double ratio, struct error *error) {
-  const struct sph_palpha *given = &law->given;
+  const struct sph_palpha_material *given = &law->given;
   if (!set_stiffness(law, ratio, given->elastic_distention))
     return refuse(error, "distention", given->distention,
                   "it is too far above elastic_distention for sound_speed: lower it, or raise one of the others");
@@ -208,8 +208,8 @@ static status prepare_quadratic(struct sph_palpha_law *law, double ratio, struct
   return too_soft(law, error);
 }
 
-status sph_palpha_prepare(const struct sph_palpha *given, const struct sph_material *solid, struct sph_palpha_law *out,
-                          struct error *error) {
+status sph_palpha_prepare(const struct sph_palpha_material *given, const struct sph_material *solid,
+                          struct sph_palpha_law *out, struct error *error) {
   status code = check_curve(given, error);
   if (code)
     return code;

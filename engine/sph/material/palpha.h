@@ -24,8 +24,8 @@
 
 /* A law: the values given, the solid, and constants that follow from both. */
 struct sph_palpha_law {
-  struct sph_palpha given; /* material.h */
-  struct sph_tillotson solid;
+  struct sph_palpha_material given; /* material.h */
+  struct sph_tillotson_material solid;
   double solid_density;      /* kg/m^3, rho_s0 */
   double elastic_distention; /* alpha_e: where the crush curve begins, at P_e */
   double stiffness_slope;    /* q = (1 - c_e/c_s)/(alpha_e - 1), so that h = 1 - q(alpha - 1); 0: no elastic change */
@@ -33,8 +33,8 @@ struct sph_palpha_law {
 
 /* alpha_e of the quadratic curve is where the elastic branch from alpha_0 at P = 0 meets P_e: implicit, since h
  * contains it. STATUS_CONTENT: a value that gives no law; the message has its name and a remedy. */
-status sph_palpha_prepare(const struct sph_palpha *given, const struct sph_material *solid, struct sph_palpha_law *out,
-                          struct error *error);
+status sph_palpha_prepare(const struct sph_palpha_material *given, const struct sph_material *solid,
+                          struct sph_palpha_law *out, struct error *error);
 
 /* The crush curve: alpha_e up to P_e, 1 from P_s on; its slope dalpha/dP <= 0 in 1/Pa (0 outside P_e..P_s). */
 double sph_palpha_crush(const struct sph_palpha_law *law, double pressure);

@@ -31,7 +31,7 @@ static double distention_at(const struct matter *m, double pressure) {
  * P_s(alpha rho, u(rho)) rises with rho. */
 static struct sph_front front_to(const struct matter *m, const struct sph_front *ahead, double pressure) {
   struct sph_front f = {.pressure = pressure, .distention = distention_at(m, pressure)};
-  const struct sph_tillotson *t = &m->material->tillotson;
+  const struct sph_tillotson_material *t = &m->material->tillotson;
   double low = ahead->density, high = 20 * m->material->density, mean = (ahead->pressure + pressure) / 2;
   for (int k = 0; k < HALVINGS; k++) {
     f.density = (low + high) / 2;
@@ -87,7 +87,7 @@ status sph_plane_shock(const struct sph_material *material, double piston, struc
   const bool porous = sph_derived_solid_ratio(material) > 1;
   struct sph_palpha_law law;
   *out = (struct sph_plane_shock){.precursor = none, .shock = none};
-  status code = porous ? sph_palpha_prepare(&material->porosity, material, &law, error) : STATUS_OK;
+  status code = porous ? sph_palpha_prepare(&material->palpha, material, &law, error) : STATUS_OK;
   if (code)
     return code;
   const struct matter m = {.material = material, .law = porous ? &law : NULL};

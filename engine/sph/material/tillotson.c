@@ -7,7 +7,7 @@ struct branch {
   double p, by_rho, by_u;
 };
 
-static struct branch compressed(const struct sph_tillotson *t, double rho0, double rho, double u) {
+static struct branch compressed(const struct sph_tillotson_material *t, double rho0, double rho, double u) {
   double eta = rho / rho0, mu = eta - 1;
   double B = eta < 1 ? 0 : t->B;
   double e = t->E0 * eta * eta, w = u / e + 1;
@@ -20,7 +20,7 @@ static struct branch compressed(const struct sph_tillotson *t, double rho0, doub
   return c;
 }
 
-static struct branch expanded(const struct sph_tillotson *t, double rho0, double rho, double u) {
+static struct branch expanded(const struct sph_tillotson_material *t, double rho0, double rho, double u) {
   double eta = rho / rho0, mu = eta - 1;
   double z = 1 / eta - 1;
   double e = t->E0 * eta * eta, w = u / e + 1;
@@ -37,7 +37,7 @@ static struct branch expanded(const struct sph_tillotson *t, double rho0, double
   return x;
 }
 
-struct sph_pressure sph_tillotson(const struct sph_tillotson *t, double rho0, double rho, double u) {
+struct sph_pressure sph_tillotson(const struct sph_tillotson_material *t, double rho0, double rho, double u) {
   if (u < 0)
     u = 0;
   struct branch r;

@@ -20,6 +20,6 @@ struct sph_pressure {
 };
 
 /* u < 0 is evaluated at u = 0 (the pole is at -E0 eta^2). The step holds u at 0, too, and the ledger counts that. */
-struct sph_pressure sph_tillotson(const struct sph_tillotson *t, double density0, double density, double u);
+struct sph_pressure sph_tillotson(const struct sph_tillotson_material *t, double density0, double density, double u);
 
 #endif

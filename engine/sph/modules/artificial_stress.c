@@ -9,9 +9,18 @@
  * internal energy of a particle is then held at zero, and the ledger counts the difference (energy.clamped). */
 #include "engine/sph/modules/ranges.h"
 
+#define INPUTS sph_artificial_stress_inputs
+
+static const struct field input_rows[] = {
+    INPUT_REAL(method.artificial_stress, epsilon, "1", 0, 0, 1,
+               .doc = "Monaghan's epsilon against clumping in tension, for bodies that do not crack. 0: it is absent.",
+               .source = "Monaghan 2000; Gray, Monaghan & Swift 2001"),
+};
+const struct field_table sph_artificial_stress_inputs = SPH_MODULE_TABLE(sph_artificial_stress_inputs, input_rows);
+
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)body, (void)inputs;
-  return inputs->method.artificial_stress > 0;
+  return inputs->artificial_stress.epsilon > 0;
 }
 
 const struct sph_module sph_artificial_stress_module = {

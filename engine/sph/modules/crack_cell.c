@@ -17,6 +17,17 @@
 #include "engine/sph/modules/ranges.h"
 #include "engine/sph/modules/weibull_lists.h"
 
+#define INPUTS sph_crack_cell_inputs
+
+static const struct field input_rows[] = {
+    INPUT_REAL(fracture.cell, width, "m", 0, 0, 1e9, .absent = "0", .when = "target.fracture=auto|on",
+               .doc = "Width of the cells that crack as one: their particles share flaws, mean stress and damage. "
+                      "Strength then depends on this width and not on the number of particles, where a cell holds "
+                      "several particles. 0: each particle cracks by itself, as printed.",
+               .source = "our choice; BA95 for 0"),
+};
+const struct field_table sph_crack_cell_inputs = SPH_MODULE_TABLE(sph_crack_cell_inputs, input_rows);
+
 enum { BYTES_EACH = 12 };
 
 /* Particles are named by their number within their body, which sorting does not change. */
@@ -28,7 +39,7 @@ struct cells {
 };
 
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
-  return body->flaws != NULL && inputs->fracture.cell > 0;
+  return body->flaws != NULL && inputs->crack_cell.width > 0;
 }
 
 static void free_prepared(void *prepared) {
@@ -63,7 +74,7 @@ static status prepare(const struct sph_inputs *inputs, const struct sph_particle
   const struct sph_cells *given = body->physics.flaws->cells;
   if (!given)
     return status_fail(error, STATUS_CONTENT, "fracture.cell is %g m, but the flaws are those of particles",
-                       inputs->fracture.cell);
+                       inputs->crack_cell.width);
   struct cells *c = calloc(1, sizeof *c);
   if (c) {
     c->count = given->count;

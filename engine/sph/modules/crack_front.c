@@ -19,10 +19,26 @@
 #include "engine/sph/material/derived.h"
 #include "engine/sph/modules/ranges.h"
 
+#define INPUTS sph_crack_front_inputs
+
+static const struct field input_rows[] = {
+    INPUT_CHOICE(fracture.front, front, CHOICES("none", "plane"), .absent = "none", .when = "target.fracture=auto|on",
+                 .choice_docs =
+                     "it ends at its particle, and each particle breaks by flaws of its own, as printed: strength "
+                     "grows with the number of particles\n"
+                     "it runs on in its plane at c_g",
+                 .doc = "Length of a crack that starts at a flaw.", .source = "BA95 for `none`; `plane` is ours"),
+    INPUT_REAL(fracture.front_arrest, arrest, "1", 0.5, 0, 1, .when = "fracture.front=plane",
+               .doc = "A crack continues where the tension across its plane is at least this share of the tension that "
+                      "opens its flaw. 0: any tension will do.",
+               .source = "our choice"),
+};
+const struct field_table sph_crack_front_inputs = SPH_MODULE_TABLE(sph_crack_front_inputs, input_rows);
+
 enum { BYTES_EACH = 350 }; /* of a particle with 56 neighbours */
 
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
-  return body->flaws != NULL && inputs->fracture.front == SPH_CRACK_FRONT_PLANE;
+  return body->flaws != NULL && inputs->crack_front.front == SPH_CRACK_FRONT_PLANE;
 }
 
 static void free_prepared(void *prepared) {

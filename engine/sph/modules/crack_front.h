@@ -13,15 +13,14 @@
  * largest tension is positive. The loops of `fracture` do it: they read the weakest threshold, the rate between two
  * thresholds and the cap. This module sets these as for a flaw of threshold 0. They act from the next step on. */
 
-INPUT_CHOICE(fracture, front, SPH_CHOICES("none", "plane"), .absent = "none", .when = "target.fracture=auto|on",
-             .choice_docs = "it ends at its particle, and each particle breaks by flaws of its own, as printed: "
-                            "strength grows with the number of particles\n"
-                            "it runs on in its plane at c_g",
-             .doc = "Length of a crack that starts at a flaw.", .source = "BA95 for `none`; `plane` is ours")
-INPUT_REAL(fracture, front_arrest, "1", 0.5, 0, 1, .when = "fracture.front=plane",
-           .doc = "A crack continues where the tension across its plane is at least this share of the tension that "
-                  "opens its flaw. 0: any tension will do.",
-           .source = "our choice")
+#ifdef SPH_MODULE_STRUCTS
+enum sph_crack_front { SPH_CRACK_FRONT_NONE, SPH_CRACK_FRONT_PLANE };
+struct sph_crack_front_inputs {
+  int front;     /* enum sph_crack_front */
+  double arrest; /* 1 */
+};
+#endif
+MODULE_INPUTS(crack_front)
 
 COLUMN(front_time)      /* s, when a crack's front reached the particle; infinite: not yet */
 COLUMN(front_offset)    /* m: this and the next as in struct sph_crack_front_tip */
@@ -110,7 +109,7 @@ RANGE_HOOK void crack_front_range(struct sph_system *s, const struct sph_solid *
   const struct sph_crack_front_links *l = body->prepared[SPH_MODULE_crack_front];
   const struct sph_weibull_lists *flaws = body->prepared[SPH_MODULE_weibull];
   const double *damage = fracture_own_damage(s, body), now = s->now.time + s->dt;
-  const double arrest = s->in.fracture.front_arrest * sph_derived_young_modulus(&body->physics.material);
+  const double arrest = s->in.crack_front.arrest * sph_derived_young_modulus(&body->physics.material);
   for (size_t i = b->low; i < b->high; i++) {
     const size_t own = s->id[i] - body->first;
     if (isfinite(s->c.front_time[i])) {

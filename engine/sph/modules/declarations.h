@@ -2,14 +2,10 @@
  * and then its loops. A file that makes a table of one kind defines that kind as a macro and includes this file; lines
  * of other kinds vanish. So everything about a module is in its two files, and no table is written twice.
  *
- *   MATERIAL_MEMBERS(...)        members of struct sph_material; then its rows, as in material/material.h:
- *   MATERIAL_VALUE(member, unit, minimum, maximum, flags, need, doc, source)
- *   MATERIAL_CHOICE(member, choices, absent, need, name, choice_docs, doc, source)
- *   MATERIAL_CHOICE_VALUE(member, unit, default, minimum, maximum, flags, when, doc, source)
- *
- *   INPUT_REAL(section, member, unit, default, minimum, maximum, ...)   an input of the scene: member and row. Sections
- *   INPUT_CHOICE(section, member, choices, ...)                         are fracture, viscosity, method and fidelity;
- *   INPUT_SWITCH(section, member, default, ...)                         `...` are more of struct field (.doc, .when)
+ *   MODULE_INPUTS(name)     the module has inputs of the scene: struct sph_NAME_inputs, and a table of its rows with
+ * the same name in NAME.c. Paths and conditions are those of a scene (scene/inputs.c) MODULE_MATERIAL(name)   the same
+ * for values of a material, sph_NAME_material: paths are those of a material's document (material/material.h)
+ *   MODULE_RESULTS(name)    the same for results, sph_NAME_results (observe/results.h)
  *
  *   COLUMN(member)                     of the moving system (struct sph_columns): an array of doubles
  *   COLUMN(member[n])                  n such arrays
@@ -20,56 +16,16 @@
  *
  *   TIME_STEP_LIMIT(NAME, member, doc)   SPH_LIMIT_NAME, and the result limited.member
  *
- *   RESULT_MEMBERS(...)                     members of struct sph_results; then rows (observe/results.c)
- *   FRONT_RESULT_MEMBERS(...)               members of its structs shock and precursor
- *   RESULT_REAL(path, unit, minimum, ...)
- *   RESULT_SHARE(path, ...)
- *
- * Three ready-made kinds: SPH_INPUT_MEMBERS and SPH_INPUT_ROWS make the members and the rows of one section, which the
- * includer names by IN_section(...); SPH_MODULE_LOOPS takes the loops (ranges_body.h). */
-#ifdef SPH_INPUT_MEMBERS
-#define INPUT_REAL(section, member, ...)   IN_##section(double member;)
-#define INPUT_CHOICE(section, member, ...) IN_##section(int member;)
-#define INPUT_SWITCH(section, member, ...) IN_##section(bool member;)
+ * Two ready-made kinds: SPH_MODULE_STRUCTS takes the structs (structs.h), SPH_MODULE_LOOPS the loops (ranges_body.h).
+ */
+#ifndef MODULE_INPUTS
+#define MODULE_INPUTS(...)
 #endif
-#ifdef SPH_INPUT_ROWS
-#define INPUT_REAL(section, member, ...)   IN_##section(REAL(section.member, __VA_ARGS__), )
-#define INPUT_CHOICE(section, member, ...) IN_##section(CHOICE(section.member, __VA_ARGS__), )
-#define INPUT_SWITCH(section, member, ...) IN_##section(SWITCH(section.member, __VA_ARGS__), )
+#ifndef MODULE_MATERIAL
+#define MODULE_MATERIAL(...)
 #endif
-
-#ifndef IN_fracture
-#define IN_fracture(...)
-#endif
-#ifndef IN_viscosity
-#define IN_viscosity(...)
-#endif
-#ifndef IN_method
-#define IN_method(...)
-#endif
-#ifndef IN_fidelity
-#define IN_fidelity(...)
-#endif
-#ifndef MATERIAL_MEMBERS
-#define MATERIAL_MEMBERS(...)
-#endif
-#ifndef MATERIAL_VALUE
-#define MATERIAL_VALUE(...)
-#endif
-#ifndef MATERIAL_CHOICE
-#define MATERIAL_CHOICE(...)
-#endif
-#ifndef MATERIAL_CHOICE_VALUE
-#define MATERIAL_CHOICE_VALUE(...)
-#endif
-#ifndef INPUT_REAL
-#define INPUT_REAL(...)
-#endif
-#ifndef INPUT_CHOICE
-#define INPUT_CHOICE(...)
-#endif
-#ifndef INPUT_SWITCH
-#define INPUT_SWITCH(...)
+#ifndef MODULE_RESULTS
+#define MODULE_RESULTS(...)
 #endif
 #ifndef COLUMN
 #define COLUMN(...)
@@ -86,42 +42,17 @@
 #ifndef TIME_STEP_LIMIT
 #define TIME_STEP_LIMIT(...)
 #endif
-#ifndef RESULT_MEMBERS
-#define RESULT_MEMBERS(...)
-#endif
-#ifndef FRONT_RESULT_MEMBERS
-#define FRONT_RESULT_MEMBERS(...)
-#endif
-#ifndef RESULT_REAL
-#define RESULT_REAL(...)
-#endif
-#ifndef RESULT_SHARE
-#define RESULT_SHARE(...)
-#endif
 
 #define SPH_MODULE_DECLARATIONS
 #include "engine/sph/modules/list.h"
 #undef SPH_MODULE_DECLARATIONS
 
-#undef SPH_INPUT_MEMBERS
-#undef SPH_INPUT_ROWS
-#undef IN_fracture
-#undef IN_viscosity
-#undef IN_method
-#undef IN_fidelity
-#undef MATERIAL_MEMBERS
-#undef MATERIAL_VALUE
-#undef MATERIAL_CHOICE
-#undef MATERIAL_CHOICE_VALUE
-#undef INPUT_REAL
-#undef INPUT_CHOICE
-#undef INPUT_SWITCH
+#undef SPH_MODULE_STRUCTS
+#undef MODULE_INPUTS
+#undef MODULE_MATERIAL
+#undef MODULE_RESULTS
 #undef COLUMN
 #undef PARTICLE_ARRAYS
 #undef PARTICLE_COLUMN
 #undef PROFILE_COLUMN
 #undef TIME_STEP_LIMIT
-#undef RESULT_MEMBERS
-#undef FRONT_RESULT_MEMBERS
-#undef RESULT_REAL
-#undef RESULT_SHARE

@@ -8,6 +8,17 @@
 
 #include "engine/sph/modules/ranges.h"
 
+#define MATERIAL sph_elastic_material
+
+static const struct field material_rows[] = {
+    MATERIAL_REAL(bulk_modulus, bulk_modulus, "Pa", NAN, 1, 1e15, .flags = FIELD_MAY_BE_OFF, .when = "../strength=true",
+                  .doc = "K where Young's modulus and the speed of cracks are made from it. off: tillotson.A.",
+                  .source = "Benz & Asphaug 1995, eq. 21"),
+    MATERIAL_REAL(shear_modulus, shear_modulus, "Pa", NAN, 1, 1e15, .flags = FIELD_MAY_BE_OFF,
+                  .when = "../strength=true", .doc = "mu: shear modulus.", .source = "Benz & Asphaug 1995, eq. 6"),
+};
+const struct field_table sph_elastic_material = SPH_MODULE_TABLE(sph_elastic_material, material_rows);
+
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;
   return body->strength;
@@ -17,11 +28,11 @@ static status check(const struct sph_body_physics *body, const struct sph_partic
                     size_t last, struct error *error) {
   const struct sph_material *m = &body->material;
   (void)particles, (void)first, (void)last;
-  if (!(isfinite(m->shear_modulus) && m->shear_modulus >= 0))
+  if (!(isfinite(m->elastic.shear_modulus) && m->elastic.shear_modulus >= 0))
     return status_fail(error, STATUS_CONTENT, "shear_modulus is %g; a body with strength needs a number not below 0",
-                       m->shear_modulus);
-  if (!(m->yield_stress >= 0)) /* infinite: never yields */
-    return status_fail(error, STATUS_CONTENT, "yield_stress is %g; a body with strength needs one", m->yield_stress);
+                       m->elastic.shear_modulus);
+  if (!(m->yield.stress >= 0)) /* infinite: never yields */
+    return status_fail(error, STATUS_CONTENT, "yield_stress is %g; a body with strength needs one", m->yield.stress);
   return STATUS_OK;
 }
 

@@ -3,13 +3,12 @@
  * dS/dt = 2 mu dev(eps) + R S - S R with R_ab = (dv_a/dx_b - dv_b/dx_a)/2: a rigidly turning body keeps its stress in
  * its own frame [BA95 eqs. 5-7, whose sign of the rotation terms is the other one]. S is stored undamaged. */
 
-MATERIAL_MEMBERS(double bulk_modulus, shear_modulus;) /* Pa; K for Young's modulus and the speed of cracks */
-
-MATERIAL_VALUE(bulk_modulus, "Pa", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH,
-               "K where Young's modulus and the speed of cracks are made from it. off: tillotson.A.",
-               "Benz & Asphaug 1995, eq. 21")
-MATERIAL_VALUE(shear_modulus, "Pa", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH, "mu: shear modulus.",
-               "Benz & Asphaug 1995, eq. 6")
+#ifdef SPH_MODULE_STRUCTS
+struct sph_elastic_material {
+  double bulk_modulus, shear_modulus; /* Pa; K for Young's modulus and the speed of cracks, NaN: tillotson.A */
+};
+#endif
+MODULE_MATERIAL(elastic)
 
 COLUMN(stress[5])      /* Pa, deviator, undamaged: xx xy xz yy yz */
 COLUMN(stress_rate[5]) /* Pa/s */
@@ -36,7 +35,7 @@ RANGE_HOOK void elastic_predict(struct sph_system *s, const struct sph_solid *bo
  * correction eps is that of the uncorrected gradient, which is conjugate to the forces (pairs.h). */
 RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_solid *body, struct sph_block *b,
                                      bool published) {
-  const double half = 0.5 * s->dt, material_two_mu = 2 * body->physics.material.shear_modulus;
+  const double half = 0.5 * s->dt, material_two_mu = 2 * body->physics.material.elastic.shear_modulus;
   const double *effective = s->c.two_mu;
   double *const *g = b->sums->gradient;
   const double *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3], *g4 = g[4], *g5 = g[5], *g6 = g[6], *g7 = g[7],

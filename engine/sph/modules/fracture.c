@@ -10,6 +10,27 @@
 #include "engine/sph/modules/ranges.h"
 #include "engine/sph/modules/weibull_lists.h"
 
+#define INPUTS sph_fracture_inputs
+
+static const struct field input_rows[] = {
+    INPUT_CHOICE(fracture.growth, growth, CHOICES("cube-root", "linear"), .when = "target.fracture=auto|on",
+                 .choice_docs = "n^(1/3) c_g/R_s, which gives Grady and Kipp's rate law\nn c_g/R_s, as printed",
+                 .doc = "Rate of D^(1/3) of a particle with n open flaws.", .source = "BA95 section 4.3 for `linear`"),
+    INPUT_CHOICE(fracture.cap, cap, CHOICES("ba95", "count", "none"), .when = "target.fracture=auto|on",
+                 .choice_docs = "(n/n_tot)^(1/3), as printed\nn/n_tot\n1",
+                 .doc = "Largest damage of a particle with n of its n_tot flaws open.",
+                 .source = "BA95 eq. 22 for `ba95`"),
+    INPUT_CHOICE(fracture.crack_radius, crack_radius, CHOICES("volume", "support"), .when = "target.fracture=auto|on",
+                 .choice_docs =
+                     "radius of the sphere of the particle's volume\n"
+                     "2h: strength falls with R_s, and most of a body is destroyed where `volume` leaves a core",
+                 .doc = "R_s: length that a crack has to grow until its particle is broken.",
+                 .source = "BA95 eq. 15; the paper gives no value"),
+    INPUT_REAL(fidelity.damage_step, damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
+               .doc = "Largest change of D^(1/3) in a time step."),
+};
+const struct field_table sph_fracture_inputs = SPH_MODULE_TABLE(sph_fracture_inputs, input_rows);
+
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;
   return body->flaws != NULL;
@@ -18,7 +39,7 @@ static bool on(const struct sph_body_physics *body, const struct sph_inputs *inp
 static status check(const struct sph_body_physics *body, const struct sph_particles *particles, size_t first,
                     size_t last, struct error *error) {
   (void)particles;
-  if (!(body->strength && body->material.shear_modulus > 0))
+  if (!(body->strength && body->material.elastic.shear_modulus > 0))
     return status_fail(error, STATUS_CONTENT,
                        "flaws but no strength: only a solid cracks; set strength: true or fracture: off");
   if (body->flaws->particles != last - first)

@@ -15,19 +15,17 @@
  * = cos(2/3 acos(s)), s = sqrt((1 + cos(theta))/2), a smooth function of s: a polynomial of degree 16 is within 2e-15
  * of it. (Where the two larger values are equal, rounding of det S makes the error 1e-8 of |S|, as with acos.) */
 
-INPUT_CHOICE(fracture, growth, SPH_CHOICES("cube-root", "linear"), .when = "target.fracture=auto|on",
-             .choice_docs = "n^(1/3) c_g/R_s, which gives Grady and Kipp's rate law\nn c_g/R_s, as printed",
-             .doc = "Rate of D^(1/3) of a particle with n open flaws.", .source = "BA95 section 4.3 for `linear`")
-INPUT_CHOICE(fracture, cap, SPH_CHOICES("ba95", "count", "none"), .when = "target.fracture=auto|on",
-             .choice_docs = "(n/n_tot)^(1/3), as printed\nn/n_tot\n1",
-             .doc = "Largest damage of a particle with n of its n_tot flaws open.", .source = "BA95 eq. 22 for `ba95`")
-INPUT_CHOICE(fracture, crack_radius, SPH_CHOICES("volume", "support"), .when = "target.fracture=auto|on",
-             .choice_docs = "radius of the sphere of the particle's volume\n"
-                            "2h: strength falls with R_s, and most of a body is destroyed where `volume` leaves a core",
-             .doc = "R_s: length that a crack has to grow until its particle is broken.",
-             .source = "BA95 eq. 15; the paper gives no value")
-INPUT_REAL(fidelity, damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
-           .doc = "Largest change of D^(1/3) in a time step.")
+#ifdef SPH_MODULE_STRUCTS
+/* R_s of a particle: the radius of the sphere of its volume, or 2h. */
+enum sph_crack_radius { SPH_CRACK_RADIUS_VOLUME, SPH_CRACK_RADIUS_SUPPORT };
+struct sph_fracture_inputs {
+  int growth;         /* enum sph_fracture_growth */
+  int cap;            /* enum sph_fracture_cap */
+  int crack_radius;   /* enum sph_crack_radius */
+  double damage_step; /* 1 */
+};
+#endif
+MODULE_INPUTS(fracture)
 
 COLUMN(damage)      /* D^(1/3), of all causes */
 COLUMN(flaw_damage) /* D^(1/3) by flaws, where `damage` has other causes, too */

@@ -3,9 +3,21 @@
  *   method.gradient_correction */
 #include "engine/sph/modules/ranges.h"
 
+#define INPUTS sph_gradient_correction_inputs
+
+static const struct field input_rows[] = {
+    INPUT_SWITCH(method.gradient_correction, on, 0,
+                 .doc =
+                     "Velocity gradients exact for linear fields, and forces conjugate to them: a body turns without "
+                     "strain and keeps its angular momentum, and its free sides are as stiff as its inside. For "
+                     "ringing and spinning bodies; costs a quarter more time.",
+                 .source = "Randles & Libersky 1996; Bonet & Lok 1999; off in BA95"),
+};
+const struct field_table sph_gradient_correction_inputs = SPH_MODULE_TABLE(sph_gradient_correction_inputs, input_rows);
+
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)body, (void)inputs;
-  return inputs->method.gradient_correction;
+  return inputs->gradient_correction.on;
 }
 
 /* B = 1 at first: xx xy xz yy yz zz. */

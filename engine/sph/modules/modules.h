@@ -1,7 +1,7 @@
 /* Physics modules of the solid, as descriptors. Off means absent: the loops of a module run only on bodies that have
  * it, and columns that no body needs are not allocated. The scene decides which modules a body has.
  * A module owns its physics: NAME.c has its description, checks, preparation and report; NAME.h has what it
- * declares (inputs, values of a material, columns, results: declarations.h), and its loops over particles, compiled
+ * declares (structs of inputs, values of a material and results, columns: declarations.h), and its loops, compiled
  * once per CPU class (ranges.h). It acts on other modules only through columns and through struct sph_terms
  * (system_layout.h), never by a flag inside their loops:
  *

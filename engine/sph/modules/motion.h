@@ -215,7 +215,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   const double *x = s->c.x, *y = s->c.y, *z = s->c.z, *vx = s->c.vx, *vy = s->c.vy, *vz = s->c.vz;
   double *density = s->c.density, *density_rate = s->c.density_rate, *h = s->c.h;
   const double h_low = SPH_LOWEST_H, h_high = s->highest_h;
-  const double shear = strength ? 4.0 / 3 * body->physics.material.shear_modulus : 0;
+  const double shear = strength ? 4.0 / 3 * body->physics.material.elastic.shear_modulus : 0;
   const double alpha = 0.6 * s->in.viscosity.alpha, beta = 0.6 * s->in.viscosity.beta, step = 2 * s->in.fidelity.cfl;
   const double drift_x = s->drift[0], drift_y = s->drift[1], drift_z = s->drift[2];
   double courant[SPH_BLOCK], force[SPH_BLOCK], heat[SPH_BLOCK], squeeze[SPH_BLOCK], growth[SPH_BLOCK];
@@ -257,7 +257,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   b->worst[SPH_LIMIT_ENERGY] = MOTION_ENERGY_SHARE_INVERSE * range_largest(heat, n);
   b->worst[SPH_LIMIT_DENSITY] = MOTION_DENSITY_SHARE_INVERSE * range_largest(squeeze, n);
   if (damaged && s->c.damage_rate)
-    b->worst[SPH_LIMIT_DAMAGE] = range_largest(s->c.damage_rate + low, n) / s->in.fidelity.damage_step;
+    b->worst[SPH_LIMIT_DAMAGE] = range_largest(s->c.damage_rate + low, n) / s->in.fracture.damage_step;
   if (lost)
     motion_find_lost(s, b, courant);
 }

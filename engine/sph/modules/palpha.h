@@ -5,7 +5,8 @@
  * particles (crushing, hot, far off) are computed again by sph_palpha_update. An elastic particle is accepted when the
  * error before the second step is below 1e-9, as in sph_palpha_update. */
 
-MATERIAL_MEMBERS(struct sph_palpha {
+#ifdef SPH_MODULE_STRUCTS
+struct sph_palpha_material {
   enum { SPH_CRUSH_NONE, SPH_CRUSH_QUADRATIC, SPH_CRUSH_TWO_POWER } curve; /* none: no other member is used */
   double distention;                                                       /* alpha_0; 1: no pores, the solid itself */
   double fraction; /* porosity 1 - 1/alpha_0: another way to give it in a document, made to agree; not used elsewhere */
@@ -16,52 +17,21 @@ MATERIAL_MEMBERS(struct sph_palpha {
   double elastic_distention, transition_distention; /* alpha_e, alpha_t */
   double transition_pressure;                       /* Pa, P_t */
   double exponent_low, exponent_high;               /* n1, n2 */
-} porosity;)
-
-#define POROSITY_ON        "porosity.curve=quadratic|two-power"
-#define POROSITY_TWO_POWER "porosity.curve=two-power"
-MATERIAL_CHOICE(
-    porosity.curve, SPH_CHOICES("none", "quadratic", "two-power"), NULL, ALWAYS, "crush curve",
-    "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"
-    "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",
-    "Crush curve: how pores far below the resolution close under pressure (P-alpha). The material's density "
-    "and yield_stress are then those of the solid between the pores, and the porous body yields at "
-    "Y_0/alpha. tension_limit is that of the porous body, as strengths are measured (our choice); of the "
-    "solid's value give that over alpha_0.",
-    "Herrmann 1969; Jutzi, Benz & Michel 2008")
-MATERIAL_CHOICE_VALUE(
-    porosity.distention, "1", NAN, 1, 100, 0, POROSITY_ON,
-    "alpha_0: density of the solid over that of the porous body. 1: no pores, the solid itself to the "
-    "bit. In a scene porosity.fraction may be given instead.",
-    "Herrmann 1969")
-MATERIAL_CHOICE_VALUE(porosity.fraction, "1", NAN, 0, 0.99, SPH_MATERIAL_OFF, POROSITY_ON,
-                      "Porosity, 1 - 1/alpha_0: give it or porosity.distention, not both; the other follows.", NULL)
-MATERIAL_CHOICE_VALUE(porosity.elastic_pressure, "Pa", NAN, 0, 1e15, 0, POROSITY_ON,
-                      "P_e: above this pressure pores close and stay closed.", "Jutzi, Benz & Michel 2008")
-MATERIAL_CHOICE_VALUE(porosity.solid_pressure, "Pa", NAN, 0, 1e15, SPH_MATERIAL_ABOVE, POROSITY_ON,
-                      "P_s: above this pressure all pores are closed.", "Jutzi, Benz & Michel 2008")
-MATERIAL_CHOICE_VALUE(porosity.sound_speed, "m/s", NAN, 0, 1e6, SPH_MATERIAL_OFF | SPH_MATERIAL_ABOVE, POROSITY_ON,
-                      "c_e: bulk sound speed of the porous body, not above the solid's. off: pores do not give way "
-                      "elastically, and the solid's speed is taken.",
-                      "Herrmann 1969; Jutzi, Benz & Michel 2008")
-MATERIAL_CHOICE_VALUE(porosity.elastic_distention, "1", NAN, 1, 100, SPH_MATERIAL_ABOVE, POROSITY_TWO_POWER,
-                      "alpha_e: distention at the beginning of the crush curve, at P_e. A body of lower alpha_0 keeps "
-                      "it until it meets the curve.",
-                      "Jutzi et al. 2009")
-MATERIAL_CHOICE_VALUE(porosity.transition_distention, "1", NAN, 1, 100, 0, POROSITY_TWO_POWER,
-                      "alpha_t: distention at the end of the first power law, at P_t.", "Jutzi et al. 2009")
-MATERIAL_CHOICE_VALUE(porosity.transition_pressure, "Pa", NAN, 0, 1e15, SPH_MATERIAL_ABOVE, POROSITY_TWO_POWER,
-                      "P_t: pressure at the end of the first power law.", "Jutzi et al. 2009")
-MATERIAL_CHOICE_VALUE(porosity.exponent_low, "1", NAN, 1, 100, 0, POROSITY_TWO_POWER,
-                      "n1: exponent of the law between P_e and P_t.", "Jutzi et al. 2009")
-MATERIAL_CHOICE_VALUE(porosity.exponent_high, "1", NAN, 1, 100, 0, POROSITY_TWO_POWER,
-                      "n2: exponent of the law up to P_s.", "Jutzi et al. 2009")
-
-INPUT_REAL(fidelity, distention_step, "1", 0.01, 1e-6, 1, .when = "target.material." POROSITY_ON,
-           .doc = "Largest change of a porous particle's distention in a time step.",
-           .source = "Jutzi, Benz & Michel 2008")
-#undef POROSITY_ON
-#undef POROSITY_TWO_POWER
+};
+struct sph_palpha_inputs {
+  double distention_step; /* 1 */
+};
+struct sph_palpha_results {
+  double mean_distention;
+  struct {
+    double mass_fraction, volume, depth, reach;
+  } compaction;
+  double shock, shock_exact, precursor, precursor_exact; /* distention behind these fronts */
+};
+#endif
+MODULE_MATERIAL(palpha)
+MODULE_INPUTS(palpha)
+MODULE_RESULTS(palpha)
 
 COLUMN(distention)      /* alpha now */
 COLUMN(rest_distention) /* alpha after unloading to P = 0 (material/palpha.h) */
@@ -77,30 +47,6 @@ PROFILE_COLUMN(distention, rest_distention, distention, 1, "1",
                "the layer as it is")
 
 TIME_STEP_LIMIT(DISTENTION, distention, "the closing of pores")
-
-RESULT_MEMBERS(double mean_distention; struct { double mass_fraction, volume, depth, reach; } compaction;)
-FRONT_RESULT_MEMBERS(double distention, distention_exact;)
-RESULT_REAL(mean_distention, "1", 1,
-            .doc = "Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off "
-                   "without pores.",
-            .source = "Jutzi, Benz & Michel 2008")
-RESULT_SHARE(compaction.mass_fraction,
-             .doc = "Impact: mass share of the target that was compacted: its distention at zero pressure fell from "
-                    "1.01 or more to below 1.01. Off without pores.",
-             .source = "Jutzi & Benz, figure 2")
-RESULT_REAL(compaction.volume, "m^3", 0,
-            .doc = "Impact: volume that the retained matter lost as its pores closed; off without pores.")
-RESULT_REAL(compaction.depth, "m", 0,
-            .doc = "Impact: depth at the start of the deepest compacted particle near the axis; off without pores.")
-RESULT_REAL(compaction.reach, "m", 0,
-            .doc = "Impact: largest distance from the point of impact at which matter lost a hundredth of its pores; "
-                   "off without pores.")
-RESULT_REAL(shock.distention, "1", 1,
-            .doc = "Piston: mean distention behind the shock, in the same region; off without pores.")
-RESULT_REAL(shock.distention_exact, "1", 1,
-            .doc = "Piston: distention behind the shock by the jump conditions and the crush curve.")
-RESULT_REAL(precursor.distention, "1", 1, .doc = "Piston: mean distention between precursor and shock.")
-RESULT_REAL(precursor.distention_exact, "1", 1, .doc = "Piston: distention behind the precursor on the elastic branch.")
 
 #ifdef SPH_MODULE_LOOPS
 
@@ -159,7 +105,7 @@ RANGE_INLINE double palpha_shear_factor(const struct palpha_try *t, double rho) 
 
 RANGE_INLINE void palpha_respond(struct sph_system *s, const struct sph_solid *body, struct sph_block *b, double *was) {
   const struct sph_palpha_law *law = body->prepared[SPH_MODULE_palpha];
-  const struct sph_tillotson *solid = &law->solid;
+  const struct sph_tillotson_material *solid = &law->solid;
   const struct palpha_constants constants = {solid->A,
                                              solid->B,
                                              solid->a,
@@ -239,7 +185,7 @@ RANGE_HOOK void palpha_range(struct sph_system *s, const struct sph_solid *body,
 RANGE_HOOK void palpha_publish(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const double *alpha = s->c.distention, *f = s->c.shear_factor, *density = s->c.density;
   double *solid_density = b->terms->published, *two_mu = s->c.two_mu;
-  const double solid_two_mu = 2 * body->physics.material.shear_modulus;
+  const double solid_two_mu = 2 * body->physics.material.elastic.shear_modulus;
   const size_t low = b->low, n = b->high - b->low;
   RANGE_LOOP
   for (size_t k = 0; k < n; k++)
@@ -296,7 +242,7 @@ RANGE_HOOK void palpha_limit(struct sph_system *s, const struct sph_solid *body,
     const double share = squeeze > 0 && soon > edge && rest[i] > 1 ? 1 : 1 - f[i];
     inverse[k] = share * alpha[i] * fabs(squeeze);
   }
-  b->worst[SPH_LIMIT_DISTENTION] = range_largest(inverse, n) / (0.75 * s->in.fidelity.distention_step);
+  b->worst[SPH_LIMIT_DISTENTION] = range_largest(inverse, n) / (0.75 * s->in.palpha.distention_step);
 }
 
 static const sph_hook palpha_hooks[SPH_STAGES] = {[SPH_RESPOND] = palpha_range,

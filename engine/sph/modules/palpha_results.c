@@ -1,4 +1,4 @@
-/* The results of module palpha (palpha.h has their rows): mean distention, what an impact compacts, and the distention
+/* The results of module palpha : mean distention, what an impact compacts, and the distention
  * behind the fronts of a plate. */
 #include "engine/sph/modules/palpha_results.h"
 
@@ -6,6 +6,36 @@
 
 #include "engine/sph/material/derived.h"
 #include "engine/sph/observe/observe.h"
+
+#define RESULTS sph_palpha_results
+
+static const struct field rows[] = {
+    RESULT_REAL(mean_distention, mean_distention, "1", 1,
+                .doc = "Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off "
+                       "without pores.",
+                .source = "Jutzi, Benz & Michel 2008"),
+    RESULT_SHARE(compaction.mass_fraction, compaction.mass_fraction,
+                 .doc =
+                     "Impact: mass share of the target that was compacted: its distention at zero pressure fell from "
+                     "1.01 or more to below 1.01. Off without pores.",
+                 .source = "Jutzi & Benz, figure 2"),
+    RESULT_REAL(compaction.volume, compaction.volume, "m^3", 0,
+                .doc = "Impact: volume that the retained matter lost as its pores closed; off without pores."),
+    RESULT_REAL(compaction.depth, compaction.depth, "m", 0,
+                .doc = "Impact: depth at the start of the deepest compacted particle near the axis; off without "
+                       "pores."),
+    RESULT_REAL(compaction.reach, compaction.reach, "m", 0,
+                .doc = "Impact: largest distance from the point of impact at which matter lost a hundredth of its "
+                       "pores; off without pores."),
+    RESULT_REAL(shock.distention, shock, "1", 1,
+                .doc = "Piston: mean distention behind the shock, in the same region; off without pores."),
+    RESULT_REAL(shock.distention_exact, shock_exact, "1", 1,
+                .doc = "Piston: distention behind the shock by the jump conditions and the crush curve."),
+    RESULT_REAL(precursor.distention, precursor, "1", 1, .doc = "Piston: mean distention between precursor and shock."),
+    RESULT_REAL(precursor.distention_exact, precursor_exact, "1", 1,
+                .doc = "Piston: distention behind the precursor on the elastic branch."),
+};
+const struct field_table sph_palpha_results = SPH_MODULE_TABLE(sph_palpha_results, rows);
 
 static const double compacted = 1.01; /* distention below which matter counts as compacted */
 
@@ -44,27 +74,27 @@ void sph_palpha_results_compaction(const struct sph_particles *start, const stru
       reach = fmax(reach, hypot(sph_crater_off_axis(start, i, o), top - start->z[i]));
   }
   results->crater.compaction_share = sph_results_share(closed_volume, closed_volume + ejecta_volume);
-  results->compaction.mass_fraction = sph_results_share(mass, o->mass);
-  results->compaction.volume = sph_results_finite(closed_volume);
-  results->compaction.depth = depth;
-  results->compaction.reach = reach;
+  results->palpha.compaction.mass_fraction = sph_results_share(mass, o->mass);
+  results->palpha.compaction.volume = sph_results_finite(closed_volume);
+  results->palpha.compaction.depth = depth;
+  results->palpha.compaction.reach = reach;
 }
 
 static void report_fronts(const struct sph_run *run, struct sph_results *r) {
   struct sph_plate_regions regions = sph_plate_regions(run);
   if (run->exact.has_shock) {
-    r->shock.distention = sph_plate_mean(run, run->now->distention, regions.shock);
-    r->shock.distention_exact = run->exact.shock.distention;
+    r->palpha.shock = sph_plate_mean(run, run->now->distention, regions.shock);
+    r->palpha.shock_exact = run->exact.shock.distention;
   }
   if (run->exact.has_precursor) {
-    r->precursor.distention = sph_plate_mean(run, run->now->distention, regions.precursor);
-    r->precursor.distention_exact = run->exact.precursor.distention;
+    r->palpha.precursor = sph_plate_mean(run, run->now->distention, regions.precursor);
+    r->palpha.precursor_exact = run->exact.precursor.distention;
   }
 }
 
-void sph_palpha_results(const struct sph_run *run, struct sph_results *results) {
+void sph_palpha_results_report(const struct sph_run *run, struct sph_results *results) {
   const struct sph_material *target = &run->inputs.target.material;
-  results->mean_distention = mean_distention(run);
+  results->palpha.mean_distention = mean_distention(run);
   if (run->inputs.kind == SPH_PISTON)
     report_fronts(run, results);
   const struct sph_crater_options crater = sph_report_crater_options(run);

@@ -7,7 +7,7 @@
 struct sph_run;
 
 /* sph_module.report of palpha. */
-void sph_palpha_results(const struct sph_run *run, struct sph_results *results);
+void sph_palpha_results_report(const struct sph_run *run, struct sph_results *results);
 /* Fills the results compaction.* and crater.compaction_share. `initial`: alpha_0. Both sets of particles have their
  * distentions. A pure function. */
 void sph_palpha_results_compaction(const struct sph_particles *start, const struct sph_particles *now,

@@ -8,9 +8,19 @@
 
 #include "engine/sph/modules/ranges.h"
 
+#define MATERIAL sph_tension_limit_material
+
+static const struct field material_rows[] = {
+    MATERIAL_REAL(tension_limit, pressure, "Pa", NAN, 0, 1e15, .flags = FIELD_MAY_BE_OFF,
+                  .doc = "Largest tension of a body without flaws (its lowest pressure is minus this). It falls with "
+                         "expansion, to none at 0.9 of the density, so that cold matter reaches 1/(1 + 10 "
+                         "tension_limit/A) of it. off: no limit, down to -A and beyond."),
+};
+const struct field_table sph_tension_limit_material = SPH_MODULE_TABLE(sph_tension_limit_material, material_rows);
+
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;
-  return !body->flaws && body->material.tension_limit >= 0 && isfinite(body->material.tension_limit);
+  return !body->flaws && body->material.tension_limit.pressure >= 0 && isfinite(body->material.tension_limit.pressure);
 }
 
 const struct sph_module sph_tension_limit_module = {

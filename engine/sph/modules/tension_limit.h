@@ -1,13 +1,12 @@
 /* The bound of tension in bodies without flaws. It falls with the expansion of the solid matter, and the yield limit
  * with it. */
 
-MATERIAL_MEMBERS(double tension_limit;) /* Pa; NaN: off */
-
-MATERIAL_VALUE(tension_limit, "Pa", 0, 1e15, SPH_MATERIAL_OFF, ALWAYS,
-               "Largest tension of a body without flaws (its lowest pressure is minus this). It falls with expansion, "
-               "to none at 0.9 of the density, so that cold matter reaches 1/(1 + 10 tension_limit/A) of it. off: no "
-               "limit, down to -A and beyond.",
-               NULL)
+#ifdef SPH_MODULE_STRUCTS
+struct sph_tension_limit_material {
+  double pressure; /* Pa; NaN: off */
+};
+#endif
+MODULE_MATERIAL(tension_limit)
 
 #ifdef SPH_MODULE_LOOPS
 
@@ -20,7 +19,8 @@ RANGE_INLINE double tension_limit_whole(double relative_density) {
 
 /* P >= -tension_limit. */
 RANGE_HOOK void tension_limit_pressure(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const double lowest = -body->physics.material.tension_limit, per_density = 1 / body->physics.material.density;
+  const double lowest = -body->physics.material.tension_limit.pressure,
+               per_density = 1 / body->physics.material.density;
   const double *density = b->terms->solid_density;
   double *pressure = s->c.pressure;
   const size_t low = b->low, n = b->high - b->low;

@@ -2,32 +2,16 @@
  * transcendental function, is computed for all particles; the few hot, expanded ones are computed again by the general
  * form. */
 
+#ifdef SPH_MODULE_STRUCTS
 /* Tillotson 1962; Melosh 1989, appendix II. */
-MATERIAL_MEMBERS(struct sph_tillotson {
+struct sph_tillotson_material {
   double A, B;           /* Pa: bulk modulus and its non-linear companion */
   double a, b;           /* 1 */
   double alpha, beta;    /* 1: decay in hot expansion (not the exponent of a spectrum) */
   double E0, E_iv, E_cv; /* J/kg: reference, incipient and complete vaporisation */
-} tillotson;)
-
-MATERIAL_VALUE(tillotson.A, "Pa", 1, 1e15, 0, ALWAYS, "Tillotson's A: bulk modulus at rest.",
-               "Tillotson 1962; Melosh 1989, appendix II")
-MATERIAL_VALUE(tillotson.B, "Pa", 0, 1e15, 0, ALWAYS, "Tillotson's B: quadratic term in compression.",
-               "Melosh 1989, appendix II")
-MATERIAL_VALUE(tillotson.a, "1", 0, 100, 0, ALWAYS,
-               "Tillotson's a: Grueneisen coefficient of hot matter. 0, with b 0: pressure does not depend on energy.",
-               "Melosh 1989, appendix II")
-MATERIAL_VALUE(tillotson.b, "1", 0, 100, 0, ALWAYS, "Tillotson's b: a + b is the Grueneisen coefficient at rest.",
-               "Melosh 1989, appendix II")
-MATERIAL_VALUE(tillotson.alpha, "1", 0, 1e3, 0, ALWAYS, "Tillotson's alpha: decay in hot expansion.",
-               "Melosh 1989, appendix II")
-MATERIAL_VALUE(tillotson.beta, "1", 0, 1e3, 0, ALWAYS, "Tillotson's beta: decay in hot expansion.",
-               "Melosh 1989, appendix II")
-MATERIAL_VALUE(tillotson.E0, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Tillotson's reference energy.", "Melosh 1989, appendix II")
-MATERIAL_VALUE(tillotson.E_iv, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Energy of incipient vaporisation.",
-               "Melosh 1989, appendix II")
-MATERIAL_VALUE(tillotson.E_cv, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Energy of complete vaporisation, above E_iv.",
-               "Melosh 1989, appendix II")
+};
+#endif
+MODULE_MATERIAL(tillotson)
 
 #ifdef SPH_MODULE_LOOPS
 
@@ -35,7 +19,7 @@ MATERIAL_VALUE(tillotson.E_cv, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Energy of complet
 #include "engine/sph/modules/range_tools.h"
 
 RANGE_HOOK void tillotson_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const struct sph_tillotson t = body->physics.material.tillotson;
+  const struct sph_tillotson_material t = body->physics.material.tillotson;
   const double density0 = body->physics.material.density, inverse0 = 1 / density0, floor2 = t.A / (4 * density0);
   const double *density = s->c.density, *energy = s->c.energy;
   double *pressure = s->c.pressure, *sound_speed = s->c.sound_speed;

@@ -3,6 +3,16 @@
  *   viscosity.alpha, viscosity.beta   linear and quadratic; both 0: none */
 #include "engine/sph/modules/ranges.h"
 
+#define INPUTS sph_viscosity_inputs
+
+static const struct field input_rows[] = {
+    INPUT_REAL(viscosity.alpha, alpha, "1", 1.5, 0, 100, .doc = "Monaghan's linear artificial viscosity.",
+               .source = "Monaghan 1992"),
+    INPUT_REAL(viscosity.beta, beta, "1", 3, 0, 100, .doc = "Monaghan's quadratic artificial viscosity.",
+               .source = "Monaghan 1992"),
+};
+const struct field_table sph_viscosity_inputs = SPH_MODULE_TABLE(sph_viscosity_inputs, input_rows);
+
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)body, (void)inputs;
   return inputs->viscosity.alpha > 0 || inputs->viscosity.beta > 0;

@@ -10,6 +10,34 @@
 
 #include "engine/sph/step/system_layout.h"
 
+#define MATERIAL sph_weibull_material
+#define INPUTS   sph_weibull_inputs
+
+static const struct field material_rows[] = {
+    MATERIAL_REAL(weibull.m, m, "1", NAN, 1, 200, .flags = FIELD_MAY_BE_OFF, .when = "../fracture=auto|on",
+                  .doc = "Weibull's m: n(eps) = k eps^m flaws per volume are weaker than the strain eps. Large m: all "
+                         "flaws alike. off: no flaws.",
+                  .source = "Benz & Asphaug 1995, eq. 11"),
+    MATERIAL_REAL(weibull.k, k, "1/m^3", NAN, 1, 1e200, .flags = FIELD_MAY_BE_OFF, .when = "../fracture=auto|on",
+                  .doc = "Weibull's k (papers print 1/cm^3, which is 1e6 of these). off: no flaws.",
+                  .source = "Benz & Asphaug 1995, eq. 11"),
+};
+const struct field_table sph_weibull_material = SPH_MODULE_TABLE(sph_weibull_material, material_rows);
+
+static const struct field input_rows[] = {
+    INPUT_CHOICE(fracture.draw, draw, CHOICES("ranked", "poisson"), .number = SPH_FLAWS_POISSON,
+                 .when = "target.fracture=auto|on",
+                 .choice_docs =
+                     "eps_j = (j/kV)^(1/m), as printed: a seed only moves the flaws about, and the scatter is too "
+                     "small\n"
+                     "the body's flaw strengths are a draw themselves: each seed is a specimen of its own",
+                 .doc = "The strengths of the flaws.", .source = "BA95 eq. 20 for `ranked`"),
+    INPUT_CHOICE(fidelity.flaws, flaws, CHOICES("exact", "compact"), .when = "target.fracture=auto|on",
+                 .choice_docs = "every flaw is kept\nlowest, highest and number of each particle, a power law between",
+                 .doc = "Storage of a particle's flaws."),
+};
+const struct field_table sph_weibull_inputs = SPH_MODULE_TABLE(sph_weibull_inputs, input_rows);
+
 struct sph_weibull_lists {
   size_t lists, count; /* number of lists (one per owner of flaws); of flaws */
   size_t particles;
@@ -77,7 +105,7 @@ static status prepare(const struct sph_inputs *inputs, const struct sph_particle
                       struct error *error) {
   (void)particles;
   const struct sph_flaws *flaws = body->physics.flaws;
-  const bool compact = inputs->fidelity.flaws == SPH_FLAWS_COMPACT;
+  const bool compact = inputs->weibull.flaws == SPH_FLAWS_COMPACT;
   struct sph_weibull_lists *w = calloc(1, sizeof *w);
   if (w) {
     w->particles = flaws->particles;

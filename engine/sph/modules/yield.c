@@ -11,9 +11,19 @@
 
 #include "engine/sph/modules/ranges.h"
 
+#define MATERIAL sph_yield_material
+
+static const struct field material_rows[] = {
+    MATERIAL_REAL(yield_stress, stress, "Pa", NAN, 0, 1e15, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
+                  .when = "../strength=true",
+                  .doc = "Y_0: von Mises yield stress of cold solid matter. off: elastic at any stress.",
+                  .source = "Benz & Asphaug 1995, eq. 9"),
+};
+const struct field_table sph_yield_material = SPH_MODULE_TABLE(sph_yield_material, material_rows);
+
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;
-  return body->strength && isfinite(body->material.yield_stress);
+  return body->strength && isfinite(body->material.yield.stress);
 }
 
 const struct sph_module sph_yield_module = {

@@ -1,18 +1,19 @@
 /* Von Mises: Y = Y0 (1 - u/u_melt), zero beyond, as the yield limit of each particle [BA95 eqs. 8-10]. A yield law only
  * writes the limit; `elastic` brings the stress back to it. */
 
-MATERIAL_MEMBERS(double yield_stress;) /* Pa at u = 0; INFINITY: never yields */
-
-MATERIAL_VALUE(yield_stress, "Pa", 0, 1e15, SPH_MATERIAL_OFF | SPH_MATERIAL_ABOVE, STRENGTH,
-               "Y_0: von Mises yield stress of cold solid matter. off: elastic at any stress.",
-               "Benz & Asphaug 1995, eq. 9")
+#ifdef SPH_MODULE_STRUCTS
+struct sph_yield_material {
+  double stress; /* Pa at u = 0; NaN or INFINITY: never yields */
+};
+#endif
+MODULE_MATERIAL(yield)
 
 #ifdef SPH_MODULE_LOOPS
 
 #include "engine/sph/modules/range_tools.h"
 
 RANGE_HOOK void yield_limit(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const double y0 = body->physics.material.yield_stress, melt = body->physics.material.melt_energy;
+  const double y0 = body->physics.material.yield.stress, melt = body->physics.material.melt_energy;
   const double softening = melt > 0 ? 1 / melt : 0; /* NaN: none */
   const double *energy = s->c.energy + b->low;
   double *limit = b->terms->yield_limit;

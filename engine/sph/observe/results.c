@@ -5,22 +5,18 @@
 
 static const char *const reasons[] = {"running", "quiet", "end-time", "fault", NULL};
 
-#define ROW(path_, kind_, unit_, ...)                                                                                  \
-  { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct sph_results, path_), __VA_ARGS__ }
-#define COUNT(path_, doc_) ROW(path_, FIELD_INTEGER, "1", .minimum = 0, .maximum = HUGE_VAL, .doc = doc_)
-#define REAL(path_, unit_, low, ...)                                                                                   \
-  ROW(path_, FIELD_REAL, unit_, .minimum = low, .maximum = HUGE_VAL, .number = NAN, .flags = FIELD_MAY_BE_OFF,         \
-      __VA_ARGS__)
-#define SHARE(path_, ...)                                                                                              \
-  ROW(path_, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .number = NAN, .flags = FIELD_MAY_BE_OFF, __VA_ARGS__)
+#define RESULTS            sph_results
+#define REAL(path_, ...)   RESULT_REAL(path_, path_, __VA_ARGS__)
+#define SHARE(path_, ...)  RESULT_SHARE(path_, path_, __VA_ARGS__)
+#define COUNT(path_, doc_) RESULT_COUNT(path_, path_, .doc = doc_)
 
 static const struct field rows[] = {
-    ROW(stop_reason, FIELD_CHOICE, NULL, .choices = reasons,
-        .choice_docs = "the run has not ended\n"
-                       "fracture ceased by the rule of stop.quiet_time\n"
-                       "the run reached stop.end_time\n"
-                       "a numerical fault: the state of the outcome names it",
-        .doc = "Why the run ended."),
+    ROW_OF(sph_results, stop_reason, stop_reason, FIELD_CHOICE, NULL, .choices = reasons,
+           .choice_docs = "the run has not ended\n"
+                          "fracture ceased by the rule of stop.quiet_time\n"
+                          "the run reached stop.end_time\n"
+                          "a numerical fault: the state of the outcome names it",
+           .doc = "Why the run ended."),
     COUNT(particles, "Number of particles in the target (in both bodies of a collision)."),
     COUNT(projectile_particles, "Number of particles in the projectile or piston."),
     COUNT(flaws, "Number of explicit flaws in all bodies."),
@@ -29,8 +25,8 @@ static const struct field rows[] = {
     REAL(projectile_mass, "kg", 0, .doc = "Mass of the projectile; off without one."),
     REAL(specific_energy, "J/kg", 0,
          .doc = "Q: kinetic energy of the projectile over the mass of the target; off without a projectile."),
-    ROW(fracture_ceased, FIELD_BOOLEAN, NULL, .maximum = 1,
-        .doc = "Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time."),
+    ROW_OF(sph_results, fracture_ceased, fracture_ceased, FIELD_BOOLEAN, NULL, .maximum = 1,
+           .doc = "Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time."),
     REAL(first_damage, "s", 0, .doc = "Time when damage of a body with flaws began; off without damage."),
     REAL(cease_time, "s", 0,
          .doc =
@@ -132,13 +128,14 @@ static const struct field rows[] = {
     REAL(precursor.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure between precursor and shock."),
     REAL(precursor.pressure_exact, "Pa", 0,
          .doc = "Piston: exact pressure behind the precursor: P_e, or less when the piston is slow."),
-#define RESULT_REAL(path_, unit_, low, ...) REAL(path_, unit_, low, __VA_ARGS__),
-#define RESULT_SHARE(path_, ...)            SHARE(path_, __VA_ARGS__),
+#define MODULE_RESULTS(name) {.offset = offsetof(struct sph_results, name), .nest = &sph_##name##_results},
 #include "engine/sph/modules/declarations.h"
 };
 
-const struct field_table sph_results = FIELD_TABLE(rows, struct sph_results, "sph results",
-                                                   "Results of engine sph beside the common outcome.");
+static const struct field_table nested = FIELD_TABLE(rows, struct sph_results, "sph results",
+                                                     "Results of engine sph beside the common outcome.");
+struct field_table sph_results;
+FIELD_TABLE_AT_START(sph_results, nested)
 
 double sph_results_finite(double value) {
   return isfinite(value) ? value : (double)NAN;

@@ -4,7 +4,7 @@
 #ifndef CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
 #define CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
 
-#include "schemas/field.h"
+#include "engine/sph/modules/structs.h"
 
 enum sph_stop { SPH_STOP_RUNNING, SPH_STOP_QUIET, SPH_STOP_END_TIME, SPH_STOP_FAULT };
 
@@ -46,19 +46,15 @@ struct sph_results {
   double rebound;
   struct {
     double speed, speed_exact, density, density_exact, pressure, pressure_exact;
-#define FRONT_RESULT_MEMBERS(...) __VA_ARGS__
-#include "engine/sph/modules/declarations.h"
   } shock;
   struct {
     double speed, speed_exact, pressure, pressure_exact;
-#define FRONT_RESULT_MEMBERS(...) __VA_ARGS__
-#include "engine/sph/modules/declarations.h"
   } precursor;
-#define RESULT_MEMBERS(...) __VA_ARGS__
+#define MODULE_RESULTS(name) struct sph_##name##_results name;
 #include "engine/sph/modules/declarations.h"
 };
 
-extern const struct field_table sph_results;
+extern struct field_table sph_results; /* constant once main() begins */
 
 /* A result that is not finite is off (NaN). */
 double sph_results_finite(double value);

@@ -28,8 +28,8 @@ static void choose_columns(struct sph_pairs *p, const struct sph_pair_options *o
   p->options = *options;
   p->threads = options->fidelity.threads > 1 ? (size_t)options->fidelity.threads : 1;
   p->single = options->fidelity.precision == SPH_FLOAT;
-  p->artificial = options->method.artificial_stress > 0 && options->strength;
-  p->corrected = options->method.gradient_correction;
+  p->artificial = options->artificial_stress.epsilon > 0 && options->strength;
+  p->corrected = options->gradient_correction.on;
   p->kernels = sph_pairs_kernels_choose();
   p->records = p->single ? p->kernels->in_float : p->kernels->in_double;
   p->in_columns = sph_pair_columns(p->single, p->artificial, p->corrected);

@@ -32,8 +32,10 @@ enum sph_precision { SPH_DOUBLE, SPH_FLOAT };
 
 /* Sections of the inputs, and what follows from the bodies. */
 struct sph_pair_options {
-  struct sph_viscosity viscosity;
+  struct sph_viscosity_inputs viscosity;
   struct sph_method method;
+  struct sph_artificial_stress_inputs artificial_stress;
+  struct sph_gradient_correction_inputs gradient_correction;
   struct sph_fidelity fidelity; /* precision, and threads, on which the bits do not depend */
   bool strength;                /* stress[] is given; else the pressure alone */
   double spacing_over_h;        /* initial particle spacing over h: the f = W(r)/W(spacing) of the artificial stress */

@@ -215,7 +215,7 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
     atomic_init(&c->summed, false);
     atomic_init(&c->delivered, false);
     if (p->artificial)
-      p->kernels->oppose(p->options.method.artificial_stress, f->stress, f->stress_factor, f->pressure_term, c->first,
+      p->kernels->oppose(p->options.artificial_stress.epsilon, f->stress, f->stress_factor, f->pressure_term, c->first,
                          c->first + c->own, p->opposed);
   }
   w.source = sph_pairs_columns_source(p, f);

@@ -22,8 +22,8 @@ bool sph_derived_cracks(const struct sph_body_inputs *b) {
 
 struct sph_body_physics sph_derived_physics(const struct sph_body_inputs *b, const struct sph_flaws *flaws) {
   struct sph_body_physics physics = {.material = b->material, .strength = b->strength, .flaws = flaws};
-  if (field_is_off(b->material.yield_stress))
-    physics.material.yield_stress = HUGE_VAL; /* never yields */
+  if (field_is_off(b->material.yield.stress))
+    physics.material.yield.stress = HUGE_VAL; /* never yields */
   return physics;
 }
 

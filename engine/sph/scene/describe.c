@@ -24,8 +24,8 @@ static const double euler = 0.57721566490153286;
 static double flaws_expected(const struct sph_inputs *in) {
   const struct sph_shape target = sph_derived_target(in);
   double owners = (double)in->fidelity.particles;
-  if (in->fracture.cell > 0)
-    owners = fmin(owners, sph_shape_volume(&target) / pow(in->fracture.cell, 3));
+  if (in->crack_cell.width > 0)
+    owners = fmin(owners, sph_shape_volume(&target) / pow(in->crack_cell.width, 3));
   return owners * (log(fmax(owners, 1)) + euler);
 }
 

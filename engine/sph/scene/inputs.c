@@ -1,4 +1,4 @@
-/* The rows of a scene. Inputs that belong to a module have theirs in its header (modules/declarations.h). "BA95" in the
+/* The rows of a scene. Inputs that belong to a module have theirs in its NAME.c (modules/declarations.h). "BA95" in the
  * sources: Benz & Asphaug 1995, Simulations of brittle solids using smooth particle hydrodynamics. */
 #include "engine/sph/scene/inputs.h"
 
@@ -8,7 +8,7 @@
 #include "engine/input_rows.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/body/flaws.h"
-#include "engine/sph/material/fracture.h"
+#include "engine/sph/material/materials.h"
 #include "engine/sph/pairs/pairs.h"
 
 static const char *const kinds[] = {"impact", "stretch", "vibration", "collision", "piston", NULL};
@@ -20,98 +20,91 @@ static const char *const projectile_by[] = {"size", "mass", "specific-energy", N
 static const char *const link_h[] = {"initial", "current", NULL};
 static const char *const precisions[] = {"double", "float", NULL};
 
+/* ---- a body: the target or the projectile ---- */
+
+#define INPUTS sph_body_inputs
+
+static const struct field outline_rows[] =
+    {CHOICE(shape, shapes,
+            .doc = "The target's outline, its centre at the origin. An impact takes all of them, a piston a box; "
+                   "the others are done to cylinders. A mesh comes from a shape file."),
+     ROW(mesh.file, FIELD_TEXT, NULL, .text = "", .flags = FIELD_FILE | FIELD_DERIVED, .when = "shape=mesh",
+         .doc = "Shape file, STL or OBJ: a closed surface of triangles; to be given. Its name is relative to the "
+                "scene's file. The "
+                "centre of mass comes to the origin, the axes are those of the file, and z is up. A resolved scene has "
+                "the SHA-256 of the file instead, and a store keeps the file."),
+     REAL(mesh.unit, "m", NAN, 1e-12, 1e9, .flags = FIELD_DERIVED, .when = "shape=mesh",
+          .doc = "Length that 1 in the shape file stands for, such as 1 km or 1 mm: to be given, as the file does "
+                 "not say it."),
+     REAL(radius, "m", 0.03, 1e-9, 1e9, .when = "shape=sphere|cylinder", .doc = "Radius of the sphere or cylinder."),
+     REAL(inner_radius, "m", 0, 0, 1e9, .when = "shape=cylinder",
+          .doc = "Radius of a hole along the cylinder's axis, which makes a ring. 0: a full cylinder."),
+     REAL(length, "m", 0.04, 1e-9, 1e9, .when = "shape=cylinder",
+          .doc = "Length of the cylinder along its axis: z for a target, the direction of flight for a projectile. "
+                 "In a collision, "
+                 "where the slab repeats along z, the least length: whole periods of the lattice are made of it."),
+     REAL(width, "m", 0.2, 1e-9, 1e9, .when = "shape=box", .doc = "Side of the box along x."),
+     REAL(depth, "m", 0.2, 1e-9, 1e9, .when = "shape=box",
+          .doc = "Side of the box along y. Of a plate (kind: piston), which repeats along y and z, the least one: "
+                 "whole periods "
+                 "of the lattice are made of it."),
+     REAL(height, "m", 0.2, 1e-9, 1e9, .when = "shape=box",
+          .doc = "Side of the box along z. A projectile comes down on the upper side. Of a plate (kind: piston) the "
+                 "least one.")};
+static const struct field_table outline = FIELD_TABLE(outline_rows, struct sph_body_inputs, "outline", NULL);
+
+#define MATERIAL_DOC(default_)                                                                                         \
+  "Material whose values become the defaults of this body's; `clast materials` lists them, and " default_              \
+  " is taken unless one is named. custom: the scene gives all values."
+
+static const struct field matter_rows[] = {
+    CHOICE(lattice, lattices,
+           .choice_docs =
+               "hexagonal close packing\nsimple cubic\nrandom points pushed apart until the density is uniform",
+           .doc = "How particles stand at the start."),
+    SWITCH(turned, 0, .flags = FIELD_DERIVED,
+           .doc = "Orientation and offset of the lattice are drawn from the seed, so that each seed is a specimen of "
+                  "its own; on in impacts and stretched rods unless given. false: along the axes, the same for all "
+                  "seeds, which makes scatter 2 to 100 times too small."),
+    SWITCH(strength, 1,
+           .doc = "The body resists shear (Hooke, von Mises). false: a fluid; stress and strength are not stored."),
+    CHOICE(fracture, fractures, .when = "strength=true",
+           .choice_docs = "if the material has Weibull's m and k\nyes; m and k are needed\nno: only tension_limit and "
+                          "yield limit stress",
+           .doc = "The body has explicit flaws, from which cracks grow.", .source = "BA95 section 3"),
+    INPUT_CHOICE(material.name, material_name, builtin_material_names, .flags = FIELD_DERIVED,
+                 .doc = MATERIAL_DOC("basalt")),
+    {.path = "material",
+     .offset = offsetof(struct sph_body_inputs, material),
+     .nest = &sph_materials_nested,
+     .flags = FIELD_DERIVED,
+     .doc = "The named material's value unless given.",
+     .choice_docs = "The named material's unless given."},
+};
+static const struct field_table matter = FIELD_TABLE(matter_rows, struct sph_body_inputs, "matter", NULL);
+
+#undef INPUTS
 #define INPUTS sph_inputs
 
-/* ---- rows of a body, written once: B is `target` or `projectile`, `exists` the condition under which it is there ----
- */
+static const struct field projectile_outline[] = {
+    {.path = "shape", .when = "impact.projectile=size", .doc = "The projectile's outline."},
+    {.path = "radius", .number = 0.0035},
+    {0},
+};
+static const struct field projectile_matter[] = {{.path = "material.name", .doc = MATERIAL_DOC("nylon")}, {0}};
 
-#define OF_MATERIAL_REAL(B, member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)                       \
-  {.path = #B ".material." #member_,                                                                                   \
-   .kind = FIELD_REAL,                                                                                                 \
-   .unit = unit_,                                                                                                      \
-   .offset = offsetof(struct sph_inputs, B.material.member_),                                                          \
-   .minimum = low_,                                                                                                    \
-   .maximum = high_,                                                                                                   \
-   .number = default_,                                                                                                 \
-   .flags = (flags_) | FIELD_DERIVED,                                                                                  \
-   .when = when_,                                                                                                      \
-   .doc = doc_ " The named material's value unless given.",                                                            \
-   .source = source_},
-#define OF_MATERIAL_VALUE(B, exists_ALWAYS, member_, unit_, low_, high_, flags_, need_, doc_, source_)                 \
-  OF_MATERIAL_REAL(B, member_, unit_, NAN, low_, high_, flags_, WHEN_##need_(B, exists_ALWAYS), doc_, source_)
-#define OF_MATERIAL_CHOICE_VALUE(B, member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)               \
-  OF_MATERIAL_REAL(B, member_, unit_, default_, low_, high_, flags_, #B ".material." when_, doc_, source_)
-#define OF_MATERIAL_CHOICE(B, exists_ALWAYS, member_, choices_, absent_, need_, name_, choice_docs_, doc_, source_)    \
-  {.path = #B ".material." #member_,                                                                                   \
-   .kind = FIELD_CHOICE,                                                                                               \
-   .offset = offsetof(struct sph_inputs, B.material.member_),                                                          \
-   .choices = choices_,                                                                                                \
-   .absent = absent_,                                                                                                  \
-   .flags = FIELD_DERIVED,                                                                                             \
-   .choice_docs = choice_docs_,                                                                                        \
-   .when = WHEN_##need_(B, exists_ALWAYS),                                                                             \
-   .doc = doc_ " The named material's unless given.",                                                                  \
-   .source = source_},
-#define WHEN_ALWAYS(B, exists)   exists
-#define WHEN_STRENGTH(B, exists) #B ".strength=true"
-#define WHEN_FRACTURE(B, exists) #B ".fracture=auto|on"
+/* ---- inputs of modules, in the order of modules/list.h ---- */
 
-#define TARGET_VALUE(...)            OF_MATERIAL_VALUE(target, NULL, __VA_ARGS__)
-#define TARGET_CHOICE(...)           OF_MATERIAL_CHOICE(target, NULL, __VA_ARGS__)
-#define TARGET_CHOICE_VALUE(...)     OF_MATERIAL_CHOICE_VALUE(target, __VA_ARGS__)
-#define PROJECTILE_VALUE(...)        OF_MATERIAL_VALUE(projectile, "kind=impact", __VA_ARGS__)
-#define PROJECTILE_CHOICE(...)       OF_MATERIAL_CHOICE(projectile, "kind=impact", __VA_ARGS__)
-#define PROJECTILE_CHOICE_VALUE(...) OF_MATERIAL_CHOICE_VALUE(projectile, __VA_ARGS__)
+static const struct field module_rows[] = {
+#define MODULE_INPUTS(name) {.offset = offsetof(struct sph_inputs, name), .nest = &sph_##name##_inputs},
+#include "engine/sph/modules/declarations.h"
+};
+static const struct field_table modules = FIELD_TABLE(module_rows, struct sph_inputs, "modules", NULL);
 
-#define BODY_SIZES(B, shape_)                                                                                          \
-  ROW(B.mesh.file, FIELD_TEXT, NULL, .text = "", .flags = FIELD_FILE | FIELD_DERIVED, .when = #B ".shape=mesh",        \
-      .doc = "Shape file, STL or OBJ: a closed surface of triangles; to be given. Its name is relative to the "        \
-             "scene's file. The "                                                                                      \
-             "centre of mass comes to the origin, the axes are those of the file, and z is up. A resolved scene has "  \
-             "the SHA-256 of the file instead, and a store keeps the file."),                                          \
-      REAL(B.mesh.unit, "m", NAN, 1e-12, 1e9, .flags = FIELD_DERIVED, .when = #B ".shape=mesh",                        \
-           .doc = "Length that 1 in the shape file stands for, such as 1 km or 1 mm: to be given, as the file does "   \
-                  "not say it."),                                                                                      \
-      REAL(B.radius, "m", shape_, 1e-9, 1e9, .when = #B ".shape=sphere|cylinder",                                      \
-           .doc = "Radius of the sphere or cylinder."),                                                                \
-      REAL(B.inner_radius, "m", 0, 0, 1e9, .when = #B ".shape=cylinder",                                               \
-           .doc = "Radius of a hole along the cylinder's axis, which makes a ring. 0: a full cylinder."),              \
-      REAL(B.length, "m", 0.04, 1e-9, 1e9, .when = #B ".shape=cylinder",                                               \
-           .doc = "Length of the cylinder along its axis: z for a target, the direction of flight for a projectile. "  \
-                  "In a collision, "                                                                                   \
-                  "where the slab repeats along z, the least length: whole periods of the lattice are made of it."),   \
-      REAL(B.width, "m", 0.2, 1e-9, 1e9, .when = #B ".shape=box", .doc = "Side of the box along x."),                  \
-      REAL(B.depth, "m", 0.2, 1e-9, 1e9, .when = #B ".shape=box",                                                      \
-           .doc = "Side of the box along y. Of a plate (kind: piston), which repeats along y and z, the least one: "   \
-                  "whole periods "                                                                                     \
-                  "of the lattice are made of it."),                                                                   \
-      REAL(B.height, "m", 0.2, 1e-9, 1e9, .when = #B ".shape=box",                                                     \
-           .doc = "Side of the box along z. A projectile comes down on the upper side. Of a plate (kind: piston) the " \
-                  "least one.")
+/* ---- the scene ---- */
 
-#define BODY_MATTER(B, exists, material_)                                                                              \
-  CHOICE(B.lattice, lattices, .when = exists,                                                                          \
-         .choice_docs =                                                                                                \
-             "hexagonal close packing\nsimple cubic\nrandom points pushed apart until the density is uniform",         \
-         .doc = "How particles stand at the start."),                                                                  \
-      SWITCH(B.turned, 0, .flags = FIELD_DERIVED, .when = exists,                                                      \
-             .doc =                                                                                                    \
-                 "Orientation and offset of the lattice are drawn from the seed, so that each seed is a specimen of "  \
-                 "its own; on in impacts and stretched rods unless given. false: along the axes, the same for all "    \
-                 "seeds, which makes scatter 2 to 100 times too small."),                                              \
-      SWITCH(B.strength, 1, .when = exists,                                                                            \
-             .doc = "The body resists shear (Hooke, von Mises). false: a fluid; stress and strength are not stored."), \
-      CHOICE(B.fracture, fractures, .when = #B ".strength=true",                                                       \
-             .choice_docs =                                                                                            \
-                 "if the material has Weibull's m and k\nyes; m and k are needed\nno: only tension_limit and "         \
-                 "yield limit stress",                                                                                 \
-             .doc = "The body has explicit flaws, from which cracks grow.", .source = "BA95 section 3"),               \
-  {                                                                                                                    \
-    .path = #B ".material.name", .kind = FIELD_CHOICE, .offset = offsetof(struct sph_inputs, B.material_name),         \
-    .choices = builtin_material_names, .number = 0, .flags = FIELD_DERIVED, .when = exists,                            \
-    .doc = "Material whose values become the defaults of this body's; `clast materials` lists them, and " material_    \
-           " is taken unless one is named. custom: the scene gives all values."                                        \
-  }
+#define BODY(body, ...)                                                                                                \
+  { .path = #body, .offset = offsetof(struct sph_inputs, body), __VA_ARGS__ }
 
 static const struct field rows[] = {
     CHOICE(kind, kinds,
@@ -123,10 +116,7 @@ static const struct field rows[] = {
                           "compared with the exact one",
            .doc = "Protocol: load or impact on the body."),
 
-    CHOICE(target.shape, shapes,
-           .doc = "The target's outline, its centre at the origin. An impact takes all of them, a piston a box; "
-                  "the others are done to cylinders. A mesh comes from a shape file."),
-    BODY_SIZES(target, 0.03),
+    BODY(target, .nest = &outline),
     REAL(target.spin, "rad/s", 0, -1e9, 1e9, .when = "kind=impact",
          .doc = "The target turns about z before it is hit."),
     CHOICE(sides.far, far_sides, .when = "target.shape=box",
@@ -138,17 +128,12 @@ static const struct field rows[] = {
          .doc = "Thickness of the damping layer; a tenth of the shortest side unless given. A wave that goes through "
                 "it and "
                 "back keeps about 3 %."),
-    BODY_MATTER(target, NULL, "basalt"),
-    SPH_MATERIAL_COMMON(TARGET_VALUE)
-#define MATERIAL_VALUE        TARGET_VALUE
-#define MATERIAL_CHOICE       TARGET_CHOICE
-#define MATERIAL_CHOICE_VALUE TARGET_CHOICE_VALUE
-#include "engine/sph/modules/declarations.h"
+    BODY(target, .nest = &matter),
 
-        CHOICE(impact.projectile, projectile_by, .when = "kind=impact",
-               .choice_docs =
-                   "projectile.radius and the like\na sphere of impact.mass\na sphere with impact.specific_energy",
-               .doc = "Input that decides the projectile's size."),
+    CHOICE(impact.projectile, projectile_by, .when = "kind=impact",
+           .choice_docs =
+               "projectile.radius and the like\na sphere of impact.mass\na sphere with impact.specific_energy",
+           .doc = "Input that decides the projectile's size."),
     REAL(impact.mass, "kg", 2e-4, 1e-30, 1e30, .when = "impact.projectile=mass", .label = "mass of the projectile",
          .doc = "Mass of the projectile."),
     REAL(impact.specific_energy, "J/kg", 1000, 1e-12, 1e12, .when = "impact.projectile=specific-energy",
@@ -167,18 +152,12 @@ static const struct field rows[] = {
                 "spacing of the "
                 "target there unless given."),
 
-    CHOICE(projectile.shape, shapes, .when = "impact.projectile=size", .doc = "The projectile's outline."),
-    BODY_SIZES(projectile, 0.0035),
-    BODY_MATTER(projectile, "kind=impact", "nylon"),
-    SPH_MATERIAL_COMMON(PROJECTILE_VALUE)
-#define MATERIAL_VALUE        PROJECTILE_VALUE
-#define MATERIAL_CHOICE       PROJECTILE_CHOICE
-#define MATERIAL_CHOICE_VALUE PROJECTILE_CHOICE_VALUE
-#include "engine/sph/modules/declarations.h"
+    BODY(projectile, .nest = &outline, .own = projectile_outline),
+    BODY(projectile, .nest = &matter, .own = projectile_matter, .when = "kind=impact"),
 
-        REAL(stretch.rate, "1/s", 60, 0, 1e9, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
-             .doc = "Strain rate: the rod starts in uniform stretching, and its grips keep their speeds.",
-             .source = "BA95 section 5.1"),
+    REAL(stretch.rate, "1/s", 60, 0, 1e9, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
+         .doc = "Strain rate: the rod starts in uniform stretching, and its grips keep their speeds.",
+         .source = "BA95 section 5.1"),
     REAL(stretch.grip, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
          .doc = "Length of each end that is held and pulled; a twentieth of the rod unless given, three spacings at "
                 "least."),
@@ -197,11 +176,7 @@ static const struct field rows[] = {
          .doc = "Speed of the piston into the plate, along x: four layers of the same matter that keep their velocity.",
          .source = "Jutzi, Benz & Michel 2008 for 458 m/s"),
 
-#define SPH_INPUT_ROWS
-#define IN_fracture(...)  __VA_ARGS__
-#define IN_viscosity(...) __VA_ARGS__
-#define IN_method(...)    __VA_ARGS__
-#include "engine/sph/modules/declarations.h"
+    {.nest = &modules, .only = "!fidelity"},
     SWITCH(
         method.volume_weights, 0,
         .doc =
@@ -294,11 +269,11 @@ static const struct field rows[] = {
          .doc = "The run ends with state `energy` when the ledger drifts by more than this share of the energy put in. "
                 "off: it "
                 "only reports the drift."),
-#define SPH_INPUT_ROWS
-#define IN_fidelity(...) __VA_ARGS__
-#include "engine/sph/modules/declarations.h"
+    {.nest = &modules, .only = "fidelity"},
 };
 
-const struct field_table sph_inputs = FIELD_TABLE(
+static const struct field_table nested = FIELD_TABLE(
     rows, struct sph_inputs, "sph scene",
     "Solids that crack: smoothed particle hydrodynamics with explicit Weibull flaws (Benz & Asphaug 1994, 1995).");
+struct field_table sph_inputs;
+FIELD_TABLE_AT_START(sph_inputs, nested)

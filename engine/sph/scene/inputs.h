@@ -1,5 +1,5 @@
-/* The typed scene of engine `sph`: every input of every protocol, one row each in inputs.c or, where
- * it belongs to a module, in the module's header. SI throughout. */
+/* The typed scene of engine `sph`: every input of every protocol, one row each in inputs.c or, where it belongs to a
+ * module, in the module's NAME.c. SI throughout. */
 #ifndef CLAST_ENGINE_SPH_SCENE_INPUTS_H
 #define CLAST_ENGINE_SPH_SCENE_INPUTS_H
 
@@ -13,13 +13,8 @@ enum sph_kind {
   SPH_COLLISION, /* two equal cylinders or rings, thin slabs that repeat along their axes */
   SPH_PISTON,    /* a plate, a bar along x that repeats sideways, with a piston running into its end */
 };
-enum sph_crack_front { SPH_CRACK_FRONT_NONE, SPH_CRACK_FRONT_PLANE };
 enum sph_fracture_choice { SPH_FRACTURE_AUTO, SPH_FRACTURE_ON, SPH_FRACTURE_OFF };
 enum sph_projectile_by { SPH_BY_SIZE, SPH_BY_MASS, SPH_BY_ENERGY };
-/* R_s of a particle: the radius of the sphere of its volume, or 2h. */
-enum sph_crack_radius { SPH_CRACK_RADIUS_VOLUME, SPH_CRACK_RADIUS_SUPPORT };
-/* Every flaw of a particle, or the lowest, the highest and the number of them. */
-enum sph_flaw_lists { SPH_FLAWS_EXACT, SPH_FLAWS_COMPACT };
 
 struct sph_mesh_inputs {
   char file[FIELD_TEXT_SIZE]; /* SHA-256 of the shape file (engine/mesh/files.h) */
@@ -56,22 +51,8 @@ struct sph_stretch {
 struct sph_collision {
   double speed, gap; /* m/s, m */
 };
-/* Sections whose members the modules declare (modules/declarations.h). */
-struct sph_fracture {
-#define SPH_INPUT_MEMBERS
-#define IN_fracture(...) __VA_ARGS__
-#include "engine/sph/modules/declarations.h"
-};
-struct sph_viscosity {
-#define SPH_INPUT_MEMBERS
-#define IN_viscosity(...) __VA_ARGS__
-#include "engine/sph/modules/declarations.h"
-};
 struct sph_method {
   bool volume_weights;
-#define SPH_INPUT_MEMBERS
-#define IN_method(...) __VA_ARGS__
-#include "engine/sph/modules/declarations.h"
 };
 struct sph_fragment_rules {
   double static_strength, damage, link_length; /* Pa, 1, 1 */
@@ -93,9 +74,6 @@ struct sph_fidelity {
   int precision;                    /* enum sph_precision */
   int64_t threads;
   double energy_bound; /* 1; NaN = off */
-#define SPH_INPUT_MEMBERS
-#define IN_fidelity(...) __VA_ARGS__
-#include "engine/sph/modules/declarations.h"
 };
 
 /* Bodies and physics read these sections themselves: only the rows have their names, defaults and ranges. */
@@ -112,8 +90,6 @@ struct sph_inputs {
   struct {
     double speed; /* m/s */
   } piston;
-  struct sph_fracture fracture;
-  struct sph_viscosity viscosity;
   struct sph_method method;
   struct sph_fragment_rules fragments;
   struct {
@@ -121,9 +97,11 @@ struct sph_inputs {
   } crater;
   struct sph_stop_rules stop;
   struct sph_fidelity fidelity;
+#define MODULE_INPUTS(name) struct sph_##name##_inputs name;
+#include "engine/sph/modules/declarations.h"
 };
 
-extern const struct field_table sph_inputs;
+extern struct field_table sph_inputs; /* constant once main() begins */
 
 /* inputs_complete.c: sets inputs that were not given and follow from others (engine_kind.complete). */
 void sph_inputs_complete(struct sph_inputs *inputs, const bool *given);

@@ -15,70 +15,51 @@
 
 /* ---- materials ---- */
 
-/* Which bodies need each row of sph_materials_table, in its order. */
-enum need { ALWAYS, STRENGTH, FRACTURE, BY_CHOICE };
-static const struct {
-  enum need need;
-  const char *choice_name; /* name of a choice in messages */
-} needs[] = {
-#define MATERIAL_VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_) {need_, NULL},
-#define MATERIAL_CHOICE(member_, choices_, absent_, need_, name_, ...)            {need_, name_},
-#define MATERIAL_CHOICE_VALUE(...)                                                {BY_CHOICE, NULL},
-    SPH_MATERIAL_COMMON(MATERIAL_VALUE)
-#include "engine/sph/modules/declarations.h"
-};
-
-static bool has(const struct sph_body_inputs *body, enum need need) {
-  switch (need) {
-  case STRENGTH: return body->strength;
-  case FRACTURE: return body->strength && body->fracture == SPH_FRACTURE_ON;
-  case ALWAYS:
-  case BY_CHOICE: break;
-  }
-  return true;
+/* What decides whether a body uses a value: ".strength", ".fracture", a choice of its material; "" is always. */
+static const char *decider(const struct field *row, const struct field **controller) {
+  *controller = field_controller(&sph_inputs, row);
+  const char *word = *controller ? strrchr((*controller)->path, '.') : NULL;
+  return word ? word : "";
 }
 
-/* Does the body need the value of row k? Flaws and shear_modulus may be off, but not where they are
- * used. */
-static bool needed(size_t k, const struct sph_body_inputs *body) {
-  const struct field *row = &sph_materials_table.rows[k];
-  const struct field *choice = field_controller(&sph_materials_table, row);
-  if (!has(body, needs[k].need) || (choice && !has(body, needs[choice - sph_materials_table.rows].need)))
-    return false;
-  if (needs[k].need == FRACTURE || strcmp(row->path, "shear_modulus") == 0)
-    return true;
-  return !(row->flags & FIELD_MAY_BE_OFF) && field_is_active(&sph_materials_table, row, &body->material);
+/* Does an active row need a value? What may be off is needed all the same where it is used: flaws where fracture is on,
+ * and shear_modulus. */
+static bool is_needed(const struct field *row, const struct sph_body_inputs *body) {
+  const struct field *controller;
+  if (strcmp(decider(row, &controller), ".fracture") == 0)
+    return body->fracture == SPH_FRACTURE_ON;
+  return !(row->flags & FIELD_MAY_BE_OFF) || strcmp(strrchr(row->path, '.'), ".shear_modulus") == 0;
 }
 
-static status refuse_missing(size_t k, const char *body_name, const char *material, struct error *error) {
-  const struct field *row = &sph_materials_table.rows[k];
-  const struct field *choice = field_controller(&sph_materials_table, row);
+static status refuse_missing(const struct field *row, const char *material, struct error *error) {
+  const struct field *controller;
+  const char *by = decider(row, &controller), *off = "false";
   char reason[100] = "", remedy[200] = "name another material";
-  switch (needs[k].need) {
-  case ALWAYS: break;
-  case STRENGTH:
+  if (strcmp(by, ".strength") == 0) {
     snprintf(reason, sizeof reason, " because the body has strength");
-    snprintf(remedy, sizeof remedy, "set %s.strength: false", body_name);
-    break;
-  case FRACTURE:
+  } else if (strcmp(by, ".fracture") == 0) {
     snprintf(reason, sizeof reason, " because fracture is on");
-    snprintf(remedy, sizeof remedy, "set %s.fracture: off", body_name);
-    break;
-  case BY_CHOICE:
-    snprintf(reason, sizeof reason, " by the %s", needs[choice - sph_materials_table.rows].choice_name);
-    snprintf(remedy, sizeof remedy, "set %s.material.%s: %s", body_name, choice->path, choice->choices[0]);
-    break;
+    off = "off";
+  } else if (*by) {
+    snprintf(reason, sizeof reason, " by the %s", controller->label);
+    off = controller->choices[0];
   }
-  REFUSE("%s.material.%s is needed%s, and the material '%s' has none: give it, or %s", body_name, row->path, reason,
-         material, remedy);
+  if (*by)
+    snprintf(remedy, sizeof remedy, "set %s: %s", controller->path, off);
+  REFUSE("%s is needed%s, and the material '%s' has none: give it, or %s", row->path, reason, material, remedy);
 }
 
-static status check_needed(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
-  for (size_t k = 0; k < sph_materials_table.count; k++) {
+static status check_needed(const struct sph_inputs *in, const struct sph_body_inputs *body, struct error *error) {
+  const size_t material = (size_t)((const char *)&body->material - (const char *)in);
+  for (size_t k = 0; k < sph_inputs.count; k++) {
+    const struct field *row = &sph_inputs.rows[k];
     struct field_value value;
-    field_get(&sph_materials_table.rows[k], &body->material, &value);
-    if (value.kind == FIELD_REAL && isnan(value.number) && needed(k, body))
-      return refuse_missing(k, body_name, builtin_material_names[body->material_name], error);
+    if (row->offset < material || row->offset >= material + sizeof body->material)
+      continue;
+    field_get(row, in, &value);
+    if (value.kind == FIELD_REAL && isnan(value.number) && field_is_active(&sph_inputs, row, in) &&
+        is_needed(row, body))
+      return refuse_missing(row, builtin_material_names[body->material_name], error);
   }
   return STATUS_OK;
 }
@@ -92,9 +73,10 @@ static status check_flaws(const char *body_name, const struct sph_body_inputs *b
       body_name, m_off ? "k" : "m", m_off ? "m" : "k");
 }
 
-static status check_material(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
+static status check_material(const struct sph_inputs *in, const char *body_name, const struct sph_body_inputs *body,
+                             struct error *error) {
   const struct sph_material *m = &body->material;
-  status code = check_needed(body_name, body, error);
+  status code = check_needed(in, body, error);
   if (code)
     return code;
   if (!(m->tillotson.E_cv > m->tillotson.E_iv))
@@ -307,23 +289,23 @@ const char *sph_inputs_check_fewer(const struct sph_inputs *in) {
 
 static status check_bodies(const struct sph_inputs *in, struct error *error) {
   const struct sph_shape target = sph_derived_target(in);
-  status code = check_material("target", &in->target, error);
+  status code = check_material(in, "target", &in->target, error);
   if (code)
     return code;
   code = check_shape("target", &in->target, &target, error);
   if (code || !sph_derived_has_projectile(in))
     return code;
-  return check_material("projectile", &in->projectile, error);
+  return check_material(in, "projectile", &in->projectile, error);
 }
 
 static status check_cracks(const struct sph_inputs *in, struct error *error) {
   const bool cracks = sph_derived_cracks(&in->target) ||
                       (sph_derived_has_projectile(in) && sph_derived_cracks(&in->projectile));
-  if (cracks && in->method.artificial_stress > 0)
+  if (cracks && in->artificial_stress.epsilon > 0)
     REFUSE("method.artificial_stress would hold cracks together: set it to 0, or target.fracture: off");
-  if (!(in->fracture.cell > 0))
+  if (!(in->crack_cell.width > 0))
     return STATUS_OK;
-  if (in->fracture.front == SPH_CRACK_FRONT_PLANE)
+  if (in->crack_front.front == SPH_CRACK_FRONT_PLANE)
     REFUSE("fracture.cell cannot be used with fracture.front: plane: set fracture.cell: 0 m, or fracture.front: none");
   if (in->fracture.crack_radius == SPH_CRACK_RADIUS_SUPPORT)
     REFUSE("fracture.crack_radius: support has no meaning for cells: set it to volume, or fracture.cell: 0 m");

@@ -86,7 +86,7 @@ void sph_inputs_complete(struct sph_inputs *in, const bool *given) {
   COMPLETE(stretch.grip, fmax(in->target.length / 20, 3 * spacing));
   COMPLETE(stretch.flaw_free, fmax(in->target.length / 10, in->stretch.grip + 2.5 * spacing));
   COMPLETE(fragments.static_strength, static_strength(in));
-  COMPLETE(fragments.layer_width, in->fracture.cell);
+  COMPLETE(fragments.layer_width, in->crack_cell.width);
   COMPLETE(fragments.dust_mass, 1e-3 * sph_derived_target_mass(in));
   COMPLETE(stop.quiet_time, 2 * crossing);
   COMPLETE(stop.end_time, in->kind == SPH_PISTON ? plate_time(in) : 10 * crossing + sph_derived_arrival(in));

@@ -195,8 +195,8 @@ static status make_flaws(struct sph_run *run, struct error *error) {
       continue;
     struct sph_flaw_law law = {.weibull = body->material.weibull,
                                .solid_ratio = sph_derived_solid_ratio(&body->material),
-                               .draw = in->fracture.draw,
-                               .cell_width = in->fracture.cell,
+                               .draw = in->weibull.draw,
+                               .cell_width = in->crack_cell.width,
                                .seed = run->seed,
                                .body = (uint64_t)b};
     const status code = sph_flaws_place(&law, &run->shape[b], run->start, run->range[b],

@@ -98,7 +98,7 @@ unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
     set |= WARNINGS_CONTRAST;
   if (compressed > largest_compression)
     set |= WARNINGS_PISTON;
-  if (in->fidelity.smoothing < least_smoothing && !in->method.gradient_correction)
+  if (in->fidelity.smoothing < least_smoothing && !in->gradient_correction.on)
     set |= WARNINGS_KERNEL;
   if (in->stop.end_time > arrival)
     set |= WARNINGS_ARRIVAL;

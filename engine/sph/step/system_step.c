@@ -80,7 +80,7 @@ static size_t first_block(const struct sph_system *s, size_t at) {
 /* Called by the pair loop with the sums of some particles: runs the loops after the pair loop on their blocks. */
 static void after_pairs(void *context, size_t first, size_t count, const struct sph_pair_sums *sums) {
   struct sph_system *s = context;
-  for (size_t m = 0; s->in.method.gradient_correction && m < 6; m++)
+  for (size_t m = 0; s->in.gradient_correction.on && m < 6; m++)
     memcpy(s->c.correction[m] + first, sums->correction[m], count * sizeof(double));
   for (size_t k = first_block(s, first); k < s->block_count && s->block[k].low < first + count; k++) {
     struct sph_block *block = &s->block[k];
@@ -175,7 +175,7 @@ static bool advance(struct sph_system *s, double dt) {
 }
 
 bool sph_system_step_begin(struct sph_system *s) {
-  if (s->in.method.gradient_correction && !advance(s, 0))
+  if (s->in.gradient_correction.on && !advance(s, 0))
     return false; /* the forces need the correction of the previous pass */
   return advance(s, 0);
 }
