@@ -210,9 +210,7 @@ status scene_parse(const char *name, const char *text, struct scene **out, struc
 status scene_parse_json(const char *name, const char *json, struct scene **out, struct error *error) {
   *out = NULL;
   struct document *document = NULL;
-  status code = document_parse(name, json, strlen(json), &document, error);
-  if (code)
-    return code;
+  TRY(document_parse(name, json, strlen(json), &document, error));
   document_take_si(document);
   return read_document(document, NULL, name, out, error);
 }
@@ -256,12 +254,8 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
   if (!row)
     return STATUS_CONTENT;
   struct field_value taken = *value;
-  status code = scene_files_set(row, &taken, error);
-  if (code)
-    return code;
-  code = field_set(row, scene->inputs, &taken, error);
-  if (code)
-    return code;
+  TRY(scene_files_set(row, &taken, error));
+  TRY(field_set(row, scene->inputs, &taken, error));
   scene->given[row - table->rows] = scene->overridden[row - table->rows] = true;
   if (scene->kind->complete)
     scene->kind->complete(scene->inputs, scene->given);
@@ -307,9 +301,7 @@ status scene_check(struct scene *scene, struct error *error) {
       return status_fail(error, STATUS_CONTENT, "%s: has no effect: it is %s; remove one or change the other",
                          row->path, why);
     } else if (scene->given[i]) {
-      const status code = set_back(scene, i, error);
-      if (code)
-        return code;
+      TRY(set_back(scene, i, error));
     }
   }
   const status code = scene->kind->check ? scene->kind->check(scene->inputs, error) : STATUS_OK;

@@ -139,9 +139,7 @@ static bool take_cracks(const struct columns *c, struct picture_body *body) {
 status picture_body_read(const char *path, struct picture_body *body, struct error *error) {
   *body = (struct picture_body){0};
   struct snapshot_read *file;
-  status code = snapshot_read_open(path, &file, error);
-  if (code)
-    return code;
+  TRY(snapshot_read_open(path, &file, error));
 
   struct columns columns = {0};
   read_columns(file, &columns);

@@ -66,9 +66,7 @@ static const char *read_particles(struct snapshot_read *file, struct picture_clo
 status picture_cloud_read(const char *path, struct picture_cloud *cloud, struct error *error) {
   *cloud = (struct picture_cloud){.time = NAN};
   struct snapshot_read *file;
-  status code = snapshot_read_open(path, &file, error);
-  if (code)
-    return code;
+  TRY(snapshot_read_open(path, &file, error));
 
   const char *why = read_particles(file, cloud);
   if (!why && !snapshot_read_text(file, "run", "engine", cloud->engine, sizeof cloud->engine))

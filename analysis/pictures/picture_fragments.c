@@ -299,9 +299,7 @@ status picture_fragments(const char *path, double width, const char *title, cons
     return status_fail(error, STATUS_USAGE, "%s: one to three panels, not %zu", path, panels);
   double gap = 0.03 * width, each = (width - gap * (double)(panels + 1)) / (double)panels;
   for (size_t p = 0; p < panels; p++) {
-    status code = frame_panel(path, &panel[p], view[p], error);
-    if (code)
-      return code;
+    TRY(frame_panel(path, &panel[p], view[p], error));
     double tall = each * (view[p][3] - view[p][1]) / (view[p][2] - view[p][0]);
     if (!isfinite(tall))
       return status_fail(error, STATUS_USAGE, "%s: positions of the cells are not finite", path);

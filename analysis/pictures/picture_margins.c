@@ -69,9 +69,7 @@ status picture_margins(const char *path, double width, const char *title, size_t
   for (size_t k = 0; k < count; k++)
     height += row_height + (row[k].heading ? head_height : 0);
   struct picture_canvas canvas;
-  const status code = picture_canvas_open(&canvas, path, width, height, error);
-  if (code)
-    return code;
+  TRY(picture_canvas_open(&canvas, path, width, height, error));
   cairo_set_source_rgb(canvas.cairo, 0, 0, 0);
   picture_canvas_text(canvas.cairo, margin, margin + font, 1.2 * font, PICTURE_LEFT, true, title);
   draw_legend(canvas.cairo, width, margin + font);

@@ -162,9 +162,7 @@ static status draw(const char *path, double width, struct picture_scene *s, stru
   double scale = fmin(wide / (s->view[2] - s->view[0]), tall / (s->view[3] - s->view[1]));
   double top = font * (1.2 + (look->title ? 1.9 : 0) + (look->subtitle ? 1.6 : 0));
   struct picture_canvas canvas;
-  status code = picture_canvas_open(&canvas, path, width, top + tall + 6.6 * font, error);
-  if (code)
-    return code;
+  TRY(picture_canvas_open(&canvas, path, width, top + tall + 6.6 * font, error));
   cairo_t *cairo = canvas.cairo;
   cairo_save(cairo);
   cairo_rectangle(cairo, gap, top, wide, tall);
@@ -205,9 +203,7 @@ static status choose(struct picture_scene *s) {
 
 /* Chooses and draws. Sets *error itself unless the code is STATUS_MEMORY. */
 static status compose(const char *path, double width, struct picture_scene *s, struct error *error) {
-  const status code = s->cloud->n ? choose(s) : STATUS_OK;
-  if (code)
-    return code;
+  TRY(s->cloud->n ? choose(s) : STATUS_OK);
   if (s->discs > 0)
     return draw(path, width, s, error);
   if (s->look->view == PICTURE_CUT)

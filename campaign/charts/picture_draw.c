@@ -17,12 +17,10 @@ static double width_of(const struct picture_choice *options) {
 static status draw_grains(const char *fields, const char *picture, const struct picture_choice *options,
                           struct error *error) {
   struct picture_panel panel = {0};
-  status code = picture_body_read(fields, &panel.body, error);
-  if (code)
-    return code;
+  TRY(picture_body_read(fields, &panel.body, error));
   char numbers[160];
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
-  code = picture_fragments(picture, width_of(options), options->caption, numbers, 1, &panel, error);
+  status code = picture_fragments(picture, width_of(options), options->caption, numbers, 1, &panel, error);
   picture_body_clear(&panel.body);
   return code;
 }
@@ -106,13 +104,9 @@ static status draw_particles(const char *fields, const char *picture, const char
   struct picture_cloud cloud = {0};
   const char *what;
   char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "";
-  status code = choose_look(options, &look, &what, error);
-  if (code)
-    return code;
-  code = picture_cloud_read(fields, &cloud, error);
-  if (code)
-    return code;
-  code = read_quantity(fields, options->what != NULL, &cloud, &what, unit, error);
+  TRY(choose_look(options, &look, &what, error));
+  TRY(picture_cloud_read(fields, &cloud, error));
+  status code = read_quantity(fields, options->what != NULL, &cloud, &what, unit, error);
   if (code)
     goto cleanup;
   name_look(&look, &cloud, title, sizeof title);
@@ -137,9 +131,7 @@ struct panel {
 static status read_panel(const char *fields, const char *name, size_t count, struct panel *panel, struct error *error) {
   char unit[32] = "", shown[64];
   size_t rows = 0;
-  const status code = picture_cloud_read_axis(fields, name, &panel->values, &rows, unit, error);
-  if (code)
-    return code;
+  TRY(picture_cloud_read_axis(fields, name, &panel->values, &rows, unit, error));
   if (rows != count)
     return status_fail(error, STATUS_CONTENT, "%s is damaged: the columns of its profile differ in length", fields);
   field_label_unit(unit, shown, sizeof shown);
@@ -189,9 +181,7 @@ cleanup:
 /* Grains in the plane have one picture only. An unreadable file is reported before that. */
 static status refuse_options(const char *fields, struct error *error) {
   struct picture_body body;
-  status code = picture_body_read(fields, &body, error);
-  if (code)
-    return code;
+  TRY(picture_body_read(fields, &body, error));
   picture_body_clear(&body);
   return status_fail(error, STATUS_USAGE,
                      "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "

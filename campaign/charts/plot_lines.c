@@ -75,9 +75,7 @@ static status add(void *context, const struct quantity_row *row, struct error *e
   char value[sizeof plot->line[0].value];
   struct line *line = NULL;
   line_value(plot, row, value, sizeof value);
-  const status code = find_line(plot, value, row->results_version, &line, error);
-  if (code)
-    return code;
+  TRY(find_line(plot, value, row->results_version, &line, error));
   if (line->count == MOST_MEANS)
     return status_fail(error, STATUS_USAGE, "a line has at most %d points: choose an axis with fewer values",
                        MOST_MEANS);

@@ -66,13 +66,9 @@ status commands_ask(const struct command_line *line, const struct table_options 
                     struct error *error) {
   enum table_format format = TABLE_TEXT;
   struct store *store = NULL;
-  status code = table ? table_choose(table, &format, error) : STATUS_OK;
-  if (code)
-    return code;
-  code = store_open_reader(line->arguments[0], &store, error);
-  if (code)
-    return code;
-  code = question(store, line, format, error);
+  TRY(table ? table_choose(table, &format, error) : STATUS_OK);
+  TRY(store_open_reader(line->arguments[0], &store, error));
+  status code = question(store, line, format, error);
   store_close(store, NULL);
   return code;
 }

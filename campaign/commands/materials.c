@@ -61,14 +61,10 @@ static status print_document(const char *name, struct error *error) {
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
-  status code = table_choose(&options->table, &format, error);
-  if (code)
-    return code;
+  TRY(table_choose(&options->table, &format, error));
   if (line->count == 0)
     return list(format, error);
-  code = table_text_only(&options->table, "a material's document", error);
-  if (code)
-    return code;
+  TRY(table_text_only(&options->table, "a material's document", error));
   return print_document(line->arguments[0], error);
 }
 

@@ -14,9 +14,7 @@ static status merge_source(struct store *store, const char *target, const char *
                            struct error *error) {
   int64_t added = 0;
   *differing = 0;
-  status code = store_merge(store, source, &added, differing, error);
-  if (code)
-    return code;
+  TRY(store_merge(store, source, &added, differing, error));
   fprintf(stderr, "%s: %" PRId64 " run%s added\n", source, added, plural(added));
   if (*differing)
     fprintf(stderr,
@@ -30,9 +28,7 @@ static status merge_source(struct store *store, const char *target, const char *
 static status merge(struct store *store, const struct command_line *line, int64_t *disagreeing, struct error *error) {
   for (size_t i = 1; i < line->count; i++) {
     int64_t differing;
-    status code = merge_source(store, line->arguments[0], line->arguments[i], &differing, error);
-    if (code)
-      return code;
+    TRY(merge_source(store, line->arguments[0], line->arguments[i], &differing, error));
     *disagreeing += differing;
   }
   return pooling_store(store, 0, error);
@@ -42,12 +38,10 @@ static status run(const struct command_line *line, struct error *error) {
   struct store *store = NULL;
   int64_t disagreeing = 0;
   char warning[512] = "";
-  status code = store_open_writer(line->arguments[0], &store, warning, sizeof warning, error);
-  if (code)
-    return code;
+  TRY(store_open_writer(line->arguments[0], &store, warning, sizeof warning, error));
   if (*warning)
     fprintf(stderr, "clast: %s\n", warning);
-  code = merge(store, line, &disagreeing, error);
+  status code = merge(store, line, &disagreeing, error);
   status closed = store_close(store, code ? NULL : error);
   if (code || closed)
     return code ? code : closed;

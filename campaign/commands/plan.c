@@ -32,16 +32,15 @@ status commands_plan(const char *path, const struct campaign_option *changes, co
                      bool no_trial, bool json, struct error *error) {
   struct campaign *campaign = NULL;
   char *alternatives = NULL;
-  status code = campaign_option_load(path, changes, &campaign, error);
-  if (code)
-    return code;
+  TRY(campaign_option_load(path, changes, &campaign, error));
   struct plan plan;
   struct plan_options options = {.store_path = store, .no_trial = no_trial, .slots = (int)slots};
   if (slots == 0) {
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     options.slots = cores > 0 ? (int)cores : 1;
   }
-  code = accuracy_print_settle(campaign, path, store ? store : campaign->store, json ? &alternatives : NULL, error);
+  status code = accuracy_print_settle(campaign, path, store ? store : campaign->store, json ? &alternatives : NULL,
+                                      error);
   if (code != STATUS_OK)
     goto cleanup;
   code = plan_make(campaign, &options, &plan, error);

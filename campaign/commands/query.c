@@ -49,9 +49,7 @@ static status ask(struct store *store, const struct command_line *line, enum tab
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
-  const status code = table_choose(&options->table, &format, error);
-  if (code)
-    return code;
+  TRY(table_choose(&options->table, &format, error));
   if (options->list)
     return canned_table_print(format, error);
   if (line->count == 0 || (line->count == 2) == (options->named != NULL))

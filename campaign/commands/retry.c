@@ -18,10 +18,8 @@ struct options {
 static status read_store(const char *path, int64_t campaign, char **name, char **document, int64_t *attempts,
                          struct error *error) {
   struct store *store = NULL;
-  status code = store_open_reader(path, &store, error);
-  if (code)
-    return code;
-  code = ask_campaign_document(store, campaign, name, document, error);
+  TRY(store_open_reader(path, &store, error));
+  status code = ask_campaign_document(store, campaign, name, document, error);
   if (code == STATUS_OK && !*document)
     code = status_fail(error, STATUS_USAGE, "%s has no such campaign; `clast status %s` lists them", path, path);
   if (code == STATUS_OK)

@@ -18,14 +18,12 @@ static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const char *path = line->arguments[0];
   enum table_format format = TABLE_TEXT;
-  status code = table_choose(&options->launch.table, &format, error);
-  if (code)
-    return code;
+  TRY(table_choose(&options->launch.table, &format, error));
   if (options->dry_run)
     return commands_plan(path, &options->campaign, options->store, options->launch.slots, false,
                          options->launch.table.json, error);
   struct campaign *campaign = NULL;
-  code = campaign_option_load(path, &options->campaign, &campaign, error);
+  status code = campaign_option_load(path, &options->campaign, &campaign, error);
   const char *store = options->store || code ? options->store : campaign->store;
   if (!code && !launch_other_rank()) /* only the manager takes runs from the campaign */
     code = accuracy_settle(campaign, path, store, error);

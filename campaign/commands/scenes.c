@@ -33,9 +33,7 @@ static status print_document(const char *name, struct error *error) {
 static status add_row(struct table *table, const char *name, struct error *error) {
   struct scene *scene = NULL;
   char what[256];
-  const status code = scene_load(name, NULL, &scene, error);
-  if (code)
-    return code;
+  TRY(scene_load(name, NULL, &scene, error));
   headline(scene_builtin_text(name), what, sizeof what);
   table_text(table, name);
   table_text(table, scene->kind->name);

@@ -279,9 +279,7 @@ status ladder_turn(const struct knob *knob, struct scene *scene, const char *set
   }
   struct making making = {.knob = knob, .base = scene};
   struct field_value value = {0};
-  status code = find_inputs(&making, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(find_inputs(&making, error));
   if (field_parse_si(making.rows[0], setting, &value, error) != STATUS_OK)
     return STATUS_USAGE;
   return field_same_value(making.rows[0], &value, &making.own[0]) ? STATUS_OK

@@ -141,15 +141,13 @@ static status add_knobs(struct subject *subject, const struct request *request, 
 
 status request_read(const struct request *request, const char *path, struct subject *subject, struct error *error) {
   struct study *study = &subject->study;
-  status code = subject_load(subject, path, &request->set, error);
-  if (code)
-    return code;
+  TRY(subject_load(subject, path, &request->set, error));
   if (request->first_seed > 0)
     study->limits.first_seed = request->first_seed;
   if (request->store)
     snprintf(study->limits.store, sizeof study->limits.store, "%s", request->store);
-  code = read_quantities(study, request->quantity ? request->quantity : study->limits.quantity,
-                         subject->scenes[0]->kind, error);
+  status code = read_quantities(study, request->quantity ? request->quantity : study->limits.quantity,
+                                subject->scenes[0]->kind, error);
   if (code == STATUS_OK)
     code = read_rule(study, request, error);
   return code == STATUS_OK ? add_knobs(subject, request, error) : code;

@@ -339,13 +339,11 @@ static status read_exponent(const struct study *study, struct study_ladder *ladd
     values[s] = NAN;
   snprintf(where, sizeof where, "seed BETWEEN %lld AND %lld", (long long)first, (long long)(first + ladder->seeds - 1));
   struct point_data point;
-  status code = point_read_where(store, ladder->point[l], ladder->base->kind->results_version, where, &point, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(point_read_where(store, ladder->point[l], ladder->base->kind->results_version, where, &point, error));
 
   double *of_runs = malloc((point.runs.count + 1) * sizeof *of_runs);
-  code = of_runs ? point_exponent_of_runs(&point, quantity->method, quantity->window, of_runs, error)
-                 : status_fail(error, STATUS_MEMORY, "no memory for an exponent");
+  status code = of_runs ? point_exponent_of_runs(&point, quantity->method, quantity->window, of_runs, error)
+                        : status_fail(error, STATUS_MEMORY, "no memory for an exponent");
   for (size_t r = 0; code == STATUS_OK && r < point.runs.count; r++)
     values[(int64_t)point.seed[r] - first] = of_runs[r];
   free(of_runs);

@@ -9,9 +9,7 @@ status study_quantity_find(const struct engine_kind *kind, const char *name, str
                            struct error *error) {
   *quantity = (struct study_quantity){0};
   bool exponent;
-  const status code = estimates_named(name, &exponent, &quantity->method, &quantity->window, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(estimates_named(name, &exponent, &quantity->method, &quantity->window, error));
 
   if (exponent) {
     snprintf(quantity->name, sizeof quantity->name, "%s", estimates_short_name(name));

@@ -209,9 +209,7 @@ static status make_campaign(struct rounds *rounds, struct error *error) {
   campaign->scene = scene_copy(rounds->ladder->base);
   if (!campaign->scene)
     return status_fail(error, STATUS_MEMORY, "no memory for a round");
-  status code = make_axes(rounds, campaign, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(make_axes(rounds, campaign, error));
   char comment[128];
   snprintf(comment, sizeof comment, "Written by clast converge: levels of %s.", rounds->ladder->levels.knob->name);
   campaign->text = campaign_write_list(campaign, study->scene_reference, comment);
@@ -328,9 +326,7 @@ static void stopping(void *context, int signal_number) {
 static status run_rounds(struct rounds *rounds, struct farm *farm, struct error *error) {
   struct study *study = rounds->study;
   for (size_t i = 0; i < study->ladder_count; i++) {
-    status code = study_read(study, &study->ladder[i], rounds->store, error);
-    if (code != STATUS_OK)
-      return code;
+    TRY(study_read(study, &study->ladder[i], rounds->store, error));
   }
   learn(rounds);
   const struct farm_manager manager = {.context = rounds,

@@ -76,9 +76,7 @@ static status make_campaign(const struct fit *fit, struct campaign *campaign, st
            is_check(fit) ? "check" : "fit", is_check(fit) ? fit->check_rounds + 1 : fit->rounds + 1, shot->name);
   if (!campaign->scene)
     return status_fail(error, STATUS_MEMORY, "no memory for a round");
-  const status code = make_axes(fit, campaign, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(make_axes(fit, campaign, error));
   snprintf(comment, sizeof comment, "Written by clast fit: a round of its runs.");
   campaign->text = campaign_write_list(campaign, fit->scene_reference, comment);
   return campaign->text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");

@@ -40,9 +40,7 @@ status launch_farm(const struct campaign *limits, const struct launch_options *o
                                       .use_mpi = farm_under_mpi()};
   struct farm *farm = NULL;
   driver_farm_options(limits, &farm_options);
-  status code = farm_start(&farm_options, run_work, &farm, error);
-  if (code)
-    return code;
+  TRY(farm_start(&farm_options, run_work, &farm, error));
   struct launch launch = {.farm = farm, .manager = farm_rank(farm) == 0, .notes = {.quiet = options->quiet}};
   char *facts = provenance_json(farm_ranks(farm), farm_slots_total(farm), line->argc, line->argv);
   launch.driver = (struct driver_options){.facts = facts,
@@ -50,7 +48,7 @@ status launch_farm(const struct campaign *limits, const struct launch_options *o
                                           .note_context = &launch.notes,
                                           .slots = farm_slots_total(farm)};
   launch.begin_s = clock_s();
-  code = facts ? body(context, &launch, error) : status_fail(error, STATUS_MEMORY, "out of memory");
+  status code = facts ? body(context, &launch, error) : status_fail(error, STATUS_MEMORY, "out of memory");
   free(facts);
   const status stopped = farm_stop(farm, code ? NULL : error);
   return code ? code : stopped;

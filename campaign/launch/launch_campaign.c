@@ -33,15 +33,13 @@ static void print_summary(const struct driver_summary *summary, const char *stor
 static status print_table(struct store *store, const char *path, const struct ask_points_choice *choice,
                           enum table_format format, bool quiet, struct error *error) {
   int64_t points = 0;
-  status code = ask_points_count(store, choice, &points, error);
-  if (code)
-    return code;
+  TRY(ask_points_count(store, choice, &points, error));
   if (format == TABLE_TEXT && points > MANY_POINTS) {
     fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
             choice->campaign);
     return STATUS_OK;
   }
-  code = estimates_table_print(store, choice, format, stdout, error);
+  status code = estimates_table_print(store, choice, format, stdout, error);
   if (!code && format == TABLE_TEXT && !quiet) {
     fflush(stdout); /* the legend comes below the table */
     estimates_table_explain(store);
@@ -54,10 +52,8 @@ static status print_estimates(const char *path, int64_t campaign, enum table_for
                               struct error *error) {
   struct store *store = NULL;
   const struct ask_points_choice choice = {.campaign = campaign};
-  status code = store_open_reader(path, &store, error);
-  if (code)
-    return code;
-  code = print_table(store, path, &choice, format, quiet, error);
+  TRY(store_open_reader(path, &store, error));
+  status code = print_table(store, path, &choice, format, quiet, error);
   store_close(store, NULL);
   return code;
 }

@@ -182,14 +182,12 @@ static status want(struct serve_jobs *jobs, struct serve_job *job, int64_t repli
 /* Finds or adds the point in the store, and requests each missing run. */
 static status open_job(struct serve_jobs *jobs, struct serve_job *job, struct error *error) {
   const struct serve_config *config = &job->request.config;
-  status code = store_add_point(jobs->store, jobs->campaign_id, job->scene, jobs->path_count, jobs->paths,
-                                &job->point_id, error);
-  if (code)
-    return code;
+  TRY(store_add_point(jobs->store, jobs->campaign_id, job->scene, jobs->path_count, jobs->paths, &job->point_id,
+                      error));
   bool *there = calloc((size_t)config->count, sizeof *there);
   if (!there)
     return status_fail(error, STATUS_MEMORY, "out of memory");
-  code = read_store(jobs, job, &config->results[0], NULL, there, error);
+  status code = read_store(jobs, job, &config->results[0], NULL, there, error);
   for (int64_t r = 0; !code && r < config->count; r++) {
     jobs->counts.found += there[r];
     if (!there[r])
@@ -276,10 +274,8 @@ static void settle(struct serve_jobs *jobs, struct serve_run *run) {
 static status take_result(struct serve_jobs *jobs, struct serve_run *run, const struct farm_report *report,
                           struct error *error) {
   struct run_result result;
-  status code = run_decode_result(run->scene->kind, report->bytes, report->size, &result, error);
-  if (code)
-    return code;
-  code = record_run(jobs->store, &run->record, run->scene->kind, report, &result, error);
+  TRY(run_decode_result(run->scene->kind, report->bytes, report->size, &result, error));
+  status code = record_run(jobs->store, &run->record, run->scene->kind, report, &result, error);
   run_result_clear(&result);
   jobs->counts.computed += code == STATUS_OK;
   return code;
@@ -296,10 +292,8 @@ status serve_jobs_report(void *context, const struct farm_report *report, struct
       settle(jobs, run);
     return code;
   }
-  const status code = record_attempt(jobs->store, &run->record, report, jobs->limits.time_limit_s,
-                                     (double)jobs->limits.memory_limit, error);
-  if (code)
-    return code;
+  TRY(record_attempt(jobs->store, &run->record, report, jobs->limits.time_limit_s, (double)jobs->limits.memory_limit,
+                     error));
   const bool lost = report->ending == FARM_LOST;
   run->lost += lost;
   run->record.attempt += !lost;

@@ -46,9 +46,7 @@ static status take_results(struct serve_model *model, const char *names, struct 
     snprintf(name, sizeof name, "%.*s", (int)strcspn(at, ", "), at);
     if (model->result_count == SERVE_MODEL_RESULTS)
       return status_fail(error, STATUS_USAGE, "--quantity: more than %d results", SERVE_MODEL_RESULTS);
-    const status code = serve_model_result(model, name, &model->results[model->result_count], error);
-    if (code)
-      return code;
+    TRY(serve_model_result(model, name, &model->results[model->result_count], error));
     model->result_count++;
   }
   return model->result_count ? STATUS_OK : status_fail(error, STATUS_USAGE, "--quantity names no result");

@@ -83,9 +83,7 @@ static status print_long(const char *scene, const struct engine_kind *kind, cons
   table_columns(table, (const char *const[]){"result", "value", "unit", "meaning", NULL});
   list(table, &outcome_table, &result->outcome);
   list(table, kind->results, result->result);
-  status code = table_end(table, error);
-  if (code)
-    return code;
+  TRY(table_end(table, error));
   fputs("\nexponent beta of F(m) ~ m^-beta, of this run alone:\n", stdout);
   table = table_new(TABLE_TEXT, stdout);
   table_columns(table, (const char *const[]){"method", "window", "fragments", "beta", NULL});
@@ -95,12 +93,10 @@ static status print_long(const char *scene, const struct engine_kind *kind, cons
     table_integer(table, result->estimates[i].fit.n);
     table_real(table, result->estimates[i].fit.beta);
   }
-  code = table_end(table, error);
-  if (code)
-    return code;
+  TRY(table_end(table, error));
   struct ask_resolution resolution;
   char text[UNCERTAINTY_TEXT];
-  code = ask_resolution(NULL, 0, OUTCOME_DEFAULT, &resolution, error);
+  status code = ask_resolution(NULL, 0, OUTCOME_DEFAULT, &resolution, error);
   snprintf(resolution.scene, sizeof resolution.scene, "%s", scene);
   uncertainty_resolution(&resolution, text);
   printf("\nerrors: one run has no interval over seeds: several seeds have one (`clast run`)\n%s\n", text);

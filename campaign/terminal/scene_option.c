@@ -6,10 +6,8 @@
 static status set_input(struct scene *scene, const char *text, struct error *error) {
   char path[FIELD_TEXT_SIZE];
   const char *value = NULL;
-  status code = campaign_change_split(text, path, &value, error);
-  if (code)
-    return code;
-  code = scene_set_text(scene, path, value, error);
+  TRY(campaign_change_split(text, path, &value, error));
+  status code = scene_set_text(scene, path, value, error);
   return code == STATUS_CONTENT ? STATUS_USAGE : code; /* the wrong content is on the command line */
 }
 

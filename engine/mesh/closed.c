@@ -126,9 +126,7 @@ static status check_edges(const struct mesh_soup *soup, struct error *error) {
 }
 
 status mesh_closed_make(struct mesh_soup *soup, struct error *error) {
-  status code = merge_vertices(soup, error);
-  if (code)
-    return code;
-  code = check_faces(soup, error);
+  TRY(merge_vertices(soup, error));
+  status code = check_faces(soup, error);
   return code ? code : check_edges(soup, error);
 }

@@ -51,17 +51,13 @@ static status read_polygon(struct mesh_soup *soup, size_t line, const char *at, 
     if (!*at || *at == '\n' || *at == '#')
       break;
     uint32_t next = 0;
-    status code = read_corner(soup, line, &at, &next, error);
-    if (code)
-      return code;
+    TRY(read_corner(soup, line, &at, &next, error));
     if (count < 2) {
       corner[count++] = next;
       continue;
     }
     corner[2] = next;
-    code = mesh_soup_face(soup, line, corner, error);
-    if (code)
-      return code;
+    TRY(mesh_soup_face(soup, line, corner, error));
     corner[1] = next;
     count++;
   }
@@ -96,9 +92,7 @@ static status read_obj_line(struct mesh_soup *soup, size_t line, const char *at,
 static status read_obj(struct mesh_soup *soup, const char *text, struct error *error) {
   size_t line = 1;
   for (const char *at = text; *at; line++) {
-    const status code = read_obj_line(soup, line, at + strspn(at, blanks), error);
-    if (code)
-      return code;
+    TRY(read_obj_line(soup, line, at + strspn(at, blanks), error));
     at += strcspn(at, "\n");
     at += *at != 0;
   }
@@ -156,9 +150,7 @@ static status read_facet(struct mesh_soup *soup, struct words *w, struct error *
     if (!take(w, "vertex") || !take_numbers(w, place))
       return expected(soup, w, "\"vertex\" and three numbers", error);
     corner[c] = (uint32_t)soup->vertices;
-    const status code = mesh_soup_vertex(soup, w->line, place, error);
-    if (code)
-      return code;
+    TRY(mesh_soup_vertex(soup, w->line, place, error));
   }
   if (!take(w, "endloop") || !take(w, "endfacet"))
     return expected(soup, w, "\"endloop\" and \"endfacet\"", error);
@@ -170,9 +162,7 @@ static status read_stl_text(struct mesh_soup *soup, const char *text, struct err
   while (take(&w, "solid")) {
     w.at += strcspn(w.at, "\n"); /* its name */
     while (!take(&w, "endsolid")) {
-      const status code = read_facet(soup, &w, error);
-      if (code)
-        return code;
+      TRY(read_facet(soup, &w, error));
     }
     w.at += strcspn(w.at, "\n");
   }
@@ -214,9 +204,7 @@ static status read_stl_binary(struct mesh_soup *soup, const char *bytes, size_t 
       if (code)
         return code;
     }
-    const status code = mesh_soup_face(soup, f + 1, corner, error);
-    if (code)
-      return code;
+    TRY(mesh_soup_face(soup, f + 1, corner, error));
   }
   return STATUS_OK;
 }

@@ -149,13 +149,9 @@ static status build(struct mesh *m, struct mesh_soup *soup, struct error *error)
     middle[k] = 0.5 * (m->low[k] + m->high[k]);
   shift(m, middle); /* far from the origin volumes would cancel */
   measure(m);
-  status code = check_size(m, soup, error);
-  if (code)
-    return code;
-  code = mesh_inside_make(m, error);
-  if (code)
-    return code;
-  code = mesh_inside_check(m, soup, error);
+  TRY(check_size(m, soup, error));
+  TRY(mesh_inside_make(m, error));
+  status code = mesh_inside_check(m, soup, error);
   return code ? code : mesh_distance_make(m, error);
 }
 
