@@ -50,15 +50,14 @@ static status run_named(int argc, char **argv, struct error *error) {
     return STATUS_USAGE;
   struct command_line line = {.options = options, .argc = argc + 1, .argv = argv - 1};
   bool help = false;
-  status code = option_parse(command, argc, argv, options, &line.count, &line.arguments, &help, error);
-  if (code)
-    return code;
+  TRY(option_parse(command, argc, argv, options, &line.count, &line.arguments, &help, error));
   if (help) {
     option_help(command, stdout);
     return STATUS_OK;
   }
-  code = check_environment(error);
-  return code ? code : command->run(&line, error);
+  TRY(check_environment(error));
+  TRY(option_claim_outputs(command, options, error));
+  return command->run(&line, error);
 }
 
 static status run_command_line(int argc, char **argv, struct error *error) {

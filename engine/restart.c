@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/atomic_file.h"
 #include "engine/cpu_class.h"
+#include "schemas/file.h"
 #include "schemas/text.h"
 
 static const char magic[8] = "CLASTRUN";
@@ -125,7 +125,7 @@ static status write_parts(const struct engine_kind *kind, const void *inputs, ui
     put(&b, parts[k].at, parts[k].size);
   }
   put_number(&b, text_hash(TEXT_HASH_START, b.at, b.used));
-  status code = atomic_file_write(path, "restart file", b.at, b.used, error);
+  status code = file_write(path, "restart file", b.at, b.used, error);
   free(b.at);
   free(text);
   return code;
@@ -211,9 +211,7 @@ static status other_class(enum cpu_class class, const char *path, struct error *
 /* Reads magic, checksum, version, seed, class, build and identity: everything before the parts. */
 static status read_head(struct bytes *b, const char *identity, const char *path, uint64_t *seed, struct error *error) {
   uint64_t class, length;
-  const status code = read_seal(b, path, error);
-  if (code)
-    return code;
+  TRY(read_seal(b, path, error));
   if (!get_exactly(b, VERSION) || !get(b, seed, 8) || !get(b, &class, 8))
     return refuse(path, error);
   if (class != (uint64_t)cpu_class_choose())
@@ -255,7 +253,7 @@ status restart_load(const struct engine_kind *kind, const void *inputs, const ch
   char *text = identity(kind, inputs);
   if (!text)
     return status_fail(error, STATUS_MEMORY, "no memory to read '%s'", path);
-  if ((code = atomic_file_read(path, "restart file", &b.at, &b.size, error)) ||
+  if ((code = file_read(path, "restart file", &b.at, &b.size, error)) ||
       (code = read_head(&b, text, path, &seed, error)))
     goto cleanup;
   if (!read_parts(&b, parts)) {

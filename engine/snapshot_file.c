@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/atomic_file.h"
+#include "schemas/file.h"
 
 enum { COMPRESSED_FROM = 4096, CHUNK = 16384 }; /* rows */
 
@@ -211,7 +211,7 @@ status snapshot_file_save(struct snapshot_file *f, const char *path, struct erro
     code = status_fail(error, f->failed && !f->memory ? STATUS_INTERNAL : STATUS_MEMORY,
                        "cannot make the fields for '%s'", path);
   else
-    code = atomic_file_write(path, "fields file", image, (size_t)size, error);
+    code = file_write(path, "fields file", image, (size_t)size, error);
   free(image);
   return code;
 }

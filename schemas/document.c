@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "schemas/document_tree.h"
+#include "schemas/file.h"
 
 /* A document that holds a copy of the text; NULL without memory. */
 static struct document *create(const char *name, const char *text, size_t size) {
@@ -84,12 +85,11 @@ status document_open(const char *path, struct document **out, struct error *erro
   *out = NULL;
   int file;
   size_t size = 0;
-  status code = open_file(path, &file, error);
-  if (code)
-    return code;
+  TRY(file_input(path, error));
+  TRY(open_file(path, &file, error));
   char *text = malloc(DOCUMENT_LARGEST + 2);
-  code = text ? read_text(file, path, text, &size, error)
-              : status_fail(error, STATUS_MEMORY, "%s: no memory to read it", path);
+  status code = text ? read_text(file, path, text, &size, error)
+                     : status_fail(error, STATUS_MEMORY, "%s: no memory to read it", path);
   if (!code)
     code = document_parse(path, text, size, out, error);
   free(text);

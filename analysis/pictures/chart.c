@@ -7,6 +7,7 @@
 
 #include "analysis/pictures/chart_run.h"
 #include "analysis/pictures/picture_canvas.h"
+#include "schemas/file.h"
 #include "schemas/text.h"
 
 enum { LETTER = 8, LINE = 19, LINES = 4 }; /* pixels: width of a letter, height of a line; maximum lines of a text */
@@ -198,6 +199,7 @@ static status read_template(const struct picture_page *page, const char *name, c
   char path[4096];
   enum { MOST = 1 << 20 };
   snprintf(path, sizeof path, "%s/%s.gp", page->templates, name);
+  TRY(file_input(path, error));
   FILE *in = fopen(path, "r");
   if (!in)
     return status_fail(error, STATUS_MISSING,

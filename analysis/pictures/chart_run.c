@@ -11,6 +11,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "schemas/file.h"
+
 extern char **environ;
 
 enum { PATH = 4096 };
@@ -24,11 +26,6 @@ void chart_run_stem(const char *path, char *stem, size_t size) {
   const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
   const char *dot = strrchr(base, '.');
   snprintf(stem, size, "%.*s", (int)(dot ? (size_t)(dot - base) : strlen(base)), base);
-}
-
-static status fail(const char *path, struct error *error) {
-  return status_fail(error, STATUS_IO, "%s: cannot write the picture: %s. Is its folder there, writable and not full?",
-                     path, strerror(errno));
 }
 
 static void remove_file(const struct folder *folder, const char *name) {
@@ -45,14 +42,11 @@ static void remove_folder(const struct folder *folder) {
   rmdir(folder->path);
 }
 
-static bool write_file(const struct folder *folder, const char *name, const char *text, size_t size) {
+static status write_text(const struct folder *folder, const char *name, const char *text, size_t size,
+                         struct error *error) {
   char path[PATH + 512];
   snprintf(path, sizeof path, "%s/%s", folder->path, name);
-  FILE *out = fopen(path, "w");
-  if (!out)
-    return false;
-  const bool whole = fwrite(text, 1, size, out) == size;
-  return fclose(out) == 0 && whole;
+  return file_write(path, "chart", text, size, error);
 }
 
 /* *end: gnuplot's exit code; -1: it was killed. STATUS_MISSING: gnuplot is not installed. */
@@ -98,35 +92,36 @@ static void read_messages(const struct folder *folder, char *text, size_t size) 
       text[i] = ' ';
 }
 
-static status move(const struct folder *folder, const char *name, const char *to, struct error *error) {
-  char from[PATH + 512];
-  snprintf(from, sizeof from, "%s/%s", folder->path, name);
-  return rename(from, to) == 0 ? STATUS_OK : fail(to, error);
+/* Puts the picture in place, and with page->keep_script NAME.gp and NAME.dat beside it. */
+static status keep(const struct picture_page *page, const struct chart_run_files *files, const char *drawn,
+                   struct error *error) {
+  const int stem = (int)(strrchr(page->path, '.') - page->path);
+  char script[PATH + 8], data[PATH + 8];
+  unsigned char *bytes = NULL;
+  size_t size = 0;
+  snprintf(script, sizeof script, "%.*s.gp", stem, page->path);
+  snprintf(data, sizeof data, "%.*s.dat", stem, page->path);
+  if (page->keep_script) {
+    TRY(file_may_replace(script, "script", error));
+    TRY(file_may_replace(data, "data of the chart", error));
+    TRY(file_write(script, "script", files->script, files->script_size, error));
+    TRY(file_write(data, "data of the chart", files->data, files->data_size, error));
+  }
+  TRY(file_read(drawn, "picture", &bytes, &size, error));
+  const status code = file_write(page->path, "picture", bytes, size, error);
+  free(bytes);
+  return code;
 }
 
-/* Moves NAME.gp and NAME.dat to the picture's folder. */
-static status move_files(const struct picture_page *page, const struct folder *folder, struct error *error) {
-  char to[PATH + 8];
-  const char *dot = strrchr(page->path, '.');
-  const int stem = (int)(dot - page->path);
-  snprintf(to, sizeof to, "%.*s.gp", stem, page->path);
-  status code = move(folder, folder->script, to, error);
-  snprintf(to, sizeof to, "%.*s.dat", stem, page->path);
-  return code ? code : move(folder, folder->data, to, error);
-}
-
-static status draw(const struct picture_page *page, const struct folder *folder, struct error *error) {
+static status draw(const struct picture_page *page, const struct chart_run_files *files, const struct folder *folder,
+                   struct error *error) {
   char path[PATH + 512], messages[2000];
   struct stat about;
   int end = 0;
-  status code = run_gnuplot(folder, &end, error);
-  if (code)
-    return code;
+  TRY(run_gnuplot(folder, &end, error));
   snprintf(path, sizeof path, "%s/%s", folder->path, folder->picture);
   if (end == 0 && stat(path, &about) == 0 && about.st_size > 0)
-    return page->keep_script && (code = move_files(page, folder, error))
-               ? code
-               : move(folder, folder->picture, page->path, error);
+    return keep(page, files, path, error);
   read_messages(folder, messages, sizeof messages);
   return status_fail(error, page->templates ? STATUS_CONTENT : STATUS_IO, "%s: gnuplot drew nothing (exit %d): %s",
                      page->path, end, *messages ? messages : "it does not say why; is the disk full?");
@@ -137,19 +132,19 @@ status chart_run(const struct picture_page *page, const struct chart_run_files *
   char stem[256];
   if (strlen(page->path) + 16 > PATH)
     return status_fail(error, STATUS_USAGE, "the name of the picture is too long");
+  TRY(file_may_replace(page->path, "picture", error));
   chart_run_stem(page->path, stem, sizeof stem);
   snprintf(folder.path, sizeof folder.path, "%s.XXXXXX", page->path);
   snprintf(folder.script, sizeof folder.script, "%s.gp", stem);
   snprintf(folder.data, sizeof folder.data, "%s.dat", stem);
   snprintf(folder.picture, sizeof folder.picture, "%s%s", stem, strrchr(page->path, '.'));
   if (!mkdtemp(folder.path))
-    return fail(page->path, error);
-  status code = write_file(&folder, folder.script, files->script, files->script_size) &&
-                        write_file(&folder, folder.data, files->data, files->data_size)
-                    ? STATUS_OK
-                    : fail(page->path, error);
+    return status_fail(error, STATUS_IO, "cannot write the picture '%s': %s", page->path, strerror(errno));
+  status code = write_text(&folder, folder.script, files->script, files->script_size, error);
   if (code == STATUS_OK)
-    code = draw(page, &folder, error);
+    code = write_text(&folder, folder.data, files->data, files->data_size, error);
+  if (code == STATUS_OK)
+    code = draw(page, files, &folder, error);
   remove_folder(&folder);
   return code;
 }

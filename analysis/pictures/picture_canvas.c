@@ -3,11 +3,9 @@
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 static bool ends_in(const char *path, const char *ending) {
   size_t a = strlen(path), b = strlen(ending);
@@ -29,30 +27,29 @@ status picture_canvas_named(const char *path, struct error *error) {
   return status_fail(error, STATUS_USAGE, "%s: a picture's name ends in .png, .svg or .pdf", path);
 }
 
+static cairo_status_t write_bytes(void *out, const unsigned char *bytes, unsigned size) {
+  return fwrite(bytes, 1, size, out) == size ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+}
+
 status picture_canvas_open(struct picture_canvas *canvas, const char *path, double width, double height,
                            struct error *error) {
-  *canvas = (struct picture_canvas){.path = path, .png = ends_in(path, ".png")};
-  status code = picture_canvas_named(path, error);
-  if (code)
-    return code;
+  *canvas = (struct picture_canvas){.png = ends_in(path, ".png")};
+  TRY(picture_canvas_named(path, error));
   if (!(width >= 200 && width <= 8000 && height >= 50 && height <= 16000))
     return status_fail(error, STATUS_USAGE, "%s: a picture is 200 to 8000 wide, not %g x %g", path, width, height);
-  int length = snprintf(canvas->temporary, sizeof canvas->temporary, "%s.%ld.part", path, (long)getpid());
-  if (length < 0 || (size_t)length >= sizeof canvas->temporary)
-    return status_fail(error, STATUS_USAGE, "the name of the picture is too long");
+  TRY(file_begin(&canvas->file, path, "picture", error));
   if (canvas->png)
     canvas->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width), (int)ceil(height));
   else if (ends_in(path, ".pdf"))
-    canvas->surface = cairo_pdf_surface_create(canvas->temporary, width, height);
+    canvas->surface = cairo_pdf_surface_create_for_stream(write_bytes, canvas->file.out, width, height);
   else
-    canvas->surface = cairo_svg_surface_create(canvas->temporary, width, height);
+    canvas->surface = cairo_svg_surface_create_for_stream(write_bytes, canvas->file.out, width, height);
   canvas->cairo = cairo_create(canvas->surface);
-  code = from_cairo(cairo_status(canvas->cairo), path, error);
+  const status code = from_cairo(cairo_status(canvas->cairo), path, error);
   if (code) {
     cairo_destroy(canvas->cairo);
     cairo_surface_destroy(canvas->surface);
-    unlink(canvas->temporary);
-    return code;
+    return file_end(&canvas->file, code, error);
   }
   cairo_set_source_rgb(canvas->cairo, 1, 1, 1);
   cairo_paint(canvas->cairo);
@@ -61,20 +58,18 @@ status picture_canvas_open(struct picture_canvas *canvas, const char *path, doub
 }
 
 status picture_canvas_close(struct picture_canvas *canvas, status code, struct error *error) {
+  const char *path = canvas->file.path;
+  FILE *out = canvas->file.out;
   if (!code)
-    code = from_cairo(cairo_status(canvas->cairo), canvas->path, error);
+    code = from_cairo(cairo_status(canvas->cairo), path, error);
   cairo_destroy(canvas->cairo);
   if (!code && canvas->png)
-    code = from_cairo(cairo_surface_write_to_png(canvas->surface, canvas->temporary), canvas->path, error);
+    code = from_cairo(cairo_surface_write_to_png_stream(canvas->surface, write_bytes, out), path, error);
   cairo_surface_finish(canvas->surface);
   if (!code)
-    code = from_cairo(cairo_surface_status(canvas->surface), canvas->path, error);
+    code = from_cairo(cairo_surface_status(canvas->surface), path, error);
   cairo_surface_destroy(canvas->surface);
-  if (!code && rename(canvas->temporary, canvas->path) != 0)
-    code = status_fail(error, STATUS_IO, "%s: cannot write the picture: %s", canvas->path, strerror(errno));
-  if (code)
-    unlink(canvas->temporary);
-  return code;
+  return file_end(&canvas->file, code, error);
 }
 
 static void choose_font(cairo_t *cairo, double size, bool bold) {

@@ -4,23 +4,20 @@
 
 #include <cairo.h>
 #include <stdbool.h>
-#include <stddef.h>
 
-#include "schemas/status.h"
+#include "schemas/file.h"
 
 struct picture_canvas {
   cairo_t *cairo; /* white page, origin top left, units pixels or points */
   cairo_surface_t *surface;
   bool png;
-  const char *path;
-  char temporary[4096];
+  struct file_output file;
 };
 /* STATUS_USAGE unless the name ends in .png, .svg or .pdf. */
 status picture_canvas_named(const char *path, struct error *error);
 status picture_canvas_open(struct picture_canvas *canvas, const char *path, double width, double height,
                            struct error *error);
-/* Renames the written file to its final name when `code` is STATUS_OK, else removes it. Returns code, or the error of
- * writing. */
+/* Puts the picture in place when `code` is STATUS_OK, else removes it. Returns code, or the error of writing. */
 status picture_canvas_close(struct picture_canvas *canvas, status code, struct error *error);
 
 enum picture_align { PICTURE_LEFT, PICTURE_CENTRE, PICTURE_RIGHT };

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "analysis/pictures/snapshot_hdf5.h"
+#include "schemas/file.h"
 #include "schemas/text.h"
 
 enum { NAME_SIZE = 128 };
@@ -142,6 +143,7 @@ status snapshot_read_open(const char *path, struct snapshot_read **out, struct e
   struct answer opened;
   struct stat about;
   *out = NULL;
+  TRY(file_input(path, error));
   if (access(path, R_OK))
     return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "cannot read %s: %s", path,
                        strerror(errno));

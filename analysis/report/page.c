@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "engine/atomic_file.h"
+#include "schemas/file.h"
 #include "schemas/text.h"
 
 /* Mark that the data replaces. */
@@ -26,8 +26,10 @@ status page_empty(unsigned char **html, size_t *size, struct error *error) {
     slash[1] = '\0';
   for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
     snprintf(path, sizeof path, "%s%s", program, places[i]);
-    if (access(path, F_OK) == 0)
-      return atomic_file_read(path, "page", html, size, error);
+    if (access(path, F_OK) != 0)
+      continue;
+    TRY(file_input(path, error));
+    return file_read(path, "page", html, size, error);
   }
   return status_fail(
       error, STATUS_MISSING,
@@ -98,7 +100,7 @@ status page_write(const char *path, const unsigned char *html, size_t html_size,
   if (!text_close(out, &text))
     return status_fail(error, STATUS_MEMORY, "no memory for the page");
   if (code == STATUS_OK)
-    code = atomic_file_write(path, "page", text, size, error);
+    code = file_write(path, "page", text, size, error);
   *written = size;
   free(text);
   return code;

@@ -7,6 +7,7 @@
 
 #include "analysis/statistics/measured.h"
 #include "engine/grow.h"
+#include "schemas/file.h"
 #include "schemas/unit.h"
 
 enum { LINE = 4096, CELL = 128, MOST_ROWS = 10000000 };
@@ -232,6 +233,7 @@ static status take_rows(struct reading *r, struct error *error) {
 status measured_read(const char *path, const struct spectrum_size *size, struct measured *out, struct error *error) {
   *out = (struct measured){0};
   struct reading r = {.path = path, .size = *size, .kind = SINGLE, .out = out};
+  TRY(file_input(path, error));
   FILE *file = fopen(path, "r");
   if (!file)
     return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "%s: %s", path, strerror(errno));

@@ -165,9 +165,7 @@ static status draw_picture(struct store *store, const struct curves *curves, con
     series[count] = spectrum_curves_series(&curves->curve[count]);
   if (measured) {
     series[count] = (struct picture_series){.measured = true, .complete_mass = measured->complete};
-    const status code = measured_bins(measured, &form, &bins, &series[count].count, error);
-    if (code)
-      return code;
+    TRY(measured_bins(measured, &form, &bins, &series[count].count, error));
     snprintf(label, sizeof label, "measured%s%s", *measured->source ? ": " : "", measured->source);
     series[count].bins = bins;
     series[count++].label = label;
@@ -214,9 +212,7 @@ static status take_curves(struct store *store, struct curves *curves, struct err
 
 static status draw(struct store *store, const struct curves *curves, const struct spectrum_drawing *drawing,
                    struct error *error) {
-  const status code = drawing->page ? draw_picture(store, curves, drawing->page, error) : STATUS_OK;
-  if (code)
-    return code;
+  TRY(drawing->page ? draw_picture(store, curves, drawing->page, error) : STATUS_OK);
   if (drawing->text)
     print_plots(curves, drawing->ascii);
   if (curves->more)

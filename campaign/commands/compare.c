@@ -27,18 +27,14 @@ static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
   struct ask_pairs *pairs = NULL;
-  status code = table_choose(&options->table, &format, error);
-  if (code)
-    return code;
-  code = ask_pairs_read(line->arguments[0], line->arguments[1], options->quantity, &pairs, error);
-  if (code)
-    return code;
+  TRY(table_choose(&options->table, &format, error));
+  TRY(ask_pairs_read(line->arguments[0], line->arguments[1], options->quantity, &pairs, error));
   struct table *table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"point_a", "point_b", "inputs", "n_a", "n_b", "pairs", "mean_a", "mean_b",
                                              "difference", "hw95", NULL});
   for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
     print(table, &row);
-  code = ask_pairs_end(pairs, error);
+  status code = ask_pairs_end(pairs, error);
   if (code)
     table_drop(table);
   else

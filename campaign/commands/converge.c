@@ -18,9 +18,7 @@ struct options {
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
-  status code = table_choose(&options->launch.table, &format, error);
-  if (code)
-    return code;
+  TRY(table_choose(&options->launch.table, &format, error));
   if (options->list)
     return study_print_knobs(format, error);
   if (line->count == 0)
@@ -35,7 +33,7 @@ static status run(const struct command_line *line, struct error *error) {
                                       .format = format,
                                       .picture = options->picture,
                                       .frontier = options->frontier};
-  code = request_read(&request, line->arguments[0], subject, error);
+  status code = request_read(&request, line->arguments[0], subject, error);
   if (code == STATUS_OK)
     code = study_launch(&subject->study, &launch, error);
   subject_clear(subject);
@@ -65,11 +63,11 @@ static const struct option_row rows[] = {
                        "The first seed. 0: the campaign's, or 1."),
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, request.store, NULL,
                     "Store of the runs. Default: the campaign's, or SCENE-converge.db."),
-    OPTION_ROW_TEXT("picture", 0, "FILE", struct options, picture, NULL,
-                    "Draw the first quantity over the cost of a run, a curve per knob (.png, .svg or .pdf)."),
-    OPTION_ROW_TEXT("frontier", 0, "FILE", struct options, frontier, NULL,
-                    "Draw its error over the cost of a run, with the frontier: no other level has less error at the "
-                    "same or lower cost."),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE", struct options, picture,
+                      "Draw the first quantity over the cost of a run, a curve per knob (.png, .svg or .pdf)."),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "frontier", 0, "FILE", struct options, frontier,
+                      "Draw its error over the cost of a run, with the frontier: no other level has less error at the "
+                      "same or lower cost."),
     OPTION_ROW_FLAG("list", 0, struct options, list, "Print all knobs and stop."),
     LAUNCH_OPTIONS(struct options, launch),
     TABLE_OPTIONS(struct options, launch.table),

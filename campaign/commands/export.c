@@ -96,7 +96,7 @@ const struct command export_command = {
     .summary = "one compact file for hand-over, or rows for other programs",
     .doc = "Writes a compact copy of the store as one SQLite file, also while a campaign is running. Options choose "
            "other\n"
-           "formats. The command never overwrites a store; it overwrites other files.",
+           "formats. The command never overwrites a store, a YAML document or an input; it overwrites other files.",
     .examples = "clast export out.db handover.db\nclast export out.db --per point > points.csv",
     .minimum_arguments = 1,
     .maximum_arguments = 2,

@@ -30,8 +30,9 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_TEXT("picture", 'p', "FILE.png", struct options, picture, NULL,
-                    "Draw the map: a row of tiles for each varied input, divided into safe, warned and refused runs."),
+    OPTION_ROW_OUTPUT(
+        OPTION_PICTURE, "picture", 'p', "FILE.png", struct options, picture,
+        "Draw the map: a row of tiles for each varied input, divided into safe, warned and refused runs."),
     OPTION_ROW_FLAG("why", 0, struct options, why, "With --json or --csv: print the reasons instead of the campaigns."),
     TABLE_OPTIONS(struct options, table),
 };

@@ -77,8 +77,8 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_TEXT("fields", 0, "FILE.h5", struct options, fields, NULL,
-                    "Write the fields of the run as an HDF5 file, for `clast picture` or ParaView."),
+    OPTION_ROW_OUTPUT(OPTION_OUTPUT, "fields", 0, "FILE.h5", struct options, fields,
+                      "Write the fields of the run as an HDF5 file, for `clast picture` or ParaView."),
     TABLE_OPTIONS(struct options, table),
 };
 

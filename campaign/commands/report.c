@@ -5,6 +5,7 @@
 
 #include "campaign/commands/commands.h"
 #include "campaign/report/report_make.h"
+#include "schemas/file.h"
 
 enum { EVERY_MOST = 86400 };
 
@@ -27,9 +28,7 @@ static status watch(struct report_choice *choice, int64_t every, size_t *size, s
   do {
     running = report_make_running(choice);
     choice->refresh = running ? every : 0;
-    const status code = report_make(choice, size, error);
-    if (code)
-      return code;
+    TRY(report_make(choice, size, error));
     if (running) {
       fprintf(stderr, "%s written; again in %lld s, while the campaign runs\n", choice->output, (long long)every);
       sleep((unsigned)every);
@@ -46,10 +45,8 @@ static status run(const struct command_line *line, struct error *error) {
   struct report_choice choice = {.count = line->count,
                                  .stores = line->arguments,
                                  .output = options->output ? options->output : name};
-  for (size_t i = 0; i < choice.count; i++)
-    if (strcmp(choice.output, choice.stores[i]) == 0)
-      return status_fail(error, STATUS_USAGE, "the page would overwrite the store %s: name another file with -o",
-                         choice.output);
+  if (!options->output)
+    TRY(file_claim(name, "page", error));
   const status code = options->watch ? watch(&choice, options->every, &size, error)
                                      : report_make(&choice, &size, error);
   if (code == STATUS_OK)
@@ -58,8 +55,8 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row option_rows[] = {
-    OPTION_ROW_TEXT("output", 'o', "PAGE.html", struct options, output, NULL,
-                    "Name of the page. Default: the name of the first store with .html, in the current folder."),
+    OPTION_ROW_OUTPUT(OPTION_OUTPUT, "output", 'o', "PAGE.html", struct options, output,
+                      "Name of the page. Default: the name of the first store with .html, in the current folder."),
     OPTION_ROW_FLAG("watch", 0, struct options, watch,
                     "Make the page again while a campaign writes a store, and once more when it ends. An open page "
                     "loads itself again."),

@@ -63,8 +63,8 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("with", 0, "FILE.csv", struct options, with, NULL,
                     "Compare with a measured spectrum: columns mass (g) or size (mm), alone or with count or "
                     "cumulative. Prints distances; --picture also draws the measured spectrum."),
-    OPTION_ROW_TEXT("picture", 0, "FILE.png", struct options, picture, NULL,
-                    "Also draw the first eight spectra with fitted power laws. PNG, SVG or PDF by the ending."),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture,
+                      "Also draw the first eight spectra with fitted power laws. PNG, SVG or PDF by the ending."),
     OPTION_ROW_FLAG("plot", 0, struct options, plot, "Plot them as text instead of the table."),
     OPTION_ROW_FLAG("ascii", 0, struct options, ascii, "Use ASCII characters only in the plot."),
     CHART_OPTIONS(struct options, chart),

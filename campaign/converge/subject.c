@@ -43,9 +43,7 @@ static status add_points(struct subject *subject, const struct option_list *set,
 
 static status load_campaign(struct subject *subject, const char *path, const struct option_list *set,
                             struct error *error) {
-  status code = campaign_load(path, &subject->campaign, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(campaign_load(path, &subject->campaign, error));
   const struct campaign *campaign = subject->campaign;
   const char *slash = strrchr(path, '/'), *scene = campaign->scene_reference;
   const bool is_file = strchr(scene, '/') || strchr(scene, '.');
@@ -58,9 +56,7 @@ static status load_campaign(struct subject *subject, const char *path, const str
 static status load_scene(struct subject *subject, const char *reference, const struct option_list *set,
                          struct error *error) {
   struct scene *scene = NULL;
-  status code = scene_load(reference, NULL, &scene, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(scene_load(reference, NULL, &scene, error));
   struct campaign *limits = &subject->study.limits;
   field_defaults(&campaign_table, limits);
   snprintf(limits->name, sizeof limits->name, "%s", scene->name[0] ? scene->name : "scene");
@@ -72,7 +68,7 @@ static status load_scene(struct subject *subject, const char *reference, const s
 }
 
 /* Only a campaign's document has the key `scene`. A name without a file is a built-in scene. */
-static bool is_campaign(const char *path) {
+static bool is_campaign(const char *path) { /* whoever opens it next notes it as an input */
   bool found = false;
   char line[4096];
   FILE *in = scene_builtin_text(path) ? NULL : fopen(path, "r");
@@ -84,9 +80,7 @@ static bool is_campaign(const char *path) {
 }
 
 status subject_load(struct subject *subject, const char *path, const struct option_list *set, struct error *error) {
-  status code = is_campaign(path) ? load_campaign(subject, path, set, error) : load_scene(subject, path, set, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(is_campaign(path) ? load_campaign(subject, path, set, error) : load_scene(subject, path, set, error));
   struct campaign *limits = &subject->study.limits;
   /* The study borrows these from the campaign, so they must not be freed twice. */
   limits->axes = NULL;

@@ -10,6 +10,7 @@
 
 #include "campaign/document/csv.h"
 #include "engine/grow.h"
+#include "schemas/file.h"
 #include "schemas/sha256.h"
 
 enum { LARGEST = 16 << 20, MOST_COLUMNS = 1000, MOST_REPORTS = 10 };
@@ -41,6 +42,11 @@ static char *load(struct reading *r, const char *folder, size_t *size) {
   struct stat facts;
   const bool alone = name[0] == '/' || !folder;
   const int length = snprintf(path, sizeof path, "%s%s%s", alone ? "" : folder, alone ? "" : "/", name);
+  struct error why;
+  if (file_input(path, &why)) {
+    document_report(r->node, "design.file", "%s", why.message);
+    return NULL;
+  }
   FILE *file = length < (int)sizeof path ? fopen(path, "rb") : NULL;
   if (!file) {
     document_report(r->node, "design.file", "cannot open '%s': %s; it is looked for beside the campaign's file", path,

@@ -1,11 +1,12 @@
 /* Writes designs for sensitivity indices, and finds them again. */
 #include "campaign/document/sensitivity_design.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "schemas/file.h"
 #include "schemas/text.h"
 
 static const double MORRIS_STEP = 0.5; /* change of the quantile: two of four levels */
@@ -57,38 +58,28 @@ static void write_document(FILE *out, const char *text, const char *points) {
   fputs("}\n", out);
 }
 
-static status create(const char *path, FILE **out, struct error *error) {
-  *out = fopen(path, "wx");
-  if (*out)
-    return STATUS_OK;
-  return status_fail(error, errno == EEXIST ? STATUS_USAGE : STATUS_IO, "%s: %s", path, strerror(errno));
-}
-
-static status finish(const char *path, FILE *out, struct error *error) {
-  const bool failed = ferror(out) != 0;
-  if (fclose(out) != 0 || failed)
-    return status_fail(error, STATUS_IO, "%s: cannot be written", path);
-  return STATUS_OK;
+/* Begins a file that must not exist. */
+static status begin(struct file_output *file, const char *path, const char *what, struct error *error) {
+  if (access(path, F_OK) == 0)
+    return status_fail(error, STATUS_USAGE, "%s exists already: name another file", path);
+  return file_begin(file, path, what, error);
 }
 
 static status write_files(const struct campaign *campaign, const struct design_sensitivity *design,
                           const char *document, const char *points, struct error *error) {
-  FILE *out = NULL;
+  struct file_output text, rows;
   const char *folder = strrchr(points, '/');
-  status code = create(document, &out, error);
-  if (code)
-    return code;
-  write_document(out, campaign->text, folder ? folder + 1 : points);
-  code = finish(document, out, error);
-  if (code)
-    return code;
-  code = create(points, &out, error);
-  if (code) {
-    remove(document);
-    return code;
+  TRY(begin(&text, document, "campaign", error));
+  status code = begin(&rows, points, "points", error);
+  if (code == STATUS_OK) {
+    write_points(rows.out, campaign, design);
+    code = file_end(&rows, code, error);
   }
-  write_points(out, campaign, design);
-  return finish(points, out, error);
+  write_document(text.out, campaign->text, folder ? folder + 1 : points);
+  const status ended = file_end(&text, code, error);
+  if (code == STATUS_OK && ended)
+    remove(points);
+  return ended;
 }
 
 status sensitivity_design_write(const char *path, const char *output, enum design_sensitivity_kind kind, size_t blocks,

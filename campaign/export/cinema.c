@@ -7,9 +7,9 @@
 
 #include "campaign/charts/picture_draw.h"
 #include "campaign/charts/spectrum_curves.h"
-#include "campaign/export/part_file.h"
 #include "campaign/terminal/rows.h"
 #include "db/ask/run.h"
+#include "schemas/file.h"
 
 enum { PATH = 4096, WIDTH = 600 };
 
@@ -90,17 +90,13 @@ static status write_table(struct cinema *cinema, struct error *error) {
 
 status cinema_write(struct store *store, const char *folder, struct error *error) {
   char path[PATH];
-  struct part_file file;
-  status code = part_file_folder(folder, error);
-  if (code)
-    return code;
+  struct file_output file;
+  TRY(file_folder(folder, error));
   if (snprintf(path, sizeof path, "%s/data.csv", folder) >= (int)sizeof path - 64)
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
-  code = part_file_open(&file, path, error);
-  if (code)
-    return code;
+  TRY(file_begin(&file, path, "table", error));
   struct cinema cinema = {.store = store, .folder = folder, .table = table_new(TABLE_CSV, file.out)};
-  code = part_file_close(&file, write_table(&cinema, error), error);
+  const status code = file_end(&file, write_table(&cinema, error), error);
   if (!code && cinema.not_drawn > 0)
     fprintf(stderr, "clast: %zu of %zu runs have no picture: their fields files are gone or damaged\n",
             cinema.not_drawn, cinema.rows);

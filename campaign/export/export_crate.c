@@ -15,6 +15,7 @@
 #include "campaign/build_facts.h"
 #include "campaign/export/export_files.h"
 #include "db/ask/campaign.h"
+#include "schemas/file.h"
 #include "schemas/text.h"
 
 #define SPECIFICATION "https://w3id.org/ro/crate/1.1"
@@ -109,10 +110,7 @@ static status add_campaign(struct crate *crate, const struct answer *row, struct
   snprintf(name, sizeof name, "campaign-%" PRId64 ".yaml", answer_integer(row, 0));
   if (!join(path, crate->options->folder, name))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
-  FILE *out = fopen(path, "w");
-  const bool written = out && fputs(answer_text(row, 2), out) >= 0;
-  if ((out && fclose(out) != 0) || !written)
-    return status_fail(error, STATUS_IO, "cannot write %s: %s", path, strerror(errno));
+  TRY(file_write(path, "campaign", answer_text(row, 2), strlen(answer_text(row, 2)), error));
   snprintf(description, sizeof description, "The campaign \"%.400s\" as it was read", answer_text(row, 1));
   file_entity(crate, name, "application/yaml", description);
   return STATUS_OK;
@@ -210,9 +208,9 @@ static status finish(struct crate *crate, const char *title, struct error *error
   now_text(date);
   if (!join(path, crate->options->folder, METADATA))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
-  FILE *out = fopen(path, "w");
-  if (!out)
-    return status_fail(error, STATUS_IO, "cannot write %s: %s", path, strerror(errno));
+  struct file_output file;
+  TRY(file_begin(&file, path, "metadata", error));
+  FILE *const out = file.out;
   fputs("{\"@context\": [\"" SPECIFICATION "/context\", \"https://w3id.org/ro/terms/workflow-run/context\"],\n"
         " \"@graph\": [\n  {\"@id\": \"" METADATA "\", \"@type\": \"CreativeWork\", \"conformsTo\": {\"@id\": "
         "\"" SPECIFICATION "\"}, \"about\": {\"@id\": \"./\"}},\n  {\"@id\": \"./\", \"@type\": \"Dataset\", "
@@ -236,18 +234,15 @@ static status finish(struct crate *crate, const char *title, struct error *error
         out);
   fputs(crate->graph_text, out);
   fputs("\n ]\n}\n", out);
-  if (ferror(out) | fclose(out))
-    return status_fail(error, STATUS_IO, "cannot write %s: %s", path, strerror(errno));
-  return STATUS_OK;
+  return file_end(&file, STATUS_OK, error);
 }
 
 /* Makes the folder, or checks that it is empty. */
 static status take_folder(const char *folder, struct error *error) {
-  if (mkdir(folder, 0777) == 0)
-    return STATUS_OK;
-  DIR *there = errno == EEXIST ? opendir(folder) : NULL;
+  TRY(file_folder(folder, error));
+  DIR *there = opendir(folder);
   if (!there)
-    return status_fail(error, STATUS_IO, "cannot make the folder %s: %s", folder, strerror(errno));
+    return status_fail(error, STATUS_IO, "cannot read the folder %s: %s", folder, strerror(errno));
   bool empty = true;
   for (const struct dirent *entry; (entry = readdir(there));)
     empty &= strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0;

@@ -1,8 +1,8 @@
 /* Writes views and bits of a store as text. */
 #include "campaign/export/export_files.h"
 
-#include "campaign/export/part_file.h"
 #include "campaign/terminal/rows.h"
+#include "schemas/file.h"
 
 static const char *const exported[] = {"runs", "points", "spectra", "estimates", "column_doc"};
 
@@ -13,23 +13,23 @@ static status write_rows(struct store *store, const char *view, enum table_forma
 
 status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
                           struct error *error) {
-  struct part_file file;
+  struct file_output file;
   if (!path)
     return write_rows(store, view, format, stdout, error);
-  status code = part_file_open(&file, path, error);
-  if (code)
-    return code;
-  code = write_rows(store, view, format, file.out, error);
-  return part_file_close(&file, code, error);
+  TRY(file_begin(&file, path, "rows", error));
+  return file_end(&file, write_rows(store, view, format, file.out, error), error);
 }
 
 status export_files_folder(struct store *store, const char *folder, struct error *error) {
-  status code = part_file_folder(folder, error);
-  for (size_t i = 0; !code && i < sizeof exported / sizeof exported[0]; i++) {
-    char path[4096];
-    if (snprintf(path, sizeof path, "%s/%s.csv", folder, exported[i]) >= (int)sizeof path)
+  enum { TABLES = sizeof exported / sizeof exported[0] };
+  char path[TABLES][4096];
+  TRY(file_folder(folder, error));
+  for (size_t i = 0; i < TABLES; i++) { /* all before the first is written */
+    if (snprintf(path[i], sizeof path[i], "%s/%s.csv", folder, exported[i]) >= (int)sizeof path[i])
       return status_fail(error, STATUS_USAGE, "the folder's name is too long");
-    code = export_files_write(store, path, exported[i], TABLE_CSV, error);
+    TRY(file_may_replace(path[i], "table", error));
   }
-  return code;
+  for (size_t i = 0; i < TABLES; i++)
+    TRY(export_files_write(store, path[i], exported[i], TABLE_CSV, error));
+  return STATUS_OK;
 }

@@ -5,11 +5,9 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "analysis/pictures/picture_canvas.h"
 #include "campaign/charts/picture_draw.h"
 #include "campaign/one_run/resume.h"
 #include "campaign/one_run/snapshots.h"
-#include "engine/atomic_file.h"
 
 enum { BLOCK = 8 }; /* steps between two calls of look(): less than a second, even with a million particles */
 
@@ -38,26 +36,6 @@ static status look(void *context, const struct engine_kind *kind, void *run, str
   return code;
 }
 
-/* Checks that the files can be written, so that an error is found before the run. */
-static status try_files(const struct one_run_options *options, struct error *error) {
-  const char *const files[][2] = {{options->picture, "picture"},
-                                  {options->fields, "fields file"},
-                                  {options->restart, "restart file"}};
-  if (options->picture) {
-    status code = picture_canvas_named(options->picture, error);
-    if (code)
-      return code;
-  }
-  for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
-    if (!files[i][0])
-      continue;
-    status code = atomic_file_try(files[i][0], files[i][1], error);
-    if (code)
-      return code;
-  }
-  return STATUS_OK;
-}
-
 /* `fields`: file for the fields at the end; NULL: none. */
 static status compute(const struct scene *scene, const struct one_run_options *options, const char *fields,
                       struct run_result *result, struct error *error) {
@@ -69,9 +47,7 @@ static status compute(const struct scene *scene, const struct one_run_options *o
   }
   if (options->snapshots) {
     const bool resumed = options->restart && access(options->restart, F_OK) == 0;
-    status code = snapshots_open(scene->name, options->snapshots, resumed, &watch.snapshots, error);
-    if (code)
-      return code;
+    TRY(snapshots_open(scene->name, options->snapshots, resumed, &watch.snapshots, error));
   }
 
   const struct run_request request = {.kind = scene->kind,
@@ -99,14 +75,11 @@ status one_run(const struct scene *scene, const struct one_run_options *options,
                struct error *error) {
   char temporary[FIELD_TEXT_SIZE] = "";
   const char *fields = options->fields;
-  status code = try_files(options, error);
-  if (code)
-    return code;
   if (options->picture && !fields) { /* the picture is drawn from a fields file */
     snprintf(temporary, sizeof temporary, "%s.%ld.h5", options->picture, (long)getpid());
     fields = temporary;
   }
-  code = compute(scene, options, fields, result, error);
+  status code = compute(scene, options, fields, result, error);
   if (code == STATUS_OK)
     code = draw(scene, options, fields, result, error);
   if (*temporary)

@@ -14,7 +14,7 @@ struct one_run_options {
   bool quiet;              /* no percentage on the terminal */
 };
 
-/* Checks before the run that the files can be written. The caller owns *result, also on errors: if only the picture
+/* The caller owns *result, also on errors: if only the picture
  * failed, it holds the results. STATUS_STOPPED after a signal, with a restart file; also the statuses of
  * run_simulate. */
 status one_run(const struct scene *scene, const struct one_run_options *options, struct run_result *result,

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "campaign/driver/provenance.h"
-#include "engine/atomic_file.h"
 #include "engine/cpu_class.h"
 
 status replay_compute(const struct ask_run *from, int64_t run_id, const char *fields, struct scene **scene,
@@ -17,9 +16,7 @@ status replay_compute(const struct ask_run *from, int64_t run_id, const char *fi
                        "there is no run %" PRId64 "; `clast query STORE --named runs --with point=1` "
                        "lists those of point 1",
                        run_id);
-  status code = scene_parse_json("scene of the run", from->scene, scene, error);
-  if (code)
-    return code;
+  TRY(scene_parse_json("scene of the run", from->scene, scene, error));
 
   const struct engine_kind *kind = (*scene)->kind;
   char build[PROVENANCE_BUILD_SIZE];
@@ -30,11 +27,6 @@ status replay_compute(const struct ask_run *from, int64_t run_id, const char *fi
                        " of engine %s, this program makes version %d: its bits differ on purpose; replay it with the "
                        "program of that version%s%s",
                        run_id, from->results_version, kind->name, kind->results_version, *build ? ": " : "", build);
-  if (fields) {
-    code = atomic_file_try(fields, "fields file", error);
-    if (code)
-      return code;
-  }
   const struct run_request request = {.kind = kind,
                                       .inputs = (*scene)->inputs,
                                       .seed = from->seed,
@@ -131,9 +123,7 @@ static status judge_doubtful(struct comparison *comparison, struct store *store,
     char name[FIELD_TEXT_SIZE];
     bool used = false;
     field_column_name(comparison->doubtful[i]->path, name, sizeof name);
-    status code = ask_run_column_used(store, run_id, comparison->kind->name, name, &used, error);
-    if (code)
-      return code;
+    TRY(ask_run_column_used(store, run_id, comparison->kind->name, name, &used, error));
     if (used) {
       out->compared++;
       difference(comparison, comparison->doubtful[i]->path, NULL, "a value");
@@ -179,9 +169,7 @@ status replay_compare(struct store *store, int64_t run_id, const struct engine_k
 status replay_verdict(struct store *store, int64_t run_id, const struct ask_run *stored,
                       const struct replay_compare *comparison, struct error *error) {
   bool whole = true;
-  status code = store_check_run(store, run_id, &whole, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(store_check_run(store, run_id, &whole, error));
   if (!whole)
     return status_fail(error, STATUS_CONTENT,
                        "run %" PRId64

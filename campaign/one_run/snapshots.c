@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "analysis/pictures/snapshot_read.h"
-#include "engine/atomic_file.h"
 #include "schemas/field.h"
+#include "schemas/file.h"
 #include "schemas/text.h"
 
 struct snapshots {
@@ -17,6 +17,16 @@ struct snapshots {
   bool resumed;        /* the run was restored, and snapshots_look() was not called yet */
   double *time;        /* s, by number; NaN: there is no such file */
 };
+
+enum { PATH = FIELD_TEXT_SIZE + 64 };
+
+static void path_of(const struct snapshots *s, int64_t number, char path[PATH]) {
+  snprintf(path, PATH, "%s_%06lld.hdf", s->name, (long long)number);
+}
+
+static void path_of_list(const struct snapshots *s, char path[PATH]) {
+  snprintf(path, PATH, "%s.hdf.series", s->name);
+}
 
 status snapshots_open(const char *name, int64_t count, bool resumed, struct snapshots **out, struct error *error) {
   struct snapshots *s = calloc(1, sizeof *s);
@@ -30,10 +40,20 @@ status snapshots_open(const char *name, int64_t count, bool resumed, struct snap
   snprintf(s->name, sizeof s->name, "%s", name);
   s->count = count;
   s->resumed = resumed;
-  for (int64_t k = 0; k < count; k++)
+  char path[PATH];
+  path_of_list(s, path);
+  status code = file_claim(path, "list of snapshots", error);
+  for (int64_t k = 0; k < count; k++) {
     s->time[k] = NAN;
-  *out = s;
-  return STATUS_OK;
+    path_of(s, k, path);
+    if (code == STATUS_OK)
+      code = file_may_replace(path, "snapshot", error);
+  }
+  if (code == STATUS_OK)
+    *out = s;
+  else
+    snapshots_close(s);
+  return code;
 }
 
 void snapshots_close(struct snapshots *s) {
@@ -42,18 +62,14 @@ void snapshots_close(struct snapshots *s) {
   free(s);
 }
 
-static void path_of(const struct snapshots *s, int64_t number, char *path, size_t size) {
-  snprintf(path, size, "%s_%06lld.hdf", s->name, (long long)number);
-}
-
 /* Reads the times of the earlier snapshots of a restored run, which are on the disk. */
 static void find_earlier(struct snapshots *s, double progress) {
   s->resumed = false;
   s->next = (int64_t)ceil(progress * (double)s->count);
   for (int64_t k = 0; k < s->next && k < s->count; k++) {
-    char path[FIELD_TEXT_SIZE + 64];
+    char path[PATH];
     struct snapshot_read *file;
-    path_of(s, k, path, sizeof path);
+    path_of(s, k, path);
     if (snapshot_read_open(path, &file, NULL))
       continue;
     if (!snapshot_read_real(file, "run", "time", &s->time[k]))
@@ -64,7 +80,7 @@ static void find_earlier(struct snapshots *s, double progress) {
 
 /* ParaView's list of files with their times (style: JSON, version 1.0). Names are relative to it. */
 static status write_series(const struct snapshots *s, struct error *error) {
-  char *text = NULL, path[FIELD_TEXT_SIZE + 64];
+  char *text = NULL, path[PATH];
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   if (!out)
@@ -88,8 +104,8 @@ static status write_series(const struct snapshots *s, struct error *error) {
     free(text);
     return status_fail(error, STATUS_MEMORY, "no memory for the list of snapshots");
   }
-  snprintf(path, sizeof path, "%s.hdf.series", s->name);
-  status code = atomic_file_write(path, "list of snapshots", text, size, error);
+  path_of_list(s, path);
+  status code = file_write(path, "list of snapshots", text, size, error);
   free(text);
   return code;
 }
@@ -100,12 +116,10 @@ status snapshots_look(struct snapshots *s, const struct engine_kind *kind, void 
     find_earlier(s, progress);
   if (s->next >= s->count || progress * (double)s->count < (double)s->next)
     return STATUS_OK;
-  char path[FIELD_TEXT_SIZE + 64];
+  char path[PATH];
   int64_t number = s->next;
-  path_of(s, number, path, sizeof path);
-  status code = kind->write_snapshot(run, path, error);
-  if (code)
-    return code;
+  path_of(s, number, path);
+  TRY(kind->write_snapshot(run, path, error));
   s->time[number] = kind->time(run);
   s->next = number + 1;
   while (s->next < s->count && progress < 1 && progress * (double)s->count >= (double)s->next)

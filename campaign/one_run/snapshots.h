@@ -10,7 +10,7 @@ struct snapshots; /* opaque */
 
 /* `count` files NAME_000000.hdf, ... evenly over the longest time that a run may take, the first one near its
  * beginning. `resumed`: the run goes on from a restart file; earlier snapshots are on the disk and stay in the list.
- * STATUS_MEMORY. */
+ * STATUS_MEMORY, and the statuses of file_claim(). */
 status snapshots_open(const char *name, int64_t count, bool resumed, struct snapshots **out, struct error *error);
 void snapshots_close(struct snapshots *snapshots); /* NULL is fine */
 /* Must be called between blocks of steps. Writes the snapshot that is due, if there is one, and NAME.hdf.series again.

@@ -14,8 +14,8 @@
 #include "db/ask/page.h"
 #include "db/ask/pairs.h"
 #include "db/ask/run.h"
-#include "engine/atomic_file.h"
 #include "engine/outcome.h"
+#include "schemas/file.h"
 
 enum { PICTURES = 24, PICTURE_WIDTH = 400, PICTURE_BYTES = 330000 /* most pictures of one page */ };
 
@@ -89,7 +89,7 @@ static status add_picture(struct making *making, const struct answer *kept, stru
     making->not_drawn++;
     return STATUS_OK;
   }
-  code = atomic_file_read(path, "picture", &png, &size, error);
+  code = file_read(path, "picture", &png, &size, error);
   unlink(path);
   if (code == STATUS_OK && making->picture_bytes + size <= PICTURE_BYTES) {
     making->picture_bytes += size;
@@ -131,8 +131,6 @@ status report_make(const struct report_choice *choice, size_t *size, struct erro
   unsigned char *html = NULL;
   size_t html_size = 0;
   status code = page_empty(&html, &html_size, error);
-  if (code == STATUS_OK)
-    code = atomic_file_try(choice->output, "page", error);
   for (size_t i = 0; code == STATUS_OK && i < choice->count; i++)
     code = add_store(&making, choice->stores[i], &data[i], error);
   if (code == STATUS_OK)

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/pictures/picture_canvas.h"
+#include "schemas/file.h"
 #include "schemas/text.h"
 
 enum { ROWS_MAXIMUM = 30, HELP_VALUE = 1000, ROW_VALUE = 1001, COLUMN = 26, WIDTH = 96, WORD_MAXIMUM = 63 };
@@ -48,11 +50,29 @@ static status take_value(const struct command *command, const struct option_row 
   void *slot = (char *)options + row->offset;
   switch (row->kind) {
   case OPTION_FLAG: *(bool *)slot = true; return STATUS_OK;
-  case OPTION_TEXT: *(const char **)slot = text; return STATUS_OK;
+  case OPTION_TEXT:
+  case OPTION_OUTPUT:
+  case OPTION_PICTURE: *(const char **)slot = text; return STATUS_OK;
   case OPTION_LIST: return take_item(row, text, slot, error);
   case OPTION_INTEGER: return take_integer(command, row, text, slot, error);
   }
   return status_fail(error, STATUS_INTERNAL, "option --%s has no kind", row->name);
+}
+
+status option_claim_outputs(const struct command *command, const void *options, struct error *error) {
+  for (size_t i = 0; i < command->option_count; i++) {
+    const struct option_row *row = &command->options[i];
+    char what[WORD_MAXIMUM + 1];
+    if (row->kind != OPTION_OUTPUT && row->kind != OPTION_PICTURE)
+      continue;
+    const char *path = *(const char *const *)((const char *)options + row->offset);
+    snprintf(what, sizeof what, "file of --%s", row->name);
+    if (path && row->kind == OPTION_PICTURE)
+      TRY(picture_canvas_named(path, error));
+    if (path)
+      TRY(file_claim(path, what, error));
+  }
+  return STATUS_OK;
 }
 
 static status unknown_option(const struct command *command, const char *typed, int letter, struct error *error) {
@@ -146,9 +166,7 @@ static status check_arguments(const struct command *command, size_t count, char 
 status option_parse(const struct command *command, int argc, char **argv, void *options, size_t *count,
                     char ***arguments, bool *help, struct error *error) {
   struct getopt_tables tables;
-  status code = prepare(command, &tables, options, error);
-  if (code)
-    return code;
+  TRY(prepare(command, &tables, options, error));
   optind = 0; /* glibc: start over, also after another parse */
   opterr = 0;
   *help = false;
@@ -159,9 +177,7 @@ status option_parse(const struct command *command, int argc, char **argv, void *
       *help = true;
       return STATUS_OK;
     }
-    code = take_option(command, given, argv[optind - 1], options, error);
-    if (code)
-      return code;
+    TRY(take_option(command, given, argv[optind - 1], options, error));
   }
   *count = (size_t)(argc - optind);
   *arguments = argv + optind;

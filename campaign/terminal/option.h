@@ -15,6 +15,8 @@
 enum option_kind {
   OPTION_FLAG,    /* bool */
   OPTION_TEXT,    /* const char *, borrowed from argv; NULL when not given and without default */
+  OPTION_OUTPUT,  /* the same: a file that the command writes; claimed before the command runs (schemas/file.h) */
+  OPTION_PICTURE, /* the same: a picture; its ending is checked, too */
   OPTION_INTEGER, /* int64_t within [minimum, maximum] */
   OPTION_LIST,    /* struct option_list: may be given several times */
 };
@@ -42,6 +44,11 @@ struct option_row {
   {                                                                                                                    \
     .name = name_, .letter = letter_, .kind = OPTION_TEXT, .argument = argument_, .offset = offsetof(type_, member_),  \
     .initial = initial_, .doc = doc_                                                                                   \
+  }
+#define OPTION_ROW_OUTPUT(kind_, name_, letter_, argument_, type_, member_, doc_)                                      \
+  {                                                                                                                    \
+    .name = name_, .letter = letter_, .kind = kind_, .argument = argument_, .offset = offsetof(type_, member_),        \
+    .doc = doc_                                                                                                        \
   }
 #define OPTION_ROW_LIST(name_, letter_, argument_, type_, member_, doc_)                                               \
   {                                                                                                                    \
@@ -89,6 +96,10 @@ enum { OPTION_STRUCT_MAXIMUM = 4096 }; /* largest size of an options struct */
  * *error names the wrong argument and the nearest known option. */
 status option_parse(const struct command *command, int argc, char **argv, void *options, size_t *count,
                     char ***arguments, bool *help, struct error *error);
+
+/* Claims the outputs that the options name (file_claim). STATUS_USAGE: two have the same name, or a picture has an
+ * ending that cannot be drawn. STATUS_IO: one cannot be written. */
+status option_claim_outputs(const struct command *command, const void *options, struct error *error);
 
 /* Prints the lines of `lines`, indented by two spaces. */
 void option_lines(const char *lines, FILE *out);

@@ -5,6 +5,8 @@
 #include "db/store/guard.h"
 #include "db/store/internal.h"
 #include "db/store/paths.h"
+#include "db/store/place.h"
+#include "schemas/file.h"
 
 /* Fields files are not moved: the paths in the copy are made relative to the copy's folder. */
 static status keep_paths(const struct store *store, const char *copy, struct error *error) {
@@ -27,19 +29,19 @@ static status keep_paths(const struct store *store, const char *copy, struct err
 }
 
 status store_export(struct store *store, const char *path, struct error *error) {
+  struct file_output file;
+  if (place_refused(path))
+    return status_fail(error, STATUS_USAGE, "%s: %s", path, place_refused(path));
   if (access(path, F_OK) == 0)
     return status_fail(error, STATUS_IO, "%s exists already: name another file, or remove it first.", path);
-  status result = store_flush(store, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(store_flush(store, error));
+  TRY(file_begin(&file, path, "copy of the store", error));
   /* query_only refuses VACUUM INTO, although VACUUM INTO writes another file. */
   sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
-  result = guard_vacuum_into(store->db, path, "writing the hand-over file", error);
+  status result = guard_vacuum_into(store->db, file.temporary, "writing the hand-over file", error);
   if (!store->writer)
     sqlite3_exec(store->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
   if (result == STATUS_OK)
-    result = keep_paths(store, path, error);
-  if (result != STATUS_OK)
-    unlink(path);
-  return result;
+    result = keep_paths(store, file.temporary, error);
+  return file_end(&file, result, error);
 }

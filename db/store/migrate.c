@@ -8,6 +8,7 @@
 #include "db/store/schema.h"
 #include "db/store/sums.h"
 #include "db/store/views.h"
+#include "schemas/file.h"
 
 /* The file's application id, version, how many tables, indexes and views it has, and whether its texts are UTF-8. */
 struct header {
@@ -100,6 +101,8 @@ static status to_version_3(sqlite3 *db, struct error *error) {
 static status (*const steps[SCHEMA_VERSION])(sqlite3 *, struct error *) = {to_version_1, to_version_2, to_version_3};
 
 static status back_up(sqlite3 *db, const char *path, int version, struct error *error) {
+  static const char doing[] = "keeping a copy before bringing the store forward";
+  struct file_output file;
   char *copy = NULL;
   for (int i = 0; i < 100; i++) { /* an earlier attempt may have left a copy */
     sqlite3_free(copy);
@@ -109,7 +112,9 @@ static status back_up(sqlite3 *db, const char *path, int version, struct error *
     if (access(copy, F_OK) != 0)
       break;
   }
-  status result = guard_vacuum_into(db, copy, "keeping a copy before bringing the store forward", error);
+  status result = file_begin(&file, copy, "copy of the store", error);
+  if (result == STATUS_OK)
+    result = file_end(&file, guard_vacuum_into(db, file.temporary, doing, error), error);
   sqlite3_free(copy);
   return result;
 }

@@ -9,12 +9,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "schemas/file.h"
+
 const char *place_refused(const char *path) {
   if (!*path)
     return "a store needs a file name";
   if (strcmp(path, ":memory:") == 0 || strncmp(path, "file:", 5) == 0)
     return "SQLite takes this name for memory or a URI, and the results would be lost: name a plain file "
            "(./ before the name makes it one)";
+  if (file_is_companion(path))
+    return "SQLite keeps its journals under names with this ending: give the store another name";
   return NULL;
 }
 
@@ -48,11 +52,10 @@ static status judge_beside(const char *name, struct error *error) {
 
 /* Checks the files that SQLite opens beside the store. */
 static status judge_companions(const char *path, struct error *error) {
-  static const char *const endings[] = {"-journal", "-wal", "-shm"};
   char *real = realpath(path, NULL), *name = NULL; /* SQLite follows links to the store */
   status result = STATUS_OK;
-  for (size_t i = 0; result == STATUS_OK && i < sizeof endings / sizeof *endings; i++) {
-    if (asprintf(&name, "%s%s", real ? real : path, endings[i]) < 0)
+  for (size_t i = 0; result == STATUS_OK && file_companions[i]; i++) {
+    if (asprintf(&name, "%s%s", real ? real : path, file_companions[i]) < 0)
       break;
     result = judge_beside(name, error);
     free(name);

@@ -10,7 +10,8 @@
 struct sqlite3;
 
 /* Returns the reason why a name is refused as a store's; NULL: it is accepted. SQLite takes ":memory:", "file:..." and
- * "" for no file, or for a database in memory, so results would be lost at the end. */
+ * "" for no file, or for a database in memory, so results would be lost at the end. It deletes and overwrites files
+ * whose names end in -journal, -wal or -shm. */
 const char *place_refused(const char *path);
 /* STATUS_IO when the path leads to something other than a file: a folder, a pipe, a device (opening a pipe would
  * block), or when something else than a file lies at FILE-journal, FILE-wal or FILE-shm. STATUS_CONTENT when

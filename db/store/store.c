@@ -15,6 +15,7 @@
 #include "db/store/schema.h"
 #include "db/store/views.h"
 #include "schemas/clock.h"
+#include "schemas/file.h"
 
 static const char lacks_wal_text[] =
     "has no -wal file, or an empty one. If it is a copy, it was copied while it was being written, and its last runs "
@@ -178,9 +179,8 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
     warning[0] = '\0';
   if (place_refused(path))
     return status_fail(error, STATUS_USAGE, "%s: %s", path, place_refused(path));
-  status result = place_is_file(path, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(file_input(path, error));
+  TRY(place_is_file(path, error));
   struct store *store = allocate(path);
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
@@ -188,7 +188,7 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   struct stat file;
   const off_t before = stat(path, &file) == 0 ? file.st_size : -1;
   store->lacks_wal = place_lacks_wal(path);
-  result = lock_take(path, &store->lock, &held, error);
+  status result = lock_take(path, &store->lock, &held, error);
   if (result != STATUS_OK) {
     release(store);
     return held ? refuse_held(path, error) : result;
@@ -244,14 +244,13 @@ status store_open_reader(const char *path, struct store **out, struct error *err
   if (access(path, F_OK) != 0)
     return status_fail(error, STATUS_MISSING, "%s: there is no such store. Check the name and the current folder.",
                        path);
-  status result = place_is_file(path, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(file_input(path, error));
+  TRY(place_is_file(path, error));
   struct store *store = allocate(path);
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   store->lacks_wal = place_lacks_wal(path);
-  result = open_readable(store, error);
+  const status result = open_readable(store, error);
   if (result == STATUS_OK)
     *out = store;
   else

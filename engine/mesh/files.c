@@ -5,8 +5,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "engine/atomic_file.h"
 #include "engine/file_name.h"
+#include "schemas/file.h"
 #include "schemas/sha256.h"
 
 struct entry {
@@ -83,7 +83,9 @@ status mesh_files_open(const char *name, const char *folder, const struct mesh_f
     return status_fail(error, STATUS_MEMORY, "no memory for the name of a file");
   status code = look(path, error);
   if (!code)
-    code = atomic_file_read(path, "shape file", &bytes, &size, error);
+    code = file_input(path, error);
+  if (!code)
+    code = file_read(path, "shape file", &bytes, &size, error);
   if (!code)
     code = add(path, bytes, size, out, error);
   free(path);

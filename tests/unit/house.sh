@@ -159,7 +159,28 @@ check_sql() {
     --include='*.[ch]' "${order[@]}" | grep -vE ':[[:space:]]*(\*|/\*|//)' || true)
 }
 
+# Outputs are put in place by schemas/file.c alone, and whoever opens an input notes it there (file_input), so that no
+# output replaces it. Exceptions: files of the system; a store (db/store/store.c notes it); a restart file, which is input
+# and output; gnuplot's messages; the child that snapshot_read.c starts; a document that is opened again to be read.
+check_files() {
+  local file line text
+  while IFS=: read -r file line text; do
+    checked=$((checked + 1))
+    case "$file" in
+      schemas/file.c | db/store/lock.c | db/store/place.c | campaign/farm/* | campaign/main.c | campaign/driver/provenance.c) continue ;;
+    esac
+    [[ ! $text =~ (rename|mkstemps?|creat|fdopen|freopen)\(|\"[wa][bx+e]*\"\)|O_CREAT ]] ||
+      fail "$file:$line: an output is written by schemas/file.h: $text"
+    case "$file" in
+      engine/restart.c | analysis/pictures/chart_run.c | analysis/pictures/snapshot_hdf5.c | campaign/converge/subject.c) continue ;;
+    esac
+    grep -q 'file_input(' "$file" || fail "$file:$line: call file_input() before an input is opened: $text"
+  done < <(lines_of_code '(^|[^_a-zA-Z0-9])(fopen|open|rename|mkstemps?|creat|fdopen|freopen|H5Fopen)\(' |
+    grep -vE ':[[:space:]]*(\*|/\*|//)')
+}
+
 check_includes
+check_files
 check_libraries
 check_printing
 check_exports

@@ -3,17 +3,17 @@
 #include "tests/support/run_case.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <signal.h>
-#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
-#include "engine/atomic_file.h"
 #include "engine/cpu_class.h"
 #include "engine/restart.h"
+#include "schemas/file.h"
 #include "tests/support/folder.h"
 
 static struct dem_inputs disc(bool gear) {
@@ -92,7 +92,7 @@ static void change_word(const char *path, size_t at, uint64_t more) {
   unsigned char *bytes = NULL;
   size_t size = 0;
   uint64_t word;
-  assert_int_equal(atomic_file_read(path, "restart file", &bytes, &size, NULL), STATUS_OK);
+  assert_int_equal(file_read(path, "restart file", &bytes, &size, NULL), STATUS_OK);
   memcpy(&word, bytes + at, sizeof word);
   word += more;
   memcpy(bytes + at, &word, sizeof word);
@@ -100,7 +100,7 @@ static void change_word(const char *path, size_t at, uint64_t more) {
   for (size_t k = 0; k + 8 < size; k++)
     sum = (sum ^ bytes[k]) * 0x100000001b3U;
   memcpy(bytes + size - 8, &sum, sizeof sum);
-  assert_int_equal(atomic_file_write(path, "restart file", bytes, size, NULL), STATUS_OK);
+  assert_int_equal(file_write(path, "restart file", bytes, size, NULL), STATUS_OK);
   free(bytes);
 }
 
@@ -227,7 +227,7 @@ static int beside(bool *temporary) {
   for (const struct dirent *entry; (entry = readdir(list));) {
     if (entry->d_name[0] == '.' || strcmp(entry->d_name, "a.restart") == 0)
       continue;
-    *temporary |= strcmp(entry->d_name, "a.restart.tmp") == 0;
+    *temporary |= strcmp(entry->d_name, "a.restart.unfinished") == 0;
     count++;
   }
   closedir(list);
@@ -262,20 +262,21 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
     sph_engine.free(again);
   }
   bool temporary;
-  assert_true(beside(&temporary) == (temporary ? 1 : 0)); /* twenty kills leave at most one file */
-  FILE *stale = fopen(in_folder("a.restart.tmp"), "wb");  /* of a process that has ended */
+  assert_true(beside(&temporary) == (temporary ? 1 : 0));       /* twenty kills leave at most one file */
+  FILE *stale = fopen(in_folder("a.restart.unfinished"), "wb"); /* of a process that has ended */
   fputs("of a write that was never finished", stale);
   fclose(stale);
   assert_int_equal(restart_save(&sph_engine, run, path, NULL), STATUS_OK);
   assert_int_equal(beside(&temporary), 0);
-  FILE *other = fopen(in_folder("a.restart.tmp"), "wb"); /* of a process that is still writing */
+  FILE *other = fopen(in_folder("a.restart.unfinished"), "wb"); /* of a process that is still writing */
   fputs("half", other);
   fflush(other);
-  assert_int_equal(flock(fileno(other), LOCK_EX), 0);
+  struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = (off_t)1 << 62, .l_len = 1};
+  assert_int_equal(fcntl(fileno(other), F_OFD_SETLK, &lock), 0);
   assert_int_equal(restart_save(&sph_engine, run, path, NULL), STATUS_OK);
   assert_true(beside(&temporary) == 1 && temporary);
   struct stat there;
-  assert_true(stat(in_folder("a.restart.tmp"), &there) == 0 && there.st_size == 4);
+  assert_true(stat(in_folder("a.restart.unfinished"), &there) == 0 && there.st_size == 4);
   fclose(other);
   const pid_t rival = fork(); /* two processes write the same file: neither write fails */
   assert_true(rival >= 0);
