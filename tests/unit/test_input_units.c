@@ -1,6 +1,6 @@
-/* Every input of every engine: a number that has a unit is never accepted without it, and a value of absence is a
- * value. No engine has an integer input with a unit so far, so a fault that concerns integers only is not seen here;
- * test_field.c has such a row. */
+/* Every input of every engine: a number that has a unit is never accepted without it, a value of absence is a value,
+ * and a condition names a row and values of it. No engine has an integer input with a unit so far, so a fault that
+ * concerns integers only is not seen here; test_field.c has such a row. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -80,10 +80,40 @@ static void values_of_absence_are_values(void **state) {
   assert_true(tried >= 5); /* fracture.cell and others */
 }
 
+/* field.when is text that nests make: a row whose condition names nothing would never be active. */
+static void conditions_name_rows_and_their_values(void **state) {
+  (void)state;
+  size_t tried = 0;
+  for (size_t e = 0; e < engine_count(); e++) {
+    const struct field_table *inputs = engine_at(e)->inputs;
+    for (size_t i = 0; i < inputs->count; i++) {
+      const struct field *row = &inputs->rows[i], *controller = field_controller(inputs, row);
+      if (!row->when)
+        continue;
+      if (!controller)
+        fail_msg("%s: its condition %s names no row", row->path, row->when);
+      for (const char *at = strchr(row->when, '=') + 1;; at++) {
+        char word[60];
+        struct field_value value;
+        const size_t length = strcspn(at, "|");
+        snprintf(word, sizeof word, "%.*s", (int)length, at);
+        if (field_parse_si(controller, word, &value, NULL))
+          fail_msg("%s: '%s' in its condition is no value of %s", row->path, word, controller->path);
+        tried++;
+        at += length;
+        if (!*at)
+          break;
+      }
+    }
+  }
+  assert_true(tried >= 100);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(inputs_with_a_unit_refuse_bare_numbers),
       cmocka_unit_test(values_of_absence_are_values),
+      cmocka_unit_test(conditions_name_rows_and_their_values),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,6 +13,10 @@
  * largest tension is positive. The loops of `fracture` do it: they read the weakest threshold, the rate between two
  * thresholds and the cap. This module sets these as for a flaw of threshold 0. They act from the next step on. */
 
+MODULE(crack_front)
+MODULE_HOOKS(crack_front)
+MODULE_INPUTS(crack_front)
+
 #ifdef SPH_MODULE_STRUCTS
 enum sph_crack_front { SPH_CRACK_FRONT_NONE, SPH_CRACK_FRONT_PLANE };
 struct sph_crack_front_inputs {
@@ -20,7 +24,6 @@ struct sph_crack_front_inputs {
   double arrest; /* 1 */
 };
 #endif
-MODULE_INPUTS(crack_front)
 
 COLUMN(front_time)      /* s, when a crack's front reached the particle; infinite: not yet */
 COLUMN(front_offset)    /* m: this and the next as in struct sph_crack_front_tip */

@@ -2,10 +2,11 @@
  * and then its loops. A file that makes a table of one kind defines that kind as a macro and includes this file; lines
  * of other kinds vanish. So everything about a module is in its two files, and no table is written twice.
  *
- *   MODULE_INPUTS(name)     the module has inputs of the scene: struct sph_NAME_inputs, and a table of its rows with
- * the same name in NAME.c. Paths and conditions are those of a scene (scene/inputs.c) MODULE_MATERIAL(name)   the same
- * for values of a material, sph_NAME_material: paths are those of a material's document (material/material.h)
- *   MODULE_RESULTS(name)    the same for results, sph_NAME_results (observe/results.h)
+ *   MODULE(name)            the module: sph_NAME_module in NAME.c
+ *   MODULE_HOOKS(name)      it has loops: NAME_hooks
+ *   MODULE_INPUTS(name)     it has inputs: struct sph_NAME_inputs, and in NAME.c the table of their rows, of that name
+ *   MODULE_MATERIAL(name)   likewise values of a material, sph_NAME_material: paths are those of its document
+ *   MODULE_RESULTS(name)    likewise results, sph_NAME_results
  *
  *   COLUMN(member)                     of the moving system (struct sph_columns): an array of doubles
  *   COLUMN(member[n])                  n such arrays
@@ -18,6 +19,12 @@
  *
  * Two ready-made kinds: SPH_MODULE_STRUCTS takes the structs (structs.h), SPH_MODULE_LOOPS the loops (ranges_body.h).
  */
+#ifndef MODULE
+#define MODULE(...)
+#endif
+#ifndef MODULE_HOOKS
+#define MODULE_HOOKS(...)
+#endif
 #ifndef MODULE_INPUTS
 #define MODULE_INPUTS(...)
 #endif
@@ -43,11 +50,12 @@
 #define TIME_STEP_LIMIT(...)
 #endif
 
-#define SPH_MODULE_DECLARATIONS
 #include "engine/sph/modules/list.h"
-#undef SPH_MODULE_DECLARATIONS
 
 #undef SPH_MODULE_STRUCTS
+#undef SPH_MODULE_LOOPS
+#undef MODULE
+#undef MODULE_HOOKS
 #undef MODULE_INPUTS
 #undef MODULE_MATERIAL
 #undef MODULE_RESULTS

@@ -3,12 +3,15 @@
  * dS/dt = 2 mu dev(eps) + R S - S R with R_ab = (dv_a/dx_b - dv_b/dx_a)/2: a rigidly turning body keeps its stress in
  * its own frame [BA95 eqs. 5-7, whose sign of the rotation terms is the other one]. S is stored undamaged. */
 
+MODULE(elastic)
+MODULE_HOOKS(elastic)
+MODULE_MATERIAL(elastic)
+
 #ifdef SPH_MODULE_STRUCTS
 struct sph_elastic_material {
   double bulk_modulus, shear_modulus; /* Pa; K for Young's modulus and the speed of cracks, NaN: tillotson.A */
 };
 #endif
-MODULE_MATERIAL(elastic)
 
 COLUMN(stress[5])      /* Pa, deviator, undamaged: xx xy xz yy yz */
 COLUMN(stress_rate[5]) /* Pa/s */

@@ -15,6 +15,10 @@
  * = cos(2/3 acos(s)), s = sqrt((1 + cos(theta))/2), a smooth function of s: a polynomial of degree 16 is within 2e-15
  * of it. (Where the two larger values are equal, rounding of det S makes the error 1e-8 of |S|, as with acos.) */
 
+MODULE(fracture)
+MODULE_HOOKS(fracture)
+MODULE_INPUTS(fracture)
+
 #ifdef SPH_MODULE_STRUCTS
 /* R_s of a particle: the radius of the sphere of its volume, or 2h. */
 enum sph_crack_radius { SPH_CRACK_RADIUS_VOLUME, SPH_CRACK_RADIUS_SUPPORT };
@@ -25,7 +29,6 @@ struct sph_fracture_inputs {
   double damage_step; /* 1 */
 };
 #endif
-MODULE_INPUTS(fracture)
 
 COLUMN(damage)      /* D^(1/3), of all causes */
 COLUMN(flaw_damage) /* D^(1/3) by flaws, where `damage` has other causes, too */

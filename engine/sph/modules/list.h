@@ -12,11 +12,7 @@
  *   the rest            options of the pair loop, without loops here
  * motion.h is no module: it has the loops of every body.
  *
- * To add a module: NAME.c with its descriptor, NAME.h with what it declares and its loops, and a line in each of the
- * two lists below. */
-#ifdef SPH_MODULE_DECLARATIONS
-
-/* The order of rows and columns. */
+ * To add a module: NAME.c with its descriptor, NAME.h with what it declares and its loops, and a line below. */
 /* clang-format off */
 #include "engine/sph/modules/motion.h"
 #include "engine/sph/modules/elastic.h"
@@ -33,22 +29,3 @@
 #include "engine/sph/modules/artificial_stress.h"
 #include "engine/sph/modules/gradient_correction.h"
 /* clang-format on */
-
-#else
-
-#define SPH_MODULE_LIST(WITH_LOOPS, WITHOUT)                                                                           \
-  WITH_LOOPS(elastic)                                                                                                  \
-  WITH_LOOPS(tillotson)                                                                                                \
-  WITH_LOOPS(palpha)                                                                                                   \
-  WITH_LOOPS(yield)                                                                                                    \
-  WITH_LOOPS(pressure_strength)                                                                                        \
-  WITH_LOOPS(tension_limit)                                                                                            \
-  WITHOUT(weibull)                                                                                                     \
-  WITH_LOOPS(fracture)                                                                                                 \
-  WITHOUT(crack_cell)                                                                                                  \
-  WITH_LOOPS(crack_front)                                                                                              \
-  WITHOUT(viscosity)                                                                                                   \
-  WITHOUT(artificial_stress)                                                                                           \
-  WITHOUT(gradient_correction)
-
-#endif

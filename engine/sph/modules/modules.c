@@ -6,8 +6,9 @@
 #include "engine/sph/step/system_layout.h"
 
 static const struct sph_module *const list[SPH_MODULES] = {
-#define ADDRESS(name) &sph_##name##_module,
-    SPH_MODULE_LIST(ADDRESS, ADDRESS)};
+#define MODULE(name) &sph_##name##_module,
+#include "engine/sph/modules/declarations.h"
+};
 
 const struct sph_module *sph_modules_at(size_t index) {
   return list[index];

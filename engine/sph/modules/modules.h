@@ -17,13 +17,13 @@
 #ifndef CLAST_ENGINE_SPH_MODULES_MODULES_H
 #define CLAST_ENGINE_SPH_MODULES_MODULES_H
 
-#include "engine/sph/modules/list.h"
 #include "engine/sph/modules/set.h"
 #include "engine/sph/step/system.h"
 
 enum sph_module_index {
-#define SPH_MODULE_INDEX(name) SPH_MODULE_##name,
-  SPH_MODULE_LIST(SPH_MODULE_INDEX, SPH_MODULE_INDEX) SPH_MODULES
+#define MODULE(name) SPH_MODULE_##name,
+#include "engine/sph/modules/declarations.h"
+  SPH_MODULES
 };
 struct sph_module_set {
   uint64_t word[SET_WORDS(SPH_MODULES)];
@@ -97,8 +97,8 @@ struct sph_module {
   void (*report)(const struct sph_run *run, struct sph_results *results);
 };
 
-#define SPH_MODULE_EXTERN(name) extern const struct sph_module sph_##name##_module;
-SPH_MODULE_LIST(SPH_MODULE_EXTERN, SPH_MODULE_EXTERN)
+#define MODULE(name) extern const struct sph_module sph_##name##_module;
+#include "engine/sph/modules/declarations.h"
 
 const struct sph_module *sph_modules_at(size_t index); /* by enum sph_module_index */
 

@@ -5,6 +5,12 @@
  * particles (crushing, hot, far off) are computed again by sph_palpha_update. An elastic particle is accepted when the
  * error before the second step is below 1e-9, as in sph_palpha_update. */
 
+MODULE(palpha)
+MODULE_HOOKS(palpha)
+MODULE_MATERIAL(palpha)
+MODULE_INPUTS(palpha)
+MODULE_RESULTS(palpha)
+
 #ifdef SPH_MODULE_STRUCTS
 struct sph_palpha_material {
   enum { SPH_CRUSH_NONE, SPH_CRUSH_QUADRATIC, SPH_CRUSH_TWO_POWER } curve; /* none: no other member is used */
@@ -29,9 +35,6 @@ struct sph_palpha_results {
   double shock, shock_exact, precursor, precursor_exact; /* distention behind these fronts */
 };
 #endif
-MODULE_MATERIAL(palpha)
-MODULE_INPUTS(palpha)
-MODULE_RESULTS(palpha)
 
 COLUMN(distention)      /* alpha now */
 COLUMN(rest_distention) /* alpha after unloading to P = 0 (material/palpha.h) */

@@ -7,6 +7,10 @@
  * P < 0 counts as 0. The limit in the terms is that of the solid and bounds sqrt(3 J2): sqrt(3) Y at the pressure of
  * the solid matter, P rho_s/rho. D is that of the predicted state, or 0 where nothing damages the body. */
 
+MODULE(pressure_strength)
+MODULE_HOOKS(pressure_strength)
+MODULE_MATERIAL(pressure_strength)
+
 #ifdef SPH_MODULE_STRUCTS
 struct sph_pressure_strength_material {
   enum { SPH_PRESSURE_STRENGTH_NONE, SPH_PRESSURE_STRENGTH_LUNDBORG } law; /* none: no other member is used */
@@ -14,7 +18,6 @@ struct sph_pressure_strength_material {
   double broken_cohesion, broken_friction;                                 /* Pa, 1: Y_d0, mu_d */
 };
 #endif
-MODULE_MATERIAL(pressure_strength)
 
 COLUMN(shear_damage) /* D^(1/3) that scales the deviator, where modules publish it; elsewhere `damage` does */
 

@@ -5,9 +5,11 @@
 #include "engine/sph/modules/declarations.h"
 
 const struct sph_ranges RANGES_TABLE = {
-#define HOOKS(name) [SPH_MODULE_##name] = name##_hooks,
-#define NO_HOOKS(name)
-    .module = {SPH_MODULE_LIST(HOOKS, NO_HOOKS)},
+    .module =
+        {
+#define MODULE_HOOKS(name) [SPH_MODULE_##name] = name##_hooks,
+#include "engine/sph/modules/declarations.h"
+        },
     .predict = motion_predict,
     .output_fluid = motion_output_fluid,
     .output_whole = motion_output_whole,

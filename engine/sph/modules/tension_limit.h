@@ -1,12 +1,15 @@
 /* The bound of tension in bodies without flaws. It falls with the expansion of the solid matter, and the yield limit
  * with it. */
 
+MODULE(tension_limit)
+MODULE_HOOKS(tension_limit)
+MODULE_MATERIAL(tension_limit)
+
 #ifdef SPH_MODULE_STRUCTS
 struct sph_tension_limit_material {
   double pressure; /* Pa; NaN: off */
 };
 #endif
-MODULE_MATERIAL(tension_limit)
 
 #ifdef SPH_MODULE_LOOPS
 

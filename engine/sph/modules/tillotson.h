@@ -2,6 +2,10 @@
  * transcendental function, is computed for all particles; the few hot, expanded ones are computed again by the general
  * form. */
 
+MODULE(tillotson)
+MODULE_HOOKS(tillotson)
+MODULE_MATERIAL(tillotson)
+
 #ifdef SPH_MODULE_STRUCTS
 /* Tillotson 1962; Melosh 1989, appendix II. */
 struct sph_tillotson_material {
@@ -11,7 +15,6 @@ struct sph_tillotson_material {
   double E0, E_iv, E_cv; /* J/kg: reference, incipient and complete vaporisation */
 };
 #endif
-MODULE_MATERIAL(tillotson)
 
 #ifdef SPH_MODULE_LOOPS
 

@@ -1,5 +1,9 @@
 /* What weibull.c declares: the flaws of a material, how they are drawn and how they are kept. */
 
+MODULE(weibull)
+MODULE_MATERIAL(weibull)
+MODULE_INPUTS(weibull)
+
 #ifdef SPH_MODULE_STRUCTS
 struct sph_weibull_material {
   double m, k; /* 1, m^-3; NaN: no flaws */
@@ -11,5 +15,3 @@ struct sph_weibull_inputs {
   int flaws; /* enum sph_flaw_lists */
 };
 #endif
-MODULE_MATERIAL(weibull)
-MODULE_INPUTS(weibull)

@@ -1,12 +1,15 @@
 /* Von Mises: Y = Y0 (1 - u/u_melt), zero beyond, as the yield limit of each particle [BA95 eqs. 8-10]. A yield law only
  * writes the limit; `elastic` brings the stress back to it. */
 
+MODULE(yield)
+MODULE_HOOKS(yield)
+MODULE_MATERIAL(yield)
+
 #ifdef SPH_MODULE_STRUCTS
 struct sph_yield_material {
   double stress; /* Pa at u = 0; NaN or INFINITY: never yields */
 };
 #endif
-MODULE_MATERIAL(yield)
 
 #ifdef SPH_MODULE_LOOPS
 
