@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "analysis/analysis.h"
+#include "db/ask/pairs.h"
 #include "db/ask/point.h"
 #include "db/ask/resolution.h"
 #include "tests/support/store_checks.h"
@@ -180,9 +181,105 @@ static void runs_that_count_in_order(void **state) {
   OK(store_close(store, &error));
 }
 
+struct pairs_seen {
+  size_t rows;
+  struct ask_pairs_row row[8];
+  char inputs[8][100];
+  status answer;
+};
+
+static status see_pair(void *context, const struct ask_pairs_row *row, struct error *problem) {
+  (void)problem;
+  struct pairs_seen *seen = context;
+  seen->row[seen->rows] = *row;
+  snprintf(seen->inputs[seen->rows++], sizeof seen->inputs[0], "%s", row->inputs);
+  return seen->answer;
+}
+
+static void pairs_of(const char *a, const char *b, status expected, struct pairs_seen *seen) {
+  struct ask_pairs *pairs = NULL;
+  OK(ask_pairs_read(a, b, "hardest", &pairs, &error));
+  assert_int_equal(ask_pairs_each(pairs, see_pair, seen, &error), expected);
+  ask_pairs_free(pairs);
+}
+
+/* Points of two stores are paired by their varied inputs; points of one store only are passed over. */
+static void pairs_of_points(void **state) {
+  (void)state;
+  /* By inputs: k = 1e30 with m = 6 and 7, then k = 1e31. The second store has three values of k for each m. */
+  static const int64_t same[4][2] = {{1, 1}, {3, 4}, {2, 2}, {4, 5}};
+  char a[64], b[64], point[80];
+  struct store *store;
+  struct pairs_seen seen = {0};
+  OK(store_open_writer(fixture_path(a, "pairs-a"), &store, NULL, 0, &error));
+  OK(fixture_populate(store, 2, 2, 4, false, &error)); /* m = 6 and 7, k = 1e30 and 1e31 */
+  OK(store_close(store, &error));
+  OK(store_open_writer(fixture_path(b, "pairs-b"), &store, NULL, 0, &error));
+  OK(fixture_populate(store, 3, 3, 6, false, &error));
+  OK(store_close(store, &error));
+
+  pairs_of(a, b, STATUS_OK, &seen);
+  assert_int_equal(seen.rows, 4);
+  assert_string_equal(seen.inputs[1], "material.k = 1.0e+30, material.m = 7.0");
+  for (size_t i = 0; i < seen.rows; i++) {
+    const struct difference *d = &seen.row[i].difference;
+    assert_true(d->n[0] == 4 && d->n[1] == 6 && d->pairs == 4); /* seeds 1000 .. 1003 are in both */
+    assert_near(d->difference, 0, 1e-15);
+    assert_int_equal(seen.row[i].point[0], same[i][0]);
+    assert_int_equal(seen.row[i].point[1], same[i][1]);
+  }
+  seen.rows = 0;
+  pairs_of(b, a, STATUS_OK, &seen); /* surplus points on the other side */
+  assert_int_equal(seen.rows, 4);
+
+  seen = (struct pairs_seen){.answer = STATUS_IO};
+  pairs_of(a, b, STATUS_IO, &seen);
+  assert_int_equal(seen.rows, 1);
+
+  snprintf(point, sizeof point, "%s:9", b); /* m = 8, k = 1e32 against m = 6, k = 1e30: points need not be alike */
+  char first[80];
+  snprintf(first, sizeof first, "%s:1", a);
+  seen = (struct pairs_seen){0};
+  pairs_of(first, point, STATUS_OK, &seen);
+  assert_int_equal(seen.rows, 1);
+  assert_string_equal(seen.inputs[0], "");
+  assert_true(seen.row[0].point[0] == 1 && seen.row[0].point[1] == 9);
+
+  struct ask_pairs *pairs = NULL;
+  assert_int_equal(ask_pairs_read(first, b, "hardest", &pairs, &error), STATUS_USAGE); /* a point with all points */
+  assert_null(pairs);
+  snprintf(point, sizeof point, "%s:99", b);
+  assert_int_equal(ask_pairs_read(first, point, "hardest", &pairs, &error), STATUS_USAGE);
+  snprintf(point, sizeof point, "%s:nobody", b);
+  assert_int_equal(ask_pairs_read(a, point, "hardest", &pairs, &error), STATUS_USAGE);
+  snprintf(point, sizeof point, "%s:made-up", b);
+  seen.rows = 0;
+  pairs_of(a, point, STATUS_OK, &seen);
+  assert_int_equal(seen.rows, 4);
+
+  OK(store_open_writer(fixture_path(b, "pairs-c"), &store, NULL, 0, &error));
+  OK(fixture_populate(store, 1, 1, 4, false, &error));
+  OK(store_close(store, &error));
+  OK(store_open_writer(fixture_path(a, "pairs-d"), &store, NULL, 0, &error));
+  struct fixture_inputs inputs;
+  struct fixture_run f;
+  int64_t campaign, session, id;
+  OK(store_add_campaign(store, "c", "text", "{}", &campaign, &error));
+  OK(store_begin_session(store, "{}", &session, &error));
+  struct scene scene = fixture_scene(&inputs, 9, 1e33);
+  OK(store_add_point(store, campaign, &scene, 2, fixture_axes, &id, &error));
+  fixture_fill(&f, &scene, id, session, 0, FIXTURE_FRAGMENTS);
+  OK(store_add_run(store, &f.run, &error));
+  OK(store_close(store, &error));
+  seen.rows = 0;
+  pairs_of(a, b, STATUS_USAGE, &seen); /* no point in common */
+  assert_int_equal(seen.rows, 0);
+  assert_non_null(strstr(error.message, "no point of A has the varied inputs of a point of B"));
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(runs_that_count_in_order), cmocka_unit_test(views_and_c_agree),
-                                     cmocka_unit_test(resolution_names_the_scene)};
+                                     cmocka_unit_test(pairs_of_points), cmocka_unit_test(resolution_names_the_scene)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include <sqlite3.h>
+#include <sys/stat.h>
 
 #include "db/store/internal.h"
 #include "tests/support/store_checks.h"
@@ -141,6 +142,52 @@ static void merge_takes_what_is_missing(void **state) {
   OK(store_close(store, &error));
 }
 
+/* Runs of both stores: their fields file is taken only if ours cannot be read and theirs can; its path then leads from
+ * our folder to theirs. */
+static void merge_takes_paths_of_fields(void **state) {
+  (void)state;
+  enum { RUNS = 6 };
+  static const char *const ours[RUNS] = {"paths-ours.h5", NULL, "paths-lost.h5", "paths-ours.h5", NULL, NULL};
+  static const char *const theirs[RUNS] = {"theirs.h5", "theirs.h5", "theirs.h5", "lost.h5", "lost.h5", NULL};
+  static const char *const after[RUNS] =
+      {"paths-ours.h5", "paths-folder/theirs.h5", "paths-folder/theirs.h5", "paths-ours.h5", "", ""};
+  static const char theirs_path[] = "paths-folder/theirs.db";
+  char a[64], b[64];
+  populated(a, "paths-a", 1, 1, RUNS, false);
+  populated(b, "paths-b", 1, 1, RUNS + 1, false); /* one run that is not ours */
+  mkdir("paths-folder", 0777);
+  unlink(theirs_path);
+  assert_int_equal(rename(b, theirs_path), 0);
+  fclose(fopen("paths-ours.h5", "w"));
+  fclose(fopen("paths-folder/theirs.h5", "w"));
+  for (int side = 0; side < 2; side++) {
+    sqlite3 *db = NULL;
+    assert_int_equal(sqlite3_open(side ? theirs_path : a, &db), SQLITE_OK);
+    for (int r = 0; r < RUNS + side; r++) {
+      char *sql = sqlite3_mprintf("UPDATE run SET fields_path = %Q WHERE replicate = %d",
+                                  r == RUNS ? "theirs.h5"
+                                  : side    ? theirs[r]
+                                            : ours[r],
+                                  r);
+      assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
+      sqlite3_free(sql);
+    }
+    sqlite3_close(db);
+  }
+  struct store *store = writer(a);
+  int64_t added = 0, differing = -1;
+  OK(store_merge(store, theirs_path, &added, &differing, &error));
+  assert_true(added == 1 && differing == 0);
+  for (int r = 0; r < RUNS + 1; r++) {
+    char sql[200];
+    snprintf(sql, sizeof sql, "SELECT count(*) FROM run WHERE replicate = %d AND ifnull(fields_path, '') = '%s'", r,
+             r == RUNS ? "paths-folder/theirs.h5" : after[r]);
+    if (number(store, sql) != 1)
+      fail_msg("replicate %d: not the expected fields file", r);
+  }
+  OK(store_close(store, &error));
+}
+
 static void check_finds(void **state) {
   (void)state;
   static const struct {
@@ -201,8 +248,11 @@ static void export_is_whole_and_single(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(dumps_agree_whatever_the_order), cmocka_unit_test(points_view_has_the_same_bits),
-      cmocka_unit_test(merge_takes_what_is_missing),    cmocka_unit_test(check_finds),
+      cmocka_unit_test(dumps_agree_whatever_the_order),
+      cmocka_unit_test(points_view_has_the_same_bits),
+      cmocka_unit_test(merge_takes_what_is_missing),
+      cmocka_unit_test(merge_takes_paths_of_fields),
+      cmocka_unit_test(check_finds),
       cmocka_unit_test(export_is_whole_and_single),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -184,6 +184,11 @@ static void failed_and_censored_are_counted_apart(void **state) {
   assert_int_equal(store_attempts(store, attempt.identity, 20, 0), 1); /* a raised limit */
   assert_int_equal(store_attempts(store, attempt.identity, 0, 0), 1);  /* no limit now */
   assert_int_equal(store_attempts(store, f.run.identity, 10, 0), 0);
+  assert_near(number(store, "SELECT json_valid('{}') AND NOT json_valid('{') AND json_valid(NULL) IS NULL"), 1, 0);
+  const struct store_attempt silent = {.point_id = point, .replicate = 21, .identity = {8}, .attempt = 1};
+  OK(store_add_attempt(store, &silent, &error));
+  assert_near(number(store, "SELECT count(*) FROM attempt WHERE replicate = 21 AND reason = 'exit' AND message = ''"),
+              1, 0);
   OK(store_close(store, &error));
   OK(store_open_reader(path, &store, &error));
   assert_int_equal(store_attempts(store, attempt.identity, 10, 0), 2);

@@ -235,6 +235,14 @@ static void goodness_of_fit(void **state) {
     else
       assert_true(fabs(mean - 0.5) < 4 * sqrt(1 / 12.0 / CASES) && low <= 4 + 4 * 1.9);
   }
+  /* Masses at the quantiles of the law lie nearer to it than any sample: the first 100 draws are larger, and enough. */
+  double quantiles[101];
+  const size_t one_run[2] = {0, 101};
+  for (size_t i = 0; i < 101; i++)
+    quantiles[i] = pow(1 - (100.5 - (double)i) / 101 * (1 - 1e-3), -1 / 0.9);
+  struct pooled_goodness perfect;
+  assert_int_equal(pooled_goodness(&(struct pooled_runs){1, one_run, quantiles}, 1, 100000, &perfect, NULL), STATUS_OK);
+  assert_true(perfect.draws == 100 && perfect.p == 1 && perfect.n == 100);
   const size_t none[2] = {0, 0};
   struct pooled_goodness g;
   assert_int_equal(pooled_goodness(&(struct pooled_runs){1, none, masses}, 1, 100, &g, NULL), STATUS_OK);
