@@ -466,11 +466,26 @@ static int start(void **state) {
   return 0;
 }
 
+/* Of two outputs with three points. One run of the second point has no first output, and the third point has too few
+ * runs. Deviations: first output -1, 0, 1 and -1, 1; second one -2, 0, 2 and -1, 0. So 5 / sqrt(4 x 9). */
+static void correlation_of_two_outputs(void **state) {
+  (void)state;
+  const double first[9] = {1, 2, 3, 10, 12, NAN, 100, NAN, NAN}, second[9] = {2, 4, 6, 5, 6, 7, 1, 2, 3};
+  const struct seed_scatter_runs a = {.points = 3, .replicates = 3, .values = first};
+  const struct seed_scatter_runs b = {.points = 3, .replicates = 3, .values = second};
+  assert_true(fabs(seed_scatter_correlation(&a, &b) - 5.0 / 6) < 1e-15);
+  assert_true(seed_scatter_correlation(&a, &b) == seed_scatter_correlation(&b, &a));
+  const double constant[9] = {0};
+  const struct seed_scatter_runs none = {.points = 3, .replicates = 3, .values = constant};
+  assert_true(seed_scatter_correlation(&a, &none) == 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kalman_gives_the_posterior_of_a_linear_model),
       cmocka_unit_test(kalman_replaces_failed_members),
       cmocka_unit_test(scatter_of_seeds_is_recovered),
+      cmocka_unit_test(correlation_of_two_outputs),
       cmocka_unit_test(scatter_knows_two_heaps_and_too_few_runs),
       cmocka_unit_test(kriging_passes_through_a_smooth_function),
       cmocka_unit_test(kriging_knows_what_seeds_leave),
