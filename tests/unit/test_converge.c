@@ -13,6 +13,7 @@
 
 #include "analysis/analysis.h"
 #include "campaign/converge/ladder.h"
+#include "campaign/converge/study.h"
 #include "db/ask/resolution.h"
 #include "tests/support/store_fixture.h"
 
@@ -307,9 +308,25 @@ static void a_level_has_the_errors_of_the_other_knobs(void **state) {
   assert_int_equal(store_close(store, &error), STATUS_OK);
 }
 
+/* The reference if it was run, else the finest level that was. */
+static void reference_of_a_ladder(void **state) {
+  (void)state;
+  static struct study_ladder ladder;
+  ladder = (struct study_ladder){.levels.count = 4};
+  ladder.levels.level[2].reference = true;
+  assert_int_equal(study_reference(&ladder), 2);
+  ladder.left_out[2] = true;
+  assert_int_equal(study_reference(&ladder), 3);
+  ladder.left_out[3] = true;
+  assert_int_equal(study_reference(&ladder), 1);
+  ladder.left_out[0] = ladder.left_out[1] = true;
+  assert_int_equal(study_reference(&ladder), 0);
+}
+
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(every_knob_names_inputs_of_its_engine),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(reference_of_a_ladder),
+                                     cmocka_unit_test(every_knob_names_inputs_of_its_engine),
                                      cmocka_unit_test(ladders_of_all_scenes),
                                      cmocka_unit_test(levels_of_ones_own),
                                      cmocka_unit_test(named_settings_are_levels),

@@ -480,12 +480,34 @@ static void correlation_of_two_outputs(void **state) {
   assert_true(seed_scatter_correlation(&a, &none) == 0);
 }
 
+/* Three points with two runs each: the runs of the first output lie at -1 and 1 about the mean (variance 2), those of
+ * the second at -2 and 2 (variance 8), and the seeds act alike (0.98 in place of a correlation of 1). */
+static void errors_of_data_by_hand(void **state) {
+  (void)state;
+  const double z[3] = {-1, 0, 1}, values[12] = {4, 6, 1, 3, 7, 9, 0, 4, 1, 5, 8, 12};
+  const struct surfaces_runs runs = {.points = 3, .inputs = 1, .outputs = 2, .replicates = 2, .z = z, .values = values};
+  const bool bounded[1] = {false};
+  const double unbiased = 2 * exp(0.57721566490153286); /* ln of a variance of two runs is gamma + ln 2 too low */
+  struct error error;
+  for (size_t shot = 0; shot < 2; shot++) {
+    const struct posterior_datum data[2] = {{.error = 3, .resolution = 4, .specimens = 1},
+                                            {.error = 1, .resolution = 0, .specimens = 4, .shot = shot}};
+    double gamma[4];
+    assert_int_equal(surfaces_errors(&runs, data, bounded, 3, gamma, &error), STATUS_OK);
+    assert_near(gamma[0], 2 * unbiased + 9 + 16, 1e-9);
+    assert_near(gamma[3], 8.0 / 4 * unbiased + 1, 1e-9);
+    assert_near(gamma[1], shot == 0 ? 0.98 * sqrt(2) * sqrt(8.0 / 4) * unbiased : 0, 1e-9);
+    assert_true(gamma[1] == gamma[2]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kalman_gives_the_posterior_of_a_linear_model),
       cmocka_unit_test(kalman_replaces_failed_members),
       cmocka_unit_test(scatter_of_seeds_is_recovered),
       cmocka_unit_test(correlation_of_two_outputs),
+      cmocka_unit_test(errors_of_data_by_hand),
       cmocka_unit_test(scatter_knows_two_heaps_and_too_few_runs),
       cmocka_unit_test(kriging_passes_through_a_smooth_function),
       cmocka_unit_test(kriging_knows_what_seeds_leave),
