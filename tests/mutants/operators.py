@@ -70,7 +70,8 @@ def statements(line, code, before):
         return
     indent = line[: len(line) - len(line.lstrip())]
     branch = re.search(r"(\)|\belse)$", before)
-    yield "deletion", indent + ";"
+    if not bare.startswith("return "):  # without its value a function answers what a register happens to hold
+        yield "deletion", indent + ";"
     yield "early return", indent + "return 0;" + ("" if branch else " " + line.strip())
 
 

@@ -36,6 +36,7 @@ def check_operators():
     check("relation, negation", of_line("  if (a < b)"), ["relation: if (a <= b)", "relation: if (a > b)", "negation: if (!(a < b))"])
     check("logic", of_line("  while (a && b) {"), ["logic: while (a || b) {", "negation: while (!(a && b)) {"])
     check("a statement", of_line("  a += b;"), ["arithmetic: a -= b;", "deletion: ;", "early return: return 0; a += b;"])
+    check("a return of a value", of_line("  return b;"), ["early return: return 0; return b;"])
     check("a branch", of_line("  go(a);", "  if (b)"), ["deletion: ;", "early return: return 0;"])
     check("whole numbers", of_line("      a[2], 0, 1u,"),
           ["constant: a[3], 0, 1u,", "constant: a[0], 0, 1u,", "constant: a[2], 1, 1u,", "constant: a[2], 0, 0u,", "constant: a[2], 0, 2u,"])
@@ -49,7 +50,7 @@ def check_operators():
 def check_toy(folder):
     source = f"{folder}/toy"
     shutil.copytree(f"{HERE}/toy", source)
-    command = [f"{HERE}/run", "--source", source, "--seed", "31", "--count", str(COUNT), "--minutes", "5"]
+    command = [f"{HERE}/run", "--source", source, "--seed", "162", "--count", str(COUNT), "--minutes", "5"]
     ran = subprocess.run(command, capture_output=True, text=True)
     check("return code", (ran.returncode, ran.stderr), (0, ""))
     with open(glob.glob(f"{source}/build/mutants/*.jsonl")[0], encoding="utf-8") as file:
