@@ -3,7 +3,7 @@
 #ifndef CLAST_ENGINE_INPUT_ROWS_H
 #define CLAST_ENGINE_INPUT_ROWS_H
 
-#include "engine/rows.h"
+#include "schemas/rows.h"
 
 #define ROW(path_, kind_, unit_, ...) ROW_OF(INPUTS, path_, path_, kind_, unit_, __VA_ARGS__)
 #define REAL(path_, unit_, ...)       INPUT_REAL(path_, path_, unit_, __VA_ARGS__)

@@ -11,6 +11,7 @@
 
 #include "analysis/statistics/sample.h"
 #include "engine/random.h"
+#include "schemas/rows.h"
 
 enum { RESAMPLES = 1000, FEWEST_SEEDS = 3, FEWEST_PAIRS = 4 };
 #define NOTHING ((double)NAN)
@@ -264,21 +265,14 @@ void convergence_resolve(size_t count, struct convergence_row *levels, const str
 
 /* ---- rows of the store ---- */
 
-#define ROW(type_, path_, kind_, unit_, ...)                                                                           \
-  { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(type_, path_), __VA_ARGS__ }
-#define NUMBER(type_, path_, least_, ...)                                                                              \
-  ROW(type_, path_, FIELD_REAL, NULL, .number = NAN, .minimum = least_, .maximum = HUGE_VAL,                           \
-      .flags = FIELD_MAY_BE_OFF, __VA_ARGS__)
-#define LEVEL_TEXT(path_, ...)    ROW(struct convergence_row, path_, FIELD_TEXT, NULL, .text = "", __VA_ARGS__)
-#define LEVEL_FLAG(path_, ...)    ROW(struct convergence_row, path_, FIELD_BOOLEAN, NULL, .maximum = 1, __VA_ARGS__)
-#define LEVEL(path_, least_, ...) NUMBER(struct convergence_row, path_, least_, __VA_ARGS__)
-#define LIMIT_TEXT(path_, ...)    ROW(struct convergence_limit_row, path_, FIELD_TEXT, NULL, .text = "", __VA_ARGS__)
+#define NUMBER(struct_, path_, member_, least_, ...)                                                                   \
+  REAL_OF(struct_, path_, member_, NULL, NAN, least_, HUGE_VAL, .flags = FIELD_MAY_BE_OFF, __VA_ARGS__)
+#define LEVEL_TEXT(path_, ...)    ROW_OF(convergence_row, path_, path_, FIELD_TEXT, NULL, .text = "", __VA_ARGS__)
+#define LEVEL_FLAG(path_, ...)    ROW_OF(convergence_row, path_, path_, FIELD_BOOLEAN, NULL, .maximum = 1, __VA_ARGS__)
+#define LEVEL(path_, least_, ...) NUMBER(convergence_row, path_, path_, least_, __VA_ARGS__)
+#define LIMIT_TEXT(path_, ...)    ROW_OF(convergence_limit_row, path_, path_, FIELD_TEXT, NULL, .text = "", __VA_ARGS__)
 /* Column names differ from the C members where the member's name is a word of SQL. */
-#define LIMIT_AS(path_, member_, least_, ...)                                                                          \
-  {                                                                                                                    \
-    .path = path_, .kind = FIELD_REAL, .offset = offsetof(struct convergence_limit_row, member_), .number = NAN,       \
-    .minimum = least_, .maximum = HUGE_VAL, .flags = FIELD_MAY_BE_OFF, __VA_ARGS__                                     \
-  }
+#define LIMIT_AS(path_, member_, least_, ...) NUMBER(convergence_limit_row, path_, member_, least_, __VA_ARGS__)
 
 static const struct field rows[] = {
     LEVEL_TEXT(knob, .doc = "What was made coarser or finer (`clast converge --list`)."),
@@ -288,14 +282,14 @@ static const struct field rows[] = {
     LEVEL_FLAG(reference, .doc = "1: the finest level, or the choice that the others are compared with."),
     LEVEL_FLAG(paired, .doc = "1: levels are compared seed by seed."),
     LEVEL(step, 0, .doc = "Size that goes to zero as the knob gets finer, such as particles^(-1/3). Off: none."),
-    ROW(struct convergence_row, n, FIELD_INTEGER, "1", .maximum = 0x1p53, .doc = "Seeds with a usable result."),
+    ROW_OF(convergence_row, n, n, FIELD_INTEGER, "1", .maximum = 0x1p53, .doc = "Seeds with a usable result."),
     LEVEL(mean, -HUGE_VAL, .doc = "Mean over seeds."),
     LEVEL(half_width, 0, .doc = "Half width of the 95 % interval of the mean (Student's t)."),
     LEVEL(deviation, 0, .doc = "Standard deviation between seeds."),
     LEVEL(skew, -HUGE_VAL, .doc = "Skewness over seeds. Off for fewer than three."),
     LEVEL(upper_mode, 0, .doc = "Share of the runs in the upper of two modes (`clast scatter`). Off: one mode."),
-    ROW(struct convergence_row, cpu, FIELD_REAL, "s", .number = NAN, .maximum = HUGE_VAL, .flags = FIELD_MAY_BE_OFF,
-        .doc = "Mean processor time of a run."),
+    ROW_OF(convergence_row, cpu, cpu, FIELD_REAL, "s", .number = NAN, .maximum = HUGE_VAL, .flags = FIELD_MAY_BE_OFF,
+           .doc = "Mean processor time of a run."),
     LEVEL(bias, -HUGE_VAL, .doc = "Mean of this level less that of the reference."),
     LEVEL(bias_half_width, 0, .doc = "Half width of the 95 % interval of the bias."),
     LEVEL(correlation, -1, .doc = "Pearson's correlation over seeds with the next finer level."),
@@ -324,14 +318,15 @@ static const char *const verdict_docs = "fewer than three levels with a step, or
 static const struct field limit_rows[] = {
     LIMIT_TEXT(knob, .doc = "What was made coarser or finer."),
     LIMIT_TEXT(quantity, .doc = "Result, as a column of the view runs. Its unit is that of the limit."),
-    ROW(struct convergence_limit_row, verdict, FIELD_CHOICE, NULL, .choices = verdict_names,
-        .choice_docs = verdict_docs, .maximum = CONVERGENCE_VERDICTS - 1, .doc = "What the three finest levels tell."),
-    LIMIT_AS("measured_order", order, 0, .doc = "p of limit + a step^p through the three finest levels."),
-    LIMIT_AS("measured_order_low", order_low, 0, .doc = "Lower end of the 95 % interval of the order."),
-    LIMIT_AS("measured_order_high", order_high, 0, .doc = "Upper end of it."),
-    LIMIT_AS("extrapolated", limit, -HUGE_VAL, .doc = "Extrapolated value at step 0."),
-    LIMIT_AS("extrapolated_low", limit_low, -HUGE_VAL, .doc = "Lower end of its 95 % interval."),
-    LIMIT_AS("extrapolated_high", limit_high, -HUGE_VAL, .doc = "Upper end of it."),
+    ROW_OF(convergence_limit_row, verdict, verdict, FIELD_CHOICE, NULL, .choices = verdict_names,
+           .choice_docs = verdict_docs, .maximum = CONVERGENCE_VERDICTS - 1,
+           .doc = "What the three finest levels tell."),
+    LIMIT_AS(measured_order, order, 0, .doc = "p of limit + a step^p through the three finest levels."),
+    LIMIT_AS(measured_order_low, order_low, 0, .doc = "Lower end of the 95 % interval of the order."),
+    LIMIT_AS(measured_order_high, order_high, 0, .doc = "Upper end of it."),
+    LIMIT_AS(extrapolated, limit, -HUGE_VAL, .doc = "Extrapolated value at step 0."),
+    LIMIT_AS(extrapolated_low, limit_low, -HUGE_VAL, .doc = "Lower end of its 95 % interval."),
+    LIMIT_AS(extrapolated_high, limit_high, -HUGE_VAL, .doc = "Upper end of it."),
 };
 const struct field_table convergence_limit_table = FIELD_TABLE(limit_rows, struct convergence_limit_row,
                                                                "convergence limit",

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/rows.h"
 #include "schemas/text.h"
 
 const char *const estimates_window_names[] = {"from_2", "from_5", "from_10", NULL};
@@ -23,68 +24,44 @@ static const char *const method_docs =
     "the same above the lower cut-off that fits best by Kolmogorov-Smirnov distance\n"
     "power law with an exponential cut-off at large masses, maximum likelihood on masses";
 
-#define AT(member) offsetof(struct estimate, member)
-#define REAL(name, unit_, member, least, doc_, source_)                                                                \
-  {                                                                                                                    \
-    .path = name, .kind = FIELD_REAL, .unit = unit_, .offset = AT(member), .minimum = least, .maximum = HUGE_VAL,      \
-    .number = NAN, .flags = FIELD_MAY_BE_OFF, .doc = doc_, .source = source_                                           \
-  }
+#define REAL(path_, unit_, member_, least_, doc_, source_)                                                             \
+  REAL_OF(estimate, path_, member_, unit_, NAN, least_, HUGE_VAL, .flags = FIELD_MAY_BE_OFF, .doc = doc_,              \
+          .source = source_)
 static const struct field rows_of_table[] = {
-    {.path = "window",
-     .kind = FIELD_CHOICE,
-     .offset = AT(window),
-     .choices = estimates_window_names,
-     .choice_docs = window_docs,
-     .minimum = 0,
-     .maximum = ESTIMATES_WINDOWS - 1,
-     .doc = "Window of masses of the estimate. None begins below complete_mass of the run."},
-    {.path = "method",
-     .kind = FIELD_CHOICE,
-     .offset = AT(fit.method),
-     .choices = exponent_method_names,
-     .choice_docs = method_docs,
-     .minimum = 0,
-     .maximum = EXPONENT_METHODS - 1,
-     .doc = "Method of the estimate."},
-    {.path = "headline",
-     .kind = FIELD_BOOLEAN,
-     .offset = AT(headline),
-     .minimum = 0,
-     .maximum = 1,
-     .doc = "1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or "
-            "particles), without the largest fragment."},
-    REAL("lower", "kg", fit.lower, 0, "Lower end of the window used (2D: kg per metre of thickness).", NULL),
-    REAL("upper", "kg", fit.upper, 0,
+    ROW_OF(estimate, window, window, FIELD_CHOICE, NULL, .choices = estimates_window_names, .choice_docs = window_docs,
+           .maximum = ESTIMATES_WINDOWS - 1,
+           .doc = "Window of masses of the estimate. None begins below complete_mass of the run."),
+    ROW_OF(estimate, method, fit.method, FIELD_CHOICE, NULL, .choices = exponent_method_names,
+           .choice_docs = method_docs, .maximum = EXPONENT_METHODS - 1, .doc = "Method of the estimate."),
+    ROW_OF(estimate, headline, headline, FIELD_BOOLEAN, NULL, .maximum = 1,
+           .doc = "1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains "
+                  "or particles), without the largest fragment."),
+    REAL(lower, "kg", fit.lower, 0, "Lower end of the window used (2D: kg per metre of thickness).", NULL),
+    REAL(upper, "kg", fit.upper, 0,
          "Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a "
          "decade above the lower end.",
          NULL),
-    {.path = "n",
-     .kind = FIELD_INTEGER,
-     .unit = "1",
-     .offset = AT(fit.n),
-     .minimum = 0,
-     .maximum = 9007199254740992.0,
-     .doc = "Fragments in the window."},
-    REAL("beta", "1", fit.beta, -HUGE_VAL,
+    ROW_OF(estimate, n, fit.n, FIELD_INTEGER, "1", .maximum = 9007199254740992.0, .doc = "Fragments in the window."),
+    REAL(beta, "1", fit.beta, -HUGE_VAL,
          "Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off "
          "when there are too few fragments.",
          "Kun & Herrmann (1999) section 3.3"),
     REAL(
-        "standard_error", "1", fit.standard_error, 0,
+        standard_error, "1", fit.standard_error, 0,
         "Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval "
         "over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from "
         "leaving out one of its runs after another (jackknife).",
         NULL),
-    REAL("hw95", "1", half_width, 0,
+    REAL(hw95, "1", half_width, 0,
          "Half width of the 95 % interval of beta over the runs (seeds) of a point: Student's t and the jackknife. Off "
          "for one run. It does not hold the error of the resolution.",
          NULL),
-    REAL("cutoff_mass", "kg", fit.cutoff_mass, 0,
+    REAL(cutoff_mass, "kg", fit.cutoff_mass, 0,
          "m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.", NULL),
-    REAL("ks_distance", "1", fit.ks_distance, 0,
+    REAL(ks_distance, "1", fit.ks_distance, 0,
          "Largest distance between the distribution functions of sample and fit; methods masses and ks only.",
          "Clauset, Shalizi & Newman (2009)"),
-    REAL("log_likelihood", "1", fit.log_likelihood, -HUGE_VAL,
+    REAL(log_likelihood, "1", fit.log_likelihood, -HUGE_VAL,
          "Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one "
          "window "
          "only.",

@@ -8,6 +8,7 @@
 #include "campaign/document/campaign_read.h"
 #include "engine/random.h"
 #include "schemas/document.h"
+#include "schemas/rows.h"
 
 #define ROW(path_, member_, kind_, unit_, ...)                                                                         \
   { .path = path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct campaign, member_), __VA_ARGS__ }
@@ -78,30 +79,14 @@ static const struct field design_rows[] = {
                     "each input's range is cut into as many strata as there are points, one point in each\n"
                     "Sobol numbers, digitally shifted: the most even of the three samplings",
      .doc = "How points are made from the varied inputs."},
-    {.path = "points",
-     .kind = FIELD_INTEGER,
-     .unit = "1",
-     .offset = offsetof(struct campaign_design_keys, points),
-     .minimum = 1,
-     .maximum = 0x1p53,
-     .number = 0,
-     .when = "kind=random|latin_hypercube|sobol",
-     .doc = "How many points are sampled."},
-    {.path = "seed",
-     .kind = FIELD_INTEGER,
-     .unit = "1",
-     .offset = offsetof(struct campaign_design_keys, seed),
-     .minimum = 0,
-     .maximum = 0x1p62,
-     .number = 1,
-     .when = "kind=random|latin_hypercube|sobol",
-     .doc = "Seed of the draws, permutations and shifts; the runs have other seeds (`seeds`)."},
-    {.path = "file",
-     .kind = FIELD_TEXT,
-     .offset = offsetof(struct campaign_design_keys, file),
-     .text = "",
-     .doc = "CSV file of the points, relative to this document's folder: a header of input paths, a line for each "
-            "point. \"threshold.angle [deg]\" gives the unit of bare numbers. Instead of vary."},
+    ROW_OF(campaign_design_keys, points, points, FIELD_INTEGER, "1", .minimum = 1, .maximum = 0x1p53,
+           .when = "kind=random|latin_hypercube|sobol", .doc = "How many points are sampled."),
+    ROW_OF(campaign_design_keys, seed, seed, FIELD_INTEGER, "1", .number = 1, .maximum = 0x1p62,
+           .when = "kind=random|latin_hypercube|sobol",
+           .doc = "Seed of the draws, permutations and shifts; the runs have other seeds (`seeds`)."),
+    ROW_OF(campaign_design_keys, file, file, FIELD_TEXT, NULL, .text = "",
+           .doc = "CSV file of the points, relative to this document's folder: a header of input paths, a line for "
+                  "each point. \"threshold.angle [deg]\" gives the unit of bare numbers. Instead of vary."),
 };
 const struct field_table campaign_design_table = FIELD_TABLE(design_rows, struct campaign_design_keys, "design",
                                                              "How points are made from the varied inputs.");

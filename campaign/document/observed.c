@@ -6,39 +6,23 @@
 #include <string.h>
 
 #include "schemas/document.h"
+#include "schemas/rows.h"
 
 #define COUNT_ABOVE "count_above"
 #define SHARE_ABOVE "share_above"
 
 static const struct field root_rows[] = {
-    {.path = "name",
-     .kind = FIELD_TEXT,
-     .offset = offsetof(struct observed, name),
-     .flags = FIELD_REQUIRED,
-     .doc = "Name of the measurements."},
-    {.path = "source",
-     .kind = FIELD_TEXT,
-     .offset = offsetof(struct observed, source),
-     .flags = FIELD_REQUIRED,
-     .doc = "Who measured it, and where it is printed."},
+    ROW_OF(observed, name, name, FIELD_TEXT, NULL, .flags = FIELD_REQUIRED, .doc = "Name of the measurements."),
+    ROW_OF(observed, source, source, FIELD_TEXT, NULL, .flags = FIELD_REQUIRED,
+           .doc = "Who measured it, and where it is printed."),
 };
 static const struct field_table root_table = FIELD_TABLE(root_rows, struct observed, "measurements",
                                                          "What was measured, for clast fit.");
 
 static const struct field shot_rows[] = {
-    {.path = "name",
-     .kind = FIELD_TEXT,
-     .offset = offsetof(struct observed_shot, name),
-     .text = "",
-     .doc = "Name of the shot."},
-    {.path = "specimens",
-     .kind = FIELD_INTEGER,
-     .unit = "1",
-     .offset = offsetof(struct observed_shot, specimens),
-     .number = 1,
-     .minimum = 1,
-     .maximum = 1000000,
-     .doc = "How many specimens each value is the mean of."},
+    ROW_OF(observed_shot, name, name, FIELD_TEXT, NULL, .text = "", .doc = "Name of the shot."),
+    ROW_OF(observed_shot, specimens, specimens, FIELD_INTEGER, "1", .number = 1, .minimum = 1, .maximum = 1000000,
+           .doc = "How many specimens each value is the mean of."),
 };
 static const struct field_table shot_table = FIELD_TABLE(shot_rows, struct observed_shot, "shot",
                                                          "One experiment, or the mean of several equal ones.");

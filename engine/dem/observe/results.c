@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "engine/rows.h"
+#include "schemas/rows.h"
 
 static const char *const reasons[] = {"running", "quiet", "end-time", "strain", "failure", "fault", NULL};
 

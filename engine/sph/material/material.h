@@ -21,7 +21,7 @@ struct sph_material {
 #include "engine/sph/modules/declarations.h"
 };
 
-/* Rows; the including file defines MATERIAL, the name of the struct (engine/rows.h). */
+/* Rows; the including file defines MATERIAL, the name of the struct (schemas/rows.h). */
 #define MATERIAL_REAL(path_, member_, ...) REAL_OF(MATERIAL, path_, member_, __VA_ARGS__)
 #define MATERIAL_CHOICE(path_, member_, choices_, ...)                                                                 \
   ROW_OF(MATERIAL, path_, member_, FIELD_CHOICE, NULL, .choices = choices_, __VA_ARGS__)

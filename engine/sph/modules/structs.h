@@ -2,7 +2,7 @@
 #ifndef CLAST_ENGINE_SPH_MODULES_STRUCTS_H
 #define CLAST_ENGINE_SPH_MODULES_STRUCTS_H
 
-#include "engine/rows.h"
+#include "schemas/rows.h"
 
 /* A nest of scene/inputs.c, material/materials.c or observe/results.c gives it its place. */
 #define SPH_MODULE_TABLE(name_, rows_) FIELD_TABLE(rows_, struct name_, #name_, NULL)

@@ -1,7 +1,9 @@
 /* Forms of rows. `path` is what users write, `member` the member of the struct; the rest are further members of struct
- * field (.doc, .when). The including file defines the names of the structs: INPUTS, RESULTS. */
-#ifndef CLAST_ENGINE_ROWS_H
-#define CLAST_ENGINE_ROWS_H
+ * field (.doc, .when). A file that uses the forms for inputs and results defines INPUTS and RESULTS, the structs'
+ * names.
+ */
+#ifndef CLAST_SCHEMAS_ROWS_H
+#define CLAST_SCHEMAS_ROWS_H
 
 #include <math.h>
 
