@@ -250,7 +250,7 @@ static void bind_column(sqlite3_stmt *statement, int index, const struct sql_col
 static char *insert_sql(const struct sql_insert *insert, const char *table) {
   char *sql = NULL;
   size_t size = 0, fields = insert->fields ? insert->fields->count : 0, columns = insert->column_count + fields;
-  FILE *out = open_memstream(&sql, &size);
+  FILE *out = text_open(&sql, &size);
   if (!out)
     return NULL;
   fprintf(out, "INSERT INTO %s (", table);

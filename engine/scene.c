@@ -12,6 +12,7 @@
 #include "engine/scene_settings.h"
 #include "schemas/document.h"
 #include "schemas/json_schema.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 /* ---- built-in scenes ---- */
@@ -315,7 +316,7 @@ status scene_check(struct scene *scene, struct error *error) {
 char *scene_json(const struct scene *scene) {
   char *text = NULL;
   size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return NULL;
   fputs("{\"engine\":", out);
@@ -348,16 +349,14 @@ void scene_schema(const struct engine_kind *kind, FILE *out) {
 void scene_identity(const struct scene *scene, uint64_t seed, uint8_t identity[16]) {
   char *inputs = field_identity(scene->kind->inputs, scene->inputs), *text = NULL;
   size_t size = 0;
-  FILE *out = inputs ? open_memstream(&text, &size) : NULL;
-  memset(identity, 0, 16); /* all zero: no memory */
-  if (!out) {
-    free(inputs);
-    return;
-  }
+  FILE *out = text_open(&text, &size);
+  if (!out)
+    memory_refused(); /* a store must not get another identity */
   fprintf(out, "engine=%s\nresults_version=%d\nseed=%llu\n%s", scene->kind->name, scene->kind->results_version,
           (unsigned long long)seed, inputs);
-  if (fclose(out) == 0)
-    blake2s(text, size, identity);
+  if (!text_close(out, &text))
+    memory_refused();
+  blake2s(text, size, identity);
   free(text);
   free(inputs);
 }

@@ -27,14 +27,14 @@ static void take(document_node *section, document_node *node, const char *key, c
     return;
   }
   if (find(text, folder, &file, &error)) {
-    document_report(node, path, "%s", error.message);
+    document_report_error(node, path, &error);
     document_graft_drop(section, key);
     (void)document_graft_word(section, key, "none"); /* prevents further errors about it */
     return;
   }
   document_graft_drop(section, key);
   if (!document_graft_word(section, key, file->hash))
-    document_report(node, path, "no memory to read it");
+    document_report_memory(node, path);
 }
 
 /* The section of a dotted path, and the last word of the path. */

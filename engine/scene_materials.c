@@ -26,13 +26,13 @@ static void include(document_node *section, document_node *place, const char *pa
   struct error error;
   char *whole = file_name_in(folder, file);
   if (!whole) {
-    document_report(place, path, "no memory for the name of a file");
+    document_report_memory(place, path);
     return;
   }
   if (document_open(whole, &other, &error) != STATUS_OK)
-    document_report(place, path, "%s", error.message);
+    document_report_error(place, path, &error);
   else if (!document_graft(section, other, scene_materials_words) || !document_graft_word(section, "name", "custom"))
-    document_report(place, path, "no memory for %s", file);
+    document_report_memory(place, path);
   (void)document_graft_word(section, "name", "custom"); /* after an error: prevents further errors about the section */
   free(whole);
 }
@@ -61,7 +61,7 @@ static void take_word(document_node *node, const char *path, const char *folder)
   if (file_name_is_document(word))
     include(node, node, path, word, folder);
   else if (!document_graft_word(node, "name", word))
-    document_report(node, path, "no memory to read it");
+    document_report_memory(node, path);
 }
 
 /* `section`: its path, empty at the root. */

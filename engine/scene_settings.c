@@ -59,7 +59,7 @@ void scene_settings_read(document_node *node, struct scene *scene) {
   const size_t count = document_count(node);
   scene->settings = calloc(count ? count : 1, sizeof *scene->settings);
   if (!scene->settings) {
-    document_report(node, "settings", "no memory for them");
+    document_report_memory(node, "settings");
     return;
   }
   scene->settings_count = count;

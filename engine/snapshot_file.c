@@ -174,7 +174,8 @@ static void head(struct snapshot_file *f, const char *engine, const char *doc, i
   integer_attribute(f, "run", "seed", 1, &number);
   if (scene)
     text_attribute(f, "run", "scene", scene);
-  f->failed |= !scene;
+  else
+    snapshot_file_fail(f);
   free(scene);
 }
 
@@ -195,8 +196,10 @@ status snapshot_file_open(const char *engine, const char *doc, int results_versi
   if (!f->failed)
     head(f, engine, doc, results_version, seed, table, inputs);
   if (f->failed) {
+    const bool memory = f->memory;
     snapshot_file_close(f);
-    return status_fail(error, STATUS_INTERNAL, "cannot begin a fields file");
+    return status_fail(error, memory ? STATUS_MEMORY : STATUS_INTERNAL, "cannot begin a fields file%s",
+                       memory ? ": no memory" : "");
   }
   *out = f;
   return STATUS_OK;
@@ -209,7 +212,7 @@ status snapshot_file_save(struct snapshot_file *f, const char *path, struct erro
   status code;
   if (!image || H5Fget_file_image(f->file, image, (size_t)size) != size)
     code = status_fail(error, f->failed && !f->memory ? STATUS_INTERNAL : STATUS_MEMORY,
-                       "cannot make the fields for '%s'", path);
+                       "cannot make the fields for '%s'%s", path, f->failed && !f->memory ? "" : ": no memory");
   else
     code = file_write(path, "fields file", image, (size_t)size, error);
   free(image);

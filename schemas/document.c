@@ -154,6 +154,10 @@ status document_finish(struct document *document, const char **report) {
   free(document->report);
   document->report = whole_report(document);
   *report = document->report ? document->report : "no memory for the report of errors";
+  for (const struct document *other = document; other;
+       other = other == document ? other->included : other->next_included)
+    if (other->no_memory)
+      return STATUS_MEMORY;
   return document->elsewhere == errors ? STATUS_USAGE : STATUS_CONTENT;
 }
 

@@ -73,12 +73,17 @@ bool document_read_given(document_node *node, const struct field_table *table, c
 /* Adds a located error about a node (or a key of it). Errors are counted; the report is ordered by line. */
 void document_report(document_node *node, const char *path, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* The message of a call that failed, as an error about the node. */
+void document_report_error(document_node *node, const char *path, const struct error *error);
+/* Memory ran out at the node. The status of the document is STATUS_MEMORY then, also after document_report_error of a
+ * call with that status. */
+void document_report_memory(document_node *node, const char *path);
 /* Reports every key of the mapping that is neither in `known` (NULL-terminated, may be NULL) nor marked as seen by a
  * call above. */
 void document_unknown_keys(document_node *mapping, const char *path, const char *const *known);
 
 /* STATUS_OK when no error was reported; else STATUS_CONTENT with the whole report in *report (owned by the document).
- * STATUS_USAGE when all errors are about values of document_change_put. */
+ * STATUS_USAGE when all errors are about values of document_change_put, STATUS_MEMORY when memory ran out. */
 status document_finish(struct document *document, const char **report);
 
 #endif

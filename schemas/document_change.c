@@ -100,7 +100,7 @@ char *document_change_text(const struct document *document) {
     return strdup(document->text);
   char *text = NULL;
   size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return NULL;
   fprintf(out, "# as read, with values of the %s; comments are left out\n", document->origin);

@@ -206,12 +206,12 @@ bool document_read_given(document_node *node, const struct field_table *table, c
                       .object = object,
                       .places = calloc(table->count + 1, sizeof *r.places)};
   if (!r.places) {
-    document_report(node, NULL, "no memory to read it");
+    document_report_memory(node, NULL);
     return false;
   }
   walk(&r, node, "");
   if (!complete_object(&r, given, complete))
-    document_report(node, NULL, "no memory to read it");
+    document_report_memory(node, NULL);
   judge_conditions(&r, node);
   free(r.places);
   return document->error_count + document->foreign_errors == before;

@@ -44,6 +44,17 @@ void document_report(document_node *node, const char *path, const char *format, 
   va_end(arguments);
 }
 
+void document_report_error(document_node *node, const char *path, const struct error *error) {
+  if (error->status == STATUS_MEMORY)
+    node->document->no_memory = true;
+  document_report(node, path, "%s", error->message);
+}
+
+void document_report_memory(document_node *node, const char *path) {
+  node->document->no_memory = true;
+  document_report(node, path, "no memory to read it");
+}
+
 size_t document_report_line(const struct document *document, size_t offset) {
   size_t line = 1;
   for (size_t i = 0; i < offset && i < document->size; i++)
@@ -143,7 +154,7 @@ static bool append_error(const struct document *document, const struct document_
                          const size_t *size, size_t limit) {
   char *text = NULL;
   size_t length = 0;
-  FILE *memory = open_memstream(&text, &length);
+  FILE *memory = text_open(&text, &length);
   if (!memory)
     return false;
   write_error(document, error, memory);
@@ -165,7 +176,7 @@ char *document_report_text(struct document *document) {
 
   char *text = NULL;
   size_t size = 0, shown = 0;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return NULL;
   while (shown < kept && append_error(document, &document->errors[shown], out, &size, LIMIT))

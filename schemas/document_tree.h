@@ -50,7 +50,8 @@ struct document {
   document_node *root, *nodes;
   struct document_error errors[DOCUMENT_MOST_ERRORS];
   char *report;
-  bool si; /* numbers without a unit are in SI */
+  bool no_memory; /* document_report_memory was called */
+  bool si;        /* numbers without a unit are in SI */
 };
 
 /* document_node.c. Makes a node that belongs to the document but is not part of its text; NULL: no memory. */

@@ -184,7 +184,7 @@ char *field_json(const struct field_table *table, const void *object);
 void field_json_members(const struct field_table *table, const void *object, FILE *out);
 void field_json_value(const struct field *row, const struct field_value *value, FILE *out);
 /* Canonical identity text: sorted lines `path=%a\n` of the active rows (text and choices by name), without those that
- * have their value of absence. The caller frees it; NULL: no memory. */
+ * have their value of absence. The caller frees it. Never NULL: without memory the process ends (schemas/memory.h). */
 char *field_identity(const struct field_table *table, const void *object);
 /* `clast explain`: one row, or every row under a prefix ("" = all), as text for people. Returns how many rows. */
 size_t field_explain(const struct field_table *table, const char *prefix, FILE *out);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "schemas/field.h"
+#include "schemas/text.h"
 
 void field_describe_inactive(const struct field_table *table, const struct field *row, const void *object, char *text,
                              size_t size) {
@@ -13,7 +14,7 @@ void field_describe_inactive(const struct field_table *table, const struct field
     return;
   char *wanted = NULL, came[FIELD_TEXT_SIZE];
   size_t length = 0;
-  FILE *words = open_memstream(&wanted, &length);
+  FILE *words = text_open(&wanted, &length);
   if (!words)
     return;
   field_describe_condition(link, words);

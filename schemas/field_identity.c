@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "schemas/field.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 static int by_path(const void *a, const void *b) {
@@ -51,12 +52,10 @@ static bool is_absent(const struct field *row, const void *object) {
 char *field_identity(const struct field_table *table, const void *object) {
   char *text = NULL;
   size_t size = 0, count = 0;
-  const struct field **rows = malloc((table->count + 1) * sizeof *rows);
-  FILE *out = rows ? open_memstream(&text, &size) : NULL;
-  if (!out) {
-    free(rows);
-    return NULL;
-  }
+  const struct field **rows = memory_small(table->count + 1, sizeof *rows);
+  FILE *out = text_open(&text, &size);
+  if (!out)
+    memory_refused();
   for (size_t i = 0; i < table->count; i++)
     if (field_is_active(table, &table->rows[i], object) && !is_absent(&table->rows[i], object))
       rows[count++] = &table->rows[i];
@@ -70,5 +69,7 @@ char *field_identity(const struct field_table *table, const void *object) {
     fputc('\n', out);
   }
   free(rows);
-  return text_close(out, &text);
+  if (!text_close(out, &text))
+    memory_refused();
+  return text;
 }

@@ -60,7 +60,7 @@ void field_json_members(const struct field_table *table, const void *object, FIL
 char *field_json(const struct field_table *table, const void *object) {
   char *text = NULL;
   size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return NULL;
   fputc('{', out);

@@ -109,9 +109,12 @@ status file_read(const char *path, const char *what, unsigned char **bytes, size
   *bytes = NULL;
   FILE *file = fopen(path, "rbe");
   if (!file)
-    return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "cannot read the %s '%s': %s", what, path,
-                       strerror(errno));
-  FILE *copy = open_memstream(&text, size);
+    return status_fail(error,
+                       errno == ENOENT   ? STATUS_MISSING
+                       : errno == ENOMEM ? STATUS_MEMORY
+                                         : STATUS_IO,
+                       "cannot read the %s '%s': %s", what, path, strerror(errno));
+  FILE *copy = text_open(&text, size);
   while (copy && (got = fread(block, 1, sizeof block, file)) > 0)
     fwrite(block, 1, got, copy);
   const int why = ferror(file) ? errno : 0;
@@ -283,7 +286,14 @@ status file_begin(struct file_output *file, const char *path, const char *what, 
   if (file->out)
     return STATUS_OK;
   const int why = errno;
+  if (descriptor >= 0) { /* no memory for the stream */
+    if (strcmp(file->temporary, path) != 0)
+      unlink(file->temporary);
+    close(descriptor);
+  }
   free(file->path);
+  if (why == ENOMEM)
+    return status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
   return refuse(path, what, strerror(why), error);
 }
 

@@ -126,7 +126,7 @@ static void describe(const struct field *row, FILE *out) {
 static void description(const struct field *row, FILE *out) {
   char *text = NULL;
   size_t size = 0;
-  FILE *words = open_memstream(&text, &size);
+  FILE *words = text_open(&text, &size);
   if (!words)
     return;
   describe(row, words);

@@ -105,11 +105,59 @@ void text_json_string(const char *text, FILE *out) {
   fputc('"', out);
 }
 
-char *text_close(FILE *out, char **text) {
-  if (fclose(out) != 0) {
+struct growing { /* the text of a stream */
+  char **text;
+  size_t *size, room;
+  bool failed;
+};
+
+static ssize_t grow_text(void *context, const char *bytes, size_t count) {
+  struct growing *g = context;
+  if (*g->size + count >= g->room) {
+    const size_t room = 2 * (*g->size + count) + 1;
+    char *larger = g->failed ? NULL : realloc(*g->text, room);
+    g->failed = !larger;
+    if (g->failed)
+      return 0;
+    *g->text = larger;
+    g->room = room;
+  }
+  memcpy(*g->text + *g->size, bytes, count);
+  *g->size += count;
+  (*g->text)[*g->size] = '\0';
+  return (ssize_t)count;
+}
+
+static int end_text(void *context) {
+  struct growing *g = context;
+  const bool failed = g->failed;
+  if (failed) {
+    free(*g->text);
+    *g->text = NULL;
+  }
+  free(g);
+  return failed ? -1 : 0;
+}
+
+FILE *text_open(char **text, size_t *size) {
+  struct growing *g = malloc(sizeof *g);
+  *text = calloc(1, 1);
+  *size = 0;
+  FILE *out = NULL;
+  if (g && *text) {
+    *g = (struct growing){.text = text, .size = size, .room = 1};
+    out = fopencookie(g, "w", (cookie_io_functions_t){.write = grow_text, .close = end_text});
+  }
+  if (!out) {
+    free(g);
     free(*text);
     *text = NULL;
   }
+  return out;
+}
+
+char *text_close(FILE *out, char **text) {
+  (void)fclose(out);
   return *text;
 }
 

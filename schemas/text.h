@@ -38,8 +38,12 @@ void text_sentence(const char *doc, char *text, size_t size);
 /* Is `word` one of the words in `words`, which single spaces separate? */
 bool text_has_word(const char *words, const char *word);
 
-/* Closes the stream that open_memstream made for *text. Returns the text, which the caller frees; NULL (and *text is
- * freed and NULL) when memory ran out. */
+/* A stream that makes *text, which the caller frees: open_memstream() that does not cut the text where memory runs out.
+ * *text and *size are right after fflush() or the end; *text is NULL after the end when memory ran out, and fclose()
+ * tells so. NULL: no memory. */
+FILE *text_open(char **text, size_t *size);
+/* Closes the stream that text_open made for *text. Returns the text, which the caller frees; NULL (and *text is NULL)
+ * when memory ran out. */
 char *text_close(FILE *out, char **text);
 
 /* Writes the words of `text` in lines of at most `width` columns, each line indented, and ends the last line. The

@@ -36,8 +36,8 @@ struct chart *chart_new(const char *template) {
   if (!chart)
     return NULL;
   chart->template = template;
-  chart->variables = open_memstream(&chart->variables_text, &chart->variables_size);
-  chart->data = open_memstream(&chart->data_text, &chart->data_size);
+  chart->variables = text_open(&chart->variables_text, &chart->variables_size);
+  chart->data = text_open(&chart->data_text, &chart->data_size);
   if (chart->variables && chart->data)
     return chart;
   release(chart);
@@ -220,7 +220,7 @@ static status write_script(struct chart *chart, const struct picture_page *page,
   status code = read_template(page, "frame", &frame, error);
   if (code == STATUS_OK)
     code = read_template(page, chart->template, &template, error);
-  FILE *out = code == STATUS_OK ? open_memstream(script, size) : NULL;
+  FILE *out = code == STATUS_OK ? text_open(script, size) : NULL;
   if (code == STATUS_OK && !out)
     code = status_fail(error, STATUS_MEMORY, "%s: no memory for the chart", page->path);
   if (out) {
@@ -234,13 +234,13 @@ static status write_script(struct chart *chart, const struct picture_page *page,
     chart_text(chart, "data", file);
     chart_number(chart, "page_width", page->width);
     chart_number(chart, "page_height", height);
-    fflush(chart->variables);
+    const bool whole = fflush(chart->variables) == 0;
     fputs("# A chart of clast for gnuplot 5.4. Change what you like, then run gnuplot on this file in its folder.\n\n"
           "# What this chart shows. The numbers are in the data file.\n",
           out);
     fwrite(chart->variables_text, 1, chart->variables_size, out);
     fprintf(out, "\n%s\n%s", frame, template);
-    if (fclose(out))
+    if (!text_close(out, script) || !whole)
       code = status_fail(error, STATUS_MEMORY, "%s: no memory for the chart", page->path);
   }
   free(frame);

@@ -88,7 +88,7 @@ status page_write(const char *path, const unsigned char *html, size_t html_size,
   const unsigned char *place = memmem(html, html_size, mark, sizeof mark - 1);
   if (!place)
     return status_fail(error, STATUS_CONTENT, "share/clast/report.html is damaged: build clast again");
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return status_fail(error, STATUS_MEMORY, "no memory for the page");
   fwrite(html, 1, (size_t)(place - html), out);

@@ -28,22 +28,25 @@ struct exponent_window exponent_window_from(enum exponent_method method, double 
 }
 
 /* The lower cut-off of a power law by the Kolmogorov-Smirnov distance (Clauset, Shalizi & Newman 2009): the mass above
- * which plfit fits best, kg. masses: any order, all above the resolution limit. NaN when plfit finds none. */
-static double lower_cutoff(size_t n, const double *masses) {
+ * which plfit fits best, kg. masses: any order, all above the resolution limit. *lower is NaN when plfit finds none. */
+static status lower_cutoff(size_t n, const double *masses, double *lower, struct error *error) {
   plfit_continuous_options_t options;
+  *lower = NAN;
   if (n < EXPONENT_LEAST_FRAGMENTS || plfit_continuous_options_init(&options) != 0)
-    return NAN;
+    return STATUS_OK;
   options.finite_size_correction = 0;
   options.p_value_method = PLFIT_P_VALUE_SKIP;
   double *copy = malloc(n * sizeof *copy); /* plfit takes a pointer to mutable masses */
   if (!copy)
-    return NAN;
+    return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu masses", n);
 
   memcpy(copy, masses, n * sizeof *copy);
   plfit_result_t result;
   bool found = plfit_continuous(copy, n, &options, &result) == 0 && isfinite(result.alpha);
   free(copy);
-  return found ? result.xmin : (double)NAN;
+  if (found)
+    *lower = result.xmin;
+  return STATUS_OK;
 }
 
 void exponent_bins_inside(struct exponent_window window, int *first, int *end) {
@@ -225,13 +228,15 @@ status exponent_fit(enum exponent_method method, size_t n, const double *masses,
   if (!inside)
     return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu masses", n);
   if (method == EXPONENT_KS && count >= EXPONENT_LEAST_FRAGMENTS) {
-    const double lower = lower_cutoff(count, inside);
+    double lower;
+    code = lower_cutoff(count, inside, &lower, error);
     if (isfinite(lower))
       out->lower = lower;
     while (count > 0 && inside[count - 1] < out->lower)
       count--;
   }
-  fit_sorted(method, count, inside, window.upper, out);
+  if (code == STATUS_OK)
+    fit_sorted(method, count, inside, window.upper, out);
   free(inside);
-  return STATUS_OK;
+  return code;
 }

@@ -5,6 +5,7 @@
 
 #include "campaign/converge/accuracy.h"
 #include "campaign/terminal/table.h"
+#include "schemas/text.h"
 
 /* One row per way to run the campaign: cost of a point against that of the most accurate one. */
 static status print_alternatives(const struct accuracy *accuracy, enum table_format format, FILE *out,
@@ -35,11 +36,12 @@ static status print_alternatives(const struct accuracy *accuracy, enum table_for
 
 static status alternatives_json(const struct accuracy *accuracy, char **text, struct error *error) {
   size_t size = 0;
-  FILE *out = open_memstream(text, &size);
+  FILE *out = text_open(text, &size);
   if (!out)
     return status_fail(error, STATUS_MEMORY, "out of memory");
   status code = print_alternatives(accuracy, TABLE_JSON, out, error);
-  fclose(out);
+  if (!text_close(out, text) && code == STATUS_OK)
+    code = status_fail(error, STATUS_MEMORY, "out of memory");
   return code;
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/scene_settings.h"
+#include "schemas/text.h"
 
 struct making {
   const struct knob *knob;
@@ -261,12 +262,13 @@ status ladder_make(const struct knob *knob, const struct scene *base, const char
   *ladder = (struct ladder){.knob = knob};
   *notes = NULL;
   size_t size = 0;
-  struct making making = {.knob = knob, .base = base, .ladder = ladder, .notes = open_memstream(notes, &size)};
+  struct making making = {.knob = knob, .base = base, .ladder = ladder, .notes = text_open(notes, &size)};
   if (!making.notes)
     return status_fail(error, STATUS_MEMORY, "no memory for a ladder");
   const bool named = knob->group == KNOB_SETTINGS;
-  const status code = (named ? add_all_named : add_all_levels)(&making, settings, error);
-  fclose(making.notes);
+  status code = (named ? add_all_named : add_all_levels)(&making, settings, error);
+  if (!text_close(making.notes, notes) && code == STATUS_OK)
+    code = status_fail(error, STATUS_MEMORY, "no memory for a ladder");
   if (code != STATUS_OK)
     ladder_clear(ladder);
   return code;

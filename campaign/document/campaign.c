@@ -9,6 +9,7 @@
 #include "engine/random.h"
 #include "schemas/document.h"
 #include "schemas/rows.h"
+#include "schemas/text.h"
 
 #define ROW(path_, member_, kind_, unit_, ...)                                                                         \
   { .path = path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct campaign, member_), __VA_ARGS__ }
@@ -140,7 +141,7 @@ double campaign_value(const struct field *row, bool of_outcome, const struct out
 static char *text_for_store(const char *document, const struct campaign *campaign) {
   char *text = NULL;
   size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return NULL;
   fputs(document, out);

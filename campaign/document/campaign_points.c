@@ -57,7 +57,7 @@ static char *load(struct reading *r, const char *folder, size_t *size) {
   if (fstat(fileno(file), &facts) != 0 || !S_ISREG(facts.st_mode) || facts.st_size > LARGEST)
     document_report(r->node, "design.file", "'%s' is no plain file of up to %d MiB", path, LARGEST >> 20);
   else if (!(text = malloc((size_t)facts.st_size + 1)))
-    document_report(r->node, "design.file", "no memory for '%s'", path);
+    document_report_memory(r->node, "design.file");
   else
     *size = fread(text, 1, (size_t)facts.st_size, file);
   fclose(file);
@@ -156,8 +156,11 @@ static bool read_point(struct reading *r, struct csv *csv) {
   char cell[CSV_CELL];
   bool good = true;
   size_t column = 0;
-  if (!reserve(r))
-    return wrong(r, line, "no memory for so many points");
+  if (!reserve(r)) {
+    r->reports = MOST_REPORTS;
+    document_report_memory(r->node, "design.file");
+    return false;
+  }
   for (bool last = false; !last; column++) {
     if (!csv_cell(csv, cell, &last))
       return wrong(r, line, "%s", csv->wrong);
@@ -192,7 +195,7 @@ bool campaign_points_read(document_node *node, const char *folder, struct campai
   campaign->axes = calloc(MOST_COLUMNS, sizeof *campaign->axes);
   r.units = calloc(MOST_COLUMNS, sizeof *r.units);
   if (!campaign->axes || !r.units) {
-    document_report(node, "design.file", "no memory");
+    document_report_memory(node, "design.file");
   } else if (text) {
     const size_t mark = size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* byte order mark */
     struct csv csv = {.text = text + mark, .end = text + size, .line = 1};

@@ -24,7 +24,7 @@ static void read_set_value(document_node *node, const char *key, const char *pat
   }
   const struct field *row = field_find(campaign->scene->kind->inputs, key, &error);
   if (!row) {
-    document_report(node, path, "%s", error.message);
+    document_report_error(node, path, &error);
     return;
   }
   if (campaign_axis(campaign, row)) {
@@ -32,7 +32,7 @@ static void read_set_value(document_node *node, const char *key, const char *pat
     return;
   }
   if (document_value(node, row, &value) && scene_set(campaign->scene, row->path, &value, &error) != STATUS_OK)
-    document_report(node, path, "%s", error.message);
+    document_report_error(node, path, &error);
 }
 
 static void read_set(document_node *set, struct campaign *campaign) {
@@ -148,7 +148,7 @@ static void check_quantity(document_node *node, const char *path, const char *na
   struct error error;
   bool of_outcome;
   if (!campaign_quantity(campaign->scene->kind, name, &of_outcome, &error))
-    document_report(node, path, "%s", error.message);
+    document_report_error(node, path, &error);
 }
 
 /* Exponents are refused, although a study of convergence has them: an exponent belongs to a point and has no mean over
@@ -159,7 +159,7 @@ static void check_accuracy_quantity(document_node *node, const struct campaign *
   enum exponent_method method;
   enum estimates_window window;
   if (estimates_named(campaign->accuracy_quantity, &exponent, &method, &window, &error) != STATUS_OK)
-    document_report(node, "accuracy.quantity", "%s", error.message);
+    document_report_error(node, "accuracy.quantity", &error);
   else if (!exponent)
     check_quantity(node, "accuracy.quantity", campaign->accuracy_quantity, campaign);
 }
@@ -204,7 +204,7 @@ static void check_points(document_node *root, struct campaign *campaign) {
     document_node *design = document_key(root, "design"), *vary = document_key(root, "vary");
     if (!design)
       design = vary ? vary : root;
-    document_report(design, "design", "%s", error.message);
+    document_report_error(design, "design", &error);
     goto cleanup;
   }
   for (int64_t i = 0; i < TRIED && campaign_walk_next(&walk); i++) {
@@ -240,7 +240,7 @@ static bool read_scene(document_node *root, const char *folder, struct campaign 
     return false; /* document_read has reported it */
   if (scene_load(campaign->scene_reference, folder, &campaign->scene, &error) == STATUS_OK)
     return true;
-  document_report(scene, "scene", "%s", error.message);
+  document_report_error(scene, "scene", &error);
   return false;
 }
 

@@ -96,7 +96,9 @@ static bool make_levels(struct reading *r, size_t count) {
   r->axis->kind = DESIGN_AXIS_LEVELS;
   r->axis->levels = calloc(count, sizeof *r->axis->levels);
   r->axis->level_count = r->axis->levels ? count : 0;
-  return r->axis->levels || wrong(r, NULL, "no memory for the values");
+  if (!r->axis->levels)
+    document_report_memory(r->node, r->path);
+  return r->axis->levels;
 }
 
 static bool read_values(struct reading *r, document_node *node) {
@@ -371,7 +373,7 @@ bool campaign_vary_read(document_node *vary, struct campaign *campaign) {
   if (readings && campaign->axes)
     good = read_axes(readings, count, vary, campaign);
   else
-    document_report(vary, "vary", "no memory");
+    document_report_memory(vary, "vary");
   free(readings);
   return good;
 }

@@ -6,6 +6,7 @@
 
 #include "campaign/document/campaign_walk.h"
 #include "engine/warnings.h"
+#include "schemas/text.h"
 
 enum { LOOKED_AT = 1000, LINE = 400 };
 
@@ -18,12 +19,12 @@ struct doubts {
 static void add(struct doubts *doubts, const struct scene *scene) {
   char *text = NULL;
   size_t size = 0;
-  FILE *out = scene->kind->warn ? open_memstream(&text, &size) : NULL;
+  FILE *out = scene->kind->warn ? text_open(&text, &size) : NULL;
   doubts->points++;
   if (!out)
     return;
   const unsigned set = scene->kind->warn(scene->inputs, out);
-  const char *line = fclose(out) == 0 ? text : "";
+  const char *line = text_close(out, &text) ? text : "";
   for (size_t k = 0; k < WARNINGS_COUNT; k++) {
     if (!(set >> k & 1))
       continue;

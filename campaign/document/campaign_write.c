@@ -46,7 +46,7 @@ static void write_axes(const struct campaign *campaign, FILE *out) {
 char *campaign_write_list(const struct campaign *campaign, const char *scene_reference, const char *comment) {
   char *text = NULL;
   size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return NULL;
   fprintf(out, "# %s\nname: ", comment);

@@ -255,7 +255,7 @@ static void read_set(struct reading *r, document_node *set, struct scene *scene)
     else if (row && campaign_axis(r->campaign, row))
       document_report(node, path, "known here and unknown in the campaign (`vary`); leave one of them out");
     else if (!row || scene_set_text(scene, key, text, &error) != STATUS_OK)
-      document_report(node, path, "%s", error.message);
+      document_report_error(node, path, &error);
   }
 }
 

@@ -101,7 +101,7 @@ static void number(FILE *out, const char *name, double value) {
 static void axis_json(const struct campaign *campaign, size_t index, FILE *out) {
   char *values = NULL;
   size_t size = 0;
-  FILE *text = open_memstream(&values, &size);
+  FILE *text = text_open(&values, &size);
   if (!text)
     return;
   design_axis_describe(campaign->axes, index, text);
@@ -111,7 +111,7 @@ static void axis_json(const struct campaign *campaign, size_t index, FILE *out) 
   fputs(", \"unit\": ", out);
   text_json_string(row->unit ? row->unit : "", out);
   fputs(", \"values\": ", out);
-  text_json_string(fclose(text) == 0 ? values : "", out);
+  text_json_string(text_close(text, &values) ? values : "", out);
   fputc('}', out);
   free(values);
 }
@@ -119,7 +119,7 @@ static void axis_json(const struct campaign *campaign, size_t index, FILE *out) 
 char *plan_print_json(const struct campaign *campaign, const struct plan *plan, int slots) {
   char *text = NULL;
   size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return NULL;
   fputs("{\"campaign\": ", out);

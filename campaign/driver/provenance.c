@@ -36,7 +36,7 @@ char *provenance_json(int ranks, int slots, int argc, char *const *argv) {
   char *text = NULL, model[256];
   size_t size = 0;
   struct utsname host;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return NULL;
   cpu_model(model, sizeof model);

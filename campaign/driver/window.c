@@ -149,6 +149,10 @@ bool driver_window_expand(struct driver *driver, status *code, struct error *err
   driver->expanded++;
   struct error why = {0};
   struct scene *scene = campaign_point_scene(driver->campaign, driver->walk.values, &why);
+  if (!scene && why.status == STATUS_MEMORY) {
+    *code = status_fail(error, STATUS_MEMORY, "%s", why.message);
+    return false;
+  }
   if (!scene) {
     skip_invalid(driver, &why);
     return true;

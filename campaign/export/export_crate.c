@@ -280,9 +280,9 @@ status export_crate(struct store *store, const char *store_path, const struct ex
   status code = take_folder(options->folder, error);
   if (code)
     return code;
-  crate.graph = open_memstream(&crate.graph_text, &crate.graph_size);
-  crate.parts = open_memstream(&crate.parts_text, &crate.parts_size);
-  crate.actions = open_memstream(&crate.actions_text, &crate.actions_size);
+  crate.graph = text_open(&crate.graph_text, &crate.graph_size);
+  crate.parts = text_open(&crate.parts_text, &crate.parts_size);
+  crate.actions = text_open(&crate.actions_text, &crate.actions_size);
   code = crate.graph && crate.parts && crate.actions ? fill(&crate, store, slash ? slash + 1 : store_path, error)
                                                      : status_fail(error, STATUS_MEMORY, "no memory for the metadata");
   FILE *const streams[] = {crate.graph, crate.parts, crate.actions};

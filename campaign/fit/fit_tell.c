@@ -44,7 +44,7 @@ static void list_ends(const struct fit *fit, size_t direction, FILE *text) {
 static void tell_open_direction(const struct fit *fit, size_t direction, FILE *out) {
   char *text = NULL;
   size_t size = 0;
-  FILE *words = open_memstream(&text, &size);
+  FILE *words = text_open(&text, &size);
   if (!words)
     return;
   size_t mixed = 0;
@@ -88,7 +88,7 @@ static void tell_determined(const struct fit *fit, FILE *out) {
 static void tell_not_studied(const struct fit *fit, FILE *out) {
   char *text = NULL, label[2 * FIELD_TEXT_SIZE];
   size_t size = 0, count = 0;
-  FILE *words = open_memstream(&text, &size);
+  FILE *words = text_open(&text, &size);
   if (!words)
     return;
   fputs("RESOLUTION: what a finer resolution would change is not known and counts as 0 for", words);

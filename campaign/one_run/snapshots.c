@@ -82,7 +82,7 @@ static void find_earlier(struct snapshots *s, double progress) {
 static status write_series(const struct snapshots *s, struct error *error) {
   char *text = NULL, path[PATH];
   size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return status_fail(error, STATUS_MEMORY, "no memory for the list of snapshots");
   const char *base = strrchr(s->name, '/');
@@ -100,10 +100,8 @@ static status write_series(const struct snapshots *s, struct error *error) {
     between = ",\n";
   }
   fputs("\n  ]\n}\n", out);
-  if (fclose(out)) {
-    free(text);
+  if (!text_close(out, &text))
     return status_fail(error, STATUS_MEMORY, "no memory for the list of snapshots");
-  }
   path_of_list(s, path);
   status code = file_write(path, "list of snapshots", text, size, error);
   free(text);

@@ -165,7 +165,7 @@ static void write_points(FILE *out, const struct names *axes, const struct names
 static char *group_sql(const struct names *axes, const struct names *quantities) {
   char *sql = NULL;
   size_t size = 0;
-  FILE *out = open_memstream(&sql, &size);
+  FILE *out = text_open(&sql, &size);
   if (!out)
     return NULL;
   fputs("SELECT ", out);

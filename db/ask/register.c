@@ -8,6 +8,7 @@
 #include "db/ask/answer.h"
 #include "db/store/internal.h"
 #include "engine/grow.h"
+#include "schemas/text.h"
 
 static void stdev_step(sqlite3_context *context, int count, sqlite3_value **values) {
   (void)count;
@@ -95,7 +96,7 @@ static void hist_sum_final(sqlite3_context *context) {
     sqlite3_result_error(context, "hist_sum() takes fragment_mass.masses: blobs of float64", -1);
     return;
   }
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out) {
     sqlite3_result_error_nomem(context);
     return;
@@ -108,8 +109,10 @@ static void hist_sum_final(sqlite3_context *context) {
     first = false;
   }
   fputc(']', out);
-  fclose(out);
-  sqlite3_result_text(context, text, -1, SQLITE_TRANSIENT);
+  if (text_close(out, &text))
+    sqlite3_result_text(context, text, -1, SQLITE_TRANSIENT);
+  else
+    sqlite3_result_error_nomem(context);
   free(text);
 }
 

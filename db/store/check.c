@@ -13,6 +13,7 @@
 #include "db/store/shapes.h"
 #include "engine/grow.h"
 #include "engine/scene.h"
+#include "schemas/text.h"
 
 static const char checking[] = "checking";
 
@@ -140,7 +141,7 @@ static status check_ranges(struct report *report, struct error *error) {
     const char *name = k % 2 ? own.name : "run";
     char *sql = NULL;
     size_t size = 0;
-    FILE *text = open_memstream(&sql, &size);
+    FILE *text = text_open(&sql, &size);
     if (!text)
       return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
     fputs("SELECT 'run ' || run_id || ', out of range:' || wrong FROM (SELECT run_id, ", text);
@@ -150,8 +151,7 @@ static status check_ranges(struct report *report, struct error *error) {
             "%d) WHERE wrong <> ''",
             k % 2 ? " JOIN \"" : "", k % 2 ? name : "", k % 2 ? "\" USING (run_id)" : "", kind->name,
             kind->results_version);
-    fclose(text);
-    if (!sql)
+    if (!text_close(text, &sql))
       return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
     if (any)
       result = no_rows(report, sql, error);

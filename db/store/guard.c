@@ -49,7 +49,7 @@ static void allow_attach(sqlite3 *db, bool allow) {
 status guard_attach(sqlite3 *db, const char *source, const char *doing, struct error *error) {
   char *uri = NULL;
   size_t size = 0;
-  FILE *out = open_memstream(&uri, &size);
+  FILE *out = text_open(&uri, &size);
   if (!out)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   fputs("file:", out);
@@ -176,19 +176,19 @@ static void read_both(struct guard *guard, const char *sql, const struct schema_
   char *text = NULL;
   size_t size = 0;
   *found = *ours = (struct schema_text){.count = 0};
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (out && table)
     schema_write_table(table, out);
   else if (out)
     schema_write_index(index, out);
-  if (out)
-    fclose(out);
-  char *end = text ? strrchr(text, ';') : NULL;
+  char *end = out && text_close(out, &text) ? strrchr(text, ';') : NULL;
   if (end)
     *end = '\0'; /* the schema keeps texts without it */
   guard->out_of_memory = guard->out_of_memory || !text || !schema_text_read(text, ours);
-  if (!guard->out_of_memory && !schema_text_read(sql, found))
+  if (!guard->out_of_memory && !schema_text_read(sql, found)) {
+    guard->out_of_memory = !found->text;
     stranger(guard, "the text of", table ? table->name : index->name, NULL);
+  }
   free(text);
 }
 
@@ -354,11 +354,11 @@ static status judge(struct guard *guard, struct error *error) {
 status guard_schema(sqlite3 *db, const char *path, int version, struct error *error) {
   char *names = NULL;
   size_t size = 0;
-  struct guard guard = {.db = db, .version = version, .out = open_memstream(&names, &size)};
+  struct guard guard = {.db = db, .version = version, .out = text_open(&names, &size)};
   if (!guard.out)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   status result = judge(&guard, error);
-  if (fclose(guard.out) != 0 || !names || guard.out_of_memory)
+  if (!text_close(guard.out, &names) || guard.out_of_memory)
     result = status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   else if (result == STATUS_OK && guard.strangers > 0)
     result = status_fail(error, STATUS_CONTENT,

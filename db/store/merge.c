@@ -140,7 +140,7 @@ static status make_tables(sqlite3 *db, struct error *error) {
       &tables, doing, error);
   char *sql = NULL; /* SQL for all tables: no table can be created while the statement runs */
   size_t size = 0;
-  FILE *out = open_memstream(&sql, &size);
+  FILE *out = text_open(&sql, &size);
   while (out && sql_next(tables, &result, doing, error))
     fprintf(out, "%s;\n", sql_text(tables, 0));
   sqlite3_finalize(tables);

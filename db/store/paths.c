@@ -50,7 +50,7 @@ char *paths_between(const char *target, const char *source) {
   for (size_t i = 0; from[i] && from[i] == to[i]; i++)
     if (from[i] == '/')
       shared = i + 1;
-  FILE *out = open_memstream(&way, &size);
+  FILE *out = text_open(&way, &size);
   if (!out)
     return NULL;
   for (const char *at = from + shared; *at; at++)

@@ -169,7 +169,7 @@ status schema_has_column(sqlite3 *db, const char *table, const char *column, boo
 static status write_doc(sqlite3 *db, const char *table, const struct column *column, struct error *error) {
   char *meaning = NULL;
   size_t size = 0;
-  FILE *out = open_memstream(&meaning, &size);
+  FILE *out = text_open(&meaning, &size);
   if (out)
     write_column_meaning(column, out);
   if (!out || !text_close(out, &meaning))
@@ -194,16 +194,15 @@ static status write_docs(sqlite3 *db, const struct schema_table *table, struct e
 static status create(sqlite3 *db, const struct schema_table *table, struct error *error) {
   char *sql = NULL;
   size_t size = 0;
-  FILE *text = open_memstream(&sql, &size);
+  FILE *text = text_open(&sql, &size);
   if (!text)
     return status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
   schema_write_table(table, text);
   for (size_t i = 0; i < schema_tables_indexes_count; i++)
     if (strcmp(schema_tables_indexes[i].table, table->name) == 0)
       schema_write_index(&schema_tables_indexes[i], text);
-  fclose(text);
-  status result = sql ? sql_execute(db, sql, "creating tables", error)
-                      : status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
+  status result = text_close(text, &sql) ? sql_execute(db, sql, "creating tables", error)
+                                         : status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
   free(sql);
   return result;
 }

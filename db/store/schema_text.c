@@ -80,7 +80,7 @@ static void write_lines(const char *at, FILE *out) {
 bool schema_text_read(const char *sql, struct schema_text *out) {
   size_t size = 0;
   *out = (struct schema_text){.count = 0};
-  FILE *stream = open_memstream(&out->text, &size);
+  FILE *stream = text_open(&out->text, &size);
   if (!stream)
     return false;
   write_lines(sql, stream);

@@ -70,7 +70,7 @@ status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id
 static char *prefix_sql(int64_t point_id, int64_t prefix) {
   char *sql = NULL, inside[64];
   size_t size = 0;
-  FILE *out = open_memstream(&sql, &size);
+  FILE *out = text_open(&sql, &size);
   if (!out)
     return NULL;
   snprintf(inside, sizeof inside, "replicate < %lld", (long long)prefix);

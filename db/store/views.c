@@ -66,7 +66,7 @@ static status write_all(sqlite3 *db, struct views_text *text, struct error *erro
   *text = (struct views_text){{NULL}};
   for (size_t i = 0; result == STATUS_OK && i < VIEWS_COUNT; i++) {
     size_t size = 0;
-    FILE *out = open_memstream(&text->of[i], &size);
+    FILE *out = text_open(&text->of[i], &size);
     if (!out)
       return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
     result = views_text_write(db, i, out, error);

@@ -39,10 +39,9 @@ static status prepare(const void *inputs, uint64_t seed, void **run, struct erro
 }
 
 static status step(void *run, uint64_t max_steps, bool *finished, struct error *error) {
-  (void)error;
-  dem_run_advance(run, max_steps);
+  const status code = dem_run_advance(run, max_steps, error);
   *finished = ((struct dem_run *)run)->state.finished;
-  return STATUS_OK;
+  return code;
 }
 
 static double time_of(const void *run) {

@@ -25,14 +25,14 @@ static struct dem_run *disc(const char *extra) {
   struct error error = {0};
   if (dem_run_create(&inputs, 3, &run, &error))
     fail_msg("%s", error.message);
-  dem_run_advance(run, BEFORE);
+  assert_int_equal(dem_run_advance(run, BEFORE, NULL), STATUS_OK);
   assert_false(run->state.finished);
   return run;
 }
 
 static void dem_ends(struct dem_run *run, int state, const char *const *words) {
   uint64_t before = dem_system_steps(run->system);
-  dem_run_advance(run, 10000);
+  assert_int_equal(dem_run_advance(run, 10000, NULL), STATUS_OK);
   assert_true(run->state.finished);
   assert_true(dem_system_steps(run->system) - before <= LATE);
   assert_int_equal(run->state.outcome_state, state);
@@ -70,7 +70,7 @@ static void a_step_beyond_stability_ends_a_run(void **state) {
     struct dem_run *run = disc(gear ? "fidelity.integrator=gear" : "fidelity.integrator=verlet");
     run->inputs.fidelity.time_step = 4 * run->stable_time_step;
     const uint64_t before = dem_system_steps(run->system);
-    dem_run_advance(run, 1000);
+    assert_int_equal(dem_run_advance(run, 1000, NULL), STATUS_OK);
     assert_true(run->state.finished && run->state.outcome_state != OUTCOME_COMPLETED);
     assert_true(dem_system_steps(run->system) - before <= 1000 && *run->state.message);
     dem_run_free(run);
@@ -168,7 +168,7 @@ static void drift_within_a_wide_bound_is_flagged(void **state) {
   size_t count;
   struct error error;
   run->state.closed_start *= 1.05;
-  dem_run_advance(run, LATE);
+  assert_int_equal(dem_run_advance(run, LATE, NULL), STATUS_OK);
   assert_int_equal(dem_report_finish(run, &outcome, &results, &fragments, &count, &error), STATUS_OK);
   assert_string_equal(outcome.warnings, "drift");
   free(fragments);
@@ -312,7 +312,7 @@ static void the_monitor_is_cheap(void **state) {
   const int steps = run_case_full() ? 3000 : 1000;
   struct dem_run *run = disc(run_case_full() ? "body.diameter=40 cm" : "stop.end_time=1 s");
   double begin = clock_cpu_s();
-  dem_run_advance(run, (uint64_t)steps);
+  assert_int_equal(dem_run_advance(run, (uint64_t)steps, NULL), STATUS_OK);
   const double all = clock_cpu_s() - begin;
   begin = clock_cpu_s();
   for (int k = 0; k < steps / LATE; k++)

@@ -264,7 +264,7 @@ static void figures_by_hand(void **state) {
     double translation = 0;
     assert_int_equal(dem_run_create(&cases[c], 3, &run, NULL), STATUS_OK);
     const struct dem_ledger first = dem_system_ledger(run->system);
-    dem_run_advance(run, UINT64_MAX);
+    assert_int_equal(dem_run_advance(run, UINT64_MAX, NULL), STATUS_OK);
     const struct dem_ledger last = dem_system_ledger(run->system);
     assert_int_equal(dem_report_finish(run, &ran.outcome, &ran.results.dem, &ran.fragments, &ran.count, NULL),
                      STATUS_OK);
@@ -348,7 +348,7 @@ static void neighbour_lists_last(void **state) {
   for (uint64_t seed = 0; seed < 12; seed++) {
     struct dem_run *run;
     assert_int_equal(dem_run_create(&inputs, seed, &run, NULL), STATUS_OK);
-    dem_run_advance(run, 300);
+    assert_int_equal(dem_run_advance(run, 300, NULL), STATUS_OK);
     assert_true(run->system->now.rebuilds < 60);
     dem_run_free(run);
   }

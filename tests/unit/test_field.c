@@ -151,6 +151,36 @@ static void distances_count_slips(void **state) {
   assert_true(text_distance(lengthy, 399, "a") == SIZE_MAX);
 }
 
+/* A stream that makes a text: right after each flush and at the end, however long. */
+static void texts_grow(void **state) {
+  (void)state;
+  enum { LINES = 3000 };
+  char *text, line[16];
+  size_t size;
+  FILE *out = text_open(&text, &size);
+  assert_non_null(out);
+  assert_int_equal(fflush(out), 0);
+  assert_true(size == 0 && *text == '\0');
+  for (int i = 0; i < LINES; i++) {
+    fprintf(out, "line %08d\n", i);
+    if (i % 1000 == 0)
+      assert_int_equal(fflush(out), 0);
+    if (i == 1000)
+      assert_int_equal(size, 14 * 1001);
+  }
+  assert_ptr_equal(text_close(out, &text), text);
+  assert_int_equal(size, 14 * LINES);
+  assert_int_equal(strlen(text), size);
+  for (int i = 0; i < LINES; i++) {
+    snprintf(line, sizeof line, "line %08d\n", i);
+    assert_memory_equal(text + 14 * (size_t)i, line, 14);
+  }
+  free(text);
+  out = text_open(&text, &size);
+  assert_string_equal(text_close(out, &text), "");
+  free(text);
+}
+
 /* How many slips a word may have, by its number of letters, and the guess that follows: `near` has as many slips as are
  * allowed, `far` one more. A name that shares no letter with the word is no guess, however short both are. */
 static void guesses_by_length(void **state) {
@@ -540,6 +570,7 @@ int main(void) {
       cmocka_unit_test(finds_by_suffix),
       cmocka_unit_test(distances_count_slips),
       cmocka_unit_test(guesses_by_length),
+      cmocka_unit_test(texts_grow),
       cmocka_unit_test(conditions_chain),
       cmocka_unit_test(parses_or_says_why),
       cmocka_unit_test(percentages_are_written_as_such),

@@ -15,7 +15,7 @@ static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
   if (dem_run_create(inputs, seed, &run, &error))
     fail_msg("%s", error.message);
   while (!run->state.finished)
-    dem_run_advance(run, 10000);
+    assert_int_equal(dem_run_advance(run, 10000, NULL), STATUS_OK);
   assert_int_equal(run->state.outcome_state, OUTCOME_COMPLETED);
   struct outcome outcome;
   struct dem_results r;

@@ -65,7 +65,7 @@ static void sides_are_held_as_described(void **state) {
                                         "loading.rate=5 1/s", "loading.ramp=0.5 ms");
     struct dem_run *run;
     assert_int_equal(dem_run_create(&inputs, 3, &run, NULL), STATUS_OK);
-    dem_run_advance(run, 1000);
+    assert_int_equal(dem_run_advance(run, 1000, NULL), STATUS_OK);
     double along = 0.0, turned = 0.0, line = 0.0;
     for (size_t k = 0; k < run->lower_count; k++) {
       const struct dem_grain g = dem_system_grain(run->system, run->lower[k]);

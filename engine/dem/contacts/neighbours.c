@@ -283,8 +283,10 @@ bool dem_neighbours_make(struct dem_system *s) {
   for (size_t b = 0; b < s->cell_buckets; b++)
     s->cell_head[b] = none;
   for (uint32_t i = 0; i < s->count; i++)
-    if (s->present[i] && !search_grain(s, i, per_size, &entries))
+    if (s->present[i] && !search_grain(s, i, per_size, &entries)) {
+      s->no_memory = true;
       return false;
+    }
   pad_near(s);
   if (s->now.steps > 0) /* at the start a shot grain still has its beams */
     see_approaches(s);

@@ -109,6 +109,11 @@ status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem
     area += run->tessellation->area[i];
   run->grain_diameter = sqrt(4 / M_PI * area / (double)run->tessellation->cell_count);
   run->stable_time_step = dem_system_stable_time_step(run->system);
+  if (isnan(run->stable_time_step)) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for the longest time step of %zu grains",
+                       run->tessellation->cell_count);
+    goto cleanup;
+  }
   run->passing_speed = dem_describe_passing_speed(inputs);
   if (inputs->fidelity.time_step > run->stable_time_step) {
     code = status_fail(
@@ -204,15 +209,19 @@ static void check_stop(struct dem_run *run) {
   }
 }
 
-void dem_run_advance(struct dem_run *run, uint64_t max_steps) {
+status dem_run_advance(struct dem_run *run, uint64_t max_steps, struct error *error) {
   double dt = run->inputs.fidelity.time_step;
   bool is_loaded = dem_inputs_loaded(&run->inputs);
   for (uint64_t k = 0; k < max_steps && !run->state.finished; k++) {
     if (is_loaded)
       dem_loading_drive(run);
-    if (!dem_system_step(run->system)) {
+    const bool stepped = dem_system_step(run->system);
+    if (!stepped && dem_system_lacks_memory(run->system))
+      return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu grains",
+                         run->tessellation->cell_count);
+    if (!stepped) {
       end_not_finite(run, "a position or velocity");
-      return;
+      return STATUS_OK;
     }
     if (is_loaded) {
       double force[2];
@@ -227,4 +236,5 @@ void dem_run_advance(struct dem_run *run, uint64_t max_steps) {
     if (dem_system_steps(run->system) % DEM_RUN_LOOKS == 0 || run->state.finished)
       dem_run_look(run);
   }
+  return STATUS_OK;
 }

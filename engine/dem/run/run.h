@@ -51,7 +51,7 @@ struct dem_run {
 status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error);
 void dem_run_free(struct dem_run *run); /* NULL is fine */
 /* Advances by at most max_steps. The result does not depend on how steps are split over calls. */
-void dem_run_advance(struct dem_run *run, uint64_t max_steps);
+status dem_run_advance(struct dem_run *run, uint64_t max_steps, struct error *error);
 /* The monitor: ends the run when its energy drifts or a grain is too fast. Called every DEM_RUN_LOOKS steps and at the
  * end; a check costs about a step. Every step checks that all values are finite. */
 enum { DEM_RUN_LOOKS = 100 };

@@ -137,7 +137,7 @@ static void body(const struct dem_inputs *in, FILE *out) {
 char *dem_describe_scene(const struct dem_inputs *in) {
   char *text = NULL;
   size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return NULL;
   protocol(in, out);

@@ -62,6 +62,7 @@ bool dem_gear_start(struct dem_system *s) {
   void *state = malloc(size);
   struct trial t;
   bool done = memory && state;
+  s->no_memory = !done;
   if (!done)
     goto cleanup;
   double *next = memory;

@@ -177,6 +177,10 @@ bool dem_system_step(struct dem_system *s) {
   return true;
 }
 
+bool dem_system_lacks_memory(const struct dem_system *s) {
+  return s->no_memory;
+}
+
 double dem_system_time(const struct dem_system *s) {
   return s->now.time;
 }

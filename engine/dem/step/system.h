@@ -39,8 +39,9 @@ void dem_system_remove(struct dem_system *system, uint32_t grain); /* the explos
 void dem_system_hold(struct dem_system *system, uint32_t grain, unsigned freedoms);
 void dem_system_drive(struct dem_system *system, uint32_t grain, double vx, double vy, double spin);
 
-/* One time step. False when a position or velocity is no longer finite. */
+/* One time step. False when a position or velocity is no longer finite, or memory ran out. */
 bool dem_system_step(struct dem_system *system);
+bool dem_system_lacks_memory(const struct dem_system *system); /* why a step failed */
 
 double dem_system_time(const struct dem_system *system);
 uint64_t dem_system_steps(const struct dem_system *system);

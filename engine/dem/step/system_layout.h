@@ -156,6 +156,7 @@ struct dem_system {
   size_t arena_doubles;
   size_t held_count, general_count; /* entries of held, of general */
   uint32_t ghost;                   /* the first of two ghosts */
+  bool no_memory;                   /* the reason why a step failed */
   bool velocities;                  /* contact forces need velocities (damping, friction, some laws) */
   double mean_diameter;             /* m */
   struct dem_columns c;

@@ -11,6 +11,7 @@
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system_layout.h"
+#include "schemas/text.h"
 
 /* Memory beside the moving system: per particle (particles as set up and as read back, and fragments at the end; the
  * peak of a whole process less the system, measured), per flaw, and of any process. */
@@ -215,7 +216,7 @@ static void plate(const struct sph_inputs *in, FILE *out) {
 char *sph_describe_scene(const struct sph_inputs *in) {
   char *text = NULL;
   size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = text_open(&text, &size);
   if (!out)
     return NULL;
   struct error error = {0};
@@ -240,9 +241,5 @@ char *sph_describe_scene(const struct sph_inputs *in) {
           : seconds < 6000 ? "minutes"
                            : "hours",
           speed);
-  if (fclose(out)) {
-    free(text);
-    return NULL;
-  }
-  return text;
+  return text_close(out, &text);
 }
