@@ -209,6 +209,10 @@ static void check_points(document_node *root, struct campaign *campaign) {
   }
   for (int64_t i = 0; i < TRIED && campaign_walk_next(&walk); i++) {
     struct scene *scene = campaign_walk_scene(&walk, &error);
+    if (!scene && error.status == STATUS_MEMORY) {
+      document_report_error(root, NULL, &error);
+      break;
+    }
     if (!scene) {
       report_point(root, i, error.message, campaign);
       break;

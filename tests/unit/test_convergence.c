@@ -28,6 +28,7 @@ static void biases(void **state) {
   NEAR(d.value, -3, 1e-12);
   NEAR(d.half_width / sqrt(2), 2.756285, 1e-6);
   assert_true(isnan(convergence_bias(1, a, b, false, 0.95).half_width));
+  assert_true(isfinite(convergence_bias(2, a, b, false, 0.95).half_width));
   /* Equal bits: the bias is zero, known exactly. */
   d = convergence_bias(4, b, b, true, 0.95);
   assert_true(d.value == 0 && d.half_width == 0);

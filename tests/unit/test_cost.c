@@ -37,6 +37,22 @@ static void time_left(void **state) {
   NEAR(cost_time_left(&left), 4, 1e-12);
 }
 
+/* Before any run: the work. Then the rate of all runs, which weighs as much as one run of the point itself. */
+static void prediction(void **state) {
+  (void)state;
+  struct cost_model model = {0};
+  struct cost_point light = {.work = 10}, heavy = {.work = 40};
+  NEAR(cost_predict(&model, &heavy), 40, 0);
+  cost_learn(&model, &light, 5);
+  cost_learn(&model, &light, NAN); /* an attempt without a time counts for nothing */
+  NEAR(cost_predict(&model, &heavy), 20, 1e-12);
+  NEAR(cost_predict(&model, &light), (5 + 5) / 2.0, 1e-12);
+  cost_learn(&model, &heavy, 50); /* 55 s for 50 units of work: 44 s by the rate, 50 s by its own run */
+  NEAR(cost_predict(&model, &heavy), (44 + 50) / 2.0, 1e-12);
+  cost_learn(&model, &heavy, 32); /* 87 s for 90 */
+  NEAR(cost_predict(&model, &heavy), (87 / 90.0 * 40 + 50 + 32) / 3, 1e-12);
+}
+
 /* The piece has reached a quarter of the hard end after 10 steps; the coarse run had made 5 steps there, and ended
  * after 20 steps at 0.6: the whole run takes 40 steps. */
 static void whole_runs(void **state) {
@@ -162,8 +178,8 @@ static void threads_share_the_time(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(time_left), cmocka_unit_test(whole_runs),
-                                     cmocka_unit_test(a_run_told_by_its_beginning), cmocka_unit_test(keys_of_a_plan),
-                                     cmocka_unit_test(threads_share_the_time)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(time_left),      cmocka_unit_test(prediction),
+                                     cmocka_unit_test(whole_runs),     cmocka_unit_test(a_run_told_by_its_beginning),
+                                     cmocka_unit_test(keys_of_a_plan), cmocka_unit_test(threads_share_the_time)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

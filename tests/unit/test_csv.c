@@ -41,6 +41,7 @@ static void cells(void **state) {
       {"\"a,b\",\"say \"\"x\"\"\"\n", "a,b|say \"x\"/"},
       {"\"two\nlines\",2\n", "two\nlines|2/"},
       {" a , b \n", "a|b/"},
+      {"\ta\t,b\t\n", "a|b/"},
       {"a,\n,b\n", "a|/|b/"}, /* empty cells */
       {"\"\",x\n", "|x/"},
       {"\"open\n1,2\n", "!a double quote is not closed"},

@@ -73,6 +73,23 @@ static void nothing_to_fit(void **state) {
     assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
 }
 
+/* The line through four filled bins of five, by hand: an empty one and one at the window's end do not count. Least
+ * squares has a window of a decade, the other methods reach up to the largest mass. */
+static void least_squares_by_hand(void **state) {
+  (void)state;
+  const struct spectrum_bin_row rows[] = {{0, 1000, 0}, {1, 500, 0}, {2, 300, 0}, {4, 20, 0}, {5, 7, 0}};
+  struct exponent fit;
+  assert_int_equal(exponent_fit_bins(EXPONENT_LEAST_SQUARES, 5, rows, (struct exponent_window){1, spectrum_edge(5)},
+                                     &fit, NULL),
+                   STATUS_OK);
+  assert_true(fit.n == 1820 && fit.lower == 1 && fit.upper == spectrum_edge(5));
+  assert_true(fabs(fit.beta - 5.260148227803589) < 1e-12);
+  assert_true(fabs(fit.standard_error - 0.638146958408374) < 1e-12); /* of n - 2 degrees of freedom */
+  const struct exponent_window decade = exponent_window_from(EXPONENT_LEAST_SQUARES, 2, 300),
+                               whole = exponent_window_from(EXPONENT_MASSES, 2, 300);
+  assert_true(decade.lower == 2 && decade.upper == 20 && whole.lower == 2 && whole.upper == 300);
+}
+
 static void equal_masses_have_no_exponent(void **state) {
   (void)state;
   double masses[50];
@@ -106,9 +123,8 @@ static void bad_windows_are_refused(void **state) {
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rows_of_a_run),
-      cmocka_unit_test(nothing_to_fit),
-      cmocka_unit_test(equal_masses_have_no_exponent),
+      cmocka_unit_test(rows_of_a_run),           cmocka_unit_test(nothing_to_fit),
+      cmocka_unit_test(least_squares_by_hand),   cmocka_unit_test(equal_masses_have_no_exponent),
       cmocka_unit_test(bad_windows_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
