@@ -128,6 +128,15 @@ static ssize_t grow_text(void *context, const char *bytes, size_t count) {
   return (ssize_t)count;
 }
 
+/* For ftell(); the stream only appends. */
+static int place_in_text(void *context, off64_t *offset, int whence) {
+  const struct growing *g = context;
+  if (*offset != 0 || whence == SEEK_SET)
+    return -1;
+  *offset = (off64_t)*g->size;
+  return 0;
+}
+
 static int end_text(void *context) {
   struct growing *g = context;
   const bool failed = g->failed;
@@ -146,7 +155,7 @@ FILE *text_open(char **text, size_t *size) {
   FILE *out = NULL;
   if (g && *text) {
     *g = (struct growing){.text = text, .size = size, .room = 1};
-    out = fopencookie(g, "w", (cookie_io_functions_t){.write = grow_text, .close = end_text});
+    out = fopencookie(g, "w", (cookie_io_functions_t){.write = grow_text, .seek = place_in_text, .close = end_text});
   }
   if (!out) {
     free(g);

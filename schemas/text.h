@@ -40,7 +40,7 @@ bool text_has_word(const char *words, const char *word);
 
 /* A stream that makes *text, which the caller frees: open_memstream() that does not cut the text where memory runs out.
  * *text and *size are right after fflush() or the end; *text is NULL after the end when memory ran out, and fclose()
- * tells so. NULL: no memory. */
+ * tells so. ftell() gives the length so far. NULL: no memory. */
 FILE *text_open(char **text, size_t *size);
 /* Closes the stream that text_open made for *text. Returns the text, which the caller frees; NULL (and *text is NULL)
  * when memory ran out. */

@@ -22,7 +22,7 @@ grep -q '^# remarks stay' ask.yaml && grep -q '^design: {file: "ask.csv"}' ask.y
 same "$(grep -c . ask.csv)" 17 "lines of the design"
 same "$(head -1 ask.csv)" "threshold.strain,threshold.angle" "inputs of the design"
 expect 64 "$clast" sensitivity sweep.yaml ask.yaml --design saltelli # loses nothing
-says "ask.yaml: File exists"
+says "ask.yaml exists already"
 expect 0 "$clast" run ask.yaml --store ask.db -j 2 --quiet
 expect 0 "$clast" sensitivity ask.db ask.yaml -q fragment_count --csv
 python - <<'PY'

@@ -167,6 +167,7 @@ static void texts_grow(void **state) {
       assert_int_equal(fflush(out), 0);
     if (i == 1000)
       assert_int_equal(size, 14 * 1001);
+    assert_int_equal(ftell(out), 14 * (i + 1));
   }
   assert_ptr_equal(text_close(out, &text), text);
   assert_int_equal(size, 14 * LINES);
