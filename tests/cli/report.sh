@@ -14,8 +14,8 @@ grep -q "default-src 'none'" small.html || fail "the page has no security policy
 ok "a small page of its own"
 
 expect 66 "$clast" report none.db
-expect 64 "$clast" report small.db -o small.db
-says "overwrite"
+expect 74 "$clast" report small.db -o small.db
+says "it is a store"
 expect 64 "$clast" report
 expect 74 "$clast" report small.db -o no/such/folder/page.html
 echo text >text.db
