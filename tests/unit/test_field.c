@@ -155,7 +155,7 @@ static void distances_count_slips(void **state) {
 static void texts_grow(void **state) {
   (void)state;
   enum { LINES = 3000 };
-  char *text, line[16];
+  char *text, line[32];
   size_t size;
   FILE *out = text_open(&text, &size);
   assert_non_null(out);
