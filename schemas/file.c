@@ -297,6 +297,19 @@ status file_begin(struct file_output *file, const char *path, const char *what, 
   return refuse(path, what, strerror(why), error);
 }
 
+/* Flushes the folder of `path` to the disk, so that names made in it outlive a power cut. Some file systems cannot flush
+ * a folder; that is no error. */
+static void keep_name(const char *path) {
+  const char *base = strrchr(path, '/');
+  char *name = base ? strndup(path, base == path ? 1 : (size_t)(base - path)) : strdup(".");
+  const int folder = name ? open(name, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+  if (folder >= 0) {
+    (void)fsync(folder);
+    close(folder);
+  }
+  free(name);
+}
+
 /* Puts the whole file in place. */
 static status put_in_place(struct file_output *file, struct error *error) {
   const bool direct = strcmp(file->temporary, file->path) == 0;
@@ -305,6 +318,8 @@ static status put_in_place(struct file_output *file, struct error *error) {
   if (good && !direct) {
     TRY(file_may_replace(file->path, file->what, error));
     good = rename(file->temporary, file->path) == 0;
+    if (good)
+      keep_name(file->path);
     for (struct known *output = outputs; good && output; output = output->next)
       output->written |= strcmp(output->path, file->path) == 0;
   }
@@ -350,7 +365,11 @@ status file_claim(const char *path, const char *what, struct error *error) {
 
 status file_folder(const char *path, struct error *error) {
   struct stat there;
-  if (mkdir(path, 0777) == 0 || (errno == EEXIST && stat(path, &there) == 0 && S_ISDIR(there.st_mode)))
+  if (mkdir(path, 0777) == 0) {
+    keep_name(path);
+    return STATUS_OK;
+  }
+  if (errno == EEXIST && stat(path, &there) == 0 && S_ISDIR(there.st_mode))
     return STATUS_OK;
   return status_fail(error, STATUS_IO, "cannot make the folder '%s': %s: name another one", path, strerror(errno));
 }

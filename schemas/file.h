@@ -1,7 +1,7 @@
 /* The files that a command reads and writes, and the one way to put an output in place.
  *
  * An output is written under another name beside it, FILE.unfinished, flushed to the disk and renamed: at any instant
- * FILE is the old file or the whole new one. A process that is killed while it writes leaves FILE.unfinished; the next
+ * FILE is the old file or the whole new one, also after a power cut; the new one if its writer had gone on. A process that is killed while it writes leaves FILE.unfinished; the next
  * write of FILE removes it. While another process writes FILE.unfinished, the name is FILE.PID-K.unfinished. A pipe, a
  * device or an open file (/dev/stdout) is written directly.
  *
@@ -52,7 +52,7 @@ status file_end(struct file_output *file, status code, struct error *error);
 /* Writes a whole file: both in one. */
 status file_write(const char *path, const char *what, const void *bytes, size_t size, struct error *error);
 
-/* Makes a folder, unless it exists. STATUS_IO. */
+/* Makes a folder, unless it exists; a new one outlives a power cut. STATUS_IO. */
 status file_folder(const char *path, struct error *error);
 
 #endif

@@ -52,7 +52,8 @@ const struct command run_command = {
         "Computes every run that the campaign needs and the store lacks, on all cores of this machine or on the ranks\n"
         "of mpirun or srun. At the end it prints the estimates of every point. Ctrl-C stops it (exit 75), and the "
         "same\n"
-        "command continues later. A kill loses at most the last second of results.",
+        "command continues later. Finished runs are written to the disk every second. A kill or a\n"
+        "power cut loses only those since the last write.",
     .examples = "clast run campaign.yaml -j 4\nclast run campaign.yaml --set contact.friction=0.3 --seeds 50 --store "
                 "other.db\nmpirun -n 3 --oversubscribe clast run campaign.yaml",
     .minimum_arguments = 1,

@@ -1,14 +1,13 @@
 /* Computes one run, and encodes tasks and results as bytes. */
 #include "campaign/driver/run.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "engine/restart.h"
 #include "engine/scene_files.h"
+#include "schemas/file.h"
 
 /* The encodings begin with these marks. All ranks of a farm run one binary, so arrays of structs are sent as they are
  * in memory. The marks, the sizes and the hashes of the tables find anything else. */
@@ -21,18 +20,16 @@ void run_result_clear(struct run_result *result) {
   *result = (struct run_result){0};
 }
 
-/* Makes the folder of the fields file if it is missing. */
+/* Makes the folder of the fields file if it is missing. Both are on the disk before the run's row. */
 static status write_snapshot(const struct engine_kind *kind, void *run, const char *path, struct error *error) {
   const char *slash = strrchr(path, '/');
   if (slash && slash != path) {
     char *folder = strndup(path, (size_t)(slash - path));
-    int failed = !folder || (mkdir(folder, 0777) != 0 && errno != EEXIST);
-    if (failed)
-      status_fail(error, STATUS_IO, "cannot make the folder '%s' for fields: %s", folder ? folder : "",
-                  strerror(errno));
+    const status code = folder ? file_folder(folder, error)
+                               : status_fail(error, STATUS_MEMORY, "no memory for the name of a folder");
     free(folder);
-    if (failed)
-      return STATUS_IO;
+    if (code != STATUS_OK)
+      return code;
   }
   return kind->write_snapshot(run, path, error);
 }

@@ -133,7 +133,7 @@ static status open_locked(struct store *store, struct error *error) {
     return result;
   store->lacks_wal = is_partial_copy(store, version);
   result = sql_execute(store->db,
-                       "PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA temp_store = MEMORY; "
+                       "PRAGMA synchronous = FULL; PRAGMA foreign_keys = OFF; PRAGMA temp_store = MEMORY; "
                        "PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
                        "opening for writing", error);
   if (result == STATUS_OK)
