@@ -297,8 +297,8 @@ status file_begin(struct file_output *file, const char *path, const char *what, 
   return refuse(path, what, strerror(why), error);
 }
 
-/* Flushes the folder of `path` to the disk, so that names made in it outlive a power cut. Some file systems cannot flush
- * a folder; that is no error. */
+/* Flushes the folder of `path` to the disk, so that names made in it outlive a power cut. Some file systems cannot
+ * flush a folder; that is no error. */
 static void keep_name(const char *path) {
   const char *base = strrchr(path, '/');
   char *name = base ? strndup(path, base == path ? 1 : (size_t)(base - path)) : strdup(".");

@@ -1,9 +1,10 @@
 /* The files that a command reads and writes, and the one way to put an output in place.
  *
  * An output is written under another name beside it, FILE.unfinished, flushed to the disk and renamed: at any instant
- * FILE is the old file or the whole new one, also after a power cut; the new one if its writer had gone on. A process that is killed while it writes leaves FILE.unfinished; the next
- * write of FILE removes it. While another process writes FILE.unfinished, the name is FILE.PID-K.unfinished. A pipe, a
- * device or an open file (/dev/stdout) is written directly.
+ * FILE is the old file or the whole new one, also after a power cut; the new one if its writer had gone on. A process
+ * that is killed while it writes leaves FILE.unfinished; the next write of FILE removes it. While another process
+ * writes FILE.unfinished, the name is FILE.PID-K.unfinished. A pipe, a device or an open file (/dev/stdout) is written
+ * directly.
  *
  * No output replaces what people cannot compute again in a moment:
  *   - an SQLite database, such as a store; nor a name that SQLite uses beside one (-journal, -wal, -shm),

@@ -86,7 +86,7 @@ static status check_fragment_counts(struct report *report, struct error *error) 
   const char *count = OUTCOME_NAME(fragment_count);
   char sql[512];
   snprintf(sql, sizeof sql,
-           "SELECT 'run ' || run_id || ': ' || length(masses) / 8.0 || ' masses, but %1$s is ' || %1$s FROM run JOIN "
+           "SELECT 'run ' || run_id || ': ' || (length(masses) / 8.0) || ' masses, but %1$s is ' || %1$s FROM run JOIN "
            "fragment_mass USING (run_id) WHERE counts AND length(masses) <> 8 * %1$s",
            count);
   return no_rows(report, sql, error);

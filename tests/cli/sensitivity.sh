@@ -23,6 +23,17 @@ same "$(grep -c . ask.csv)" 17 "lines of the design"
 same "$(head -1 ask.csv)" "threshold.strain,threshold.angle" "inputs of the design"
 expect 64 "$clast" sensitivity sweep.yaml ask.yaml --design saltelli # loses nothing
 says "ask.yaml exists already"
+
+# No file is left of a design that cannot be written, or not be read in its new place.
+mkdir taken.csv sub
+expect 64 "$clast" sensitivity sweep.yaml taken.yaml --design saltelli --blocks 4
+[ -e taken.yaml ] && fail "a document without its points"
+cp "$source/engine/dem/scene/builtin/disc-explosion.yaml" own.yaml
+sed 's/^scene: .*/scene: own.yaml/' sweep.yaml >near.yaml
+expect 65 "$clast" sensitivity near.yaml sub/ask.yaml --design saltelli --blocks 4
+says "sub/own.yaml: there is no such file"
+same "$(ls sub)" "" "files that are left"
+ok "no half design"
 expect 0 "$clast" run ask.yaml --store ask.db -j 2 --quiet
 expect 0 "$clast" sensitivity ask.db ask.yaml -q fragment_count --csv
 python - <<'PY'
@@ -64,4 +75,4 @@ expect 65 "$clast" sensitivity ask.yaml new.yaml --design morris
 says "expected the key vary"
 expect 66 "$clast" sensitivity none.db ask.yaml
 [ ! -e new.yaml ] && [ ! -e new.csv ] || fail "a file of a refused design"
-done_after 19
+done_after 23

@@ -155,7 +155,8 @@ struct play {
   int stop_after; /* number of reports after which all runs in progress are dropped; 0 = never */
   enum play_fate (*fate)(uint64_t seed, int attempt); /* NULL: every task is PLAY_RUN */
   int reports;
-  char *says; /* message of the status that ended it, malloc'd */
+  struct progress *progress; /* NULL: none */
+  char *says;                /* message of the status that ended it, malloc'd */
 };
 
 static status play_farm(struct play *play, struct driver *driver, struct error *error) {
@@ -220,7 +221,7 @@ static status play_once(struct play *play, const struct campaign *campaign, cons
   struct error error = {0};
   struct store *store = NULL;
   struct driver *driver = NULL;
-  struct driver_options options = {.store_path = path, .facts = "{}", .slots = play->slots};
+  struct driver_options options = {.store_path = path, .facts = "{}", .progress = play->progress, .slots = play->slots};
   status code = store_open_writer(path, &store, NULL, 0, &error);
   if (code == STATUS_OK)
     code = driver_open(campaign, store, &options, &driver, &error);

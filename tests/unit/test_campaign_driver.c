@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 
 #include "analysis/analysis.h"
+#include "campaign/terminal/progress.h"
 #include "tests/support/campaign_play.h"
 
 static char folder[64];
@@ -299,6 +300,72 @@ static void fields_are_kept_as_asked(void **state) {
   campaign_free(campaign);
 }
 
+static int fields_left; /* so many fields files can be written */
+static status write_few_fields(void *run, const char *path, struct error *error) {
+  return fields_left-- > 0 ? play_write_fields(run, path, error)
+                           : status_fail(error, STATUS_IO, "cannot write the fields file '%s': no space", path);
+}
+
+/* A full disk: the campaign stops and says so, what ran is stored without fields, and the next invocation makes all. */
+static void fields_that_cannot_be_written_stop_the_campaign(void **state) {
+  (void)state;
+  char path[128], kept[200];
+  snprintf(path, sizeof path, "%s", in("full.db"));
+  snprintf(kept, sizeof kept, "%s/full-fields", folder);
+  struct driver_summary summary;
+  struct campaign *campaign = play_campaign(2, 1, 8);
+  struct play play = {.slots = 3};
+  static struct engine_kind kind;
+  kind = play_kind;
+  kind.write_snapshot = write_few_fields;
+  play_engine = &kind;
+  campaign->keep = CAMPAIGN_KEEP_ALL;
+  fields_left = 4;
+  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_STOPPED);
+  assert_non_null(strstr(play.says, "no space"));
+  assert_non_null(strstr(play.says, "The results are stored, these fields are not"));
+  assert_int_equal(summary.fields_written, 4);
+  assert_true(summary.runs_done >= 5 && summary.runs_done <= 7); /* those on the three slots end */
+  const int64_t done = summary.runs_done;
+  assert_int_equal(files_in(kept), 4);
+  fields_left = 100;
+  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_reused, done);
+  assert_int_equal(summary.runs_done, 16 - done);
+  assert_int_equal(summary.fields_written, 12);
+  assert_int_equal(files_in(kept), 16);
+  play_engine = &play_kind;
+  free(play.says);
+  campaign_free(campaign);
+}
+
+/* The last line of progress: every run that the rule wanted is done. */
+static void the_total_of_a_rule_is_met(void **state) {
+  (void)state;
+  char *text = NULL;
+  size_t size = 0;
+  struct driver_summary summary;
+  struct campaign *campaign = play_campaign(3, 1, 0);
+  campaign->until_half_width = 0.003;
+  campaign->maximum = 120;
+  for (int wide = 0; wide < 2; wide++) {
+    FILE *out = open_memstream(&text, &size);
+    struct play play = {.slots = wide ? 40 : 1, .order = 3};
+    play.progress = progress_create(out, PROGRESS_PLAIN, false, 0);
+    assert_int_equal(play_once(&play, campaign, in("total.db"), &summary), STATUS_OK);
+    progress_free(play.progress);
+    fclose(out);
+    char expected[64];
+    const long long counting = summary.runs_done - summary.runs_surplus;
+    snprintf(expected, sizeof expected, "100%%  %lld of %lld runs", counting, counting);
+    if (!strstr(text, expected))
+      fail_msg("no '%s' in:\n%s", expected, text);
+    free(text);
+    free(play.says);
+  }
+  campaign_free(campaign);
+}
+
 static void equal_points_are_computed_once(void **state) {
   (void)state;
   const char *path = in("equal.db");
@@ -360,6 +427,8 @@ int main(void) {
       cmocka_unit_test(stops_when_too_many_of_the_first_fail),
       cmocka_unit_test(failed_states_are_results),
       cmocka_unit_test(fields_are_kept_as_asked),
+      cmocka_unit_test(fields_that_cannot_be_written_stop_the_campaign),
+      cmocka_unit_test(the_total_of_a_rule_is_met),
       cmocka_unit_test(equal_points_are_computed_once),
       cmocka_unit_test(broken_answers_are_refused),
   };

@@ -307,6 +307,20 @@ static void completed_needs_the_least_time(void **state) {
   free(later.fragments);
 }
 
+/* With a threshold that no beam reaches, the other term is the larger one of every break. */
+static void breaks_are_told_apart(void **state) {
+  (void)state;
+  for (int bend = 0; bend < 2; bend++) {
+    struct dem_inputs inputs = small();
+    *(bend ? &inputs.threshold.strain : &inputs.threshold.angle) = 1e3;
+    struct ran ran = run_case_run(&dem_engine, &inputs, 3);
+    assert_true(ran.results.dem.broken > 10);
+    assert_int_equal(ran.results.dem.broken_bend, bend ? ran.results.dem.broken : 0);
+    assert_int_equal(ran.results.dem.broken_stretch, bend ? 0 : ran.results.dem.broken);
+    free(ran.fragments);
+  }
+}
+
 /* How final a run is, compared with a run that ends at half of its time. */
 static void finality_is_what_broke_late(void **state) {
   (void)state;
@@ -336,6 +350,11 @@ static void grains_that_pass_are_flagged(void **state) {
     struct ran ran = run_case_run(&dem_engine, &block, 3);
     print_message("passing_share %.3g; %s\n", ran.results.dem.passing_share, ran.outcome.message);
     assert_int_equal(ran.results.dem.passing_share > 1, fast);
+    double closing, limit; /* the message has both, in 4 digits */
+    if (fast) {
+      assert_int_equal(sscanf(ran.outcome.message, "grains closed in at %lg m/s: above %lg", &closing, &limit), 2);
+      assert_true(fabs(ran.results.dem.passing_share * limit / closing - 1) < 1e-3);
+    }
     assert_int_equal(strstr(ran.outcome.message, "pass through each other") != NULL, fast);
     free(ran.fragments);
   }
@@ -437,6 +456,7 @@ int main(void) {
                                      cmocka_unit_test(completed_needs_the_least_time),
                                      cmocka_unit_test(finality_is_what_broke_late),
                                      cmocka_unit_test(grains_that_pass_are_flagged),
+                                     cmocka_unit_test(breaks_are_told_apart),
                                      cmocka_unit_test(neighbour_lists_last),
                                      cmocka_unit_test(figures_by_hand),
                                      cmocka_unit_test(short_common_sides_do_not_blow_up),

@@ -188,6 +188,64 @@ static void merge_takes_paths_of_fields(void **state) {
   OK(store_close(store, &error));
 }
 
+/* A store of one point: replicates from .. to - 1 with a few fragments, and a failed attempt of the first of them. */
+static void one_point(const char *path, int64_t from, int64_t to) {
+  struct fixture_inputs inputs;
+  struct fixture_run f;
+  int64_t point, session;
+  struct scene scene = fixture_scene(&inputs, 6, 1e30);
+  struct store *store = writer(path);
+  OK(store_begin_session(store, "{}", &session, &error));
+  OK(store_add_point(store, 0, &scene, 2, fixture_axes, &point, &error));
+  for (int64_t r = from; r < to; r++) {
+    fixture_fill(&f, &scene, point, session, r, 4);
+    if (r == from) {
+      struct store_attempt attempt = {.point_id = point,
+                                      .session_id = session,
+                                      .replicate = r,
+                                      .seed = f.run.seed,
+                                      .attempt = 1,
+                                      .reason = "crash",
+                                      .signal = 11};
+      memcpy(attempt.identity, f.run.identity, 16);
+      OK(store_add_attempt(store, &attempt, &error));
+    }
+    OK(store_add_run(store, &f.run, &error));
+  }
+  OK(store_close(store, &error));
+}
+
+/* No batch, limit or page of merge is visible in what it adds, and nothing is added twice. */
+static void merge_takes_any_number_of_runs(void **state) {
+  (void)state;
+  static const int64_t counts[] = {1, 1000, 1001, 2001};
+  char target[64], source[64], whole[64];
+  for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+    int64_t added = 0, differing = -1;
+    one_point(fixture_path(target, "many-target"), 0, 3);
+    one_point(fixture_path(source, "many-source"), 2, 2 + counts[i]);
+    one_point(fixture_path(whole, "many-whole"), 0, 2 + counts[i]);
+    struct store *store = writer(target);
+    for (int again = 0; again < 2; again++) {
+      OK(store_merge(store, source, &added, &differing, &error));
+      assert_int_equal(added, again ? 0 : counts[i] - 1); /* one run is in both */
+      assert_int_equal(differing, 0);
+      assert_near(number(store, "SELECT count(*) FROM run"), (double)(2 + counts[i]), 0);
+      assert_near(number(store, "SELECT sum(runs) FROM point_total"), (double)(2 + counts[i]), 0);
+      assert_near(number(store, "SELECT count(*) FROM attempt"), 2, 0); /* one of each store */
+      assert_near(number(store, "SELECT count(*) FROM session"), 2, 0);
+    }
+    char problem[4000] = "";
+    if (store_check(store, line, problem, &error) != STATUS_OK)
+      fail_msg("%s", problem);
+    OK(store_close(store, &error));
+    char *x = dump(target), *y = dump(whole);
+    assert_string_equal(x, y);
+    free(x);
+    free(y);
+  }
+}
+
 static void check_finds(void **state) {
   (void)state;
   static const struct {
@@ -203,16 +261,48 @@ static void check_finds(void **state) {
       {"UPDATE run SET point_id = 77 WHERE run_id = 4", "foreign key"},
       {"UPDATE fragment_mass SET masses = substr(masses, 9) WHERE run_id = 6", "run 6"},
       {"DELETE FROM bin WHERE bin = -15", "bin -15"},
+      {"UPDATE point_total SET runs = runs + 1 WHERE point_id = 2", "running sums: 1 rows"},
+      {"UPDATE point_total SET censored = censored + 1 WHERE point_id = 2", "running sums: 1 rows"},
+      {"UPDATE point_total SET failed = failed + 1 WHERE point_id = 2", "running sums: 1 rows"},
+      {"UPDATE point_total SET surplus = surplus + 1 WHERE point_id = 2", "running sums: 1 rows"},
+      {"UPDATE point_total SET fragments = fragments + 1 WHERE point_id = 2", "running sums: 1 rows"},
+      {"DELETE FROM point_total WHERE point_id = 2", "running sums: 1 rows"},
+      {"UPDATE point_spectrum SET runs = runs + 1 WHERE point_id = 2 AND bin = -15", "running sums: 1 rows"},
+      {"UPDATE point_spectrum SET count_squared = count_squared + 1 WHERE point_id = 2 AND bin = -15",
+       "running sums: 1 rows"},
+      {"UPDATE point_spectrum SET mass = mass * 1.000001 WHERE point_id = 2 AND bin = -15", "running sums: 1 rows"},
+      {"UPDATE spectrum SET mass = mass * (1 + 1e-15) WHERE run_id = 3 AND bin = -15", "run 3: its spectrum"},
+      {"DELETE FROM spectrum WHERE run_id = 3 AND bin = (SELECT max(bin) FROM spectrum WHERE run_id = 3)",
+       "run 3: its spectrum"},
+      {"UPDATE run SET fragment_count = fragment_count + 1 WHERE run_id = 2",
+       "run 2: 60.0 masses, but fragment_count is 61"},
+      {"UPDATE fragment_mass SET masses = CAST(substr(masses, 9, 8) || substr(masses, 1, 8) || substr(masses, 17) AS "
+       "BLOB) WHERE run_id = 3",
+       "run 3: its masses are not in descending order"},
+      {"UPDATE fragment_mass SET masses = CAST(substr(masses, 1, 479) AS BLOB) WHERE run_id = 3",
+       "run 3: its masses are not a list of float64"},
+      {"UPDATE run SET largest_fraction = largest_fraction * (1 + 1e-15) WHERE run_id = 7",
+       "run 7: a bit of its results"},
+      {"UPDATE result_fake SET hardest = hardest + 1 WHERE run_id = 7", "run 7: a bit of its results"},
+      {"UPDATE estimate SET beta = beta * (1 + 1e-15) WHERE run_id = 4 AND beta IS NOT NULL",
+       "run 4: a bit of its results"},
+      {"UPDATE run SET seed = seed + 1000 WHERE run_id = 7", "run 7: a bit of its results"},
+      {"UPDATE point_input SET value = 7 WHERE point_id = 2 AND path = 'material.m'", "point 2: a bit of its scene"},
+      {"DELETE FROM point_input WHERE point_id = 2", "point 2 has no inputs"},
+      {"PRAGMA ignore_check_constraints = ON; UPDATE point SET scene = '{' WHERE point_id = 2",
+       "point 2: its scene is no JSON"},
+      {"PRAGMA ignore_check_constraints = ON; UPDATE session SET facts = '{'", "session 1: its facts are no JSON"},
   };
-  char path[64], problem[4000];
+  char path[64], whole[64], command[200], problem[4000] = "";
+  struct store *store = NULL;
+  populated(whole, "check-whole", 1, 2, 5, false);
+  OK(store_open_reader(whole, &store, &error));
+  if (store_check(store, line, problem, &error) != STATUS_OK)
+    fail_msg("a whole store: %s", problem);
+  store_close(store, NULL);
   for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
-    populated(path, "check", 1, 2, 5, false);
-    struct store *store = NULL;
-    OK(store_open_reader(path, &store, &error));
-    problem[0] = 0;
-    if (store_check(store, line, problem, &error) != STATUS_OK)
-      fail_msg("a whole store: %s", problem);
-    store_close(store, NULL);
+    snprintf(command, sizeof command, "cp %s %s", whole, fixture_path(path, "check"));
+    assert_int_equal(system(command), 0);
     sqlite3 *db;
     sqlite3_open(path, &db);
     assert_int_equal(sqlite3_exec(db, faults[i].damage, NULL, NULL, NULL), SQLITE_OK);
@@ -253,6 +343,7 @@ int main(void) {
       cmocka_unit_test(merge_takes_what_is_missing),
       cmocka_unit_test(merge_takes_paths_of_fields),
       cmocka_unit_test(check_finds),
+      cmocka_unit_test(merge_takes_any_number_of_runs),
       cmocka_unit_test(export_is_whole_and_single),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
