@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/text.h"
+
 static bool is_name(const char *name) {
   for (const char *c = name; *c; c++)
     if (!islower((unsigned char)*c) && !isdigit((unsigned char)*c) && *c != '-')
@@ -79,10 +81,8 @@ const struct scene_settings *scene_settings_find(const struct scene *scene, cons
 
 static status unknown(const struct scene *scene, const char *name, struct error *error) {
   char known[512] = SCENE_SETTINGS_STANDARD;
-  for (size_t i = 0; i < scene->settings_count; i++) {
-    const size_t used = strlen(known);
-    snprintf(known + used, sizeof known - used, ", %s", scene->settings[i].name);
-  }
+  for (size_t i = 0; i < scene->settings_count; i++)
+    text_append(known, sizeof known, ", %s", scene->settings[i].name);
   return status_fail(error, STATUS_MISSING, "%s has no settings '%.64s'; it has %s (`settings` in its document)",
                      scene->name, name, known);
 }

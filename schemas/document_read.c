@@ -63,16 +63,14 @@ struct meaning {
   bool section;
 };
 
-/* `length` is snprintf's return value: a truncated path has no meaning. */
-static struct meaning meaning_of(const struct field_table *table, const char *path, int length) {
+static struct meaning meaning_of(const struct field_table *table, const char *path) {
   struct meaning found = {0};
-  if (length <= 0 || length >= PATH_SIZE - 2)
-    return found;
+  const size_t length = strlen(path);
   for (size_t k = 0; k < table->count && !found.row; k++) {
     const char *known = table->rows[k].path;
     if (strcmp(known, path) == 0)
       found.row = &table->rows[k];
-    else if (strncmp(known, path, (size_t)length) == 0 && known[length] == '.')
+    else if (strncmp(known, path, length) == 0 && known[length] == '.')
       found.section = true;
   }
   return found;
@@ -95,15 +93,14 @@ static void walk(struct reading *r, document_node *mapping, const char *prefix) 
       continue;
     mapping->pairs[i].seen = true;
 
-    char path[PATH_SIZE];
-    const int length = snprintf(path, sizeof path - 1, "%s%s", prefix, key->text);
+    char path[PATH_SIZE] = "";
+    const bool whole = text_append(path, sizeof path - 2, "%s%s", prefix, key->text); /* room for a point */
     const bool dotted = strchr(key->text, '.') != NULL; /* "a.b: 1" instead of a section a */
-    const struct meaning meaning = dotted ? (struct meaning){0} : meaning_of(r->table, path, length);
+    const struct meaning meaning = dotted || !whole ? (struct meaning){0} : meaning_of(r->table, path);
     if (meaning.row) {
       read_row(r, meaning.row, key, node);
     } else if (meaning.section && node->kind == DOCUMENT_MAPPING) {
-      path[length] = '.';
-      path[length + 1] = 0;
+      text_append(path, sizeof path, ".");
       walk(r, node, path);
     } else if (meaning.section) {
       document_report(node, document_value_path(node, path, sizeof path), "expected keys and values below it, got %s",

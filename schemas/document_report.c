@@ -16,9 +16,10 @@ static void add(struct document *document, size_t start, size_t end, bool put, c
     document->owner->foreign_errors++;
   if (order >= DOCUMENT_MOST_ERRORS)
     return;
-  char message[1024];
-  int used = path && *path ? snprintf(message, sizeof message, "%.200s: ", path) : 0;
-  vsnprintf(message + used, sizeof message - (size_t)used, format, arguments);
+  char message[1024] = "", told[1024];
+  vsnprintf(told, sizeof told, format, arguments);
+  text_append(message, sizeof message, path && *path ? "%.200s: " : "", path);
+  text_append(message, sizeof message, "%s", told);
   /* A quotation that was cut inside a character, or a control character from an escape, must not reach a terminal. */
   for (size_t bad; (bad = document_guard_text(message, strlen(message))) < strlen(message);)
     message[bad] = '?';

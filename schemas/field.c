@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/text.h"
+
 enum { QUOTE = 60 };
 
 bool field_is_off(double value) {
@@ -181,9 +183,9 @@ const struct field *field_controller(const struct field_table *table, const stru
 static bool value_is(const struct field *row, const void *object, const char *text, size_t length) {
   struct field_value value;
   field_get(row, object, &value);
-  char shown[FIELD_TEXT_SIZE] = "";
+  char shown[FIELD_TEXT_SIZE];
   if (row->kind == FIELD_BOOLEAN)
-    strcpy(shown, value.number != 0 ? "true" : "false");
+    snprintf(shown, sizeof shown, "%s", value.number != 0 ? "true" : "false");
   else if (row->kind == FIELD_INTEGER)
     snprintf(shown, sizeof shown, "%" PRId64, value.integer);
   else if (row->kind == FIELD_REAL)

@@ -1,5 +1,6 @@
 /* Names and units of quantities for the axes of charts. */
 #include "schemas/field.h"
+#include "schemas/text.h"
 
 #include <string.h>
 
@@ -26,17 +27,17 @@ void field_label(const struct field *row, char *label, size_t size) {
 void field_label_unit(const char *unit, char *text, size_t size) {
   static const char *const raised[] = {"\xe2\x81\xb0", "\xc2\xb9",     "\xc2\xb2",     "\xc2\xb3",     "\xe2\x81\xb4",
                                        "\xe2\x81\xb5", "\xe2\x81\xb6", "\xe2\x81\xb7", "\xe2\x81\xb8", "\xe2\x81\xb9"};
-  size_t used = 0;
   text[0] = '\0';
   if (!unit || strcmp(unit, "1") == 0)
     return;
-  for (; *unit && used + 4 < size; unit++) {
-    if (unit[0] == '^' && unit[1] >= '0' && unit[1] <= '9') {
-      used += (size_t)snprintf(text + used, size - used, "%s", raised[unit[1] - '0']);
-      unit++;
+  while (*unit) {
+    const size_t plain = strcspn(unit, "^");
+    if (plain == 0 && unit[1] >= '0' && unit[1] <= '9') {
+      text_append(text, size, "%s", raised[unit[1] - '0']);
+      unit += 2;
     } else {
-      text[used++] = *unit;
-      text[used] = '\0';
+      text_append(text, size, "%.*s", plain ? (int)plain : 1, unit);
+      unit += plain ? plain : 1;
     }
   }
 }

@@ -5,23 +5,21 @@
 #include <string.h>
 
 #include "schemas/field.h"
+#include "schemas/text.h"
+
+enum { NUMBER = 32 }; /* bytes of a number as text; the longest has 25 */
 
 /* 0.00012 */
-static void print_small(char *to, const char *mantissa, size_t count, long exponent) {
-  to += sprintf(to, "0.%.*s", (int)(-exponent - 1), "00000");
-  memcpy(to, mantissa, count);
-  to[count] = 0;
+static void print_small(char text[NUMBER], const char *mantissa, long exponent) {
+  text_append(text, NUMBER, "0.%.*s%s", (int)(-exponent - 1), "00000", mantissa);
 }
 
 /* 5000, 12.5 */
-static void print_plain(char *to, const char *mantissa, size_t count, long exponent) {
-  const size_t whole = (size_t)exponent + 1;
-  for (size_t k = 0; k < count || k < whole; k++) {
-    if (k == whole)
-      *to++ = '.';
-    *to++ = k < count ? mantissa[k] : '0';
-  }
-  *to = 0;
+static void print_plain(char text[NUMBER], const char *mantissa, size_t count, long exponent) {
+  const int whole = (int)exponent + 1, missing = whole > (int)count ? whole - (int)count : 0;
+  text_append(text, NUMBER, "%.*s%.*s", whole, mantissa, missing, "000000000");
+  if ((int)count > whole)
+    text_append(text, NUMBER, ".%s", mantissa + whole);
 }
 
 /* The fewest digits that read back as the same double. */
@@ -54,45 +52,41 @@ static bool is_plain(const struct digits *d) {
 }
 
 /* Prints the number times 10^ten: its own shortest digits, with the decimal point moved. */
-static void print_shifted(double number, long ten, char text[32]) {
-  if (isnan(number)) {
-    strcpy(text, "off");
+static void print_shifted(double number, long ten, char text[NUMBER]) {
+  text[0] = '\0';
+  text_append(text, NUMBER, "%s", isnan(number) ? "off" : signbit(number) ? "-" : "");
+  if (isinf(number))
+    text_append(text, NUMBER, "inf");
+  if (!isfinite(number))
     return;
-  }
-  if (signbit(number))
-    *text++ = '-';
-  if (isinf(number)) {
-    strcpy(text, "inf");
-    return;
-  }
 
   struct digits d = shortest_digits(number);
   if (number != 0)
     d.exponent += ten;
   if (d.exponent >= -5 && d.exponent < 0)
-    print_small(text, d.mantissa, d.count, d.exponent);
+    print_small(text, d.mantissa, d.exponent);
   else if (is_plain(&d))
     print_plain(text, d.mantissa, d.count, d.exponent);
   else if (d.count == 1)
-    sprintf(text, "%ce%ld", d.mantissa[0], d.exponent);
+    text_append(text, NUMBER, "%ce%ld", d.mantissa[0], d.exponent);
   else
-    sprintf(text, "%c.%.*se%ld", d.mantissa[0], (int)d.count - 1, d.mantissa + 1, d.exponent);
+    text_append(text, NUMBER, "%c.%se%ld", d.mantissa[0], d.mantissa + 1, d.exponent);
 }
 
-void field_print_number(double number, char text[32]) {
+void field_print_number(double number, char text[NUMBER]) {
   print_shifted(number, 0, text);
 }
 
-static int print_real(const struct field *row, double number, char *buffer, size_t size) {
-  char text[32];
+static void print_real(const struct field *row, double number, char *buffer, size_t size) {
+  char text[NUMBER];
   print_shifted(number, row->flags & FIELD_PERCENT ? 2 : 0, text); /* decimal shifts are also exact in unit_read */
   const char *unit = isnan(number) ? "" : field_shown_unit(row);
-  return snprintf(buffer, size, "%s%s%s", text, *unit ? " " : "", unit);
+  snprintf(buffer, size, "%s%s%s", text, *unit ? " " : "", unit);
 }
 
-static int print_integer(const struct field *row, int64_t integer, char *buffer, size_t size) {
+static void print_integer(const struct field *row, int64_t integer, char *buffer, size_t size) {
   const char *unit = field_shown_unit(row);
-  return snprintf(buffer, size, "%" PRId64 "%s%s", integer, *unit ? " " : "", unit);
+  snprintf(buffer, size, "%" PRId64 "%s%s", integer, *unit ? " " : "", unit);
 }
 
 static const char *choice_name(const struct field *row, const struct field_value *value) {
@@ -102,13 +96,12 @@ static const char *choice_name(const struct field *row, const struct field_value
   return index < field_choice_count(row) ? row->choices[index] : "?";
 }
 
-int field_print(const struct field *row, const struct field_value *value, char *buffer, size_t size) {
+void field_print(const struct field *row, const struct field_value *value, char *buffer, size_t size) {
   switch (row->kind) {
-  case FIELD_REAL: return print_real(row, value->number, buffer, size);
-  case FIELD_INTEGER: return print_integer(row, value->integer, buffer, size);
-  case FIELD_BOOLEAN: return snprintf(buffer, size, "%s", value->number != 0 ? "true" : "false");
-  case FIELD_CHOICE: return snprintf(buffer, size, "%s", choice_name(row, value));
-  case FIELD_TEXT: return snprintf(buffer, size, "%s", value->text);
+  case FIELD_REAL: print_real(row, value->number, buffer, size); return;
+  case FIELD_INTEGER: print_integer(row, value->integer, buffer, size); return;
+  case FIELD_BOOLEAN: snprintf(buffer, size, "%s", value->number != 0 ? "true" : "false"); return;
+  case FIELD_CHOICE: snprintf(buffer, size, "%s", choice_name(row, value)); return;
+  case FIELD_TEXT: snprintf(buffer, size, "%s", value->text); return;
   }
-  return 0;
 }

@@ -1,6 +1,5 @@
 /* Builds tables: each nest becomes the rows of its table. */
 #include <assert.h>
-#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,7 +22,7 @@ struct builder {
   struct field *rows;
   const char **choices;
   char *text;
-  size_t row_count, choice_count, text_size;
+  size_t row_count, choice_count, text_size, text_room; /* text_room: bytes at `text` */
 };
 
 static const char *put(struct builder *b, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -31,8 +30,10 @@ static const char *put(struct builder *b, const char *format, ...) {
   char *to = b->text ? b->text + b->text_size : NULL;
   va_list arguments;
   va_start(arguments, format);
-  const int length = vsnprintf(to, to ? (size_t)INT_MAX : 0, format, arguments);
+  const size_t room = b->text_room - b->text_size;
+  const int length = vsnprintf(to, to ? room : 0, format, arguments);
   va_end(arguments);
+  assert(!to || (size_t)length < room); /* counted before */
   b->text_size += (size_t)length + 1;
   return to;
 }
@@ -182,7 +183,7 @@ status field_table_build(const struct field_table *source, struct field_table *o
   char *memory = malloc(rows + choices + count.text_size);
   if (!memory)
     return status_fail(error, STATUS_MEMORY, "no memory for the rows of the %s", source->name);
-  struct builder b = {(void *)memory, (void *)(memory + rows), memory + rows + choices, 0, 0, 0};
+  struct builder b = {(void *)memory, (void *)(memory + rows), memory + rows + choices, 0, 0, 0, count.text_size};
   (void)add_all(&b, source, out, NULL); /* the count has found all errors */
   out->rows = b.rows;
   out->count = b.row_count;

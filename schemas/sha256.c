@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "schemas/text.h"
+
 /* FIPS 180-4, section 4.2.2: the first 32 bits of the fractional parts of the cube roots of the first 64 primes. */
 static const uint32_t constants[64] = {
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
@@ -60,6 +62,7 @@ void sha256_text(const void *bytes, size_t size, char text[65]) {
     end[64 * blocks - 1 - i] = (uint8_t)((uint64_t)size * 8 >> 8 * i);
   for (size_t i = 0; i < blocks; i++)
     compress(h, end + 64 * i);
+  text[0] = '\0';
   for (size_t i = 0; i < 8; i++)
-    snprintf(text + 8 * i, 9, "%08x", h[i]);
+    text_append(text, 65, "%08x", h[i]);
 }

@@ -1,6 +1,7 @@
 /* Small tools for text: UTF-8, JSON strings, paragraphs, a hash, guesses of names. */
 #include "schemas/text.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -204,12 +205,42 @@ bool text_is_one_of(const char *text, const char *const *words) {
   return false;
 }
 
-void text_append(char *text, size_t size, const char *format, ...) {
-  const size_t used = strlen(text);
+/* Removes a character of UTF-8 at the end of the text whose last bytes are missing. */
+static void drop_cut_character(char *text, size_t length) {
+  size_t from = length;
+  while (from > 0 && length - from < UTF8_LONGEST && ((unsigned char)text[from - 1] & 0xC0) == 0x80)
+    from--;
+  if (from > 0 && utf8_claimed_length((unsigned char)text[from - 1]) > length - from + 1)
+    text[from - 1] = '\0';
+}
+
+bool text_append(char *text, size_t size, const char *format, ...) {
+  const size_t used = strlen(text), room = size - used;
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(text + used, size - used, format, arguments);
+  const int length = vsnprintf(text + used, room, format, arguments);
   va_end(arguments);
+  if (length >= 0 && (size_t)length < room)
+    return true;
+  drop_cut_character(text, strlen(text));
+  return false;
+}
+
+void text_append_fixed(char *text, size_t size, double number, int decimals) {
+  if (fabs(number) > 1e6)
+    text_append(text, size, "%.5g", number);
+  else
+    text_append(text, size, "%.*f", decimals, number);
+}
+
+void text_hex(const void *bytes, size_t size, char *text) {
+  static const char digits[] = "0123456789abcdef";
+  const unsigned char *at = bytes;
+  for (size_t k = 0; k < size; k++) {
+    *text++ = digits[at[k] >> 4];
+    *text++ = digits[at[k] & 15];
+  }
+  *text = '\0';
 }
 
 void text_sentence(const char *doc, char *text, size_t size) {

@@ -29,8 +29,17 @@ void text_make_plain(char *text, const char *kept);
 /* Is `text` one of the words of a NULL-terminated list? An absent list has no words. */
 bool text_is_one_of(const char *text, const char *const *words);
 
-/* Appends to `text`, an array of `size` bytes; text that does not fit is cut. */
-void text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Appends to the text in `text`, an array of `size` bytes. Text that does not fit is cut behind a whole character.
+ * Returns whether all of it fitted. Every text that is made of parts is made with it: an offset computed from what
+ * snprintf returns is beyond the array once a text was cut. */
+bool text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* Appends a number with so many decimals, or with five digits and an exponent ("1e+308") from a million on, where
+ * people do not count digits. */
+void text_append_fixed(char *text, size_t size, double number, int decimals);
+
+/* Writes 2 * `size` hexadecimal digits and a NUL. */
+void text_hex(const void *bytes, size_t size, char *text);
 
 /* The first sentence of `doc` without its full stop. */
 void text_sentence(const char *doc, char *text, size_t size);

@@ -89,7 +89,7 @@ static size_t half_edits(const char *name, size_t length, const char *known) {
 bool unit_names_near(const char *name, size_t length, char out[UNIT_NAMES_LENGTH]) {
   for (size_t i = 0; i < sizeof habits / sizeof habits[0]; i++)
     if (same_but_case(name, length, habits[i][0])) {
-      strcpy(out, habits[i][1]);
+      snprintf(out, UNIT_NAMES_LENGTH, "%s", habits[i][1]);
       return true;
     }
 
@@ -104,7 +104,7 @@ bool unit_names_near(const char *name, size_t length, char out[UNIT_NAMES_LENGTH
       if (distance >= best)
         continue;
       best = distance;
-      strcpy(out, candidate);
+      memcpy(out, candidate, sizeof candidate);
       found = true;
     }
   return found;

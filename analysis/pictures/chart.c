@@ -120,7 +120,7 @@ static size_t fold(const char *text, size_t most, char *folded, size_t size) {
       wide += (text[i] & 0xC0) != 0x80;
     if (column > 0 && column + 1 + wide > most) {
       if (lines == LINES) {
-        used += (size_t)snprintf(folded + used, size - used, " ...");
+        text_append(folded, size, " ...");
         break;
       }
       folded[used++] = '\n';

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "analysis/pictures/snapshot_read.h"
+#include "schemas/text.h"
 
 #define COLUMN "VTKHDF/PointData/"
 
@@ -104,7 +105,7 @@ static status refuse_column(struct snapshot_read *file, const char *path, const 
   for (size_t k = 0; k < sizeof offered / sizeof *offered; k++) {
     snprintf(at, sizeof at, COLUMN "%s", offered[k]);
     if (snapshot_read_has(file, at))
-      snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", *known ? ", " : "", offered[k]);
+      text_append(known, sizeof known, "%s%s", *known ? ", " : "", offered[k]);
   }
   return status_fail(error, STATUS_CONTENT, "%s has no '%s' for each particle; it has %s", path, name, known);
 }

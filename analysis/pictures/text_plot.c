@@ -91,7 +91,8 @@ static void heading(FILE *out, const struct scale *scale, const char *mass_unit,
   int free_from = 0;
   for (int decade = (int)ceil(scale->low); decade <= scale->high; decade++) {
     char text[16];
-    int length = snprintf(text, sizeof text, "1e%d", decade), at = place(scale, decade);
+    snprintf(text, sizeof text, "1e%d", decade);
+    const int length = (int)strlen(text), at = place(scale, decade);
     if (at < free_from || at + length > scale->columns + 2)
       continue;
     memcpy(line + at, text, (size_t)length);

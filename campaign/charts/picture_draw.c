@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/text.h"
 #include "schemas/unit.h"
 
 enum { WIDTH = 900 };
@@ -72,17 +73,17 @@ static status choose_look(const struct picture_choice *options, struct picture_l
 }
 
 static void name_look(const struct picture_look *look, const struct picture_cloud *cloud, char *text, size_t size) {
-  size_t used = 0;
-  text[0] = 0;
+  text[0] = '\0';
   if (*cloud->engine)
-    used = (size_t)snprintf(text, size, "%s, seed %lld", cloud->engine, cloud->seed);
-  if (used < size && isfinite(cloud->time))
-    used += (size_t)snprintf(text + used, size - used, ", %.4g \xc2\xb5s", 1e6 * cloud->time);
-  if (used < size && look->view == PICTURE_CUT)
-    snprintf(text + used, size - used, isfinite(look->plane) ? ", cut at %c = %.4g m" : ", cut through the middle",
-             'x' + look->axis, look->plane);
-  else if (used < size && look->view == PICTURE_APART)
-    snprintf(text + used, size - used, ", fragments drawn apart");
+    text_append(text, size, "%s, seed %lld", cloud->engine, cloud->seed);
+  if (isfinite(cloud->time))
+    text_append(text, size, ", %.4g \xc2\xb5s", 1e6 * cloud->time);
+  if (look->view == PICTURE_CUT && isfinite(look->plane))
+    text_append(text, size, ", cut at %c = %.4g m", 'x' + look->axis, look->plane);
+  else if (look->view == PICTURE_CUT)
+    text_append(text, size, ", cut through the middle");
+  else if (look->view == PICTURE_APART)
+    text_append(text, size, ", fragments drawn apart");
 }
 
 /* Reads the quantity for the colours: --what, else damage, or pressure for bodies without damage. NULL: fragments. */

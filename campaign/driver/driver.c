@@ -8,6 +8,7 @@
 
 #include "campaign/driver/pooling.h"
 #include "schemas/clock.h"
+#include "schemas/text.h"
 
 void driver_note(struct driver *driver, const char *text) {
   if (driver->options.note)
@@ -117,8 +118,7 @@ void driver_fields_path(const struct driver *driver, const uint8_t identity[16],
   const char *dot = strrchr(base, '.');
   const int stem = dot && dot != base ? (int)(dot - base) : (int)strlen(base);
   char hex[33];
-  for (int i = 0; i < 16; i++)
-    snprintf(hex + 2 * i, 3, "%02x", identity[i]);
+  text_hex(identity, 16, hex);
   snprintf(path, size, "%.*s%.*s-fields/%s.h5", folder ? (int)(base - store) : 0, store, stem, base, hex);
 }
 

@@ -45,10 +45,9 @@ static void find_segments(DIR *folder, struct leftovers *found) {
   if (gethostname(host, sizeof host - 1) != 0)
     return;
   for (const struct dirent *entry; found->count < MOST && (entry = readdir(folder));) {
-    if (strlen(entry->d_name) >= NAME || !is_segment_of(entry->d_name, host) ||
-        !is_old_and_own(dirfd(folder), entry->d_name))
-      continue;
-    strcpy(found->names[found->count++], entry->d_name);
+    if (strlen(entry->d_name) < NAME && is_segment_of(entry->d_name, host) &&
+        is_old_and_own(dirfd(folder), entry->d_name))
+      snprintf(found->names[found->count++], NAME, "%s", entry->d_name);
   }
 }
 

@@ -89,8 +89,8 @@ static bool run_here(const struct farm_slot_setup *setup, int slot, uint64_t han
     head.exit_code = STATUS_MEMORY;
     head.size = 0;
     char text[128];
-    const int n = snprintf(text, sizeof text, "no memory to pass on a result of %zu bytes", result_size);
-    part[1] = (struct iovec){text, (size_t)n};
+    snprintf(text, sizeof text, "no memory to pass on a result of %zu bytes", result_size);
+    part[1] = (struct iovec){text, strlen(text)};
     written = farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2, part);
   }
   free(result);

@@ -8,6 +8,7 @@
 
 #include "campaign/driver/provenance.h"
 #include "engine/cpu_class.h"
+#include "schemas/text.h"
 
 status replay_compute(const struct ask_run *from, int64_t run_id, const char *fields, struct scene **scene,
                       struct run_result *result, struct error *error) {

@@ -9,6 +9,7 @@
 #include "db/ask/columns.h"
 #include "db/ask/point.h"
 #include "db/ask/points.h"
+#include "schemas/text.h"
 
 struct printing {
   struct store *store;
@@ -155,15 +156,17 @@ static void columns_for_people(struct printing *printing) {
 
 /* "2.01 \u00b1 0.13" without the blanks; the value alone when it has no interval; "-" for none. */
 static void with_interval(struct table *table, double value, double half_width, int decimals) {
-  char text[80];
-  if (isnan(value))
+  char text[80] = "";
+  if (isnan(value)) {
     table_missing(table);
-  else {
-    const int used = snprintf(text, sizeof text, "%.*f", decimals, value);
-    if (!isnan(half_width))
-      snprintf(text + used, sizeof text - (size_t)used, "\xc2\xb1%.*f", decimals, half_width);
-    table_text(table, text);
+    return;
   }
+  text_append_fixed(text, sizeof text, value, decimals);
+  if (!isnan(half_width)) {
+    text_append(text, sizeof text, "\xc2\xb1");
+    text_append_fixed(text, sizeof text, half_width, decimals);
+  }
+  table_text(table, text);
 }
 
 static void resolution_cell(struct table *table, enum ask_resolution_verdict verdict, double half_width) {
@@ -182,13 +185,13 @@ static status row_for_people(struct printing *printing, const struct ask_points_
     for (size_t i = 0; i < printing->shown + 4; i++)
       table_text(table, "");
   } else {
-    char runs[64];
+    char runs[64] = "";
     table_integer(table, row->point_id);
     for (size_t i = 0; i < printing->shown; i++)
       axis_cell(table, &printing->axis[i], &row->inputs[i]);
-    const int used = snprintf(runs, sizeof runs, "%lld", (long long)row->n);
+    text_append(runs, sizeof runs, "%lld", (long long)row->n);
     if (row->failed)
-      snprintf(runs + used, sizeof runs - (size_t)used, "/%lld", (long long)(row->n + row->failed));
+      text_append(runs, sizeof runs, "/%lld", (long long)(row->n + row->failed));
     table_text(table, runs);
     with_interval(table, row->mean, row->half_width, 3);
     resolution_cell(table, row->resolution_verdict, row->resolution);

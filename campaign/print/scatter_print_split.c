@@ -6,6 +6,7 @@
 #include "campaign/print/run_cells.h"
 #include "campaign/print/scatter_print.h"
 #include "db/ask/columns.h"
+#include "schemas/text.h"
 
 /* Numbers the values of each axis in the order of their first points. */
 static void number_levels(const struct run_cells *cells, uint32_t *level) {
@@ -72,8 +73,8 @@ status scatter_print_split(struct store *store, const struct scatter_choice *cho
   size_t axes = 0, runs = 0;
   struct ask_pool_choice pool = choice->pool;
   status code = ask_columns_axes(store, false, ASK_POOL_AXES, axis, &axes, error);
-  for (size_t a = 0, used = 0; a < axes; a++)
-    used += (size_t)snprintf(by + used, sizeof by - used, "%s%.127s", a ? "," : "", axis[a].name);
+  for (size_t a = 0; a < axes; a++)
+    text_append(by, sizeof by, "%s%s", a ? "," : "", axis[a].name);
   if (!pool.by)
     pool.by = by;
   if (code == STATUS_OK)

@@ -8,6 +8,7 @@
 #include "analysis/statistics/sensitivity.h"
 #include "campaign/document/sensitivity_design.h"
 #include "campaign/print/run_cells.h"
+#include "schemas/text.h"
 
 struct reading {
   const struct campaign *campaign;
@@ -104,8 +105,8 @@ static status read_runs(struct store *store, const char *quantity, struct readin
   char by[ASK_POOL_AXES * ASK_GROUP_NAME] = "";
   if (n > ASK_POOL_AXES)
     return status_fail(error, STATUS_USAGE, "at most %d inputs, not %zu", ASK_POOL_AXES, n);
-  for (size_t a = 0, used = 0; a < n && used < sizeof by; a++)
-    used += (size_t)snprintf(by + used, sizeof by - used, "%s%s", a ? "," : "", campaign->axes[a].row->path);
+  for (size_t a = 0; a < n; a++)
+    text_append(by, sizeof by, "%s%s", a ? "," : "", campaign->axes[a].row->path);
   const struct ask_pool_choice choice = {.by = by};
   TRY(run_cells_read(store, &choice, quantity, &r->cells, error));
   r->place = calloc(r->blocks * r->points + 1, sizeof *r->place);

@@ -10,6 +10,7 @@
 #include "db/ask/resolution.h"
 #include "engine/engine.h"
 #include "engine/outcome.h"
+#include "schemas/text.h"
 
 enum { WIDTH = 900 };
 
@@ -52,21 +53,19 @@ status chart_option_axis(struct store *store, const char *column, char label[CHA
   status code = ask_columns_written(store, column, &written, error);
   chart_option_label(column, label);
   field_label_unit(written.unit, shown, sizeof shown);
-  const size_t used = strlen(label);
   if (*shown)
-    snprintf(label + used, CHART_OPTION_LABEL - used, " (%s)", shown);
+    text_append(label, CHART_OPTION_LABEL, " (%s)", shown);
   return code;
 }
 
 void chart_option_labels(const char *paths, char *labels, size_t size) {
-  size_t used = 0;
   labels[0] = '\0';
-  while (*paths && used < size) {
+  while (*paths) {
     char path[256], label[CHART_OPTION_LABEL];
     const size_t length = strcspn(paths, ",");
     snprintf(path, sizeof path, "%.*s", (int)length, paths);
     chart_option_label(path, label);
-    used += (size_t)snprintf(labels + used, size - used, "%s%s", used ? ", " : "", label);
+    text_append(labels, size, "%s%s", *labels ? ", " : "", label);
     paths += length;
     paths += strspn(paths, ", ");
   }

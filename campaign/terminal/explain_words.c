@@ -124,9 +124,9 @@ const char *explain_words_result(const char *name, char plain[256], const char *
   *said = NULL;
   for (size_t i = 0; i < engine_count(); i++) {
     char prefix[64];
-    const int length = snprintf(prefix, sizeof prefix, "result_%s_", engine_at(i)->name);
-    if (strncmp(name, prefix, (size_t)length) == 0) {
-      name += length;
+    snprintf(prefix, sizeof prefix, "result_%s_", engine_at(i)->name);
+    if (strncmp(name, prefix, strlen(prefix)) == 0) {
+      name += strlen(prefix);
       break;
     }
   }

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "campaign/terminal/uncertainty.h"
+#include "schemas/text.h"
 
 struct progress {
   FILE *out;
@@ -39,19 +40,20 @@ static int width(const struct progress *progress) {
   return 80;
 }
 
-int progress_duration(double seconds, char *buffer, size_t size) {
+void progress_duration(double seconds, char *buffer, size_t size) {
+  const long long whole = seconds >= 0 ? llround(fmin(seconds, 1e15)) : 0;
   if (!(seconds >= 0) || isinf(seconds))
-    return snprintf(buffer, size, "?");
-  if (seconds < 9.95)
-    return snprintf(buffer, size, "%.1f s", seconds);
-  long long whole = llround(fmin(seconds, 1e15));
-  if (whole < 60)
-    return snprintf(buffer, size, "%lld s", whole);
-  if (whole < 3600)
-    return snprintf(buffer, size, "%lld min %02lld s", whole / 60, whole % 60);
-  if (whole < 48 * 3600)
-    return snprintf(buffer, size, "%lld h %02lld min", whole / 3600, whole / 60 % 60);
-  return snprintf(buffer, size, "%lld d %02lld h", whole / 86400, whole / 3600 % 24);
+    snprintf(buffer, size, "?");
+  else if (seconds < 9.95)
+    snprintf(buffer, size, "%.1f s", seconds);
+  else if (whole < 60)
+    snprintf(buffer, size, "%lld s", whole);
+  else if (whole < 3600)
+    snprintf(buffer, size, "%lld min %02lld s", whole / 60, whole % 60);
+  else if (whole < 48 * 3600)
+    snprintf(buffer, size, "%lld h %02lld min", whole / 3600, whole / 60 % 60);
+  else
+    snprintf(buffer, size, "%lld d %02lld h", whole / 86400, whole / 3600 % 24);
 }
 
 /* The facts, without bar: "120 of 400 runs, 2 failed, 4 running, 3.1 runs/s, 1 min 30 s left, largest_fraction 0.312 +-
@@ -100,7 +102,7 @@ static void draw_bar(struct progress *progress, const struct progress_state *sta
   char text[512], bar[BAR * 3 + 1] = "";
   int full = (int)floor(share_of(state) * BAR);
   for (int i = 0; i < BAR; i++)
-    strcat(bar, i < full ? "━" : "╌");
+    text_append(bar, sizeof bar, "%s", i < full ? "━" : "╌");
   facts(state, text, sizeof text);
   int room = width(progress) - 1 - BAR - 6; /* the last column stays free: some terminals wrap there */
   cut(text, room > 0 ? room : 0);

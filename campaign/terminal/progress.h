@@ -32,7 +32,7 @@ void progress_update(struct progress *progress, const struct progress_state *sta
 void progress_note(struct progress *progress, const char *text);
 void progress_free(struct progress *progress); /* ends the bar's line. NULL is fine */
 
-/* "2 min 05 s", "3 h 20 min", "0.4 s"; "?" for NaN. Returns length as snprintf. */
-int progress_duration(double seconds, char *buffer, size_t size);
+/* "2 min 05 s", "3 h 20 min", "0.4 s"; "?" for NaN. */
+void progress_duration(double seconds, char *buffer, size_t size);
 
 #endif

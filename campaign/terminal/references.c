@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "schemas/text.h"
+
 static const struct {
   const char *key, *type, *names; /* names: as sources write them; followed by the year */
   const char *year, *also;        /* also: an abbreviation, or NULL */
@@ -108,11 +110,10 @@ bool references_named(size_t index, const char *source) {
 }
 
 void references_doi(const char *source, char *text, size_t size) {
-  size_t used = 0;
   text[0] = '\0';
   for (size_t i = 0; i < references_count(); i++)
-    if (papers[i].doi && references_named(i, source) && used < size)
-      used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "", papers[i].doi);
+    if (papers[i].doi && references_named(i, source))
+      text_append(text, size, "%s%s", *text ? " " : "", papers[i].doi);
 }
 
 void references_bibtex(size_t index, FILE *out) {

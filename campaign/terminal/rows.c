@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/text.h"
+
 enum {
   ROWS_AXES = 64,
   BLOB_SHOWN = 64
@@ -65,9 +67,7 @@ static void print_blob(struct rows *rows, const unsigned char *bytes, size_t siz
     table_missing(rows->table);
     return;
   }
-  for (size_t i = 0; i < size; i++)
-    snprintf(hex + 2 * i, 3, "%02x", bytes[i]);
-  hex[2 * size] = '\0';
+  text_hex(bytes, size, hex);
   table_text(rows->table, hex);
   if (hex != text)
     free(hex);

@@ -310,16 +310,16 @@ void table_fixed(struct table *table, double number, int decimals) {
     add_infinity(table, number > 0);
     return;
   }
-  char digits[40], shown[40];
+  char digits[40], shown[40] = "";
   for (int precision = 15; precision <= 17; precision++) {
     snprintf(digits, sizeof digits, "%.*g", precision, number);
     if (strtod(digits, NULL) == number)
       break;
   }
-  if (decimals < 0 || fabs(number) > 1e6)
-    snprintf(shown, sizeof shown, "%.5g", number);
+  if (decimals < 0)
+    text_append(shown, sizeof shown, "%.5g", number);
   else
-    snprintf(shown, sizeof shown, "%.*f", decimals, number);
+    text_append_fixed(shown, sizeof shown, number, decimals);
   add_cell(table, (struct cell){CELL_NUMBER, digits, shown});
 }
 

@@ -4,7 +4,10 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "schemas/text.h"
+
 enum { MOST_DECIMALS = 15 };
+static const double MOST_DIGITS = 1e15; /* a double has no more digits than that */
 
 void uncertainty_seeds(double mean, double half_width, char text[UNCERTAINTY_TEXT]) {
   if (!isfinite(half_width)) {
@@ -15,7 +18,7 @@ void uncertainty_seeds(double mean, double half_width, char text[UNCERTAINTY_TEX
   double leading = floor(log10(half_width));
   if (half_width < 2 * pow(10, leading))
     leading--;
-  if (half_width == 0 || leading < -MOST_DECIMALS || leading > MOST_DECIMALS) {
+  if (half_width == 0 || leading < -MOST_DECIMALS || leading > MOST_DECIMALS || fabs(mean) >= MOST_DIGITS) {
     snprintf(text, UNCERTAINTY_TEXT, "%.4g +- %.2g (seeds, 95 %%)", mean, half_width);
     return;
   }
@@ -24,8 +27,7 @@ void uncertainty_seeds(double mean, double half_width, char text[UNCERTAINTY_TEX
 }
 
 void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]) {
-  const char *up_to = resolution->points > 1 ? "up to " : "";
-  int used = 0;
+  text[0] = '\0';
   switch (resolution->verdict) {
   case ASK_RESOLUTION_NOT_STUDIED:
     snprintf(text, UNCERTAINTY_TEXT, "resolution: not studied; `clast converge %s` measures it", resolution->scene);
@@ -34,18 +36,14 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
     snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (`clast converge %s`)", resolution->scene);
     return;
   case ASK_RESOLUTION_KNOWN:
-    used = snprintf(text, UNCERTAINTY_TEXT, "%s+- %.2g (resolution: %s)", up_to, resolution->half_width,
-                    resolution->knobs);
-    break;
-  case ASK_RESOLUTION_AT_LEAST:
-    used = snprintf(text, UNCERTAINTY_TEXT, "%s+- %.2g or more (resolution: %s)", up_to, resolution->half_width,
-                    resolution->knobs);
-    break;
+  case ASK_RESOLUTION_AT_LEAST: break;
   }
+  text_append(text, UNCERTAINTY_TEXT, "%s+- %.2g%s (resolution: %s)", resolution->points > 1 ? "up to " : "",
+              resolution->half_width, resolution->verdict == ASK_RESOLUTION_AT_LEAST ? " or more" : "",
+              resolution->knobs);
   if (resolution->studied < resolution->points)
-    snprintf(text + used, UNCERTAINTY_TEXT - (size_t)used,
-             "; studied at %lld of %lld points, `clast converge %s` studies others", (long long)resolution->studied,
-             (long long)resolution->points, resolution->scene);
+    text_append(text, UNCERTAINTY_TEXT, "; studied at %lld of %lld points, `clast converge %s` studies others",
+                (long long)resolution->studied, (long long)resolution->points, resolution->scene);
 }
 
 void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double half_width, char text[UNCERTAINTY_TEXT]) {

@@ -58,9 +58,9 @@ static void consider(struct choice *choice, const char *column, const char *path
 static const char *without_engine(const char *column) {
   for (size_t i = 0; i < engine_count(); i++) {
     char prefix[NAME];
-    const int length = snprintf(prefix, sizeof prefix, "result_%s_", engine_at(i)->name);
-    if (strncmp(column, prefix, (size_t)length) == 0)
-      return column + length;
+    snprintf(prefix, sizeof prefix, "result_%s_", engine_at(i)->name);
+    if (strncmp(column, prefix, strlen(prefix)) == 0)
+      return column + strlen(prefix);
   }
   return column;
 }

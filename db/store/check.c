@@ -84,12 +84,14 @@ static status check_pages(struct report *report, struct error *error) {
 /* Every fragment of a run that counts has a mass. */
 static status check_fragment_counts(struct report *report, struct error *error) {
   const char *count = OUTCOME_NAME(fragment_count);
-  char sql[512];
-  snprintf(sql, sizeof sql,
-           "SELECT 'run ' || run_id || ': ' || (length(masses) / 8.0) || ' masses, but %1$s is ' || %1$s FROM run JOIN "
-           "fragment_mass USING (run_id) WHERE counts AND length(masses) <> 8 * %1$s",
-           count);
-  return no_rows(report, sql, error);
+  char
+      *sql = sqlite3_mprintf("SELECT 'run ' || run_id || ': ' || (length(masses) / 8.0) || ' masses, but %s is ' || %s "
+                             "FROM run JOIN fragment_mass USING (run_id) WHERE counts AND length(masses) <> 8 * %s",
+                             count, count, count);
+  const status result = sql ? no_rows(report, sql, error)
+                            : status_fail(error, STATUS_MEMORY, "%s: memory ran out", checking);
+  sqlite3_free(sql);
+  return result;
 }
 
 /* Runs without a row in the table of their engine, for every engine in the store. */
@@ -255,10 +257,9 @@ static status check_run(struct report *report, sqlite3_stmt *run, struct mass_li
 static status check_masses(struct report *report, struct error *error) {
   sqlite3_stmt *runs = NULL, *spectrum = NULL;
   struct mass_list list = {0};
-  char sql[256];
-  snprintf(sql, sizeof sql, "SELECT run_id, masses, %s, counts FROM fragment_mass JOIN run USING (run_id)",
-           OUTCOME_NAME(total_mass));
-  status result = sql_prepare(report->store->db, sql, &runs, checking, error);
+  status result = sql_preparef(report->store->db, &runs, checking, error,
+                               "SELECT run_id, masses, %s, counts FROM fragment_mass JOIN run USING (run_id)",
+                               OUTCOME_NAME(total_mass));
   if (result == STATUS_OK)
     result = sql_prepare(report->store->db, "SELECT bin, count, mass FROM spectrum WHERE run_id = ?1 ORDER BY bin",
                          &spectrum, checking, error);

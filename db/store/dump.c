@@ -70,8 +70,8 @@ static void put_real(struct text *text, double value) {
   char number[40];
   size_t at = 0;
   if (!isnormal(value)) { /* 0, and rare values such as subnormals */
-    const int size = snprintf(number, sizeof number, "%a", value);
-    put(text, number, (size_t)size);
+    snprintf(number, sizeof number, "%a", value);
+    put(text, number, strlen(number));
     return;
   }
   if (value < 0)

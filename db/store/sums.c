@@ -12,6 +12,8 @@
 #define uthash_nonfatal_oom(entry)     ((entry)->is_added = false)
 #include <uthash.h>
 
+#include "schemas/text.h"
+
 static unsigned hash_of(const struct sums_key *key) {
   uint64_t x = (uint64_t)key->point_id * 0x9e3779b97f4a7c15u + (uint64_t)key->results_version;
   return (unsigned)(x >> 32) * 31u + (unsigned)key->bin;
@@ -180,14 +182,15 @@ void sums_clear(struct sums *sums) {
   "BY r.point_id, r.results_version, s.bin"
 
 status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error) {
+  static const char doing[] = "making running sums";
   char here[64] = "", total[64] = "", bins[64] = "";
-  if (point_id) {
-    snprintf(here, sizeof here, " WHERE point_id = %lld", (long long)point_id);
-    snprintf(total, sizeof total, " WHERE r.point_id = %lld", (long long)point_id);
-    snprintf(bins, sizeof bins, " AND r.point_id = %lld", (long long)point_id);
-  }
+  const bool whole = !point_id || (text_append(here, sizeof here, " WHERE point_id = %lld", (long long)point_id) &&
+                                   text_append(total, sizeof total, " WHERE r.point_id = %lld", (long long)point_id) &&
+                                   text_append(bins, sizeof bins, " AND r.point_id = %lld", (long long)point_id));
+  if (!whole)
+    return status_fail(error, STATUS_INTERNAL, "%s: a condition was cut", doing);
   return sql_executef(
-      db, "making running sums", error,
+      db, doing, error,
       "DELETE FROM point_total%s; DELETE FROM point_spectrum%s; DELETE FROM point_estimate%s;"
       "INSERT INTO point_total (point_id, results_version, runs, censored, failed, surplus, fragments, "
       "mass) " TOTALS ";"

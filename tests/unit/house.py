@@ -191,6 +191,53 @@ def check_modules():
             check(known, f"{path}: the head lists {name}, but no input is called so")
 
 
+# ---- texts made of parts ----
+
+
+def statements_of(name, code):
+    """(offset, what stands before it in its statement, arguments, the code after it) of every call; `name` is a regular
+    expression."""
+    for match in re.finditer(rf"\b(?:{name})\(", code):
+        at, depth, start, arguments = match.end(), 1, match.end(), []
+        while depth and at < len(code):
+            if code[at] == '"':
+                at = re.compile(r'"(?:[^"\\]|\\.)*"').match(code, at).end()
+                continue
+            depth += {"(": 1, ")": -1}.get(code[at], 0)
+            if depth == 0 or (depth == 1 and code[at] == ","):
+                arguments.append(code[start:at])
+                start = at + 1
+            at += 1
+        before = re.split(r"[;{}]", code[max(0, match.start() - 200) : match.start()])[-1]
+        yield match.start(), before, arguments, code[at : at + 400]
+
+
+def check_texts():
+    """A text that is made of parts is made by text_append() (schemas/text.h), which never leaves its array. What snprintf
+    returns is no offset: it is the length that the text would have had. A text of SQL that may be cut must not run."""
+    for path in files(".c", ".h"):
+        code = re.sub(r"/\*.*?\*/", lambda m: re.sub(r"[^\n]", " ", m.group()), read(path), flags=re.S)
+
+        def refuse(offset, text):
+            fail(f"{path}:{line_of(code, offset)}: {text}")
+
+        for match in re.finditer(r"\b(strn?cpy|stpn?cpy|strn?cat|v?sprintf)\(", code):
+            refuse(match.start(), f"{match.group(1)}() knows no size of its array: use snprintf or text_append")
+        if path == "schemas/text.c":
+            continue
+        for offset, before, arguments, after in statements_of("v?snprintf", code):
+            check(True, "")
+            if "+" in re.sub(r"\[[^\]]*\]", "", arguments[0]):
+                refuse(offset, "snprintf into the middle of an array: use text_append")
+            if path.startswith("db/") and re.search(r'"[^"]*\b(SELECT|INSERT|UPDATE|DELETE|FROM|WHERE)\b', "".join(arguments)):
+                refuse(offset, "a text of SQL that may be cut: use answer_to, sql_executef or sql_preparef")
+            kept = re.search(r"(\w+)\s*([+|-]?)=\s*(\([\w ]+\)\s*)?$", before)
+            bound = kept and re.search(rf"\b{kept.group(1)}\s*(>=|<(?!<))", after)
+            returned = re.search(r"\breturn\s+(\([\w ]+\)\s*)?$", before) and not re.match(r"\s*(>=|<(?!<))", after)
+            if returned or (kept and (kept.group(2) or not bound)):
+                refuse(offset, "the length that snprintf returns is not compared with the size of the array: use text_append")
+
+
 # ---- words ----
 
 # Private words of this house that have no legitimate use in it.
@@ -208,6 +255,7 @@ def check_words():
 check_documents()
 check_names()
 check_modules()
+check_texts()
 check_words()
 check(checked > 1000, f"looked at too little ({checked} things)")
 print(f"house: {checked} quotations and names checked, {failures} broken")

@@ -1,0 +1,76 @@
+/* Texts made of parts stay in their arrays, end behind a whole character, and show no more digits than people read. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "schemas/text.h"
+
+/* What does not fit is cut, whatever is appended later, and the bytes behind the array stay as they are. */
+static void test_append_stays_in_its_array(void **state) {
+  (void)state;
+  char text[8] = "", behind[8] = "behind!";
+  assert_true(text_append(text, sizeof text, "%s", "1234567"));
+  assert_false(text_append(text, sizeof text, "%.3f", 1e308));
+  assert_string_equal(text, "1234567");
+  text[0] = '\0';
+  assert_false(text_append(text, sizeof text, "%.3f", 1e308));
+  assert_int_equal(strlen(text), 7);
+  assert_false(text_append(text, sizeof text, "\xc2\xb1%.3f", 1e308));
+  assert_int_equal(strlen(text), 7);
+  assert_true(text_append(text, sizeof text, "%s", ""));
+  assert_string_equal(behind, "behind!");
+}
+
+/* Characters of 2, 3 and 4 bytes are cut as a whole; a character that fits stays. */
+static void test_append_cuts_whole_characters(void **state) {
+  (void)state;
+  static const char *const characters[] = {"\xc2\xb1", "\xe2\x94\x81", "\xf0\x9f\x98\x80"};
+  for (size_t i = 0; i < 3; i++) {
+    const size_t length = strlen(characters[i]);
+    for (size_t size = 4; size <= 4 + length; size++) {
+      char text[16] = "abc";
+      const int fits = text_append(text, size, "%s", characters[i]);
+      assert_int_equal(fits, size == 4 + length);
+      assert_int_equal(strlen(text), fits ? 3 + length : 3);
+    }
+  }
+}
+
+static void test_fixed_has_few_digits(void **state) {
+  (void)state;
+  static const struct {
+    double number;
+    const char *text;
+  } cases[] = {{0.2014, "0.201"}, {-1, "-1.000"},    {1e6, "1000000.000"}, {1e308, "1e+308"},
+               {-1e77, "-1e+77"}, {INFINITY, "inf"}, {-INFINITY, "-inf"},  {NAN, "nan"}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char text[40] = "";
+    text_append_fixed(text, sizeof text, cases[i].number, 3);
+    assert_string_equal(text[0] == '-' && isnan(cases[i].number) ? text + 1 : text, cases[i].text);
+  }
+}
+
+static void test_hexadecimal(void **state) {
+  (void)state;
+  char text[9] = "--------";
+  text_hex("\x00\x7f\x80\xff", 4, text);
+  assert_string_equal(text, "007f80ff");
+  text_hex(NULL, 0, text);
+  assert_string_equal(text, "");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_append_stays_in_its_array),
+      cmocka_unit_test(test_append_cuts_whole_characters),
+      cmocka_unit_test(test_fixed_has_few_digits),
+      cmocka_unit_test(test_hexadecimal),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
