@@ -62,10 +62,20 @@ static status status_of(int code) {
   }
 }
 
+bool sql_values_are_wrong(sqlite3 *db, int code) {
+  const char *why = sqlite3_errmsg(db);
+  return (code & 0xff) == SQLITE_ERROR && (strcmp(why, "integer overflow") == 0 || strcmp(why, "malformed JSON") == 0);
+}
+
 status sql_fail(sqlite3 *db, int code, const char *doing, struct error *error) {
   const char *path = db ? sqlite3_db_filename(db, "main") : NULL;
   const char *file = path && *path ? path : "(in memory)";
   int system = db ? sqlite3_system_errno(db) : 0;
+  if (db && sql_values_are_wrong(db, code))
+    return status_fail(error, STATUS_CONTENT,
+                       "%s: %s failed: %s. Values in the store are none that clast writes: the file is damaged, or "
+                       "another program has changed it. Restore a copy.",
+                       file, doing, sqlite3_errmsg(db));
   return status_fail(error, status_of(code), "%s: %s failed: %s%s%s%s. %s", file, doing,
                      db ? sqlite3_errmsg(db) : sqlite3_errstr(code), system ? " (" : "", system ? strerror(system) : "",
                      system ? ")" : "", remedy(code, system));

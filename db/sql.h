@@ -14,6 +14,10 @@
  * the status that fits the SQLite code. */
 status sql_fail(sqlite3 *db, int code, const char *doing, struct error *error);
 
+/* Did a statement fail because of the values in the rows? Sums leave 64 bits, a text is no JSON. No run gives such
+ * values. */
+bool sql_values_are_wrong(sqlite3 *db, int code);
+
 /* Runs any number of statements. */
 status sql_execute(sqlite3 *db, const char *sql, const char *doing, struct error *error);
 /* The same, with the text made by sqlite3_mprintf: write names and literals that come from outside with %w and %Q. */

@@ -195,6 +195,9 @@ static status judge_end(const struct answer *answer, int code) {
     return status_fail(answer->error, STATUS_STOPPED,
                        "The query took longer than its time limit and was stopped: narrow it, or "
                        "raise the limit.");
+  if (sql_values_are_wrong(db, code))
+    return status_fail(answer->error, STATUS_CONTENT,
+                       "SQL error: %s. A value in the store, or in the SQL text, is not usable.", sqlite3_errmsg(db));
   if ((code & 0xff) == SQLITE_ERROR)
     return status_fail(answer->error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(db));
   return sql_fail(db, code, "the query", answer->error);
