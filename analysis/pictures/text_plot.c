@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "analysis/pictures/picture.h"
+#include "schemas/text.h"
 
 enum { LEAST_COLUMNS = 72, FRONT = 38, MOST_PLOT = 200 };
 
@@ -76,8 +77,10 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
   line[place(scale, log10(bin->value))] = bin->lower < complete_from(form, series) ? INCOMPLETE : POINT;
 
   fprintf(out, "%10.3g %8lld %10.3g", bin->lower, (long long)bin->count, bin->value);
+  char percent[24] = "";
+  text_append_fixed(percent, sizeof percent, 100 * bin->half_width / bin->value, 0);
   if (isfinite(bin->half_width))
-    fprintf(out, " %4.0f%%  ", 100 * bin->half_width / bin->value);
+    fprintf(out, " %4s%%  ", percent);
   else
     fprintf(out, " %5s  ", "-");
   write_line(out, scale->columns, line, unicode);

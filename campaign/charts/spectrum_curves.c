@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "campaign/terminal/uncertainty.h"
+#include "schemas/text.h"
 
 enum { COLUMNS = 100 };
 
@@ -23,10 +24,15 @@ static void label_fit(struct spectrum_curve *curve, double beta, double half_wid
   const char *name = names[curve->form.size.density > 0][curve->form.cumulative];
   const double value = pooled_spectrum_exponent(&curve->form, beta);
   const double width = pooled_spectrum_half_width(&curve->form, half_width);
-  if (isfinite(width))
-    snprintf(curve->fit_label, sizeof curve->fit_label, "%s = %.2f \xc2\xb1 %.2f (seeds, 95 %%)", name, value, width);
-  else
-    snprintf(curve->fit_label, sizeof curve->fit_label, "%s = %.2f (no interval)", name, value);
+  char *label = curve->fit_label;
+  const size_t size = sizeof curve->fit_label;
+  snprintf(label, size, "%s = ", name);
+  text_append_fixed(label, size, value, 2);
+  text_append(label, size, isfinite(width) ? " \xc2\xb1 " : " (no interval)");
+  if (!isfinite(width))
+    return;
+  text_append_fixed(label, size, width, 2);
+  text_append(label, size, " (seeds, 95 %%)");
 }
 
 static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct spectrum_curve *curve,
