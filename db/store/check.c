@@ -367,8 +367,16 @@ status store_check(struct store *store, void (*line)(void *context, const char *
                                                      check_identities};
   struct report report = {.store = store, .line = line, .context = context};
   status result = store_flush(store, error);
-  for (size_t i = 0; result == STATUS_OK && !report.pages_damaged && i < sizeof checks / sizeof checks[0]; i++)
-    result = checks[i](&report, error);
+  for (size_t i = 0; result == STATUS_OK && !report.pages_damaged && i < sizeof checks / sizeof checks[0]; i++) {
+    struct error reason = {0};
+    result = checks[i](&report, &reason);
+    if (result == STATUS_CONTENT) { /* a check that the contents do not allow to end is a problem, too */
+      say(&report, "%s", reason.message);
+      result = STATUS_OK;
+    } else if (result != STATUS_OK) {
+      status_fail(error, result, "%s", reason.message);
+    }
+  }
   if (result != STATUS_OK || report.problems == 0)
     return result;
   return status_fail(error, STATUS_CONTENT, "%s: %lld problems found", store->path, (long long)report.problems);
