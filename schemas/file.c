@@ -275,10 +275,10 @@ status file_begin(struct file_output *file, const char *path, const char *what, 
   file->path = malloc(2 * size);
   if (!file->path)
     return status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
-  strcpy(file->path, path);
+  snprintf(file->path, size, "%s", path);
   file->temporary = file->path + size;
   if (is_direct(path)) {
-    strcpy(file->temporary, path);
+    snprintf(file->temporary, size, "%s", path);
     descriptor = open(path, O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY);
   } else
     descriptor = create(path, file->temporary, size);
