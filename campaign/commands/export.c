@@ -74,9 +74,11 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_FLAG("csv", 0, struct options, csv,
                     "Write a folder of CSV files: runs, points, spectra, estimates, and column_doc with the meaning "
                     "and unit of each column."),
-    OPTION_ROW_FLAG("bits", 0, struct options, bits,
-                    "Write every value that does not depend on the place and time of the computation, as text in the "
-                    "order of identities. Two stores of one campaign give the same file."),
+    OPTION_ROW_FLAG(
+        "bits", 0, struct options, bits,
+        "Write a line for each point and run, in the order of identities, with the digest of all values that "
+        "do not depend on the place and time of the computation. Two stores of one campaign give the same "
+        "file; `clast check` tells whether the values match their digests."),
     OPTION_ROW_FLAG(
         "cinema", 0, struct options, cinema,
         "Write a Cinema database (specification D) for its viewers: a folder with data.csv, and pictures of "

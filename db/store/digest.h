@@ -49,6 +49,9 @@ enum digest_kind { DIGEST_RUNS, DIGEST_POINTS };
  * store of version 1 has no digests and gives no numbers. */
 status digest_rows_compare(sqlite3 *db, enum digest_kind kind, int64_t only,
                            void (*each)(void *context, int64_t number), void *context, struct error *error);
+/* Prints a line for each point, or each run that is not surplus, in the order of identities: "run", its identity, and
+ * the digest of its contents as they are now. STATUS_IO: `out` failed. */
+status digest_rows_print(sqlite3 *db, enum digest_kind kind, FILE *out, struct error *error);
 /* Writes the digest of one row. Within the caller's transaction. */
 status digest_rows_fill(sqlite3 *db, enum digest_kind kind, int64_t number, struct error *error);
 /* The same for all rows from number `first` on that have none. */

@@ -1,4 +1,5 @@
 /* Digests of stored rows. */
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -197,4 +198,27 @@ status digest_rows_fill_missing(sqlite3 *db, enum digest_kind kind, int64_t firs
   snprintf(condition, sizeof condition, "%s >= %lld AND digest IS NULL", kind == DIGEST_RUNS ? "run_id" : "point_id",
            (long long)first);
   return fill(db, kind, 0, condition, error);
+}
+
+status digest_rows_print(sqlite3 *db, enum digest_kind kind, FILE *out, struct error *error) {
+  const bool runs = kind == DIGEST_RUNS;
+  struct reader reader;
+  sqlite3_stmt *numbers = NULL;
+  status result = open_reader(db, kind, &reader, error);
+  if (result == STATUS_OK)
+    result = prepare_numbers(db, &reader, runs ? ", lower(hex(identity))" : ", lower(hex(hash))", 0,
+                             runs ? "surplus = 0 ORDER BY identity" : "true ORDER BY hash", &numbers, error);
+  while (sql_next(numbers, &result, doing, error)) {
+    uint8_t bytes[16];
+    result = read_digest(&reader, sqlite3_column_int64(numbers, 0), bytes, error);
+    fprintf(out, "%s %s ", reader.table, sql_text(numbers, 1));
+    for (size_t i = 0; i < sizeof bytes; i++)
+      fprintf(out, "%02x", bytes[i]);
+    fputc('\n', out);
+  }
+  sqlite3_finalize(numbers);
+  close_reader(&reader);
+  if (result == STATUS_OK && ferror(out))
+    return status_fail(error, STATUS_IO, "writing the digests failed: %s", strerror(errno));
+  return result;
 }

@@ -1,4 +1,4 @@
-/* The compact copy of a store for hand-over. */
+/* The compact copy of a store for hand-over, and the digests that two stores of one campaign share. */
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -44,4 +44,9 @@ status store_export(struct store *store, const char *path, struct error *error) 
   if (result == STATUS_OK)
     result = keep_paths(store, file.temporary, error);
   return file_end(&file, result, error);
+}
+
+status store_dump(struct store *store, FILE *out, struct error *error) {
+  TRY(digest_rows_print(store->db, DIGEST_POINTS, out, error));
+  return digest_rows_print(store->db, DIGEST_RUNS, out, error);
 }

@@ -159,9 +159,8 @@ status store_merge(struct store *store, const char *source, int64_t *added, int6
 /* Writes a compact copy (VACUUM INTO); refuses to overwrite. */
 status store_export(struct store *store, const char *path, struct error *error);
 
-/* Writes the deterministic content as text: every run that is not surplus, by identity, with its results, masses,
- * spectrum and estimates, doubles in hexadecimal. No times, hosts or sessions. The text is the same for any number of
- * workers. */
+/* Writes a line for each point and each run that is not surplus, by identity, with the digest of its inputs, results,
+ * masses and estimates as they are now. No times, hosts or sessions. The text is the same for any number of workers. */
 status store_dump(struct store *store, FILE *out, struct error *error);
 
 #endif

@@ -35,10 +35,8 @@ static void dumps_agree_whatever_the_order(void **state) {
   populated(a, "dump-a", 2, 2, 10, false);
   populated(b, "dump-b", 2, 2, 10, true);
   char *x = dump(a), *y = dump(b);
-  assert_true(strlen(x) > 10000);
+  assert_int_equal(strlen(x), 4 * strlen("point  \n") + 40 * strlen("run  \n") + 44 * 64); /* two numbers a line */
   assert_string_equal(x, y);
-  assert_null(strstr(x, "testhost"));
-  assert_non_null(strstr(x, "broken_count=27"));
   free(y);
   /* one bit of one mass: found; a surplus run more: not found */
   struct store *store = writer(b);
