@@ -8,7 +8,8 @@ static const char *const exported[] = {"runs", "points", "spectra", "estimates",
 
 static status write_rows(struct store *store, const char *view, enum table_format format, FILE *out,
                          struct error *error) {
-  return view ? rows_print(ask_columns_view(store, view, error), false, format, out) : store_dump(store, out, error);
+  return view ? rows_print(ask_columns_view(store, view, error), false, format, out)
+              : store_export_digests(store, out, error);
 }
 
 status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,

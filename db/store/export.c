@@ -46,7 +46,7 @@ status store_export(struct store *store, const char *path, struct error *error) 
   return file_end(&file, result, error);
 }
 
-status store_dump(struct store *store, FILE *out, struct error *error) {
+status store_export_digests(struct store *store, FILE *out, struct error *error) {
   TRY(digest_rows_print(store->db, DIGEST_POINTS, out, error));
   return digest_rows_print(store->db, DIGEST_RUNS, out, error);
 }

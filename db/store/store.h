@@ -161,6 +161,6 @@ status store_export(struct store *store, const char *path, struct error *error);
 
 /* Writes a line for each point and each run that is not surplus, by identity, with the digest of its inputs, results,
  * masses and estimates as they are now. No times, hosts or sessions. The text is the same for any number of workers. */
-status store_dump(struct store *store, FILE *out, struct error *error);
+status store_export_digests(struct store *store, FILE *out, struct error *error);
 
 #endif

@@ -50,7 +50,7 @@ static char *dump(struct store *store, status *code, struct error *error) {
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   must(out != NULL);
-  *code = store_dump(store, out, error);
+  *code = store_export_digests(store, out, error);
   fclose(out);
   return text;
 }

@@ -241,14 +241,14 @@ static status play_once(struct play *play, const struct campaign *campaign, cons
   return code;
 }
 
-/* The result of store_dump as text; malloc'd. */
+/* The result of store_export_digests as text; malloc'd. */
 static inline char *play_dump(const char *path) {
   struct error error = {0};
   struct store *store = NULL;
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
-  if (store_open_reader(path, &store, &error) != STATUS_OK || store_dump(store, out, &error) != STATUS_OK)
+  if (store_open_reader(path, &store, &error) != STATUS_OK || store_export_digests(store, out, &error) != STATUS_OK)
     fprintf(stderr, "dump: %s\n", error.message);
   store_close(store, NULL);
   fclose(out);

@@ -19,7 +19,7 @@ __attribute__((unused)) static char *dump(const char *path) {
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   OK(store_open_reader(path, &store, &error));
-  OK(store_dump(store, out, &error));
+  OK(store_export_digests(store, out, &error));
   fclose(out);
   OK(store_close(store, &error));
   return text;
