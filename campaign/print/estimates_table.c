@@ -191,7 +191,7 @@ static status row_for_people(struct printing *printing, const struct ask_points_
       axis_cell(table, &printing->axis[i], &row->inputs[i]);
     text_append(runs, sizeof runs, "%lld", (long long)row->n);
     if (row->failed)
-      text_append(runs, sizeof runs, "/%lld", (long long)(row->n + row->failed));
+      text_append(runs, sizeof runs, "/%.0f", (double)row->n + (double)row->failed); /* a sum that cannot overflow */
     table_text(table, runs);
     with_interval(table, row->mean, row->half_width, 3);
     resolution_cell(table, row->resolution_verdict, row->resolution);

@@ -50,7 +50,8 @@ static int by_inputs(const void *a, const void *b) {
 static void find_places(struct reading *r) {
   const size_t n = r->campaign->axis_count;
   char text[ASK_POOL_AXES][ASK_POOL_TEXT];
-  qsort(r->cells.cell, r->cells.count, sizeof *r->cells.cell, by_inputs);
+  if (r->cells.count > 0)
+    qsort(r->cells.cell, r->cells.count, sizeof *r->cells.cell, by_inputs);
   for (size_t b = 0; b < r->blocks; b++) {
     bool whole = true;
     for (size_t i = b * r->points; i < (b + 1) * r->points; i++) {
