@@ -5,7 +5,9 @@
 
 #include "engine/warnings.h"
 
-static const char *const states[] = {"completed", "end-time", "not-finite", "time-step", "energy", "invalid", NULL};
+static FIELD_WORDS(states, OUTCOME_STATES, [OUTCOME_COMPLETED] = "completed", [OUTCOME_END_TIME] = "end-time",
+                   [OUTCOME_NOT_FINITE] = "not-finite", [OUTCOME_TIME_STEP] = "time-step", [OUTCOME_ENERGY] = "energy",
+                   [OUTCOME_INVALID] = "invalid");
 
 #define ROW(path_, kind_, unit_, ...)                                                                                  \
   { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct outcome, path_), __VA_ARGS__ }

@@ -13,6 +13,7 @@ enum outcome_state {
   OUTCOME_TIME_STEP,  /* the stable time step collapsed */
   OUTCOME_ENERGY,     /* the energy ledger drifted out of its declared bound */
   OUTCOME_INVALID,    /* the inputs cannot be run together (the message says why) */
+  OUTCOME_STATES
 };
 
 struct outcome {

@@ -92,6 +92,23 @@ void field_table_free(struct field_table *table);
   }
 void field_table_start(const struct field_table *source, struct field_table *table);
 
+/* The words of an enum, each by its number: `static FIELD_WORDS(kinds, KINDS, [FIRST] = "first", [SECOND] = "second");`
+ * makes the array `kinds` for .choices. KINDS is the last member of the enum, the number of the others. The build fails
+ * if a number has no word, or a word no number. FIELD_WORDS_HERE is the array itself, for use inside a row. */
+#define FIELD_WORDS(name, count, ...)                                                                                  \
+  const char *const name[] = {__VA_ARGS__, [count] = NULL};                                                            \
+  _Static_assert(FIELD_WORDS_FIT(count, __VA_ARGS__), "each number of the enum has one word")
+#define FIELD_WORDS_HERE(count, ...)                                                                                   \
+  ((const char *const[(count) + 1 + 0 *sizeof(struct {                                                                 \
+                        _Static_assert(FIELD_WORDS_FIT(count, __VA_ARGS__), "each number of the enum has one word");   \
+                        char unused;                                                                                   \
+                      })]){__VA_ARGS__})
+/* As many words as numbers, and none beyond the last number. -Woverride-init finds a number with two words. */
+#define FIELD_WORDS_FIT(count, ...)                                                                                    \
+  (FIELD_WORDS_GIVEN(__VA_ARGS__, 16, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1) == (count) &&                 \
+   sizeof((const char *const[]){__VA_ARGS__}) == (count) * sizeof(const char *))
+#define FIELD_WORDS_GIVEN(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, given, ...) given
+
 /* A value without its row: a value on a sweep axis, or a value that the store writes. */
 struct field_value {
   enum field_kind kind;

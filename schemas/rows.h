@@ -19,7 +19,6 @@
   ROW_OF(INPUTS, path_, member_, FIELD_BOOLEAN, NULL, .number = default_, .maximum = 1, __VA_ARGS__)
 #define INPUT_CHOICE(path_, member_, choices_, ...)                                                                    \
   ROW_OF(INPUTS, path_, member_, FIELD_CHOICE, NULL, .choices = choices_, __VA_ARGS__)
-#define CHOICES(...) ((const char *const[]){__VA_ARGS__, NULL})
 
 /* Results that do not apply are off. */
 #define RESULT_REAL(path_, member_, unit_, low_, ...)                                                                  \

@@ -99,7 +99,9 @@ double convergence_gain(double correlation, double w) {
 
 /* ---- order and limit ---- */
 
-static const char *const verdict_names[] = {"too-few", "unchanged", "order", "no-order", "unsure", NULL};
+static FIELD_WORDS(verdict_names,
+                   CONVERGENCE_VERDICTS, [CONVERGENCE_TOO_FEW] = "too-few", [CONVERGENCE_UNCHANGED] = "unchanged",
+                   [CONVERGENCE_ORDER] = "order", [CONVERGENCE_NO_ORDER] = "no-order", [CONVERGENCE_UNSURE] = "unsure");
 
 /* The equation (h0^p - h1^p)/(h1^p - h2^p) = ratio of the differences, for p. h enters as logarithms relative to h1;
  * expm1 is exact for small p. */

@@ -9,7 +9,9 @@
 #include "schemas/rows.h"
 #include "schemas/text.h"
 
-const char *const estimates_window_names[] = {"from_2", "from_5", "from_10", NULL};
+FIELD_WORDS(
+    estimates_window_names,
+    ESTIMATES_WINDOWS, [ESTIMATES_FROM_2] = "from_2", [ESTIMATES_FROM_5] = "from_5", [ESTIMATES_FROM_10] = "from_10");
 static const char *const window_docs =
     "from 1.5 mean masses of an element (grain or particle). Of one run: without single elements. Of a point: by mass "
     "alone, so that single grains heavier than that are in it, 4 to 12 % of its fragments where grains scatter\n"

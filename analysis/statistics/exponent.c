@@ -10,7 +10,9 @@
 #include "analysis/statistics/sample.h"
 #include "analysis/statistics/tempered.h"
 
-const char *const exponent_method_names[] = {"least_squares", "binned", "masses", "ks", "cutoff", NULL};
+FIELD_WORDS(exponent_method_names,
+            EXPONENT_METHODS, [EXPONENT_LEAST_SQUARES] = "least_squares", [EXPONENT_BINNED] = "binned",
+            [EXPONENT_MASSES] = "masses", [EXPONENT_KS] = "ks", [EXPONENT_UPPER_CUTOFF] = "cutoff");
 
 struct exponent exponent_unknown(enum exponent_method method, struct exponent_window window) {
   return (struct exponent){.method = (int)method,

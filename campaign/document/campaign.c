@@ -68,7 +68,9 @@ const struct field_table
     campaign_table = FIELD_TABLE(rows, struct campaign, "campaign",
                                  "Many runs of one scene: what is varied, how often, within which limits.");
 
-static const char *const kinds[] = {"grid", "list", "random", "latin_hypercube", "sobol", NULL};
+static FIELD_WORDS(kinds,
+                   CAMPAIGN_DESIGNS, [CAMPAIGN_GRID] = "grid", [CAMPAIGN_LIST] = "list", [CAMPAIGN_RANDOM] = "random",
+                   [CAMPAIGN_LATIN_HYPERCUBE] = "latin_hypercube", [CAMPAIGN_SOBOL] = "sobol");
 static const struct field design_rows[] = {
     {.path = "kind",
      .kind = FIELD_CHOICE,

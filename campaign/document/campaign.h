@@ -23,7 +23,14 @@
 #include "engine/scene.h"
 #include "schemas/field.h"
 
-enum campaign_design { CAMPAIGN_GRID, CAMPAIGN_LIST, CAMPAIGN_RANDOM, CAMPAIGN_LATIN_HYPERCUBE, CAMPAIGN_SOBOL };
+enum campaign_design {
+  CAMPAIGN_GRID,
+  CAMPAIGN_LIST,
+  CAMPAIGN_RANDOM,
+  CAMPAIGN_LATIN_HYPERCUBE,
+  CAMPAIGN_SOBOL,
+  CAMPAIGN_DESIGNS
+};
 enum campaign_keep { CAMPAIGN_KEEP_NONE, CAMPAIGN_KEEP_ALL, CAMPAIGN_KEEP_EXTREMES, CAMPAIGN_KEEP_FIRST };
 
 struct campaign_design_keys { /* the mapping form of `design`, table campaign_design_table */

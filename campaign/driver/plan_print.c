@@ -31,7 +31,9 @@ static const char *how_timed(const struct plan *plan) {
 }
 
 static void print_design(const struct campaign *campaign, const struct plan *plan, FILE *out) {
-  static const char *const designs[] = {"grid", "list", "random", "latin hypercube", "Sobol"};
+  static FIELD_WORDS(designs,
+                     CAMPAIGN_DESIGNS, [CAMPAIGN_GRID] = "grid", [CAMPAIGN_LIST] = "list", [CAMPAIGN_RANDOM] = "random",
+                     [CAMPAIGN_LATIN_HYPERCUBE] = "latin hypercube", [CAMPAIGN_SOBOL] = "Sobol");
   fprintf(out, "campaign  %s, scene %s\n", campaign->name, campaign->scene_reference);
   fprintf(out, "design    %s, %llu point%s", designs[campaign->design.kind], (unsigned long long)plan->points,
           plan->points == 1 ? "" : "s");

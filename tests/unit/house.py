@@ -238,6 +238,17 @@ def check_texts():
                 refuse(offset, "the length that snprintf returns is not compared with the size of the array: use text_append")
 
 
+def check_choices():
+    """Words of a row's choices stand at the numbers of their enum (FIELD_WORDS), not in an order of their own."""
+    lists = 0
+    for path in files(".c", ".h"):
+        text = read(path)
+        for name in re.findall(r"(?:\bCHOICE\([\w.]+|\.choices =),? (\w+),", text):
+            lists += 1
+            check(not re.search(r"\b" + name + r"\[\] = \{\s*\"", text), f"{path}: {name}: write the words by FIELD_WORDS()")
+    check(lists > 15, f"only {lists} lists of choices found")
+
+
 # ---- words ----
 
 # Private words of this house that have no legitimate use in it.
@@ -256,6 +267,7 @@ check_documents()
 check_names()
 check_modules()
 check_texts()
+check_choices()
 check_words()
 check(checked > 1000, f"looked at too little ({checked} things)")
 print(f"house: {checked} quotations and names checked, {failures} broken")

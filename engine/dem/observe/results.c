@@ -5,7 +5,9 @@
 
 #include "schemas/rows.h"
 
-static const char *const reasons[] = {"running", "quiet", "end-time", "strain", "failure", "fault", NULL};
+static FIELD_WORDS(
+    reasons, DEM_STOPS, [DEM_STOP_RUNNING] = "running", [DEM_STOP_QUIET] = "quiet", [DEM_STOP_END_TIME] = "end-time",
+    [DEM_STOP_STRAIN] = "strain", [DEM_STOP_FAILURE] = "failure", [DEM_STOP_FAULT] = "fault");
 
 #define RESULTS            dem_results
 #define REAL(path_, ...)   RESULT_REAL(path_, path_, __VA_ARGS__)

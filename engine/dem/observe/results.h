@@ -11,7 +11,8 @@ enum dem_stop {
   DEM_STOP_END_TIME,
   DEM_STOP_STRAIN,
   DEM_STOP_FAILURE,
-  DEM_STOP_FAULT
+  DEM_STOP_FAULT,
+  DEM_STOPS
 };
 
 struct dem_results {

@@ -64,6 +64,7 @@ static void protocol(const struct dem_inputs *in, FILE *out) {
     fprintf(out, "disc-collision: two equal discs approach at %.4g m/s, impact parameter %.4g diameters\n",
             in->collision.speed, in->collision.impact_parameter);
     break;
+  case DEM_KINDS: break;
   }
 }
 
@@ -102,7 +103,8 @@ static double energy_put_in(const struct dem_inputs *in) {
   case DEM_DISC_COLLISION:
     return 0.125 * in->grain.density * dem_inputs_grains(in) * area * in->collision.speed * in->collision.speed;
   case DEM_UNIAXIAL:
-  case DEM_COMPRESSION: break;
+  case DEM_COMPRESSION:
+  case DEM_KINDS: break;
   }
   return NAN;
 }

@@ -7,10 +7,11 @@
 
 #include "engine/input_rows.h"
 
-static const char *const kinds[] = {"disc-explosion", "block-impact",   "uniaxial",
-                                    "compression",    "disc-collision", NULL};
-static const char *const directions[] = {"extension", "compression", NULL};
-static const char *const integrators[] = {"verlet", "gear", NULL};
+static FIELD_WORDS(
+    kinds, DEM_KINDS, [DEM_DISC_EXPLOSION] = "disc-explosion", [DEM_BLOCK_IMPACT] = "block-impact",
+    [DEM_UNIAXIAL] = "uniaxial", [DEM_COMPRESSION] = "compression", [DEM_DISC_COLLISION] = "disc-collision");
+static FIELD_WORDS(directions, DEM_DIRECTIONS, [DEM_EXTENSION] = "extension", [DEM_SHORTENING] = "compression");
+static FIELD_WORDS(integrators, DEM_INTEGRATORS, [DEM_VERLET] = "verlet", [DEM_GEAR] = "gear");
 
 #define DEGREE (M_PI / 180)
 

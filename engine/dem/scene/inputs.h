@@ -7,15 +7,9 @@
 #include "engine/dem/contacts/laws.h"
 #include "schemas/field.h"
 
-enum dem_kind {
-  DEM_DISC_EXPLOSION,
-  DEM_BLOCK_IMPACT,
-  DEM_UNIAXIAL,
-  DEM_COMPRESSION,
-  DEM_DISC_COLLISION,
-};
-enum dem_direction { DEM_EXTENSION, DEM_SHORTENING };
-enum dem_integrator { DEM_VERLET, DEM_GEAR };
+enum dem_kind { DEM_DISC_EXPLOSION, DEM_BLOCK_IMPACT, DEM_UNIAXIAL, DEM_COMPRESSION, DEM_DISC_COLLISION, DEM_KINDS };
+enum dem_direction { DEM_EXTENSION, DEM_SHORTENING, DEM_DIRECTIONS };
+enum dem_integrator { DEM_VERLET, DEM_GEAR, DEM_INTEGRATORS };
 
 struct dem_inputs {
   int kind; /* enum dem_kind: the protocol */

@@ -152,6 +152,7 @@ status dem_protocol_start(struct dem_run *run, struct error *error) {
   case DEM_DISC_COLLISION: collision(run); break;
   case DEM_UNIAXIAL:
   case DEM_COMPRESSION: return dem_loading_start(run, error);
+  case DEM_KINDS: break;
   }
   run->state.energy_input = kinetic(run);
   return code;

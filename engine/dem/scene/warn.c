@@ -16,7 +16,8 @@ static double closing_speed(const struct dem_inputs *in) {
   case DEM_BLOCK_IMPACT: return in->impact.speed;
   case DEM_DISC_COLLISION: return in->collision.speed;
   case DEM_UNIAXIAL:
-  case DEM_COMPRESSION: break;
+  case DEM_COMPRESSION:
+  case DEM_KINDS: break;
   }
   return 0;
 }

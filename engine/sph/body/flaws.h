@@ -20,7 +20,7 @@
 #include "engine/sph/material/material.h"
 #include "schemas/status.h"
 
-enum sph_flaw_draw { SPH_FLAWS_RANKED, SPH_FLAWS_POISSON };
+enum sph_flaw_draw { SPH_FLAWS_RANKED, SPH_FLAWS_POISSON, SPH_FLAW_DRAWS };
 
 struct sph_flaw_law {
   struct sph_weibull_material weibull;

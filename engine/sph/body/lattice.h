@@ -23,6 +23,7 @@ enum sph_lattice_kind {
   SPH_LATTICE_HEXAGONAL, /* close packed, ABAB; rows along x (third axis: the cylinder's) */
   SPH_LATTICE_CUBIC,
   SPH_LATTICE_IRREGULAR, /* random points, pushed apart until the density sum is uniform */
+  SPH_LATTICES
 };
 
 /* Finer spacing near a point: s(d) = fine + growth d^2/(d + 4 fine), where d is the distance from the sphere of

@@ -7,7 +7,7 @@
 
 #include "schemas/status.h"
 
-enum sph_shape_kind { SPH_SHAPE_SPHERE, SPH_SHAPE_CYLINDER, SPH_SHAPE_BOX, SPH_SHAPE_MESH };
+enum sph_shape_kind { SPH_SHAPE_SPHERE, SPH_SHAPE_CYLINDER, SPH_SHAPE_BOX, SPH_SHAPE_MESH, SPH_SHAPES };
 
 struct mesh;
 

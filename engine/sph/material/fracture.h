@@ -9,9 +9,9 @@
 #include <stddef.h>
 
 /* p = 1 as printed in BA95 section 4.3, or 1/3 as SPH codes do today: that one gives Grady & Kipp's rate law. */
-enum sph_fracture_growth { SPH_GROWTH_CUBE_ROOT, SPH_GROWTH_LINEAR };
+enum sph_fracture_growth { SPH_GROWTH_CUBE_ROOT, SPH_GROWTH_LINEAR, SPH_GROWTHS };
 /* D_max: (n/n_tot)^(1/3) as printed in BA95 eq. 22, n/n_tot, or 1. */
-enum sph_fracture_cap { SPH_CAP_BA95, SPH_CAP_COUNT, SPH_CAP_NONE };
+enum sph_fracture_cap { SPH_CAP_BA95, SPH_CAP_COUNT, SPH_CAP_NONE, SPH_CAPS };
 
 /* Largest principal value of a symmetric tensor. */
 double sph_fracture_largest_tension(double xx, double xy, double xz, double yy, double yz, double zz);

@@ -22,7 +22,9 @@
 #define INPUTS sph_crack_front_inputs
 
 static const struct field input_rows[] = {
-    INPUT_CHOICE(fracture.front, front, CHOICES("none", "plane"), .absent = "none", .when = "target.fracture=auto|on",
+    INPUT_CHOICE(fracture.front, front,
+                 FIELD_WORDS_HERE(SPH_CRACK_FRONTS, [SPH_CRACK_FRONT_NONE] = "none", [SPH_CRACK_FRONT_PLANE] = "plane"),
+                 .absent = "none", .when = "target.fracture=auto|on",
                  .choice_docs =
                      "it ends at its particle, and each particle breaks by flaws of its own, as printed: strength "
                      "grows with the number of particles\n"

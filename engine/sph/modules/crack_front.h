@@ -18,7 +18,7 @@ MODULE_HOOKS(crack_front)
 MODULE_INPUTS(crack_front)
 
 #ifdef SPH_MODULE_STRUCTS
-enum sph_crack_front { SPH_CRACK_FRONT_NONE, SPH_CRACK_FRONT_PLANE };
+enum sph_crack_front { SPH_CRACK_FRONT_NONE, SPH_CRACK_FRONT_PLANE, SPH_CRACK_FRONTS };
 struct sph_crack_front_inputs {
   int front;     /* enum sph_crack_front */
   double arrest; /* 1 */

@@ -13,19 +13,24 @@
 #define INPUTS sph_fracture_inputs
 
 static const struct field input_rows[] = {
-    INPUT_CHOICE(fracture.growth, growth, CHOICES("cube-root", "linear"), .when = "target.fracture=auto|on",
+    INPUT_CHOICE(fracture.growth, growth,
+                 FIELD_WORDS_HERE(SPH_GROWTHS, [SPH_GROWTH_CUBE_ROOT] = "cube-root", [SPH_GROWTH_LINEAR] = "linear"),
+                 .when = "target.fracture=auto|on",
                  .choice_docs = "n^(1/3) c_g/R_s, which gives Grady and Kipp's rate law\nn c_g/R_s, as printed",
                  .doc = "Rate of D^(1/3) of a particle with n open flaws.", .source = "BA95 section 4.3 for `linear`"),
-    INPUT_CHOICE(fracture.cap, cap, CHOICES("ba95", "count", "none"), .when = "target.fracture=auto|on",
-                 .choice_docs = "(n/n_tot)^(1/3), as printed\nn/n_tot\n1",
-                 .doc = "Largest damage of a particle with n of its n_tot flaws open.",
-                 .source = "BA95 eq. 22 for `ba95`"),
-    INPUT_CHOICE(fracture.crack_radius, crack_radius, CHOICES("volume", "support"), .when = "target.fracture=auto|on",
-                 .choice_docs =
-                     "radius of the sphere of the particle's volume\n"
-                     "2h: strength falls with R_s, and most of a body is destroyed where `volume` leaves a core",
-                 .doc = "R_s: length that a crack has to grow until its particle is broken.",
-                 .source = "BA95 eq. 15; the paper gives no value"),
+    INPUT_CHOICE(
+        fracture.cap, cap,
+        FIELD_WORDS_HERE(SPH_CAPS, [SPH_CAP_BA95] = "ba95", [SPH_CAP_COUNT] = "count", [SPH_CAP_NONE] = "none"),
+        .when = "target.fracture=auto|on", .choice_docs = "(n/n_tot)^(1/3), as printed\nn/n_tot\n1",
+        .doc = "Largest damage of a particle with n of its n_tot flaws open.", .source = "BA95 eq. 22 for `ba95`"),
+    INPUT_CHOICE(
+        fracture.crack_radius, crack_radius,
+        FIELD_WORDS_HERE(SPH_CRACK_RADII, [SPH_CRACK_RADIUS_VOLUME] = "volume", [SPH_CRACK_RADIUS_SUPPORT] = "support"),
+        .when = "target.fracture=auto|on",
+        .choice_docs = "radius of the sphere of the particle's volume\n"
+                       "2h: strength falls with R_s, and most of a body is destroyed where `volume` leaves a core",
+        .doc = "R_s: length that a crack has to grow until its particle is broken.",
+        .source = "BA95 eq. 15; the paper gives no value"),
     INPUT_REAL(fidelity.damage_step, damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
                .doc = "Largest change of D^(1/3) in a time step."),
 };

@@ -21,7 +21,7 @@ MODULE_INPUTS(fracture)
 
 #ifdef SPH_MODULE_STRUCTS
 /* R_s of a particle: the radius of the sphere of its volume, or 2h. */
-enum sph_crack_radius { SPH_CRACK_RADIUS_VOLUME, SPH_CRACK_RADIUS_SUPPORT };
+enum sph_crack_radius { SPH_CRACK_RADIUS_VOLUME, SPH_CRACK_RADIUS_SUPPORT, SPH_CRACK_RADII };
 struct sph_fracture_inputs {
   int growth;         /* enum sph_fracture_growth */
   int cap;            /* enum sph_fracture_cap */

@@ -27,7 +27,10 @@
 
 static const struct field material_rows[] = {
     MATERIAL_CHOICE(
-        porosity.curve, curve, CHOICES("none", "quadratic", "two-power"), .label = "crush curve",
+        porosity.curve, curve,
+        FIELD_WORDS_HERE(SPH_CRUSHES, [SPH_CRUSH_NONE] = "none", [SPH_CRUSH_QUADRATIC] = "quadratic",
+                         [SPH_CRUSH_TWO_POWER] = "two-power"),
+        .label = "crush curve",
         .choice_docs = "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"
                        "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",
         .doc = "Crush curve: how pores far below the resolution close under pressure (P-alpha). The material's density "

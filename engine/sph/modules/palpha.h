@@ -13,8 +13,13 @@ MODULE_RESULTS(palpha)
 
 #ifdef SPH_MODULE_STRUCTS
 struct sph_palpha_material {
-  enum { SPH_CRUSH_NONE, SPH_CRUSH_QUADRATIC, SPH_CRUSH_TWO_POWER } curve; /* none: no other member is used */
-  double distention;                                                       /* alpha_0; 1: no pores, the solid itself */
+  enum {
+    SPH_CRUSH_NONE,
+    SPH_CRUSH_QUADRATIC,
+    SPH_CRUSH_TWO_POWER,
+    SPH_CRUSHES
+  } curve;           /* none: no other member is used */
+  double distention; /* alpha_0; 1: no pores, the solid itself */
   double fraction; /* porosity 1 - 1/alpha_0: another way to give it in a document, made to agree; not used elsewhere */
   double elastic_pressure; /* Pa, P_e: plastic crushing begins */
   double solid_pressure;   /* Pa, P_s: all pores are closed */

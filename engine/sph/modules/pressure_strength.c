@@ -23,8 +23,10 @@
   MATERIAL_REAL(pressure_strength.member, member, unit, default, __VA_ARGS__, .when = "pressure_strength.law=lundborg")
 
 static const struct field material_rows[] = {
-    MATERIAL_CHOICE(pressure_strength.law, law, CHOICES("none", "lundborg"), .absent = "none",
-                    .when = "../strength=true", .label = "yield law",
+    MATERIAL_CHOICE(pressure_strength.law, law,
+                    FIELD_WORDS_HERE(SPH_PRESSURE_STRENGTHS, [SPH_PRESSURE_STRENGTH_NONE] = "none",
+                                     [SPH_PRESSURE_STRENGTH_LUNDBORG] = "lundborg"),
+                    .absent = "none", .when = "../strength=true", .label = "yield law",
                     .choice_docs =
                         "yield_stress at any pressure, and (1 - D) of the deviator acts\n"
                         "intact rock follows Lundborg, broken rock keeps friction, and damage acts on the deviator "

@@ -13,9 +13,13 @@ MODULE_MATERIAL(pressure_strength)
 
 #ifdef SPH_MODULE_STRUCTS
 struct sph_pressure_strength_material {
-  enum { SPH_PRESSURE_STRENGTH_NONE, SPH_PRESSURE_STRENGTH_LUNDBORG } law; /* none: no other member is used */
-  double intact_cohesion, intact_friction, intact_limit;                   /* Pa, 1, Pa: Y_0, mu_i, Y_M */
-  double broken_cohesion, broken_friction;                                 /* Pa, 1: Y_d0, mu_d */
+  enum {
+    SPH_PRESSURE_STRENGTH_NONE,
+    SPH_PRESSURE_STRENGTH_LUNDBORG,
+    SPH_PRESSURE_STRENGTHS
+  } law;                                                 /* none: no other member is used */
+  double intact_cohesion, intact_friction, intact_limit; /* Pa, 1, Pa: Y_0, mu_i, Y_M */
+  double broken_cohesion, broken_friction;               /* Pa, 1: Y_d0, mu_d */
 };
 #endif
 

@@ -25,14 +25,17 @@ static const struct field material_rows[] = {
 const struct field_table sph_weibull_material = SPH_MODULE_TABLE(sph_weibull_material, material_rows);
 
 static const struct field input_rows[] = {
-    INPUT_CHOICE(fracture.draw, draw, CHOICES("ranked", "poisson"), .number = SPH_FLAWS_POISSON,
-                 .when = "target.fracture=auto|on",
+    INPUT_CHOICE(fracture.draw, draw,
+                 FIELD_WORDS_HERE(SPH_FLAW_DRAWS, [SPH_FLAWS_RANKED] = "ranked", [SPH_FLAWS_POISSON] = "poisson"),
+                 .number = SPH_FLAWS_POISSON, .when = "target.fracture=auto|on",
                  .choice_docs =
                      "eps_j = (j/kV)^(1/m), as printed: a seed only moves the flaws about, and the scatter is too "
                      "small\n"
                      "the body's flaw strengths are a draw themselves: each seed is a specimen of its own",
                  .doc = "The strengths of the flaws.", .source = "BA95 eq. 20 for `ranked`"),
-    INPUT_CHOICE(fidelity.flaws, flaws, CHOICES("exact", "compact"), .when = "target.fracture=auto|on",
+    INPUT_CHOICE(fidelity.flaws, flaws,
+                 FIELD_WORDS_HERE(SPH_FLAW_LISTS, [SPH_FLAWS_EXACT] = "exact", [SPH_FLAWS_COMPACT] = "compact"),
+                 .when = "target.fracture=auto|on",
                  .choice_docs = "every flaw is kept\nlowest, highest and number of each particle, a power law between",
                  .doc = "Storage of a particle's flaws."),
 };

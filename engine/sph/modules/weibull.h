@@ -9,7 +9,7 @@ struct sph_weibull_material {
   double m, k; /* 1, m^-3; NaN: no flaws */
 };
 /* Every flaw of a particle, or the lowest, the highest and the number of them. */
-enum sph_flaw_lists { SPH_FLAWS_EXACT, SPH_FLAWS_COMPACT };
+enum sph_flaw_lists { SPH_FLAWS_EXACT, SPH_FLAWS_COMPACT, SPH_FLAW_LISTS };
 struct sph_weibull_inputs {
   int draw;  /* enum sph_flaws_draw */
   int flaws; /* enum sph_flaw_lists */

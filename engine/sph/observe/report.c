@@ -10,7 +10,7 @@
 #include "engine/sph/scene/derived.h"
 
 /* `link_h` of the inputs; parts of a rod count as separate when each is more than 1/ROD_PARTS of it. */
-enum { INITIAL_H = 0, ROD_PARTS = 100 };
+enum { ROD_PARTS = 100 };
 
 /* Shares above which a run gets a warning (engine/warnings.h). */
 static const double largest_clamped = 0.01, largest_held = 0.01;
@@ -31,7 +31,7 @@ static status fragments_of(const struct sph_run *run, const struct sph_particles
   options.layer_width = in->fragments.layer_width;
   options.layer = layer;
   options.whole_shear = !sph_modules_damage_scales_shear(&in->target, in);
-  options.h = in->fragments.link_h == INITIAL_H ? run->start->h : NULL;
+  options.h = in->fragments.link_h == SPH_LINK_H_INITIAL ? run->start->h : NULL;
   memcpy(options.periodic, run->periodic, sizeof options.periodic);
   options.bodies = bodies;
   options.body_count = (size_t)run->body_count;

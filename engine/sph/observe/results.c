@@ -3,7 +3,8 @@
 
 #include <math.h>
 
-static const char *const reasons[] = {"running", "quiet", "end-time", "fault", NULL};
+static FIELD_WORDS(reasons, SPH_STOPS, [SPH_STOP_RUNNING] = "running", [SPH_STOP_QUIET] = "quiet",
+                   [SPH_STOP_END_TIME] = "end-time", [SPH_STOP_FAULT] = "fault");
 
 #define RESULTS            sph_results
 #define REAL(path_, ...)   RESULT_REAL(path_, path_, __VA_ARGS__)

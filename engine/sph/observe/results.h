@@ -6,7 +6,7 @@
 
 #include "engine/sph/modules/structs.h"
 
-enum sph_stop { SPH_STOP_RUNNING, SPH_STOP_QUIET, SPH_STOP_END_TIME, SPH_STOP_FAULT };
+enum sph_stop { SPH_STOP_RUNNING, SPH_STOP_QUIET, SPH_STOP_END_TIME, SPH_STOP_FAULT, SPH_STOPS };
 
 struct sph_results {
   int stop_reason; /* enum sph_stop */

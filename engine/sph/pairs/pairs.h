@@ -28,7 +28,7 @@
 
 /* In float precision the pair loop reads and sums floats; all else stays double. Positions are read as integers in
  * units of h/2^20, so that a scene of kilometres is as accurate as a small one. */
-enum sph_precision { SPH_DOUBLE, SPH_FLOAT };
+enum sph_precision { SPH_DOUBLE, SPH_FLOAT, SPH_PRECISIONS };
 
 /* Sections of the inputs, and what follows from the bodies. */
 struct sph_pair_options {

@@ -59,6 +59,7 @@ static struct sph_shape shape_of(const struct sph_body_inputs *b) {
     shape.unit = b->mesh.unit;
     break;
   }
+  case SPH_SHAPES: break;
   }
   return shape;
 }

@@ -43,7 +43,7 @@ struct need {
 
 static struct need need_of(const struct sph_inputs *in) {
   static const struct sph_flaws some = {.particles = 1};
-  const bool damped = in->target.shape == SPH_SHAPE_BOX && in->sides.far;
+  const bool damped = in->target.shape == SPH_SHAPE_BOX && in->sides.far == SPH_FAR_DAMPED;
   struct need need = {.columns = sph_system_columns_of_all(damped)};
   struct sph_column_set of_modules = {0};
   for (int b = 0; b < 1 + sph_derived_has_projectile(in); b++) {
@@ -104,7 +104,8 @@ static void mesh(const struct sph_shape *s, FILE *out) {
 
 static void shape(const char *name, const struct sph_shape *s, const struct sph_body_inputs *b, double spacing,
                   FILE *out) {
-  static const char *const lattices[] = {"hexagonal lattice", "cubic lattice", "irregular points"};
+  static FIELD_WORDS(lattices, SPH_LATTICES, [SPH_LATTICE_HEXAGONAL] = "hexagonal lattice",
+                     [SPH_LATTICE_CUBIC] = "cubic lattice", [SPH_LATTICE_IRREGULAR] = "irregular points");
   double volume = sph_shape_volume(s);
   fprintf(out, "  %s: ", name);
   if (s->kind == SPH_SHAPE_SPHERE)
@@ -147,6 +148,7 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
             "piston: a plate, a bar that repeats sideways, is driven at %.4g m/s along x (Jutzi, Benz & Michel 2008)\n",
             in->piston.speed);
     break;
+  case SPH_KINDS: break;
   }
   shape("target", &target, &in->target, spacing, out);
   if (sph_derived_has_projectile(in)) {

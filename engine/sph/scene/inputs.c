@@ -11,14 +11,21 @@
 #include "engine/sph/material/materials.h"
 #include "engine/sph/pairs/pairs.h"
 
-static const char *const kinds[] = {"impact", "stretch", "vibration", "collision", "piston", NULL};
-static const char *const shapes[] = {"sphere", "cylinder", "box", "mesh", NULL};
-static const char *const lattices[] = {"hexagonal", "cubic", "irregular", NULL};
-static const char *const fractures[] = {"auto", "on", "off", NULL};
-static const char *const far_sides[] = {"free", "damped", NULL};
-static const char *const projectile_by[] = {"size", "mass", "specific-energy", NULL};
-static const char *const link_h[] = {"initial", "current", NULL};
-static const char *const precisions[] = {"double", "float", NULL};
+static FIELD_WORDS(kinds, SPH_KINDS, [SPH_IMPACT] = "impact", [SPH_STRETCH] = "stretch", [SPH_VIBRATION] = "vibration",
+                   [SPH_COLLISION] = "collision", [SPH_PISTON] = "piston");
+static FIELD_WORDS(shapes, SPH_SHAPES, [SPH_SHAPE_SPHERE] = "sphere", [SPH_SHAPE_CYLINDER] = "cylinder",
+                   [SPH_SHAPE_BOX] = "box", [SPH_SHAPE_MESH] = "mesh");
+static FIELD_WORDS(lattices, SPH_LATTICES, [SPH_LATTICE_HEXAGONAL] = "hexagonal", [SPH_LATTICE_CUBIC] = "cubic",
+                   [SPH_LATTICE_IRREGULAR] = "irregular");
+static FIELD_WORDS(
+    fractures,
+    SPH_FRACTURE_CHOICES, [SPH_FRACTURE_AUTO] = "auto", [SPH_FRACTURE_ON] = "on", [SPH_FRACTURE_OFF] = "off");
+static FIELD_WORDS(far_sides, SPH_FAR_SIDES, [SPH_FAR_FREE] = "free", [SPH_FAR_DAMPED] = "damped");
+static FIELD_WORDS(
+    projectile_by,
+    SPH_PROJECTILE_BY, [SPH_BY_SIZE] = "size", [SPH_BY_MASS] = "mass", [SPH_BY_ENERGY] = "specific-energy");
+static FIELD_WORDS(link_h, SPH_LINK_LENGTHS, [SPH_LINK_H_INITIAL] = "initial", [SPH_LINK_H_CURRENT] = "current");
+static FIELD_WORDS(precisions, SPH_PRECISIONS, [SPH_DOUBLE] = "double", [SPH_FLOAT] = "float");
 
 /* ---- a body: the target or the projectile ---- */
 

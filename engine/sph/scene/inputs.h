@@ -12,9 +12,12 @@ enum sph_kind {
   SPH_VIBRATION, /* a free cylinder that vibrates along its axis in its first mode */
   SPH_COLLISION, /* two equal cylinders or rings, thin slabs that repeat along their axes */
   SPH_PISTON,    /* a plate, a bar along x that repeats sideways, with a piston running into its end */
+  SPH_KINDS
 };
-enum sph_fracture_choice { SPH_FRACTURE_AUTO, SPH_FRACTURE_ON, SPH_FRACTURE_OFF };
-enum sph_projectile_by { SPH_BY_SIZE, SPH_BY_MASS, SPH_BY_ENERGY };
+enum sph_fracture_choice { SPH_FRACTURE_AUTO, SPH_FRACTURE_ON, SPH_FRACTURE_OFF, SPH_FRACTURE_CHOICES };
+enum sph_projectile_by { SPH_BY_SIZE, SPH_BY_MASS, SPH_BY_ENERGY, SPH_PROJECTILE_BY };
+enum sph_far_side { SPH_FAR_FREE, SPH_FAR_DAMPED, SPH_FAR_SIDES };
+enum sph_link_h { SPH_LINK_H_INITIAL, SPH_LINK_H_CURRENT, SPH_LINK_LENGTHS };
 
 struct sph_mesh_inputs {
   char file[FIELD_TEXT_SIZE]; /* SHA-256 of the shape file (engine/mesh/files.h) */

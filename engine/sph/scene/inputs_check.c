@@ -253,7 +253,7 @@ static status check_piston(const struct sph_inputs *in, struct error *error) {
     REFUSE("a piston runs into a plate: set target.shape: box");
   if (in->target.strength)
     REFUSE("a piston's shock is compared with that of matter without strength: set target.strength: false");
-  if (in->sides.far == 1)
+  if (in->sides.far == SPH_FAR_DAMPED)
     REFUSE("a plate repeats sideways, and its far side is never reached: set sides.far: free");
   if (in->target.turned)
     REFUSE("a turned lattice cannot repeat sideways: set target.turned: false");
@@ -270,6 +270,7 @@ static status check_protocol(const struct sph_inputs *in, struct error *error) {
   case SPH_VIBRATION: return check_cylinder(in, "vibration", error);
   case SPH_COLLISION: return check_collision(in, error);
   case SPH_PISTON: return check_piston(in, error);
+  case SPH_KINDS: break;
   }
   return STATUS_OK;
 }
@@ -280,7 +281,8 @@ const char *sph_inputs_check_fewer(const struct sph_inputs *in) {
   case SPH_COLLISION: return "lower fidelity.particles or target.length";
   case SPH_PISTON: return "lower fidelity.points, or target.depth and target.height";
   case SPH_STRETCH:
-  case SPH_VIBRATION: break;
+  case SPH_VIBRATION:
+  case SPH_KINDS: break;
   }
   return "lower fidelity.particles";
 }
@@ -317,7 +319,7 @@ static status check_lengths(const struct sph_inputs *in, struct error *error) {
   if (in->fragments.layer_width > 30 * spacing) /* each particle finds 1e5 others */
     REFUSE("fragments.layer_width is %.4g m, more than 30 particle spacings of %.4g m: give a smaller width",
            in->fragments.layer_width, spacing);
-  const bool damped = in->target.shape == SPH_SHAPE_BOX && in->sides.far == 1;
+  const bool damped = in->target.shape == SPH_SHAPE_BOX && in->sides.far == SPH_FAR_DAMPED;
   if (damped && 2 * in->sides.depth >= sph_derived_shortest_side(&in->target))
     REFUSE("sides.depth is %.4g m, which leaves nothing of the box undamped: give less than half of the shortest side",
            in->sides.depth);

@@ -71,7 +71,7 @@ static int arrays_of(const struct sph_inputs *in) {
   int arrays = sph_system_columns_arrays(&columns);
   if (in->kind == SPH_STRETCH || in->kind == SPH_PISTON)
     arrays |= SPH_WITH_HELD;
-  if (in->target.shape == SPH_SHAPE_BOX && in->sides.far)
+  if (in->target.shape == SPH_SHAPE_BOX && in->sides.far == SPH_FAR_DAMPED)
     arrays |= SPH_WITH_DAMPING;
   return arrays;
 }
@@ -182,6 +182,7 @@ static status set_in_motion(struct sph_run *run, const double flight[3], struct 
     }
     break;
   case SPH_PISTON: return push(run, error);
+  case SPH_KINDS: break;
   }
   return STATUS_OK;
 }
