@@ -57,6 +57,7 @@ struct engine_kind {
   void (*free)(void *run); /* NULL is fine */
 };
 
+extern const struct engine_kind *const engine_list[]; /* ended by NULL: engines.c */
 size_t engine_count(void);
 const struct engine_kind *engine_at(size_t index);
 /* NULL when there is none of that name; *error lists the known ones. */

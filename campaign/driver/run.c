@@ -308,7 +308,7 @@ static status take_files(struct reader *reader, struct error *error) {
 }
 
 /* Reads a task; the caller frees the inputs. */
-static status decode_task(run_find find, const uint8_t *task, size_t size, struct run_request *request, void **inputs,
+static status decode_task(const uint8_t *task, size_t size, struct run_request *request, void **inputs,
                           char *fields_path, size_t path_size, struct error *error) {
   struct reader reader = {task, size, true};
   char name[64];
@@ -317,7 +317,7 @@ static status decode_task(run_find find, const uint8_t *task, size_t size, struc
   request->seed = take_count(&reader);
   take_text(&reader, fields_path, path_size);
   if (reader.good) {
-    request->kind = find(name, error);
+    request->kind = engine_find(name, error);
     if (!request->kind)
       return STATUS_INTERNAL;
     *inputs = calloc(1, request->kind->inputs->size);
@@ -335,15 +335,14 @@ static status decode_task(run_find find, const uint8_t *task, size_t size, struc
   return STATUS_OK;
 }
 
-status run_execute(run_find find, const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size,
-                   struct error *error) {
+status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size, struct error *error) {
   struct run_request request = {0};
   struct run_result values = {0};
   char fields_path[4096];
   void *inputs = NULL;
   *result = NULL;
   *result_size = 0;
-  status code = decode_task(find, task, task_size, &request, &inputs, fields_path, sizeof fields_path, error);
+  status code = decode_task(task, task_size, &request, &inputs, fields_path, sizeof fields_path, error);
   if (code != STATUS_OK)
     goto cleanup;
   code = run_simulate(&request, NULL, NULL, 0, &values, error);
@@ -360,8 +359,4 @@ cleanup:
   run_result_clear(&values);
   free(inputs);
   return code;
-}
-
-status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size, struct error *error) {
-  return run_execute(engine_find, task, task_size, result, result_size, error);
 }

@@ -22,7 +22,7 @@ struct run_result {
   size_t fragment_count;
   struct estimate estimates[ESTIMATES_COUNT];
   size_t estimate_count;  /* 0 for a run without fragments */
-  struct error unwritten; /* from run_execute: why the fields file could not be written; STATUS_OK: it was written, or
+  struct error unwritten; /* from run_work: why the fields file could not be written; STATUS_OK: it was written, or
                              was not requested */
 };
 
@@ -45,12 +45,8 @@ uint8_t *run_encode_task(const struct run_request *request, size_t *size);
 status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, size_t size, struct run_result *result,
                          struct error *error);
 
-/* Finds an engine by name (engine_find, or a test's). */
-typedef const struct engine_kind *(*run_find)(const char *name, struct error *error);
-/* If the fields file cannot be written, the results are still encoded, with the reason in `unwritten`. */
-status run_execute(run_find find, const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size,
-                   struct error *error);
-/* The farm_work of clast: run_execute with engine_find. */
+/* The farm_work of clast: runs a task. If the fields file cannot be written, the results are still encoded, with the
+ * reason in `unwritten`. */
 status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size, struct error *error);
 
 #endif

@@ -4,6 +4,7 @@
 set -euo pipefail
 build=$1 source=$2
 clast=$build/clast
+toy=$build/tests/clast_toy # clast with an engine without physics (tests/support/toy_engine.h)
 work=$(mktemp -d "$build/cli-$(basename "$0" .sh)-XXXXXX")
 # Only the script itself clears up: what it starts with & is a copy of it for a moment, and a signal that comes before the
 # copy has become the command runs this trap there.
@@ -75,6 +76,19 @@ same_bits() { # same_bits STORE REFERENCE.bits WHAT
   ok "$3: same bits as the reference"
 }
 
+# The same for tests of campaigns and stores alone: its runs, of engine toy, wait 20 ms each instead of computing. It takes
+# some 3 s with two slots, and is run by $toy. waiting NAME: writes NAME.yaml.
+waiting() {
+  slow_seeds=100
+  printf 'engine: toy\nwait: 20 ms\n' >stick.yaml
+  cat >"$1.yaml" <<YAML
+name: $1
+scene: stick.yaml
+vary: {stick.strain: [2 %, 3 %, 5 %]}
+seeds: {per_point: $slow_seeds}
+store: $1.db
+YAML
+}
 # A campaign to be interrupted: 3 points, and so many seeds (slow_seeds) that it takes some 3 s on one core of this machine in
 # this build, whatever its speed. A few runs are timed first: by the processor time in the store, the least of them, as the
 # start of a program and other tests beside this one are no part of a run.

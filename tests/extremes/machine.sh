@@ -4,7 +4,8 @@
 . "$(dirname "$0")/../cli/lib.bash"
 ask() { python -c "import sqlite3, sys; print(sqlite3.connect('file:%s?mode=ro' % sys.argv[1], uri=True).execute(sys.argv[2]).fetchone()[0])" "$1" "$2"; }
 
-slow slow
+clast=$toy
+waiting slow
 expect 0 "$clast" run slow.yaml -j 2 --quiet
 bits slow.db >reference.bits
 runs_in() { ask "$1" 'select count(*) from run' 2>/dev/null || echo 0; }
@@ -42,7 +43,7 @@ expect 0 "$clast" run term.yaml --store term.db -j 2 --quiet
 same_bits term.db reference.bits "after these signals"
 
 # kill -9 of the processes that compute, as the kernel does when memory is out: tried again, never given up for good
-sed 's/per_point: .*}/per_point: 1}/; s/14 cm/120 cm/; s/vary:.*/limits: {attempts: 1}/; s/1.5 ms/6 ms/' slow.yaml >killed.yaml
+sed 's/per_point: .*}/per_point: 1}/; s/vary:.*/set: {wait: 100 s}\nlimits: {attempts: 1}/' slow.yaml >killed.yaml
 setsid "$clast" run killed.yaml --store killed.db -j 1 >out 2>err &
 pid=$!
 child() { local c; for c in $(pgrep -P "$1"); do child "$c"; [ -n "$(pgrep -P "$c")" ] || echo "$c"; done; }
@@ -64,7 +65,7 @@ import sqlite3
 d = sqlite3.connect('lost.db')
 d.execute("insert into attempt (identity, point_id, replicate, seed, number, reason, exit_code, signal, wall_time, peak_memory, limited_to, message, host, rank, failed_at) "
           "select identity, point_id, replicate, seed, n, 'lost', 0, 15, 1, 0, 0, 'terminated', 'h', 0, 1.0 from run, (select 1 as n union select 2 union select 3)")
-for table in ('fragment_mass', 'spectrum', 'estimate', 'result_dem', 'run', 'point_estimate', 'point_total', 'point_spectrum'):
+for table in ('fragment_mass', 'spectrum', 'estimate', 'result_toy', 'run', 'point_estimate', 'point_total', 'point_spectrum'):
     d.execute(f'delete from {table}')
 d.commit()
 PY
@@ -73,8 +74,14 @@ same_bits lost.db reference.bits "runs that were lost three times each"
 
 # a disk that is full when fields are written: the results are kept, 74, and the same command writes the fields
 # (fields of 0.8 MB each, a store of 0.2 MB)
-sed 's/per_point: .*}/per_point: 2}/; s/\[2 %, 3 %, 5 %\]/[2 %]/; s/14 cm/45 cm/; s/1.5 ms/0.2 ms/' slow.yaml >fields.yaml
-echo 'keep: {fields: all}' >>fields.yaml
+cat >fields.yaml <<YAML
+name: fields
+scene: disc-explosion
+set: {body.diameter: 45 cm, charge.energy: 6 kJ/m, stop.end_time: 0.2 ms}
+vary: {threshold.strain: [2 %]}
+seeds: {per_point: 2}
+keep: {fields: all}
+YAML
 expect 0 "$clast" run fields.yaml --store whole.db -j 2 --quiet
 bits whole.db >fields.bits
 expect 74 bash -c "ulimit -f 500; '$clast' run fields.yaml --store fields.db -j 2"

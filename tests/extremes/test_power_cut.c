@@ -212,12 +212,6 @@ static void at_most_the_last_second_is_lost(void **state) {
   assert_true(largest < 1 + 2 * slowest);
 }
 
-static status write_fields(void *run, const char *path, struct error *e) {
-  char text[32];
-  snprintf(text, sizeof text, "%llu\n", (unsigned long long)((struct play_run *)run)->seed);
-  return file_write(path, "fields file", text, strlen(text), e);
-}
-
 /* The fields file of each run is whole: it has the run's seed. */
 static void look_at_fields(size_t op) {
   (void)op;
@@ -242,13 +236,9 @@ static void look_at_fields(size_t op) {
 
 static void fields_are_kept_before_their_row(void **state) {
   (void)state;
-  static struct engine_kind kind;
   struct play play = {.slots = 2};
   struct driver_summary summary;
   struct campaign *campaign = play_campaign(2, 2, 8);
-  kind = play_kind;
-  kind.write_snapshot = write_fields;
-  play_engine = &kind;
   campaign->keep = CAMPAIGN_KEEP_ALL;
   begin();
   assert_int_equal(play_once(&play, campaign, "power-now/a.db", &summary), STATUS_OK);

@@ -1,5 +1,5 @@
-/* A farm played by the test: tasks are taken from a driver, computed by a small substitute for engine `dem` (its
- * tables, no physics: fragments drawn from inputs and seed) and reported in an order that the test chooses. */
+/* A farm played by the test: tasks are taken from a driver, computed by the toy engine and reported in an order that
+ * the test chooses. */
 #ifndef CLAST_TESTS_CAMPAIGN_PLAY_H
 #define CLAST_TESTS_CAMPAIGN_PLAY_H
 
@@ -9,108 +9,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "analysis/statistics/estimates.h"
 #include "campaign/driver/driver.h"
 #include "campaign/driver/run.h"
-#include "engine/dem/observe/results.h"
-#include "engine/dem/scene/inputs.h"
 #include "engine/random.h"
-
-struct play_run {
-  struct dem_inputs inputs;
-  uint64_t seed;
-};
-
-static status play_prepare(const void *inputs, uint64_t seed, void **run, struct error *error) {
-  struct play_run *mine = malloc(sizeof *mine);
-  if (!mine)
-    return status_fail(error, STATUS_MEMORY, "no memory");
-  *mine = (struct play_run){*(const struct dem_inputs *)inputs, seed};
-  if (seed == 13) { /* an unlucky number: inputs that cannot be run together */
-    free(mine);
-    return status_fail(error, STATUS_CONTENT, "seed 13 is not run here");
-  }
-  *run = mine;
-  return STATUS_OK;
-}
-static status play_step(void *run, uint64_t most, bool *finished, struct error *error) {
-  (void)run, (void)most, (void)error;
-  *finished = true;
-  return STATUS_OK;
-}
-static double play_progress(const void *run) {
-  (void)run;
-  return 1;
-}
-static double play_work(const void *inputs) {
-  return 1 / ((const struct dem_inputs *)inputs)->threshold.strain;
-}
-static size_t play_memory(const void *inputs) {
-  (void)inputs;
-  return 1000000;
-}
-static status play_finish(void *run, struct outcome *outcome, void *result, struct fragment **fragments, size_t *count,
-                          struct error *error) {
-  const struct play_run *mine = run;
-  struct dem_results *results = result;
-  size_t n = 20 + (size_t)(mine->seed % 7);
-  *fragments = calloc(n, sizeof **fragments);
-  if (!*fragments)
-    return status_fail(error, STATUS_MEMORY, "no memory");
-  for (size_t k = 0; k < n; k++) {
-    double u = random_draw(mine->seed, RANDOM_LATTICE, k, 0);
-    (*fragments)[k].mass = (k == 0 ? 5 : 0) + 10 * mine->inputs.threshold.strain / (1 + (double)k + u);
-    (*fragments)[k].count = k + 5 < n ? 10 : 1;
-    (*fragments)[k].first = (uint32_t)k;
-  }
-  for (size_t k = 1; k < n; k++) /* descending */
-    for (size_t j = k; j > 0 && (*fragments)[j].mass > (*fragments)[j - 1].mass; j--) {
-      struct fragment swap = (*fragments)[j];
-      (*fragments)[j] = (*fragments)[j - 1];
-      (*fragments)[j - 1] = swap;
-    }
-  *count = n;
-  field_defaults(&outcome_table, outcome);
-  field_defaults(&dem_results, results);
-  outcome_fragments(outcome, n, *fragments, &(struct outcome_small){.dust = NAN});
-  outcome->state = mine->seed % 50 == 49  ? OUTCOME_NOT_FINITE
-                   : mine->seed % 10 == 9 ? OUTCOME_END_TIME
-                                          : OUTCOME_COMPLETED;
-  outcome->steps = 7;
-  outcome->time_step = outcome->time = 1e-6;
-  results->grains = (int64_t)n;
-  return STATUS_OK;
-}
-static status play_write_fields(void *run, const char *path, struct error *error) {
-  FILE *file = fopen(path, "w");
-  if (!file)
-    return status_fail(error, STATUS_IO, "cannot write %s", path);
-  fprintf(file, "%llu\n", (unsigned long long)((struct play_run *)run)->seed);
-  fclose(file);
-  return STATUS_OK;
-}
-static void play_free(void *run) {
-  free(run);
-}
-
-static const struct engine_kind play_kind = {.name = "dem",
-                                             .doc = "stand-in",
-                                             .results_version = 1,
-                                             .inputs = &dem_inputs,
-                                             .results = &dem_results,
-                                             .memory = play_memory,
-                                             .work = play_work,
-                                             .prepare = play_prepare,
-                                             .step = play_step,
-                                             .progress = play_progress,
-                                             .finish = play_finish,
-                                             .write_snapshot = play_write_fields,
-                                             .free = play_free};
-static const struct engine_kind *play_engine = &play_kind; /* a test may replace it */
-static const struct engine_kind *play_find(const char *name, struct error *error) {
-  (void)error;
-  return strcmp(name, "dem") == 0 ? play_engine : NULL;
-}
+#include "tests/support/toy_engine.h"
 
 static inline struct field_value play_real(double x) {
   return (struct field_value){.kind = FIELD_REAL, .number = x};
@@ -126,16 +28,17 @@ static struct campaign *play_campaign(size_t strains, size_t angles, int64_t per
   campaign->per_point = per_point;
   snprintf(campaign->until_quantity, sizeof campaign->until_quantity, "largest_fraction");
   campaign->scene = calloc(1, sizeof *campaign->scene);
-  campaign->scene->kind = &play_kind;
-  campaign->scene->inputs = calloc(1, dem_inputs.size);
-  campaign->scene->given = calloc(dem_inputs.count, sizeof *campaign->scene->given);
-  campaign->scene->overridden = calloc(dem_inputs.count, sizeof *campaign->scene->overridden);
-  field_defaults(&dem_inputs, campaign->scene->inputs);
+  campaign->scene->kind = &toy_engine;
+  campaign->scene->inputs = calloc(1, toy_engine.inputs->size);
+  campaign->scene->given = calloc(toy_engine.inputs->count, sizeof *campaign->scene->given);
+  campaign->scene->overridden = calloc(toy_engine.inputs->count, sizeof *campaign->scene->overridden);
+  field_defaults(toy_engine.inputs, campaign->scene->inputs);
+  ((struct toy_inputs *)campaign->scene->inputs)->stick.trouble = true;
   campaign->axis_count = 2;
   campaign->axes = calloc(2, sizeof *campaign->axes);
   for (int a = 0; a < 2; a++) {
     size_t n = a ? angles : strains;
-    campaign->axes[a] = (struct design_axis){.row = field_find(&dem_inputs, a ? "threshold.angle" : "threshold.strain",
+    campaign->axes[a] = (struct design_axis){.row = field_find(toy_engine.inputs, a ? "stick.angle" : "stick.strain",
                                                                &error),
                                              .kind = DESIGN_AXIS_LEVELS,
                                              .level_count = n,
@@ -200,7 +103,7 @@ static status play_farm(struct play *play, struct driver *driver, struct error *
       report.ending = FARM_TIME_LIMIT;
       report.message = "ended at its time limit";
     } else {
-      code = run_execute(play_find, out[pick].bytes, out[pick].task.size, &bytes, &report.size, error);
+      code = run_work(out[pick].bytes, out[pick].task.size, &bytes, &report.size, error);
       report.bytes = bytes;
     }
     free(out[pick].bytes);

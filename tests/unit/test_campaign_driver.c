@@ -383,13 +383,13 @@ static void equal_points_are_computed_once(void **state) {
 static void broken_answers_are_refused(void **state) {
   (void)state;
   struct campaign *campaign = play_campaign(1, 1, 1);
-  struct run_request request = {&play_kind, campaign->scene->inputs, 5, NULL, NULL};
+  struct run_request request = {&toy_engine, campaign->scene->inputs, 5, NULL, NULL};
   struct run_result result;
   struct error error = {0};
   size_t task_size, size;
   uint8_t *task = run_encode_task(&request, &task_size), *bytes = NULL;
-  assert_int_equal(run_execute(play_find, task, task_size, &bytes, &size, &error), STATUS_OK);
-  assert_int_equal(run_decode_result(&play_kind, bytes, size, &result, &error), STATUS_OK);
+  assert_int_equal(run_work(task, task_size, &bytes, &size, &error), STATUS_OK);
+  assert_int_equal(run_decode_result(&toy_engine, bytes, size, &result, &error), STATUS_OK);
   assert_int_equal(result.fragment_count, 25);
   assert_int_equal(result.estimate_count, ESTIMATES_COUNT);
   run_result_clear(&result);
@@ -397,7 +397,7 @@ static void broken_answers_are_refused(void **state) {
     uint8_t *part = malloc(cut + 1); /* an exact copy, so that a sanitizer detects any read beyond it */
     memcpy(part, bytes, cut);
     part = realloc(part, cut ? cut : 1);
-    assert_int_equal(run_decode_result(&play_kind, part, cut, &result, &error), STATUS_INTERNAL);
+    assert_int_equal(run_decode_result(&toy_engine, part, cut, &result, &error), STATUS_INTERNAL);
     free(part);
   }
   for (size_t cut = 0; cut < task_size; cut++) {
@@ -405,7 +405,7 @@ static void broken_answers_are_refused(void **state) {
     size_t answer_size;
     uint8_t *part = malloc(cut ? cut : 1);
     memcpy(part, task, cut);
-    assert_int_equal(run_execute(play_find, part, cut, &answer, &answer_size, &error), STATUS_INTERNAL);
+    assert_int_equal(run_work(part, cut, &answer, &answer_size, &error), STATUS_INTERNAL);
     free(part);
   }
   free(task), free(bytes);
