@@ -24,3 +24,15 @@ const struct engine_kind *engine_find(const char *name, struct error *error) {
   status_fail(error, STATUS_CONTENT, "there is no engine '%.60s'; known are: %s", name, list);
   return NULL;
 }
+
+const struct knob *engine_knob(const struct engine_kind *kind, const char *name, struct error *error) {
+  char known[1024] = "";
+  for (const struct knob *knob = kind->knobs; knob && knob->name; knob++) {
+    if (strcmp(knob->name, name) == 0)
+      return knob;
+    text_append(known, sizeof known, "%s%s", *known ? ", " : "", knob->name);
+  }
+  status_fail(error, STATUS_USAGE, "engine %s has no knob '%.64s'; it has %s (`clast converge --list`)", kind->name,
+              name, *known ? known : "none");
+  return NULL;
+}

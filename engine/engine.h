@@ -4,10 +4,25 @@
 #ifndef CLAST_ENGINE_ENGINE_H
 #define CLAST_ENGINE_ENGINE_H
 
+#include "engine/knob.h"
 #include "engine/outcome.h"
 #include "schemas/field.h"
 
 struct restart_run;
+
+/* Named materials: documents, with a source for each value. */
+struct engine_materials {
+  const struct field_table *values;  /* of one material */
+  const char *const (*overview)[2];  /* columns of `clast materials`: heading, path of a value; NULL ends the list */
+  const char *(*name)(size_t index); /* sorted; NULL beyond the last */
+  const char *(*text)(const char *name); /* the document, or NULL */
+  /* Into an object of `values`. STATUS_MISSING with the nearest name; STATUS_CONTENT: the document has a fault. */
+  status (*load)(const char *name, void *material, struct error *error);
+  /* The same from a file. *text is its content (malloc'd, owned by the caller). Also the errors of document_open. */
+  status (*open)(const char *path, void *material, char **text, struct error *error);
+  /* Where a value of a named material comes from. STATUS_MISSING: the document does not say. */
+  status (*source)(const char *name, const char *path, char source[FIELD_TEXT_SIZE]);
+};
 
 struct engine_kind {
   const char *name;                  /* "dem" */
@@ -16,6 +31,8 @@ struct engine_kind {
   int results_version;               /* part of a run's identity: raised by hand when result bits change on purpose */
   const struct field_table *inputs;  /* the typed scene; includes a `fidelity.` section */
   const struct field_table *results; /* what this engine reports beyond struct outcome; table result_<engine> */
+  const struct knob *knobs;          /* what a convergence study varies; NULL: nothing */
+  const struct engine_materials *materials; /* NULL: the engine has no named materials */
 
   /* Fills inputs that were not given (one flag per input row) and follow from others, such as the values of a named
    * material. The result depends only on the given inputs. Called again after every change. NULL: no such inputs. */
@@ -62,5 +79,7 @@ size_t engine_count(void);
 const struct engine_kind *engine_at(size_t index);
 /* NULL when there is none of that name; *error lists the known ones. */
 const struct engine_kind *engine_find(const char *name, struct error *error);
+/* NULL + STATUS_USAGE with the known names of this engine. */
+const struct knob *engine_knob(const struct engine_kind *kind, const char *name, struct error *error);
 
 #endif

@@ -1,14 +1,11 @@
-/* Knobs: inputs that make a run coarser or finer, or change the physics that it models. knob.c is the only list: the
- * inputs of a knob, its levels, its engine and its meaning. Convergence studies (campaign/converge) vary knobs. */
+/* Knobs: inputs that make a run coarser or finer, or change the physics that it models. Each engine lists its own
+ * (engine_kind.knobs): inputs, levels and meaning. Convergence studies (campaign/converge) vary knobs. */
 #ifndef CLAST_ENGINE_KNOB_H
 #define CLAST_ENGINE_KNOB_H
 
 #include <stdbool.h>
-#include <stddef.h>
 
-#include "schemas/status.h"
-
-enum { KNOB_INPUTS = 3, KNOB_LEVELS = 12, KNOB_MOST = 64 /* in the list */ };
+enum { KNOB_INPUTS = 3, KNOB_LEVELS = 12 };
 
 enum knob_group {
   KNOB_RESOLUTION, /* its finest level is the reference; its bias is part of the resolution error */
@@ -25,7 +22,7 @@ struct knob_input {
 };
 
 struct knob {
-  const char *name, *engine;
+  const char *name; /* NULL ends an engine's list */
   enum knob_group group;
   struct knob_input inputs[KNOB_INPUTS]; /* the first one names the levels; a NULL path ends the list */
   double factors[KNOB_LEVELS]; /* of numbers: each level divided by the scene's own value, coarse to fine; 0 ends the
@@ -38,10 +35,14 @@ struct knob {
   const char *meaning;
 };
 
-size_t knob_count(void);
-const struct knob *knob_at(size_t index);
-size_t knob_index(const struct knob *knob); /* index of a knob in the list */
-/* NULL + STATUS_USAGE with the known names of this engine. */
-const struct knob *knob_find(const char *engine, const char *name, struct error *error);
+/* Rows of an engine's list. Factors of particles and grains: a third of the number each, so that the spacing of an SPH
+ * body changes by 1.44. Time steps: halves. */
+#define KNOB(name_, group_, ...)                                                                                       \
+  { .name = name_, .group = KNOB_##group_, __VA_ARGS__ }
+#define KNOB_THIRDS .factors = {1.0 / 9, 1.0 / 3, 1, 3}
+#define KNOB_HALVES .factors = {2, 1, 0.5, 0.25, 0.125}
+#define KNOB_ON_OFF .choices = {"false", "true"}
+#define KNOB_OF_SETTINGS                                                                                               \
+  KNOB("settings", SETTINGS, .meaning = "named settings of the scene (`settings` in its document): draft, reference")
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/table.h"
-#include "engine/sph/material/materials.h"
+#include "engine/engine.h"
 
 struct options {
   struct table_options table;
@@ -16,56 +16,79 @@ static void headline(const char *text, char *line, size_t size) {
   snprintf(line, size, "%.*s", (int)strcspn(text, "\n"), text);
 }
 
-static status list(enum table_format format, struct error *error) {
+/* The materials of one engine. */
+static status list(const struct engine_materials *materials, enum table_format format, struct error *error) {
+  const struct field_table *values = materials->values;
+  void *material = calloc(1, values->size);
+  if (!material)
+    return status_fail(error, STATUS_MEMORY, "no memory for a material");
   struct table *table = table_new(format, stdout);
   status code = STATUS_OK;
   table_column(table, "name", NULL);
-  table_column(table, "density", "kg/m^3");
-  table_column(table, "bulk_modulus", "Pa");
-  table_column(table, "shear_modulus", "Pa");
-  table_column(table, "weibull_m", NULL);
-  table_column(table, "weibull_k", "1/m^3");
+  for (size_t k = 0; materials->overview[k][0]; k++) {
+    const char *unit = field_find(values, materials->overview[k][1], NULL)->unit;
+    table_column(table, materials->overview[k][0], strcmp(unit, "1") == 0 ? NULL : unit);
+  }
   table_column(table, "what", NULL);
-  for (size_t i = 0; !code && i < sph_materials_count(); i++) {
-    struct sph_material material;
+  for (size_t i = 0; materials->name(i); i++) {
     char what[256];
-    code = sph_materials_load(sph_materials_name(i), &material, error);
+    code = materials->load(materials->name(i), material, error);
     if (code)
       break;
-    headline(sph_materials_text(sph_materials_name(i)), what, sizeof what);
-    table_text(table, sph_materials_name(i));
-    table_real(table, material.density);
-    table_real(table, material.tillotson.A);
-    table_real(table, material.elastic.shear_modulus);
-    table_real(table, material.weibull.m);
-    table_real(table, material.weibull.k);
+    headline(materials->text(materials->name(i)), what, sizeof what);
+    table_text(table, materials->name(i));
+    for (size_t k = 0; materials->overview[k][0]; k++) {
+      struct field_value value;
+      field_get(field_find(values, materials->overview[k][1], NULL), material, &value);
+      table_real(table, value.number);
+    }
     table_text(table, what);
   }
+  free(material);
   status ended = table_end(table, code ? NULL : error);
   return code ? code : ended;
 }
 
 /* Prints the document of a named material, or checks a file and prints it unchanged. */
-static status print_document(const char *name, struct error *error) {
-  struct sph_material material;
+static status print_document(const struct engine_materials *materials, const char *name, struct error *error) {
+  void *material = calloc(1, materials->values->size);
   char *text = NULL;
+  if (!material)
+    return status_fail(error, STATUS_MEMORY, "no memory for a material");
   const bool file = strchr(name, '/') || strchr(name, '.');
-  const status code = file ? sph_materials_open(name, &material, &text, error)
-                           : sph_materials_load(name, &material, error); /* names the nearest one */
+  const status code = file ? materials->open(name, material, &text, error)
+                           : materials->load(name, material, error); /* names the nearest one */
   if (code == STATUS_OK)
-    fputs(file ? text : sph_materials_text(name), stdout);
+    fputs(file ? text : materials->text(name), stdout);
   free(text);
+  free(material);
   return code;
+}
+
+/* The first engine with materials, or the one that has this name. */
+static const struct engine_materials *materials_of(const char *name) {
+  const struct engine_materials *first = NULL;
+  for (size_t i = 0; i < engine_count(); i++) {
+    const struct engine_materials *materials = engine_at(i)->materials;
+    if (materials && name && materials->text(name))
+      return materials;
+    first = first ? first : materials;
+  }
+  return first;
 }
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
   TRY(table_choose(&options->table, &format, error));
-  if (line->count == 0)
-    return list(format, error);
+  if (line->count == 0) {
+    for (size_t i = 0; i < engine_count(); i++)
+      if (engine_at(i)->materials)
+        TRY(list(engine_at(i)->materials, format, error));
+    return STATUS_OK;
+  }
   TRY(table_text_only(&options->table, "a material's document", error));
-  return print_document(line->arguments[0], error);
+  return print_document(materials_of(line->arguments[0]), line->arguments[0], error);
 }
 
 static const struct option_row rows[] = {TABLE_OPTIONS(struct options, table)};

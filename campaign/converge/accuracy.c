@@ -35,13 +35,13 @@ int64_t accuracy_seeds(double deviation, double margin) {
 struct finding {
   const struct campaign *campaign;
   struct accuracy *accuracy;
-  bool base_open[KNOB_MOST]; /* indexed by number of the knob */
+  const struct knob *open[2]; /* knobs of resolution without a limit at the scene's setting; two tell all */
   bool studied;
 };
 
 static const struct knob *knob_of(const struct campaign *campaign, const char *name) {
   struct error ignored;
-  return knob_find(campaign->scene->kind->name, name, &ignored);
+  return engine_knob(campaign->scene->kind, name, &ignored);
 }
 
 static bool is_axis(const struct campaign *campaign, const char *path) {
@@ -69,15 +69,14 @@ static status take_open(struct finding *finding, const struct convergence_row *r
   (void)error;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   finding->studied = true;
-  if (knob && row->base && row->open)
-    finding->base_open[knob_index(knob)] = true;
+  if (knob && knob->group == KNOB_RESOLUTION && row->base && row->open && finding->open[0] != knob)
+    finding->open[finding->open[0] != NULL] = knob;
   return STATUS_OK;
 }
 
 static bool others_open(const struct finding *finding, const struct knob *knob) {
-  for (size_t i = 0; i < knob_count(); i++)
-    if (finding->base_open[i] && knob_at(i) != knob && knob_at(i)->group == KNOB_RESOLUTION &&
-        knob->group != KNOB_SETTINGS)
+  for (size_t i = 0; i < 2 && knob->group != KNOB_SETTINGS; i++)
+    if (finding->open[i] && finding->open[i] != knob)
       return true;
   return false;
 }

@@ -98,13 +98,13 @@ static status add_named(struct subject *subject, const struct request *request, 
                         const char *name, const char *settings, struct error *error) {
   const int group = group_of(name);
   if (group < 0) {
-    const struct knob *knob = knob_find(scene->kind->name, name, error);
+    const struct knob *knob = engine_knob(scene->kind, name, error);
     return knob ? add_knob(subject, request, scene, knob, settings, true, error) : STATUS_USAGE;
   }
   status code = STATUS_OK;
-  for (size_t i = 0; code == STATUS_OK && i < knob_count(); i++)
-    if ((int)knob_at(i)->group == group && strcmp(knob_at(i)->engine, scene->kind->name) == 0)
-      code = add_knob(subject, request, scene, knob_at(i), NULL, false, error);
+  for (const struct knob *knob = scene->kind->knobs; code == STATUS_OK && knob && knob->name; knob++)
+    if ((int)knob->group == group)
+      code = add_knob(subject, request, scene, knob, NULL, false, error);
   return code;
 }
 

@@ -9,14 +9,14 @@
 status study_print_knobs(enum table_format format, struct error *error) {
   struct table *table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"engine", "knob", "group", "input", "meaning", NULL});
-  for (size_t i = 0; i < knob_count(); i++) {
-    const struct knob *knob = knob_at(i);
-    table_text(table, knob->engine);
-    table_text(table, knob->name);
-    table_text(table, knob_group_names[knob->group]);
-    table_text(table, knob->inputs[0].path ? knob->inputs[0].path : "");
-    table_text(table, knob->meaning);
-  }
+  for (size_t i = 0; i < engine_count(); i++)
+    for (const struct knob *knob = engine_at(i)->knobs; knob && knob->name; knob++) {
+      table_text(table, engine_at(i)->name);
+      table_text(table, knob->name);
+      table_text(table, knob_group_names[knob->group]);
+      table_text(table, knob->inputs[0].path ? knob->inputs[0].path : "");
+      table_text(table, knob->meaning);
+    }
   return table_end(table, error);
 }
 

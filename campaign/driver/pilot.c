@@ -108,9 +108,8 @@ double pilot_to_hard_end(const struct pilot_run *piece) {
 
 /* The first knob of the engine with a step that applies to the scene: its number of particles or grains. */
 static const struct knob *size_knob(const struct scene *scene, double *own) {
-  for (size_t i = 0; i < knob_count(); i++) {
-    const struct knob *knob = knob_at(i);
-    if (strcmp(knob->engine, scene->kind->name) != 0 || knob->step_power == 0)
+  for (const struct knob *knob = scene->kind->knobs; knob && knob->name; knob++) {
+    if (knob->step_power == 0)
       continue;
     struct field_value value;
     const struct field *row = field_find(scene->kind->inputs, knob->inputs[0].path, NULL);

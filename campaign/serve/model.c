@@ -57,7 +57,7 @@ static status take_levels(struct serve_model *model, const char *text, struct er
   char name[64];
   const size_t length = strcspn(text, "=");
   snprintf(name, sizeof name, "%.*s", (int)length, text);
-  const struct knob *knob = knob_find(campaign->scene->kind->name, name, error);
+  const struct knob *knob = engine_knob(campaign->scene->kind, name, error);
   if (!knob)
     return STATUS_USAGE;
   for (size_t k = 0; k < KNOB_INPUTS && knob->inputs[k].path; k++)

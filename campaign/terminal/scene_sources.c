@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/sph/material/materials.h"
-
 /* A switch that is off, a law `none` or a coefficient of 0 has no effect, so that its paper is not cited. */
 static bool absent(const struct field *row, const void *inputs) {
   struct field_value value;
@@ -29,7 +27,7 @@ static void cite_materials(const struct scene *scene, scene_sources_each each, v
     const struct field *row = &inputs->rows[i];
     const char *ending = strstr(row->path, ".material.");
     struct field_value value;
-    if (!ending || !field_is_active(inputs, row, scene->inputs))
+    if (!ending || !scene->kind->materials || !field_is_active(inputs, row, scene->inputs))
       continue;
     if (strcmp(ending, ".material.name") == 0) {
       field_get(row, scene->inputs, &value);
@@ -40,7 +38,7 @@ static void cite_materials(const struct scene *scene, scene_sources_each each, v
     }
     char source[FIELD_TEXT_SIZE], what[2 * FIELD_TEXT_SIZE];
     if (scene->given[i] || absent(row, scene->inputs) ||
-        sph_materials_source(name, row->path + section, source) != STATUS_OK || strcmp(source, before) == 0)
+        scene->kind->materials->source(name, row->path + section, source) != STATUS_OK || strcmp(source, before) == 0)
       continue;
     snprintf(before, sizeof before, "%s", source);
     snprintf(what, sizeof what, "%s of %s", row->path, name);

@@ -87,6 +87,27 @@ static void release(void *run) {
   dem_run_free(run);
 }
 
+static const struct knob knobs[] = {
+    KNOB("grains", RESOLUTION, .inputs = {{"grain.spacing", 1}}, .factors = {2, 1.41, 1, 0.71}, .step_power = 1,
+         .meaning = "mean size of a grain of a disc: half as many grains each"),
+    KNOB("time_step", RESOLUTION, .inputs = {{"fidelity.time_step", 1}}, KNOB_HALVES, .step_power = 1, .pairs = true,
+         .meaning = "time step"),
+    KNOB("integrator", RESOLUTION, .inputs = {{"fidelity.integrator"}}, .choices = {"verlet", "gear"}, .pairs = true,
+         .meaning = "velocity Verlet, or Gear's method of fifth order"),
+    KNOB("stop", RESOLUTION, .inputs = {{"stop.quiet_time", 1}, {"stop.least_time", 1}, {"stop.end_time", 1}},
+         .factors = {0.25, 0.5, 1, 2, 4}, .pairs = true,
+         .meaning = "how long no beam must break until a run ends; its least time and the hard end move with it"),
+
+    KNOB("contact_law", MODEL, .inputs = {{"contact.law"}}, .choices = {"off", "printed", "conservative"},
+         .pairs = true, .meaning = "repulsion of overlapping grains"),
+    KNOB("contact_bonded", MODEL, .inputs = {{"contact.bonded"}}, KNOB_ON_OFF, .pairs = true,
+         .meaning = "grains that a beam joins repel each other, too"),
+    KNOB("breaking", MODEL, .inputs = {{"threshold.breaking"}}, KNOB_ON_OFF, .pairs = true,
+         .meaning = "beams may break"),
+    KNOB_OF_SETTINGS,
+    {.name = NULL},
+};
+
 const struct engine_kind dem_engine = {
     .name = "dem",
     .dimensions = 2,
@@ -100,6 +121,7 @@ const struct engine_kind dem_engine = {
     .results_version = 4,
     .inputs = &dem_inputs,
     .results = &dem_results,
+    .knobs = knobs,
     .check = check,
     .warn = warn,
     .describe = describe,

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "engine/restart.h"
+#include "engine/sph/material/materials.h"
 #include "engine/sph/observe/observe.h"
 
 static void complete(void *inputs, const bool *given) {
@@ -97,6 +98,46 @@ static void release(void *run) {
   sph_run_free(run);
 }
 
+static const struct knob knobs[] = {
+    KNOB("particles", RESOLUTION, .inputs = {{"fidelity.particles", 1}}, KNOB_THIRDS, .step_power = -1.0 / 3,
+         .meaning = "number of particles of the target; the projectile's spacing follows"),
+    KNOB("points", RESOLUTION, .inputs = {{"fidelity.points", 1}}, KNOB_HALVES, .step_power = -1,
+         .meaning = "spacings along a plate"),
+    KNOB("projectile", RESOLUTION, .inputs = {{"fidelity.projectile_spacing", 1}}, .factors = {2, 1.41, 1, 0.71},
+         .step_power = 1, .meaning = "particle spacing of the projectile over the target's"),
+    KNOB("time_step", RESOLUTION,
+         .inputs = {{"fidelity.cfl", 1}, {"fidelity.damage_step", 1}, {"fidelity.distention_step", 1}}, KNOB_HALVES,
+         .step_power = 1, .pairs = true, .meaning = "all limits of the time step together"),
+    KNOB("courant", PART, .inputs = {{"fidelity.cfl", 1}}, KNOB_HALVES, .step_power = 1, .pairs = true,
+         .meaning = "time step over what a wave needs through h"),
+    KNOB("damage_step", PART, .inputs = {{"fidelity.damage_step", 1}}, .factors = {2, 1, 0.5, 0.25, 0.1},
+         .step_power = 1, .pairs = true, .meaning = "largest change of D^(1/3) in a time step"),
+    KNOB("precision", RESOLUTION, .inputs = {{"fidelity.precision"}}, .choices = {"float", "double"}, .pairs = true,
+         .meaning = "arithmetic of the pair loop"),
+    KNOB("flaw_list", RESOLUTION, .inputs = {{"fidelity.flaws"}}, .choices = {"compact", "exact"}, .pairs = true,
+         .meaning = "how a particle's flaws are stored"),
+    KNOB("stop", RESOLUTION, .inputs = {{"stop.quiet_time", 1}, {"stop.end_time", 1}}, .factors = {0.5, 1, 2, 4},
+         .pairs = true, .meaning = "how long no damage must grow until the run ends; the hard end moves with it"),
+
+    KNOB("smoothing", MODEL, .inputs = {{"fidelity.smoothing", 1}}, .factors = {0.9, 1, 1.15, 1.3}, .pairs = true,
+         .meaning = "smoothing length over the spacing: number of neighbours"),
+    KNOB("strength", MODEL, .inputs = {{"target.strength"}}, KNOB_ON_OFF, .pairs = true,
+         .meaning = "the target resists shear"),
+    KNOB("fracture", MODEL, .inputs = {{"target.fracture"}}, .choices = {"off"}, .pairs = true,
+         .meaning = "the target has flaws, from which cracks grow"),
+    KNOB("porosity", MODEL, .inputs = {{"target.material.porosity.curve"}}, .choices = {"none"}, .pairs = true,
+         .meaning = "pores are crushed"),
+    KNOB("gradient_correction", MODEL, .inputs = {{"method.gradient_correction"}}, KNOB_ON_OFF, .pairs = true,
+         .meaning = "velocity gradients exact for linear fields"),
+    KNOB("artificial_stress", MODEL, .inputs = {{"method.artificial_stress"}}, .choices = {"0", "0.3"}, .pairs = true,
+         .meaning = "repulsion against clumping in tension"),
+    KNOB("flaw_draw", MODEL, .inputs = {{"fracture.draw"}}, .choices = {"ranked", "poisson"},
+         .meaning = "flaw strengths by rank, or drawn"),
+
+    KNOB_OF_SETTINGS,
+    {.name = NULL},
+};
+
 const struct engine_kind sph_engine = {
     .name = "sph",
     .dimensions = 3,
@@ -108,6 +149,8 @@ const struct engine_kind sph_engine = {
     .results_version = 7,
     .inputs = &sph_inputs,
     .results = &sph_results,
+    .knobs = knobs,
+    .materials = &sph_materials,
     .complete = complete,
     .check_given = check_given,
     .check = check,

@@ -13,15 +13,16 @@ fail() { echo "house: $*"; failures=$((failures + 1)); }
 # Lines of C files of the five folders that match an extended regular expression, as FILE:LINE:TEXT.
 lines_of_code() { grep -rnE "$1" --include='*.[ch]' "${order[@]}" || true; }
 
-# Includes go left only: schemas <- engine <- analysis <- db <- campaign.
+# Includes go left only: schemas <- engine <- analysis <- db <- campaign. Right of engine nothing knows one engine.
 check_includes() {
   local -A rank
-  local i file line text from to
+  local i file line text from to path
   for i in "${!order[@]}"; do rank[${order[$i]}]=$i; done
   while IFS=: read -r file line text; do
     from=${file%%/*}
     to=${text#*\"}
     to=${to%%\"*}
+    path=$to
     case "$to" in
       */*) to=${to%%/*} ;;
       *) continue ;; # a header that the build generates
@@ -31,6 +32,8 @@ check_includes() {
       fail "$file:$line: include from the root, folder first: $text"
     elif [ "${rank[$to]}" -gt "${rank[$from]}" ]; then
       fail "$file:$line: $from may not include $to"
+    elif [[ $from != engine && $path =~ ^engine/([a-z]+)/ && -d engine/${BASH_REMATCH[1]}/scene ]]; then
+      fail "$file:$line: $from may not know one engine: $path"
     fi
   done < <(lines_of_code '^#[[:space:]]*include[[:space:]]*"')
 }

@@ -26,31 +26,32 @@ static struct scene *scene_of(const char *name) {
 }
 
 static const struct knob *knob_of(const char *engine, const char *name) {
-  const struct knob *knob = knob_find(engine, name, &error);
+  const struct knob *knob = engine_knob(engine_find(engine, &error), name, &error);
   assert_non_null(knob);
   return knob;
 }
 
 static void every_knob_names_inputs_of_its_engine(void **state) {
   (void)state;
-  assert_true(knob_count() > 15);
-  for (size_t i = 0; i < knob_count(); i++) {
-    const struct knob *knob = knob_at(i);
-    const struct engine_kind *kind = engine_find(knob->engine, &error);
-    assert_non_null(kind);
-    for (size_t j = 0; j < KNOB_INPUTS && knob->inputs[j].path; j++) {
-      const struct field *row = field_find(kind->inputs, knob->inputs[j].path, &error);
-      if (!row || strcmp(row->path, knob->inputs[j].path) != 0)
-        fail_msg("knob %s of %s: no input %s", knob->name, knob->engine, knob->inputs[j].path);
-      struct field_value value;
-      for (size_t c = 0; j == 0 && c < KNOB_LEVELS && knob->choices[c]; c++)
-        if (field_parse(row, knob->choices[c], &value, &error) != STATUS_OK)
-          fail_msg("knob %s of %s: %s", knob->name, knob->engine, error.message);
+  size_t count = 0;
+  for (size_t i = 0; i < engine_count(); i++) {
+    const struct engine_kind *kind = engine_at(i);
+    for (const struct knob *knob = kind->knobs; knob && knob->name; knob++) {
+      count++;
+      for (size_t j = 0; j < KNOB_INPUTS && knob->inputs[j].path; j++) {
+        const struct field *row = field_find(kind->inputs, knob->inputs[j].path, &error);
+        if (!row || strcmp(row->path, knob->inputs[j].path) != 0)
+          fail_msg("knob %s of %s: no input %s", knob->name, kind->name, knob->inputs[j].path);
+        struct field_value value;
+        for (size_t c = 0; j == 0 && c < KNOB_LEVELS && knob->choices[c]; c++)
+          if (field_parse(row, knob->choices[c], &value, &error) != STATUS_OK)
+            fail_msg("knob %s of %s: %s", knob->name, kind->name, error.message);
+      }
+      assert_int_equal((knob->factors[0] > 0) + (knob->choices[0] != NULL), knob->group != KNOB_SETTINGS);
+      assert_ptr_equal(engine_knob(kind, knob->name, &error), knob); /* a name is one knob of an engine */
     }
-    assert_int_equal((knob->factors[0] > 0) + (knob->choices[0] != NULL), knob->group != KNOB_SETTINGS);
-    for (size_t j = 0; j < i; j++) /* a name is one knob of an engine */
-      assert_true(strcmp(knob->name, knob_at(j)->name) != 0 || strcmp(knob->engine, knob_at(j)->engine) != 0);
   }
+  assert_true(count > 15);
 }
 
 /* Every knob of every built-in scene either has a ladder with one reference, decreasing steps and different levels, or
@@ -60,13 +61,11 @@ static void ladders_of_all_scenes(void **state) {
   size_t made = 0, refused = 0;
   for (size_t s = 0; s < scene_builtin_count(); s++) {
     struct scene *scene = scene_of(scene_builtin_name(s));
-    for (size_t i = 0; i < knob_count(); i++) {
+    for (const struct knob *knob = scene->kind->knobs; knob && knob->name; knob++) {
       struct ladder ladder;
       char *notes = NULL;
-      if (strcmp(knob_at(i)->engine, scene->kind->name) != 0)
-        continue;
       error = (struct error){0};
-      status code = ladder_make(knob_at(i), scene, NULL, &ladder, &notes, &error);
+      status code = ladder_make(knob, scene, NULL, &ladder, &notes, &error);
       free(notes);
       if (code != STATUS_OK) {
         assert_int_equal(code, STATUS_CONTENT);
@@ -89,7 +88,7 @@ static void ladders_of_all_scenes(void **state) {
       }
       assert_int_equal(references, 1);
       assert_int_equal(bases, 1);
-      if (knob_at(i)->group != KNOB_MODEL)
+      if (knob->group != KNOB_MODEL)
         assert_true(ladder.level[ladder.count - 1].reference);
       made++;
       ladder_clear(&ladder);
@@ -130,7 +129,7 @@ static void levels_of_ones_own(void **state) {
     assert_int_equal(ladder.count, 0);
     free(notes);
   }
-  assert_null(knob_find("dem", "particles", &error));
+  assert_null(engine_knob(engine_find("dem", &error), "particles", &error));
   assert_non_null(strstr(error.message, "grains"));
   scene_free(scene);
 }

@@ -75,7 +75,8 @@ static void set_up(struct fixture *f, const char *file, const char *quantity, ui
   assert_int_equal(store_open_writer(fixture_path(path, file), &f->store, NULL, 0, &error), STATUS_OK);
   assert_int_equal(scene_load("disc-explosion", NULL, &f->scene, &error), STATUS_OK);
   assert_int_equal(study_quantity_find(f->scene->kind, quantity, &f->study.quantity[0], &error), STATUS_OK);
-  assert_int_equal(ladder_make(knob_find("dem", "time_step", &error), f->scene, "1 us,0.5 us", &levels, &notes, &error),
+  assert_int_equal(ladder_make(engine_knob(f->scene->kind, "time_step", &error), f->scene, "1 us,0.5 us", &levels,
+                               &notes, &error),
                    STATUS_OK);
   free(notes);
   assert_int_equal(study_add(&f->study, f->scene, &levels, &error), STATUS_OK);

@@ -156,3 +156,24 @@ status sph_materials_load(const char *name, struct sph_material *out, struct err
   return status_fail(error, STATUS_MISSING, "there is no material '%.100s'%s%s%s `clast materials` lists them", name,
                      near ? "; did you mean '" : ";", near ? near : "", near ? "'?" : "");
 }
+
+static status load(const char *name, void *material, struct error *error) {
+  return sph_materials_load(name, material, error);
+}
+static status open_file(const char *path, void *material, char **text, struct error *error) {
+  return sph_materials_open(path, material, text, error);
+}
+
+static const char *const overview[][2] = {{"density", "density"},
+                                          {"bulk_modulus", "tillotson.A"},
+                                          {"shear_modulus", "shear_modulus"},
+                                          {"weibull_m", "weibull.m"},
+                                          {"weibull_k", "weibull.k"},
+                                          {NULL, NULL}};
+const struct engine_materials sph_materials = {.values = &sph_materials_table,
+                                               .overview = overview,
+                                               .name = sph_materials_name,
+                                               .text = sph_materials_text,
+                                               .load = load,
+                                               .open = open_file,
+                                               .source = sph_materials_source};

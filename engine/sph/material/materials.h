@@ -4,11 +4,12 @@
 #ifndef CLAST_ENGINE_SPH_MATERIAL_MATERIALS_H
 #define CLAST_ENGINE_SPH_MATERIAL_MATERIALS_H
 
+#include "engine/engine.h"
 #include "engine/sph/material/material.h"
-#include "schemas/field.h"
 
 extern const struct field_table sph_materials_nested; /* describes struct sph_material; a body of a scene contains it */
 extern struct field_table sph_materials_table;        /* the same, flat; constant once main() begins */
+extern const struct engine_materials sph_materials;   /* the functions below, for `clast materials` */
 
 /* The row of a member of struct sph_material, by its offset. */
 size_t sph_materials_row(size_t offset);
