@@ -1,4 +1,4 @@
-/* Likelihood, grid, and statistics of weighted nodes. The sampler is posterior_sample.c. */
+/* Likelihood, grid, sampler, and statistics of weighted nodes. */
 #include "analysis/inference/posterior.h"
 
 #include <gsl/gsl_cdf.h>
@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "analysis/inference/covariance.h"
-#include "analysis/inference/posterior_sample.h"
+#include "engine/random.h"
 
 /* Nodes per input of a grid of 1 to 4 inputs. */
 static const size_t nodes_of[POSTERIOR_GRID_INPUTS + 1] = {0, 400, 60, 22, 12};
@@ -149,11 +149,85 @@ static status make_grid(const struct posterior_model *model, struct posterior *o
   return STATUS_OK;
 }
 
+/* A sample of the posterior by walkers that move along lines through each other: the stretch move of Goodman & Weare
+ * (2010, doi 10.2140/camcos.2010.5.65), whose cost does not depend on how stretched the posterior is. The first half of
+ * the moves is discarded. */
+enum { SAMPLE_NODES = 4000, WALKERS = 80, SWEEPS = 200, KEPT = SAMPLE_NODES / WALKERS, EVERY = 2 };
+static const double STRETCH = 2; /* a, as in the paper */
+
+static double density(const struct posterior_model *model, const double *z) {
+  double sum = posterior_likelihood(model, z);
+  for (size_t i = 0; i < model->inputs; i++)
+    sum -= z[i] * z[i] / 2;
+  return sum;
+}
+
+/* One sweep: each half moves along lines through walkers of the other half. */
+static void sweep(const struct posterior_model *model, uint64_t seed, uint64_t number, double *z, double *log_density) {
+  const size_t p = model->inputs;
+  double moved[POSTERIOR_INPUTS];
+  for (size_t w = 0; w < WALKERS; w++) {
+    uint64_t bits[4];
+    random_bits(seed, RANDOM_INFERENCE, UINT64_C(1) << 62 | number << 16 | w, 0, bits);
+    const bool upper = w >= WALKERS / 2;
+    const size_t other = (size_t)(random_uniform(bits[0]) * (WALKERS / 2)) + (upper ? 0 : WALKERS / 2);
+    const double root = 1 / sqrt(STRETCH) + random_uniform(bits[1]) * (sqrt(STRETCH) - 1 / sqrt(STRETCH));
+    const double stretch = root * root; /* of density 1 / sqrt(stretch) between 1/a and a */
+    for (size_t i = 0; i < p; i++)
+      moved[i] = z[other * p + i] + stretch * (z[w * p + i] - z[other * p + i]);
+    const double there = density(model, moved);
+    if (log(random_uniform(bits[2])) < (double)(p - 1) * log(stretch) + there - log_density[w]) {
+      memcpy(z + w * p, moved, p * sizeof *moved);
+      log_density[w] = there;
+    }
+  }
+}
+
+/* Each walker begins at the best of ten draws from the prior. */
+static void begin_walkers(const struct posterior_model *model, uint64_t seed, double *z, double *log_density) {
+  const size_t p = model->inputs;
+  double tried[POSTERIOR_INPUTS];
+  for (size_t w = 0; w < WALKERS; w++) {
+    log_density[w] = -HUGE_VAL;
+    for (size_t t = 0; t < 10; t++) {
+      for (size_t i = 0; i < p; i++)
+        tried[i] = gsl_cdf_ugaussian_Pinv(
+            fmax(random_draw(seed, RANDOM_INFERENCE, UINT64_C(1) << 63 | w << 16 | t, i), 0x1p-54));
+      const double there = density(model, tried);
+      if (t > 0 && !(there > log_density[w]))
+        continue;
+      log_density[w] = there;
+      memcpy(z + w * p, tried, p * sizeof *tried);
+    }
+  }
+}
+
+/* Fills z, SAMPLE_NODES x inputs. The same seed gives the same sample. False: no memory. */
+static bool fill_sample(const struct posterior_model *model, uint64_t seed, double *z) {
+  const size_t p = model->inputs;
+  double *walkers = calloc(WALKERS * p, sizeof *walkers), *log_density = calloc(WALKERS, sizeof *log_density);
+  if (walkers && log_density) {
+    begin_walkers(model, seed, walkers, log_density);
+    uint64_t number = 0;
+    for (; number < SWEEPS; number++)
+      sweep(model, seed, number, walkers, log_density);
+    for (size_t kept = 0; kept < KEPT; kept++) {
+      for (int i = 0; i < EVERY; i++, number++)
+        sweep(model, seed, number, walkers, log_density);
+      memcpy(z + kept * WALKERS * p, walkers, WALKERS * p * sizeof *walkers);
+    }
+  }
+  const bool done = walkers && log_density;
+  free(walkers);
+  free(log_density);
+  return done;
+}
+
 static status make_sample(const struct posterior_model *model, uint64_t seed, struct posterior *out,
                           struct error *error) {
-  const status code = allocate(out, POSTERIOR_SAMPLE_NODES, model->inputs, error);
+  const status code = allocate(out, SAMPLE_NODES, model->inputs, error);
   out->sampled = true;
-  if (code != STATUS_OK || !posterior_sample_fill(model, seed, out->z))
+  if (code != STATUS_OK || !fill_sample(model, seed, out->z))
     return code ? code : status_fail(error, STATUS_MEMORY, "no memory for the posterior");
   for (size_t n = 0; n < out->count; n++)
     out->weight[n] = 1 / (double)out->count;

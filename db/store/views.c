@@ -3,7 +3,6 @@
 
 #include <stdlib.h>
 
-#include "db/store/views_text.h"
 #include "schemas/field.h"
 #include "schemas/text.h"
 

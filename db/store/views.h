@@ -5,8 +5,8 @@
 #define CLAST_DB_STORE_VIEWS_H
 
 #include "db/sql.h"
+#include "db/store/views_text.h"
 
-enum { VIEWS_COUNT = 5 };
 extern const char *const views_names[VIEWS_COUNT];
 
 /* Makes all views again, in the file and for this connection, and their rows in column_doc. Within the caller's

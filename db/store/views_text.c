@@ -2,7 +2,6 @@
 #include "db/store/views_text.h"
 
 #include "db/store/schema.h"
-#include "db/store/views.h"
 #include "db/store/views_statistics.h"
 
 static const char doing[] = "making the views";

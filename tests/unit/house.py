@@ -249,6 +249,75 @@ def check_choices():
     check(lists > 15, f"only {lists} lists of choices found")
 
 
+# ---- circles ----
+
+# A unit is NAME.c with NAME.h. Inside a room the units form no circle of includes, but for these, which should become
+# fewer: a file and its own parts, mostly. Of engine/sph only the number of units in circles is kept.
+CIRCLES = (
+    "schemas/document schemas/document_tree",
+    "schemas/unit schemas/unit_names",
+    "engine/mesh/build engine/mesh/mesh",
+    "engine/scene engine/scene_settings",
+    "analysis/pictures/snapshot_hdf5 analysis/pictures/snapshot_read",
+    "db/ask/page db/ask/page_private",
+    "db/store/identities db/store/internal db/store/store",
+    "campaign/document/campaign campaign/document/campaign_points campaign/document/campaign_read "
+    "campaign/document/campaign_vary campaign/document/campaign_walk",
+    "campaign/driver/driver campaign/driver/private",
+    "campaign/farm/farm campaign/farm/isolate campaign/farm/pool campaign/farm/pool_private campaign/farm/private "
+    "campaign/farm/server campaign/farm/slot",
+    "campaign/fit/fit campaign/fit/fit_values",
+)
+CIRCLES_OF_SPH = 47
+
+
+def includes_of_units(folder):
+    graph = {}
+    for path in files(".c", ".h", folders=(folder,)):
+        unit = path[:-2]
+        to = {name[:-2] for name in re.findall(r'^#\s*include "([^"]+\.h)"', read(path), re.M)}
+        graph.setdefault(unit, set()).update(other for other in to if other != unit and other.startswith(folder + "/"))
+    return graph
+
+
+def circles(graph):
+    """The sets of units that include each other, directly or through others (Tarjan 1972)."""
+    number, lowest, stack, found = {}, {}, [], []
+
+    def visit(unit):
+        number[unit] = lowest[unit] = len(number)
+        stack.append(unit)
+        for other in graph.get(unit, ()):
+            if other not in number:
+                visit(other)
+                lowest[unit] = min(lowest[unit], lowest[other])
+            elif other in stack:
+                lowest[unit] = min(lowest[unit], number[other])
+        if lowest[unit] == number[unit]:
+            members = stack[stack.index(unit):]
+            del stack[stack.index(unit):]
+            if len(members) > 1:
+                found.append(frozenset(members))
+
+    for unit in sorted(graph):
+        if unit not in number:
+            visit(unit)
+    return found
+
+
+def check_circles():
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"a", "d"}, "d": set()}) == [frozenset("abc")]
+    allowed = {frozenset(line.split()) for line in CIRCLES}
+    found = [circle for folder in FOLDERS for circle in circles(includes_of_units(folder))]
+    sph = [circle for circle in found if any(unit.startswith("engine/sph/") for unit in circle)]
+    for circle in found:
+        check(circle in sph or any(circle <= known for known in allowed), "a circle of includes: " + " ".join(sorted(circle)))
+    for known in allowed:
+        check(known in found, "this circle of includes is gone or smaller; shorten CIRCLES: " + " ".join(sorted(known)))
+    count = sum(len(circle) for circle in sph)
+    check(count <= CIRCLES_OF_SPH, f"engine/sph: {count} units in circles of includes, {CIRCLES_OF_SPH} before")
+
+
 # ---- words ----
 
 # Private words of this house that have no legitimate use in it.
@@ -268,6 +337,7 @@ check_names()
 check_modules()
 check_texts()
 check_choices()
+check_circles()
 check_words()
 check(checked > 1000, f"looked at too little ({checked} things)")
 print(f"house: {checked} quotations and names checked, {failures} broken")

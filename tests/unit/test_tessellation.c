@@ -14,7 +14,7 @@
 
 #include <libqhull_r/qhull_ra.h>
 
-#include "engine/dem/lattice/lattice.h"
+#include "engine/dem/lattice/tessellation.h"
 
 /* ---- the reference: areas and sides by Delaunay triangles of qhull; circumcentres in long double ---- */
 

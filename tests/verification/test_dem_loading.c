@@ -221,7 +221,7 @@ static bool thresholds_at(const struct dem_tessellation *t, const struct dem_inp
   for (size_t k = 0; k < t->pair_count; k++) {
     uint64_t own[2];
     for (int end = 0; end < 2; end++)
-      own[end] = dem_tessellation_square(t->grid_x[t->pair[k][end]], t->grid_y[t->pair[k][end]]);
+      own[end] = dem_lattice_square(t->grid_x[t->pair[k][end]], t->grid_y[t->pair[k][end]]);
     if (!(own[0] == square[0] && own[1] == square[1]) && !(own[0] == square[1] && own[1] == square[0]))
       continue;
     const struct dem_bond_block *b = &s->bond[k / DEM_BLOCK];
@@ -277,8 +277,8 @@ static void thresholds_belong_to_places(void **state) {
     assert_int_equal(dem_system_create(bodies[b], &in, 11, &there, NULL), STATUS_OK);
     for (size_t k = 0; k < t->pair_count; k++) {
       const uint32_t *pair = t->pair[k];
-      const uint64_t square[2] = {dem_tessellation_square(t->grid_x[pair[0]], t->grid_y[pair[0]]),
-                                  dem_tessellation_square(t->grid_x[pair[1]], t->grid_y[pair[1]])};
+      const uint64_t square[2] = {dem_lattice_square(t->grid_x[pair[0]], t->grid_y[pair[0]]),
+                                  dem_lattice_square(t->grid_x[pair[1]], t->grid_y[pair[1]])};
       double here[2], factor[2];
       assert_true(thresholds_at(t, &in, s, square, here));
       assert_true(thresholds_at(bodies[b], &in, there, square, factor));

@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-#include "engine/dem/contacts/neighbours.h"
 #include "engine/dem/step/kernels.h"
 
 struct dem_contact dem_breaking_contact(const struct dem_system *s, int32_t pair) {
@@ -45,8 +44,8 @@ static double contact_begins(const struct dem_system *s, int32_t pair) {
   const double dx = s->c.x[j] - s->c.x[i], dy = s->c.y[j] - s->c.y[i];
   struct dem_ring ring[2];
   struct dem_overlap o;
-  dem_neighbours_ring(s, i, 0.0, 0.0, &ring[0]);
-  dem_neighbours_ring(s, j, dx, dy, &ring[1]);
+  dem_system_arrays_ring(s, i, 0.0, 0.0, &ring[0]);
+  dem_system_arrays_ring(s, j, dx, dy, &ring[1]);
   s->kernels->overlap(ring, &o);
   if (o.apart || !(o.twice_area > 0.0))
     return 0.0;

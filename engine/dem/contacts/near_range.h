@@ -144,8 +144,8 @@ LANES_INLINE void near_general(struct dem_system *s, bool measure, enum dem_cont
     const uint32_t code = s->general[k];
     const struct near_candidate candidate = near_candidate(s, code);
     const uint32_t i = candidate.first, j = candidate.second;
-    dem_neighbours_ring(s, i, 0.0, 0.0, &ring[0]);
-    dem_neighbours_ring(s, j, s->c.x[j] - s->c.x[i], s->c.y[j] - s->c.y[i], &ring[1]);
+    dem_system_arrays_ring(s, i, 0.0, 0.0, &ring[0]);
+    dem_system_arrays_ring(s, j, s->c.x[j] - s->c.x[i], s->c.y[j] - s->c.y[i], &ring[1]);
     struct dem_overlap overlap;
     overlap_rings(ring, &overlap);
     if (overlap.apart) {

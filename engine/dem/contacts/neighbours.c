@@ -16,21 +16,6 @@ static const double neighbour_share = 0.5; /* of a neighbour's speed counts as t
 static const double largest_skin = 3.0;
 static const uint32_t none = UINT32_MAX;
 
-void dem_neighbours_ring(const struct dem_system *s, uint32_t grain, double dx, double dy, struct dem_ring *ring) {
-  const uint32_t first = s->first_vertex[grain];
-  const double c = s->c.cosine[grain], sn = s->c.sine[grain];
-  ring->count = s->first_vertex[grain + 1] - first;
-  for (size_t v = 0; v < ring->count; v++) {
-    const double x = s->outline_x[first + v], y = s->outline_y[first + v];
-    ring->x[v] = c * x - sn * y + dx;
-    ring->y[v] = sn * x + c * y + dy;
-  }
-  for (size_t v = ring->count; v <= dem_overlap_last(ring); v++) {
-    ring->x[v] = ring->x[0];
-    ring->y[v] = ring->y[0];
-  }
-}
-
 void dem_neighbours_cache_side(struct dem_system *s, uint32_t near, const struct dem_overlap *overlap) {
   const struct dem_near_pair *pair = &s->near_pair[near];
   struct dem_near_block *block = &s->near[near / DEM_BLOCK];
@@ -148,7 +133,7 @@ static bool consider(struct dem_system *s, uint32_t i, uint32_t j, const struct 
     return true;
   struct dem_ring ring[2]; /* first is the lower index, as in near_pair */
   struct dem_overlap overlap;
-  dem_neighbours_ring(s, j, dx, dy, &ring[0]);
+  dem_system_arrays_ring(s, j, dx, dy, &ring[0]);
   ring[1].count = mine->count;
   const size_t used = (dem_overlap_last(mine) + 1) * sizeof(double);
   memcpy(ring[1].x, mine->x, used);
@@ -220,7 +205,7 @@ static bool search_grain(struct dem_system *s, uint32_t i, double per_size, size
   s->cell_low[i][0] = x0;
   s->cell_low[i][1] = y0;
   struct dem_ring mine;
-  dem_neighbours_ring(s, i, 0.0, 0.0, &mine);
+  dem_system_arrays_ring(s, i, 0.0, 0.0, &mine);
   for (int32_t y = y0; y <= y1; y++)
     for (int32_t x = x0; x <= x1; x++) {
       const size_t bucket = bucket_of(s, x, y);

@@ -118,12 +118,12 @@ static void threshold_factors(const struct dem_inputs *in, const struct dem_tess
   if (field_is_off(in->threshold.modulus))
     return;
   uint32_t a = t->pair[pair][0], b = t->pair[pair][1];
-  if (dem_tessellation_square(t->grid_x[b], t->grid_y[b]) < dem_tessellation_square(t->grid_x[a], t->grid_y[a])) {
+  if (dem_lattice_square(t->grid_x[b], t->grid_y[b]) < dem_lattice_square(t->grid_x[a], t->grid_y[a])) {
     const uint32_t swap = a;
     a = b;
     b = swap;
   }
-  const uint64_t item = dem_tessellation_square(t->grid_x[a], t->grid_y[a]);
+  const uint64_t item = dem_lattice_square(t->grid_x[a], t->grid_y[a]);
   const uint64_t along = (t->grid_x[b] - t->grid_x[a]) & 0xffu, up = (t->grid_y[b] - t->grid_y[a]) & 0xffu;
   const uint64_t body = t->joined_at > 0 && a >= t->joined_at;
   for (uint64_t k = 0; k < 2; k++) {

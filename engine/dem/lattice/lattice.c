@@ -23,7 +23,7 @@ status dem_lattice_fill(const struct dem_lattice *lattice, struct dem_lattice_po
     for (uint32_t column = 0; column < points->columns; column++) {
       /* An item is a square counted from the disc's centre or the block's corner: a larger body of one seed holds the
        * smaller one's points. */
-      uint64_t item = dem_tessellation_square(column - points->centre, row - points->centre);
+      uint64_t item = dem_lattice_square(column - points->centre, row - points->centre);
       uint64_t bits[4];
       random_bits(lattice->seed, RANDOM_LATTICE, item, lattice->stream, bits);
       points->point[(size_t)row * points->columns +

@@ -10,8 +10,31 @@
 #define CLAST_ENGINE_DEM_LATTICE_LATTICE_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
-#include "engine/dem/lattice/tessellation.h"
+#include "schemas/status.h"
+
+struct dem_point {
+  double x, y;
+};
+
+enum dem_outline { DEM_OUTLINE_DISC, DEM_OUTLINE_BLOCK };
+
+struct dem_lattice {
+  enum dem_outline outline;
+  double spacing;          /* m, grid constant */
+  double disorder;         /* 0..1: a over spacing; 0 = square lattice */
+  double radius;           /* disc: cells whose centroid lies within it */
+  uint32_t columns, rows;  /* block: cells clipped by the rectangle columns x rows spacings */
+  struct dem_point origin; /* centre of the disc, lower left corner of the block */
+  uint64_t seed;
+  uint64_t stream; /* which body of the scene: bodies of one seed differ */
+};
+
+/* One number for a lattice square. A square of one seed has the same number in a body of any size. */
+static inline uint64_t dem_lattice_square(uint32_t grid_x, uint32_t grid_y) {
+  return (uint64_t)grid_y << 32 | grid_x;
+}
 
 struct dem_lattice_points {
   uint32_t columns, rows;  /* squares */

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/dem/lattice/lattice.h"
 #include "engine/grow.h"
 
 /* Corners nearer than this (in spacings) count as one. Rounding puts the same corner at most some 1e-14 apart at

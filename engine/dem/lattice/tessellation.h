@@ -3,13 +3,8 @@
 #define CLAST_ENGINE_DEM_LATTICE_TESSELLATION_H
 
 #include <stddef.h>
-#include <stdint.h>
 
-#include "schemas/status.h"
-
-struct dem_point {
-  double x, y;
-};
+#include "engine/dem/lattice/lattice.h"
 
 /* The cells of a body, and the pairs of cells with a common side. */
 struct dem_tessellation {
@@ -25,24 +20,6 @@ struct dem_tessellation {
   uint32_t (*pair)[2]; /* neighbours, first < second, sorted */
   double *side;        /* m, length of the common side of each pair */
   size_t joined_at;    /* first cell of the second of two joined bodies; 0 for one body */
-};
-
-/* One number for a lattice square. A square of one seed has the same number in a body of any size. */
-static inline uint64_t dem_tessellation_square(uint32_t grid_x, uint32_t grid_y) {
-  return (uint64_t)grid_y << 32 | grid_x;
-}
-
-enum dem_outline { DEM_OUTLINE_DISC, DEM_OUTLINE_BLOCK };
-
-struct dem_lattice {
-  enum dem_outline outline;
-  double spacing;          /* m, grid constant */
-  double disorder;         /* 0..1: a over spacing; 0 = square lattice */
-  double radius;           /* disc: cells whose centroid lies within it */
-  uint32_t columns, rows;  /* block: cells clipped by the rectangle columns x rows spacings */
-  struct dem_point origin; /* centre of the disc, lower left corner of the block */
-  uint64_t seed;
-  uint64_t stream; /* which body of the scene: bodies of one seed differ */
 };
 
 status dem_tessellation_make(const struct dem_lattice *lattice, struct dem_tessellation **out, struct error *error);

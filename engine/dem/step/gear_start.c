@@ -4,6 +4,7 @@
 
 #include "engine/dem/contacts/neighbours.h"
 #include "engine/dem/step/kernels.h"
+#include "engine/dem/step/system.h"
 
 enum { TRIAL_STEPS = 4 };
 

@@ -4,7 +4,7 @@
 #define CLAST_ENGINE_DEM_STEP_KERNELS_H
 
 #include "engine/cpu_class.h"
-#include "engine/dem/contacts/neighbours.h"
+#include "engine/dem/step/system_layout.h"
 
 struct dem_kernels {
   const char *name;                           /* of the CPU class */

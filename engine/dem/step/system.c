@@ -270,7 +270,7 @@ double dem_system_fastest_approach(const struct dem_system *s) {
 
 size_t dem_system_outline(const struct dem_system *s, uint32_t grain, size_t capacity, struct dem_point *vertices) {
   struct dem_ring ring;
-  dem_neighbours_ring(s, grain, s->c.x[grain], s->c.y[grain], &ring);
+  dem_system_arrays_ring(s, grain, s->c.x[grain], s->c.y[grain], &ring);
   for (size_t v = 0; v < ring.count && v < capacity; v++)
     vertices[v] = (struct dem_point){ring.x[v], ring.y[v]};
   return ring.count;

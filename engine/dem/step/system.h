@@ -7,15 +7,9 @@
 
 #include <stdbool.h>
 
+#include "engine/dem/beams/break.h"
 #include "engine/dem/lattice/tessellation.h"
 #include "engine/dem/scene/inputs.h"
-
-struct dem_break {
-  double time;             /* s */
-  uint32_t beam;           /* index into the tessellation's pairs */
-  double strain, angle[2]; /* angle: rotations of the two ends, rad */
-  bool bending;            /* mode: the bending term was the larger one */
-};
 
 /* Energy per term, J/m. closed = kinetic + beam + contact + broken_beam + damping + friction - external_work; for a law
  * that stores energy `contact` is that energy, for another the work done on contacts. */

@@ -127,3 +127,18 @@ size_t dem_system_arrays_saved(struct dem_system *s, struct restart_block blocks
       blocks[count++] = (struct restart_block){*pointer(s, &all[k]), all[k].saved * all[k].size};
   return count;
 }
+
+void dem_system_arrays_ring(const struct dem_system *s, uint32_t grain, double dx, double dy, struct dem_ring *ring) {
+  const uint32_t first = s->first_vertex[grain];
+  const double c = s->c.cosine[grain], sn = s->c.sine[grain];
+  ring->count = s->first_vertex[grain + 1] - first;
+  for (size_t v = 0; v < ring->count; v++) {
+    const double x = s->outline_x[first + v], y = s->outline_y[first + v];
+    ring->x[v] = c * x - sn * y + dx;
+    ring->y[v] = sn * x + c * y + dy;
+  }
+  for (size_t v = ring->count; v <= dem_overlap_last(ring); v++) {
+    ring->x[v] = ring->x[0];
+    ring->y[v] = ring->y[0];
+  }
+}

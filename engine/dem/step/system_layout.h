@@ -8,7 +8,9 @@
 #ifndef CLAST_ENGINE_DEM_STEP_SYSTEM_LAYOUT_H
 #define CLAST_ENGINE_DEM_STEP_SYSTEM_LAYOUT_H
 
-#include "engine/dem/step/system.h"
+#include "engine/dem/beams/break.h"
+#include "engine/dem/lattice/tessellation.h"
+#include "engine/dem/scene/inputs.h"
 #include "engine/restart.h"
 
 enum { DEM_BLOCK = 8, DEM_MAX_VERTICES = 64, DEM_NO_PAIR = -1 };
@@ -54,6 +56,27 @@ struct dem_near_pair {
   int32_t pair;           /* tessellation pair, or DEM_NO_PAIR */
   uint32_t unused;
   struct dem_contact contact; /* of a pair that is no tessellation pair */
+};
+
+/* A convex outline: vertices counter-clockwise, about any origin. The entries from `count` to its next multiple of
+ * eight, and one more, repeat the first vertex. */
+struct dem_ring {
+  size_t count;
+  double x[DEM_MAX_VERTICES + DEM_BLOCK] DEM_ALIGNED, y[DEM_MAX_VERTICES + DEM_BLOCK] DEM_ALIGNED;
+};
+
+/* The last entry in use. */
+static inline size_t dem_overlap_last(const struct dem_ring *ring) {
+  return (ring->count + DEM_BLOCK - 1) / DEM_BLOCK * DEM_BLOCK;
+}
+
+struct dem_overlap {
+  bool apart;                /* a side separates the two; then only that side and `gap` are set */
+  double gap;                /* m, along the best separating side; negative: penetration */
+  int owner;                 /* whose side it is: 0 or 1 */
+  size_t side, vertex;       /* that side, and the vertex of the other that is nearest to it */
+  double origin_x, origin_y; /* of the sums */
+  double twice_area, chord_x, chord_y, moment, xx, xy, yy; /* see contact_force.h */
 };
 
 /* A pair for the general overlap: near list position, or bond lane with the high bit set. */
@@ -177,6 +200,10 @@ bool dem_system_arrays_grow_near(struct dem_system *system, size_t pairs);
 /* Lists the memory blocks on which the next step depends, and returns their number. */
 enum { DEM_SAVED_BLOCKS = 48 };
 size_t dem_system_arrays_saved(struct dem_system *system, struct restart_block blocks[DEM_SAVED_BLOCKS]);
+
+/* Writes the outline of a grain, in its present orientation and shifted by (dx, dy) from its own centre. */
+void dem_system_arrays_ring(const struct dem_system *system, uint32_t grain, double dx, double dy,
+                            struct dem_ring *ring);
 
 /* Fills the Gear derivatives r_2 .. r_5 from the accelerations along four trial steps of the classical Runge-Kutta
  * method; the trial steps are undone. False: no memory, or the trial steps are not finite. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/dem/step/system.h"
 #include "engine/dem/step/system_layout.h"
 
 static void add(double *f, uint32_t grain, double x, double y, double torque) {

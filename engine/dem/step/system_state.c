@@ -1,6 +1,7 @@
 /* Saves all data on which the next step depends to memory of the caller, for restart files and trial steps. */
 #include <string.h>
 
+#include "engine/dem/step/system.h"
 #include "engine/dem/step/system_layout.h"
 
 size_t dem_system_state_size(const struct dem_system *system) {
