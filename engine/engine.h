@@ -8,8 +8,6 @@
 #include "engine/outcome.h"
 #include "schemas/field.h"
 
-struct restart_run;
-
 /* Named materials: documents, with a source for each value. */
 struct engine_materials {
   const struct field_table *values;  /* of one material */
@@ -51,7 +49,8 @@ struct engine_kind {
   double (*work)(const void *inputs); /* a-priori cost in arbitrary units (grain- or particle-steps), for scheduling */
   int64_t *(*threads)(void *inputs);  /* the input that says how many threads one run takes. NULL: always one */
 
-  /* Builds the initial state; inputs are copied. On failure *run is NULL. STATUS_MEMORY or STATUS_CONTENT. */
+  /* Builds the initial state; inputs are copied. The run begins with a struct frame (engine/frame.h). On failure *run
+   * is NULL. STATUS_MEMORY or STATUS_CONTENT. */
   status (*prepare)(const void *inputs, uint64_t seed, void **run, struct error *error);
   /* Advances by at most max_steps; Sets *finished after the scene's stop rule, its end or a failure. A numerical
    * failure (NaN, collapse) is not an error status: the run is finished, and its outcome names the failure.
@@ -66,9 +65,9 @@ struct engine_kind {
   /* Big fields (grains, beams, break log, curves; particles) as one self-describing HDF5 file, written to a temporary
    * name and renamed. Pictures are drawn from it, too. */
   status (*write_snapshot)(void *run, const char *path, struct error *error);
-  /* The parts of a restart file (engine/restart.h): the state of the run, and its moving system as bytes.
-   * load_system: STATUS_CONTENT when the bytes fit no system of this run, STATUS_MEMORY. */
-  struct restart_run (*restart)(void *run);
+  /* The moving system as system_size bytes, for restart files (engine/restart.h). load_system: STATUS_CONTENT when the
+   * bytes fit no system of this run, STATUS_MEMORY. */
+  size_t (*system_size)(const void *run);
   void (*save_system)(const void *run, void *bytes);
   status (*load_system)(void *run, const void *bytes, size_t size, struct error *error);
   void (*free)(void *run); /* NULL is fine */

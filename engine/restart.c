@@ -132,17 +132,18 @@ static status write_parts(const struct engine_kind *kind, const void *inputs, ui
 }
 
 status restart_save(const struct engine_kind *kind, void *run, const char *path, struct error *error) {
-  const struct restart_run r = kind->restart(run);
-  void *system = malloc(r.system_size);
+  const struct frame *frame = run;
+  const size_t size = kind->system_size(run);
+  void *system = malloc(size);
   if (!system)
     return status_fail(error, STATUS_MEMORY, "no memory to save '%s'", path);
   kind->save_system(run, system);
   const struct part parts[PARTS] = {
-      [STATE] = {r.state.at, r.state.size},
-      [SAMPLES] = {r.sample, *r.samples * r.sample_size},
-      [SYSTEM] = {system, r.system_size},
+      [STATE] = {frame->state, frame->state_size},
+      [SAMPLES] = {frame->sample, frame->state->samples * frame->sample_size},
+      [SYSTEM] = {system, size},
   };
-  status code = write_parts(kind, r.inputs, r.seed, parts, path, error);
+  status code = write_parts(kind, frame->inputs, frame->seed, parts, path, error);
   free(system);
   return code;
 }
@@ -230,14 +231,15 @@ static status read_head(struct bytes *b, const char *identity, const char *path,
 /* Fills a run, which has just been created, from the parts. */
 static status load_parts(const struct engine_kind *kind, void *run, const struct part parts[PARTS], const char *path,
                          struct error *error) {
-  const struct restart_run r = kind->restart(run);
-  if (parts[STATE].size != r.state.size)
+  const struct frame *frame = run;
+  if (parts[STATE].size != frame->state_size)
     return refuse(path, error);
-  memcpy(r.state.at, parts[STATE].at, r.state.size);
-  if (*r.samples > r.sample_capacity || parts[SAMPLES].size != *r.samples * r.sample_size)
+  memcpy(frame->state, parts[STATE].at, frame->state_size);
+  if (frame->state->samples > frame->sample_capacity ||
+      parts[SAMPLES].size != frame->state->samples * frame->sample_size)
     return refuse(path, error);
   if (parts[SAMPLES].size)
-    memcpy(r.sample, parts[SAMPLES].at, parts[SAMPLES].size);
+    memcpy(frame->sample, parts[SAMPLES].at, parts[SAMPLES].size);
   status code = kind->load_system(run, parts[SYSTEM].at, parts[SYSTEM].size, error);
   return code == STATUS_CONTENT ? refuse(path, error) : code;
 }

@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "engine/engine.h"
+#include "engine/frame.h"
 
 /* Memory that is saved and loaded as raw bytes. */
 struct restart_block {
@@ -22,18 +23,6 @@ size_t restart_blocks_size(const struct restart_block *blocks, size_t count); /*
 /* `bytes` holds all blocks one after the other. */
 void restart_blocks_save(const struct restart_block *blocks, size_t count, void *bytes);
 void restart_blocks_load(const struct restart_block *blocks, size_t count, const void *bytes);
-
-/* The description of a run for restart files; an engine fills it (engine_kind.restart). Everything is borrowed from the
- * run. */
-struct restart_run {
-  const void *inputs;
-  uint64_t seed;
-  struct restart_block state;
-  const uint64_t *samples; /* number of samples; points into the state */
-  void *sample;            /* sample_capacity of them, sample_size bytes each */
-  size_t sample_size, sample_capacity;
-  size_t system_size; /* bytes that save_system writes */
-};
 
 /* STATUS_IO, STATUS_MEMORY. */
 status restart_save(const struct engine_kind *kind, void *run, const char *path, struct error *error);

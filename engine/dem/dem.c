@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "engine/dem/run/run.h"
-#include "engine/restart.h"
 
 /* An upper bound per grain: outlines, beams and contacts of the moving system, the tessellation, and the search for
  * fragments at the end. tests/unit/test_dem_engine.c compares it with the built-in scenes. */
@@ -39,9 +38,10 @@ static status prepare(const void *inputs, uint64_t seed, void **run, struct erro
 }
 
 static status step(void *run, uint64_t max_steps, bool *finished, struct error *error) {
-  const status code = dem_run_advance(run, max_steps, error);
-  *finished = ((struct dem_run *)run)->state.finished;
-  return code;
+  struct dem_run *r = run;
+  const status code = frame_advance(&r->frame, max_steps);
+  *finished = r->state.frame.finished;
+  return code ? status_fail(error, code, "no memory for a step") : STATUS_OK;
 }
 
 static double time_of(const void *run) {
@@ -50,7 +50,7 @@ static double time_of(const void *run) {
 
 static double progress(const void *run) {
   const struct dem_run *r = run;
-  return r->state.finished ? 1 : fmin(dem_system_time(r->system) / dem_inputs_end_time(&r->inputs), 1);
+  return r->state.frame.finished ? 1 : fmin(dem_system_time(r->system) / dem_inputs_end_time(&r->inputs), 1);
 }
 
 static status finish(void *run, struct outcome *outcome, void *result, struct fragment **fragments,
@@ -62,16 +62,8 @@ static status write_snapshot(void *run, const char *path, struct error *error) {
   return dem_snapshot_write(run, path, error);
 }
 
-static struct restart_run restart(void *run) {
-  struct dem_run *r = run;
-  return (struct restart_run){.inputs = &r->inputs,
-                              .seed = r->seed,
-                              .state = {&r->state, sizeof r->state},
-                              .samples = &r->state.samples,
-                              .sample = r->sample,
-                              .sample_size = sizeof *r->sample,
-                              .sample_capacity = r->sample_capacity,
-                              .system_size = dem_system_state_size(r->system)};
+static size_t system_size(const void *run) {
+  return dem_system_state_size(((const struct dem_run *)run)->system);
 }
 
 static void save_system(const void *run, void *bytes) {
@@ -133,7 +125,7 @@ const struct engine_kind dem_engine = {
     .time = time_of,
     .finish = finish,
     .write_snapshot = write_snapshot,
-    .restart = restart,
+    .system_size = system_size,
     .save_system = save_system,
     .load_system = load_system,
     .free = release,

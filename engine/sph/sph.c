@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-#include "engine/restart.h"
 #include "engine/sph/material/materials.h"
 #include "engine/sph/observe/observe.h"
 
@@ -47,8 +46,8 @@ static status prepare(const void *inputs, uint64_t seed, void **run, struct erro
 
 static status step(void *run, uint64_t max_steps, bool *finished, struct error *error) {
   struct sph_run *r = run;
-  const status code = sph_run_advance(r, max_steps);
-  *finished = r->state.finished;
+  const status code = frame_advance(&r->frame, max_steps);
+  *finished = r->state.frame.finished;
   return code ? status_fail(error, code, "%s", sph_system_failure(r->system)) : STATUS_OK;
 }
 
@@ -58,7 +57,7 @@ static double time_of(const void *run) {
 
 static double progress(const void *run) {
   const struct sph_run *r = run;
-  return r->state.finished ? 1 : fmin(sph_system_time(r->system) / r->inputs.stop.end_time, 1);
+  return r->state.frame.finished ? 1 : fmin(sph_system_time(r->system) / r->inputs.stop.end_time, 1);
 }
 
 static status finish(void *run, struct outcome *outcome, void *result, struct fragment **fragments,
@@ -70,16 +69,8 @@ static status write_snapshot(void *run, const char *path, struct error *error) {
   return sph_snapshot_write(run, path, error);
 }
 
-static struct restart_run restart(void *run) {
-  struct sph_run *r = run;
-  return (struct restart_run){.inputs = &r->inputs,
-                              .seed = r->seed,
-                              .state = {&r->state, sizeof r->state},
-                              .samples = &r->state.samples,
-                              .sample = r->sample,
-                              .sample_size = sizeof *r->sample,
-                              .sample_capacity = r->sample_capacity,
-                              .system_size = sph_system_state_size(r->system)};
+static size_t system_size(const void *run) {
+  return sph_system_state_size(((const struct sph_run *)run)->system);
 }
 
 static void save_system(const void *run, void *bytes) {
@@ -165,7 +156,7 @@ const struct engine_kind sph_engine = {
     .time = time_of,
     .finish = finish,
     .write_snapshot = write_snapshot,
-    .restart = restart,
+    .system_size = system_size,
     .save_system = save_system,
     .load_system = load_system,
     .free = release,

@@ -25,18 +25,18 @@ static struct dem_run *disc(const char *extra) {
   struct error error = {0};
   if (dem_run_create(&inputs, 3, &run, &error))
     fail_msg("%s", error.message);
-  assert_int_equal(dem_run_advance(run, BEFORE, NULL), STATUS_OK);
-  assert_false(run->state.finished);
+  frame_advance(&run->frame, BEFORE);
+  assert_false(run->state.frame.finished);
   return run;
 }
 
 static void dem_ends(struct dem_run *run, int state, const char *const *words) {
   uint64_t before = dem_system_steps(run->system);
-  assert_int_equal(dem_run_advance(run, 10000, NULL), STATUS_OK);
-  assert_true(run->state.finished);
+  frame_advance(&run->frame, 10000);
+  assert_true(run->state.frame.finished);
   assert_true(dem_system_steps(run->system) - before <= LATE);
-  assert_int_equal(run->state.outcome_state, state);
-  names(run->state.message, words);
+  assert_int_equal(run->state.frame.outcome_state, state);
+  names(run->state.frame.message, words);
   dem_run_free(run);
 }
 
@@ -70,9 +70,9 @@ static void a_step_beyond_stability_ends_a_run(void **state) {
     struct dem_run *run = disc(gear ? "fidelity.integrator=gear" : "fidelity.integrator=verlet");
     run->inputs.fidelity.time_step = 4 * run->stable_time_step;
     const uint64_t before = dem_system_steps(run->system);
-    assert_int_equal(dem_run_advance(run, 1000, NULL), STATUS_OK);
-    assert_true(run->state.finished && run->state.outcome_state != OUTCOME_COMPLETED);
-    assert_true(dem_system_steps(run->system) - before <= 1000 && *run->state.message);
+    frame_advance(&run->frame, 1000);
+    assert_true(run->state.frame.finished && run->state.frame.outcome_state != OUTCOME_COMPLETED);
+    assert_true(dem_system_steps(run->system) - before <= 1000 && *run->state.frame.message);
     dem_run_free(run);
   }
 }
@@ -87,18 +87,18 @@ static struct sph_run *sphere(const char *extra) {
   struct error error = {0};
   if (sph_run_create(&inputs, 3, &run, &error))
     fail_msg("%s", error.message);
-  assert_int_equal(sph_run_advance(run, BEFORE), STATUS_OK);
-  assert_false(run->state.finished);
+  assert_int_equal(frame_advance(&run->frame, BEFORE), STATUS_OK);
+  assert_false(run->state.frame.finished);
   return run;
 }
 
 static void sph_ends(struct sph_run *run, int state, const char *const *words) {
   uint64_t before = sph_system_steps(run->system);
-  assert_int_equal(sph_run_advance(run, 10000), STATUS_OK);
-  assert_true(run->state.finished);
+  assert_int_equal(frame_advance(&run->frame, 10000), STATUS_OK);
+  assert_true(run->state.frame.finished);
   assert_true(sph_system_steps(run->system) - before <= LATE);
-  assert_int_equal(run->state.outcome_state, state);
-  names(run->state.message, words);
+  assert_int_equal(run->state.frame.outcome_state, state);
+  names(run->state.frame.message, words);
   sph_run_free(run);
 }
 
@@ -167,8 +167,8 @@ static void drift_within_a_wide_bound_is_flagged(void **state) {
   struct fragment *fragments;
   size_t count;
   struct error error;
-  run->state.closed_start *= 1.05;
-  assert_int_equal(dem_run_advance(run, LATE, NULL), STATUS_OK);
+  run->state.frame.closed_start *= 1.05;
+  frame_advance(&run->frame, LATE);
   assert_int_equal(dem_report_finish(run, &outcome, &results, &fragments, &count, &error), STATUS_OK);
   assert_string_equal(outcome.warnings, "drift");
   free(fragments);
@@ -276,12 +276,12 @@ static void long_messages_keep_their_remedy(void **state) {
                                         "impact.mass=2 g", "fidelity.energy_bound=1.23456e-5 %");
   struct sph_run *run = NULL;
   assert_int_equal(sph_run_create(&in, 3, &run, NULL), STATUS_OK);
-  assert_int_equal(sph_run_advance(run, 1), STATUS_OK);
+  assert_int_equal(frame_advance(&run->frame, 1), STATUS_OK);
   run->system->now.clamped = 1e300; /* cold matter got most of the drift */
-  run->state.energy_start *= 1.123456789e10;
-  assert_int_equal(sph_run_advance(run, LATE), STATUS_OK);
-  assert_int_equal(run->state.outcome_state, OUTCOME_ENERGY);
-  names(run->state.message, (const char *const[]){"energy.clamped", "or take more particles", NULL});
+  run->state.frame.closed_start *= 1.123456789e10;
+  assert_int_equal(frame_advance(&run->frame, LATE), STATUS_OK);
+  assert_int_equal(run->state.frame.outcome_state, OUTCOME_ENERGY);
+  names(run->state.frame.message, (const char *const[]){"energy.clamped", "or take more particles", NULL});
   sph_run_free(run);
 }
 
@@ -312,20 +312,20 @@ static void the_monitor_is_cheap(void **state) {
   const int steps = run_case_full() ? 3000 : 1000;
   struct dem_run *run = disc(run_case_full() ? "body.diameter=40 cm" : "stop.end_time=1 s");
   double begin = clock_cpu_s();
-  assert_int_equal(dem_run_advance(run, (uint64_t)steps, NULL), STATUS_OK);
+  frame_advance(&run->frame, (uint64_t)steps);
   const double all = clock_cpu_s() - begin;
   begin = clock_cpu_s();
   for (int k = 0; k < steps / LATE; k++)
-    dem_run_look(run);
+    frame_look(&run->frame);
   const double dem = (clock_cpu_s() - begin) / all;
   dem_run_free(run);
 
   struct sph_run *solid = sphere("fidelity.precision=double");
   begin = clock_cpu_s();
   const uint64_t from = sph_system_steps(solid->system);
-  assert_int_equal(sph_run_advance(solid, (uint64_t)steps), STATUS_OK);
+  assert_int_equal(frame_advance(&solid->frame, (uint64_t)steps), STATUS_OK);
   const double whole = clock_cpu_s() - begin;
-  const uint64_t looks = (sph_system_steps(solid->system) - from) / SPH_RUN_LOOKS;
+  const uint64_t looks = (sph_system_steps(solid->system) - from) / solid->frame.kind->looks;
   begin = clock_cpu_s();
   for (uint64_t k = 0; k < looks; k++)
     (void)sph_system_ledger(solid->system);

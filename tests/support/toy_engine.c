@@ -7,8 +7,8 @@
 #include <time.h>
 
 #include "engine/dem/dem.h"
+#include "engine/frame.h"
 #include "engine/random.h"
-#include "engine/restart.h"
 #include "engine/sph/sph.h"
 #include "schemas/file.h"
 
@@ -37,9 +37,11 @@ static const struct field result_rows[] = {
 static const struct field_table results = FIELD_TABLE(result_rows, struct toy_results, "toy result", "A broken stick.");
 
 struct toy_run {
+  struct frame frame;
   struct toy_inputs inputs;
-  uint64_t seed, samples;
+  uint64_t seed;
   struct {
+    struct frame_state frame;
     int64_t steps;
   } state;
 };
@@ -68,6 +70,10 @@ static status prepare(const void *in, uint64_t seed, void **run, struct error *e
     return status_fail(error, STATUS_MEMORY, "no memory");
   made->inputs = *given;
   made->seed = seed;
+  made->frame = (struct frame){.state = &made->state.frame,
+                               .state_size = sizeof made->state,
+                               .inputs = &made->inputs,
+                               .seed = seed};
   *run = made;
   return STATUS_OK;
 }
@@ -130,16 +136,14 @@ static status write_snapshot(void *run, const char *path, struct error *error) {
   return file_write(path, "fields file", text, (size_t)length, error);
 }
 
-static struct restart_run restart(void *run) {
-  struct toy_run *toy = run;
-  return (struct restart_run){.inputs = &toy->inputs,
-                              .seed = toy->seed,
-                              .state = {&toy->state, sizeof toy->state},
-                              .samples = &toy->samples};
+static size_t system_size(const void *run) {
+  (void)run;
+  return 1; /* no system, but a block of memory all the same */
 }
 
 static void save_system(const void *run, void *bytes) {
-  (void)run, (void)bytes;
+  (void)run;
+  memset(bytes, 0, 1);
 }
 
 static status load_system(void *run, const void *bytes, size_t size, struct error *error) {
@@ -162,7 +166,7 @@ const struct engine_kind toy_engine = {.name = "toy",
                                        .time = time_of,
                                        .finish = finish,
                                        .write_snapshot = write_snapshot,
-                                       .restart = restart,
+                                       .system_size = system_size,
                                        .save_system = save_system,
                                        .load_system = load_system,
                                        .free = free};

@@ -86,7 +86,7 @@ static void explosion_starts_as_the_paper_says(void **state) {
     assert_true(magnitude > 0);
     /* the required bound; rounding gives some 1e-14 */
     assert_true(hypot(momentum[0], momentum[1]) < 1e-10 * magnitude);
-    assert_true(fabs(run->state.energy_input / 5e4 - 1) < 1e-12);
+    assert_true(fabs(run->state.frame.energy_input / 5e4 - 1) < 1e-12);
     assert_false(dem_system_grain(run->system, run->charge).present);
     size_t n = run->tessellation->cell_count, moving = 0;
     for (uint32_t i = 0; i < n; i++) {
@@ -264,11 +264,11 @@ static void figures_by_hand(void **state) {
     double translation = 0;
     assert_int_equal(dem_run_create(&cases[c], 3, &run, NULL), STATUS_OK);
     const struct dem_ledger first = dem_system_ledger(run->system);
-    assert_int_equal(dem_run_advance(run, UINT64_MAX, NULL), STATUS_OK);
+    frame_advance(&run->frame, UINT64_MAX);
     const struct dem_ledger last = dem_system_ledger(run->system);
     assert_int_equal(dem_report_finish(run, &ran.outcome, &ran.results.dem, &ran.fragments, &ran.count, NULL),
                      STATUS_OK);
-    const double input = run->state.energy_input + fabs(last.external_work),
+    const double input = run->state.frame.energy_input + fabs(last.external_work),
                  drift = fabs(dem_run_closed(&last) - dem_run_closed(&first));
     print_message("energy_error %.3g of %.3g J/m\n", ran.outcome.energy_error, input);
     /* sums in the same order: the difference is in the last digits of the whole */
@@ -367,7 +367,7 @@ static void neighbour_lists_last(void **state) {
   for (uint64_t seed = 0; seed < 12; seed++) {
     struct dem_run *run;
     assert_int_equal(dem_run_create(&inputs, seed, &run, NULL), STATUS_OK);
-    assert_int_equal(dem_run_advance(run, 300, NULL), STATUS_OK);
+    frame_advance(&run->frame, 300);
     assert_true(run->system->now.rebuilds < 60);
     dem_run_free(run);
   }

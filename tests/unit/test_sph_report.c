@@ -93,7 +93,7 @@ static void figures_by_hand(void **state) {
     assert_int_equal(sph_run_create(&cases[c], 3, &run, NULL), STATUS_OK);
     for (int b = 0; b < 2 && c == 0; b++) /* a floor under the density that is reached */
       run->system->solid[b].lowest_density = 0.9 * run->system->solid[b].density;
-    sph_run_advance(run, UINT64_MAX);
+    frame_advance(&run->frame, UINT64_MAX);
     const struct sph_particles *look[2] = {run->start, sph_run_read(run)};
     for (int k = 0; k < 2; k++)
       for (size_t i = 0; i < look[k]->n; i++) {
@@ -154,7 +154,7 @@ static void a_share_above_one_is_shown(void **state) {
   for (int fault = 0; fault < 3; fault++) {
     struct ran ran = {0};
     if (fault == 1) {
-      sph_run_advance(run, UINT64_MAX);
+      frame_advance(&run->frame, UINT64_MAX);
       for (int k = 0; k < SPH_LIMITS; k++)
         run->state.limited[k] = 0;
       run->state.limited[SPH_LIMIT_FORCE] = 3 * sph_system_steps(run->system);

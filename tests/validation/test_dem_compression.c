@@ -14,9 +14,9 @@ static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
   struct error error = {0};
   if (dem_run_create(inputs, seed, &run, &error))
     fail_msg("%s", error.message);
-  while (!run->state.finished)
-    assert_int_equal(dem_run_advance(run, 10000, NULL), STATUS_OK);
-  assert_int_equal(run->state.outcome_state, OUTCOME_COMPLETED);
+  while (!run->state.frame.finished)
+    frame_advance(&run->frame, 10000);
+  assert_int_equal(run->state.frame.outcome_state, OUTCOME_COMPLETED);
   struct outcome outcome;
   struct dem_results r;
   struct fragment *fragments;
@@ -33,7 +33,7 @@ static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
    * intercept is what the samples between 10 and 50 % leave. */
   double n = 0, shift = 0;
   for (int pass = 0; pass < 2; pass++)
-    for (size_t k = 0; k < run->state.samples; k++) {
+    for (size_t k = 0; k < run->state.frame.samples; k++) {
       double strain = -run->sample[k].strain, stress = -run->sample[k].stress;
       if (pass == 0 && strain > 0.1 * f.strain && strain < 0.5 * f.strain) {
         shift += stress - f.modulus * strain;
@@ -46,7 +46,7 @@ static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
    * cannot end the load before a wave arrives, however slow the load. */
   double passage = (double)inputs->body.rows * inputs->grain.spacing / r.sound_speed_extension;
   f.drop = NAN;
-  for (size_t k = 0; k < run->state.samples; k++)
+  for (size_t k = 0; k < run->state.frame.samples; k++)
     if (run->sample[k].time > run->state.time_peak && -run->sample[k].stress < 0.5 * f.strength) {
       f.drop = (run->sample[k].time - run->state.time_peak) / passage;
       break;

@@ -79,8 +79,8 @@ static struct spectrum_case pool(const char *label, const struct dem_inputs *inp
     struct error error = {0};
     if (dem_run_create(inputs, r + 1, &run, &error))
       fail_msg("%s", error.message);
-    while (!run->state.finished)
-      assert_int_equal(dem_run_advance(run, 10000, NULL), STATUS_OK);
+    while (!run->state.frame.finished)
+      frame_advance(&run->frame, 10000);
     assert_int_equal(dem_report_finish(run, &outcome, &results, &fragments, &n, &error), STATUS_OK);
     if (outcome.state > OUTCOME_END_TIME) { /* a failed run is counted, and left out as in any campaign */
       print_message("seed %zu: %s\n", r + 1, outcome.message);

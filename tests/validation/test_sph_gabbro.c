@@ -85,9 +85,9 @@ static double add_run(const struct sph_inputs *inputs, uint64_t seed, size_t see
   struct error error = {0};
   if (sph_run_create(inputs, seed, &run, &error))
     fail_msg("%s", error.message);
-  while (!run->state.finished)
-    sph_run_advance(run, 1000);
-  assert_int_equal(run->state.outcome_state, OUTCOME_END_TIME); /* damage grew within the last two crossings */
+  while (!run->state.frame.finished)
+    frame_advance(&run->frame, 1000);
+  assert_int_equal(run->state.frame.outcome_state, OUTCOME_END_TIME); /* damage grew within the last two crossings */
 
   const struct sph_particles *now = sph_run_read(run), *start = run->start;
   const double K = sph_derived_bulk_modulus(&inputs->target.material),

@@ -40,8 +40,8 @@ static struct sphere run_sphere(const struct sph_inputs *inputs, uint64_t seed) 
   struct error error = {0};
   if (sph_run_create(inputs, seed, &run, &error))
     fail_msg("%s", error.message);
-  while (!run->state.finished)
-    sph_run_advance(run, 1000);
+  while (!run->state.frame.finished)
+    frame_advance(&run->frame, 1000);
   assert_int_equal(sph_report_finish(run, &s.outcome, &s.results, &fragments, &count, &error), STATUS_OK);
   free(fragments);
   assert_int_equal(sph_report_fragments(run, inputs->fragments.static_strength, inputs->fragments.veneer, &pieces,
@@ -125,8 +125,8 @@ static void damage_on_its_way(void **state) {
     if (sph_run_create(&inputs, seed, &run, &error))
       fail_msg("%s", error.message);
     for (int k = 0; k < 2; k++) {
-      while (!run->state.finished && sph_system_time(run->system) < times[k])
-        sph_run_advance(run, 1);
+      while (!run->state.frame.finished && sph_system_time(run->system) < times[k])
+        frame_advance(&run->frame, 1);
       const struct sph_particles *now = sph_run_read(run);
       for (size_t i = 0; i < run->targets; i++) {
         damage[k] += pow(now->damage_cbrt[i], 3) / (SEEDS * (double)run->targets);

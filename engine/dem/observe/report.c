@@ -149,7 +149,7 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
                          struct dem_results *results) {
   const struct dem_tessellation *t = run->tessellation;
   *results = (struct dem_results){
-      .stop_reason = run->state.stop,
+      .stop_reason = run->state.frame.stop,
       .broken_share = NAN,
       .first_break = NAN,
       .last_break = NAN,
@@ -243,7 +243,7 @@ static void fill_balance(const struct dem_run *run, const struct dem_ledger *led
   const double py = momentum[1] - s->momentum_start[1] + s->impulse[1];
   outcome->energy_error = outcome->kinetic_energy_share = outcome->momentum_error = NAN;
   if (input > 0) {
-    outcome->energy_error = not_infinite(fabs(dem_run_closed(ledger) - s->closed_start) / input);
+    outcome->energy_error = not_infinite(fabs(dem_run_closed(ledger) - s->frame.closed_start) / input);
     outcome->kinetic_energy_share = not_infinite(translation / input);
   }
   if (magnitude > 0)
@@ -256,15 +256,10 @@ status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct de
   if (code)
     return code;
   const struct dem_ledger ledger = dem_system_ledger(run->system);
-  const double input = run->state.energy_input + fabs(ledger.external_work);
+  const double input = run->state.frame.energy_input + fabs(ledger.external_work);
   fill_results(run, &ledger, input, results);
 
-  *outcome = (struct outcome){.state = run->state.finished ? run->state.outcome_state : OUTCOME_END_TIME,
-                              .steps = (int64_t)dem_system_steps(run->system),
-                              .time = dem_system_time(run->system),
-                              .time_step = run->inputs.fidelity.time_step};
-  snprintf(outcome->message, sizeof outcome->message, "%s",
-           run->state.finished ? run->state.message : "not finished: results of a snapshot");
+  *outcome = frame_outcome(&run->frame, run->inputs.fidelity.time_step);
   const struct outcome_small small = small_fragments(*count, *fragments);
   outcome_fragments(outcome, *count, *fragments, &small);
   results->energy.vibration = vibration(*count, *fragments);

@@ -224,7 +224,7 @@ static void content(struct snapshot_file *file, const struct dem_run *run, const
   COLUMNS("breaks", breaks, log, break_columns);
   COLUMNS("fragments", fragment_count, fragments, fragment_columns);
   if (run->sample)
-    COLUMNS("curve", run->state.samples, run->sample, curve_columns);
+    COLUMNS("curve", run->state.frame.samples, run->sample, curve_columns);
   outlines(file, run, label);
 }
 

@@ -110,8 +110,8 @@ static void sample(struct dem_run *run) {
                                                    run->gauge_width -
                                                1,
                              .broken = dem_system_breaks(run->system, &log)};
-  if (s->samples < run->sample_capacity)
-    run->sample[s->samples++] = point;
+  if (s->frame.samples < run->sample_capacity)
+    run->sample[s->frame.samples++] = point;
   s->summed = 0;
   s->stress_sum = s->strain_sum = 0;
   double stress = sense(run) * point.stress;
@@ -121,7 +121,7 @@ static void sample(struct dem_run *run) {
     s->time_peak = point.time;
   } else if (run->inputs.kind == DEM_COMPRESSION && !field_is_off(run->inputs.loading.residual) && point.broken > 0 &&
              stress < run->inputs.loading.residual * s->stress_peak)
-    dem_run_end(run, DEM_STOP_FAILURE, OUTCOME_COMPLETED, "%s", "");
+    frame_end(&run->state.frame, DEM_STOP_FAILURE, OUTCOME_COMPLETED, "%s", "");
 }
 
 void dem_loading_record(struct dem_run *run) {
@@ -141,14 +141,14 @@ void dem_loading_record(struct dem_run *run) {
   if (++s->summed == run->sample_interval)
     sample(run);
   if (sense(run) * strain >= run->inputs.loading.strain_end * (1 - 1e-9))
-    dem_run_end(run, DEM_STOP_STRAIN, OUTCOME_COMPLETED, "%s", "");
+    frame_end(&run->state.frame, DEM_STOP_STRAIN, OUTCOME_COMPLETED, "%s", "");
 }
 
 /* Slope of y against x by least squares with an intercept, over samples with lowest <= |strain| <= highest before the
  * first break. NaN below 3 samples. */
 static double slope(const struct dem_run *run, bool lateral, double lowest, double highest) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (size_t k = 0; k < run->state.samples; k++) {
+  for (size_t k = 0; k < run->state.frame.samples; k++) {
     const struct dem_sample *p = &run->sample[k];
     if (fabs(p->strain) < lowest || fabs(p->strain) > highest || p->time < run->inputs.loading.ramp ||
         (run->inputs.kind == DEM_UNIAXIAL && p->broken > 0))
@@ -195,9 +195,9 @@ static void pattern(const struct dem_run *run, struct dem_results *results) {
 
 void dem_loading_results(const struct dem_run *run, struct dem_results *results) {
   const struct dem_state *s = &run->state;
-  if (s->samples == 0)
+  if (s->frame.samples == 0)
     return;
-  results->final_strain = fabs(run->sample[s->samples - 1].strain);
+  results->final_strain = fabs(run->sample[s->frame.samples - 1].strain);
   /* from a tenth of the final strain on, after the first vibrations; in compression up to half of the failure strain */
   double highest = run->inputs.kind == DEM_COMPRESSION ? 0.5 * s->strain_peak : HUGE_VAL;
   double reference = run->inputs.kind == DEM_COMPRESSION ? s->strain_peak : run->inputs.loading.strain_end;

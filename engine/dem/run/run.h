@@ -6,6 +6,7 @@
 #include "engine/dem/scene/inputs.h"
 #include "engine/dem/step/system.h"
 #include "engine/engine.h"
+#include "engine/frame.h"
 #include "engine/warnings.h"
 
 /* One point of the stress-strain curve: means over the steps since the point before it. Extension is positive. */
@@ -16,17 +17,16 @@ struct dem_sample {
 
 /* Values that change during a run besides the system. A plain struct: restart files save its raw bytes. */
 struct dem_state {
-  int finished, stop, outcome_state;
-  char message[FIELD_TEXT_SIZE];
-  double energy_input, closed_start;  /* J/m; ledger at the start */
+  struct frame_state frame;
   double momentum_start[2];           /* of the grains that are free along that axis */
   double force_before[2], impulse[2]; /* on held grains: at the step before; its time integral (trapezoids) */
   double stress_sum, strain_sum;      /* loading: since the last sample */
-  uint64_t summed, samples;
+  uint64_t summed;
   double stress_peak, strain_peak, time_peak; /* loading: magnitudes at the largest stress */
 };
 
 struct dem_run {
+  struct frame frame; /* from the end of dem_run_create on */
   struct dem_inputs inputs;
   uint64_t seed;
   struct dem_tessellation *tessellation;
@@ -49,20 +49,10 @@ struct dem_run {
 };
 
 status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error);
-void dem_run_free(struct dem_run *run); /* NULL is fine */
-/* Advances by at most max_steps. The result does not depend on how steps are split over calls. */
-status dem_run_advance(struct dem_run *run, uint64_t max_steps, struct error *error);
-/* The monitor: ends the run when its energy drifts or a grain is too fast. Called every DEM_RUN_LOOKS steps and at the
- * end; a check costs about a step. Every step checks that all values are finite. */
-enum { DEM_RUN_LOOKS = 100 };
-void dem_run_look(struct dem_run *run);
+void dem_run_free(struct dem_run *run);                 /* NULL is fine */
 double dem_run_closed(const struct dem_ledger *ledger); /* the sum that must stay constant, J/m */
 /* Sum over grains free along each axis, and sum of all magnitudes, kg/s per m of thickness. */
 void dem_run_momentum(const struct dem_run *run, double momentum[2], double *magnitude);
-/* Ends the run. The first reason stays, but a fault replaces any other. */
-void dem_run_end(struct dem_run *run, int stop, int outcome_state, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-
 /* protocol.c: the body, and the load or impact at the start. */
 status dem_protocol_body(const struct dem_inputs *inputs, uint64_t seed, struct dem_tessellation **out,
                          struct error *error);

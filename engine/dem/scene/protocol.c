@@ -154,6 +154,6 @@ status dem_protocol_start(struct dem_run *run, struct error *error) {
   case DEM_COMPRESSION: return dem_loading_start(run, error);
   case DEM_KINDS: break;
   }
-  run->state.energy_input = kinetic(run);
+  run->state.frame.energy_input = kinetic(run);
   return code;
 }

@@ -88,7 +88,7 @@ void sph_plate_look(const struct sph_run *run, const struct sph_particles *p, do
 /* Slope of places against times by least squares over the second half of the run, when a front has its final form. */
 static double speed(const struct sph_run *run, size_t offset) {
   double from = run->inputs.stop.end_time / 2, n = 0, t = 0, x = 0, tt = 0, tx = 0;
-  for (size_t k = 0; k < run->state.samples; k++) {
+  for (size_t k = 0; k < run->state.frame.samples; k++) {
     double place, time = run->sample[k].time - from;
     memcpy(&place, (const char *)&run->sample[k] + offset, sizeof place);
     if (!(time >= 0) || isnan(place))

@@ -78,7 +78,8 @@ void sph_protocol_record(struct sph_run *run) {
   if (!run->sample)
     return;
 
-  const bool due = time >= (double)state->samples * run->sample_interval && state->samples < run->sample_capacity;
+  const bool due = time >= (double)state->frame.samples * run->sample_interval &&
+                   state->frame.samples < run->sample_capacity;
   if (!due && !is_at_peak(run, time))
     return;
 
@@ -95,5 +96,5 @@ void sph_protocol_record(struct sph_run *run) {
     note_crossing(state, sample.mode, time);
   }
   if (due)
-    run->sample[state->samples++] = sample;
+    run->sample[state->frame.samples++] = sample;
 }

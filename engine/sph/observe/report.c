@@ -142,8 +142,8 @@ static void report_damage(const struct sph_run *run, struct sph_results *results
 
 /* The time of the first damage, and whether and when fracture ceased. */
 static void report_fracture(const struct sph_run *run, struct sph_results *results) {
-  bool quiet = run->state.stop == SPH_STOP_QUIET, broke = !isnan(run->state.first_damage);
-  results->fracture_ceased = quiet || (run->state.stop == SPH_STOP_END_TIME && !broke);
+  bool quiet = run->state.frame.stop == SPH_STOP_QUIET, broke = !isnan(run->state.first_damage);
+  results->fracture_ceased = quiet || (run->state.frame.stop == SPH_STOP_END_TIME && !broke);
   results->first_damage = run->state.first_damage;
   if (quiet)
     results->cease_time = run->state.quiet_since;
@@ -258,7 +258,7 @@ static void report_steps(const struct sph_run *run, const struct sph_ledger *led
 static status fill_results(const struct sph_run *run, const struct sph_ledger *ledger, double input,
                            const struct sph_fragments *found, struct sph_results *results, struct error *error) {
   field_defaults(&sph_results, results); /* every quantity is off or zero */
-  results->stop_reason = run->state.stop;
+  results->stop_reason = run->state.frame.stop;
   results->particles = (int64_t)run->targets;
   results->projectile_particles = (int64_t)(run->start->n - run->targets);
   results->flaws = (int64_t)run->flaw_count;
@@ -284,14 +284,8 @@ static status fill_results(const struct sph_run *run, const struct sph_ledger *l
 
 static void fill_outcome(const struct sph_run *run, const struct sph_ledger *ledger, double input,
                          const struct sph_fragments *found, struct outcome *outcome) {
-  *outcome = (struct outcome){
-      .state = run->state.finished ? run->state.outcome_state : OUTCOME_END_TIME,
-      .steps = (int64_t)sph_system_steps(run->system),
-      .time = sph_system_time(run->system),
-      .time_step = isfinite(run->state.smallest_step) ? run->state.smallest_step : sph_system_last_step(run->system),
-  };
-  snprintf(outcome->message, sizeof outcome->message, "%s",
-           run->state.finished ? run->state.message : "not finished: results of a snapshot");
+  *outcome = frame_outcome(&run->frame, isfinite(run->state.smallest_step) ? run->state.smallest_step
+                                                                           : sph_system_last_step(run->system));
   const struct outcome_small small = {.dust = run->inputs.fragments.dust_mass,
                                       .complete = (SPH_FRAGMENTS_COMPLETE - 0.5) * found->mass / (double)run->targets};
   outcome_fragments(outcome, found->count, found->fragments, &small);
@@ -303,7 +297,7 @@ static void fill_outcome(const struct sph_run *run, const struct sph_ledger *led
     double v = norm(found->fragments[k].velocity);
     translation += 0.5 * found->fragments[k].mass * v * v;
   }
-  outcome->energy_error = sph_results_share(fabs(sph_run_closed(ledger) - run->state.energy_start), input);
+  outcome->energy_error = sph_results_share(fabs(sph_run_closed(ledger) - run->state.frame.closed_start), input);
   outcome->kinetic_energy_share = sph_results_share(translation, input);
   outcome->momentum_error = closed(run) ? sph_results_share(norm(change), momentum_scale(run, ledger)) : (double)NAN;
 }
@@ -342,7 +336,7 @@ status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sp
     return code;
 
   struct sph_ledger ledger = sph_system_ledger(run->system);
-  double input = run->state.energy_input + fabs(ledger.work_of_held);
+  double input = run->state.frame.energy_input + fabs(ledger.work_of_held);
   code = fill_results(run, &ledger, input, &found, results, error);
   if (!code) {
     fill_outcome(run, &ledger, input, &found, outcome);

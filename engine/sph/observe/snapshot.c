@@ -202,7 +202,7 @@ status sph_snapshot_write(struct sph_run *run, const char *path, struct error *e
   snapshot_file_table(file, "results", &sph_results, &results);
   sph_snapshot_particles(file, run->now, &found, sph_system_flaws(run->system, flaws) ? flaws : NULL);
   if (run->sample)
-    COLUMNS(file, "curve", run->state.samples, run->sample, curve_columns);
+    COLUMNS(file, "curve", run->state.frame.samples, run->sample, curve_columns);
   if (in->kind == SPH_IMPACT || in->kind == SPH_PISTON)
     add_profile(file, run);
   code = snapshot_file_save(file, path, error);

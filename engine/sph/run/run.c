@@ -2,8 +2,6 @@
 #include "engine/sph/run/run.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,20 +19,6 @@ double sph_run_closed(const struct sph_ledger *l) {
 double sph_run_extent(const struct sph_run *run) {
   const double diagonal[3] = {0.57735026918962576, 0.57735026918962576, 0.57735026918962576};
   return sph_shape_reach(&run->shape[0], diagonal);
-}
-
-/* Ends the run. The first reason stays, but a fault replaces any other. */
-static __attribute__((format(printf, 4, 5))) void end(struct sph_run *run, int stop, int outcome_state,
-                                                      const char *format, ...) {
-  if (run->state.finished && (stop != SPH_STOP_FAULT || run->state.stop == SPH_STOP_FAULT))
-    return;
-  run->state.finished = 1;
-  run->state.stop = stop;
-  run->state.outcome_state = outcome_state;
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(run->state.message, sizeof run->state.message, format, arguments);
-  va_end(arguments);
 }
 
 const struct sph_particles *sph_run_read(struct sph_run *run) {
@@ -65,15 +49,144 @@ static status check_memory(const struct sph_inputs *in, struct error *error) {
                      sph_derived_particles(in), needed / 1e9, there / 1e9, sph_inputs_check_fewer(in));
 }
 
+/* ---- advancing ---- */
+
+static bool can_crack(const struct sph_run *run) {
+  return run->flaw_count > 0;
+}
+
+/* Fracture is over when the mean damage grows by less than stop.quiet_growth during stop.quiet_time. */
+static void look_at_damage(struct sph_run *run) {
+  struct sph_state *state = &run->state;
+  double damage = sph_system_damage(run->system, NULL), time = sph_system_time(run->system);
+  if (isnan(state->first_damage)) {
+    if (!(damage > 0))
+      return;
+    state->first_damage = time;
+    state->quiet_damage = damage;
+    state->quiet_since = time;
+  }
+  if (damage - state->quiet_damage >= run->inputs.stop.quiet_growth) {
+    state->quiet_damage = damage;
+    state->quiet_since = time;
+  }
+  if (time - state->quiet_since >= run->inputs.stop.quiet_time)
+    frame_end(&state->frame, SPH_STOP_QUIET, OUTCOME_COMPLETED, "%s", "");
+}
+
+/* The particle whose speed is largest, by its id; its speed, m/s. */
+static size_t fastest_particle(void *run, double *speed) {
+  const struct sph_particles *p = sph_run_read(run);
+  size_t fastest = 0;
+  *speed = 0;
+  for (size_t i = 0; i < p->n; i++) {
+    const double v = sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i] + p->vz[i] * p->vz[i]);
+    if (!(v <= *speed)) {
+      fastest = i;
+      *speed = v;
+    }
+  }
+  return fastest;
+}
+
+/* The remedy against a drift, by its cause. */
+static const char *remedy(void *of, double drift) {
+  const struct sph_run *run = of;
+  if (isnan(drift))
+    return "lower fidelity.cfl";
+  if (sph_warn_inputs(&run->inputs, NULL) & WARNINGS_CONTRAST)
+    return "bodies differ much in density: set method.volume_weights: true";
+  const struct sph_ledger ledger = sph_system_ledger(run->system);
+  if (fabs(ledger.clamped) > drift / 2)
+    return "most is energy.clamped, of cold matter: raise the bound, or take more particles";
+  return "lower fidelity.cfl, or take more particles";
+}
+
+static struct frame_energy energy_of(void *of) {
+  const struct sph_run *run = of;
+  const struct sph_ledger ledger = sph_system_ledger(run->system);
+  return (struct frame_energy){.closed = sph_run_closed(&ledger),
+                               .input = run->state.frame.energy_input + fabs(ledger.work_of_held),
+                               .bound = run->inputs.fidelity.energy_bound};
+}
+
+static void look_at_end(struct sph_run *run) {
+  double time = sph_system_time(run->system);
+  if (time < run->inputs.stop.end_time)
+    return;
+  if (can_crack(run) && !isnan(run->state.first_damage))
+    frame_end(&run->state.frame, SPH_STOP_END_TIME, OUTCOME_END_TIME,
+              "damage still grew %.3g s before the hard end: raise stop.end_time", time - run->state.quiet_since);
+  else /* nothing has broken: there is no fracture that could go on */
+    frame_end(&run->state.frame, SPH_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
+}
+
+static double time_of(const void *run) {
+  return sph_system_time(((const struct sph_run *)run)->system);
+}
+
+static uint64_t steps_of(const void *run) {
+  return sph_system_steps(((const struct sph_run *)run)->system);
+}
+
+static bool step(void *of) {
+  struct sph_run *run = of;
+  struct sph_state *state = &run->state;
+  if (!sph_system_step(run->system, run->inputs.stop.end_time)) {
+    const int fault = sph_system_fault(run->system);
+    if (fault != SPH_FAULT_MEMORY)
+      frame_end(&state->frame, SPH_STOP_FAULT, fault == SPH_FAULT_TIME_STEP ? OUTCOME_TIME_STEP : OUTCOME_NOT_FINITE,
+                "%s", sph_system_failure(run->system));
+    return false;
+  }
+  int limiter = sph_system_limiter(run->system);
+  state->limited[limiter]++;
+  if (limiter != SPH_LIMIT_END)
+    state->smallest_step = fmin(state->smallest_step, sph_system_last_step(run->system));
+  if (run->sample)
+    sph_protocol_record(run);
+  return true;
+}
+
+/* The rules of the end. */
+static void stop(void *of) {
+  struct sph_run *run = of;
+  if (can_crack(run) && sph_system_steps(run->system) % LOOK_INTERVAL == 0)
+    look_at_damage(run);
+  look_at_end(run);
+}
+
+/* Every step checks that all values are finite. */
+static const struct frame_kind kind = {.fault = SPH_STOP_FAULT,
+                                       .looks = 64,
+                                       .member = "particle",
+                                       .step = step,
+                                       .stop = stop,
+                                       .time = time_of,
+                                       .steps = steps_of,
+                                       .energy = energy_of,
+                                       .fastest = fastest_particle,
+                                       .remedy = remedy};
+
+/* ---- making ---- */
+
 static void begin(struct sph_run *run) {
   struct sph_ledger ledger = sph_system_ledger(run->system);
-  run->state.energy_start = sph_run_closed(&ledger);
-  run->state.energy_input = ledger.kinetic;
+  run->state.frame.closed_start = sph_run_closed(&ledger);
+  run->state.frame.energy_input = ledger.kinetic;
   memcpy(run->state.momentum_start, ledger.momentum, sizeof ledger.momentum);
   memcpy(run->state.angular_start, ledger.angular_momentum, sizeof ledger.angular_momentum);
   run->state.momentum_scale_start = ledger.momentum_scale;
   run->state.smallest_step = HUGE_VAL;
   run->state.first_damage = NAN;
+  run->frame = (struct frame){.kind = &kind,
+                              .state = &run->state.frame,
+                              .state_size = sizeof run->state,
+                              .inputs = &run->inputs,
+                              .seed = run->seed,
+                              .sample = run->sample,
+                              .sample_size = sizeof *run->sample,
+                              .sample_capacity = run->sample_capacity};
 }
 
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error) {
@@ -125,109 +238,4 @@ void sph_run_free(struct sph_run *run) {
   free(run->sample);
   free(run->layer);
   free(run);
-}
-
-/* ---- advancing ---- */
-
-static bool can_crack(const struct sph_run *run) {
-  return run->flaw_count > 0;
-}
-
-/* Fracture is over when the mean damage grows by less than stop.quiet_growth during stop.quiet_time. */
-static void look_at_damage(struct sph_run *run) {
-  struct sph_state *state = &run->state;
-  double damage = sph_system_damage(run->system, NULL), time = sph_system_time(run->system);
-  if (isnan(state->first_damage)) {
-    if (!(damage > 0))
-      return;
-    state->first_damage = time;
-    state->quiet_damage = damage;
-    state->quiet_since = time;
-  }
-  if (damage - state->quiet_damage >= run->inputs.stop.quiet_growth) {
-    state->quiet_damage = damage;
-    state->quiet_since = time;
-  }
-  if (time - state->quiet_since >= run->inputs.stop.quiet_time)
-    end(run, SPH_STOP_QUIET, OUTCOME_COMPLETED, "%s", "");
-}
-
-/* The particle whose speed is largest, by its id; its speed, m/s. */
-static size_t fastest_particle(struct sph_run *run, double *speed) {
-  const struct sph_particles *p = sph_run_read(run);
-  size_t fastest = 0;
-  *speed = 0;
-  for (size_t i = 0; i < p->n; i++) {
-    const double v = sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i] + p->vz[i] * p->vz[i]);
-    if (!(v <= *speed)) {
-      fastest = i;
-      *speed = v;
-    }
-  }
-  return fastest;
-}
-
-/* The remedy against a drift, by its cause. */
-static const char *remedy_of_drift(const struct sph_run *run, const struct sph_ledger *ledger, double drift) {
-  if (sph_warn_inputs(&run->inputs, NULL) & WARNINGS_CONTRAST)
-    return "bodies differ much in density: set method.volume_weights: true";
-  if (fabs(ledger->clamped) > drift / 2)
-    return "most is energy.clamped, of cold matter: raise the bound, or take more particles";
-  return "lower fidelity.cfl, or take more particles";
-}
-
-static void look_at_energy(struct sph_run *run) {
-  struct sph_ledger ledger = sph_system_ledger(run->system);
-  double closed = sph_run_closed(&ledger), input = run->state.energy_input + fabs(ledger.work_of_held);
-  double drift = fabs(closed - run->state.energy_start), bound = run->inputs.fidelity.energy_bound, speed;
-  if (!isfinite(closed)) {
-    const size_t particle = fastest_particle(run, &speed);
-    end(run, SPH_STOP_FAULT, OUTCOME_NOT_FINITE,
-        "the energy is no longer finite at %.6g s; particle %zu is the fastest, at %.3g m/s: lower fidelity.cfl",
-        sph_system_time(run->system), particle, speed);
-  } else if (!field_is_off(bound) && input > 0 && drift > bound * input) {
-    const size_t particle = fastest_particle(run, &speed);
-    end(run, SPH_STOP_FAULT, OUTCOME_ENERGY,
-        "at %.6g s the energy ledger has drifted by %.3g of the energy put in, above fidelity.energy_bound %.3g; "
-        "particle %zu is the fastest, at %.3g m/s: %s",
-        sph_system_time(run->system), drift / input, bound, particle, speed, remedy_of_drift(run, &ledger, drift));
-  }
-}
-
-static void look_at_end(struct sph_run *run) {
-  double time = sph_system_time(run->system);
-  if (time < run->inputs.stop.end_time)
-    return;
-  if (can_crack(run) && !isnan(run->state.first_damage))
-    end(run, SPH_STOP_END_TIME, OUTCOME_END_TIME, "damage still grew %.3g s before the hard end: raise stop.end_time",
-        time - run->state.quiet_since);
-  else /* nothing has broken: there is no fracture that could go on */
-    end(run, SPH_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
-}
-
-status sph_run_advance(struct sph_run *run, uint64_t max_steps) {
-  struct sph_state *state = &run->state;
-  for (uint64_t k = 0; k < max_steps && !state->finished; k++) {
-    if (!sph_system_step(run->system, run->inputs.stop.end_time)) {
-      const int fault = sph_system_fault(run->system);
-      if (fault == SPH_FAULT_MEMORY)
-        return STATUS_MEMORY;
-      end(run, SPH_STOP_FAULT, fault == SPH_FAULT_TIME_STEP ? OUTCOME_TIME_STEP : OUTCOME_NOT_FINITE, "%s",
-          sph_system_failure(run->system));
-      break;
-    }
-    int limiter = sph_system_limiter(run->system);
-    state->limited[limiter]++;
-    if (limiter != SPH_LIMIT_END)
-      state->smallest_step = fmin(state->smallest_step, sph_system_last_step(run->system));
-    if (run->sample)
-      sph_protocol_record(run);
-    uint64_t steps = sph_system_steps(run->system);
-    if (can_crack(run) && steps % LOOK_INTERVAL == 0)
-      look_at_damage(run);
-    look_at_end(run);
-    if (steps % SPH_RUN_LOOKS == 0 || state->finished)
-      look_at_energy(run);
-  }
-  return STATUS_OK;
 }

@@ -4,6 +4,7 @@
 #define CLAST_ENGINE_SPH_RUN_RUN_H
 
 #include "engine/engine.h"
+#include "engine/frame.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/material/plane_shock.h"
 #include "engine/sph/observe/results.h"
@@ -20,9 +21,7 @@ struct sph_sample {
 
 /* Values that change during a run beside the system itself: a plain struct, saved as raw bytes in a restart file. */
 struct sph_state {
-  int finished, stop, outcome_state;
-  char message[FIELD_TEXT_SIZE];
-  double energy_start, energy_input; /* J: ledger's closed sum, kinetic energy at the start */
+  struct frame_state frame;
   double momentum_start[3], angular_start[3];
   double momentum_scale_start; /* kg m/s, sum |p| at the start */
   double smallest_step;        /* s */
@@ -30,7 +29,6 @@ struct sph_state {
   double quiet_damage,
       quiet_since; /* mean damage, and the time (s) when it had this value; for the rule of stop.quiet_time */
   uint64_t limited[SPH_LIMITS];               /* steps that each limiter set */
-  uint64_t samples;                           /* of the curve */
   double peak_stress, peak_strain, peak_time; /* stretch */
   double mode_before, mode_time;              /* vibration: amplitude at the last check */
   double crossing_first, crossing_last;       /* s, interpolated zero crossings of the mode */
@@ -38,6 +36,7 @@ struct sph_state {
 };
 
 struct sph_run {
+  struct frame frame; /* from the end of sph_run_create on */
   struct sph_inputs inputs;
   uint64_t seed;
   struct sph_shape shape[SPH_RUN_BODIES]; /* shapes at their places at the start */
@@ -61,12 +60,6 @@ struct sph_run {
 
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error);
 void sph_run_free(struct sph_run *run); /* NULL is fine */
-/* Steps between two checks of the energy; a check is a pass over all particles. Every step checks that all values are
- * finite. */
-enum { SPH_RUN_LOOKS = 64 };
-/* At most max_steps. The result does not depend on how steps are split over calls. STATUS_MEMORY: the run has no result
- * and cannot go on. */
-status sph_run_advance(struct sph_run *run, uint64_t max_steps);
 /* The particles as they are now, in the order of their ids; owned by the run, valid until the next call. */
 const struct sph_particles *sph_run_read(struct sph_run *run);
 double sph_run_closed(const struct sph_ledger *ledger); /* the sum that must stay constant, J; `clamped` is not in it */
