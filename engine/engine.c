@@ -5,21 +5,21 @@
 
 size_t engine_count(void) {
   size_t count = 0;
-  while (engine_list[count])
+  while (engines_list[count])
     count++;
   return count;
 }
 
 const struct engine_kind *engine_at(size_t index) {
-  return index < engine_count() ? engine_list[index] : NULL;
+  return index < engine_count() ? engines_list[index] : NULL;
 }
 
 const struct engine_kind *engine_find(const char *name, struct error *error) {
   char list[256] = "";
   for (size_t i = 0; i < engine_count(); i++) {
-    if (strcmp(engine_list[i]->name, name) == 0)
-      return engine_list[i];
-    text_append(list, sizeof list, "%s%s", i ? ", " : "", engine_list[i]->name);
+    if (strcmp(engines_list[i]->name, name) == 0)
+      return engines_list[i];
+    text_append(list, sizeof list, "%s%s", i ? ", " : "", engines_list[i]->name);
   }
   status_fail(error, STATUS_CONTENT, "there is no engine '%.60s'; known are: %s", name, list);
   return NULL;

@@ -17,7 +17,7 @@ struct engine_materials {
   /* Into an object of `values`. STATUS_MISSING with the nearest name; STATUS_CONTENT: the document has a fault. */
   status (*load)(const char *name, void *material, struct error *error);
   /* The same from a file. *text is its content (malloc'd, owned by the caller). Also the errors of document_open. */
-  status (*open)(const char *path, void *material, char **text, struct error *error);
+  status (*load_file)(const char *path, void *material, char **text, struct error *error);
   /* Where a value of a named material comes from. STATUS_MISSING: the document does not say. */
   status (*source)(const char *name, const char *path, char source[FIELD_TEXT_SIZE]);
 };
@@ -73,7 +73,7 @@ struct engine_kind {
   void (*free)(void *run); /* NULL is fine */
 };
 
-extern const struct engine_kind *const engine_list[]; /* ended by NULL: engines.c */
+extern const struct engine_kind *const engines_list[]; /* ended by NULL: engines.c */
 size_t engine_count(void);
 const struct engine_kind *engine_at(size_t index);
 /* NULL when there is none of that name; *error lists the known ones. */

@@ -3,7 +3,7 @@
 #include "engine/dem/dem.h"
 #include "engine/sph/sph.h"
 
-const struct engine_kind *const engine_list[] = {
+const struct engine_kind *const engines_list[] = {
     &dem_engine,
     &sph_engine,
     NULL,

@@ -28,15 +28,15 @@ struct frame_kind {
   int fault;          /* the engine's reason of an end by a fault */
   uint64_t looks;     /* steps between two looks at the energy; a look costs about a step */
   const char *member; /* "grain", "particle" */
-  /* One step, and what the protocol records of it. False: there is no step. Then the run has ended by a fault, or memory
-   * is out. */
+  /* One step, and what the protocol records of it. False: there is no step. Then the run has ended by a fault, or
+   * memory is out. */
   bool (*step)(void *run);
-  void (*stop)(void *run); /* the rules of the end, after every step */
-  void (*look)(void *run); /* what else to check when the energy is looked at; NULL: nothing */
+  void (*stop)(void *run);         /* the rules of the end, after every step */
+  void (*look)(void *run);         /* what else to check when the energy is looked at; NULL: nothing */
   double (*time)(const void *run); /* s simulated */
   uint64_t (*steps)(const void *run);
   struct frame_energy (*energy)(void *run);
-  size_t (*fastest)(void *run, double *speed); /* the fastest member, or the first that is not finite; m/s */
+  size_t (*fastest)(void *run, double *speed);    /* the fastest member, or the first that is not finite; m/s */
   const char *(*remedy)(void *run, double drift); /* against a drift (J or J/m); NaN: against what is not finite */
 };
 
@@ -50,7 +50,8 @@ struct frame {
   size_t sample_size, sample_capacity;
 };
 
-/* Ends the run. The first reason stays, but a fault replaces any other. An outcome beyond OUTCOME_END_TIME is a fault. */
+/* Ends the run. The first reason stays, but a fault replaces any other. An outcome beyond OUTCOME_END_TIME is a fault.
+ */
 void frame_end(struct frame_state *state, int stop, int outcome_state, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 /* The same for a quantity that is no longer finite. */

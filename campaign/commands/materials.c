@@ -56,7 +56,7 @@ static status print_document(const struct engine_materials *materials, const cha
   if (!material)
     return status_fail(error, STATUS_MEMORY, "no memory for a material");
   const bool file = strchr(name, '/') || strchr(name, '.');
-  const status code = file ? materials->open(name, material, &text, error)
+  const status code = file ? materials->load_file(name, material, &text, error)
                            : materials->load(name, material, error); /* names the nearest one */
   if (code == STATUS_OK)
     fputs(file ? text : materials->text(name), stdout);

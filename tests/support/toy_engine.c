@@ -13,7 +13,7 @@
 #include "schemas/file.h"
 
 /* This list stands in for that of engine/engines.c. */
-const struct engine_kind *const engine_list[] = {&dem_engine, &sph_engine, &toy_engine, NULL};
+const struct engine_kind *const engines_list[] = {&dem_engine, &sph_engine, &toy_engine, NULL};
 
 #define INPUTS toy_inputs
 #include "engine/input_rows.h"
@@ -130,7 +130,7 @@ static status finish(void *run, struct outcome *outcome, void *result, struct fr
   return STATUS_OK;
 }
 
-static status write_snapshot(void *run, const char *path, struct error *error) {
+status toy_write_fields(void *run, const char *path, struct error *error) {
   char text[32];
   const int length = snprintf(text, sizeof text, "%llu\n", (unsigned long long)((struct toy_run *)run)->seed);
   return file_write(path, "fields file", text, (size_t)length, error);
@@ -151,22 +151,22 @@ static status load_system(void *run, const void *bytes, size_t size, struct erro
   return STATUS_OK;
 }
 
-const struct engine_kind toy_engine = {.name = "toy",
-                                       .doc = "A stick, without physics.",
-                                       .dimensions = 3,
-                                       .results_version = 1,
-                                       .inputs = &inputs,
-                                       .results = &results,
-                                       .describe = describe,
-                                       .memory = memory,
-                                       .work = work,
-                                       .prepare = prepare,
-                                       .step = step,
-                                       .progress = progress,
-                                       .time = time_of,
-                                       .finish = finish,
-                                       .write_snapshot = write_snapshot,
-                                       .system_size = system_size,
-                                       .save_system = save_system,
-                                       .load_system = load_system,
-                                       .free = free};
+struct engine_kind toy_engine = {.name = "toy",
+                                 .doc = "A stick, without physics.",
+                                 .dimensions = 3,
+                                 .results_version = 1,
+                                 .inputs = &inputs,
+                                 .results = &results,
+                                 .describe = describe,
+                                 .memory = memory,
+                                 .work = work,
+                                 .prepare = prepare,
+                                 .step = step,
+                                 .progress = progress,
+                                 .time = time_of,
+                                 .finish = finish,
+                                 .write_snapshot = toy_write_fields,
+                                 .system_size = system_size,
+                                 .save_system = save_system,
+                                 .load_system = load_system,
+                                 .free = free};

@@ -17,6 +17,8 @@ struct toy_results {
   int64_t pieces;
 };
 
-extern const struct engine_kind toy_engine;
+extern struct engine_kind toy_engine; /* a test may replace its functions */
+/* Its write_snapshot: a file with the run's seed. */
+status toy_write_fields(void *run, const char *path, struct error *error);
 
 #endif

@@ -302,7 +302,7 @@ static void fields_are_kept_as_asked(void **state) {
 
 static int fields_left; /* so many fields files can be written */
 static status write_few_fields(void *run, const char *path, struct error *error) {
-  return fields_left-- > 0 ? play_write_fields(run, path, error)
+  return fields_left-- > 0 ? toy_write_fields(run, path, error)
                            : status_fail(error, STATUS_IO, "cannot write the fields file '%s': no space", path);
 }
 
@@ -315,10 +315,7 @@ static void fields_that_cannot_be_written_stop_the_campaign(void **state) {
   struct driver_summary summary;
   struct campaign *campaign = play_campaign(2, 1, 8);
   struct play play = {.slots = 3};
-  static struct engine_kind kind;
-  kind = play_kind;
-  kind.write_snapshot = write_few_fields;
-  play_engine = &kind;
+  toy_engine.write_snapshot = write_few_fields;
   campaign->keep = CAMPAIGN_KEEP_ALL;
   fields_left = 4;
   assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_STOPPED);
@@ -334,7 +331,7 @@ static void fields_that_cannot_be_written_stop_the_campaign(void **state) {
   assert_int_equal(summary.runs_done, 16 - done);
   assert_int_equal(summary.fields_written, 12);
   assert_int_equal(files_in(kept), 16);
-  play_engine = &play_kind;
+  toy_engine.write_snapshot = toy_write_fields;
   free(play.says);
   campaign_free(campaign);
 }

@@ -160,7 +160,7 @@ status sph_materials_load(const char *name, struct sph_material *out, struct err
 static status load(const char *name, void *material, struct error *error) {
   return sph_materials_load(name, material, error);
 }
-static status open_file(const char *path, void *material, char **text, struct error *error) {
+static status load_file(const char *path, void *material, char **text, struct error *error) {
   return sph_materials_open(path, material, text, error);
 }
 
@@ -175,5 +175,5 @@ const struct engine_materials sph_materials = {.values = &sph_materials_table,
                                                .name = sph_materials_name,
                                                .text = sph_materials_text,
                                                .load = load,
-                                               .open = open_file,
+                                               .load_file = load_file,
                                                .source = sph_materials_source};
