@@ -133,10 +133,8 @@ static void stdout_stays_clean(void **state) {
 int main(int argc, char **argv) {
   if (argc > 2 && strcmp(argv[1], "work") == 0)
     return program_work(argv);
-  char path[4096] = "";
-  if (readlink("/proc/self/exe", path, sizeof path - 1) < 0)
-    return 1;
-  program = path;
+  char path[4096];
+  program = program_path(path, sizeof path);
   const struct CMUnitTest tests[] = {cmocka_unit_test(kill_anything), cmocka_unit_test(signals_drain),
                                      cmocka_unit_test(long_runs_are_dropped), cmocka_unit_test(crash_storm),
                                      cmocka_unit_test(stdout_stays_clean)};

@@ -167,10 +167,8 @@ static void a_frozen_rank_is_left_behind(void **state) {
 int main(int argc, char **argv) {
   if (argc > 2 && strcmp(argv[1], "work") == 0)
     return program_work(argv);
-  char path[4096] = "";
-  if (readlink("/proc/self/exe", path, sizeof path - 1) < 0)
-    return 1;
-  program = path;
+  char path[4096];
+  program = program_path(path, sizeof path);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(same_answers_whatever_the_ranks),
       cmocka_unit_test(a_crash_costs_one_run),

@@ -16,6 +16,16 @@
 
 #define TAG_VARIABLE "CLAST_FARM_TEST_TAG"
 
+/* The path of this test's program. Its file is that of all tests of its folder, and its name says which one runs. */
+static inline const char *program_path(char *path, size_t size) {
+  const ssize_t length = readlink("/proc/self/exe", path, size - 1);
+  path[length > 0 ? length : 0] = '\0';
+  char *slash = strrchr(path, '/');
+  if (slash)
+    snprintf(slash + 1, size - (size_t)(slash + 1 - path), "%s", program_invocation_short_name);
+  return path;
+}
+
 struct launch {
   int ranks; /* 0: alone, else mpirun -n ranks */
   int slots, in_process, count, kind;
