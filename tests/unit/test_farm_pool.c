@@ -15,13 +15,6 @@
 #include "schemas/clock.h"
 #include "tests/support/farm_tasks.h"
 
-#ifdef __SANITIZE_ADDRESS__
-__attribute__((visibility("default"))) const char *__asan_default_options(void);
-const char *__asan_default_options(void) {
-  return "allocator_may_return_null=1";
-} /* as malloc does, at RLIMIT_AS */
-#endif
-
 static struct farm *start(struct farm_options options) {
   struct farm *farm = NULL;
   struct error error = {0};

@@ -10,13 +10,6 @@
 
 #include "engine/grow.h"
 
-#ifdef __SANITIZE_ADDRESS__
-__attribute__((visibility("default"))) const char *__asan_default_options(void);
-const char *__asan_default_options(void) {
-  return "allocator_may_return_null=1";
-} /* as malloc does when there is no memory */
-#endif
-
 static void items_stay_and_the_room_doubles(void **state) {
   (void)state;
   double *values = NULL;
