@@ -60,7 +60,9 @@ static void shares_between_body_and_debris(void **state) {
   static const char *const classes[] = {"baseline", "v3", "v4"};
   for (int which = 0; which < 3; which++) {
     static double moment[6][CASES], old[6][CASES], gradient[9][CASES], expected[CASES][6], power[CASES], zero[CASES];
-    struct sph_pair_correction c = {.density = zero, .pressure_term = zero, .power = power};
+    const struct sph_pair_options options = {.method.gradient_correction = true};
+    struct sph_pair_fields fields = {.density = zero, .pressure_term = zero};
+    struct sph_pair_sums sums = {.power = power};
     for (int i = 0; i < CASES; i++) {
       const double d = sqrt(cases[i].d_squared), share = cases[i].share;
       const double value[3] = {cases[i].size, cases[i].size * (1 + d), cases[i].size * (1 - d)};
@@ -75,11 +77,11 @@ static void shares_between_body_and_debris(void **state) {
         gradient[k][i] = k - 3.5;
     }
     for (int k = 0; k < 6; k++)
-      c.old[k] = old[k], c.correction[k] = moment[k];
+      fields.correction[k] = old[k], sums.correction[k] = moment[k];
     for (int k = 0; k < 9; k++)
-      c.gradient[k] = gradient[k];
+      sums.gradient[k] = gradient[k];
     assert_int_equal(setenv("CLAST_CPU", classes[which], 1), 0);
-    sph_pairs_kernels_choose()->correct(&c, CASES);
+    sph_pairs_kernels_choose()->finish_gradient_correction(&options, &fields, 0, CASES, &sums);
     for (int i = 0; i < CASES; i++) {
       for (int k = 0; k < 6; k++)
         if (!(fabs(moment[k][i] - expected[i][k]) < 5e-14))

@@ -1,5 +1,5 @@
-/* Artificial stress against clumping in tension: a term of the pair loop. pairs_kernels_tension.h makes R from the
- * stress of each particle, pairs_kernels_sum.h adds f^n (R_i + R_j) to each pair.
+/* Artificial stress against clumping in tension: a term of the pair loop. It makes R from the stress of each particle,
+ * and adds f^n (R_i + R_j) to each pair.
  *
  *   method.artificial_stress   Monaghan's epsilon; 0: none
  *

@@ -15,10 +15,22 @@
  *                                                      is its value in bodies without it
  *   PROFILE_COLUMN(member, of_impact, of_plate, absent, unit, doc)   mean in the layers of a profile, of these columns
  *
+ *   PAIR_TERM(term, on)   a term of the pair loop (pairs/pairs_term.h), usually of the module's name, and its condition
+ *                         on `o`, a struct sph_pair_options. It may have:
+ *   PAIR_FIELDS(member, count)      columns of the system that the pair loop reads, of the COLUMN of that name
+ *   PAIR_MADE(term, count)          arrays of all particles that it makes before a pass
+ *   PAIR_RECORD(term, count)        columns that it adds to a record of the pair loop
+ *   PAIR_SUMS(term, member, count, scale)   sums that it adds; they become the COLUMN of that name. `scale` brings them
+ *                                           to SI; it is made from `u`, a struct sph_pair_units
+ *   PAIR_POWER(term)                its finish fills the power of struct sph_pair_sums
+ *   PAIR_CONSTANT(name, value)      a number that is the same for all pairs; `value` is made from `o`
+ *   PAIR_PACK(term), PAIR_STRESS(term), PAIR_STRESS_ADDED(term), PAIR_FORCE(term), PAIR_SUMMED(term), PAIR_FINISH(term)
+ *                                   the functions that it has
+ *
  *   TIME_STEP_LIMIT(NAME, member, doc)   SPH_LIMIT_NAME, and the result limited.member
  *
- * Two ready-made kinds: SPH_MODULE_STRUCTS takes the structs (structs.h), SPH_MODULE_LOOPS the loops (ranges_body.h).
- */
+ * Three ready-made kinds: SPH_MODULE_STRUCTS takes the structs (structs.h), SPH_MODULE_LOOPS the loops (ranges_body.h),
+ * SPH_PAIR_TERM the functions of terms (pairs/pairs_kernels_body.h). */
 #ifndef MODULE
 #define MODULE(...)
 #endif
@@ -46,6 +58,45 @@
 #ifndef PROFILE_COLUMN
 #define PROFILE_COLUMN(...)
 #endif
+#ifndef PAIR_TERM
+#define PAIR_TERM(...)
+#endif
+#ifndef PAIR_FIELDS
+#define PAIR_FIELDS(...)
+#endif
+#ifndef PAIR_MADE
+#define PAIR_MADE(...)
+#endif
+#ifndef PAIR_RECORD
+#define PAIR_RECORD(...)
+#endif
+#ifndef PAIR_SUMS
+#define PAIR_SUMS(...)
+#endif
+#ifndef PAIR_POWER
+#define PAIR_POWER(...)
+#endif
+#ifndef PAIR_CONSTANT
+#define PAIR_CONSTANT(...)
+#endif
+#ifndef PAIR_PACK
+#define PAIR_PACK(...)
+#endif
+#ifndef PAIR_STRESS
+#define PAIR_STRESS(...)
+#endif
+#ifndef PAIR_STRESS_ADDED
+#define PAIR_STRESS_ADDED(...)
+#endif
+#ifndef PAIR_FORCE
+#define PAIR_FORCE(...)
+#endif
+#ifndef PAIR_SUMMED
+#define PAIR_SUMMED(...)
+#endif
+#ifndef PAIR_FINISH
+#define PAIR_FINISH(...)
+#endif
 #ifndef TIME_STEP_LIMIT
 #define TIME_STEP_LIMIT(...)
 #endif
@@ -54,6 +105,7 @@
 
 #undef SPH_MODULE_STRUCTS
 #undef SPH_MODULE_LOOPS
+#undef SPH_PAIR_TERM
 #undef MODULE
 #undef MODULE_HOOKS
 #undef MODULE_INPUTS
@@ -63,4 +115,17 @@
 #undef PARTICLE_ARRAYS
 #undef PARTICLE_COLUMN
 #undef PROFILE_COLUMN
+#undef PAIR_TERM
+#undef PAIR_FIELDS
+#undef PAIR_MADE
+#undef PAIR_RECORD
+#undef PAIR_SUMS
+#undef PAIR_POWER
+#undef PAIR_CONSTANT
+#undef PAIR_PACK
+#undef PAIR_STRESS
+#undef PAIR_STRESS_ADDED
+#undef PAIR_FORCE
+#undef PAIR_SUMMED
+#undef PAIR_FINISH
 #undef TIME_STEP_LIMIT

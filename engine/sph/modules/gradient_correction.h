@@ -1,4 +1,6 @@
-/* What gradient_correction.c declares. */
+/* The gradient correction, a term of the pair loop (pairs/pairs.h; Bonet & Lok 1999). The stress T = sigma B of a
+ * record is not symmetric; the moments M are summed, and B is their inverse. Symmetric tensors have the columns xx xy
+ * xz yy yz zz. */
 
 MODULE(gradient_correction)
 MODULE_INPUTS(gradient_correction)
@@ -10,3 +12,150 @@ struct sph_gradient_correction_inputs {
 #endif
 
 COLUMN(correction[6]) /* B, at the last pair loop */
+
+PAIR_TERM(gradient_correction, o->gradient_correction.on)
+PAIR_FIELDS(correction, 6)
+PAIR_RECORD(gradient_correction, 3)                                     /* yx zx zy of T */
+PAIR_SUMS(gradient_correction, correction, 6, -u->distance / u->length) /* the moments times -1, then B */
+PAIR_POWER(gradient_correction)
+PAIR_PACK(gradient_correction)
+PAIR_STRESS(gradient_correction)
+PAIR_SUMMED(gradient_correction)
+PAIR_FINISH(gradient_correction)
+
+#ifdef SPH_PAIR_TERM
+
+#if !SINGLE /* always in double, LANES particles at a time */
+
+/* T = sigma B, which is not symmetric: xx xy xz yy yz zz, then yx zx zy. */
+INLINE void turn(const vec s[6], const vec b[6], vec t[9]) {
+  static const int place[3][3] = {{0, 1, 2}, {6, 3, 4}, {7, 8, 5}};
+  static const int of[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+  UNROLL
+  for (int row = 0; row < 3; row++) {
+    UNROLL
+    for (int c = 0; c < 3; c++)
+      t[place[row][c]] = b[of[c][0]] * s[of[row][0]] + b[of[c][1]] * s[of[row][1]] + b[of[c][2]] * s[of[row][2]];
+  }
+}
+
+/* Multiplies each row of a gradient by B. */
+INLINE void times(const vec b[6], const vec g[9], vec out[9]) {
+  UNROLL
+  for (int row = 0; row < 9; row += 3) {
+    out[row] = b[0] * g[row] + b[1] * g[row + 1] + b[2] * g[row + 2];
+    out[row + 1] = b[1] * g[row] + b[3] * g[row + 1] + b[4] * g[row + 2];
+    out[row + 2] = b[2] * g[row] + b[4] * g[row + 1] + b[5] * g[row + 2];
+  }
+}
+
+/* A smooth step: 0 below `low`, 1 above `high`. */
+INLINE vec smooth_step(vec x, double low, double high) {
+  const vec zero = {0}, part = (x - low) / (high - low);
+  const vec t = vec_select(vec_less(x, zero + low), zero, vec_select(vec_less(zero + high, x), zero + 1, part));
+  return t * t * (3 - 2 * t);
+}
+
+/* B, the inverse of the moment M, where a particle has enough neighbours on all sides; B = 1 where it has not; a smooth
+ * mixture in between. Two numbers decide. The mean eigenvalue of M is 1 inside a body and 0.3 in a corner. The
+ * determinant over the cube of that mean is at least 0.8 in a body and 0.6 in a sharp point; among debris, with a few
+ * neighbours anywhere, it is lower: there a corrected strain is noise, and its forces are stiff. */
+INLINE void invert(const vec m[6], vec inverse[6]) {
+  const vec zero = {0};
+  const vec a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
+  const vec determinant = m[0] * a + m[1] * b + m[2] * c;
+  const vec mean = (m[0] + m[3] + m[5]) / 3, cube = mean * mean * mean;
+  const double low = 0.1; /* below it B = 1, and nothing is divided by the mean */
+  const vec_mask solid = vec_less(zero + low, mean);
+  const vec round = vec_select(solid, determinant, zero) / vec_select(solid, cube, zero + 1);
+  const vec part = smooth_step(mean, low, 0.2) * smooth_step(round, 0.3, 0.6);
+  const vec_mask any = vec_less(zero, part);
+  const vec s = vec_keep(any, part) / vec_select(any, determinant, zero + 1);
+  inverse[0] = 1 - part + s * a;
+  inverse[1] = s * b;
+  inverse[2] = s * c;
+  inverse[3] = 1 - part + s * (m[0] * m[5] - m[2] * m[2]);
+  inverse[4] = s * (m[1] * m[2] - m[0] * m[4]);
+  inverse[5] = 1 - part + s * (m[0] * m[3] - m[1] * m[1]);
+}
+
+/* Corrects `lanes` particles: those from place `k` of the sums on, which are those from i on of the fields. */
+INLINE void correct_some(const struct sph_pair_options *options, const struct sph_pair_fields *f, size_t i,
+                         const struct sph_pair_sums *sums, size_t k, const size_t lanes) {
+  vec b[6], moment[6], g[9], out[9];
+  UNROLL
+  for (int c = 0; c < 6; c++) {
+    b[c] = vec_load_first(f->correction[c] + i, lanes);
+    moment[c] = vec_load_first(sums->correction[c] + k, lanes);
+  }
+  UNROLL
+  for (int c = 0; c < 9; c++)
+    g[c] = vec_load_first(sums->gradient[c] + k, lanes);
+
+  /* The work of the forces, rho (sigma/rho^2) : gradient, with the B that they were made with. */
+  times(b, g, out);
+  vec power = vec_load_first(f->pressure_term + i, lanes) * (out[0] + out[4] + out[8]);
+  if (options->strength) {
+    vec s[6];
+    acting(f->stress, f->stress_factor, i, lanes, s);
+    power += s[0] * out[0] + s[3] * out[4] + s[5] * out[8] + s[1] * (out[1] + out[3]) + s[2] * (out[2] + out[6]) +
+             s[4] * (out[5] + out[7]);
+  }
+  power *= vec_load_first(f->density + i, lanes);
+  vec_store_first(sums->power + k, power, lanes);
+
+  invert(moment, b);
+  times(b, g, out);
+  UNROLL
+  for (int c = 0; c < 6; c++)
+    vec_store_first(sums->correction[c] + k, b[c], lanes);
+  UNROLL
+  for (int c = 0; c < 9; c++)
+    vec_store_first(sums->gradient[c] + k, out[c], lanes);
+}
+
+static void gradient_correction_finish(const struct sph_pair_options *options, const struct sph_pair_fields *f,
+                                       size_t first, size_t count, const struct sph_pair_sums *sums) {
+  size_t k = 0;
+  for (; k + LANES <= count; k += LANES)
+    correct_some(options, f, first + k, sums, k, LANES);
+  if (k < count)
+    correct_some(options, f, first + k, sums, k, count - k);
+}
+
+#endif
+
+INLINE void TYPED(gradient_correction_pack)(const struct sph_pair_source *source, size_t first, const uint32_t *which,
+                                            vec_double base[], vec_double own[]) {
+  vec_double b[6], t[9];
+  UNROLL
+  for (size_t c = 0; c < 6; c++)
+    b[c] = column_load(source->fields.correction[c], 1, first, which);
+  turn(base + PAIR_XX, b, t);
+  UNROLL
+  for (size_t c = 0; c < 6; c++)
+    base[PAIR_XX + c] = t[c];
+  UNROLL
+  for (size_t c = 0; c < PAIR_RECORD_gradient_correction; c++)
+    own[c] = t[6 + c];
+}
+
+INLINE void TYPED(gradient_correction_stress)(const struct sph_pair_constants *k, const struct pair_member *me,
+                                              const REAL *mine, const vec *its, const struct pair_batch *p,
+                                              vec t[3][3]) {
+  (void)k, (void)me, (void)p;
+  t[1][0] = mine[0] + its[0];
+  t[2][0] = mine[1] + its[1];
+  t[2][1] = mine[2] + its[2];
+}
+
+INLINE void TYPED(gradient_correction_sum)(const struct pair_batch *p, const vec w[3], const bool first, vec *sum) {
+  FOR_AXES(a) {
+    FOR_AXES(b) {
+      if (a <= b)
+        sum[SYMMETRIC(a, b)] = first ? p->d[a] * w[b] : sum[SYMMETRIC(a, b)] + p->d[a] * w[b];
+    }
+  }
+}
+
+#endif

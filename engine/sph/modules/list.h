@@ -29,3 +29,11 @@
 #include "engine/sph/modules/artificial_stress.h"
 #include "engine/sph/modules/gradient_correction.h"
 /* clang-format on */
+
+/* The combinations of terms for which the pair loop is compiled, in two precisions and three CPU classes: a name, and
+ * the terms that are on. */
+#define SPH_PAIR_COMBINATIONS(COMBINATION)                                                                             \
+  COMBINATION(plain, 0)                                                                                                \
+  COMBINATION(artificial, .artificial_stress = true)                                                                   \
+  COMBINATION(corrected, .gradient_correction = true)                                                                  \
+  COMBINATION(both, .artificial_stress = true, .gradient_correction = true)

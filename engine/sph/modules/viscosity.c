@@ -1,4 +1,4 @@
-/* Artificial viscosity: a term of the pair loop (pairs/pairs_kernels_sum.h).
+/* Artificial viscosity: a term of the pair loop that is always compiled in.
  *
  *   viscosity.alpha, viscosity.beta   linear and quadratic; both 0: none */
 #include "engine/sph/modules/ranges.h"

@@ -48,7 +48,9 @@ struct sph_pair_fields {
   const double *pressure_term; /* -P/rho^2 with the damaged bulk pressure */
   const double *stress[5];     /* S, undamaged deviator, Pa: xx xy xz yy yz, its trace is zero; NULL without strength */
   const double *stress_factor; /* (1-D)/rho^2: sigma/rho^2 = stress_factor S + pressure_term I */
-  const double *correction[6]; /* B of the pass before (at first 1); only with gradient_correction */
+  /* Columns that terms read, also the sums of the pass before; only where the term is on. */
+#define PAIR_FIELDS(member, count) const double *member[count];
+#include "engine/sph/modules/declarations.h"
 };
 
 /* The sums of a pass, for some consecutive particles. */
@@ -59,7 +61,9 @@ struct sph_pair_sums {
   /* Only with gradient_correction, else NULL. The work of the forces, J/kg/s: rho_i (sigma/rho^2 : g), where g is the
    * sum times the forces' B. With it total energy is conserved however much B changes between two passes. */
   double *power;
-  double *correction[6]; /* the new B; NULL without */
+  /* Sums of terms, each for the column of its name; NULL where the term is off. */
+#define PAIR_SUMS(term, member, count, scale) double *member[count];
+#include "engine/sph/modules/declarations.h"
   /* m/s: largest |mu_ij| = h |v.r|/(r^2 + 0.01 h^2) of approaching pairs, for the time step. -1 without neighbours:
    * such a particle does not limit the step. */
   double *signal;
@@ -70,7 +74,8 @@ enum { SPH_PIECE = 512 }; /* number of particles whose sums are delivered togeth
 struct sph_pairs; /* opaque: lists and records */
 
 /* For at most n particles. Later only sph_pairs_list allocates memory, when lists must grow. STATUS_MEMORY;
- * STATUS_CONTENT for more particles than the lists of float records can name (neighbours.h). */
+ * STATUS_CONTENT for more particles than the lists of float records can name (neighbours.h), and when the pair loop is
+ * not compiled for terms that are on together (SPH_PAIR_COMBINATIONS in modules/list.h). */
 status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct sph_pairs **out, struct error *error);
 void sph_pairs_free(struct sph_pairs *pairs); /* NULL is fine */
 size_t sph_pairs_bytes(const struct sph_pairs *pairs);
@@ -97,6 +102,8 @@ typedef void sph_pairs_take(void *context, size_t first, size_t count, const str
  * `take` at the same time. */
 void sph_pairs_sum(struct sph_pairs *pairs, size_t n, const struct sph_pair_fields *fields, sph_pairs_take *take,
                    void *context);
+/* Do terms read the sums of the pass before? Then the first pass of a run must be made twice. */
+bool sph_pairs_look_back(const struct sph_pairs *pairs);
 /* Mean number of neighbours in the lists (each pair counts for both): the time of a pass is proportional to it. */
 double sph_pairs_reached(const struct sph_pairs *pairs);
 /* Mean number of neighbours within 2h in the last pass (each pair counts for both). */

@@ -11,8 +11,29 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Columns of a record. Float records hold x, y, z as 32-bit integers in a small unit of length: differences are exact
- * and wrap round harmlessly, so precision does not depend on a particle's place in a scene of kilometres. */
+#include "engine/sph/modules/declarations.h"
+#include "engine/sph/pairs/pairs.h"
+
+/* The terms of the pair loop (pairs_term.h), in the order of the modules; a shape says which are on. */
+enum sph_pair_term {
+#define PAIR_TERM(name, on) PAIR_TERM_##name,
+#include "engine/sph/modules/declarations.h"
+  PAIR_TERMS
+};
+struct sph_pair_shape {
+#define PAIR_TERM(name, on) bool name;
+#include "engine/sph/modules/declarations.h"
+};
+/* The shapes for which the pair loop is compiled. */
+enum sph_pair_combination {
+#define COMBINATION(name, ...) PAIR_SHAPE_##name,
+  SPH_PAIR_COMBINATIONS(COMBINATION) PAIR_SHAPES
+#undef COMBINATION
+};
+
+/* Columns of a record: those of every record, then those of its terms. Float records hold x, y, z as 32-bit integers in
+ * a small unit of length: differences are exact and wrap round harmlessly, so precision does not depend on a particle's
+ * place in a scene of kilometres. */
 enum sph_pair_column {
   PAIR_X,
   PAIR_Y,
@@ -27,13 +48,13 @@ enum sph_pair_column {
   PAIR_XZ,
   PAIR_YY,
   PAIR_YZ,
-  PAIR_ZZ, /* T: sigma/rho^2 with the pressure term; times B with the gradient correction */
+  PAIR_ZZ, /* T: sigma/rho^2 with the pressure term, unless a term changes it */
   PAIR_SOUND,
   PAIR_DENSITY,
-  PAIR_ARTIFICIAL,      /* with artificial stress: the six columns of R */
-  PAIR_TURNED = 16,     /* with the gradient correction: YX ZX ZY of T, which is not symmetric then */
-  PAIR_TURNED_TOO = 24, /* the same with both */
+  PAIR_BASE,
 };
+/* The columns of a term begin at a multiple of four: a small term is then loaded at once. */
+#define PAIR_ALIGNED(column) (((column) + 3) / 4 * 4)
 /* Columns of a record of sums. In float a sum is multiplied by the masses of both partners (volumes with volume
  * weights), so that both get the same number; unpack divides by the particle's own. */
 enum sph_pair_sum {
@@ -41,22 +62,60 @@ enum sph_pair_sum {
   SUM_GRADIENT = 3,
   SUM_HEATING = 12, /* times -2 */
   SUM_SIGNAL,       /* the largest, not the sum; above zero if there are neighbours */
-  SUM_MOMENT,       /* with the gradient correction: six columns, times -1 */
-  SUM_COLUMNS = SUM_MOMENT + 6,
+  SUM_BASE,         /* the sums of terms follow, weighted as the gradient is */
 };
-/* Length of a record in columns: the plain one; with artificial stress or the gradient correction (sums: with moments);
- * with both. */
-enum { PAIR_NARROW = 16, PAIR_MIDDLE_DOUBLE = 24, PAIR_MIDDLE_FLOAT = 32, PAIR_WIDE = 32 };
 
-/* The length of a record that has one, two or none of the extra parts. */
-static inline size_t sph_pair_columns(bool single, bool one, bool other) {
-  if (one && other)
-    return PAIR_WIDE;
-  if (!one && !other)
-    return PAIR_NARROW;
-  return single ? PAIR_MIDDLE_FLOAT : PAIR_MIDDLE_DOUBLE;
+/* Sizes: how many columns a term has, and of the longest record, that of all terms. An enumerator is one more than the
+ * one before it, which here is the last column before the term. */
+enum {
+#define PAIR_RECORD(term, count)              PAIR_RECORD_##term = count,
+#define PAIR_SUMS(term, member, count, scale) PAIR_SUMS_##term = count,
+#include "engine/sph/modules/declarations.h"
+  PAIR_BASE_END = PAIR_BASE - 1,
+#define PAIR_RECORD(term, count) PAIR_BEFORE_##term, PAIR_END_##term = PAIR_ALIGNED(PAIR_BEFORE_##term) + (count)-1,
+#include "engine/sph/modules/declarations.h"
+  PAIR_ALL,
+  SUM_BASE_END = SUM_BASE - 1,
+#define PAIR_SUMS(term, member, count, scale) SUM_BEFORE_##term, SUM_END_##term = SUM_BEFORE_##term + (count)-1,
+#include "engine/sph/modules/declarations.h"
+  SUM_ALL,
+  MADE_END = -1,
+#define PAIR_MADE(term, count) MADE_##term, MADE_END_##term = MADE_##term + (count)-1,
+#include "engine/sph/modules/declarations.h"
+  MADE_ALL,
+  PAIR_MOST = (PAIR_ALL + 15) / 16 * 16, /* whole registers */
+  SUM_MOST = (SUM_ALL + 15) / 16 * 16,
+  SUM_SPREAD = 16, /* sums that are added to records in whole registers; those behind them in fours */
+};
+
+/* The number of columns of a record, in front of the part of term `end` (PAIR_TERMS: of all). A constant where the
+ * shape is one. */
+static inline size_t sph_pair_shape_columns(const struct sph_pair_shape shape, const int end) {
+  size_t columns = PAIR_BASE;
+#define PAIR_RECORD(term, count)                                                                                       \
+  if (shape.term && PAIR_TERM_##term < end)                                                                            \
+    columns = PAIR_ALIGNED(columns) + (count);
+#include "engine/sph/modules/declarations.h"
+  return columns;
 }
-
+/* The first column of a term. */
+static inline size_t sph_pair_shape_first(const struct sph_pair_shape shape, const int term) {
+  return PAIR_ALIGNED(sph_pair_shape_columns(shape, term));
+}
+/* The same of a record of sums. */
+static inline size_t sph_pair_shape_sums(const struct sph_pair_shape shape, const int end) {
+  size_t columns = SUM_BASE;
+#define PAIR_SUMS(term, member, count, scale)                                                                          \
+  if (shape.term && PAIR_TERM_##term < end)                                                                            \
+    columns += (count);
+#include "engine/sph/modules/declarations.h"
+  return columns;
+}
+/* The length of a record in whole cache lines of 64 bytes, for numbers of `bytes` bytes. */
+static inline size_t sph_pair_shape_stride(size_t columns, size_t bytes) {
+  const size_t line = 64 / bytes;
+  return (columns + line - 1) / line * line;
+}
 /* Particles with consecutive numbers that share one list of neighbours. A neighbour is loaded, and its sums are stored,
  * once for all of them. */
 enum { PAIR_GROUP_DOUBLE = 1, PAIR_GROUP_FLOAT = 2 };
@@ -70,41 +129,44 @@ struct sph_pair_chunk {
   const uint32_t *neighbour; /* slots; members of a group but the first are in the group's list */
 };
 
+/* Units in which the numbers of float records are of order 1; powers of two. In double all units are 1. per_...: their
+ * inverses. */
+struct sph_pair_units {
+  double length, mass, velocity, density, specific; /* specific: of stress over density squared */
+  double per_length, per_mass, per_velocity, per_density, per_specific;
+  double distance; /* m, of h and of the distance of two particles */
+};
+
 /* Columns from which records are packed: arrays of all particles. */
 struct sph_pair_source {
-  const double *column[PAIR_WIDE];        /* by enum sph_pair_column; NULL: zero. XX to YZ: the deviator */
-  double scale[PAIR_WIDE];                /* from SI to the records' units; powers of two */
+  const double *column[PAIR_BASE];        /* by enum sph_pair_column; NULL: zero. XX to YZ: the deviator */
+  double scale[PAIR_BASE];                /* from SI to the records' units; powers of two */
   const double *stress_factor, *pressure; /* factor of the deviator; added to XX, YY, ZZ, in their units */
-  const double *correction[6];            /* B, a factor of the stress; NULL without the correction */
   double per_unit[3];                     /* 1/m, inverse unit of float records' positions */
   bool volume_weights;                    /* the stress is sigma, not sigma/rho^2 */
+  struct sph_pair_shape shape;            /* for its terms, also: */
+  struct sph_pair_units unit;
+  struct sph_pair_fields fields;
+  const double *made[MADE_ALL]; /* by MADE_...: what terms made before the pass */
 };
 
 /* Columns to which sums are unpacked. */
 struct sph_pair_sink {
-  double *column[SUM_COLUMNS]; /* by enum sph_pair_sum; without moments NULL from there on */
-  double scale[SUM_COLUMNS];   /* from the records' units to SI */
+  double *column[SUM_MOST]; /* by enum sph_pair_sum */
+  double scale[SUM_MOST];   /* from the records' units to SI */
+  size_t columns;
   const double *mass, *density;
   double mass_unit, density_unit;
-  bool volume_weights; /* if not, gradient and moments are divided by the density */
-};
-
-/* Columns of the particles whose gradients are corrected. */
-struct sph_pair_correction {
-  const double *old[6];                                              /* the B of this pass's forces */
-  const double *density, *pressure_term, *stress_factor, *stress[5]; /* the last two are NULL without strength */
-  double *gradient[9];                                               /* in: the sum; out: times the new B */
-  double *correction[6];                                             /* in: the moments; out: the new B */
-  double *power;                                                     /* out: the work of the forces, J/kg/s */
+  bool volume_weights; /* if not, the gradient and the sums of terms are divided by the density */
 };
 
 struct sph_pair_constants {
-  double alpha, twice_beta;
   double periodic[3], per_period[3]; /* m, length of a periodic axis and its inverse; NaN: open (double records only) */
   double unit[3];                    /* unit of float records' positions over their unit of h; used if wrapped */
   double norm;                       /* of W'/r */
-  double spline_at_spacing;          /* W(spacing)/norm, for the artificial stress */
   bool strength, volume_weights, wrapped;
+#define PAIR_CONSTANT(name, value) double name;
+#include "engine/sph/modules/declarations.h"
 };
 
 /* A box of neighbours.h: all its particles lie within `half` of `middle`, and none has a larger reach than `reach`. */
@@ -124,8 +186,9 @@ struct sph_near_particles {
 /* Kernels that read or write records, in one precision. */
 struct sph_record_kernels {
   size_t bytes; /* of a number */
-  /* [gradient corrected][artificial stress]. They return how many pairs are within the support. */
-  double (*sum[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const void *in, void *out);
+  /* By shape. They return how many pairs are within the support. */
+  double (*sum[PAIR_SHAPES])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const void *in,
+                             void *out);
   /* Makes the records of `count` particles, `stride` columns each: those from `first` on or, when `which` is not NULL,
    * those that it names. */
   void (*pack)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride,
@@ -152,12 +215,14 @@ struct sph_pair_kernels {
    * *pairs. `at` and `number` are read, and `found` is written, up to 7 places beyond the end. */
   size_t (*near_pairs)(size_t count, double *const at[4], const uint32_t *number, const double (*own)[4], size_t owns,
                        const double period[3], uint32_t tag, uint32_t *found, size_t *pairs);
-  /* Applies the gradient correction to `count` particles (pairs_kernels_correct.h). */
-  void (*correct)(const struct sph_pair_correction *, size_t count);
-  /* The artificial stress R of the particles first .. last - 1 (xx xy xz yy yz zz), which opposes the tension in
-   * stress_factor S + pressure_term I, in the same unit (pairs_kernels_tension.h). */
-  void (*oppose)(double epsilon, const double *const stress[5], const double *stress_factor,
-                 const double *pressure_term, size_t first, size_t last, double *const out[6]);
+  /* Functions of terms (pairs_term.h), for `options` and all fields. */
+#define PAIR_MADE(term, count)                                                                                         \
+  void (*make_##term)(const struct sph_pair_options *options, const struct sph_pair_fields *fields, size_t first,      \
+                      size_t last, double *const *made);
+#define PAIR_FINISH(term)                                                                                              \
+  void (*finish_##term)(const struct sph_pair_options *options, const struct sph_pair_fields *fields, size_t first,    \
+                        size_t count, const struct sph_pair_sums *sums);
+#include "engine/sph/modules/declarations.h"
 };
 
 extern const struct sph_pair_kernels sph_pairs_kernels_baseline;

@@ -1,25 +1,26 @@
 /* All kernels of one CPU class. The including file sets WIDTH (bytes of a register), KERNELS_TABLE and KERNELS_NAME. */
 #include "engine/sph/pairs/pairs_kernels.h"
-#include "engine/sph/pairs/spline.h"
 
 /* The order matters: each header uses the names of those before it. */
 /* clang-format off */
 #define TEMPLATE_DOUBLE
 #include "engine/sph/pairs/templates_on.h"
 #include "engine/sph/pairs/vector.h"
-#include "engine/sph/pairs/pairs_kernels_correct.h"
-#include "engine/sph/pairs/pairs_kernels_tension.h"
+#include "engine/sph/pairs/pairs_term.h"
+#define SPH_PAIR_TERM
+#include "engine/sph/modules/declarations.h"
 #include "engine/sph/pairs/pairs_kernels_records.h"
 #include "engine/sph/pairs/pairs_kernels_sum.h"
-#include "engine/sph/pairs/pairs_kernels_pack.h"
 #include "engine/sph/pairs/templates_off.h"
 
 #define TEMPLATE_FLOAT
 #include "engine/sph/pairs/templates_on.h"
 #include "engine/sph/pairs/vector.h"
+#include "engine/sph/pairs/pairs_term.h"
+#define SPH_PAIR_TERM
+#include "engine/sph/modules/declarations.h"
 #include "engine/sph/pairs/pairs_kernels_records.h"
 #include "engine/sph/pairs/pairs_kernels_sum.h"
-#include "engine/sph/pairs/pairs_kernels_pack.h"
 #include "engine/sph/pairs/templates_off.h"
 
 #include "engine/sph/pairs/pairs_kernels_near.h"
@@ -32,6 +33,7 @@ const struct sph_pair_kernels KERNELS_TABLE = {
     .near_boxes = near_boxes,
     .near_particles = near_particles,
     .near_pairs = near_pairs,
-    .correct = correct,
-    .oppose = oppose,
+#define PAIR_MADE(term, count) .make_##term = term##_make,
+#define PAIR_FINISH(term)      .finish_##term = term##_finish,
+#include "engine/sph/modules/declarations.h"
 };

@@ -80,8 +80,10 @@ static size_t first_block(const struct sph_system *s, size_t at) {
 /* Called by the pair loop with the sums of some particles: runs the loops after the pair loop on their blocks. */
 static void after_pairs(void *context, size_t first, size_t count, const struct sph_pair_sums *sums) {
   struct sph_system *s = context;
-  for (size_t m = 0; s->in.gradient_correction.on && m < 6; m++)
-    memcpy(s->c.correction[m] + first, sums->correction[m], count * sizeof(double));
+#define PAIR_SUMS(term, member, number, scale)                                                                         \
+  for (size_t m = 0; m < (number) && sums->member[m]; m++)                                                             \
+    memcpy(((double *const *)(const void *)&s->c.member)[m] + first, sums->member[m], count * sizeof(double));
+#include "engine/sph/modules/declarations.h"
   for (size_t k = first_block(s, first); k < s->block_count && s->block[k].low < first + count; k++) {
     struct sph_block *block = &s->block[k];
     const struct sph_solid *body = &s->solid[block->body];
@@ -114,8 +116,8 @@ struct sph_pair_fields sph_system_step_fields(const struct sph_system *s) {
                                    .sound_speed = c->sound_speed,
                                    .pressure_term = c->pressure_term,
                                    .stress_factor = c->stress_factor};
-  for (int k = 0; k < 6; k++)
-    fields.correction[k] = c->correction[k];
+#define PAIR_FIELDS(member, count) memcpy(fields.member, &c->member, sizeof fields.member);
+#include "engine/sph/modules/declarations.h"
   for (int k = 0; k < 5; k++)
     fields.stress[k] = c->stress[k];
   return fields;
@@ -175,8 +177,8 @@ static bool advance(struct sph_system *s, double dt) {
 }
 
 bool sph_system_step_begin(struct sph_system *s) {
-  if (s->in.gradient_correction.on && !advance(s, 0))
-    return false; /* the forces need the correction of the previous pass */
+  if (sph_pairs_look_back(s->pairs) && !advance(s, 0))
+    return false; /* the forces need sums of the previous pass */
   return advance(s, 0);
 }
 
