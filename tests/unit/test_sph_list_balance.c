@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/pairs/neighbours.h"
+#include "engine/sph/pairs/chunks.h"
 #include "tests/support/noise.h"
 
 enum { SIDE = 11, MOST = SIDE * SIDE * SIDE };
@@ -54,7 +54,7 @@ static double check(const struct cloud *c, const double periodic[3], const struc
   struct sph_neighbour_lists lists = {.start = start, .count = count};
   size_t filled = 0, handed = 0;
   memset(met, 0, sizeof met);
-  assert_true(sph_neighbours_list(neighbours, chunk, &lists) && sph_list_balance(own, share, &lists));
+  assert_true(sph_neighbours_list(neighbours, chunk, &lists) && sph_chunks_balance(own, share, &lists));
   for (size_t g = 0; g * share < own; g++) {
     bool foreign = false;
     assert_true(start[g] % SPH_LIST_ALIGN == 0 && start[g + 1] >= start[g] + count[g]);

@@ -111,7 +111,7 @@ static void average(struct sph_system *s, const struct cells *c, size_t k) {
   }
 }
 
-static void meet(struct sph_system *s, const struct sph_solid *body) {
+static void average_stress(struct sph_system *s, const struct sph_solid *body) {
   struct cells *c = body->prepared[SPH_MODULE_crack_cell];
   for (size_t i = body->first; i < body->last; i++)
     c->index[s->id[i] - body->first] = (uint32_t)i;
@@ -152,6 +152,6 @@ const struct sph_module sph_crack_cell_module = {
     .prepare = prepare,
     .free_prepared = free_prepared,
     .bytes_prepared = bytes_prepared,
-    .meet = meet,
+    .meet = average_stress,
     .fill = fill,
 };

@@ -3,7 +3,7 @@
  * fit into the cache of a core while it is summed.
  *
  *   slots   | own particles (SPH_CHUNK of them) | halo, ascending particle numbers |
- *   lists   | list 0 | list 1 | ...               slots, padded to whole batches (neighbours.h, list_balance.c)
+ *   lists   | list 0 | list 1 | ...               slots, padded to whole batches (neighbours.h, sph_chunks_balance)
  *
  * The halo of a chunk consists of stretches, each of them a part of one later chunk. */
 #ifndef CLAST_ENGINE_SPH_PAIRS_CHUNKS_H
@@ -55,5 +55,10 @@ size_t sph_chunks_bytes(const struct sph_chunks *chunks);
 /* Makes new lists. Arguments and errors as for sph_neighbours_find. */
 status sph_chunks_list(struct sph_chunks *chunks, size_t n, const double *x, const double *y, const double *z,
                        const double *reach, const double periodic[3], int threads, struct error *error);
+
+/* Balances the lists of a chunk of `own` particles, shared by `per_list` (one or two), so that most of them fill whole
+ * batches. Afterwards a list may begin with particles before its first one; every pair is still in one list, and
+ * entries are numbers without tags. lists->j is replaced. False without memory. */
+bool sph_chunks_balance(size_t own, size_t per_list, struct sph_neighbour_lists *lists);
 
 #endif

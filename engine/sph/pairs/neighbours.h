@@ -52,9 +52,4 @@ status sph_neighbours_find(struct sph_neighbours *neighbours, size_t n, const do
 /* The lists of one chunk; several threads may call it at the same time. False without memory. */
 bool sph_neighbours_list(const struct sph_neighbours *neighbours, size_t chunk, struct sph_neighbour_lists *lists);
 
-/* Balances the lists of a chunk of `own` particles, shared by `per_list` (one or two): list_balance.c. Afterwards a
- * list may begin with particles before its first one; every pair is still in one list, and entries are numbers without
- * tags. lists->j is replaced. False without memory. */
-bool sph_list_balance(size_t own, size_t per_list, struct sph_neighbour_lists *lists);
-
 #endif

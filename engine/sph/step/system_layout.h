@@ -141,10 +141,6 @@ double sph_system_columns_bytes(const struct sph_column_set *columns, size_t pai
 /* x wrapped into the periodic box; unchanged when `length` is NaN. */
 double sph_system_columns_wrapped(double x, double length);
 
-/* The checks of sph_system_create: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */
-status sph_system_check(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,
-                        const struct sph_inputs *inputs, const struct sph_domain *domain, struct error *error);
-
 /* ---- system_step.c ---- */
 
 /* Sorts the particles, makes lists and evaluates the forces at the initial state. False as sph_system_step. */
