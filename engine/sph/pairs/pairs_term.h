@@ -21,7 +21,9 @@
  *                 after the pass, when the sums of some particles are complete: place 0 of `sums` is particle `first`
  *
  * `mine` are the term's columns in the member's record, `its` those of the neighbours, `base` the columns that every
- * record has. Numbers of float records are in the units of struct sph_pair_units. */
+ * record has. Units, which are all 1 in double (struct sph_pair_units): h and d in unit.distance, u in unit.velocity,
+ * densities in unit.density, w in unit.length^-4, stress over density squared in unit.specific. A force is the latter
+ * times w. The mass of the partner, or its volume, is a factor that the pair loop adds. */
 
 #define vec_part        TYPED(vec_part)
 #define column_load     TYPED(column_load)
