@@ -60,7 +60,7 @@ static void opposed_stress_equals_plain_c(void **state) {
     assert_int_equal(setenv("CLAST_CPU", classes[which], 1), 0);
     int opposed = 0, none = 0;
     r[0][FIRST - 1] = r[0][COUNT - 1] = 99;
-    const struct sph_pair_options options = {.method.artificial_stress = 0.3, .strength = true};
+    const struct sph_pair_options options = {.artificial_stress.epsilon = 0.3, .strength = true};
     struct sph_pair_fields fields = {.stress_factor = factor, .pressure_term = pressure};
     memcpy(fields.stress, in, sizeof fields.stress);
     sph_pairs_kernels_choose()->make_artificial_stress(&options, &fields, FIRST, COUNT - 1, out);

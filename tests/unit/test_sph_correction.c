@@ -60,7 +60,7 @@ static void shares_between_body_and_debris(void **state) {
   static const char *const classes[] = {"baseline", "v3", "v4"};
   for (int which = 0; which < 3; which++) {
     static double moment[6][CASES], old[6][CASES], gradient[9][CASES], expected[CASES][6], power[CASES], zero[CASES];
-    const struct sph_pair_options options = {.method.gradient_correction = true};
+    const struct sph_pair_options options = {.gradient_correction.on = true};
     struct sph_pair_fields fields = {.density = zero, .pressure_term = zero};
     struct sph_pair_sums sums = {.power = power};
     for (int i = 0; i < CASES; i++) {
