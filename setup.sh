@@ -10,7 +10,7 @@ set -eu
 cd "$(dirname "$0")"
 
 packages="build-essential cmake ninja-build pkg-config
-libfyaml-dev libopenmpi-dev openmpi-bin libsqlite3-dev libhdf5-dev libgsl-dev libplfit-dev librandom123-dev
+libfyaml-dev libopenmpi-dev openmpi-bin libsqlite3-dev libhdf5-dev libgsl-dev librandom123-dev
 libcairo2-dev zlib1g-dev libcmocka-dev libqhull-dev uthash-dev clang-format
 libmicrohttpd-dev libjansson-dev
 gnuplot-nox

@@ -35,7 +35,6 @@ file(CONFIGURE OUTPUT "${OUTPUT}" @ONLY CONTENT [[
 #define BUILD_HDF5 "@HDF5@"
 #define BUILD_SQLITE "@SQLITE@"
 #define BUILD_GSL "@GSL@"
-#define BUILD_PLFIT "@PLFIT@"
 #define BUILD_CAIRO "@CAIRO@"
 #define BUILD_MPI "@MPI@"
 #endif

@@ -21,9 +21,7 @@ static const char *const method_docs =
     "unweighted least squares of log density on log bins of one decade, the largest fragment included: the method of "
     "Kun & Herrmann (1999). Of a point: off until its runs fill every bin; of one run: of the bins that are filled, "
     "biased low\n"
-    "maximum likelihood on the stored bins\n"
     "maximum likelihood on masses in a bounded window\n"
-    "the same above the lower cut-off that fits best by Kolmogorov-Smirnov distance\n"
     "power law with an exponential cut-off at large masses, maximum likelihood on masses";
 
 #define REAL(path_, unit_, member_, least_, doc_, source_)                                                             \
@@ -51,8 +49,7 @@ static const struct field rows_of_table[] = {
     REAL(
         standard_error, "1", fit.standard_error, 0,
         "Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval "
-        "over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from "
-        "leaving out one of its runs after another (jackknife).",
+        "over seeds. Of a point: from leaving out one of its runs after another (jackknife).",
         NULL),
     REAL(hw95, "1", half_width, 0,
          "Half width of the 95 % interval of beta over the runs (seeds) of a point: Student's t and the jackknife. Off "
@@ -61,13 +58,10 @@ static const struct field rows_of_table[] = {
     REAL(cutoff_mass, "kg", fit.cutoff_mass, 0,
          "m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.", NULL),
     REAL(ks_distance, "1", fit.ks_distance, 0,
-         "Largest distance between the distribution functions of sample and fit; methods masses and ks only.",
+         "Largest distance between the distribution functions of sample and fit; method masses only.",
          "Clauset, Shalizi & Newman (2009)"),
     REAL(log_likelihood, "1", fit.log_likelihood, -HUGE_VAL,
-         "Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one "
-         "window "
-         "only.",
-         NULL),
+         "Natural logarithm of the likelihood of ln(m). Compare within one window only.", NULL),
 };
 const struct field_table estimates_table = FIELD_TABLE(rows_of_table, struct estimate, "estimate",
                                                        "Exponents of fragment spectra, by method and window.");
@@ -91,10 +85,8 @@ static const struct {
   enum estimates_window window;
 } wanted[ESTIMATES_COUNT] = {
     {EXPONENT_LEAST_SQUARES, ESTIMATES_FROM_2},  {EXPONENT_LEAST_SQUARES, ESTIMATES_FROM_5},
-    {EXPONENT_LEAST_SQUARES, ESTIMATES_FROM_10}, {EXPONENT_BINNED, ESTIMATES_FROM_2},
-    {EXPONENT_BINNED, ESTIMATES_FROM_5},         {EXPONENT_BINNED, ESTIMATES_FROM_10},
-    {EXPONENT_MASSES, ESTIMATES_FROM_2},         {EXPONENT_MASSES, ESTIMATES_FROM_5},
-    {EXPONENT_MASSES, ESTIMATES_FROM_10},        {EXPONENT_KS, ESTIMATES_FROM_2},
+    {EXPONENT_LEAST_SQUARES, ESTIMATES_FROM_10}, {EXPONENT_MASSES, ESTIMATES_FROM_2},
+    {EXPONENT_MASSES, ESTIMATES_FROM_5},         {EXPONENT_MASSES, ESTIMATES_FROM_10},
     {EXPONENT_UPPER_CUTOFF, ESTIMATES_FROM_5},
 };
 

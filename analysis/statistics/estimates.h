@@ -35,8 +35,7 @@ extern const struct field_table estimates_table;
 enum {
   ESTIMATES_HEADLINE_METHOD = EXPONENT_MASSES,
   ESTIMATES_HEADLINE_WINDOW = ESTIMATES_FROM_5,
-  ESTIMATES_COUNT = 3 * ESTIMATES_WINDOWS +
-                    2, /* least_squares, binned and masses in each window; ks from 2; cutoff from 5 */
+  ESTIMATES_COUNT = 2 * ESTIMATES_WINDOWS + 1, /* least_squares and masses in each window; cutoff from 5 */
 };
 
 /* Fragments in descending order of mass. They include those of one element, which are part of the mean element mass

@@ -2,7 +2,6 @@
 #include "analysis/statistics/exponent.h"
 
 #include <math.h>
-#include <plfit.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,9 +9,8 @@
 #include "analysis/statistics/sample.h"
 #include "analysis/statistics/tempered.h"
 
-FIELD_WORDS(exponent_method_names,
-            EXPONENT_METHODS, [EXPONENT_LEAST_SQUARES] = "least_squares", [EXPONENT_BINNED] = "binned",
-            [EXPONENT_MASSES] = "masses", [EXPONENT_KS] = "ks", [EXPONENT_UPPER_CUTOFF] = "cutoff");
+FIELD_WORDS(exponent_method_names, EXPONENT_METHODS, [EXPONENT_LEAST_SQUARES] = "least_squares",
+            [EXPONENT_MASSES] = "masses", [EXPONENT_UPPER_CUTOFF] = "cutoff");
 
 struct exponent exponent_unknown(enum exponent_method method, struct exponent_window window) {
   return (struct exponent){.method = (int)method,
@@ -27,28 +25,6 @@ struct exponent exponent_unknown(enum exponent_method method, struct exponent_wi
 
 struct exponent_window exponent_window_from(enum exponent_method method, double lower, double largest) {
   return (struct exponent_window){lower, method == EXPONENT_LEAST_SQUARES ? 10 * lower : largest};
-}
-
-/* The lower cut-off of a power law by the Kolmogorov-Smirnov distance (Clauset, Shalizi & Newman 2009): the mass above
- * which plfit fits best, kg. masses: any order, all above the resolution limit. *lower is NaN when plfit finds none. */
-static status lower_cutoff(size_t n, const double *masses, double *lower, struct error *error) {
-  plfit_continuous_options_t options;
-  *lower = NAN;
-  if (n < EXPONENT_LEAST_FRAGMENTS || plfit_continuous_options_init(&options) != 0)
-    return STATUS_OK;
-  options.finite_size_correction = 0;
-  options.p_value_method = PLFIT_P_VALUE_SKIP;
-  double *copy = malloc(n * sizeof *copy); /* plfit takes a pointer to mutable masses */
-  if (!copy)
-    return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu masses", n);
-
-  memcpy(copy, masses, n * sizeof *copy);
-  plfit_result_t result;
-  bool found = plfit_continuous(copy, n, &options, &result) == 0 && isfinite(result.alpha);
-  free(copy);
-  if (found)
-    *lower = result.xmin;
-  return STATUS_OK;
 }
 
 void exponent_bins_inside(struct exponent_window window, int *first, int *end) {
@@ -83,23 +59,6 @@ static void least_squares(size_t n, const struct spectrum_bin_row *bins, int fir
   out->standard_error = sqrt(fmax(yy - slope * xy, 0) / (points - 2) / xx);
 }
 
-static void binned(size_t n, const struct spectrum_bin_row *bins, int first, int end, struct exponent *out) {
-  struct power_law_group group = {.span = end == INT32_MAX ? HUGE_VAL : (double)end - first};
-  for (size_t i = 0; i < n; i++) {
-    if (bins[i].bin < first || bins[i].bin >= end)
-      continue;
-    group.weight += (double)bins[i].count;
-    group.mean += (double)bins[i].count * (bins[i].bin - first);
-  }
-  if (group.weight < EXPONENT_LEAST_FRAGMENTS)
-    return;
-  group.mean /= group.weight;
-  struct power_law fit = power_law_fit(1, &group, log(10) / SPECTRUM_BINS_PER_DECADE);
-  out->beta = fit.beta;
-  out->standard_error = fit.standard_error;
-  out->log_likelihood = fit.log_likelihood;
-}
-
 static status check(enum exponent_method method, struct exponent_window window, struct exponent *out,
                     struct error *error) {
   *out = exponent_unknown(method, window);
@@ -111,11 +70,9 @@ static status check(enum exponent_method method, struct exponent_window window, 
   return STATUS_OK;
 }
 
-status exponent_fit_bins(enum exponent_method method, size_t n, const struct spectrum_bin_row *bins,
-                         struct exponent_window window, struct exponent *out, struct error *error) {
-  status code = check(method, window, out, error);
-  if (code)
-    return code;
+status exponent_fit_bins(size_t n, const struct spectrum_bin_row *bins, struct exponent_window window,
+                         struct exponent *out, struct error *error) {
+  TRY(check(EXPONENT_LEAST_SQUARES, window, out, error));
   int first, end;
   exponent_bins_inside(window, &first, &end);
   out->lower = spectrum_edge(first);
@@ -124,20 +81,12 @@ status exponent_fit_bins(enum exponent_method method, size_t n, const struct spe
   for (size_t i = 0; i < n; i++)
     if (bins[i].bin >= first && bins[i].bin < end)
       out->n += bins[i].count;
-  if (end <= first)
-    return STATUS_OK;
-  if (method == EXPONENT_LEAST_SQUARES)
-    least_squares(n, bins, first, end, out);
-  else if (method == EXPONENT_BINNED)
-    binned(n, bins, first, end, out);
-  else
-    return status_fail(error, STATUS_USAGE, "exponent: method '%s' needs masses, not bins",
-                       exponent_method_names[method]);
+  least_squares(n, bins, first, end, out);
   return STATUS_OK;
 }
 
-static status fit_from_masses_by_bins(enum exponent_method method, size_t n, const double *masses,
-                                      struct exponent_window window, struct exponent *out, struct error *error) {
+static status fit_from_masses_by_bins(size_t n, const double *masses, struct exponent_window window,
+                                      struct exponent *out, struct error *error) {
   struct spectrum_bin_row few[256], *rows = few; /* 256 bins are 25 decades: enough without an allocation */
   size_t count = spectrum_fill(n, masses, few, 256);
   if (count > 256) {
@@ -146,7 +95,7 @@ static status fit_from_masses_by_bins(enum exponent_method method, size_t n, con
       return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu bins", count);
     spectrum_fill(n, masses, rows, count);
   }
-  status code = exponent_fit_bins(method, count, rows, window, out, error);
+  status code = exponent_fit_bins(count, rows, window, out, error);
   if (rows != few)
     free(rows);
   return code;
@@ -179,7 +128,7 @@ static void pure(size_t n, const double *u, double span, struct exponent *out) {
   for (size_t i = 0; i < n; i++)
     group.mean += u[i];
   group.mean /= group.weight;
-  struct power_law fit = power_law_fit(1, &group, 0);
+  struct power_law fit = power_law_fit(1, &group);
   out->beta = fit.beta;
   out->standard_error = fit.standard_error;
   out->log_likelihood = fit.log_likelihood;
@@ -219,26 +168,15 @@ static void fit_sorted(enum exponent_method method, size_t count, double *masses
 
 status exponent_fit(enum exponent_method method, size_t n, const double *masses, struct exponent_window window,
                     struct exponent *out, struct error *error) {
-  status code = check(method, window, out, error);
-  if (code)
-    return code;
-  if (method == EXPONENT_LEAST_SQUARES || method == EXPONENT_BINNED)
-    return fit_from_masses_by_bins(method, n, masses, window, out, error);
+  TRY(check(method, window, out, error));
+  if (method == EXPONENT_LEAST_SQUARES)
+    return fit_from_masses_by_bins(n, masses, window, out, error);
 
   size_t count = 0;
   double *inside = select_sorted(n, masses, window.lower, window.upper, &count);
   if (!inside)
     return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu masses", n);
-  if (method == EXPONENT_KS && count >= EXPONENT_LEAST_FRAGMENTS) {
-    double lower;
-    code = lower_cutoff(count, inside, &lower, error);
-    if (isfinite(lower))
-      out->lower = lower;
-    while (count > 0 && inside[count - 1] < out->lower)
-      count--;
-  }
-  if (code == STATUS_OK)
-    fit_sorted(method, count, inside, window.upper, out);
+  fit_sorted(method, count, inside, window.upper, out);
   free(inside);
-  return code;
+  return STATUS_OK;
 }

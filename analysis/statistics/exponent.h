@@ -19,18 +19,16 @@
 
 enum exponent_method {
   EXPONENT_LEAST_SQUARES, /* unweighted least squares of log density on non-empty log bins (Kun & Herrmann 1999) */
-  EXPONENT_BINNED,        /* maximum likelihood on the stored bins (Virkar & Clauset 2014) */
-  EXPONENT_MASSES,        /* maximum likelihood on masses in a bounded window (Hanel et al. 2017), any beta */
-  EXPONENT_KS, /* the same above the lower cut-off by the Kolmogorov-Smirnov distance; call analysis_init() first */
-  EXPONENT_UPPER_CUTOFF, /* power law times exp(-m/m_c), maximum likelihood; cutoff_mass = HUGE_VAL for none */
+  EXPONENT_MASSES,        /* maximum likelihood in a bounded window (Hanel et al. 2017), any beta */
+  EXPONENT_UPPER_CUTOFF,  /* power law times exp(-m/m_c), maximum likelihood; cutoff_mass = HUGE_VAL for none */
   EXPONENT_METHODS,
 };
 /* "least_squares"..., NULL-terminated; as stored and printed, where EXPONENT_UPPER_CUTOFF is "cutoff". */
 extern const char *const exponent_method_names[];
 
 /* [lower, upper) kg; upper = HUGE_VAL for none. It is half-open, so upper = M_1 leaves out the largest fragment. Given
- * M_1, the others are independent draws below it, and the bounded fits are exact conditional likelihoods. Methods on
- * bins use the bins wholly inside. */
+ * M_1, the others are independent draws below it, and the bounded fits are exact conditional likelihoods. Least squares
+ * uses the bins wholly inside. */
 struct exponent_window {
   double lower, upper;
 };
@@ -45,16 +43,14 @@ struct exponent_window exponent_window_from(enum exponent_method method, double 
 enum { EXPONENT_LEAST_FRAGMENTS = 5, EXPONENT_LEAST_BINS = 3 };
 
 struct exponent {
-  int method;          /* enum exponent_method */
-  double lower, upper; /* the window used, kg; upper may be HUGE_VAL */
-  int64_t n;           /* fragments in the window */
-  double beta;         /* NaN when there are too few */
-  /* From this sample alone, with fragments taken as independent. EXPONENT_KS takes its lower cut-off as known: 23-38 %
-   * too small. */
-  double standard_error;
+  int method;            /* enum exponent_method */
+  double lower, upper;   /* the window used, kg; upper may be HUGE_VAL */
+  int64_t n;             /* fragments in the window */
+  double beta;           /* NaN when there are too few */
+  double standard_error; /* from this sample alone, with fragments taken as independent */
   double cutoff_mass;    /* EXPONENT_UPPER_CUTOFF: m_c (HUGE_VAL: none needed), else NaN */
-  double ks_distance;    /* largest distance of the distribution functions; EXPONENT_MASSES, EXPONENT_KS, else NaN */
-  double log_likelihood; /* of ln(m) or of the bins, natural logarithm; NaN for least squares */
+  double ks_distance;    /* largest distance of the distribution functions; EXPONENT_MASSES, else NaN */
+  double log_likelihood; /* of ln(m), natural logarithm; NaN for least squares */
 };
 
 /* An empty result: the given window, n = 0, everything else NaN. */
@@ -65,9 +61,9 @@ struct exponent exponent_unknown(enum exponent_method method, struct exponent_wi
  * lower < upper, an unknown method. STATUS_MEMORY. */
 status exponent_fit(enum exponent_method method, size_t n, const double *masses, struct exponent_window window,
                     struct exponent *out, struct error *error);
-/* The same from bins alone, in ascending order (LEAST_SQUARES and BINNED only; else STATUS_USAGE). */
-status exponent_fit_bins(enum exponent_method method, size_t n, const struct spectrum_bin_row *bins,
-                         struct exponent_window window, struct exponent *out, struct error *error);
+/* Least squares from bins alone, in ascending order. */
+status exponent_fit_bins(size_t n, const struct spectrum_bin_row *bins, struct exponent_window window,
+                         struct exponent *out, struct error *error);
 
 /* The bins wholly inside a window: first <= bin < end; *end = INT32_MAX for an open window. */
 void exponent_bins_inside(struct exponent_window window, int *first, int *end);

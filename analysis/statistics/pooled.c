@@ -11,8 +11,7 @@
 struct prepared {
   enum exponent_method method;
   size_t runs;
-  struct power_law_group *groups; /* MASSES, BINNED */
-  double bin_width;               /* BINNED, in ln m; MASSES: 0 */
+  struct power_law_group *groups; /* MASSES */
   struct exponent_window window;  /* LEAST_SQUARES: the same for all runs */
   int first_bin;                  /* LEAST_SQUARES: counts[run * bins + j] of bin first_bin + j */
   size_t bins;
@@ -57,29 +56,6 @@ static struct power_law_group plain_group(const struct pooled_runs *runs, size_t
   for (size_t i = begin; i < end; i++)
     group.mean += log(runs->masses[i] / lower);
   group.mean /= group.weight;
-  return group;
-}
-
-static struct power_law_group binned_group(const struct pooled_runs *runs, size_t r, double lower) {
-  size_t begin, end;
-  double largest = window_of(runs, r, lower, &begin, &end);
-  struct power_law_group group = {0};
-  if (!(largest > lower))
-    return group;
-  int first, stop;
-  exponent_bins_inside((struct exponent_window){lower, largest}, &first, &stop);
-  for (size_t i = begin; i < end; i++) {
-    int bin = spectrum_bin(runs->masses[i]);
-    if (bin < first || bin >= stop)
-      continue;
-    group.weight++;
-    group.mean += bin - first;
-  }
-  if (group.weight > 0)
-    group.mean /= group.weight;
-  group.span = (double)stop - first;
-  if (group.span < 2)
-    group.weight = 0; /* one bin has no slope */
   return group;
 }
 
@@ -131,9 +107,8 @@ static status prepare(struct prepared *p, const struct pooled_runs *runs, double
   p->groups = calloc(runs->count + 1, sizeof *p->groups);
   if (!p->groups)
     return STATUS_MEMORY;
-  p->bin_width = p->method == EXPONENT_BINNED ? log(10) / SPECTRUM_BINS_PER_DECADE : 0;
   for (size_t r = 0; r < runs->count; r++)
-    p->groups[r] = p->method == EXPONENT_MASSES ? plain_group(runs, r, lower) : binned_group(runs, r, lower);
+    p->groups[r] = plain_group(runs, r, lower);
   return STATUS_OK;
 }
 
@@ -162,7 +137,7 @@ static void fit_bins(struct prepared *p, size_t begin, size_t end, struct expone
       p->rows[j].count -= p->counts[r * p->bins + j];
     filled = filled && p->rows[j].count > 0;
   }
-  exponent_fit_bins(p->method, p->bins, p->rows, p->window, fit, NULL);
+  exponent_fit_bins(p->bins, p->rows, p->window, fit, NULL);
   if (!filled)
     fit->beta = fit->standard_error = NAN;
 }
@@ -172,7 +147,7 @@ static void fit_groups(const struct prepared *p, struct exponent *fit) {
   fit->n = (int64_t)weight;
   if (weight < EXPONENT_LEAST_FRAGMENTS)
     return;
-  const struct power_law plain = power_law_fit(p->runs, p->groups, p->bin_width);
+  const struct power_law plain = power_law_fit(p->runs, p->groups);
   fit->beta = plain.beta;
   fit->standard_error = plain.standard_error;
   fit->log_likelihood = plain.log_likelihood;
@@ -180,7 +155,7 @@ static void fit_groups(const struct prepared *p, struct exponent *fit) {
 
 /* theta[g]: beta without the g-th group of `each` runs; there are `groups` of them. */
 static status leave_out(struct prepared *p, size_t groups, size_t each, double *theta) {
-  if (p->groups && !power_law_leave_out(p->runs, p->groups, p->bin_width, each, theta))
+  if (p->groups && !power_law_leave_out(p->runs, p->groups, each, theta))
     return STATUS_MEMORY;
   const double weight = total_weight(p->groups ? p->runs : 0, p->groups);
   for (size_t g = 0; g < groups; g++) {
@@ -229,7 +204,7 @@ static size_t count_runs(const struct prepared *p, const struct pooled_runs *run
 }
 
 static status check_method(enum exponent_method method, struct error *error) {
-  if (method == EXPONENT_LEAST_SQUARES || method == EXPONENT_BINNED || method == EXPONENT_MASSES)
+  if (method == EXPONENT_LEAST_SQUARES || method == EXPONENT_MASSES)
     return STATUS_OK;
   return status_fail(error, STATUS_USAGE, "exponent: method number %d does not pool runs", (int)method);
 }
@@ -348,7 +323,7 @@ status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled
   out->n = (int64_t)total_weight(runs->count, plain);
   if (out->n < EXPONENT_LEAST_FRAGMENTS)
     goto cleanup;
-  const struct power_law pure = power_law_fit(runs->count, plain, 0);
+  const struct power_law pure = power_law_fit(runs->count, plain);
   out->beta = pure.beta;
   if (isfinite(pure.beta) && fit_rivals(runs, lower, pure.log_likelihood, groups, out))
     code = no_memory(runs, error);

@@ -56,7 +56,7 @@ struct pooled_exponent {
   struct sample_interval interval; /* over runs: quote this error. NaN for one run */
   size_t runs;                     /* number of runs with fragments in their window */
 };
-/* Methods: least squares, on bins, or on masses; STATUS_USAGE for other methods. lower: kg, the same for all runs of
+/* Methods: least squares or on masses; STATUS_USAGE for another one. lower: kg, the same for all runs of
  * the point (a number of mean element masses). level: 0.95 for a 95 % interval. The cost is microseconds per run. */
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
                        struct pooled_exponent *out, struct error *error);

@@ -35,7 +35,7 @@ static void free_draw(struct draw *draw) {
 /* Fits the fragments of a draw and returns their greatest distance from the fit. If the law holds, the distribution
  * function at the fragments, each in the window of its run, is a uniform sample. NaN when there is no fit. */
 static double distance_of(const struct windows *windows, struct draw *draw, double *beta) {
-  const struct power_law fit = power_law_fit(windows->count, draw->groups, 0);
+  const struct power_law fit = power_law_fit(windows->count, draw->groups);
   const double n = (double)windows->fragments;
   double most = 0;
   *beta = fit.beta;

@@ -28,42 +28,33 @@ static double cut_variance(double y) {
 }
 
 /* Mean and variance of a group's statistic at y. Without an upper bound, S G(S y) -> 1/y and S^2 V(S y) -> 1/y^2. */
-static void expected(double y, double span, bool binned, double *mean, double *variance) {
+static void expected(double y, double span, double *mean, double *variance) {
   bool open = isinf(span);
   *mean = open ? 1 / y : span * cut_mean(span * y);
   *variance = open ? 1 / (y * y) : span * span * cut_variance(span * y);
-  if (binned) {
-    *mean -= cut_mean(y);
-    *variance -= cut_variance(y);
-  }
 }
 
-static double slope_of_likelihood(size_t count, const struct power_law_group *groups, bool binned, double y,
-                                  double *information) {
+static double slope_of_likelihood(size_t count, const struct power_law_group *groups, double y, double *information) {
   double slope = 0;
   *information = 0;
   for (size_t g = 0; g < count; g++) {
     if (!(groups[g].weight > 0))
       continue;
     double mean, variance;
-    expected(y, groups[g].span, binned, &mean, &variance);
+    expected(y, groups[g].span, &mean, &variance);
     slope += groups[g].weight * (mean - groups[g].mean);
     *information += groups[g].weight * variance;
   }
   return slope;
 }
 
-/* ln of (1 - e^(-span y)) / y, the integral of e^(-yu) over [0, span]; span 1 serves the sum over bins. */
-static double log_integral(double y, double span) {
+/* ln of the integral of e^(-yu) over [0, span], (1 - e^(-span y)) / y. */
+static double log_normalisation(double y, double span) {
+  if (isinf(span))
+    return -log(y);
   if (fabs(span * y) < 1e-8)
     return log(span) - span * y / 2;
   return y > 0 ? log(-expm1(-span * y) / y) : log(expm1(-span * y) / -y);
-}
-
-/* ln of the integral of e^(-yu) over [0, span], or of the sum of e^(-yj) over j < span. */
-static double log_normalisation(double y, double span, bool binned) {
-  double whole = isinf(span) ? -log(y) : log_integral(y, span);
-  return binned ? whole - log_integral(y, 1) : whole;
 }
 
 /* Data of all groups for the root search. */
@@ -74,18 +65,17 @@ struct totals {
   bool solvable;      /* the values are not all at one end of their windows; there, beta would be infinite */
 };
 
-static struct totals totals_of(size_t count, const struct power_law_group *groups, bool binned) {
+static struct totals totals_of(size_t count, const struct power_law_group *groups) {
   struct totals totals = {0};
   bool above = false, below = false;
   for (size_t g = 0; g < count; g++) {
     const struct power_law_group *group = &groups[g];
     if (!(group->weight > 0))
       continue;
-    double top = binned ? group->span - 1 : group->span; /* the largest possible value of the statistic */
-    if (!(group->mean >= 0) || !(top > 0))
+    if (!(group->mean >= 0) || !(group->span > 0))
       return (struct totals){0};
     above = above || group->mean > 0;
-    below = below || group->mean < top;
+    below = below || group->mean < group->span;
     if (isinf(group->span))
       totals.open = true;
     else
@@ -108,13 +98,13 @@ static double step_inside(double low, double high, double widest) {
 
 /* The root of the slope of the likelihood, by Newton's method in a bracket. With an open window the root is above 0.
  * The start value is the exact answer for open windows. */
-static double root(size_t count, const struct power_law_group *groups, bool binned, const struct totals *totals) {
+static double root(size_t count, const struct power_law_group *groups, const struct totals *totals) {
   double low = totals->open ? 0 : -HUGE_VAL, high = HUGE_VAL, information = 0;
-  double y = binned ? log1p(totals->weight / totals->sum) : totals->weight / totals->sum;
+  double y = totals->weight / totals->sum;
   if (!totals->open && y * totals->widest < 4)
     y = 0;
   for (int step = 0; step < 200; step++) {
-    double slope = slope_of_likelihood(count, groups, binned, y, &information);
+    double slope = slope_of_likelihood(count, groups, y, &information);
     if (slope > 0)
       low = y;
     else
@@ -130,29 +120,28 @@ static double root(size_t count, const struct power_law_group *groups, bool binn
   return y;
 }
 
-struct power_law power_law_fit(size_t count, const struct power_law_group *groups, double bin_width) {
+struct power_law power_law_fit(size_t count, const struct power_law_group *groups) {
   const struct power_law none = {NAN, NAN, NAN};
-  const bool binned = bin_width > 0;
-  const struct totals totals = totals_of(count, groups, binned);
+  const struct totals totals = totals_of(count, groups);
   if (!totals.solvable)
     return none;
 
-  double y = root(count, groups, binned, &totals), scale = binned ? bin_width : 1, information = 0;
-  slope_of_likelihood(count, groups, binned, y, &information);
-  struct power_law fit = {.beta = 1 + y / scale, .standard_error = 1 / (scale * sqrt(information))};
+  double k = root(count, groups, &totals), information = 0;
+  slope_of_likelihood(count, groups, k, &information);
+  struct power_law fit = {.beta = 1 + k, .standard_error = 1 / sqrt(information)};
   for (size_t g = 0; g < count; g++)
     if (groups[g].weight > 0)
-      fit.log_likelihood -= groups[g].weight * (y * groups[g].mean + log_normalisation(y, groups[g].span, binned));
+      fit.log_likelihood -= groups[g].weight * (k * groups[g].mean + log_normalisation(k, groups[g].span));
   return isfinite(fit.beta) && isfinite(fit.standard_error) ? fit : none;
 }
 
 /* ---- Without a part of the groups ---- */
 
-static double fit_without(size_t count, const struct power_law_group *groups, double bin_width, size_t begin,
-                          size_t end, struct power_law_group *rest) {
+static double fit_without(size_t count, const struct power_law_group *groups, size_t begin, size_t end,
+                          struct power_law_group *rest) {
   memcpy(rest, groups, begin * sizeof *rest);
   memcpy(rest + begin, groups + end, (count - end) * sizeof *rest);
-  return power_law_fit(count - (end - begin), rest, bin_width).beta;
+  return power_law_fit(count - (end - begin), rest).beta;
 }
 
 enum { NODES = 8 };
@@ -178,25 +167,22 @@ static double zero_between(const double x[NODES], const double y[NODES]) {
 }
 
 /* Places the nodes near the roots without one part, from one Newton step for each part. */
-static void place_nodes(size_t count, const struct power_law_group *groups, bool binned, size_t each, double y,
+static void place_nodes(size_t count, const struct power_law_group *groups, size_t each, double y,
                         double nodes[NODES]) {
   double information,
       furthest = 1e-6 * (1 + fabs(y)); /* if all parts are equal: a width above the rounding error of the slope */
-  const double slope = slope_of_likelihood(count, groups, binned, y, &information);
+  const double slope = slope_of_likelihood(count, groups, y, &information);
   for (size_t begin = 0; begin < count; begin += each) {
     double part_information;
     const size_t n = count - begin < each ? count - begin : each;
-    const double part = slope_of_likelihood(n, groups + begin, binned, y, &part_information);
+    const double part = slope_of_likelihood(n, groups + begin, y, &part_information);
     furthest = fmax(furthest, fabs((slope - part) / (information - part_information)));
   }
   for (int i = 0; i < NODES; i++)
     nodes[i] = y - 1.5 * furthest * cos(M_PI * (i + 0.5) / NODES);
 }
 
-bool power_law_leave_out(size_t count, const struct power_law_group *groups, double bin_width, size_t each,
-                         double *betas) {
-  const bool binned = bin_width > 0;
-  const double scale = binned ? bin_width : 1;
+bool power_law_leave_out(size_t count, const struct power_law_group *groups, size_t each, double *betas) {
   const size_t parts = (count + each - 1) / each;
   struct power_law_group *rest = malloc((count + 1) * sizeof *rest);
   double(*slopes)[NODES] = malloc((parts + 1) * sizeof *slopes), nodes[NODES], all[NODES] = {0};
@@ -206,22 +192,22 @@ bool power_law_leave_out(size_t count, const struct power_law_group *groups, dou
     return false;
   }
 
-  const double y = scale * (power_law_fit(count, groups, bin_width).beta - 1);
-  place_nodes(count, groups, binned, each, y, nodes);
+  const double y = power_law_fit(count, groups).beta - 1;
+  place_nodes(count, groups, each, y, nodes);
   for (size_t p = 0; p < parts; p++)
     for (int i = 0; i < NODES; i++) {
       double unused;
       const size_t n = count - p * each < each ? count - p * each : each;
-      slopes[p][i] = slope_of_likelihood(n, groups + p * each, binned, nodes[i], &unused);
+      slopes[p][i] = slope_of_likelihood(n, groups + p * each, nodes[i], &unused);
       all[i] += slopes[p][i];
     }
   for (size_t p = 0; p < parts; p++) {
     double x[NODES];
     for (int i = 0; i < NODES; i++)
       x[i] = all[i] - slopes[p][i];
-    betas[p] = 1 + zero_between(x, nodes) / scale;
+    betas[p] = 1 + zero_between(x, nodes);
     if (isnan(betas[p]))
-      betas[p] = fit_without(count, groups, bin_width, p * each, p + 1 < parts ? (p + 1) * each : count, rest);
+      betas[p] = fit_without(count, groups, p * each, p + 1 < parts ? (p + 1) * each : count, rest);
   }
   free(rest);
   free(slopes);

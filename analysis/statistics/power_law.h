@@ -1,11 +1,10 @@
 /* The pure power law f(m) ~ m^-beta on a window [a, b), by maximum likelihood, for any beta (also 1 and below when b is
  * finite: Hanel, Corominas-Murtra, Liu & Thurner 2017, doi 10.1371/journal.pone.0170920).
  *
- * With u = ln(m/a), L = ln(b/a) and k = beta - 1, u has an exponential distribution of rate k, cut at L. On bins of
- * equal width h in u (Virkar & Clauset 2014) the bin number has a geometric distribution, cut at J = L/h. The mean is
- * sufficient in both cases. Both likelihood equations are
- *     sum_g n_g [ mean_g - (S_g G(S_g y) - c G(y)) ] = 0,   G(y) = 1/y - 1/(e^y - 1)
- * with S = L, c = 0, y = k for masses and S = J, c = 1, y = kh for bins. The left side is monotone in y.
+ * With u = ln(m/a), L = ln(b/a) and k = beta - 1, u has an exponential distribution of rate k, cut at L. The mean is
+ * sufficient. The likelihood equation is
+ *     sum_g n_g [ mean_g - L_g G(L_g k) ] = 0,   G(y) = 1/y - 1/(e^y - 1)
+ * Its left side is monotone in k.
  *
  * Groups g are runs, each with its own window. A run's window ends at its largest fragment M_1, which is left out. This
  * is an exact conditional likelihood: given the maximum, the others are independent draws from [a, M_1). */
@@ -18,24 +17,22 @@
 /* The sufficient statistic of the fragments in one window. */
 struct power_law_group {
   double weight; /* number of fragments */
-  double mean;   /* of ln(m/a), or of the bin number from 0 */
-  double span;   /* ln(b/a), or the number of bins; HUGE_VAL for no upper bound */
+  double mean;   /* of ln(m/a) */
+  double span;   /* ln(b/a); HUGE_VAL for no upper bound */
 };
 
 struct power_law {
   double beta, standard_error; /* NaN when the groups are empty or all at one end */
-  double log_likelihood;       /* of u (masses) or of the bin numbers, natural log, per group weight 1 */
+  double log_likelihood;       /* of u, natural log */
 };
 
-/* bin_width: 0 for masses, else h = ln(10) / (bins per decade). */
-struct power_law power_law_fit(size_t count, const struct power_law_group *groups, double bin_width);
+struct power_law power_law_fit(size_t count, const struct power_law_group *groups);
 
 /* beta without one part of the groups, for each part: betas[p] leaves out groups p * each to (p + 1) * each - 1 (the
  * last part may be shorter). NaN where the rest has no beta. Solving every equation again would cost parts x count.
  * Here each group is evaluated at a few nodes that all parts share; the result agrees with the solution within 1e-12.
  * False: no memory. */
-bool power_law_leave_out(size_t count, const struct power_law_group *groups, double bin_width, size_t each,
-                         double *betas);
+bool power_law_leave_out(size_t count, const struct power_law_group *groups, size_t each, double *betas);
 
 /* The distribution function: share of a window's fragments below u = ln(m/a). */
 double power_law_below(double beta, double u, double span);

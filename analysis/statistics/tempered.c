@@ -158,7 +158,7 @@ static struct power_law fit_pure(size_t count, const struct tempered_group *grou
     *weight += groups[g].weight;
     *mean_h += groups[g].weight * groups[g].mean_h;
   }
-  struct power_law pure = power_law_fit(count, plain, 0);
+  struct power_law pure = power_law_fit(count, plain);
   free(plain);
   *mean_h /= *weight;
   return pure;

@@ -39,15 +39,13 @@ const struct command estimates_command = {
     .summary = "largest fragment and exponents of every point, pooled over seeds, with errors",
     .doc =
         "Prints the table that `clast run` ends with. For every point: the mass share of the largest fragment, M_1/M,\n"
-        "and the exponent beta of F(m) ~ m^-beta (differential) by three methods: least squares on logarithmic bins "
-        "(as\n"
-        "in the paper, over one decade), maximum likelihood on bins, and maximum likelihood on masses. Each for three\n"
-        "windows: fragments heavier than 1.5, 4.5 and 9.5 mean grains (or particles); maximum likelihood without the\n"
-        "largest fragment of each run. Intervals are 95 % intervals over seeds; one run has none. Varied inputs are "
-        "in\n"
-        "the units of the campaign, and a table of many inputs leaves out methods; --csv and --json print all "
-        "columns,\n"
-        "in SI units.",
+        "and the exponent beta of F(m) ~ m^-beta (differential) by two methods: least squares on logarithmic bins (as\n"
+        "in the paper, over one decade), and maximum likelihood on masses. Each for three windows: fragments heavier\n"
+        "than 1.5, 4.5 and 9.5 mean grains (or particles); maximum likelihood without the largest fragment of each "
+        "run.\n"
+        "Intervals are 95 % intervals over seeds; one run has none. Varied inputs are in the units of the campaign, "
+        "and\n"
+        "a table of many inputs leaves out least squares; --csv and --json print all columns, in SI units.",
     .examples = "clast estimates out.db\nclast estimates out.db --point 1 --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -31,7 +31,7 @@ static status run(const struct command_line *line, struct error *error) {
       {"flags", BUILD_FLAGS},      {"MPI", BUILD_MPI},
       {"SQLite", BUILD_SQLITE},    {"HDF5", BUILD_HDF5},
       {"GSL", BUILD_GSL},          {"cairo", BUILD_CAIRO},
-      {"libfyaml", BUILD_FYAML},   {"plfit", BUILD_PLFIT},
+      {"libfyaml", BUILD_FYAML},
   };
   size_t facts_count = sizeof facts / sizeof facts[0];
   if (((const struct options *)line->options)->json) {

@@ -14,7 +14,7 @@
 enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000, SAMPLED = 8 };
 #define NOTHING ((double)NAN)
 
-/* Bytes of a run's rows without its masses: run and result row, eleven estimates, about twenty bins of its spectrum.
+/* Bytes of a run's rows without its masses: run and result row, estimates, about twenty bins of its spectrum.
  * Measured on stores of thousands of runs; accurate to a factor of 1.5. */
 #define BYTES_PER_RUN      3500.0
 #define BYTES_PER_FRAGMENT 8.0

@@ -53,7 +53,6 @@ char *provenance_json(int ranks, int slots, int argc, char *const *argv) {
   member(out, "hdf5", BUILD_HDF5);
   member(out, "sqlite", BUILD_SQLITE);
   member(out, "gsl", BUILD_GSL);
-  member(out, "plfit", BUILD_PLFIT);
   member(out, "cairo", BUILD_CAIRO);
   member(out, "mpi", BUILD_MPI);
   fputs("}, \"results_versions\": {", out);

@@ -18,13 +18,12 @@ struct printing {
   bool studied; /* some exponent has a study; otherwise no point's study is read */
   size_t axes;
   struct ask_column axis[ASK_POINTS_INPUTS];
-  size_t shown;   /* axes that fit into a terminal */
-  bool hidden[3]; /* methods that do not fit */
+  size_t shown;         /* axes that fit into a terminal */
+  bool only_likelihood; /* least squares does not fit */
 };
 
 /* Order of the methods in point_estimates. */
-static const enum exponent_method methods[] = {EXPONENT_LEAST_SQUARES, EXPONENT_BINNED, EXPONENT_MASSES};
-static const char *const short_names[] = {"beta LSQ", "binned", "ML"};
+static const enum exponent_method methods[] = {EXPONENT_LEAST_SQUARES, EXPONENT_MASSES};
 enum { METHODS = sizeof methods / sizeof methods[0], MASSES = METHODS - 1 };
 
 /* ---- for programs: every number in a column of its own ---- */
@@ -131,14 +130,13 @@ static void axis_cell(struct table *table, const struct ask_column *axis, const 
   table_text(table, text);
 }
 
-/* Shows as many axes as fit beside one method (maximum likelihood on masses), then as many other methods as fit. */
+/* Shows as many axes as fit beside maximum likelihood, then least squares if it fits. */
 static void choose_columns(struct printing *printing) {
   size_t used = FIXED + METHOD;
   printing->shown = 0;
   while (printing->shown < printing->axes && used + axis_width(printing, printing->shown) <= WIDTH)
     used += axis_width(printing, printing->shown++);
-  printing->hidden[0] = used + METHOD > WIDTH;     /* least squares */
-  printing->hidden[1] = used + 2 * METHOD > WIDTH; /* bins */
+  printing->only_likelihood = used + METHOD > WIDTH;
 }
 
 static void columns_for_people(struct printing *printing) {
@@ -148,9 +146,9 @@ static void columns_for_people(struct printing *printing) {
   for (size_t i = 0; i < printing->shown; i++)
     table_column(table, short_axis(printing, i), NULL);
   table_columns(table, (const char *const[]){"runs", "M_1/M", "\xc2\xb1res", "window", "n", NULL});
-  for (int m = 0; m < METHODS; m++)
-    if (!printing->hidden[m])
-      table_column(table, m && printing->hidden[0] ? "beta ML" : short_names[m], NULL);
+  if (!printing->only_likelihood)
+    table_column(table, "beta LSQ", NULL);
+  table_column(table, printing->only_likelihood ? "beta ML" : "ML", NULL);
   table_column(table, "\xc2\xb1res", NULL);
 }
 
@@ -200,7 +198,7 @@ static status row_for_people(struct printing *printing, const struct ask_points_
   table_integer(table, fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n);
   for (int m = 0; m < METHODS; m++) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
-    if (!printing->hidden[m])
+    if (m == MASSES || !printing->only_likelihood)
       with_interval(table, fit->fit.beta, fit->interval.half_width, 2);
   }
   struct ask_resolution resolution;
@@ -230,8 +228,8 @@ static const char *const estimates_legend =
     "\xc2\xb1: half width of the 95 % interval over seeds (Student's t); one run has none. \xc2\xb1res: how far finer "
     "settings\nmay move M_1/M, and beta ML (`clast converge` measures it, with -q beta; ?: not studied).\n"
     "beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together. LSQ: least squares on\n"
-    "logarithmic bins of one decade, as in the paper; it needs a fragment in every bin. binned, ML: maximum\n"
-    "likelihood on bins and on masses, without the largest fragment of each run.\n"
+    "logarithmic bins of one decade, as in the paper; it needs a fragment in every bin. ML: maximum\n"
+    "likelihood, without the largest fragment of each run.\n"
     "window from_5: n fragments heavier than 4.5 mean grains (or particles), from_10: than 9.5, from_2: than 1.5.\n";
 
 void estimates_table_explain(struct store *store) {

@@ -52,13 +52,11 @@ static const struct {
      "More seeds do not cure it. `clast converge` measures it."},
     {"beta", "exponent",
      "The exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative number has "
-     "slope beta - 1). By three methods, LSQ, binned, ML, in three windows: clast estimates --help"},
+     "slope beta - 1). By two methods, LSQ and ML, in three windows: clast estimates --help"},
     {"LSQ", "least_squares",
      "Exponent by least squares through logarithmic mass bins of one decade, as in Kun et al. 1999. "
      "It needs a fragment in every bin."},
-    {"ML", "masses binned",
-     "Exponent by maximum likelihood: ML (masses) on fragment masses, binned on mass bins; without the "
-     "largest fragment of each run."},
+    {"ML", "masses", "Exponent by maximum likelihood on fragment masses, without the largest fragment of each run."},
     {"window", "from_2 from_5 from_10",
      "The masses that an exponent is fitted to. from_5: fragments heavier than 4.5 mean "
      "grains or particles; from_2: than 1.5; from_10: than 9.5."},

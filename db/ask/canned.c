@@ -32,7 +32,8 @@ static struct query_canned queries[] = {
      "SELECT point_id, results_version, method, \"window\", count(beta) AS n, avg(beta) AS beta_mean, sqrt(max(0, "
      "(total(beta * beta) - count(beta) * avg(beta) * avg(beta)) / (count(beta) - 1))) AS beta_sd,\n"
      "  avg(standard_error) AS standard_error_mean\n"
-     "FROM estimates WHERE counts = 1 GROUP BY point_id, results_version, ordinal ORDER BY point_id, ordinal",
+     "FROM estimates WHERE counts = 1 GROUP BY point_id, results_version, method, \"window\" ORDER BY point_id, "
+     "min(ordinal)",
      ""},
     {"scatter", "How much the seed matters: relative scatter of the main results per point.", NULL, ""},
     {"failures", "Runs without a usable result, and attempts that failed, with what they said.",

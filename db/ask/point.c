@@ -173,7 +173,7 @@ status point_exponent(struct store *store, int64_t point_id, int64_t results_ver
 
 status point_estimates(const struct point_data *point, double level, struct point_estimate rows[POINT_ESTIMATES],
                        struct error *error) {
-  static const enum exponent_method methods[] = {EXPONENT_LEAST_SQUARES, EXPONENT_BINNED, EXPONENT_MASSES};
+  static const enum exponent_method methods[] = {EXPONENT_LEAST_SQUARES, EXPONENT_MASSES};
   status code = STATUS_OK;
   for (int i = 0; i < POINT_ESTIMATES && !code; i++) {
     rows[i] = (struct point_estimate){.window = (enum estimates_window)(i % ESTIMATES_WINDOWS)};

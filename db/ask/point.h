@@ -35,7 +35,7 @@ struct point_estimate {
   enum estimates_window window;
   struct pooled_exponent exponent;
 };
-enum { POINT_ESTIMATES = 3 * ESTIMATES_WINDOWS }; /* least_squares, binned, masses in each window, in that order */
+enum { POINT_ESTIMATES = 2 * ESTIMATES_WINDOWS }; /* least_squares and masses in each window, in that order */
 /* Pooled estimates with their intervals over runs. The same store gives the same numbers. */
 status point_estimates(const struct point_data *point, double level, struct point_estimate rows[POINT_ESTIMATES],
                        struct error *error);

@@ -52,7 +52,7 @@ check_libraries() {
   only 'hdf5' 'engine|analysis/pictures'
   only 'Random123' engine
   only 'sqlite3' db
-  only 'plfit|cairo' analysis
+  only 'cairo' analysis
   only 'zlib' analysis/report
   only 'gsl' 'analysis|campaign/design'
   only 'mpi\.h' campaign/farm

@@ -6,9 +6,12 @@
 #include <cmocka.h>
 
 #include "analysis/analysis.h"
+#include "db/ask/canned.h"
 #include "db/ask/pairs.h"
 #include "db/ask/point.h"
 #include "db/ask/resolution.h"
+#include "db/store/digest.h"
+#include "db/store/internal.h"
 #include "tests/support/store_checks.h"
 
 enum { RUNS = 8, FAILED = 3 };
@@ -149,10 +152,11 @@ static void runs_that_count_in_order(void **state) {
     assert_near(rows[i].exponent.fit.beta, 1, 0.05 + 5 * rows[i].exponent.fit.standard_error);
   }
   for (int i = 0; i < POINT_ESTIMATES; i++) { /* the lookup by name finds each */
-    static const char *const names[] = {"beta_least_squares_from_2",  "beta_least_squares_from_5",
-                                        "beta_least_squares_from_10", "beta_binned_from_2",
-                                        "beta_binned_from_5",         "beta_binned_from_10",
-                                        "beta_masses_from_2",         "beta",
+    static const char *const names[] = {"beta_least_squares_from_2",
+                                        "beta_least_squares_from_5",
+                                        "beta_least_squares_from_10",
+                                        "beta_masses_from_2",
+                                        "beta",
                                         "beta_masses_from_10"};
     struct pooled_exponent one;
     enum exponent_method method;
@@ -177,6 +181,44 @@ static void runs_that_count_in_order(void **state) {
   OK(point_estimates(&point, 0.95, rows, &error));
   for (int i = 0; i < POINT_ESTIMATES; i++)
     assert_true(isnan(rows[i].exponent.fit.beta));
+  point_release(&point);
+  OK(store_close(store, &error));
+}
+
+static void line(void *context, const char *text) {
+  snprintf(context, 4000, "%s", text);
+}
+
+/* A store of the time of five methods, continued by this program: half of its runs have rows of `binned` and `ks`, and
+ * other ordinals. Estimates are found by method and window, so nothing is mixed, and `check` finds no fault. */
+static void methods_of_older_stores(void **state) {
+  (void)state;
+  char path[64], problem[4000] = "";
+  int64_t id;
+  struct store *store = fill(path, &id);
+  const struct query_canned *canned = ask_canned_find("run-exponents", &error);
+  char rows[4096], by_method[4096];
+  snprintf(rows, sizeof rows, "SELECT count(*) FROM (%s)", canned->sql);
+  snprintf(by_method, sizeof by_method, "SELECT min(n) FROM (%s) WHERE method = 'masses'", canned->sql);
+  const double alone = number(store, by_method);
+  OK(sql_execute(
+      store->db,
+      "UPDATE estimate SET ordinal = ordinal + 4 WHERE run_id % 2 AND method <> 'least_squares';"
+      "INSERT INTO estimate (run_id, ordinal, \"window\", method, headline, beta) SELECT run_id, ordinal + 3, "
+      "\"window\", 'binned', 0, 7 FROM estimate WHERE run_id % 2 AND method = 'least_squares';"
+      "INSERT INTO estimate (run_id, ordinal, \"window\", method, headline, beta) SELECT run_id, 6, 'from_2', "
+      "'ks', 0, 7 FROM run WHERE run_id % 2; UPDATE run SET digest = NULL",
+      "test", &error));
+  OK(digest_rows_fill_missing(store->db, DIGEST_RUNS, 0, &error)); /* as the program of that time computed it */
+  if (store_check(store, line, problem, &error) != STATUS_OK)
+    fail_msg("%s", problem);
+  assert_near(number(store, rows), 2 * ESTIMATES_WINDOWS + 1 + 3 + 1, 0);
+  assert_near(number(store, by_method), alone, 0); /* all runs, of both kinds */
+  assert_near(number(store, "SELECT count(*) FROM estimates WHERE method = 'binned' AND beta = 7"),
+              3 * number(store, "SELECT count(*) FROM run WHERE run_id % 2"), 0);
+  struct point_data point;
+  OK(point_read(store, id, 0, &point, &error));
+  assert_true(point.element_mass > 2e-4 && point.element_mass < 4e-4);
   point_release(&point);
   OK(store_close(store, &error));
 }
@@ -261,6 +303,7 @@ static void pairs_of_points(void **state) {
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(runs_that_count_in_order), cmocka_unit_test(views_and_c_agree),
-                                     cmocka_unit_test(pairs_of_points), cmocka_unit_test(resolution_names_the_scene)};
+                                     cmocka_unit_test(pairs_of_points), cmocka_unit_test(methods_of_older_stores),
+                                     cmocka_unit_test(resolution_names_the_scene)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -33,7 +33,7 @@ static void masses_any_exponent(void **state) {
       if (isinf(spans[s]) && k <= 0)
         continue;
       struct power_law_group group = {100, exact_mean(k, spans[s]), spans[s]};
-      struct power_law fit = power_law_fit(1, &group, 0);
+      struct power_law fit = power_law_fit(1, &group);
       /* The definition itself loses digits for small k: 1e-16 of 1/k over the slope of the mean, span^2/12. */
       assert_true(fabs(fit.beta - betas[b]) < 1e-11);
       assert_true(fit.standard_error > 0);
@@ -41,31 +41,9 @@ static void masses_any_exponent(void **state) {
   }
   /* beta exactly 1: u uniform, standard error sqrt(12/n)/span. */
   struct power_law_group uniform = {400, 2.5, 5};
-  struct power_law fit = power_law_fit(1, &uniform, 0);
+  struct power_law fit = power_law_fit(1, &uniform);
   assert_true(fabs(fit.beta - 1) < 1e-15 && fabs(fit.standard_error - sqrt(12.0 / 400) / 5) < 1e-14);
   assert_true(fabs(fit.log_likelihood + 400 * log(5)) < 1e-10);
-}
-
-static void bins_any_exponent(void **state) {
-  (void)state;
-  const double h = log(10) / 10, betas[] = {0, 0.5, 1, 1.5, 2, 3}, spans[] = {2, 7, 30, HUGE_VAL};
-  for (size_t s = 0; s < 4; s++) {
-    for (size_t b = 0; b < 6; b++) {
-      double y = (betas[b] - 1) * h, mean = 0, sum = 0;
-      if (isinf(spans[s]) && y <= 0)
-        continue;
-      int bins = isinf(spans[s]) ? 2000 : (int)spans[s];
-      for (int j = 0; j < bins; j++) { /* the share of each bin: integral of m^-beta over it */
-        sum += exp(-y * j);
-        mean += j * exp(-y * j);
-      }
-      struct power_law_group group = {50, mean / sum, spans[s]};
-      struct power_law fit = power_law_fit(1, &group, h);
-      assert_true(fabs(fit.beta - betas[b]) < 1e-10);
-      if (!isinf(spans[s]))
-        assert_true(fabs(fit.log_likelihood + 50 * (y * mean / sum + log(sum))) < 1e-9);
-    }
-  }
 }
 
 static void groups_are_one_sample(void **state) {
@@ -73,13 +51,13 @@ static void groups_are_one_sample(void **state) {
   struct power_law_group one = {30, 0.8, 5}, split[3] = {{10, 0.5, 5}, {12, 1.0, 5}, {8, 0.875, 5}};
   assert_true(fabs((10 * 0.5 + 12 * 1.0 + 8 * 0.875) / 30 - 0.8) < 0.04);
   one.mean = (10 * 0.5 + 12 * 1.0 + 8 * 0.875) / 30;
-  struct power_law a = power_law_fit(1, &one, 0), b = power_law_fit(3, split, 0);
+  struct power_law a = power_law_fit(1, &one), b = power_law_fit(3, split);
   assert_true(fabs(a.beta - b.beta) < 1e-13 && fabs(a.standard_error - b.standard_error) < 1e-13);
   /* A group at one end of its window says nothing alone, but does not spoil the others. */
   struct power_law_group with_edge[2] = {{10, 0.5, 5}, {1, 0, 3}};
-  assert_true(isfinite(power_law_fit(2, with_edge, 0).beta));
-  assert_true(isnan(power_law_fit(1, &with_edge[1], 0).beta));
-  assert_true(isnan(power_law_fit(0, NULL, 0).beta));
+  assert_true(isfinite(power_law_fit(2, with_edge).beta));
+  assert_true(isnan(power_law_fit(1, &with_edge[1]).beta));
+  assert_true(isnan(power_law_fit(0, NULL).beta));
 }
 
 static void normalisation_is_incomplete_gamma(void **state) {
@@ -163,67 +141,46 @@ static void units_do_not_matter(void **state) {
   }
 }
 
-static void search_of_the_lower_end(void **state) {
-  (void)state;
-  enum { N = 1500 };
-  double masses[N];
-  /* Above 10 a power law of 2.2; below, 500 fragments of a flat distribution that belongs to none. */
-  for (uint64_t i = 0; i < N; i++)
-    masses[i] = i < 1000 ? 10 * pow(1 - random_draw(4, 1, i, 0), -1 / 1.2) : 1 + 9 * random_draw(4, 2, i, 0);
-  struct exponent fit, all;
-  struct exponent_window window = {1, HUGE_VAL};
-  assert_int_equal(exponent_fit(EXPONENT_KS, N, masses, window, &fit, NULL), STATUS_OK);
-  assert_int_equal(exponent_fit(EXPONENT_MASSES, N, masses, window, &all, NULL), STATUS_OK);
-  assert_true(fit.lower > 8 && fit.lower < 20);
-  assert_true(fabs(fit.beta - 2.2) < 4 * fit.standard_error * 1.5 /* its search: a third more */);
-  assert_true(fabs(all.beta - 2.2) > 8 * all.standard_error);
-  assert_true(fit.ks_distance < all.ks_distance / 3);
-}
-
 /* betas without each part, against a fit of the rest. */
-static void leave_out_like_fits(size_t count, const struct power_law_group *groups, double bin_width, size_t each,
-                                double tolerance) {
+static void leave_out_like_fits(size_t count, const struct power_law_group *groups, size_t each, double tolerance) {
   struct power_law_group rest[256];
   double betas[256];
-  assert_true(power_law_leave_out(count, groups, bin_width, each, betas));
+  assert_true(power_law_leave_out(count, groups, each, betas));
   for (size_t p = 0; p * each < count; p++) {
     size_t n = 0;
     for (size_t g = 0; g < count; g++)
       if (g / each != p)
         rest[n++] = groups[g];
-    const double beta = power_law_fit(n, rest, bin_width).beta;
+    const double beta = power_law_fit(n, rest).beta;
     assert_true(isnan(beta) ? isnan(betas[p]) : fabs(betas[p] - beta) <= tolerance * (1 + fabs(beta)));
   }
 }
 
 static void leaving_out_is_fitting_the_rest(void **state) {
   (void)state;
-  struct power_law_group masses[203], bins[203];
+  struct power_law_group masses[203];
   for (uint64_t g = 0; g < 203; g++) {
     const double weight = 1 + floor(40 * random_draw(9, 1, g, 0)), span = 2 + 6 * random_draw(9, 2, g, 0);
     masses[g] = (struct power_law_group){weight, span * (0.1 + 0.4 * random_draw(9, 3, g, 0)), span};
-    bins[g] = (struct power_law_group){weight, (span - 1) * (0.1 + 0.4 * random_draw(9, 3, g, 0)), floor(4 * span)};
   }
   const size_t counts[] = {1, 2, 3, 5, 20, 100, 203};
   for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
-    for (size_t each = 1; each <= 7; each += 3) {
-      leave_out_like_fits(counts[c], masses, 0, each, 1e-11); /* the interpolation's own limit, in y and in bins */
-      leave_out_like_fits(counts[c], bins, log(10) / 10, each, 1e-11);
-    }
+    for (size_t each = 1; each <= 7; each += 3)
+      leave_out_like_fits(counts[c], masses, each, 1e-11); /* the interpolation's own limit */
 
   struct power_law_group equal[100]; /* no part moves beta */
   for (int g = 0; g < 100; g++)
     equal[g] = (struct power_law_group){30, 2, 5};
-  leave_out_like_fits(100, equal, 0, 1, 1e-13);
+  leave_out_like_fits(100, equal, 1, 1e-13);
 
   struct power_law_group open[10]; /* windows without an end: y > 0 */
   for (int g = 0; g < 10; g++)
     open[g] = (struct power_law_group){5, g == 0 ? 50 : 0.1, HUGE_VAL};
-  leave_out_like_fits(10, open, 0, 1, 1e-11);
+  leave_out_like_fits(10, open, 1, 1e-11);
 
   struct power_law_group ends[3] = {{10, 0, 4}, {10, 0, 4}, {10, 2, 4}}; /* without the last, all are at one end */
   double betas[3];
-  assert_true(power_law_leave_out(3, ends, 0, 1, betas));
+  assert_true(power_law_leave_out(3, ends, 1, betas));
   assert_true(isfinite(betas[0]) && isfinite(betas[1]) && isnan(betas[2]));
 }
 
@@ -231,13 +188,11 @@ int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(masses_any_exponent),
-      cmocka_unit_test(bins_any_exponent),
       cmocka_unit_test(groups_are_one_sample),
       cmocka_unit_test(normalisation_is_incomplete_gamma),
       cmocka_unit_test(moments_are_derivatives),
       cmocka_unit_test(pure_sample_needs_no_factor),
       cmocka_unit_test(units_do_not_matter),
-      cmocka_unit_test(search_of_the_lower_end),
       cmocka_unit_test(leaving_out_is_fitting_the_rest),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -9,7 +9,7 @@ from spack.package import *
 DEBIAN = {
     "cmake": "cmake", "ninja-build": "ninja", "pkg-config": "pkgconfig",
     "libfyaml-dev": "libfyaml", "libopenmpi-dev": "mpi", "libsqlite3-dev": "sqlite", "libhdf5-dev": "hdf5", "libgsl-dev": "gsl",
-    "libplfit-dev": "plfit", "librandom123-dev": "random123", "libcairo2-dev": "cairo", "zlib1g-dev": "zlib-api",
+    "librandom123-dev": "random123", "libcairo2-dev": "cairo", "zlib1g-dev": "zlib-api",
     "libcmocka-dev": "cmocka", "libqhull-dev": "qhull", "uthash-dev": "uthash", "libmicrohttpd-dev": "libmicrohttpd",
     "libjansson-dev": "jansson", "gnuplot-nox": "gnuplot",
 }
@@ -33,7 +33,6 @@ class Clast(CMakePackage):
     depends_on("sqlite@3.38:")
     depends_on("hdf5@1.10:+hl")
     depends_on("gsl@2.7:")
-    depends_on("plfit@0.9:")
     depends_on("random123", type="build")
     depends_on("cairo+png+svg+pdf")
     depends_on("zlib-api")
