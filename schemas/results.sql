@@ -154,17 +154,17 @@ CREATE TABLE estimate ( -- Estimates made from the fragments of one run; they ca
   run_id INTEGER NOT NULL REFERENCES run (run_id), -- the run
   ordinal INTEGER NOT NULL, -- number among the estimates of the run
   window TEXT, -- Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10
-  method TEXT, -- Method of the estimate. One of: least_squares, binned, masses, ks, cutoff
+  method TEXT, -- Method of the estimate. One of: least_squares, masses, cutoff
   headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
   lower REAL, -- [kg] Lower end of the window used (2D: kg per metre of thickness).
   upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.
   n INTEGER, -- [1] Fragments in the window.
   beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
-  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from leaving out one of its runs after another (jackknife).
+  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).
   hw95 REAL, -- [1] Half width of the 95 % interval of beta over the runs (seeds) of a point: Student's t and the jackknife. Off for one run. It does not hold the error of the resolution.
   cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.
-  ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; methods masses and ks only.
-  log_likelihood REAL, -- [1] Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.
+  ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; method masses only.
+  log_likelihood REAL, -- [1] Natural logarithm of the likelihood of ln(m). Compare within one window only.
   PRIMARY KEY (run_id, ordinal)
 ) STRICT, WITHOUT ROWID;
 
@@ -173,17 +173,17 @@ CREATE TABLE point_estimate ( -- Estimates pooled over the runs of a point that 
   results_version INTEGER NOT NULL, -- version of the engine's results it was made from
   ordinal INTEGER NOT NULL, -- number among the estimates of the point
   window TEXT, -- Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10
-  method TEXT, -- Method of the estimate. One of: least_squares, binned, masses, ks, cutoff
+  method TEXT, -- Method of the estimate. One of: least_squares, masses, cutoff
   headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
   lower REAL, -- [kg] Lower end of the window used (2D: kg per metre of thickness).
   upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.
   n INTEGER, -- [1] Fragments in the window.
   beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
-  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from leaving out one of its runs after another (jackknife).
+  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).
   hw95 REAL, -- [1] Half width of the 95 % interval of beta over the runs (seeds) of a point: Student's t and the jackknife. Off for one run. It does not hold the error of the resolution.
   cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.
-  ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; methods masses and ks only.
-  log_likelihood REAL, -- [1] Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.
+  ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; method masses only.
+  log_likelihood REAL, -- [1] Natural logarithm of the likelihood of ln(m). Compare within one window only.
   PRIMARY KEY (point_id, results_version, ordinal)
 ) STRICT, WITHOUT ROWID;
 
@@ -770,13 +770,13 @@ INSERT INTO column_doc VALUES ('estimate', 'headline', NULL, '1: the estimate th
 
 INSERT INTO column_doc VALUES ('estimate', 'hw95', '1', 'Half width of the 95 % interval of beta over the runs (seeds) of a point: Student''s t and the jackknife. Off for one run. It does not hold the error of the resolution.', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 1);
+INSERT INTO column_doc VALUES ('estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; method masses only.', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'log_likelihood', '1', 'Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.', 1);
+INSERT INTO column_doc VALUES ('estimate', 'log_likelihood', '1', 'Natural logarithm of the likelihood of ln(m). Compare within one window only.', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'lower', 'kg', 'Lower end of the window used (2D: kg per metre of thickness).', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'method', NULL, 'Method of the estimate. One of: least_squares, binned, masses, ks, cutoff', 1);
+INSERT INTO column_doc VALUES ('estimate', 'method', NULL, 'Method of the estimate. One of: least_squares, masses, cutoff', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'n', '1', 'Fragments in the window.', 1);
 
@@ -784,7 +784,7 @@ INSERT INTO column_doc VALUES ('estimate', 'ordinal', NULL, 'number among the es
 
 INSERT INTO column_doc VALUES ('estimate', 'run_id', NULL, 'the run', 0);
 
-INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from leaving out one of its runs after another (jackknife).', 1);
+INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.', 1);
 
@@ -802,13 +802,13 @@ INSERT INTO column_doc VALUES ('estimates', 'headline', NULL, '1: the estimate t
 
 INSERT INTO column_doc VALUES ('estimates', 'hw95', '1', 'Half width of the 95 % interval of beta over the runs (seeds) of a point: Student''s t and the jackknife. Off for one run. It does not hold the error of the resolution.', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 0);
+INSERT INTO column_doc VALUES ('estimates', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; method masses only.', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'log_likelihood', '1', 'Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.', 0);
+INSERT INTO column_doc VALUES ('estimates', 'log_likelihood', '1', 'Natural logarithm of the likelihood of ln(m). Compare within one window only.', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'lower', 'kg', 'lower edge, inside the bin', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'method', NULL, 'Method of the estimate. One of: least_squares, binned, masses, ks, cutoff', 0);
+INSERT INTO column_doc VALUES ('estimates', 'method', NULL, 'Method of the estimate. One of: least_squares, masses, cutoff', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'n', '1', 'Fragments in the window.', 0);
 
@@ -826,7 +826,7 @@ INSERT INTO column_doc VALUES ('estimates', 'scene', NULL, 'name of the scene th
 
 INSERT INTO column_doc VALUES ('estimates', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from leaving out one of its runs after another (jackknife).', 0);
+INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'upper', 'kg', 'upper edge, outside the bin', 0);
 
@@ -864,13 +864,13 @@ INSERT INTO column_doc VALUES ('point_estimate', 'headline', NULL, '1: the estim
 
 INSERT INTO column_doc VALUES ('point_estimate', 'hw95', '1', 'Half width of the 95 % interval of beta over the runs (seeds) of a point: Student''s t and the jackknife. Off for one run. It does not hold the error of the resolution.', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; method masses only.', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'log_likelihood', '1', 'Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'log_likelihood', '1', 'Natural logarithm of the likelihood of ln(m). Compare within one window only.', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'lower', 'kg', 'Lower end of the window used (2D: kg per metre of thickness).', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'method', NULL, 'Method of the estimate. One of: least_squares, binned, masses, ks, cutoff', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'method', NULL, 'Method of the estimate. One of: least_squares, masses, cutoff', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'n', '1', 'Fragments in the window.', 1);
 
@@ -880,7 +880,7 @@ INSERT INTO column_doc VALUES ('point_estimate', 'point_id', NULL, 'the point', 
 
 INSERT INTO column_doc VALUES ('point_estimate', 'results_version', NULL, 'version of the engine''s results it was made from', 0);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from leaving out one of its runs after another (jackknife).', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.', 1);
 

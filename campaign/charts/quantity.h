@@ -15,7 +15,7 @@
 #define QUANTITY_OPTION(type_, member_)                                                                                \
   OPTION_ROW_TEXT("quantity", 'q', "NAME", type_, member_, OUTCOME_DEFAULT,                                            \
                   "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a "    \
-                  "point: beta, or beta_METHOD_WINDOW (beta_binned_from_2).")
+                  "point: beta, or beta_METHOD_WINDOW (beta_masses_from_2).")
 
 struct quantity_choice {
   const char *axis[2]; /* varied inputs by path or unique ending; the second may be NULL */

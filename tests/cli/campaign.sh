@@ -28,9 +28,9 @@ assert len(rows) == 12 and all(r['n'] == 5 and r['failed'] == 0 for r in rows), 
 assert all(0 < r['largest_fraction_mean'] <= 1 for r in rows)"
 ok "the table at the end as JSON"
 says "8 runs computed"
-# pooled exponents are in the store: nine per point, computed again when runs were added, from all runs that count
+# pooled exponents are in the store: six per point, computed again when runs were added, from all runs that count
 pooled="from estimates where run_id is null"
-same "$(number tiny.db "select count(*) $pooled group by point_id order by 1 desc limit 1")" 9 "pooled estimates of a point"
+same "$(number tiny.db "select count(*) $pooled group by point_id order by 1 desc limit 1")" 6 "pooled estimates of a point"
 same "$(number tiny.db "select count(distinct point_id) $pooled")" 4 "points with pooled estimates"
 python - <<'PY'
 import json, sqlite3

@@ -58,7 +58,7 @@ for point, mean, half_width, resolution in levels:
     assert abs(row['beta_masses'] - mean) < 1e-9 and abs(row['beta_masses_hw95'] - half_width) < 1e-9, (row, mean)
     assert row['beta_masses_resolution'] >= resolution * (1 - 1e-9), row
     assert row['beta_masses_resolution_verdict'] != 'not-studied', row
-    assert row['beta_binned_resolution_verdict'] == 'not-studied', row
+    assert row['beta_least_squares_resolution_verdict'] == 'not-studied', row
 PY
 ok "exponents carry the error that their study found"
 # The rounds are campaigns that clast run can repeat: every run is found.

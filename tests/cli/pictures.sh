@@ -67,7 +67,7 @@ expect 66 "$clast" spectrum small.db --with none.csv
 
 expect 0 "$clast" map small.db map.svg -x strain -y angle
 is_svg map.svg
-expect 0 "$clast" map small.db beta.png -x strain -y angle -q beta_binned_from_2
+expect 0 "$clast" map small.db beta.png -x strain -y angle -q beta_masses_from_2
 is_png beta.png
 
 expect 0 "$clast" plot small.db lines.png -x strain --by angle

@@ -103,7 +103,7 @@ static void tear_down(struct fixture *f) {
 
 static void levels_have_the_pooled_exponent(void **state) {
   (void)state;
-  static const char *const names[] = {"beta", "beta_least_squares_from_5", "beta_binned_from_2"};
+  static const char *const names[] = {"beta", "beta_least_squares_from_5", "beta_masses_from_2"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     struct fixture f;
     struct study_found found;
