@@ -91,7 +91,7 @@ case "${1:-}" in
     build=$(mktemp -d)
     say "building the package in $build"
     cmake --preset release -B "$build"
-    cmake --build "$build" --target clast clast_manual clast_completion clast_page
+    cmake --build "$build" --target clast clast_manual clast_page
     cpack -G DEB --config "$build/CPackConfig.cmake" -B "$build"
     mkdir -p "$2"
     mv "$build"/*.deb "$2"

@@ -48,26 +48,25 @@ static status run_named(int argc, char **argv, struct error *error) {
   const struct command *command = commands_find(argv[0], error);
   if (!command)
     return STATUS_USAGE;
-  struct command_line line = {.options = options, .argc = argc + 1, .argv = argv - 1};
-  bool help = false;
-  TRY(option_parse(command, argc, argv, options, &line.count, &line.arguments, &help, error));
-  if (help) {
-    option_help(command, stdout);
+  struct command_line line = {.argc = argc + 1, .argv = argv - 1};
+  TRY(option_parse(command, argc, argv, options, &line, error));
+  if (line.help) {
+    help_one(command, stdout);
     return STATUS_OK;
   }
   TRY(check_environment(error));
   TRY(option_claim_outputs(command, options, error));
-  return command->run(&line, error);
+  return commands_run(command, &line, error);
 }
 
 static status run_command_line(int argc, char **argv, struct error *error) {
   static char version[] = "version";
   if (argc < 2) {
-    commands_help(stderr);
+    help_overview(stderr);
     return status_fail(error, STATUS_USAGE, "which command? The list is above");
   }
   if (is_option(argv[1], "--help", "-h")) {
-    commands_help(stdout);
+    help_overview(stdout);
     return STATUS_OK;
   }
   if (is_option(argv[1], "--version", "-V"))

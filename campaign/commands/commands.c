@@ -1,45 +1,12 @@
-/* The list of commands. */
+/* The list of commands, and how one is run. */
 #include "campaign/commands/commands.h"
 
 #include <string.h>
 
 #include "db/store/store.h"
 
-static const struct command *const all[] = {
-    /* running */ &run_command,
-    &plan_command,
-    &simulate_command,
-    &converge_command,
-    &fit_command,
-    &serve_command,
-    &retry_command,
-    /* scenes and inputs */ &scenes_command,
-    &materials_command,
-    &explain_command,
-    &schema_command,
-    &cite_command,
-    /* results */ &status_command,
-    &estimates_command,
-    &exponents_command,
-    &stats_command,
-    &scatter_command,
-    &sensitivity_command,
-    &spectrum_command,
-    &compare_command,
-    &query_command,
-    &plot_command,
-    &map_command,
-    &extremes_command,
-    &picture_command,
-    &report_command,
-    /* the store */ &check_command,
-    &export_command,
-    &merge_command,
-    &replay_command,
-    /* about clast */ &help_command,
-    &version_command,
-    &completion_command,
-};
+#define COMMAND_ADDRESS(name_) &name_##_command,
+static const struct command *const all[] = {COMMANDS(COMMAND_ADDRESS)};
 
 size_t commands_count(void) {
   return sizeof all / sizeof all[0];
@@ -62,13 +29,20 @@ const struct command *commands_find(const char *name, struct error *error) {
   return NULL;
 }
 
-status commands_ask(const struct command_line *line, const struct table_options *table, commands_question *question,
+status commands_ask(const struct command_line *line,
+                    status (*ask)(struct store *store, const struct command_line *line, struct error *error),
                     struct error *error) {
-  enum table_format format = TABLE_TEXT;
   struct store *store = NULL;
-  TRY(table ? table_choose(table, &format, error) : STATUS_OK);
   TRY(store_open_reader(line->arguments[0], &store, error));
-  status code = question(store, line, format, error);
+  const status code = ask(store, line, error);
   store_close(store, NULL);
   return code;
+}
+
+status commands_run(const struct command *command, const struct command_line *line, struct error *error) {
+  if (command->run)
+    return command->run(line, error);
+  if (command->check)
+    TRY(command->check(line, error));
+  return commands_ask(line, command->ask, error);
 }

@@ -1,44 +1,72 @@
-/* Every command of the program, in the order `clast help` shows them. */
+/* Every command of the program. A command NAME has two files: NAME.c with its record, and NAME.txt with its help. */
 #ifndef CLAST_CAMPAIGN_COMMANDS_COMMANDS_H
 #define CLAST_CAMPAIGN_COMMANDS_COMMANDS_H
 
 #include "campaign/terminal/option.h"
-#include "campaign/terminal/table.h"
 
-extern const struct command run_command, plan_command, simulate_command, converge_command, fit_command, serve_command;
-extern const struct command explain_command, scenes_command, materials_command, schema_command, cite_command;
-extern const struct command status_command, stats_command, estimates_command, spectrum_command, query_command,
-    picture_command, report_command;
-extern const struct command check_command, export_command, merge_command, replay_command, retry_command;
-extern const struct command map_command, plot_command, compare_command, scatter_command, sensitivity_command,
-    exponents_command;
-extern const struct command extremes_command;
-extern const struct command help_command, version_command, completion_command;
+/* The commands in the order of `clast help`. */
+#define COMMANDS(COMMAND)                                                                                              \
+  /* running */ COMMAND(run)                                                                                           \
+  COMMAND(plan)                                                                                                        \
+  COMMAND(simulate)                                                                                                    \
+  COMMAND(converge)                                                                                                    \
+  COMMAND(fit)                                                                                                         \
+  COMMAND(serve)                                                                                                       \
+  COMMAND(retry)                                                                                                       \
+  /* scenes and inputs */ COMMAND(scenes)                                                                              \
+  COMMAND(materials)                                                                                                   \
+  COMMAND(explain)                                                                                                     \
+  COMMAND(schema)                                                                                                      \
+  COMMAND(cite)                                                                                                        \
+  /* results */ COMMAND(status)                                                                                        \
+  COMMAND(estimates)                                                                                                   \
+  COMMAND(exponents)                                                                                                   \
+  COMMAND(stats)                                                                                                       \
+  COMMAND(scatter)                                                                                                     \
+  COMMAND(sensitivity)                                                                                                 \
+  COMMAND(spectrum)                                                                                                    \
+  COMMAND(compare)                                                                                                     \
+  COMMAND(query)                                                                                                       \
+  COMMAND(plot)                                                                                                        \
+  COMMAND(map)                                                                                                         \
+  COMMAND(extremes)                                                                                                    \
+  COMMAND(picture)                                                                                                     \
+  COMMAND(report)                                                                                                      \
+  /* the store */ COMMAND(check)                                                                                       \
+  COMMAND(export)                                                                                                      \
+  COMMAND(merge)                                                                                                       \
+  COMMAND(replay)                                                                                                      \
+  /* about clast */ COMMAND(help)                                                                                      \
+  COMMAND(version)                                                                                                     \
+  COMMAND(completion)
+
+/* The record of each command, and its text, which CMakeLists.txt embeds. */
+#define COMMANDS_DECLARE(name_)                                                                                        \
+  extern const struct command name_##_command;                                                                         \
+  extern const char name_##_text[];
+COMMANDS(COMMANDS_DECLARE)
 
 size_t commands_count(void);
 const struct command *const *commands_all(void);
 /* Finds a command by name. NULL: unknown; *error is STATUS_USAGE with the nearest known name. */
 const struct command *commands_find(const char *name, struct error *error);
 
+/* Runs a command. */
+status commands_run(const struct command *command, const struct command_line *line, struct error *error);
+
 /* ---- shared by the commands ---- */
 
-struct store;
-
-/* Queries an open store and prints the answer. `format`: format of the command's table. */
-typedef status commands_question(struct store *store, const struct command_line *line, enum table_format format,
-                                 struct error *error);
-
-/* Opens the store that the first argument names as a reader, calls `question` and closes the store. `table`: the
- * command's table options; NULL: the command has none, and `format` is TABLE_TEXT. */
-status commands_ask(const struct command_line *line, const struct table_options *table, commands_question *question,
+/* Opens the store that the first argument names as a reader, calls `ask` and closes the store. */
+status commands_ask(const struct command_line *line,
+                    status (*ask)(struct store *store, const struct command_line *line, struct error *error),
                     struct error *error);
 
-void commands_help(FILE *out); /* what `clast help` prints */
+void help_overview(FILE *out);                           /* what `clast help` prints */
+void help_one(const struct command *command, FILE *out); /* what `clast help COMMAND` prints */
 
 /* `clast plan` for `clast run --dry-run`: loads a campaign, plans it and prints the plan. store NULL: the campaign's.
  * slots 0: one per core. */
-struct campaign_option;
-status commands_plan(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
+status plan_campaign(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
                      bool no_trial, bool json, struct error *error);
 
 /* Options of several commands: the points and runs that they read. */

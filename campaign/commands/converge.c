@@ -6,7 +6,6 @@
 #include "campaign/converge/study_launch.h"
 #include "campaign/converge/study_print.h"
 #include "campaign/launch/launch.h"
-#include "campaign/terminal/scene_option.h"
 
 struct options {
   struct launch_options launch;
@@ -17,10 +16,8 @@ struct options {
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  enum table_format format = TABLE_TEXT;
-  TRY(table_choose(&options->launch.table, &format, error));
   if (options->list)
-    return study_print_knobs(format, error);
+    return study_print_knobs(line->format, error);
   if (line->count == 0)
     return status_fail(error, STATUS_USAGE, "name a scene or a campaign, or give --list");
   struct request request = options->request;
@@ -30,7 +27,7 @@ static status run(const struct command_line *line, struct error *error) {
     return status_fail(error, STATUS_MEMORY, "out of memory");
   const struct study_launch launch = {.options = &options->launch,
                                       .line = line,
-                                      .format = format,
+                                      .format = line->format,
                                       .picture = options->picture,
                                       .frontier = options->frontier};
   status code = request_read(&request, line->arguments[0], subject, error);
@@ -70,26 +67,15 @@ static const struct option_row rows[] = {
                       "same or lower cost."),
     OPTION_ROW_FLAG("list", 0, struct options, list, "Print all knobs and stop."),
     LAUNCH_OPTIONS(struct options, launch),
-    TABLE_OPTIONS(struct options, launch.table),
 };
 
 const struct command converge_command = {
     .name = "converge",
     .group = "running",
     .arguments = "[SCENE|CAMPAIGN.yaml]",
-    .summary = "how far results are from those of finer settings, and at what cost",
-    .doc =
-        "Runs a scene, or every point of a campaign, with coarser and finer settings (knobs: particles, time step,\n"
-        "precision, ...) and the same seeds. For every level it prints the bias against the finest one with its 95 %\n"
-        "interval, the scatter between seeds, the processor time, and the correlation with the next finer level. It\n"
-        "measures the order of convergence and extrapolates, or says that differences do not shrink. It adds seeds\n"
-        "until every bias is known (--within) or the time is over. The store keeps the runs and the answers; after a\n"
-        "stop the same command continues.",
-    .examples = "clast converge disc-explosion --set body.diameter='8 cm' --knob grains,time_step --seconds 20\n"
-                "clast converge basalt-sphere --set particles=3000 --knob particles=1000,3000,9000 --seconds 60",
-    .minimum_arguments = 0,
-    .maximum_arguments = 1,
+    .text = converge_text,
     .has_runs = true,
     COMMAND_OPTIONS(struct options, rows),
+    .has_table = true,
     .run = run,
 };

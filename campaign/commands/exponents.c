@@ -8,14 +8,13 @@
 struct options {
   int64_t point, draws;
   const char *where;
-  struct table_options table;
 };
 
-static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const struct ask_pool_choice choice = {.point = options->point, .where = options->where};
   TRY(ask_points_known(store, options->point, error));
-  struct table *table = table_new(format, stdout);
+  struct table *table = table_new(line->format, stdout);
   exponents_print_headings(table);
   ASK_POOLS pools = ask_pools(store, &choice, NULL, error);
   status code = STATUS_OK;
@@ -28,16 +27,11 @@ static status ask(struct store *store, const struct command_line *line, enum tab
     return code;
   }
   code = table_end(table, error);
-  if (code == STATUS_OK && format == TABLE_TEXT)
+  if (code == STATUS_OK && line->format == TABLE_TEXT)
     fputs("clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete mass. "
           "p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better\n",
           stderr);
   return code;
-}
-
-static status run(const struct command_line *line, struct error *error) {
-  const struct options *options = line->options;
-  return commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row option_rows[] = {
@@ -46,24 +40,14 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_INTEGER(
         "draws", 0, "N", struct options, draws, 100, 1000000, "2500",
         "Samples of the bootstrap; 2500 give p within 0.01. The bootstrap ends earlier when p is large."),
-    TABLE_OPTIONS(struct options, table),
 };
 
 const struct command exponents_command = {
     .name = "exponents",
     .group = "results",
     .arguments = "STORE",
-    .summary = "the exponent of every point by its four names, and the goodness of its fit",
-    .doc =
-        "Prints for every point the exponents of F(m) (fragments per kg), N(>m), F(L) (fragments per m of size) and\n"
-        "N(>L): beta, beta - 1, D + 1 and D = d (beta - 1) in d dimensions, by maximum likelihood on masses. p is the\n"
-        "share of samples drawn from the fit whose Kolmogorov distance to their own fit is larger than that of the "
-        "runs\n"
-        "(Clauset, Shalizi & Newman 2009); below 0.1 a power law does not fit. The test treats the fragments of a run\n"
-        "as independent. It uses all cores.",
-    .examples = "clast exponents out.db\nclast exponents out.db --point 1 --draws 10000 --json",
-    .minimum_arguments = 1,
-    .maximum_arguments = 1,
+    .text = exponents_text,
     COMMAND_OPTIONS(struct options, option_rows),
-    .run = run,
+    .has_table = true,
+    .ask = ask,
 };

@@ -12,7 +12,8 @@ struct options {
 };
 
 /* Options that exclude each other. */
-static status check(const struct options *options, const char *target, struct error *error) {
+static status check(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
   const bool other = options->bits || options->cinema || options->crate;
   const struct rule {
     bool broken;
@@ -23,7 +24,7 @@ static status check(const struct options *options, const char *target, struct er
       {options->per && other, "--per excludes --bits, --cinema and --crate"},
       {(options->license || options->author) && !options->crate, "--license and --author belong to --crate"},
       {options->lines && !options->per, "--jsonl needs --per run or --per point"},
-      {!options->per && !target,
+      {!options->per && line->count < 2,
        "clast export needs a target, or --per run or --per point for rows on standard output; usage: "
        "clast export STORE [TARGET]"},
   };
@@ -52,18 +53,12 @@ static status write(struct store *store, const struct command_line *line, const 
   return store_export(store, target, error);
 }
 
-static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const char *target = line->count > 1 ? line->arguments[1] : NULL;
   const status code = write(store, line, target, error);
-  (void)format;
   if (code == STATUS_OK && target)
     fprintf(stderr, "%s written\n", target);
   return code;
-}
-
-static status run(const struct command_line *line, struct error *error) {
-  const status code = check(line->options, line->count > 1 ? line->arguments[1] : NULL, error);
-  return code ? code : commands_ask(line, NULL, ask, error);
 }
 
 static const struct option_row option_rows[] = {
@@ -95,13 +90,8 @@ const struct command export_command = {
     .name = "export",
     .group = "the store",
     .arguments = "STORE [TARGET]",
-    .summary = "one compact file for hand-over, or rows for other programs",
-    .doc = "Writes a compact copy of the store as one SQLite file, also while a campaign is running. Options choose "
-           "other\n"
-           "formats. The command never overwrites a store, a YAML document or an input; it overwrites other files.",
-    .examples = "clast export out.db handover.db\nclast export out.db --per point > points.csv",
-    .minimum_arguments = 1,
-    .maximum_arguments = 2,
+    .text = export_text,
     COMMAND_OPTIONS(struct options, option_rows),
-    .run = run,
+    .check = check,
+    .ask = ask,
 };

@@ -6,10 +6,6 @@
 #include "campaign/terminal/table.h"
 #include "engine/engine.h"
 
-struct options {
-  struct table_options table;
-};
-
 /* The document's first comment line says what the material is. */
 static void headline(const char *text, char *line, size_t size) {
   text += strspn(text, "# ");
@@ -78,35 +74,21 @@ static const struct engine_materials *materials_of(const char *name) {
 }
 
 static status run(const struct command_line *line, struct error *error) {
-  const struct options *options = line->options;
-  enum table_format format = TABLE_TEXT;
-  TRY(table_choose(&options->table, &format, error));
   if (line->count == 0) {
     for (size_t i = 0; i < engine_count(); i++)
       if (engine_at(i)->materials)
-        TRY(list(engine_at(i)->materials, format, error));
+        TRY(list(engine_at(i)->materials, line->format, error));
     return STATUS_OK;
   }
-  TRY(table_text_only(&options->table, "a material's document", error));
+  TRY(table_text_only(line->format, "a material's document", error));
   return print_document(materials_of(line->arguments[0]), line->arguments[0], error);
 }
-
-static const struct option_row rows[] = {TABLE_OPTIONS(struct options, table)};
 
 const struct command materials_command = {
     .name = "materials",
     .group = "scenes and inputs",
     .arguments = "[NAME|FILE]",
-    .summary = "the built-in materials; with a name, its document with sources",
-    .doc = "Lists the materials that a scene of engine sph can name (material: basalt). With a NAME it prints the "
-           "document\n"
-           "of that material, with a source for each value. Save it, edit it, and give the file to a body (material:\n"
-           "./my-rock.yaml). With such a FILE it checks the values in it, and prints it. If a value is missing, the "
-           "scene\n"
-           "that uses the file says which. A scene can override each value, and a campaign can vary it\n"
-           "(target.material.weibull.m).",
-    .examples = "clast materials\nclast materials basalt > my-rock.yaml",
-    .maximum_arguments = 1,
-    COMMAND_OPTIONS(struct options, rows),
+    .text = materials_text,
+    .has_table = true,
     .run = run,
 };

@@ -55,14 +55,6 @@ const struct command merge_command = {
     .name = "merge",
     .group = "the store",
     .arguments = "TARGET SOURCE...",
-    .summary = "add the runs of other stores to one",
-    .doc =
-        "Adds to TARGET (made if absent) every run of the SOURCES that it lacks, with its point, masses, spectrum and\n"
-        "provenance. Each run has an identity, so a second merge adds nothing. If both stores have a run, TARGET "
-        "keeps\n"
-        "its own. If the two have different results, a warning says so, and the exit code is 65.",
-    .examples = "clast merge all.db node1.db node2.db\nclast merge all.db part-*.db",
-    .minimum_arguments = 2,
-    .maximum_arguments = 10000,
+    .text = merge_text,
     .run = run,
 };

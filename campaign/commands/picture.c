@@ -30,16 +30,7 @@ const struct command picture_command = {
     .name = "picture",
     .group = "results",
     .arguments = "FIELDS.hdf PICTURE.png",
-    .summary = "draw the body of a fields file: fragments, damage, pressure",
-    .doc =
-        "Draws the body of a fields file (from simulate, replay, or a campaign that keeps fields). Grains in the\n"
-        "plane: every fragment in its own colour, cracks inside fragments as lines. Particles in space: a cut, a view\n"
-        "from outside, or the fragments apart. The ending chooses the format: .png, .svg or .pdf.",
-    .examples =
-        "clast picture disc.hdf disc.png\nclast picture sphere.hdf spalls.png --what fragments --axis z\n"
-        "clast picture crater.hdf pores.png --what distention\nclast picture crater.hdf profile.png --view profile",
-    .minimum_arguments = 2,
-    .maximum_arguments = 2,
+    .text = picture_text,
     COMMAND_OPTIONS(struct picture_choice, rows),
     .run = run,
 };

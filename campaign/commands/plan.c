@@ -5,7 +5,6 @@
 #include "campaign/commands/commands.h"
 #include "campaign/converge/accuracy_print.h"
 #include "campaign/driver/plan.h"
-#include "campaign/terminal/campaign_option.h"
 
 struct options {
   struct campaign_option campaign;
@@ -28,11 +27,11 @@ static status print(const struct campaign *campaign, const struct plan *plan, in
   return STATUS_OK;
 }
 
-status commands_plan(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
+status plan_campaign(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
                      bool no_trial, bool json, struct error *error) {
   struct campaign *campaign = NULL;
   char *alternatives = NULL;
-  TRY(campaign_option_load(path, changes, &campaign, error));
+  TRY(option_load_campaign(path, changes, &campaign, error));
   struct plan plan;
   struct plan_options options = {.store_path = store, .no_trial = no_trial, .slots = (int)slots};
   if (slots == 0) {
@@ -58,7 +57,7 @@ cleanup:
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  return commands_plan(line->arguments[0], &options->campaign, options->store, options->slots, options->no_trial,
+  return plan_campaign(line->arguments[0], &options->campaign, options->store, options->slots, options->no_trial,
                        options->json, error);
 }
 
@@ -77,16 +76,7 @@ const struct command plan_command = {
     .name = "plan",
     .group = "running",
     .arguments = "CAMPAIGN.yaml",
-    .summary = "what a campaign would do and cost; stores nothing",
-    .doc =
-        "Checks the campaign, counts its points and runs and those in the store, and times trial runs for up to 5 s:\n"
-        "the beginning of the most expensive run, a coarse run to its end, and other points. Prints the modules of "
-        "the\n"
-        "model and the expected time (on a machine without other work), memory and disk space. Stores nothing. If the\n"
-        "campaign gives an accuracy, the command first prints which settings and seeds reach it, and their cost.",
-    .examples = "clast plan campaign.yaml\nclast plan campaign.yaml --no-trial --json",
-    .minimum_arguments = 1,
-    .maximum_arguments = 1,
+    .text = plan_text,
     COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

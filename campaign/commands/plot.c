@@ -7,18 +7,17 @@ struct options {
   struct chart_options chart;
 };
 
-static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
-  const struct options *options = line->options;
-  const struct picture_page page = chart_option_page(line->arguments[1], &options->chart);
-  (void)format;
-  return plot_lines_draw(store, options->x, options->by, options->quantity, &page, error);
-}
-
-static status run(const struct command_line *line, struct error *error) {
+static status check(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   if (!options->x)
     return status_fail(error, STATUS_USAGE, "a plot needs --x, an input that the campaign varied");
-  return commands_ask(line, NULL, ask, error);
+  return STATUS_OK;
+}
+
+static status ask(struct store *store, const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  const struct picture_page page = chart_option_page(line->arguments[1], &options->chart);
+  return plot_lines_draw(store, options->x, options->by, options->quantity, &page, error);
 }
 
 static const struct option_row rows[] = {
@@ -33,21 +32,8 @@ const struct command plot_command = {
     .name = "plot",
     .group = "results",
     .arguments = "STORE PICTURE.png",
-    .summary = "a quantity over one varied input as lines with error bars",
-    .doc =
-        "Draws the mean of a result over seeds against a varied input, with the 95 % interval of the mean (Student's "
-        "t)\n"
-        "where there are two runs or more. A second varied input gives one line for each of its values. `clast stats`\n"
-        "prints the same numbers. If other inputs also vary, the mean is over them, too, and the title names them; "
-        "the\n"
-        "interval is then over points. For an exponent it draws the fit to the runs of each point, with its 95 %\n"
-        "interval. An axis over a factor of 20 or more is logarithmic. gnuplot draws the chart; the ending chooses "
-        "the\n"
-        "format: .png, .svg or .pdf.",
-    .examples =
-        "clast plot out.db largest.png -x strain --by angle\nclast plot out.db beta.svg -x strain --by angle -q beta",
-    .minimum_arguments = 2,
-    .maximum_arguments = 2,
+    .text = plot_text,
     COMMAND_OPTIONS(struct options, rows),
-    .run = run,
+    .check = check,
+    .ask = ask,
 };

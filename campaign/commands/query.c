@@ -13,7 +13,6 @@ struct options {
   const char *named;
   struct option_list with;
   int64_t seconds;
-  struct table_options table;
 };
 
 struct parameters {
@@ -33,7 +32,7 @@ static status read_parameters(const struct options *options, struct parameters *
   return STATUS_OK;
 }
 
-static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const struct query_canned *canned = options->named ? ask_canned_find(options->named, error) : NULL;
   struct parameters parameters;
@@ -43,20 +42,18 @@ static status ask(struct store *store, const struct command_line *line, enum tab
   TRY(ask_register_functions(store, error));
   return rows_print(answer_to_user(store, canned ? canned->sql : line->arguments[1], options->with.count,
                                    parameters.all, (double)options->seconds, error),
-                    false, format, stdout);
+                    false, line->format, stdout);
 }
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  enum table_format format = TABLE_TEXT;
-  TRY(table_choose(&options->table, &format, error));
   if (options->list)
-    return canned_table_print(format, error);
+    return canned_table_print(line->format, error);
   if (line->count == 0 || (line->count == 2) == (options->named != NULL))
     return status_fail(error, STATUS_USAGE,
                        "clast query needs a store, and either an SQL statement or --named NAME; `clast query --list` "
                        "shows the names");
-  return commands_ask(line, &options->table, ask, error);
+  return commands_ask(line, ask, error);
 }
 
 static const struct option_row rows_of_options[] = {
@@ -66,21 +63,14 @@ static const struct option_row rows_of_options[] = {
                     "Value of a parameter :NAME in the SQL. May be given several times."),
     OPTION_ROW_INTEGER("seconds", 0, "S", struct options, seconds, 0, 1000000, "0",
                        "Stop the query after this many seconds (exit 75); 0: never."),
-    TABLE_OPTIONS(struct options, table),
 };
 
 const struct command query_command = {
     .name = "query",
     .group = "results",
-    .arguments = "STORE [SQL]",
-    .summary = "query the store: SQL that only reads, or a canned query",
-    .doc =
-        "Runs one SQL statement that only reads, or a ready query by name, and prints its rows. Meanwhile a campaign\n"
-        "may write to the store. Begin with the views runs, points, spectra, estimates. The table column_doc explains\n"
-        "the columns. Functions besides SQLite's own: stdev(x), median(x), hist_sum(masses).",
-    .examples = "clast query out.db \"select replicate, largest_fraction from runs order by 2 limit 5\"\n"
-                "clast query --list",
-    .maximum_arguments = 2,
+    .arguments = "[STORE] [SQL]",
+    .text = query_text,
     COMMAND_OPTIONS(struct options, rows_of_options),
+    .has_table = true,
     .run = run,
 };

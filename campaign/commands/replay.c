@@ -10,7 +10,6 @@
 
 struct options {
   const char *fields;
-  struct table_options table;
 };
 
 /* Prints the table of differences. For people it is left out when nothing differs. */
@@ -44,7 +43,7 @@ static void tell(int64_t run_id, const struct ask_run *stored, const struct repl
             comparison->compared - 1, fragments);
 }
 
-static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const int64_t run_id = strtoll(line->arguments[1], NULL, 10);
   struct ask_run stored;
@@ -55,7 +54,7 @@ static status ask(struct store *store, const struct command_line *line, enum tab
   if (code == STATUS_OK)
     code = replay_compute(&stored, run_id, options->fields, &scene, &result, error);
   if (code == STATUS_OK)
-    code = print_differences(store, run_id, scene->kind, &result, format, &comparison, error);
+    code = print_differences(store, run_id, scene->kind, &result, line->format, &comparison, error);
   if (code == STATUS_OK) {
     tell(run_id, &stored, &comparison, result.fragment_count);
     code = replay_verdict(store, run_id, &stored, &comparison, error);
@@ -68,33 +67,25 @@ static status ask(struct store *store, const struct command_line *line, enum tab
   return code;
 }
 
-static status run(const struct command_line *line, struct error *error) {
-  const struct options *options = line->options;
+static status check(const struct command_line *line, struct error *error) {
   const char *number = line->arguments[1];
   if (strspn(number, "0123456789") != strlen(number))
     return status_fail(error, STATUS_USAGE, "RUN is a number (run_id in the store), got \"%.64s\"", number);
-  return commands_ask(line, &options->table, ask, error);
+  return STATUS_OK;
 }
 
 static const struct option_row rows[] = {
     OPTION_ROW_OUTPUT(OPTION_OUTPUT, "fields", 0, "FILE.h5", struct options, fields,
                       "Write the fields of the run as an HDF5 file, for `clast picture` or ParaView."),
-    TABLE_OPTIONS(struct options, table),
 };
 
 const struct command replay_command = {
     .name = "replay",
     .group = "the store",
     .arguments = "STORE RUN",
-    .summary = "compute a stored run again and compare every bit",
-    .doc =
-        "Takes the scene and seed of run RUN (run_id) from the store, computes it again, and compares all results and\n"
-        "fragment masses bit by bit. Prints a table of the differences; exit 65 if there are any. It names results "
-        "that\n"
-        "the earlier program did not store, and does not compare them. The store does not change.",
-    .examples = "clast replay out.db 17\nclast replay out.db 17 --fields run17.h5",
-    .minimum_arguments = 2,
-    .maximum_arguments = 2,
+    .text = replay_text,
     COMMAND_OPTIONS(struct options, rows),
-    .run = run,
+    .has_table = true,
+    .check = check,
+    .ask = ask,
 };

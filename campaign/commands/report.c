@@ -41,6 +41,8 @@ static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   char name[4096];
   size_t size = 0;
+  if (line->count > REPORT_STORES)
+    return status_fail(error, STATUS_USAGE, "a page shows at most %d stores", REPORT_STORES);
   name_page(line->arguments[0], name, sizeof name);
   struct report_choice choice = {.count = line->count,
                                  .stores = line->arguments,
@@ -68,16 +70,7 @@ const struct command report_command = {
     .name = "report",
     .group = "results",
     .arguments = "STORE...",
-    .summary = "a page for a browser: inputs, spectra, seeds, runs, SQL",
-    .doc =
-        "Writes one HTML file that needs no network and no server. The page shows the campaign, the program, and what\n"
-        "failed; maps of any result over the varied inputs; spectra, scatter over seeds and runs of the points that "
-        "you\n"
-        "choose; and answers to SQL. For a large store it holds a part of the runs and says which; statistics are of\n"
-        "all runs. It draws the bodies of runs whose fields are kept. With several stores it compares them.",
-    .examples = "clast report out.db\nclast report before.db after.db -o both.html\nclast report out.db --watch",
-    .minimum_arguments = 1,
-    .maximum_arguments = REPORT_STORES,
+    .text = report_text,
     COMMAND_OPTIONS(struct options, option_rows),
     .run = run,
 };

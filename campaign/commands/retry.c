@@ -28,7 +28,7 @@ static status read_store(const char *path, int64_t campaign, char **name, char *
   return code;
 }
 
-static status retry(const struct command_line *line, enum table_format format, struct error *error) {
+static status retry(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const char *path = line->arguments[0];
   char *name = NULL, *document = NULL;
@@ -47,7 +47,7 @@ static status retry(const struct command_line *line, enum table_format format, s
   if (code == STATUS_OK && !launch_other_rank())
     code = accuracy_settle(campaign, "CAMPAIGN.yaml", path, error);
   if (code == STATUS_OK)
-    code = launch_campaign(campaign, path, &options->launch, format, line, error);
+    code = launch_campaign(campaign, path, &options->launch, line->format, line, error);
 cleanup:
   campaign_free(campaign);
   free(name);
@@ -57,13 +57,12 @@ cleanup:
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  enum table_format format = TABLE_TEXT;
-  status code = table_choose(&options->launch.table, &format, error);
-  if (code == STATUS_OK && strcmp(options->status, "failed") != 0)
+  status code = STATUS_OK;
+  if (strcmp(options->status, "failed") != 0)
     code = status_fail(error, STATUS_USAGE,
                        "--status knows \"failed\" only: a run that ended with a verdict of its own "
                        "(NaN, time step, energy) would end the same way again");
-  return launch_quiet_ranks(code ? code : retry(line, format, error), error);
+  return launch_quiet_ranks(code ? code : retry(line, error), error);
 }
 
 static const struct option_row rows[] = {
@@ -78,21 +77,15 @@ static const struct option_row rows[] = {
     OPTION_ROW_TEXT("folder", 0, "DIR", struct options, folder, NULL,
                     "Folder that the path of the campaign's scene file starts from. Default: the current folder."),
     LAUNCH_OPTIONS(struct options, launch),
-    TABLE_OPTIONS(struct options, launch.table),
 };
 
 const struct command retry_command = {
     .name = "retry",
     .group = "running",
     .arguments = "STORE",
-    .summary = "try failed runs of a store again, with raised limits",
-    .doc =
-        "Takes the campaign from the store and computes the missing runs. Runs that were given up get the same number\n"
-        "of attempts again, with higher limits. Results do not depend on limits, and a run's identity leaves them out.",
-    .examples = "clast retry out.db --status failed --time '1 h'\nclast retry out.db --memory off -j 2",
-    .minimum_arguments = 1,
-    .maximum_arguments = 1,
+    .text = retry_text,
     .has_runs = true,
     COMMAND_OPTIONS(struct options, rows),
+    .has_table = true,
     .run = run,
 };

@@ -12,7 +12,6 @@ struct options {
   int64_t point;
   const char *where, *by, *quantity, *half_width, *picture;
   bool split, plot, ascii;
-  struct table_options table;
   struct chart_options chart;
 };
 
@@ -28,7 +27,7 @@ static status read_half_width(const char *text, double *half_width, struct error
   return STATUS_OK;
 }
 
-static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   struct scatter_choice choice = {{options->point, options->where, options->by}, options->quantity, NAN};
   status code = read_half_width(options->half_width, &choice.half_width, error);
@@ -37,18 +36,13 @@ static status ask(struct store *store, const struct command_line *line, enum tab
   if (code)
     return code;
   if (options->split)
-    return scatter_print_split(store, &choice, format, error);
+    return scatter_print_split(store, &choice, line->format, error);
   code = options->plot ? scatter_print_plots(store, &choice, options->ascii, error)
-                       : scatter_print_rows(store, &choice, format, error);
+                       : scatter_print_rows(store, &choice, line->format, error);
   if (code || !options->picture)
     return code;
   const struct picture_page page = chart_option_page(options->picture, &options->chart);
   return scatter_print_picture(store, &choice, &page, error);
-}
-
-static status run(const struct command_line *line, struct error *error) {
-  const struct options *options = line->options;
-  return commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row option_rows[] = {
@@ -66,25 +60,14 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_FLAG("plot", 0, struct options, plot, "Print histograms as text instead of the table."),
     OPTION_ROW_FLAG("ascii", 0, struct options, ascii, "Use ASCII characters only in the plot."),
     CHART_OPTIONS(struct options, chart),
-    TABLE_OPTIONS(struct options, table),
 };
 
 const struct command scatter_command = {
     .name = "scatter",
     .group = "results",
     .arguments = "STORE",
-    .summary = "how a result scatters over seeds: quantiles, skewness, two modes, runs needed",
-    .doc =
-        "Prints for every point mean, standard deviation, skewness and quantiles of a result over its runs, each with\n"
-        "its 95 % interval, and Hartigan's dip with its p. If p is below 0.05, the runs have two modes (for example: "
-        "a\n"
-        "bridge of rock holds, or breaks), and the command prints both and their shares. --split prints which share "
-        "of\n"
-        "the variance of the whole store comes from each input, from all inputs, and from seeds.",
-    .examples = "clast scatter out.db --point 1 --plot\nclast scatter out.db --half-width 0.01 --picture seeds.png\n"
-                "clast scatter out.db --split --quantity fragment_count",
-    .minimum_arguments = 1,
-    .maximum_arguments = 1,
+    .text = scatter_text,
     COMMAND_OPTIONS(struct options, option_rows),
-    .run = run,
+    .has_table = true,
+    .ask = ask,
 };

@@ -5,10 +5,6 @@
 #include "campaign/terminal/table.h"
 #include "engine/scene.h"
 
-struct options {
-  struct table_options table;
-};
-
 /* The document's first comment line says what the scene is. */
 static void headline(const char *text, char *line, size_t size) {
   while (*text == '#' && strstr(text, "yaml-language-server") &&
@@ -53,28 +49,17 @@ static status print_list(enum table_format format, struct error *error) {
 }
 
 static status run(const struct command_line *line, struct error *error) {
-  const struct options *options = line->options;
-  enum table_format format = TABLE_TEXT;
-  status code = table_choose(&options->table, &format, error);
-  if (!code && line->count == 1)
-    code = table_text_only(&options->table, "a scene's document", error);
-  if (code)
-    return code;
-  return line->count == 1 ? print_document(line->arguments[0], error) : print_list(format, error);
+  if (line->count == 0)
+    return print_list(line->format, error);
+  TRY(table_text_only(line->format, "a scene's document", error));
+  return print_document(line->arguments[0], error);
 }
-
-static const struct option_row rows[] = {TABLE_OPTIONS(struct options, table)};
 
 const struct command scenes_command = {
     .name = "scenes",
     .group = "scenes and inputs",
     .arguments = "[NAME]",
-    .summary = "the built-in scenes; with a name, its document to start from",
-    .doc =
-        "Lists the built-in scenes. With a NAME it prints the document of that scene, with its sources. Save it, edit\n"
-        "it, and use the file as SCENE of any command.",
-    .examples = "clast scenes\nclast scenes disc-explosion > my-disc.yaml",
-    .maximum_arguments = 1,
-    COMMAND_OPTIONS(struct options, rows),
+    .text = scenes_text,
+    .has_table = true,
     .run = run,
 };

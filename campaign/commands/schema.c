@@ -13,7 +13,7 @@ struct options {
 /* document/campaign.schema.in.json, embedded by CMakeLists.txt. It holds the keys that have several forms (vary, set,
  * design, keep, seeds); the plain keys are filled in from their tables. A value there is a number, string or boolean;
  * the input's own row checks unit and range when the document is read. */
-extern const char campaign_schema_template[];
+extern const char campaign_text[];
 
 /* Writes the part of the template that ends at `mark` and returns what follows the mark. */
 static const char *write_until(const char *text, const char *mark) {
@@ -25,7 +25,7 @@ static const char *write_until(const char *text, const char *mark) {
 }
 
 static void write_campaign_schema(void) {
-  const char *rest = write_until(campaign_schema_template, "@REQUIRED@");
+  const char *rest = write_until(campaign_text, "@REQUIRED@");
   json_schema_required(&campaign_table, stdout);
   rest = write_until(rest, "@DESIGN@");
   json_schema_properties(&campaign_design_table, 4, stdout);
@@ -58,14 +58,7 @@ const struct command schema_command = {
     .name = "schema",
     .group = "scenes and inputs",
     .arguments = "scene|campaign",
-    .summary = "JSON Schema of scene or campaign files, for completion in editors",
-    .doc =
-        "Prints the JSON Schema (draft-07) of scene or campaign documents. An editor with yaml-language-server then\n"
-        "completes names, shows meanings and units, and marks mistakes: write the file's name into the first line,\n"
-        "  # yaml-language-server: $schema=campaign.schema.json",
-    .examples = "clast schema campaign > campaign.schema.json\nclast schema scene --engine dem > scene.schema.json",
-    .minimum_arguments = 1,
-    .maximum_arguments = 1,
+    .text = schema_text,
     COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

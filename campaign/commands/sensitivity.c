@@ -10,7 +10,6 @@
 struct options {
   const char *design, *quantity;
   int64_t blocks, seed;
-  struct table_options table;
 };
 
 static status write_design(const struct command_line *line, struct error *error) {
@@ -27,14 +26,14 @@ static status write_design(const struct command_line *line, struct error *error)
   return code;
 }
 
-static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  return sensitivity_print(store, line->arguments[1], options->quantity, format, error);
+  return sensitivity_print(store, line->arguments[1], options->quantity, line->format, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  return options->design ? write_design(line, error) : commands_ask(line, &options->table, ask, error);
+  return options->design ? write_design(line, error) : commands_ask(line, ask, error);
 }
 
 static const struct option_row option_rows[] = {
@@ -46,24 +45,14 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_INTEGER("seed", 0, "N", struct options, seed, 0, INT64_MAX, "1", "Seed of the design, not of the runs."),
     OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT,
                     "Result: a column of the view runs."),
-    TABLE_OPTIONS(struct options, table),
 };
 
 const struct command sensitivity_command = {
     .name = "sensitivity",
     .group = "results",
     .arguments = "STORE|CAMPAIGN.yaml NEW.yaml",
-    .summary = "which input matters: Sobol indices or elementary effects, with the seed's share",
-    .doc =
-        "With --design it writes NEW.yaml, the campaign CAMPAIGN.yaml with a design of Saltelli or Morris over the\n"
-        "ranges of its key vary, and NEW.csv, the points. After `clast run NEW.yaml`, `clast sensitivity STORE\n"
-        "NEW.yaml` prints first-order and total Sobol indices, or Morris's elementary effects, of a result with 95 %\n"
-        "intervals. The seed has indices of its own if every point has two seeds or more.",
-    .examples =
-        "clast sensitivity sweep.yaml ask.yaml --design saltelli --blocks 64\nclast run ask.yaml --store ask.db\n"
-        "clast sensitivity ask.db ask.yaml",
-    .minimum_arguments = 2,
-    .maximum_arguments = 2,
+    .text = sensitivity_text,
     COMMAND_OPTIONS(struct options, option_rows),
+    .has_table = true,
     .run = run,
 };

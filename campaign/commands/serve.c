@@ -89,15 +89,7 @@ const struct command serve_command = {
     .name = "serve",
     .group = "running",
     .arguments = "CAMPAIGN.yaml",
-    .summary = "the campaign as a model for UQ packages (UM-Bridge, HTTP)",
-    .doc =
-        "Answers requests of the UM-Bridge protocol 1.0. A request gives the varied inputs, in SI units and in the\n"
-        "order of `vary`; the answer has means over seeds. The server computes only runs that the store lacks, and\n"
-        "stores them. Simultaneous requests share the slots. GET / lists names and units. Ctrl-C or SIGTERM ends the\n"
-        "server (exit 0).",
-    .examples = "clast serve campaign.yaml --port 4242\nclast serve campaign.yaml -q largest_fraction,fragment_count",
-    .minimum_arguments = 1,
-    .maximum_arguments = 1,
+    .text = serve_text,
     COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

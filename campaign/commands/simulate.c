@@ -4,12 +4,10 @@
 #include "campaign/one_run/one_run.h"
 #include "campaign/one_run/resume.h"
 #include "campaign/terminal/results.h"
-#include "campaign/terminal/scene_option.h"
 
 struct options {
   struct one_run_options run;
   struct option_list set;
-  struct table_options table;
 };
 
 static status simulate(const struct scene *scene, const struct one_run_options *options, enum table_format format,
@@ -40,12 +38,10 @@ cleanup:
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  enum table_format format = TABLE_TEXT;
   struct scene *scene = NULL;
-  TRY(table_choose(&options->table, &format, error));
-  status code = scene_option_load(line->arguments[0], &options->set, &scene, error);
+  status code = option_load_scene(line->arguments[0], &options->set, &scene, error);
   if (code == STATUS_OK)
-    code = simulate(scene, &options->run, format, error);
+    code = simulate(scene, &options->run, line->format, error);
   scene_free(scene);
   return code;
 }
@@ -68,21 +64,15 @@ static const struct option_row rows[] = {
         "Continue from this file if it exists. The run writes it every five minutes and at an interruption "
         "(exit 75; the same command continues, with the same bits), and removes it at the end."),
     OPTION_ROW_FLAG("quiet", 'q', struct options, run.quiet, "No progress on the terminal."),
-    TABLE_OPTIONS(struct options, table),
 };
 
 const struct command simulate_command = {
     .name = "simulate",
     .group = "running",
     .arguments = "SCENE",
-    .summary = "one run of a scene, with pictures and fields",
-    .doc = "Runs one simulation of a SCENE (a built-in name or a file) and prints its results: fragments, largest\n"
-           "fraction, energies, exponents of the fragment spectrum. It writes no file unless an option names one.",
-    .examples = "clast simulate disc-explosion --seed 7 --picture disc.png\n"
-                "clast simulate disc-explosion --set threshold.strain=5% --json",
-    .minimum_arguments = 1,
-    .maximum_arguments = 1,
+    .text = simulate_text,
     .has_runs = true,
     COMMAND_OPTIONS(struct options, rows),
+    .has_table = true,
     .run = run,
 };

@@ -9,7 +9,6 @@ struct options {
   int64_t point;
   const char *where, *by, *size, *with, *picture;
   bool cumulative, runs, plot, ascii;
-  struct table_options table;
   struct chart_options chart;
 };
 
@@ -27,7 +26,7 @@ static status print(struct store *store, const struct options *options, const st
   return code;
 }
 
-static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   struct spectrum_choice choice = {.pool = {options->point, options->where, options->by},
                                    .cumulative = options->cumulative,
@@ -39,14 +38,9 @@ static status ask(struct store *store, const struct command_line *line, enum tab
   if (options->with)
     code = spectrum_curves_measured(store, options->with, &choice, &measured, error);
   if (code == STATUS_OK)
-    code = print(store, options, &choice, format, error);
+    code = print(store, options, &choice, line->format, error);
   measured_release(&measured);
   return code;
-}
-
-static status run(const struct command_line *line, struct error *error) {
-  const struct options *options = line->options;
-  return commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row option_rows[] = {
@@ -68,24 +62,14 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_FLAG("plot", 0, struct options, plot, "Plot them as text instead of the table."),
     OPTION_ROW_FLAG("ascii", 0, struct options, ascii, "Use ASCII characters only in the plot."),
     CHART_OPTIONS(struct options, chart),
-    TABLE_OPTIONS(struct options, table),
 };
 
 const struct command spectrum_command = {
     .name = "spectrum",
     .group = "results",
     .arguments = "STORE",
-    .summary = "fragment spectra by mass or size, with errors, beside measured ones",
-    .doc =
-        "Prints one row per point (or group of --by) and mass bin that has fragments: the fragments of all runs that\n"
-        "count, F(m) (fragments per kg and run) or N(>m), and the share of the mass. The 95 % interval is over runs;\n"
-        "where the command pools points, it is over points. F(m) ~ m^-beta means N(>m) ~ m^-(beta - 1), and by size "
-        "in\n"
-        "d dimensions N(>L) ~ L^-D with D = d (beta - 1).",
-    .examples = "clast spectrum out.db --point 1 --plot\nclast spectrum out.db --by strain --cumulative --picture "
-                "spectrum.svg\nclast spectrum out.db --with measured.csv --picture both.png",
-    .minimum_arguments = 1,
-    .maximum_arguments = 1,
+    .text = spectrum_text,
     COMMAND_OPTIONS(struct options, option_rows),
-    .run = run,
+    .has_table = true,
+    .ask = ask,
 };

@@ -11,12 +11,12 @@
 
 struct options {
   const char *by, *quantity;
-  struct table_options table;
 };
 
 /* Exponents are fitted to all runs of a point together: they have no mean over runs. */
-static status refuse_exponents(const char *names, const char *store, struct error *error) {
-  for (const char *name = names; *name; name += strcspn(name, ","), name += *name == ',') {
+static status check(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  for (const char *name = options->quantity; *name; name += strcspn(name, ","), name += *name == ',') {
     enum exponent_method method;
     enum estimates_window window;
     struct error ignored;
@@ -28,7 +28,7 @@ static status refuse_exponents(const char *names, const char *store, struct erro
           error, STATUS_USAGE,
           "%.*s: exponents are fitted to all runs of a point together, not averaged: `clast estimates %s` has them, "
           "`clast plot` and `clast map` draw them with -q beta",
-          (int)strcspn(name, ", "), name, store);
+          (int)strcspn(name, ", "), name, line->arguments[0]);
   }
   return STATUS_OK;
 }
@@ -47,22 +47,16 @@ static status warn_of_twins(struct store *store, struct error *error) {
   return code;
 }
 
-static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const char *quantity = strcmp(options->quantity, "main") == 0 ? NULL : options->quantity;
   char pooled[ASK_GROUP_POOLED] = "";
-  TRY(rows_print(ask_group(store, options->by, quantity, pooled, error), true, format, stdout));
+  TRY(rows_print(ask_group(store, options->by, quantity, pooled, error), true, line->format, stdout));
   if (*pooled)
     fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
-  if (format == TABLE_TEXT)
+  if (line->format == TABLE_TEXT)
     quantity_tell_resolutions(store, options->quantity, pooled);
   return warn_of_twins(store, error);
-}
-
-static status run(const struct command_line *line, struct error *error) {
-  const struct options *options = line->options;
-  const status code = refuse_exponents(options->quantity, line->arguments[0], error);
-  return code ? code : commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row rows_of_options[] = {
@@ -73,26 +67,15 @@ static const struct option_row rows_of_options[] = {
     OPTION_ROW_TEXT(
         "quantity", 'q', "NAMES", struct options, quantity, OUTCOME_DEFAULT,
         "Results to average, comma-separated; main: the main results, a wide table. `clast explain` lists all."),
-    TABLE_OPTIONS(struct options, table),
 };
 
 const struct command stats_command = {
     .name = "stats",
     .group = "results",
     .arguments = "STORE",
-    .summary = "means over seeds with standard deviation, standard error and 95 % interval",
-    .doc =
-        "Groups the runs by varied inputs. For each group it prints how many runs count, failed, or reached the end\n"
-        "time, and for each quantity the mean, standard deviation, standard error, and half width of the 95 % "
-        "interval\n"
-        "of the mean over seeds (Student's t). A group of several points pools over other inputs, and the command "
-        "names\n"
-        "these: the interval is then over the means of the points. A group never mixes results versions. No interval\n"
-        "holds the error of the resolution.",
-    .examples =
-        "clast stats out.db --by strain\nclast stats out.db --by strain,angle --quantity largest_fraction --csv",
-    .minimum_arguments = 1,
-    .maximum_arguments = 1,
+    .text = stats_text,
     COMMAND_OPTIONS(struct options, rows_of_options),
-    .run = run,
+    .has_table = true,
+    .check = check,
+    .ask = ask,
 };

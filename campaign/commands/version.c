@@ -52,9 +52,7 @@ const struct command version_command = {
     .name = "version",
     .group = "about clast",
     .arguments = "",
-    .summary = "version, commit, compiler and libraries (also: clast --version)",
-    .doc = "Prints the version, compiler and libraries of this program. Every campaign stores the same facts.",
-    .examples = "clast --version\nclast version --json",
+    .text = version_text,
     COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "campaign/document/campaign_walk.h"
-#include "campaign/terminal/scene_option.h"
 
 void subject_clear(struct subject *subject) {
   study_clear(&subject->study);
@@ -17,7 +16,7 @@ void subject_clear(struct subject *subject) {
 static status add_scene(struct subject *subject, const struct option_list *set, struct scene *scene,
                         struct error *error) {
   subject->scenes[subject->scene_count++] = scene;
-  return scene_option_apply(scene, set, error);
+  return option_set_inputs(scene, set, error);
 }
 
 /* Every point of the campaign is a scene of its own. */

@@ -11,7 +11,6 @@
 struct launch_options {
   int64_t slots;
   bool in_process, quiet;
-  struct table_options table;
 };
 
 #define LAUNCH_OPTIONS(type_, member_)                                                                                 \

@@ -119,7 +119,8 @@ status explain_path(const char *path, struct error *error) {
   }
   for (size_t i = 0; i < campaign_keys_count; i++)
     text_guess_offer(&guess, campaign_keys[i].name);
-  explain_words_guess(&guess);
+  char word[EXPLAIN_WORD];
+  explain_words_guess(&guess, word);
   const char *nearest = guess.nearest;
   return status_fail(error, STATUS_CONTENT,
                      "nothing is called \"%.128s\"%s%s%s `clast explain` lists all paths, `clast scenes` all scenes",

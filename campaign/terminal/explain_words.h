@@ -8,8 +8,9 @@
 
 /* Prints the meaning of a word of clast or a column of the store. False: it is neither. */
 bool explain_words(const char *word);
-/* Offers all words to the search for the nearest name. */
-void explain_words_guess(struct text_guess *guess);
+enum { EXPLAIN_WORD = 128 };
+/* Offers all words to the search for the nearest name. `name` keeps the one that is the nearest. */
+void explain_words_guess(struct text_guess *guess, char name[EXPLAIN_WORD]);
 
 /* The path of a result by one of its names in tables: "energy_kinetic" of "result_dem_energy_kinetic", and of
  * "energy_kinetic_mean". *said: meaning of the rest of the name, or NULL. The result points into `name` or `plain`. */

@@ -1,4 +1,4 @@
-/* Parses by getopt_long, and makes all other output from the option tables. */
+/* Parses the command line by getopt_long. */
 #include "campaign/terminal/option.h"
 
 #include <errno.h>
@@ -8,10 +8,39 @@
 #include <string.h>
 
 #include "analysis/pictures/picture_canvas.h"
+#include "campaign/document/campaign_change.h"
 #include "schemas/file.h"
 #include "schemas/text.h"
 
-enum { ROWS_MAXIMUM = 30, HELP_VALUE = 1000, ROW_VALUE = 1001, COLUMN = 26, WIDTH = 96, WORD_MAXIMUM = 63 };
+enum { ROWS_MAXIMUM = 30, HELP_VALUE = 1000, ROW_VALUE = 1001, WORD_MAXIMUM = 63 };
+
+struct table_options {
+  bool json, csv;
+};
+static const struct option_row table_rows[] = {
+    OPTION_ROW_FLAG("json", 0, struct table_options, json, "Print JSON: one array of objects, SI units."),
+    OPTION_ROW_FLAG("csv", 0, struct table_options, csv, "Print CSV with a header line, SI units."),
+};
+
+const struct option_row *option_row(const struct command *command, size_t index) {
+  if (index < command->option_count)
+    return &command->options[index];
+  index -= command->option_count;
+  return command->has_table && index < sizeof table_rows / sizeof table_rows[0] ? &table_rows[index] : NULL;
+}
+
+const char *option_part(const struct command *command, enum option_part part, int *length) {
+  static const char mark[] = "\n\nexamples:\n";
+  const char *doc = strstr(command->text, "\n\n"), *end = doc ? strstr(doc, mark) : NULL;
+  if (!end) { /* a test looks at every command's text */
+    *length = 0;
+    return command->text;
+  }
+  const char *const from[] = {command->text, doc + 2, end + strlen(mark), end + strlen(end)};
+  const char *const to[] = {doc, end, from[OPTION_EXAMPLES + 1] - 1};
+  *length = (int)(to[part] - from[part]);
+  return from[part];
+}
 
 const char *option_nearest(const char *typed, size_t count, const char *const *names) {
   struct text_guess guess = text_guess(typed);
@@ -45,16 +74,26 @@ static status take_integer(const struct command *command, const struct option_ro
                      range, text, command->name);
 }
 
-static status take_value(const struct command *command, const struct option_row *row, const char *text, void *options,
-                         struct error *error) {
-  void *slot = (char *)options + row->offset;
+/* The parts of a parse. */
+struct parse {
+  const struct command *command;
+  void *options; /* the command's struct */
+  struct table_options table;
+  struct option names[ROWS_MAXIMUM + 2]; /* for getopt_long */
+  char letters[2 * ROWS_MAXIMUM + 4];
+};
+
+static status take_value(struct parse *parse, size_t index, const char *text, struct error *error) {
+  const struct option_row *row = option_row(parse->command, index);
+  char *base = index < parse->command->option_count ? parse->options : (char *)&parse->table;
+  void *slot = base + row->offset;
   switch (row->kind) {
   case OPTION_FLAG: *(bool *)slot = true; return STATUS_OK;
   case OPTION_TEXT:
   case OPTION_OUTPUT:
   case OPTION_PICTURE: *(const char **)slot = text; return STATUS_OK;
   case OPTION_LIST: return take_item(row, text, slot, error);
-  case OPTION_INTEGER: return take_integer(command, row, text, slot, error);
+  case OPTION_INTEGER: return take_integer(parse->command, row, text, slot, error);
   }
   return status_fail(error, STATUS_INTERNAL, "option --%s has no kind", row->name);
 }
@@ -78,8 +117,8 @@ status option_claim_outputs(const struct command *command, const void *options, 
 static status unknown_option(const struct command *command, const char *typed, int letter, struct error *error) {
   const char *names[ROWS_MAXIMUM + 1];
   size_t count = 0;
-  for (size_t i = 0; i < command->option_count; i++)
-    names[count++] = command->options[i].name;
+  for (const struct option_row *row; (row = option_row(command, count));)
+    names[count++] = row->name;
   names[count++] = "help";
   if (letter)
     return status_fail(error, STATUS_USAGE, "clast %s has no option -%c; `clast %s --help` lists them", command->name,
@@ -92,53 +131,42 @@ static status unknown_option(const struct command *command, const char *typed, i
                      nearest ? "?" : "", command->name);
 }
 
-/* A command's options in getopt_long's form. */
-struct getopt_tables {
-  struct option names[ROWS_MAXIMUM + 2];
-  char letters[2 * ROWS_MAXIMUM + 4];
-};
-
-/* Fills the tables and sets every option to its default. */
-static status prepare(const struct command *command, struct getopt_tables *tables, void *options, struct error *error) {
-  if (command->option_count > ROWS_MAXIMUM || command->options_size > OPTION_STRUCT_MAXIMUM)
+/* Fills the tables of getopt_long and sets every option to its default. */
+static status prepare(struct parse *parse, struct error *error) {
+  const struct command *command = parse->command;
+  if (command->option_count + 2 > ROWS_MAXIMUM || command->options_size > OPTION_STRUCT_MAXIMUM)
     return status_fail(error, STATUS_INTERNAL, "the option table of %s is too large", command->name);
-  memset(options, 0, command->options_size);
-  char *letter = tables->letters;
+  memset(parse->options, 0, command->options_size);
+  char *letter = parse->letters;
   *letter++ = ':'; /* distinguishes a missing value from an unknown option */
   *letter++ = 'h';
-  for (size_t i = 0; i < command->option_count; i++) {
-    const struct option_row *row = &command->options[i];
+  size_t count = 0;
+  for (const struct option_row *row; (row = option_row(command, count)); count++) {
     const int takes = row->kind == OPTION_FLAG ? no_argument : required_argument;
-    tables->names[i] = (struct option){.name = row->name, .has_arg = takes, .val = ROW_VALUE + (int)i};
+    parse->names[count] = (struct option){.name = row->name, .has_arg = takes, .val = ROW_VALUE + (int)count};
     if (row->letter)
       *letter++ = row->letter;
     if (row->letter && takes == required_argument)
       *letter++ = ':';
-    if (row->initial && take_value(command, row, row->initial, options, error))
+    if (row->initial && take_value(parse, count, row->initial, error))
       return status_fail(error, STATUS_INTERNAL, "the default of --%s is wrong", row->name);
   }
   *letter = '\0';
-  tables->names[command->option_count] = (struct option){.name = "help", .has_arg = no_argument, .val = HELP_VALUE};
-  tables->names[command->option_count + 1] = (struct option){0};
+  parse->names[count] = (struct option){.name = "help", .has_arg = no_argument, .val = HELP_VALUE};
+  parse->names[count + 1] = (struct option){0};
   return STATUS_OK;
 }
 
-/* The row of what getopt_long returned: a letter, or a row's number. */
-static const struct option_row *find_row(const struct command *command, int value) {
-  if (value >= ROW_VALUE && (size_t)(value - ROW_VALUE) < command->option_count)
-    return &command->options[value - ROW_VALUE];
-  for (size_t i = 0; i < command->option_count; i++)
-    if (command->options[i].letter && value == command->options[i].letter)
-      return &command->options[i];
-  return NULL;
-}
-
 /* One option that getopt_long found; `word` is how it was typed. */
-static status take_option(const struct command *command, int given, const char *word, void *options,
-                          struct error *error) {
+static status take_option(struct parse *parse, int given, const char *word, struct error *error) {
+  const struct command *command = parse->command;
   if (given == '?' && optopt == HELP_VALUE)
     return status_fail(error, STATUS_USAGE, "--help takes no value");
-  const struct option_row *row = find_row(command, given == '?' || given == ':' ? optopt : given);
+  const int value = given == '?' || given == ':' ? optopt : given; /* a letter, or a row's number */
+  size_t index = value >= ROW_VALUE ? (size_t)(value - ROW_VALUE) : 0;
+  const struct option_row *row;
+  while ((row = option_row(command, index)) && value < ROW_VALUE && (!row->letter || row->letter != value))
+    index++;
   if (given == '?' && row && optopt >= ROW_VALUE)
     return status_fail(error, STATUS_USAGE, "--%s takes no value", row->name);
   if (given == '?')
@@ -147,122 +175,75 @@ static status take_option(const struct command *command, int given, const char *
     return status_fail(error, STATUS_INTERNAL, "option table of %s", command->name);
   if (given == ':')
     return status_fail(error, STATUS_USAGE, "--%s needs a value: --%s %s", row->name, row->name, row->argument);
-  return take_value(command, row, optarg, options, error);
+  return take_value(parse, index, optarg, error);
 }
 
+/* Counts the words of the command's arguments: see `arguments` of struct command. */
 static status check_arguments(const struct command *command, size_t count, char *const *arguments,
                               struct error *error) {
-  if (count < command->minimum_arguments) {
-    const bool one = count > 0 && command->minimum_arguments - count == 1;
+  size_t least = 0, most = 0;
+  for (const char *word = command->arguments; *word; word += strcspn(word, " "), word += strspn(word, " ")) {
+    least += *word != '[';
+    most++;
+  }
+  if (strstr(command->arguments, "..."))
+    most = SIZE_MAX;
+  if (count < least) {
+    const bool one = count > 0 && least - count == 1;
     return status_fail(error, STATUS_USAGE, "clast %s needs %s; usage: clast %s %s", command->name,
                        one ? "one more argument" : command->arguments, command->name, command->arguments);
   }
-  if (count > command->maximum_arguments)
+  if (count > most)
     return status_fail(error, STATUS_USAGE, "clast %s does not know what to do with \"%.64s\"; usage: clast %s %s",
-                       command->name, arguments[command->maximum_arguments], command->name, command->arguments);
+                       command->name, arguments[most], command->name, command->arguments);
   return STATUS_OK;
 }
 
-status option_parse(const struct command *command, int argc, char **argv, void *options, size_t *count,
-                    char ***arguments, bool *help, struct error *error) {
-  struct getopt_tables tables;
-  TRY(prepare(command, &tables, options, error));
+status option_parse(const struct command *command, int argc, char **argv, void *options, struct command_line *line,
+                    struct error *error) {
+  struct parse parse = {.command = command, .options = options};
+  TRY(prepare(&parse, error));
   optind = 0; /* glibc: start over, also after another parse */
   opterr = 0;
-  *help = false;
-
-  int given;
-  while ((given = getopt_long(argc, argv, tables.letters, tables.names, NULL)) != -1) {
-    if (given == HELP_VALUE || given == 'h') {
-      *help = true;
+  line->options = options;
+  line->help = false;
+  for (int given; (given = getopt_long(argc, argv, parse.letters, parse.names, NULL)) != -1;) {
+    line->help = given == HELP_VALUE || given == 'h';
+    if (line->help)
       return STATUS_OK;
-    }
-    TRY(take_option(command, given, argv[optind - 1], options, error));
+    TRY(take_option(&parse, given, argv[optind - 1], error));
   }
-  *count = (size_t)(argc - optind);
-  *arguments = argv + optind;
-  return check_arguments(command, *count, *arguments, error);
+  line->count = (size_t)(argc - optind);
+  line->arguments = argv + optind;
+  TRY(check_arguments(command, line->count, line->arguments, error));
+  if (parse.table.json && parse.table.csv)
+    return status_fail(error, STATUS_USAGE, "--json and --csv exclude each other");
+  line->format = parse.table.json ? TABLE_JSON : parse.table.csv ? TABLE_CSV : TABLE_TEXT;
+  return STATUS_OK;
 }
 
-static void print_row(char letter, const char *name, const char *argument, const char *doc, const char *initial,
-                      FILE *out) {
-  bool has_default = initial && *initial;
-  char shown[160];
-  char text[1024];
-  char start[4] = "   ";
-  if (letter)
-    snprintf(start, sizeof start, "-%c,", letter);
-  snprintf(shown, sizeof shown, "  %s --%s%s%s", start, name, argument ? " " : "", argument ? argument : "");
-  snprintf(text, sizeof text, "%s%s%s%s", doc, has_default ? " (default " : "", has_default ? initial : "",
-           has_default ? ")" : "");
-  size_t at = strlen(shown);
-  fputs(shown, out);
-  if (at + 2 > COLUMN + 4) {
-    fputc('\n', out);
-    at = 0;
-  }
-  text_wrap(text, at, COLUMN + 4, WIDTH, out);
+/* Sets one PATH=VALUE. */
+static status set_input(struct scene *scene, const char *text, struct error *error) {
+  char path[FIELD_TEXT_SIZE];
+  const char *value = NULL;
+  TRY(campaign_change_split(text, path, &value, error));
+  const status code = scene_set_text(scene, path, value, error);
+  return code == STATUS_CONTENT ? STATUS_USAGE : code; /* the wrong content is on the command line */
 }
 
-void option_lines(const char *line, FILE *out) {
-  while (*line) {
-    size_t length = strcspn(line, "\n");
-    fprintf(out, "  %.*s\n", (int)length, line);
-    line += length + (line[length] == '\n');
-  }
+status option_set_inputs(struct scene *scene, const struct option_list *set, struct error *error) {
+  for (size_t i = 0; i < set->count; i++)
+    TRY(set_input(scene, set->items[i], error));
+  return scene_check(scene, error);
 }
 
-void option_help(const struct command *command, FILE *out) {
-  fprintf(out, "usage: clast %s %s%s%s\n\n%s\n\noptions:\n", command->name, command->option_count ? "[OPTIONS]" : "",
-          command->option_count && *command->arguments ? " " : "", command->arguments, command->doc);
-  for (size_t i = 0; i < command->option_count; i++) {
-    const struct option_row *row = &command->options[i];
-    print_row(row->letter, row->name, row->argument, row->doc, row->initial, out);
-  }
-  print_row('h', "help", NULL, "Print this text.", NULL, out);
-  fputs("\nexamples:\n", out);
-  option_lines(command->examples, out);
-  fputs("\nexit codes:\n", out);
-  static const status always[] = {STATUS_OK,       STATUS_FAILED_RUNS, STATUS_USAGE, STATUS_CONTENT, STATUS_MISSING,
-                                  STATUS_INTERNAL, STATUS_MEMORY,      STATUS_IO,    STATUS_STOPPED};
-  for (size_t i = 0; i < sizeof always / sizeof always[0]; i++)
-    if (command->has_runs || (always[i] != STATUS_FAILED_RUNS && always[i] != STATUS_STOPPED))
-      fprintf(out, "  %2d  %s\n", (int)always[i], status_meaning(always[i]));
+status option_load_scene(const char *name, const struct option_list *set, struct scene **scene, struct error *error) {
+  TRY(scene_load(name, NULL, scene, error));
+  return option_set_inputs(*scene, set, error);
 }
 
-void option_completion(size_t count, const struct command *const *commands, FILE *out) {
-  fputs("# bash completion for clast; made by `clast completion bash` from its option tables.\n"
-        "# Use: source <(clast completion bash)\n"
-        "_clast() {\n"
-        "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} options=\n"
-        "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
-        "    COMPREPLY=($(compgen -W \"",
-        out);
-  for (size_t i = 0; i < count; i++)
-    fprintf(out, "%s ", commands[i]->name);
-  fputs("--help --version\" -- \"$word\"))\n"
-        "    return\n"
-        "  fi\n"
-        "  case ${COMP_WORDS[1]} in\n",
-        out);
-  for (size_t i = 0; i < count; i++) {
-    fprintf(out, "    %s) options=\"", commands[i]->name);
-    for (size_t k = 0; k < commands[i]->option_count; k++)
-      fprintf(out, "--%s ", commands[i]->options[k].name);
-    fputs("--help\" ;;\n", out);
-  }
-  fputs("  esac\n"
-        "  if [[ $before == --set || $before == -s ]]; then\n"
-        "    COMPREPLY=($(compgen -W \"$_clast_inputs\" -S = -- \"$word\"))\n"
-        "    compopt -o nospace 2>/dev/null\n"
-        "  elif [[ $word != -* && ${COMP_WORDS[1]} == explain && $word != */* ]]; then\n"
-        "    COMPREPLY=($(compgen -W \"$_clast_inputs\" -- \"$word\"))\n"
-        "  elif [[ $word == -* ]]; then\n"
-        "    COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n"
-        "  else\n"
-        "    COMPREPLY=($(compgen -f -- \"$word\"))\n"
-        "  fi\n"
-        "}\n"
-        "complete -o filenames -F _clast clast\n",
-        out);
+status option_load_campaign(const char *path, const struct campaign_option *option, struct campaign **campaign,
+                            struct error *error) {
+  const struct campaign_changes changes = {option->set.count, option->set.items, option->seeds};
+  return campaign_load_changed(path, &changes, campaign, error);
 }

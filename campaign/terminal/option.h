@@ -1,7 +1,7 @@
 /* The command line as tables: one row per option, one record per command. The tables give parsing, `--help`, the
- * nearest known name after a typing error, bash completion and the manual page. No other place lists these names.
+ * nearest known name after a typing error, completion and the manual page. No other place lists these names.
  *
- * A command declares a plain struct for its options, rows with offsetof into it, and a function that runs. */
+ * A command declares a plain struct for its options, rows with offsetof into it, and a function that runs or asks. */
 #ifndef CLAST_CAMPAIGN_TERMINAL_OPTION_H
 #define CLAST_CAMPAIGN_TERMINAL_OPTION_H
 
@@ -10,7 +10,10 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "schemas/status.h"
+#include "campaign/document/campaign.h"
+#include "campaign/terminal/table.h"
+#include "db/store/store.h"
+#include "engine/scene.h"
 
 enum option_kind {
   OPTION_FLAG,    /* bool */
@@ -64,26 +67,30 @@ struct option_row {
 /* Argument of a command. */
 struct command_line {
   const void *options; /* the command's struct, filled */
-  size_t count;        /* operands, within the command's bounds */
+  size_t count;        /* operands, as many as the command takes */
   char **arguments;
-  int argc; /* the whole command line, for provenance */
+  enum table_format format; /* by --json and --csv; TABLE_TEXT for a command without them */
+  bool help;                /* --help was given; then no other argument was checked */
+  int argc;                 /* the whole command line, for provenance */
   char *const *argv;
 };
 
 struct command {
   const char *name;
   const char *group;     /* heading in `clast help` */
-  const char *arguments; /* "STORE [SQL]"; optional ones in brackets, "..." for repeated ones */
-  const char *summary;   /* one line for `clast help` */
-  const char *doc;       /* what it does and what it prints, two or three sentences, lines broken by hand */
-  const char *examples;  /* two lines, each a command that works unchanged in a folder with such files */
-  size_t minimum_arguments, maximum_arguments;
+  const char *arguments; /* "STORE [SQL]": one word each, optional ones in brackets, "..." behind a repeated one */
+  const char *text;      /* campaign/commands/NAME.txt: option_part() tells its form */
   const struct option_row *options;
   size_t option_count;
   size_t options_size; /* sizeof the options struct */
+  bool has_table;      /* prints a table: has --json and --csv, too */
   bool has_runs;       /* exits 1 and 75 apply */
-  /* Prints data on stdout, remarks on stderr; an error is returned, not printed. */
+  /* Data goes to stdout, remarks to stderr; an error is returned, not printed. A command has `run` or `ask`. */
   status (*run)(const struct command_line *line, struct error *error);
+  /* Checks the options before `ask`; NULL: there is nothing to check. */
+  status (*check)(const struct command_line *line, struct error *error);
+  /* Asks the store that the first argument names, opened as a reader, and prints the answer. */
+  status (*ask)(struct store *store, const struct command_line *line, struct error *error);
 };
 /* The options of a command: their struct and their rows (an array). */
 #define COMMAND_OPTIONS(type_, rows_)                                                                                  \
@@ -91,25 +98,59 @@ struct command {
 
 enum { OPTION_STRUCT_MAXIMUM = 4096 }; /* largest size of an options struct */
 
-/* argv[0] is the command's name. Fills *options (options_size bytes) and leaves the operands, in order, in *arguments
- * (pointing into argv, which is permuted). *help: --help was given; then no other argument was checked. STATUS_USAGE:
- * *error names the wrong argument and the nearest known option. */
-status option_parse(const struct command *command, int argc, char **argv, void *options, size_t *count,
-                    char ***arguments, bool *help, struct error *error);
+/* argv[0] is the command's name. Fills *options (options_size bytes) and the parts of *line that come from them; the
+ * operands, in order, point into argv, which is permuted. STATUS_USAGE: *error names the wrong argument and the nearest
+ * known option. */
+status option_parse(const struct command *command, int argc, char **argv, void *options, struct command_line *line,
+                    struct error *error);
 
 /* Claims the outputs that the options name (file_claim). STATUS_USAGE: two have the same name, or a picture has an
  * ending that cannot be drawn. STATUS_IO: one cannot be written. */
 status option_claim_outputs(const struct command *command, const void *options, struct error *error);
 
-/* Prints the lines of `lines`, indented by two spaces. */
-void option_lines(const char *lines, FILE *out);
+/* The rows of a command, with those of its table: NULL behind the last one. */
+const struct option_row *option_row(const struct command *command, size_t index);
 
-void option_help(const struct command *command, FILE *out);
-
-/* The bash completion script of all commands. It takes the paths of inputs from the variable _clast_inputs. */
-void option_completion(size_t count, const struct command *const *commands, FILE *out);
+/* A part of a command's text, without its last newline; *length: its bytes. The text is a line with the summary for
+ * `clast help`; an empty line; what the command does and prints, with lines broken by hand; an empty line; the line
+ * "examples:"; commands that work unchanged in a folder with such files. */
+enum option_part { OPTION_SUMMARY, OPTION_DOC, OPTION_EXAMPLES };
+const char *option_part(const struct command *command, enum option_part part, int *length);
 
 /* The nearest of `count` names to what was typed, or NULL when none is near (schemas/text.h). */
 const char *option_nearest(const char *typed, size_t count, const char *const *names);
+
+/* ---- options of several commands ---- */
+
+/* Inputs of a scene. */
+#define SCENE_OPTION_SET(type_, member_)                                                                               \
+  OPTION_ROW_LIST(                                                                                                     \
+      "set", 's', "PATH=VALUE", type_, member_,                                                                        \
+      "Override an input of the scene: threshold.strain=3%, impact.speed='50 m/s'. May be given several times. "       \
+      "clast drops inputs of the scene that no longer have an effect.")
+
+/* Loads the scene `name` (built-in or a file), sets each PATH=VALUE of `set`, and checks it. The caller frees *scene,
+ * also on errors. STATUS_USAGE, STATUS_CONTENT, what scene_load returns. */
+status option_load_scene(const char *name, const struct option_list *set, struct scene **scene, struct error *error);
+
+/* Sets and checks the inputs of a loaded scene. */
+status option_set_inputs(struct scene *scene, const struct option_list *set, struct error *error);
+
+/* Changes of a campaign for this invocation. */
+struct campaign_option {
+  struct option_list set;
+  int64_t seeds;
+};
+
+#define CAMPAIGN_OPTION(type_, member_)                                                                                \
+  OPTION_ROW_LIST("set", 's', "PATH=VALUE", type_, member_.set,                                                        \
+                  "Another value of an input, like a line under `set` of the campaign: contact.friction=0.3. May be "  \
+                  "given several times."),                                                                             \
+      OPTION_ROW_INTEGER("seeds", 0, "N", type_, member_.seeds, 0, 1000000000000, "0",                                 \
+                         "Number of seeds for every point, instead of the campaign's; 0: the campaign's.")
+
+/* campaign_load with the changes. STATUS_USAGE when a change is wrong. */
+status option_load_campaign(const char *path, const struct campaign_option *option, struct campaign **campaign,
+                            struct error *error);
 
 #endif

@@ -377,18 +377,9 @@ status table_end(struct table *table, struct error *error) {
   return verdict(out, write_error, error);
 }
 
-status table_choose(const struct table_options *options, enum table_format *format, struct error *error) {
-  if (options->json && options->csv)
-    return status_fail(error, STATUS_USAGE, "--json and --csv exclude each other");
-  *format = options->json ? TABLE_JSON : TABLE_TEXT;
-  if (options->csv)
-    *format = TABLE_CSV;
-  return STATUS_OK;
-}
-
-status table_text_only(const struct table_options *options, const char *what, struct error *error) {
-  if (options->json || options->csv)
+status table_text_only(enum table_format format, const char *what, struct error *error) {
+  if (format != TABLE_TEXT)
     return status_fail(error, STATUS_USAGE, "%s is text, not a table: leave --%s out", what,
-                       options->json ? "json" : "csv");
+                       format == TABLE_CSV ? "csv" : "json");
   return STATUS_OK;
 }

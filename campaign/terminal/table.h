@@ -46,17 +46,7 @@ bool table_broken(const struct table *table);
 /* Flushes stdout; returns the same statuses as table_end. For commands that print text. */
 status table_flush(FILE *out, struct error *error);
 
-/* Options every command with a table has. */
-struct table_options {
-  bool json, csv;
-};
-/* clang-format off */
-#define TABLE_OPTIONS(type_, member_)                                                                    \
-  OPTION_ROW_FLAG("json", 0, type_, member_.json, "Print JSON: one array of objects, SI units."),        \
-  OPTION_ROW_FLAG("csv", 0, type_, member_.csv, "Print CSV with a header line, SI units.")
-/* clang-format on */
-status table_choose(const struct table_options *options, enum table_format *format, struct error *error);
 /* For output that is always text: STATUS_USAGE when --json or --csv was given. */
-status table_text_only(const struct table_options *options, const char *what, struct error *error);
+status table_text_only(enum table_format format, const char *what, struct error *error);
 
 #endif

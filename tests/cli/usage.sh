@@ -5,13 +5,15 @@
 expect 0 "$clast" help
 silent err
 commands=$(sed -nE 's/^  ([a-z]+)  +[A-Za-z].*/\1/p' out)
-same "$(echo "$commands" | wc -l)" "$("$clast" completion bash | sed -n 's/.*compgen -W "\(.*\) --help --version".*/\1/p' | wc -w)" "commands in help and completion"
+same "$(echo $commands --help --version)" "$(echo $("$clast" completion bash -- ""))" "commands in help and completion"
 for command in $commands; do
   "$clast" "$command" --help >out 2>err || fail "$command --help"
   silent err
   for part in usage: options: examples: "exit codes:" "clast $command"; do prints "$part"; done
   "$clast" help "$command" | cmp -s - out || fail "help $command differs from $command --help"
-  for option in $("$clast" completion bash | sed -n "s/^    $command) options=\"\(.*\)\" ;;/\1/p"); do prints "$option"; done
+  options=$("$clast" completion bash -- "$command" --)
+  for option in $options; do prints "$option"; done
+  [ "$(grep -cE '^  (-.,|   ) --' out)" -eq "$(echo "$options" | wc -l)" ] || fail "options of $command in help and completion"
 done
 ok "help of every command is whole: $(echo $commands)"
 
@@ -54,8 +56,9 @@ python -c "import json; d = json.load(open('out')); assert d['version'] and d['c
 ok "--version --json is JSON"
 expect 0 "$clast" version --json
 
-# bash accepts the completion, and it completes
+# bash accepts the completion, and it completes; it calls clast by its name
 "$clast" completion bash >completion.bash
+export PATH=${clast%/*}:$PATH
 bash -c '. ./completion.bash; COMP_WORDS=(clast stat); COMP_CWORD=1; _clast; echo "${COMPREPLY[*]}"' >out
 prints "status stats"
 bash -c '. ./completion.bash; COMP_WORDS=(clast run --dry); COMP_CWORD=2; _clast; echo "${COMPREPLY[*]}"' >out
@@ -64,6 +67,8 @@ bash -c '. ./completion.bash; COMP_WORDS=(clast run a.yaml --set contact.fri); C
 prints "contact.friction="
 bash -c '. ./completion.bash; COMP_WORDS=(clast explain target.material.wei); COMP_CWORD=2; _clast; echo "${COMPREPLY[*]}"' >out
 prints "target.material.weibull.m target.material.weibull.k"
+bash -c '. ./completion.bash; COMP_WORDS=(clast run --store ""); COMP_CWORD=3; _clast; echo "<${COMPREPLY[*]}>"' >out
+prints "<>" # names of files, by bash
 ok "bash completion completes"
 
 # stdout: a reader that goes away is no error, a full disk is 74

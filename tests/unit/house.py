@@ -150,6 +150,14 @@ def check_documents():
                 fail(f'{place}: no input or result is called "{token}"')
 
 
+def check_helps():
+    """The help of a command quotes commands, too: in its lines between backquotes, and in its examples."""
+    for path in files(".txt", folders=("campaign/commands",)):
+        text = read(path)
+        for match in re.finditer(r"`([^`\n]+)`|^(clast .*)$", text, re.M):
+            check_commands(f"{path}:{line_of(text, match.start())}", match.group(1) or match.group(2))
+
+
 # ---- names of inputs and results in the code ----
 
 
@@ -332,6 +340,7 @@ def check_words():
 
 
 check_documents()
+check_helps()
 check_names()
 check_modules()
 check_texts()

@@ -26,46 +26,46 @@ static const struct command command = {
     .name = "test",
     .group = "",
     .arguments = "A [B]",
-    .summary = "",
-    .doc = "Does a test.",
-    .examples = "clast test a",
-    .minimum_arguments = 1,
-    .maximum_arguments = 2,
+    .text = "a test\n\nDoes a test.\n\nexamples:\nclast test a\n",
     .options = rows,
     .option_count = 4,
     .options_size = sizeof(struct options),
+    .has_table = true,
 };
 
-static status parse(struct options *options, size_t *count, struct error *error, const char *line) {
+static status parse(struct options *options, struct command_line *parsed, struct error *error, const char *line) {
   static char text[256], *argv[32];
-  static char **arguments;
   int argc = 0;
-  bool help = false;
   snprintf(text, sizeof text, "%s", line);
   for (char *word = strtok(text, " "); word; word = strtok(NULL, " "))
     argv[argc++] = word;
   argv[argc] = NULL;
   error->message[0] = '\0';
-  return option_parse(&command, argc, argv, options, count, &arguments, &help, error);
+  return option_parse(&command, argc, argv, options, parsed, error);
 }
 
 static void test_values(void **state) {
   (void)state;
   struct options options;
   struct error error;
-  size_t count = 0;
-  assert_int_equal(parse(&options, &count, &error, "test a"), STATUS_OK);
+  struct command_line line;
+  assert_int_equal(parse(&options, &line, &error, "test a"), STATUS_OK);
+  assert_int_equal(line.format, TABLE_TEXT);
   assert_int_equal(options.slots, 2);
   assert_string_equal(options.file, "out.db");
   assert_false(options.loud);
   assert_int_equal(options.set.count, 0);
-  assert_int_equal(parse(&options, &count, &error, "test -lj 8 a --set x=1 --file=f --set y=-2 b"), STATUS_OK);
+  assert_int_equal(parse(&options, &line, &error, "test -lj 8 a --set x=1 --file=f --set y=-2 b"), STATUS_OK);
   assert_true(options.loud);
   assert_int_equal(options.slots, 8);
   assert_string_equal(options.file, "f");
   assert_int_equal(options.set.count, 2);
   assert_string_equal(options.set.items[1], "y=-2");
-  assert_int_equal(count, 2);
+  assert_int_equal(line.count, 2);
+  assert_int_equal(parse(&options, &line, &error, "test --csv a"), STATUS_OK);
+  assert_int_equal(line.format, TABLE_CSV);
+  assert_int_equal(parse(&options, &line, &error, "test a -h --nonsense"), STATUS_OK);
+  assert_true(line.help);
 }
 
 static void test_refusals(void **state) {
@@ -87,12 +87,13 @@ static void test_refusals(void **state) {
       {"test a --help=3", "takes no value"},
       {"test", "needs A [B]"},
       {"test a b c", "\"c\""},
+      {"test a --json --csv", "exclude each other"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     struct options options;
     struct error error;
-    size_t count = 0;
-    assert_int_equal(parse(&options, &count, &error, cases[i].line), STATUS_USAGE);
+    struct command_line line;
+    assert_int_equal(parse(&options, &line, &error, cases[i].line), STATUS_USAGE);
     if (!strstr(error.message, cases[i].says))
       fail_msg("%s: \"%s\" lacks \"%s\"", cases[i].line, error.message, cases[i].says);
   }
@@ -104,13 +105,11 @@ static void test_too_many(void **state) {
   static char set[] = "--set", value[] = "a=1", name[] = "test";
   struct options options;
   struct error error;
-  size_t count = 0;
-  char **arguments = NULL;
-  bool help = false;
+  struct command_line line;
   argv[0] = name;
   for (int i = 1; i < 131; i += 2)
     argv[i] = set, argv[i + 1] = value;
-  assert_int_equal(option_parse(&command, 131, argv, &options, &count, &arguments, &help, &error), STATUS_USAGE);
+  assert_int_equal(option_parse(&command, 131, argv, &options, &line, &error), STATUS_USAGE);
 }
 
 static void test_nearest_name(void **state) {
@@ -129,16 +128,23 @@ static void test_help_is_whole(void **state) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
-    option_help(each, out);
+    help_one(each, out);
     fclose(out);
-    for (size_t k = 0; k < each->option_count; k++) {
+    const struct option_row *row;
+    for (size_t k = 0; (row = option_row(each, k)); k++) {
       char name[64];
-      snprintf(name, sizeof name, "--%s", each->options[k].name);
+      snprintf(name, sizeof name, "--%s", row->name);
       if (!strstr(text, name))
         fail_msg("%s: help lacks %s", each->name, name);
     }
-    assert_non_null(strstr(each->examples, each->name));
-    assert_int_not_equal(strlen(each->doc), 0);
+    int length;
+    for (int part = OPTION_SUMMARY; part <= OPTION_EXAMPLES; part++) {
+      const char *words = option_part(each, (enum option_part)part, &length);
+      if (length == 0 || words[length - 1] == '\n' || words[0] == '\n')
+        fail_msg("%s.txt: part %d is empty, or has an empty line too much", each->name, part);
+    }
+    assert_non_null(strstr(option_part(each, OPTION_EXAMPLES, &length), each->name));
+    assert_true((each->run != NULL) != (each->ask != NULL));
     assert_true(each->options_size <= OPTION_STRUCT_MAXIMUM);
     size_t lines = 0;
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"), lines++)
