@@ -7,7 +7,6 @@
 
 #include "analysis/statistics/power_law.h"
 #include "analysis/statistics/sample.h"
-#include "analysis/statistics/tempered.h"
 
 FIELD_WORDS(exponent_method_names, EXPONENT_METHODS, [EXPONENT_LEAST_SQUARES] = "least_squares",
             [EXPONENT_MASSES] = "masses", [EXPONENT_UPPER_CUTOFF] = "cutoff");
@@ -122,48 +121,31 @@ static double *select_sorted(size_t n, const double *masses, double lower, doubl
   return inside;
 }
 
-/* Fits the pure power law on the window of *out; u: ln(m/lower), descending. */
-static void pure(size_t n, const double *u, double span, struct exponent *out) {
-  struct power_law_group group = {.weight = (double)n, .span = span};
-  for (size_t i = 0; i < n; i++)
-    group.mean += u[i];
-  group.mean /= group.weight;
-  struct power_law fit = power_law_fit(1, &group);
+/* Fits the pure power law on the window of *out; masses: descending. */
+static void fit_pure(size_t n, const double *masses, double upper, struct exponent *out) {
+  const struct power_law_group group = power_law_group_of(POWER_LAW_PURE, n, masses, out->lower, upper);
+  const struct power_law fit = power_law_fit(1, &group);
   out->beta = fit.beta;
   out->standard_error = fit.standard_error;
   out->log_likelihood = fit.log_likelihood;
   if (!isfinite(fit.beta))
     return;
   double distance = 0;
-  for (size_t i = 0; i < n; i++) { /* i fragments are larger than u[i] */
-    double below = power_law_below(fit.beta, u[i], span), number = (double)n;
+  for (size_t i = 0; i < n; i++) { /* i fragments are heavier than masses[i] */
+    double below = power_law_below(fit.beta, log(masses[i] / out->lower), group.span), number = (double)n;
     distance = fmax(distance, fmax(fabs((double)(n - i) / number - below), fabs((double)(n - 1 - i) / number - below)));
   }
   out->ks_distance = distance;
 }
 
-static void tempered(size_t n, const double *u, double span, struct exponent *out) {
-  struct tempered_group group = tempered_group(TEMPERED_CUTOFF, n, u, span);
-  struct tempered fit = tempered_fit(TEMPERED_CUTOFF, 1, &group);
+static void fit_with_cutoff(size_t n, const double *masses, double upper, struct exponent *out) {
+  const struct power_law_group group = power_law_group_of(POWER_LAW_CUTOFF, n, masses, out->lower, upper);
+  const struct power_law_rival fit = power_law_rival_fit(POWER_LAW_CUTOFF, 1, &group);
   out->beta = fit.beta;
   out->standard_error = fit.standard_error;
   out->log_likelihood = fit.log_likelihood;
   if (isfinite(fit.beta))
     out->cutoff_mass = fit.rate > 0 ? out->lower / fit.rate : HUGE_VAL;
-}
-
-/* Fits `count` ascending masses from out->lower to `upper`. Overwrites `masses` with logarithms. */
-static void fit_sorted(enum exponent_method method, size_t count, double *masses, double upper, struct exponent *out) {
-  out->n = (int64_t)count;
-  if (count < EXPONENT_LEAST_FRAGMENTS)
-    return;
-  const double span = isinf(upper) ? HUGE_VAL : log(upper / out->lower);
-  for (size_t i = 0; i < count; i++)
-    masses[i] = log(masses[i] / out->lower);
-  if (method == EXPONENT_UPPER_CUTOFF)
-    tempered(count, masses, span, out);
-  else
-    pure(count, masses, span, out);
 }
 
 status exponent_fit(enum exponent_method method, size_t n, const double *masses, struct exponent_window window,
@@ -176,7 +158,11 @@ status exponent_fit(enum exponent_method method, size_t n, const double *masses,
   double *inside = select_sorted(n, masses, window.lower, window.upper, &count);
   if (!inside)
     return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu masses", n);
-  fit_sorted(method, count, inside, window.upper, out);
+  out->n = (int64_t)count;
+  if (count >= EXPONENT_LEAST_FRAGMENTS && method == EXPONENT_MASSES)
+    fit_pure(count, inside, window.upper, out);
+  else if (count >= EXPONENT_LEAST_FRAGMENTS)
+    fit_with_cutoff(count, inside, window.upper, out);
   free(inside);
   return STATUS_OK;
 }

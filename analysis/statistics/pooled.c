@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "analysis/statistics/power_law.h"
-#include "analysis/statistics/tempered.h"
+#include "engine/random.h"
 
 /* Data of every run for the fits. */
 struct prepared {
@@ -45,35 +45,14 @@ static double window_of(const struct pooled_runs *runs, size_t r, double lower, 
   return largest;
 }
 
-static struct power_law_group plain_group(const struct pooled_runs *runs, size_t r, double lower) {
+/* The statistics of a run in its window; weight 0: no fragment is in it. */
+static struct power_law_group group_of(enum power_law_kind kind, const struct pooled_runs *runs, size_t r,
+                                       double lower) {
   size_t begin, end;
-  double largest = window_of(runs, r, lower, &begin, &end);
-  struct power_law_group group = {0};
+  const double largest = window_of(runs, r, lower, &begin, &end);
   if (!(largest > lower) || begin >= end)
-    return group;
-  group.weight = (double)(end - begin);
-  group.span = log(largest / lower);
-  for (size_t i = begin; i < end; i++)
-    group.mean += log(runs->masses[i] / lower);
-  group.mean /= group.weight;
-  return group;
-}
-
-static status tempered_group_of(const struct pooled_runs *runs, size_t r, double lower, enum tempered_kind kind,
-                                struct tempered_group *group) {
-  size_t begin, end;
-  double largest = window_of(runs, r, lower, &begin, &end);
-  *group = (struct tempered_group){0};
-  if (!(largest > lower) || begin >= end)
-    return STATUS_OK;
-  double *u = malloc((end - begin) * sizeof *u);
-  if (!u)
-    return STATUS_MEMORY;
-  for (size_t i = begin; i < end; i++)
-    u[i - begin] = log(runs->masses[i] / lower);
-  *group = tempered_group(kind, end - begin, u, log(largest / lower));
-  free(u);
-  return STATUS_OK;
+    return (struct power_law_group){0};
+  return power_law_group_of(kind, end - begin, runs->masses + begin, lower, largest);
 }
 
 static status count_bins(struct prepared *p, const struct pooled_runs *runs) {
@@ -108,7 +87,7 @@ static status prepare(struct prepared *p, const struct pooled_runs *runs, double
   if (!p->groups)
     return STATUS_MEMORY;
   for (size_t r = 0; r < runs->count; r++)
-    p->groups[r] = plain_group(runs, r, lower);
+    p->groups[r] = group_of(POWER_LAW_PURE, runs, r, lower);
   return STATUS_OK;
 }
 
@@ -203,25 +182,16 @@ static size_t count_runs(const struct prepared *p, const struct pooled_runs *run
   return count;
 }
 
-static status check_method(enum exponent_method method, struct error *error) {
-  if (method == EXPONENT_LEAST_SQUARES || method == EXPONENT_MASSES)
-    return STATUS_OK;
-  return status_fail(error, STATUS_USAGE, "exponent: method number %d does not pool runs", (int)method);
-}
-
 /* Checks the arguments, fits all runs, and then all runs except one group at a time: theta, if there is a beta. After
  * an error p is empty. */
 static status fit_all(struct prepared *p, const struct pooled_runs *runs, enum exponent_method method, double lower,
                       size_t groups, size_t each, struct exponent *fit, double *theta, struct error *error) {
   *p = (struct prepared){.method = method, .runs = runs->count};
   *fit = exponent_unknown(method, (struct exponent_window){lower, HUGE_VAL});
-  status code = check_method(method, error);
-  if (code)
-    return code;
-  code = check(runs, lower, error);
-  if (code)
-    return code;
-  code = prepare(p, runs, lower);
+  if (method != EXPONENT_LEAST_SQUARES && method != EXPONENT_MASSES)
+    return status_fail(error, STATUS_USAGE, "exponent: method number %d does not pool runs", (int)method);
+  TRY(check(runs, lower, error));
+  status code = prepare(p, runs, lower);
   if (!code) {
     if (p->groups)
       fit_groups(p, fit);
@@ -254,81 +224,330 @@ status pooled_exponent(const struct pooled_runs *runs, enum exponent_method meth
   return STATUS_OK;
 }
 
-/* The values of pooled_exponent_of_runs() from beta and from theta[r], beta without run r. Both arrays have n
- * elements. */
-static void values_of_runs(size_t n, double beta, const double *theta, double *values) {
-  double mean = 0;
+status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,
+                               double *values, struct error *error) {
+  const size_t n = runs->count;
+  struct prepared p;
+  struct exponent fit;
+  double *theta = values, mean = 0; /* beta without each run, then the values */
+  for (size_t r = 0; r < n; r++)
+    theta[r] = NAN;
+  TRY(fit_all(&p, runs, method, lower, n, 1, &fit, theta, error));
+  forget(&p);
   for (size_t r = 0; r < n; r++)
     mean += theta[r] / (double)n; /* NaN when one is NaN: too few runs */
   for (size_t r = 0; r < n; r++)
-    values[r] = isfinite(mean) && n > 1 ? beta + (double)(n - 1) * (mean - theta[r]) : (double)NAN;
-}
-
-status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,
-                               double *values, struct error *error) {
-  struct prepared p;
-  struct exponent fit;
-  double *theta = malloc((runs->count + 1) * sizeof *theta);
-  if (!theta)
-    return no_memory(runs, error);
-  for (size_t r = 0; r < runs->count; r++)
-    theta[r] = NAN;
-  const status code = fit_all(&p, runs, method, lower, runs->count, 1, &fit, theta, error);
-  if (!code) {
-    values_of_runs(runs->count, fit.beta, theta, values);
-    forget(&p);
-  }
-  free(theta);
-  return code;
-}
-
-/* Fits a rival of the pure power law to all runs. STATUS_MEMORY. */
-static status fit_rival(const struct pooled_runs *runs, double lower, enum tempered_kind kind,
-                        struct tempered_group *groups, struct tempered *fit) {
-  for (size_t r = 0; r < runs->count; r++)
-    if (tempered_group_of(runs, r, lower, kind, &groups[r]))
-      return STATUS_MEMORY;
-  *fit = tempered_fit(kind, runs->count, groups);
+    values[r] = isfinite(mean) && n > 1 ? fit.beta + (double)(n - 1) * (mean - theta[r]) : (double)NAN;
   return STATUS_OK;
 }
 
-static status fit_rivals(const struct pooled_runs *runs, double lower, double log_likelihood,
-                         struct tempered_group *groups, struct pooled_rivals *out) {
-  struct tempered cutoff, lognormal;
-  if (fit_rival(runs, lower, TEMPERED_CUTOFF, groups, &cutoff) ||
-      fit_rival(runs, lower, TEMPERED_LOGNORMAL, groups, &lognormal))
-    return STATUS_MEMORY;
-  out->cutoff_beta = cutoff.beta;
-  out->cutoff_mass = cutoff.rate > 0 ? lower / cutoff.rate : HUGE_VAL;
-  out->cutoff_ratio = tempered_ratio(&cutoff, log_likelihood);
-  out->cutoff_p = tempered_p_value(out->cutoff_ratio);
-  out->lognormal_ratio = tempered_ratio(&lognormal, log_likelihood);
-  out->lognormal_p = tempered_p_value(out->lognormal_ratio);
-  return STATUS_OK;
+/* Fits a rival of the pure power law to all runs. */
+static struct power_law_rival fit_rival(const struct pooled_runs *runs, double lower, enum power_law_kind kind,
+                                        struct power_law_group *groups) {
+  for (size_t r = 0; r < runs->count; r++)
+    groups[r] = group_of(kind, runs, r, lower);
+  return power_law_rival_fit(kind, runs->count, groups);
 }
 
 status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled_rivals *out, struct error *error) {
   *out = (struct pooled_rivals){0, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
-  status code = check(runs, lower, error);
-  if (code)
-    return code;
-  struct power_law_group *plain = malloc((runs->count + 1) * sizeof *plain);
-  struct tempered_group *groups = malloc((runs->count + 1) * sizeof *groups);
-  if (!plain || !groups) {
-    code = no_memory(runs, error);
-    goto cleanup;
-  }
+  TRY(check(runs, lower, error));
+  struct power_law_group *groups = malloc((runs->count + 1) * sizeof *groups);
+  if (!groups)
+    return no_memory(runs, error);
   for (size_t r = 0; r < runs->count; r++)
-    plain[r] = plain_group(runs, r, lower);
-  out->n = (int64_t)total_weight(runs->count, plain);
-  if (out->n < EXPONENT_LEAST_FRAGMENTS)
-    goto cleanup;
-  const struct power_law pure = power_law_fit(runs->count, plain);
+    groups[r] = group_of(POWER_LAW_PURE, runs, r, lower);
+  out->n = (int64_t)total_weight(runs->count, groups);
+  struct power_law pure = {.beta = NAN};
+  if (out->n >= EXPONENT_LEAST_FRAGMENTS)
+    pure = power_law_fit(runs->count, groups);
   out->beta = pure.beta;
-  if (isfinite(pure.beta) && fit_rivals(runs, lower, pure.log_likelihood, groups, out))
-    code = no_memory(runs, error);
-cleanup:
-  free(plain);
+  if (isfinite(pure.beta)) {
+    const struct power_law_rival cutoff = fit_rival(runs, lower, POWER_LAW_CUTOFF, groups);
+    const struct power_law_rival lognormal = fit_rival(runs, lower, POWER_LAW_LOGNORMAL, groups);
+    out->cutoff_beta = cutoff.beta;
+    out->cutoff_mass = cutoff.rate > 0 ? lower / cutoff.rate : HUGE_VAL;
+    out->cutoff_ratio = power_law_rival_ratio(&cutoff, pure.log_likelihood);
+    out->cutoff_p = power_law_rival_p_value(out->cutoff_ratio);
+    out->lognormal_ratio = power_law_rival_ratio(&lognormal, pure.log_likelihood);
+    out->lognormal_p = power_law_rival_p_value(out->lognormal_ratio);
+  }
   free(groups);
-  return code;
+  return STATUS_OK;
+}
+
+/* ---- The pooled spectrum: densities or cumulative numbers, with intervals from the scatter of runs or points ---- */
+
+double pooled_spectrum_count_hw95(size_t runs, double count, double squares) {
+  if (runs < 2)
+    return NAN;
+  double n = (double)runs;
+  return sample_student(runs, 0.95) * sqrt(fmax(0, squares - count * count / n) / (n - 1) / n);
+}
+
+static int dimensions_of(const struct pooled_form *form) {
+  if (!(form->size.density > 0))
+    return 1;
+  return form->size.dimensions == 2 ? 2 : 3;
+}
+
+double pooled_spectrum_exponent(const struct pooled_form *form, double beta) {
+  return dimensions_of(form) * (beta - 1) + (form->cumulative ? 0 : 1);
+}
+
+double pooled_spectrum_half_width(const struct pooled_form *form, double half_width) {
+  return dimensions_of(form) * half_width;
+}
+
+/* Sums of a bin that grow while the runs are read. */
+struct sums {
+  double own; /* fragments of the current unit */
+  int64_t count;
+  double mass, mean, square; /* mean and square: sums over the units of fragments per run */
+};
+
+/* The bins from `low` on. */
+struct span {
+  size_t bins;
+  int low;
+  struct sums *sums;
+};
+
+/* Finds the lowest and highest non-empty bin. */
+static void find_span(const struct pooled_runs *runs, struct span *span) {
+  double least = HUGE_VAL, most = 0;
+  for (size_t i = runs->count ? runs->first[0] : 0; runs->count && i < runs->first[runs->count]; i++) {
+    const double mass = runs->masses[i];
+    if (!(mass > 0) || isinf(mass))
+      continue;
+    least = fmin(least, mass);
+    most = fmax(most, mass);
+  }
+  if (!(most > 0))
+    return;
+  span->low = spectrum_bin(least);
+  span->bins = (size_t)(spectrum_bin(most) - span->low) + 1;
+}
+
+/* Masses are mostly in descending order, so the bin of the last fragment is a good guess for the next one. */
+static void add_run(const struct pooled_runs *runs, size_t r, struct span *span) {
+  int bin = SPECTRUM_NO_BIN;
+  double from = HUGE_VAL, to = 0; /* edges of `bin` */
+  for (size_t i = runs->first[r]; i < runs->first[r + 1]; i++) {
+    const double mass = runs->masses[i];
+    if (!(mass > 0) || isinf(mass))
+      continue;
+    if (!(mass >= from && mass < to)) {
+      bin = spectrum_bin(mass);
+      from = spectrum_edge(bin);
+      to = spectrum_edge(bin + 1);
+    }
+    struct sums *sums = &span->sums[bin - span->low];
+    sums->own++;
+    sums->count++;
+    sums->mass += mass;
+  }
+}
+
+/* Adds the fragments per run of a unit with `runs` runs, and clears the unit's counts. */
+static void end_unit(struct span *span, bool cumulative, double runs) {
+  double above = 0;
+  for (size_t j = span->bins; j-- > 0;) {
+    struct sums *sums = &span->sums[j];
+    above = (cumulative ? above : 0) + sums->own;
+    sums->own = 0;
+    sums->mean += above / runs;
+    sums->square += above / runs * (above / runs);
+  }
+}
+
+static void write_bins(const struct span *span, const struct pooled_form *form, size_t units, struct pooled_bin *bins,
+                       size_t *count) {
+  struct pooled_bin above = {0};
+  for (size_t j = 0; form->cumulative && j < span->bins; j++) {
+    above.count += span->sums[j].count;
+    above.mass += span->sums[j].mass;
+  }
+  for (size_t j = 0; j < span->bins; j++) {
+    const struct sums *sums = &span->sums[j];
+    if (!sums->count && !form->cumulative)
+      continue;
+    const int bin = span->low + (int)j;
+    struct pooled_bin *out = &bins[(*count)++];
+    *out = (struct pooled_bin){.bin = bin,
+                               .lower = spectrum_size_of(&form->size, spectrum_edge(bin)),
+                               .upper = spectrum_size_of(&form->size, spectrum_edge(bin + 1)),
+                               .count = sums->count,
+                               .mass = sums->mass};
+    const double width = form->cumulative ? 1 : out->upper - out->lower;
+    out->value = sums->mean / (double)units / width;
+    out->half_width = pooled_spectrum_count_hw95(units, sums->mean, sums->square) / width;
+    if (!form->cumulative)
+      continue;
+    out->count = above.count;
+    out->mass = above.mass;
+    above.count -= sums->count;
+    above.mass -= sums->mass;
+  }
+}
+
+status pooled_spectrum(const struct pooled_runs *runs, const struct pooled_form *form, struct pooled_bin **bins,
+                       size_t *count, struct error *error) {
+  const size_t units = form->first_run ? form->units : runs->count;
+  struct span span = {0};
+  *count = 0;
+  find_span(runs, &span);
+  *bins = calloc(span.bins + 1, sizeof **bins);
+  span.sums = calloc(span.bins + 1, sizeof *span.sums);
+  if (!*bins || !span.sums) {
+    free(*bins);
+    free(span.sums);
+    *bins = NULL;
+    return status_fail(error, STATUS_MEMORY, "spectrum: no memory for %zu bins", span.bins);
+  }
+  for (size_t u = 0; u < units; u++) {
+    const size_t from = form->first_run ? form->first_run[u] : u, to = form->first_run ? form->first_run[u + 1] : u + 1;
+    for (size_t r = from; r < to; r++)
+      add_run(runs, r, &span);
+    end_unit(&span, form->cumulative, (double)(to - from));
+  }
+  write_bins(&span, form, units, *bins, count);
+  free(span.sums);
+  return STATUS_OK;
+}
+
+/* ---- Does a power law fit at all? ----
+ *
+ * The bootstrap of Clauset, Shalizi & Newman (2009, doi 10.1137/070710111, section 4) in
+ * the given window, which is not optimised: it begins at the complete mass or above. Draws are distributed over all
+ * cores; the result does not depend on which core makes a draw. */
+enum { BATCH = 100, ENOUGH = 100 }; /* stop after this many larger distances: p is then known to a tenth */
+
+/* Numbers of fragments and windows of the runs, and the same for one draw. */
+struct windows {
+  size_t count, fragments;
+  struct power_law_group *groups;
+};
+
+struct draw {
+  struct power_law_group *groups;
+  double *u; /* ln(m/lower), then the distribution function there */
+};
+
+static status make_draw(const struct windows *windows, struct draw *draw) {
+  draw->groups = malloc((windows->count + 1) * sizeof *draw->groups);
+  draw->u = malloc((windows->fragments + 1) * sizeof *draw->u);
+  return draw->groups && draw->u ? STATUS_OK : STATUS_MEMORY;
+}
+
+static void free_draw(struct draw *draw) {
+  free(draw->groups);
+  free(draw->u);
+}
+
+/* Fits the fragments of a draw and returns their greatest distance from the fit. If the law holds, the distribution
+ * function at the fragments, each in the window of its run, is a uniform sample. NaN when there is no fit. */
+static double distance_of(const struct windows *windows, struct draw *draw, double *beta) {
+  const struct power_law fit = power_law_fit(windows->count, draw->groups);
+  const double n = (double)windows->fragments;
+  double most = 0;
+  *beta = fit.beta;
+  if (!isfinite(fit.beta))
+    return NAN;
+  size_t i = 0;
+  for (size_t r = 0; r < windows->count; r++)
+    for (size_t k = 0; k < (size_t)draw->groups[r].weight; k++, i++)
+      draw->u[i] = power_law_below(fit.beta, draw->u[i], draw->groups[r].span);
+  qsort(draw->u, windows->fragments, sizeof *draw->u, sample_ascending);
+  for (i = 0; i < windows->fragments; i++)
+    most = fmax(most, fmax((double)(i + 1) / n - draw->u[i], draw->u[i] - (double)i / n));
+  return most;
+}
+
+/* Draws the same numbers of fragments in the same windows from the fitted law. */
+static void fill_draw(const struct windows *windows, double beta, uint64_t number, struct draw *draw) {
+  const double k = beta - 1;
+  size_t i = 0;
+  for (size_t r = 0; r < windows->count; r++) {
+    struct power_law_group *group = &draw->groups[r];
+    *group = windows->groups[r];
+    const double span = group->span, whole = -expm1(-k * span);
+    double sum = 0;
+    for (size_t j = 0; j < (size_t)group->weight; j++, i++) {
+      const double p = random_draw(windows->fragments, RANDOM_RESAMPLE, number, i);
+      draw->u[i] = fabs(k * span) < 1e-9 ? p * span : -log1p(-p * whole) / k;
+      sum += draw->u[i];
+    }
+    group->mean = group->weight > 0 ? sum / group->weight : 0;
+  }
+}
+
+/* Counts the draws from .. to - 1 that are at least as far from their fits. */
+static size_t count_larger(const struct windows *windows, double beta, double distance, size_t from, size_t to,
+                           bool *failed) {
+  size_t larger = 0;
+#pragma omp parallel reduction(+ : larger)
+  {
+    struct draw draw;
+    double ignored;
+    if (make_draw(windows, &draw)) {
+#pragma omp atomic write
+      *failed = true;
+    } else {
+#pragma omp for schedule(dynamic)
+      for (size_t d = from; d < to; d++) {
+        fill_draw(windows, beta, d, &draw);
+        larger += distance_of(windows, &draw, &ignored) >= distance;
+      }
+    }
+    free_draw(&draw);
+  }
+  return larger;
+}
+
+static void bootstrap(const struct windows *windows, double beta, size_t draws, struct pooled_goodness *out,
+                      bool *failed) {
+  size_t larger = 0;
+  while (out->draws < draws && larger < ENOUGH && !*failed) {
+    const size_t to = out->draws + BATCH < draws ? out->draws + BATCH : draws;
+    larger += count_larger(windows, beta, out->distance, out->draws, to, failed);
+    out->draws = to;
+  }
+  out->p = ((double)larger + 1) / ((double)out->draws + 1);
+}
+
+/* Computes the windows of the runs, and puts the fragments in them into `found`. */
+static void take_runs(const struct pooled_runs *runs, double lower, struct windows *windows, struct draw *found) {
+  size_t i = 0;
+  for (size_t r = 0; r < runs->count; r++) {
+    size_t begin, end;
+    window_of(runs, r, lower, &begin, &end);
+    for (size_t k = begin; k < end; k++)
+      found->u[i++] = log(runs->masses[k] / lower);
+    windows->groups[r] = found->groups[r] = group_of(POWER_LAW_PURE, runs, r, lower);
+  }
+  windows->fragments = i;
+}
+
+status pooled_goodness(const struct pooled_runs *runs, double lower, size_t draws, struct pooled_goodness *out,
+                       struct error *error) {
+  *out = (struct pooled_goodness){0, NAN, NAN, 0};
+  if (!(lower > 0) || isinf(lower))
+    return status_fail(error, STATUS_USAGE, "exponent: a window from %g kg: expected a positive mass", lower);
+  struct windows windows = {.count = runs->count, .fragments = runs->count ? runs->first[runs->count] : 0};
+  windows.groups = malloc((windows.count + 1) * sizeof *windows.groups);
+  struct draw found;
+  double beta;
+  bool failed = make_draw(&windows, &found) != STATUS_OK || !windows.groups;
+  if (!failed) {
+    take_runs(runs, lower, &windows, &found);
+    out->n = windows.fragments;
+    if (windows.fragments >= EXPONENT_LEAST_FRAGMENTS)
+      out->distance = distance_of(&windows, &found, &beta);
+    if (isfinite(out->distance))
+      bootstrap(&windows, beta, draws, out, &failed);
+  }
+  free_draw(&found);
+  free(windows.groups);
+  return failed ? status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu runs", runs->count) : STATUS_OK;
 }

@@ -70,7 +70,7 @@ status pooled_exponent(const struct pooled_runs *runs, enum exponent_method meth
 status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,
                                double *values, struct error *error);
 
-/* Does a power law fit the data at all (pooled_goodness.c)? It uses the windows and numbers of fragments of
+/* Does a power law fit the data at all? It uses the windows and numbers of fragments of
  * pooled_exponent by masses, and fits the law to every draw again. Fragments of one run are taken as independent. */
 struct pooled_goodness {
   size_t n;        /* fragments */
@@ -82,7 +82,7 @@ struct pooled_goodness {
 status pooled_goodness(const struct pooled_runs *runs, double lower, size_t draws, struct pooled_goodness *out,
                        struct error *error);
 
-/* Is the pure power law sufficient? Likelihood ratios against its two rivals (tempered.h) in the same windows. */
+/* Is the pure power law sufficient? Likelihood ratios against its two rivals (power_law.h) in the same windows. */
 struct pooled_rivals {
   int64_t n;
   double beta;                     /* pure */

@@ -3,9 +3,11 @@
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
-#include "analysis/statistics/dip.h"
+#include "analysis/statistics/sample.h"
+#include "engine/random.h"
 
 const double scatter_shares[SCATTER_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
@@ -113,8 +115,8 @@ status scatter_make(size_t n, const double *values, struct scatter *out, struct 
   qsort(out->sorted, out->n, sizeof *out->sorted, sample_ascending);
   for (int q = 0; q < SCATTER_QUANTILES; q++)
     out->quantile[q] = quantile(out->n, out->sorted, scatter_shares[q]);
-  out->dip = dip_of(out->n, out->sorted);
-  out->dip_share = scatter_in_steps(out->n, out->sorted) ? (double)NAN : dip_share(out->n, out->dip);
+  out->dip = scatter_dip(out->n, out->sorted);
+  out->dip_share = scatter_in_steps(out->n, out->sorted) ? (double)NAN : scatter_dip_share(out->n, out->dip);
   if (out->dip_share < 0.05)
     scatter_find_modes(out);
   return STATUS_OK;
@@ -167,4 +169,304 @@ struct scatter_histogram scatter_histogram_of(const struct scatter *s) {
       h.bins = (size_t)bin + 1;
   }
   return h;
+}
+
+/* ---- The variance over points and runs, split into inputs and seeds. ---- */
+
+/* Variance between the means of levels, weighted by their number of points, over a subset of the runs, without the
+ * error of the means from the seeds: the sum over runs r != s of w_l m_l(r) m_l(s), minus the same for the whole mean.
+ * m: work space of levels. level NULL: every point is a level. */
+struct split {
+  const struct scatter_table *table;
+  size_t axis; /* `axes`: all inputs together */
+  size_t levels;
+  double *sum, *product, *weight; /* by level */
+  int part;                       /* parts after the axes: enum in scatter.h */
+};
+
+static size_t level_of(const struct split *s, size_t p) {
+  return s->axis < s->table->axes ? s->table->level[p * s->table->axes + s->axis] : p;
+}
+
+static double between(struct split *s, size_t n, const uint32_t *runs) {
+  const struct scatter_table *t = s->table;
+  double whole = 0, whole_squares = 0, variance = 0;
+  for (size_t l = 0; l < s->levels; l++)
+    s->product[l] = s->weight[l] = 0;
+  double *total = s->sum + s->levels; /* sums over runs, by level */
+  for (size_t l = 0; l < s->levels; l++)
+    total[l] = 0;
+  for (size_t k = 0; k < n; k++) {
+    double mean = 0;
+    for (size_t l = 0; l < s->levels; l++)
+      s->sum[l] = s->weight[l] = 0;
+    for (size_t p = 0; p < t->points; p++) {
+      const double y = t->value[p * t->runs + runs[k]];
+      s->sum[level_of(s, p)] += y;
+      s->weight[level_of(s, p)]++;
+      mean += y / (double)t->points;
+    }
+    for (size_t l = 0; l < s->levels; l++) {
+      const double m = s->weight[l] > 0 ? s->sum[l] / s->weight[l] : 0;
+      total[l] += m;
+      s->product[l] += m * m;
+    }
+    whole += mean;
+    whole_squares += mean * mean;
+  }
+  const double pairs = (double)n * (double)(n - 1);
+  for (size_t l = 0; l < s->levels; l++)
+    variance += s->weight[l] / (double)t->points * (total[l] * total[l] - s->product[l]) / pairs;
+  return variance - (whole * whole - whole_squares) / pairs;
+}
+
+/* Mean variance over the runs of a point. `alike`: covariance of the same runs at two points, which is the variance of
+ * the mean of all points without the points' own part. */
+static double seeds(const struct scatter_table *t, size_t n, const uint32_t *runs, bool alike) {
+  double own = 0;
+  struct sample_moments together = {0};
+  for (size_t p = 0; p < t->points; p++) {
+    struct sample_moments moments = {0};
+    for (size_t k = 0; k < n; k++)
+      sample_add(&moments, t->value[p * t->runs + runs[k]]);
+    own += moments.squares / (double)(n - 1) / (double)t->points;
+  }
+  if (!alike)
+    return own;
+  for (size_t k = 0; k < n; k++) {
+    double mean = 0;
+    for (size_t p = 0; p < t->points; p++)
+      mean += t->value[p * t->runs + runs[k]] / (double)t->points;
+    sample_add(&together, mean);
+  }
+  const double points = (double)t->points;
+  return (points * together.squares / (double)(n - 1) - own) / (points - 1);
+}
+
+static double variance_of(struct split *s, size_t n, const uint32_t *runs) {
+  if (s->part == SCATTER_SEEDS || s->part == SCATTER_SEEDS_ALIKE)
+    return seeds(s->table, n, runs, s->part == SCATTER_SEEDS_ALIKE);
+  return between(s, n, runs);
+}
+
+static double share_of(size_t n, const uint32_t *runs, void *context) {
+  struct split *s = context, whole = *s;
+  if (n < 2)
+    return NAN;
+  whole.axis = s->table->axes;
+  whole.levels = s->table->points;
+  whole.part = SCATTER_INPUTS;
+  const double all = between(&whole, n, runs) + seeds(s->table, n, runs, false);
+  return variance_of(s, n, runs) / all;
+}
+
+static size_t count_levels(const struct scatter_table *t, size_t axis) {
+  size_t levels = 0;
+  for (size_t p = 0; p < t->points; p++)
+    if (t->level[p * t->axes + axis] >= levels)
+      levels = t->level[p * t->axes + axis] + 1;
+  return levels;
+}
+
+/* Does every combination of the values of the axes occur exactly once? Only then the means over the others isolate one
+ * axis. */
+static bool is_grid(const struct scatter_table *t) {
+  double points = 1;
+  for (size_t a = 0; a < t->axes; a++)
+    points *= (double)count_levels(t, a);
+  return points == (double)t->points;
+}
+
+static struct scatter_part part_of(struct split *s, const uint32_t *all) {
+  const struct sample_interval share = sample_jackknife(s->table->runs, 0.95, share_of, s);
+  return (struct scatter_part){variance_of(s, s->table->runs, all), share.estimate, share.half_width};
+}
+
+/* Sets the part of each axis alone. */
+static void fill_axes(struct split *s, const uint32_t *all, struct scatter_part *parts) {
+  const bool grid = is_grid(s->table);
+  s->part = SCATTER_INPUTS;
+  for (size_t a = 0; a < s->table->axes; a++) {
+    parts[a] = (struct scatter_part){NAN, NAN, NAN};
+    s->axis = a;
+    s->levels = count_levels(s->table, a);
+    if (grid)
+      parts[a] = part_of(s, all);
+  }
+}
+
+/* Sets the parts of all inputs and of the seeds; the whole is their sum. */
+static void fill_parts(struct split *s, const uint32_t *all, struct scatter_part parts[SCATTER_PARTS]) {
+  s->axis = s->table->axes;
+  s->levels = s->table->points;
+  for (s->part = 0; s->part < SCATTER_PARTS; s->part++)
+    if (s->part != SCATTER_WHOLE)
+      parts[s->part] = part_of(s, all);
+  parts[SCATTER_WHOLE] = (struct scatter_part){parts[SCATTER_INPUTS].variance + parts[SCATTER_SEEDS].variance, 1, NAN};
+}
+
+status scatter_split(const struct scatter_table *t, struct scatter_part *parts, struct error *error) {
+  if (t->points < 2 || t->runs < 2)
+    return status_fail(error, STATUS_USAGE,
+                       "splitting a variance needs at least two points with two runs each, not %zu points with %zu",
+                       t->points, t->runs);
+  double *room = malloc(4 * t->points * sizeof *room);
+  uint32_t *all = malloc(t->runs * sizeof *all);
+  if (!room || !all) {
+    free(room);
+    free(all);
+    return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
+  }
+  for (size_t r = 0; r < t->runs; r++)
+    all[r] = (uint32_t)r;
+  struct split s = {.table = t, .sum = room, .product = room + 2 * t->points, .weight = room + 3 * t->points};
+  fill_axes(&s, all, parts);
+  fill_parts(&s, all, parts + t->axes);
+  free(room);
+  free(all);
+  return STATUS_OK;
+}
+
+/* ---- The dip of a sample, and its distribution by chance. ---- */
+
+/* The distribution function of n values, times n, jumps at value j from j to j + 1. Its greatest convex minorant runs
+ * through points (value j, j), its least concave majorant through points (value j, j + 1). */
+struct hull {
+  const double *x;
+  size_t *knot; /* work space of n */
+  double *low;  /* for each value: the convex minorant on the current interval */
+  double *high; /* the concave majorant */
+  size_t *below,
+      *above; /* for each value: the minorant's knot at it or to its left, the majorant's knot at it or to its right */
+};
+
+/* Finds the knots of the minorant (sign 1) or the majorant (sign -1) between the values `from` and `to`; returns their
+ * number. Of equal values the first is a knot of the minorant, the last of the majorant. Both ends are always knots. */
+static size_t find_knots(struct hull *h, size_t from, size_t to, int sign) {
+  const double *x = h->x;
+  size_t count = 0;
+  for (size_t j = from; j <= to; j++) {
+    while (count > 1) {
+      const size_t a = h->knot[count - 2], b = h->knot[count - 1];
+      const double turn = (x[b] - x[a]) * (double)(j - b) - (double)(b - a) * (x[j] - x[b]);
+      if (sign * turn > 0)
+        break;
+      count--;
+    }
+    h->knot[count++] = j;
+  }
+  return count;
+}
+
+/* Computes the minorant or the majorant, and the knot next to each value. A step between equal values at an end costs
+ * nothing, because the mode may contain it. */
+static void fill(struct hull *h, size_t from, size_t to, int sign) {
+  const size_t knots = find_knots(h, from, to, sign);
+  const double *x = h->x, up = sign < 0;
+  double *line = sign > 0 ? h->low : h->high;
+  for (size_t k = 0; k + 1 < knots; k++) {
+    const size_t a = h->knot[k], b = h->knot[k + 1];
+    const bool step = !(x[b] > x[a]);
+    for (size_t j = a; j <= b; j++) {
+      line[j] = up + (step ? (double)j : (double)a + (double)(b - a) * (x[j] - x[a]) / (x[b] - x[a]));
+      if (sign > 0)
+        h->below[j] = j == b ? b : a;
+      else if (j > a || k == 0)
+        h->above[j] = j == a ? a : b;
+    }
+  }
+}
+
+/* Returns 2 n times the dip: narrows the interval of the mode until the distance between both hulls is smaller than the
+ * cost of the parts outside. */
+static double search(struct hull *h, size_t n) {
+  size_t low = 0, high = n - 1;
+  double dip = 1;
+  while (low < high) {
+    fill(h, low, high, 1);
+    fill(h, low, high, -1);
+    double most = 0;
+    size_t at = low;
+    for (size_t j = low; j <= high; j++)
+      if (h->high[j] - h->low[j] > most) {
+        most = h->high[j] - h->low[j];
+        at = j;
+      }
+    if (most < dip)
+      break;
+    const size_t left = h->below[at], right = h->above[at];
+    for (size_t j = low; j <= left; j++)
+      dip = fmax(dip, (double)j + 1 - h->low[j]);
+    for (size_t j = right; j <= high; j++)
+      dip = fmax(dip, h->high[j] - (double)j);
+    if (left == low && right == high)
+      break;
+    low = left;
+    high = right;
+  }
+  return dip;
+}
+
+double scatter_dip(size_t n, const double *values) {
+  if (n == 0)
+    return NAN;
+  struct hull h = {values,
+                   malloc(n * sizeof *h.knot),
+                   malloc(n * sizeof *h.low),
+                   malloc(n * sizeof *h.high),
+                   calloc(n, sizeof *h.below),
+                   calloc(n, sizeof *h.above)};
+  const double dip = h.knot && h.low && h.high && h.below && h.above ? search(&h, n) / (2 * (double)n) : (double)NAN;
+  free(h.knot);
+  free(h.low);
+  free(h.high);
+  free(h.below);
+  free(h.above);
+  return dip;
+}
+
+/* Sums of exponential steps are an ordered uniform sample up to a scale factor. */
+static double drawn_dip(size_t size, uint64_t draw, double *sample) {
+  double sum = 0;
+  for (size_t i = 0; i < size; i++)
+    sample[i] = sum -= log1p(-random_draw(size, RANDOM_RESAMPLE, draw, i));
+  return scatter_dip(size, sample);
+}
+
+static size_t drawn_size(size_t n) {
+  return n < SCATTER_DIP_MOST ? n : SCATTER_DIP_MOST;
+}
+
+double scatter_dip_share(size_t n, double dip) {
+  enum { ENOUGH = 200 }; /* this many samples with a larger dip are enough: the share is then known to a tenth */
+  if (n < 4 || !isfinite(dip))
+    return NAN;
+  const size_t size = drawn_size(n);
+  const double limit = dip * sqrt((double)n / (double)size);
+  double *sample = malloc(size * sizeof *sample);
+  size_t larger = 0, drawn = 0;
+  if (!sample)
+    return NAN;
+  for (; drawn < SCATTER_DIP_DRAWS && larger < ENOUGH; drawn++)
+    larger += drawn_dip(size, drawn, sample) >= limit;
+  free(sample);
+  return ((double)larger + 1) / ((double)drawn + 1);
+}
+
+double scatter_dip_limit(size_t n) {
+  /* scatter_dip_share() is below 0.05 while fewer than this many of the drawn dips are larger. */
+  const size_t fewer = (size_t)(0.05 * (SCATTER_DIP_DRAWS + 1));
+  if (n < 4)
+    return NAN;
+  const size_t size = drawn_size(n);
+  double *sample = malloc(size * sizeof *sample), *dip = malloc(SCATTER_DIP_DRAWS * sizeof *dip), limit = NAN;
+  for (size_t d = 0; sample && dip && d < SCATTER_DIP_DRAWS; d++)
+    dip[d] = drawn_dip(size, d, sample);
+  if (sample && dip) {
+    qsort(dip, SCATTER_DIP_DRAWS, sizeof *dip, sample_descending);
+    limit = dip[fewer - 1] * sqrt((double)size / (double)n);
+  }
+  free(sample);
+  free(dip);
+  return limit;
 }

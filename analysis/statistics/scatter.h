@@ -20,7 +20,7 @@ struct scatter {
   struct sample_summary mean;                 /* with the half width of its 95 % interval */
   struct sample_interval deviation, skewness; /* by the jackknife */
   struct scatter_quantile quantile[SCATTER_QUANTILES];
-  double dip, dip_share; /* dip.h. Below 0.05 the values have at least two modes. NaN: not known */
+  double dip, dip_share; /* scatter_dip(). Below 0.05 the values have at least two modes. NaN: not known */
   /* The two classes with the least scatter within them (Fisher 1958), set only if dip_share is below 0.05: their means,
    * the value between them, and the share of the upper one with its 95 % interval (Wilson 1927). Else NaN. */
   double lower_mode, upper_mode, between;
@@ -29,6 +29,22 @@ struct scatter {
 /* STATUS_MEMORY. */
 status scatter_make(size_t n, const double *values, struct scatter *out, struct error *error);
 void scatter_release(struct scatter *scatter); /* a zeroed one is fine */
+
+/* Has a sample one mode? The dip (Hartigan & Hartigan 1985, doi 10.1214/aos/1176346577): the distance of the
+ * distribution function of the sample from the nearest one with a single mode, between 1/(2n) and 1/4. The test needs
+ * no bins, no bandwidth and no assumed distribution of the modes. values: ascending, finite. NaN when memory ran out or
+ * n is 0. The cost is n times a small number of steps. */
+double scatter_dip(size_t n, const double *values);
+
+/* The share of one-mode samples of n values that have at least this dip. It is computed for the uniform law, which has
+ * the largest dips, so for other laws it is too large, never too small. SCATTER_DIP_DRAWS samples are drawn, always the
+ * same ones; fewer when the share is certainly above 0.05. Beyond SCATTER_DIP_MOST values the dip is known to shrink
+ * with 1/sqrt(n). */
+enum { SCATTER_DIP_DRAWS = 2000, SCATTER_DIP_MOST = 1000 };
+double scatter_dip_share(size_t n, double dip);
+/* The dip above which that share is below 0.05. It is meant for many samples of one size: all SCATTER_DIP_DRAWS samples
+ * are drawn once. NaN: too few values. */
+double scatter_dip_limit(size_t n);
 
 /* Are the values whole numbers in so few steps that the steps themselves look like modes? Then the dip has no meaning.
  * sorted: ascending. */

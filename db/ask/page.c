@@ -6,9 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/dip.h"
-#include "analysis/statistics/sample.h"
 #include "analysis/statistics/scatter.h"
+#include "analysis/statistics/sample.h"
 #include "db/ask/canned.h"
 #include "db/ask/columns.h"
 #include "db/ask/group.h"
@@ -153,9 +152,9 @@ static status add_modes(struct modes *modes, int64_t point, const char *quantity
     return STATUS_OK;
   if (n != modes->n) {
     modes->n = n;
-    modes->limit = dip_limit(n);
+    modes->limit = scatter_dip_limit(n);
   }
-  if (!(dip_of(n, values) > modes->limit))
+  if (!(scatter_dip(n, values) > modes->limit))
     return STATUS_OK;
   scatter_find_modes(&scatter);
   return add_mode(modes, point, quantity, &scatter, error);

@@ -14,7 +14,7 @@
 #ifndef CLAST_DB_ASK_PAGE_H
 #define CLAST_DB_ASK_PAGE_H
 
-#include "analysis/statistics/difference.h"
+#include "analysis/statistics/sample.h"
 #include "db/ask/answer.h"
 
 enum { ASK_PAGE_RUNS = 10000 }; /* most single runs of a page */

@@ -159,7 +159,7 @@ bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
       continue;
     *row = (struct ask_pairs_row){{first->point, second->point},
                                   first->inputs,
-                                  difference_between(first->count, a->values + first->first, second->count,
+                                  sample_difference(first->count, a->values + first->first, second->count,
                                                      b->values + second->first, 0.95)};
     pairs->found++;
     return true;

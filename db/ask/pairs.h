@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "analysis/statistics/difference.h"
+#include "analysis/statistics/sample.h"
 #include "engine/outcome.h"
 #include "schemas/status.h"
 

@@ -5,7 +5,7 @@
 #include <time.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/difference.h"
+#include "analysis/statistics/sample.h"
 #include "analysis/statistics/scatter.h"
 #include "db/ask/pairs.h"
 #include "db/ask/pool.h"

@@ -7,13 +7,13 @@
 
 #include <math.h>
 
-#include "analysis/statistics/difference.h"
+#include "analysis/statistics/sample.h"
 
 static void pairs_are_used(void **state) {
   (void)state;
   const struct difference_value a[] = {{1, 10}, {2, 20}, {3, 30}, {9, 500}};
   const struct difference_value b[] = {{1, 11}, {2, 22}, {3, 33}, {4, -500}};
-  const struct difference d = difference_between(4, a, 4, b, 0.95);
+  const struct difference d = sample_difference(4, a, 4, b, 0.95);
   assert_int_equal(d.pairs, 3);
   assert_true(d.mean[0] == 20 && d.mean[1] == 22 && d.difference == 2);
   assert_true(fabs(d.half_width - 4.302652729749 / sqrt(3)) < 1e-9); /* differences 1, 2, 3: standard deviation 1 */
@@ -22,7 +22,7 @@ static void pairs_are_used(void **state) {
 static void independent_sides_are_welch(void **state) {
   (void)state;
   const struct difference_value a[] = {{1, 1}, {2, 2}, {3, 3}, {4, 4}}, b[] = {{4, 2}, {5, 4}, {6, 6}, {7, 8}};
-  const struct difference d = difference_between(4, a, 4, b, 0.95); /* one pair is too few */
+  const struct difference d = sample_difference(4, a, 4, b, 0.95); /* one pair is too few */
   assert_int_equal(d.pairs, 0);
   assert_true(d.difference == 2.5);
   assert_true(fabs(d.half_width - 3.8641672155) < 1e-6); /* 4.41 degrees of freedom */
@@ -31,9 +31,9 @@ static void independent_sides_are_welch(void **state) {
 static void too_few_values_have_no_interval(void **state) {
   (void)state;
   const struct difference_value a[] = {{1, 1}}, b[] = {{1, 3}};
-  const struct difference d = difference_between(1, a, 1, b, 0.95);
+  const struct difference d = sample_difference(1, a, 1, b, 0.95);
   assert_true(d.difference == 2 && isnan(d.half_width) && d.pairs == 0);
-  assert_true(isnan(difference_between(0, NULL, 1, b, 0.95).difference));
+  assert_true(isnan(sample_difference(0, NULL, 1, b, 0.95).difference));
 }
 
 int main(void) {

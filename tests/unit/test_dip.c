@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "analysis/statistics/dip.h"
+#include "analysis/statistics/scatter.h"
 #include "analysis/statistics/sample.h"
 #include "engine/random.h"
 
@@ -59,18 +59,18 @@ static void known_dips(void **state) {
   for (int n = 2; n <= 50; n += 6) {
     for (int i = 0; i < n; i++)
       x[i] = i;
-    assert_true(fabs(dip_of((size_t)n, x) - 0.5 / n) < 1e-14); /* equal steps: the smallest possible dip */
+    assert_true(fabs(scatter_dip((size_t)n, x) - 0.5 / n) < 1e-14); /* equal steps: the smallest possible dip */
   }
   for (int i = 0; i < 400; i++) /* two clusters of equal weight, far apart: 1/4 in the limit */
     x[i] = (i < 200 ? 0 : 1000) + 1e-3 * i;
-  assert_true(fabs(dip_of(400, x) - 0.25) < 0.005);
+  assert_true(fabs(scatter_dip(400, x) - 0.25) < 0.005);
   for (int i = 0; i < 400; i++) /* a tenth in the second: half of the lesser weight */
     x[i] = (i < 360 ? 0 : 1000) + 1e-3 * i;
-  assert_true(fabs(dip_of(400, x) - 0.05) < 0.005);
+  assert_true(fabs(scatter_dip(400, x) - 0.05) < 0.005);
   for (int i = 0; i < 400; i++) /* all equal: one mode */
     x[i] = 3;
-  assert_true(dip_of(400, x) <= 0.5 / 400 + 1e-14);
-  assert_true(isnan(dip_of(0, x)));
+  assert_true(scatter_dip(400, x) <= 0.5 / 400 + 1e-14);
+  assert_true(isnan(scatter_dip(0, x)));
 }
 
 static void as_defined(void **state) {
@@ -81,7 +81,7 @@ static void as_defined(void **state) {
     for (size_t i = 0; i < n; i++)
       x[i] = random_draw(3, 3, c, i) + (c % 3 && i % 2 ? 0.7 * (double)(c % 3) : 0);
     qsort(x, n, sizeof *x, sample_ascending);
-    assert_true(fabs(dip_of(n, x) - dip_by_definition(n, x)) < 1e-7);
+    assert_true(fabs(scatter_dip(n, x) - dip_by_definition(n, x)) < 1e-7);
   }
 }
 
@@ -99,7 +99,7 @@ static void false_and_true_alarms(void **state) {
         x[i] = law == 0 ? u : law == 1 ? exp(normal) : normal + (i % 2 ? 5 : 0);
       }
       qsort(x, N, sizeof *x, sample_ascending);
-      alarms[law] += dip_share(N, dip_of(N, x)) < 0.05;
+      alarms[law] += scatter_dip_share(N, scatter_dip(N, x)) < 0.05;
     }
   assert_true(alarms[0] <= 4 + 4 * 2); /* uniform: 5 % of 80 are 4 +- 2 */
   assert_true(alarms[0] >= 1);
@@ -112,20 +112,20 @@ static void limits(void **state) {
   (void)state;
   static const size_t sizes[] = {4, 20, 63, 3000};
   for (int k = 0; k < 4; k++) {
-    const double limit = dip_limit(sizes[k]);
-    assert_true(dip_share(sizes[k], limit * (1 + 1e-9)) < 0.05);
-    assert_true(dip_share(sizes[k], limit * (1 - 1e-9)) >= 0.05);
+    const double limit = scatter_dip_limit(sizes[k]);
+    assert_true(scatter_dip_share(sizes[k], limit * (1 + 1e-9)) < 0.05);
+    assert_true(scatter_dip_share(sizes[k], limit * (1 - 1e-9)) >= 0.05);
   }
-  assert_true(isnan(dip_limit(3)));
+  assert_true(isnan(scatter_dip_limit(3)));
 }
 
 static void large_samples(void **state) {
   (void)state;
   /* Maechler's diptest documents p = 0.087 for the 63 values of its data set statfaculty, whose dip is 0.0595. */
-  assert_true(fabs(dip_share(63, 0.05952381) - 0.087) < 0.02);
-  const double share = dip_share(1000, 0.5 / sqrt(1000)), larger = dip_share(100000, 0.5 / sqrt(100000));
+  assert_true(fabs(scatter_dip_share(63, 0.05952381) - 0.087) < 0.02);
+  const double share = scatter_dip_share(1000, 0.5 / sqrt(1000)), larger = scatter_dip_share(100000, 0.5 / sqrt(100000));
   assert_true(share > 0.01 && share < 0.1 && fabs(larger - share) < 1e-12);
-  assert_true(isnan(dip_share(3, 0.2)));
+  assert_true(isnan(scatter_dip_share(3, 0.2)));
 }
 
 int main(void) {

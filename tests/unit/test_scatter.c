@@ -9,7 +9,6 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/dip.h"
 #include "analysis/statistics/scatter.h"
 #include "engine/random.h"
 
@@ -73,7 +72,7 @@ static void counts_in_few_steps(void **state) {
   for (uint64_t i = 0; i < 200; i++)
     x[i] = round(7 + 2 * normal(7, 1, i));
   assert_int_equal(scatter_make(200, x, &s, NULL), STATUS_OK);
-  assert_true(s.dip > dip_limit(200)); /* the dip test alone would report two modes */
+  assert_true(s.dip > scatter_dip_limit(200)); /* the dip test alone would report two modes */
   assert_true(isnan(s.dip_share) && isnan(s.between));
   scatter_release(&s);
   for (uint64_t i = 0; i < 200; i++)

@@ -12,7 +12,6 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/exponent.h"
 #include "analysis/statistics/power_law.h"
-#include "analysis/statistics/tempered.h"
 #include "engine/random.h"
 
 /* The sample mean of a cut exponential, straight from its definition; the fit must return the rate. */
@@ -32,7 +31,7 @@ static void masses_any_exponent(void **state) {
       double k = betas[b] - 1;
       if (isinf(spans[s]) && k <= 0)
         continue;
-      struct power_law_group group = {100, exact_mean(k, spans[s]), spans[s]};
+      struct power_law_group group = {100, exact_mean(k, spans[s]), spans[s], 0};
       struct power_law fit = power_law_fit(1, &group);
       /* The definition itself loses digits for small k: 1e-16 of 1/k over the slope of the mean, span^2/12. */
       assert_true(fabs(fit.beta - betas[b]) < 1e-11);
@@ -40,7 +39,7 @@ static void masses_any_exponent(void **state) {
     }
   }
   /* beta exactly 1: u uniform, standard error sqrt(12/n)/span. */
-  struct power_law_group uniform = {400, 2.5, 5};
+  struct power_law_group uniform = {400, 2.5, 5, 0};
   struct power_law fit = power_law_fit(1, &uniform);
   assert_true(fabs(fit.beta - 1) < 1e-15 && fabs(fit.standard_error - sqrt(12.0 / 400) / 5) < 1e-14);
   assert_true(fabs(fit.log_likelihood + 400 * log(5)) < 1e-10);
@@ -48,13 +47,13 @@ static void masses_any_exponent(void **state) {
 
 static void groups_are_one_sample(void **state) {
   (void)state;
-  struct power_law_group one = {30, 0.8, 5}, split[3] = {{10, 0.5, 5}, {12, 1.0, 5}, {8, 0.875, 5}};
+  struct power_law_group one = {30, 0.8, 5, 0}, split[3] = {{10, 0.5, 5, 0}, {12, 1.0, 5, 0}, {8, 0.875, 5, 0}};
   assert_true(fabs((10 * 0.5 + 12 * 1.0 + 8 * 0.875) / 30 - 0.8) < 0.04);
   one.mean = (10 * 0.5 + 12 * 1.0 + 8 * 0.875) / 30;
   struct power_law a = power_law_fit(1, &one), b = power_law_fit(3, split);
   assert_true(fabs(a.beta - b.beta) < 1e-13 && fabs(a.standard_error - b.standard_error) < 1e-13);
   /* A group at one end of its window says nothing alone, but does not spoil the others. */
-  struct power_law_group with_edge[2] = {{10, 0.5, 5}, {1, 0, 3}};
+  struct power_law_group with_edge[2] = {{10, 0.5, 5, 0}, {1, 0, 3, 0}};
   assert_true(isfinite(power_law_fit(2, with_edge).beta));
   assert_true(isnan(power_law_fit(1, &with_edge[1]).beta));
   assert_true(isnan(power_law_fit(0, NULL).beta));
@@ -69,7 +68,7 @@ static void normalisation_is_incomplete_gamma(void **state) {
     for (size_t j = 0; j < 5; j++) {
       double k = ks[i], s = rates[j];
       double exact = s + k * log(s) + log(gsl_sf_gamma_inc(-k, s));
-      double ours = tempered_log_normalisation(TEMPERED_CUTOFF, k, s, HUGE_VAL, NULL, NULL);
+      double ours = power_law_log_normalisation(POWER_LAW_CUTOFF, k, s, HUGE_VAL, NULL, NULL);
       /* quadrature error, and GSL's own near-cancellation at small s (its stated error grows to 1e-10) */
       if (!(fabs(ours - exact) < 1e-9 * (1 + fabs(exact))))
         fail_msg("k %g s %g: %.15g, exact %.15g", k, s, ours, exact);
@@ -78,28 +77,28 @@ static void normalisation_is_incomplete_gamma(void **state) {
   /* Without the factor the closed form of the pure law. */
   for (size_t i = 0; i < 6; i++) {
     double k = ks[i], span = 9, exact = log(-expm1(-k * span) / k);
-    assert_true(fabs(tempered_log_normalisation(TEMPERED_CUTOFF, k, 0, span, NULL, NULL) - exact) < 1e-12);
-    assert_true(fabs(tempered_log_normalisation(TEMPERED_LOGNORMAL, k, 0, span, NULL, NULL) - exact) < 1e-12);
+    assert_true(fabs(power_law_log_normalisation(POWER_LAW_CUTOFF, k, 0, span, NULL, NULL) - exact) < 1e-12);
+    assert_true(fabs(power_law_log_normalisation(POWER_LAW_LOGNORMAL, k, 0, span, NULL, NULL) - exact) < 1e-12);
   }
   /* Half a normal curve. */
-  double half = tempered_log_normalisation(TEMPERED_LOGNORMAL, 0, 0.5, HUGE_VAL, NULL, NULL);
+  double half = power_law_log_normalisation(POWER_LAW_LOGNORMAL, 0, 0.5, HUGE_VAL, NULL, NULL);
   assert_true(fabs(half - log(sqrt(M_PI / 2))) < 1e-12);
 }
 
 static void moments_are_derivatives(void **state) {
   (void)state;
-  for (int kind = 0; kind < 2; kind++) {
+  for (int kind = POWER_LAW_CUTOFF; kind <= POWER_LAW_LOGNORMAL; kind++) {
     double mean[2], covariance[3], k = 0.8, s = 0.05, step = 1e-5;
-    enum tempered_kind which = (enum tempered_kind)kind;
-    tempered_log_normalisation(which, k, s, 7, mean, covariance);
-    double up = tempered_log_normalisation(which, k + step, s, 7, NULL, NULL);
-    double down = tempered_log_normalisation(which, k - step, s, 7, NULL, NULL);
-    double here = tempered_log_normalisation(which, k, s, 7, NULL, NULL);
+    enum power_law_kind which = (enum power_law_kind)kind;
+    power_law_log_normalisation(which, k, s, 7, mean, covariance);
+    double up = power_law_log_normalisation(which, k + step, s, 7, NULL, NULL);
+    double down = power_law_log_normalisation(which, k - step, s, 7, NULL, NULL);
+    double here = power_law_log_normalisation(which, k, s, 7, NULL, NULL);
     /* central differences: error step^2, and 1e-16/step (1e-16/step^2 for the second) of rounding */
     assert_true(fabs(mean[0] + (up - down) / (2 * step)) < 1e-8);
     assert_true(fabs(covariance[0] - (up - 2 * here + down) / (step * step)) < 1e-4);
-    up = tempered_log_normalisation(which, k, s + step, 7, NULL, NULL);
-    down = tempered_log_normalisation(which, k, s - step, 7, NULL, NULL);
+    up = power_law_log_normalisation(which, k, s + step, 7, NULL, NULL);
+    down = power_law_log_normalisation(which, k, s - step, 7, NULL, NULL);
     assert_true(fabs(mean[1] + (up - down) / (2 * step)) <
                 1e-4 * mean[1]); /* h reaches e^7: third derivative times step^2 */
   }
@@ -108,11 +107,13 @@ static void moments_are_derivatives(void **state) {
 static void pure_sample_needs_no_factor(void **state) {
   (void)state;
   /* Evenly spaced quantiles of a pure law with its upper tail thickened: s = 0 must be returned as such. */
-  double u[200];
-  for (int i = 0; i < 200; i++)
+  double u[200], masses[200];
+  for (int i = 0; i < 200; i++) {
     u[i] = -log((i + 0.5) / 200) * 0.4 + (i < 5 ? 2 : 0);
-  struct tempered_group group = tempered_group(TEMPERED_CUTOFF, 200, u, HUGE_VAL);
-  struct tempered fit = tempered_fit(TEMPERED_CUTOFF, 1, &group);
+    masses[i] = exp(u[i]);
+  }
+  struct power_law_group group = power_law_group_of(POWER_LAW_CUTOFF, 200, masses, 1, HUGE_VAL);
+  struct power_law_rival fit = power_law_rival_fit(POWER_LAW_CUTOFF, 1, &group);
   assert_true(fit.rate == 0);
   double mean = 0;
   for (int i = 0; i < 200; i++)
@@ -161,7 +162,7 @@ static void leaving_out_is_fitting_the_rest(void **state) {
   struct power_law_group masses[203];
   for (uint64_t g = 0; g < 203; g++) {
     const double weight = 1 + floor(40 * random_draw(9, 1, g, 0)), span = 2 + 6 * random_draw(9, 2, g, 0);
-    masses[g] = (struct power_law_group){weight, span * (0.1 + 0.4 * random_draw(9, 3, g, 0)), span};
+    masses[g] = (struct power_law_group){weight, span * (0.1 + 0.4 * random_draw(9, 3, g, 0)), span, 0};
   }
   const size_t counts[] = {1, 2, 3, 5, 20, 100, 203};
   for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
@@ -170,15 +171,17 @@ static void leaving_out_is_fitting_the_rest(void **state) {
 
   struct power_law_group equal[100]; /* no part moves beta */
   for (int g = 0; g < 100; g++)
-    equal[g] = (struct power_law_group){30, 2, 5};
+    equal[g] = (struct power_law_group){30, 2, 5, 0};
   leave_out_like_fits(100, equal, 1, 1e-13);
 
   struct power_law_group open[10]; /* windows without an end: y > 0 */
   for (int g = 0; g < 10; g++)
-    open[g] = (struct power_law_group){5, g == 0 ? 50 : 0.1, HUGE_VAL};
+    open[g] = (struct power_law_group){5, g == 0 ? 50 : 0.1, HUGE_VAL, 0};
   leave_out_like_fits(10, open, 1, 1e-11);
 
-  struct power_law_group ends[3] = {{10, 0, 4}, {10, 0, 4}, {10, 2, 4}}; /* without the last, all are at one end */
+  struct power_law_group ends[3] = {{10, 0, 4, 0},
+                                    {10, 0, 4, 0},
+                                    {10, 2, 4, 0}}; /* without the last, all are at one end */
   double betas[3];
   assert_true(power_law_leave_out(3, ends, 1, betas));
   assert_true(isfinite(betas[0]) && isfinite(betas[1]) && isnan(betas[2]));
