@@ -1,5 +1,5 @@
 /* Populations of approximate Bayesian computation. */
-#include "analysis/inference/approximate.h"
+#include "analysis/inference/inference.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
@@ -22,7 +22,7 @@ status approximate_begin(struct approximate *a, size_t particles, size_t inputs,
   a->z = calloc(particles * inputs, sizeof(double));
   a->distance = calloc(particles, sizeof(double));
   a->weight = calloc(particles, sizeof(double));
-  if (!a->z || !a->distance || !a->weight || inputs > APPROXIMATE_INPUTS)
+  if (!a->z || !a->distance || !a->weight || inputs > INFERENCE_INPUTS)
     return status_fail(error, STATUS_MEMORY, "no memory for particles");
   return STATUS_OK;
 }
@@ -37,7 +37,7 @@ void approximate_clear(struct approximate *a) {
 /* Twice the weighted covariance of the kept particles, as a Cholesky factor. */
 static void kernel(const struct approximate *a, double *factor) {
   const size_t p = a->inputs;
-  double mean[APPROXIMATE_INPUTS] = {0}, sum = 0;
+  double mean[INFERENCE_INPUTS] = {0}, sum = 0;
   memset(factor, 0, p * p * sizeof *factor);
   for (size_t n = 0; n < a->kept; n++)
     sum += a->weight[n];
@@ -68,7 +68,7 @@ static size_t pick(const struct approximate *a, double u) {
 /* Prior density divided by the proposal density at z, summed over all kept particles. */
 static double weight_of(const struct approximate *a, const double *factor, const double *z) {
   const size_t p = a->inputs;
-  double proposed = 0, sum = 0, prior = 0, step[APPROXIMATE_INPUTS], half[APPROXIMATE_INPUTS];
+  double proposed = 0, sum = 0, prior = 0, step[INFERENCE_INPUTS], half[INFERENCE_INPUTS];
   for (size_t n = 0; n < a->kept; n++) {
     for (size_t i = 0; i < p; i++)
       step[i] = z[i] - a->z[n * p + i];
@@ -84,13 +84,13 @@ static double weight_of(const struct approximate *a, const double *factor, const
 
 size_t approximate_propose(struct approximate *a) {
   const size_t p = a->inputs;
-  double factor[APPROXIMATE_INPUTS * APPROXIMATE_INPUTS];
+  double factor[INFERENCE_INPUTS * INFERENCE_INPUTS];
   if (a->kept)
     kernel(a, factor);
   for (size_t n = a->kept; n < a->particles; n++) {
     double *z = a->z + n * p;
     const size_t from = a->kept ? pick(a, uniform(a, n, 0)) : 0;
-    double noise[APPROXIMATE_INPUTS];
+    double noise[INFERENCE_INPUTS];
     for (size_t i = 0; i < p; i++)
       noise[i] = normal(a, n, i + 1);
     for (size_t i = 0; i < p; i++) {

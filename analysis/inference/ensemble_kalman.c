@@ -1,10 +1,9 @@
 /* Ensemble Kalman inversion. */
-#include "analysis/inference/ensemble_kalman.h"
+#include "analysis/inference/inference.h"
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,38 +15,28 @@ static const double FARTHEST = 3.5;
 
 struct work {
   size_t good;                   /* number of members with results */
-  size_t *member;                /* indices of these members */
+  size_t *member;                /* indices of these members; owned */
   double *mean_z, *mean_g;       /* of the good members */
   double *cross, *spread;        /* covariances: inputs x outputs, outputs x outputs */
   double *root;                  /* Cholesky factor of gamma */
   double *innovation, *weighted; /* outputs */
-  double *misfit;                /* of each good member */
+  double *misfit;                /* of each good member; owned, with all arrays above */
 };
 
-static void clear(struct work *w) {
-  free(w->member);
-  free(w->mean_z);
-  free(w->mean_g);
-  free(w->cross);
-  free(w->spread);
-  free(w->root);
-  free(w->innovation);
-  free(w->weighted);
-  free(w->misfit);
-}
-
 static bool allocate(const struct ensemble_kalman *e, struct work *w) {
-  w->member = calloc(e->members, sizeof *w->member);
-  w->mean_z = calloc(e->inputs, sizeof(double));
-  w->mean_g = calloc(e->outputs, sizeof(double));
-  w->cross = calloc(e->inputs * e->outputs, sizeof(double));
-  w->spread = calloc(e->outputs * e->outputs, sizeof(double));
-  w->root = calloc(e->outputs * e->outputs, sizeof(double));
-  w->innovation = calloc(e->outputs, sizeof(double));
-  w->weighted = calloc(e->outputs, sizeof(double));
-  w->misfit = calloc(e->members, sizeof(double));
-  return w->member && w->mean_z && w->mean_g && w->cross && w->spread && w->root && w->innovation && w->weighted &&
-         w->misfit;
+  const size_t n = e->members, p = e->inputs, d = e->outputs;
+  w->member = calloc(n, sizeof *w->member);
+  w->misfit = calloc(n + p + 3 * d + p * d + 2 * d * d, sizeof *w->misfit);
+  if (!w->member || !w->misfit)
+    return false;
+  w->mean_z = w->misfit + n;
+  w->mean_g = w->mean_z + p;
+  w->innovation = w->mean_g + d;
+  w->weighted = w->innovation + d;
+  w->cross = w->weighted + d;
+  w->spread = w->cross + p * d;
+  w->root = w->spread + d * d;
+  return true;
 }
 
 static double normal(const struct ensemble_kalman *e, uint64_t member, uint64_t draw) {
@@ -169,6 +158,7 @@ status ensemble_kalman_step(struct ensemble_kalman *ensemble, struct error *erro
   struct work w = {0};
   const status code = allocate(ensemble, &w) ? step(ensemble, &w, error)
                                              : status_fail(error, STATUS_MEMORY, "no memory for the ensemble");
-  clear(&w);
+  free(w.member);
+  free(w.misfit);
   return code;
 }

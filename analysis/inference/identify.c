@@ -1,5 +1,5 @@
 /* Directions of much and of little information. */
-#include "analysis/inference/identify.h"
+#include "analysis/inference/inference.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
@@ -16,8 +16,8 @@ static const double PART = 0.25; /* a component of a unit vector counts from thi
 /* J^T C^-1 J at z. */
 static void information_at(const struct posterior_model *model, const double *z, double *information) {
   const size_t p = model->inputs, d = model->outputs;
-  double slope[POSTERIOR_INPUTS][POSTERIOR_OUTPUTS], weighted[POSTERIOR_OUTPUTS], x[POSTERIOR_INPUTS];
-  double moved[POSTERIOR_INPUTS], mean[POSTERIOR_OUTPUTS], c[POSTERIOR_OUTPUTS * POSTERIOR_OUTPUTS];
+  double slope[INFERENCE_INPUTS][INFERENCE_OUTPUTS], weighted[INFERENCE_OUTPUTS], x[INFERENCE_INPUTS];
+  double moved[INFERENCE_INPUTS], mean[INFERENCE_OUTPUTS], c[INFERENCE_OUTPUTS * INFERENCE_OUTPUTS];
   memset(information, 0, p * p * sizeof *information);
   posterior_expect(model, z, mean, c);
   if (!covariance_factor(d, c))
@@ -45,8 +45,8 @@ static void information_at(const struct posterior_model *model, const double *z,
 static void find_information(const struct posterior_model *model, const struct posterior *posterior,
                              struct identify *out) {
   const size_t p = model->inputs;
-  double values[POSTERIOR_INPUTS][NODES], h[POSTERIOR_INPUTS * POSTERIOR_INPUTS];
-  double eigen[POSTERIOR_INPUTS], vectors[POSTERIOR_INPUTS * POSTERIOR_INPUTS];
+  double values[INFERENCE_INPUTS][NODES], h[INFERENCE_INPUTS * INFERENCE_INPUTS];
+  double eigen[INFERENCE_INPUTS], vectors[INFERENCE_INPUTS * INFERENCE_INPUTS];
   for (size_t n = 0; n < NODES; n++) {
     const size_t node = posterior_node(posterior, ((double)n + 0.5) / NODES);
     information_at(model, posterior->z + node * p, h);
@@ -66,8 +66,8 @@ static void find_information(const struct posterior_model *model, const struct p
 static void find_directions(const struct posterior_model *model, const struct posterior *posterior,
                             const double *covariance, struct identify *out) {
   const size_t p = model->inputs;
-  double h[POSTERIOR_INPUTS * POSTERIOR_INPUTS] = {0}, here[POSTERIOR_INPUTS * POSTERIOR_INPUTS],
-                              vectors[POSTERIOR_INPUTS * POSTERIOR_INPUTS], eigen[POSTERIOR_INPUTS];
+  double h[INFERENCE_INPUTS * INFERENCE_INPUTS] = {0}, here[INFERENCE_INPUTS * INFERENCE_INPUTS],
+                              vectors[INFERENCE_INPUTS * INFERENCE_INPUTS], eigen[INFERENCE_INPUTS];
   for (size_t n = 0; n < NODES; n++) {
     information_at(model, posterior->z + posterior_node(posterior, ((double)n + 0.5) / NODES) * p, here);
     for (size_t i = 0; i < p * p; i++)
@@ -91,7 +91,7 @@ static void find_directions(const struct posterior_model *model, const struct po
 }
 
 void identify_find(const struct posterior_model *model, const struct posterior *posterior, struct identify *out) {
-  double covariance[POSTERIOR_INPUTS * POSTERIOR_INPUTS];
+  double covariance[INFERENCE_INPUTS * INFERENCE_INPUTS];
   *out = (struct identify){.inputs = model->inputs};
   posterior_moments(posterior, out->centre, covariance);
   for (size_t i = 0; i < model->inputs; i++) {

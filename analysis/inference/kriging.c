@@ -1,9 +1,8 @@
 /* Stochastic kriging: hyperparameters by Nelder and Mead, predictions by the inverse of the covariance. */
-#include "analysis/inference/kriging.h"
+#include "analysis/inference/inference.h"
 
 #include <gsl/gsl_multimin.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +21,8 @@ struct kriging {
   double *factor, *inverse; /* Cholesky factor and inverse of the covariance of y */
   double *weights, *near;   /* inverse . y; covariances between a place and the points */
   double middle, scale;
-  double variance, length[KRIGING_INPUTS];
+  double variance, length[INFERENCE_INPUTS];
+  double numbers[]; /* memory of the arrays */
 };
 
 static double covariance_of(const struct kriging *k, const double *a, const double *b) {
@@ -94,23 +94,27 @@ static status maximise(struct kriging *k, struct error *error) {
   return code;
 }
 
-static bool allocate(struct kriging *k, size_t n, size_t inputs) {
+/* NULL: no memory. */
+static struct kriging *make(size_t n, size_t inputs, struct error *error) {
+  struct kriging *k = calloc(1, sizeof *k + (n * inputs + 3 * n + 3 * n * n) * sizeof *k->numbers);
+  if (!k) {
+    status_fail(error, STATUS_MEMORY, "no memory for a surface");
+    return NULL;
+  }
   k->points = n;
   k->inputs = inputs;
-  k->x = calloc(n * inputs, sizeof(double));
-  k->y = calloc(n, sizeof(double));
-  k->noise = calloc(n * n, sizeof(double));
-  k->factor = calloc(n * n, sizeof(double));
-  k->inverse = calloc(n * n, sizeof(double));
-  k->weights = calloc(n, sizeof(double));
-  k->near = calloc(n, sizeof(double));
-  return k->x && k->y && k->noise && k->factor && k->inverse && k->weights && k->near;
+  k->x = k->numbers;
+  k->y = k->x + n * inputs;
+  k->weights = k->y + n;
+  k->near = k->weights + n;
+  k->noise = k->near + n;
+  k->factor = k->noise + n * n;
+  k->inverse = k->factor + n * n;
+  return k;
 }
 
-static bool copy(const struct kriging_data *data, struct kriging *k) {
+static void copy(const struct kriging_data *data, struct kriging *k) {
   const size_t n = data->points;
-  if (!allocate(k, n, data->inputs))
-    return false;
   memcpy(k->x, data->x, n * data->inputs * sizeof(double));
   double squares = 0;
   for (size_t i = 0; i < n; i++)
@@ -122,17 +126,14 @@ static bool copy(const struct kriging_data *data, struct kriging *k) {
     k->y[i] = (data->mean[i] - k->middle) / k->scale;
   for (size_t i = 0; i < n * n; i++)
     k->noise[i] = data->noise[i] / (k->scale * k->scale);
-  return true;
 }
 
 /* Finds hyperparameters from every s-th point, with s so large that the search is cheap. */
 static status maximise_on_part(struct kriging *k, struct error *error) {
   const size_t step = (k->points + MOST_POINTS - 1) / MOST_POINTS, n = (k->points + step - 1) / step;
-  struct kriging *part = calloc(1, sizeof *part);
-  if (!part || !allocate(part, n, k->inputs)) {
-    kriging_free(part);
-    return status_fail(error, STATUS_MEMORY, "no memory for a surface");
-  }
+  struct kriging *part = make(n, k->inputs, error);
+  if (!part)
+    return STATUS_MEMORY;
   for (size_t i = 0; i < n; i++) {
     memcpy(part->x + i * k->inputs, k->x + i * step * k->inputs, k->inputs * sizeof(double));
     part->y[i] = k->y[i * step];
@@ -148,15 +149,14 @@ static status maximise_on_part(struct kriging *k, struct error *error) {
 
 status kriging_fit(const struct kriging_data *data, struct kriging **out, struct error *error) {
   *out = NULL;
-  if (data->points < 3 || data->inputs == 0 || data->inputs > KRIGING_INPUTS)
+  if (data->points < 3 || data->inputs == 0 || data->inputs > INFERENCE_INPUTS)
     return status_fail(error, STATUS_CONTENT,
                        "kriging needs three points or more, and 1 to %d inputs; there are %zu points and %zu inputs",
-                       KRIGING_INPUTS, data->points, data->inputs);
-  struct kriging *k = calloc(1, sizeof *k);
-  if (!k || !copy(data, k)) {
-    kriging_free(k);
-    return status_fail(error, STATUS_MEMORY, "no memory for a surface");
-  }
+                       INFERENCE_INPUTS, data->points, data->inputs);
+  struct kriging *k = make(data->points, data->inputs, error);
+  if (!k)
+    return STATUS_MEMORY;
+  copy(data, k);
   status code = maximise_on_part(k, error);
   if (code == STATUS_OK && !factorise(k))
     code = status_fail(
@@ -173,15 +173,6 @@ status kriging_fit(const struct kriging_data *data, struct kriging **out, struct
 }
 
 void kriging_free(struct kriging *kriging) {
-  if (!kriging)
-    return;
-  free(kriging->x);
-  free(kriging->y);
-  free(kriging->noise);
-  free(kriging->factor);
-  free(kriging->inverse);
-  free(kriging->weights);
-  free(kriging->near);
   free(kriging);
 }
 

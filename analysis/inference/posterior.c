@@ -1,5 +1,5 @@
 /* Likelihood, grid, sampler, and statistics of weighted nodes. */
-#include "analysis/inference/posterior.h"
+#include "analysis/inference/inference.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
@@ -10,7 +10,8 @@
 #include "engine/random.h"
 
 /* Nodes per input of a grid of 1 to 4 inputs. */
-static const size_t nodes_of[POSTERIOR_GRID_INPUTS + 1] = {0, 400, 60, 22, 12};
+enum { GRID_INPUTS = 4 };
+static const size_t nodes_of[GRID_INPUTS + 1] = {0, 400, 60, 22, 12};
 enum { ZOOMS = 4, PREDICTED_NODES = 400 };
 static const double NEGLIGIBLE = 12;   /* drop below the largest log density: a density of 6e-6 of the maximum */
 static const double FEWEST_NODES = 40; /* effective nodes; with fewer a grid is too coarse */
@@ -30,7 +31,7 @@ void posterior_place(const struct posterior_model *model, const double *z, doubl
 
 void posterior_expect(const struct posterior_model *model, const double *z, double *mean, double *covariance) {
   const size_t d = model->outputs;
-  double x[POSTERIOR_INPUTS], surface[POSTERIOR_OUTPUTS], scatter[POSTERIOR_OUTPUTS];
+  double x[INFERENCE_INPUTS], surface[INFERENCE_OUTPUTS], scatter[INFERENCE_OUTPUTS];
   posterior_place(model, z, x);
   for (size_t k = 0; k < d; k++) {
     const struct posterior_datum *datum = &model->data[k];
@@ -50,7 +51,7 @@ void posterior_expect(const struct posterior_model *model, const double *z, doub
 
 double posterior_likelihood(const struct posterior_model *model, const double *z) {
   const size_t d = model->outputs;
-  double mean[POSTERIOR_OUTPUTS], half[POSTERIOR_OUTPUTS], c[POSTERIOR_OUTPUTS * POSTERIOR_OUTPUTS];
+  double mean[INFERENCE_OUTPUTS], half[INFERENCE_OUTPUTS], c[INFERENCE_OUTPUTS * INFERENCE_OUTPUTS];
   posterior_expect(model, z, mean, c);
   for (size_t k = 0; k < d; k++)
     mean[k] = model->data[k].value - mean[k];
@@ -62,7 +63,7 @@ double posterior_likelihood(const struct posterior_model *model, const double *z
 /* ---- the grid ---- */
 
 struct box { /* limits in quantiles of the priors */
-  double low[POSTERIOR_INPUTS], high[POSTERIOR_INPUTS];
+  double low[INFERENCE_INPUTS], high[INFERENCE_INPUTS];
 };
 
 /* Nodes are the centres of cells of equal prior probability. Returns the largest log density. */
@@ -135,9 +136,7 @@ static status make_grid(const struct posterior_model *model, struct posterior *o
     box.low[i] = 0;
     box.high[i] = 1;
   }
-  const status code = allocate(out, count, model->inputs, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(allocate(out, count, model->inputs, error));
   double most = fill_grid(model, &box, side, out);
   for (int zoom = 0; zoom < ZOOMS && shrink(model, out, most, side, &box) < 0.5; zoom++)
     most = fill_grid(model, &box, side, out);
@@ -165,7 +164,7 @@ static double density(const struct posterior_model *model, const double *z) {
 /* One sweep: each half moves along lines through walkers of the other half. */
 static void sweep(const struct posterior_model *model, uint64_t seed, uint64_t number, double *z, double *log_density) {
   const size_t p = model->inputs;
-  double moved[POSTERIOR_INPUTS];
+  double moved[INFERENCE_INPUTS];
   for (size_t w = 0; w < WALKERS; w++) {
     uint64_t bits[4];
     random_bits(seed, RANDOM_INFERENCE, UINT64_C(1) << 62 | number << 16 | w, 0, bits);
@@ -186,7 +185,7 @@ static void sweep(const struct posterior_model *model, uint64_t seed, uint64_t n
 /* Each walker begins at the best of ten draws from the prior. */
 static void begin_walkers(const struct posterior_model *model, uint64_t seed, double *z, double *log_density) {
   const size_t p = model->inputs;
-  double tried[POSTERIOR_INPUTS];
+  double tried[INFERENCE_INPUTS];
   for (size_t w = 0; w < WALKERS; w++) {
     log_density[w] = -HUGE_VAL;
     for (size_t t = 0; t < 10; t++) {
@@ -202,33 +201,26 @@ static void begin_walkers(const struct posterior_model *model, uint64_t seed, do
   }
 }
 
-/* Fills z, SAMPLE_NODES x inputs. The same seed gives the same sample. False: no memory. */
-static bool fill_sample(const struct posterior_model *model, uint64_t seed, double *z) {
+/* Fills z, SAMPLE_NODES x inputs. The same seed gives the same sample. */
+static void fill_sample(const struct posterior_model *model, uint64_t seed, double *z) {
   const size_t p = model->inputs;
-  double *walkers = calloc(WALKERS * p, sizeof *walkers), *log_density = calloc(WALKERS, sizeof *log_density);
-  if (walkers && log_density) {
-    begin_walkers(model, seed, walkers, log_density);
-    uint64_t number = 0;
-    for (; number < SWEEPS; number++)
+  double walkers[WALKERS * INFERENCE_INPUTS], log_density[WALKERS];
+  uint64_t number = 0;
+  begin_walkers(model, seed, walkers, log_density);
+  for (; number < SWEEPS; number++)
+    sweep(model, seed, number, walkers, log_density);
+  for (size_t kept = 0; kept < KEPT; kept++) {
+    for (int i = 0; i < EVERY; i++, number++)
       sweep(model, seed, number, walkers, log_density);
-    for (size_t kept = 0; kept < KEPT; kept++) {
-      for (int i = 0; i < EVERY; i++, number++)
-        sweep(model, seed, number, walkers, log_density);
-      memcpy(z + kept * WALKERS * p, walkers, WALKERS * p * sizeof *walkers);
-    }
+    memcpy(z + kept * WALKERS * p, walkers, WALKERS * p * sizeof *walkers);
   }
-  const bool done = walkers && log_density;
-  free(walkers);
-  free(log_density);
-  return done;
 }
 
 static status make_sample(const struct posterior_model *model, uint64_t seed, struct posterior *out,
                           struct error *error) {
-  const status code = allocate(out, SAMPLE_NODES, model->inputs, error);
+  TRY(allocate(out, SAMPLE_NODES, model->inputs, error));
   out->sampled = true;
-  if (code != STATUS_OK || !fill_sample(model, seed, out->z))
-    return code ? code : status_fail(error, STATUS_MEMORY, "no memory for the posterior");
+  fill_sample(model, seed, out->z);
   for (size_t n = 0; n < out->count; n++)
     out->weight[n] = 1 / (double)out->count;
   return STATUS_OK;
@@ -236,11 +228,11 @@ static status make_sample(const struct posterior_model *model, uint64_t seed, st
 
 status posterior_make(const struct posterior_model *model, uint64_t seed, struct posterior *out, struct error *error) {
   *out = (struct posterior){0};
-  if (model->inputs == 0 || model->inputs > POSTERIOR_INPUTS || model->outputs == 0 ||
-      model->outputs > POSTERIOR_OUTPUTS)
+  if (model->inputs == 0 || model->inputs > INFERENCE_INPUTS || model->outputs == 0 ||
+      model->outputs > INFERENCE_OUTPUTS)
     return status_fail(error, STATUS_CONTENT, "a fit has 1 to %d inputs and 1 to %d measured numbers, not %zu and %zu",
-                       POSTERIOR_INPUTS, POSTERIOR_OUTPUTS, model->inputs, model->outputs);
-  if (model->inputs <= POSTERIOR_GRID_INPUTS) {
+                       INFERENCE_INPUTS, INFERENCE_OUTPUTS, model->inputs, model->outputs);
+  if (model->inputs <= GRID_INPUTS) {
     const status code = make_grid(model, out, error);
     if (code != STATUS_OK || effective_nodes(out) >= FEWEST_NODES)
       return code;
@@ -319,7 +311,7 @@ size_t posterior_node(const struct posterior *posterior, double p) {
 /* Mean and standard deviation of output k at evenly drawn nodes. */
 static void expect_at_nodes(const struct posterior_model *model, const struct posterior *posterior, size_t k,
                             double mean[PREDICTED_NODES], double deviation[PREDICTED_NODES]) {
-  double m[POSTERIOR_OUTPUTS], c[POSTERIOR_OUTPUTS * POSTERIOR_OUTPUTS];
+  double m[INFERENCE_OUTPUTS], c[INFERENCE_OUTPUTS * INFERENCE_OUTPUTS];
   for (size_t n = 0; n < PREDICTED_NODES; n++) {
     const size_t node = posterior_node(posterior, ((double)n + 0.5) / PREDICTED_NODES);
     posterior_expect(model, posterior->z + node * posterior->inputs, m, c);

@@ -1,5 +1,5 @@
 /* Variance over seeds, and the covariance of means with shared seeds. */
-#include "analysis/inference/seed_scatter.h"
+#include "analysis/inference/inference.h"
 
 #include <gsl/gsl_sf_psi.h>
 #include <math.h>
@@ -43,7 +43,7 @@ static double pooled_variance(const struct seed_scatter_runs *runs, size_t *free
 
 /* Weighted least squares of ln(s^2) - its bias on 1 and x, with a prior on the slopes. */
 static void fit_line(const struct seed_scatter_runs *runs, double pooled, struct seed_scatter *out) {
-  enum { MOST = SEED_SCATTER_INPUTS + 1 };
+  enum { MOST = INFERENCE_INPUTS + 1 };
   const size_t n = runs->inputs + 1;
   double normal[MOST * MOST] = {0}, right[MOST] = {0}, row[MOST];
   for (size_t i = 0; i < runs->points; i++) {
@@ -117,9 +117,9 @@ static void find_shape(const struct seed_scatter_runs *runs, struct seed_scatter
 status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, struct seed_scatter *out,
                         struct error *error) {
   *out = (struct seed_scatter){.inputs = runs->inputs};
-  if (runs->inputs > SEED_SCATTER_INPUTS)
+  if (runs->inputs > INFERENCE_INPUTS)
     return status_fail(error, STATUS_CONTENT, "%zu inputs are too many for a fit: at most %d", runs->inputs,
-                       SEED_SCATTER_INPUTS);
+                       INFERENCE_INPUTS);
   const double pooled = pooled_variance(runs, &out->freedom);
   if (out->freedom == 0)
     return status_fail(error, STATUS_CONTENT,

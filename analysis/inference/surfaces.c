@@ -1,5 +1,5 @@
 /* Fits surfaces to runs. */
-#include "analysis/inference/surfaces.h"
+#include "analysis/inference/inference.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -124,9 +124,9 @@ static status fit_output(const struct surfaces_runs *runs, const bool *bounded, 
 status surfaces_fit(const struct surfaces_runs *runs, const struct posterior_datum *data, const bool *bounded,
                     struct surfaces *out, struct error *error) {
   *out = (struct surfaces){.model = {.inputs = runs->inputs, .outputs = runs->outputs}};
-  if (runs->outputs > POSTERIOR_OUTPUTS || runs->inputs > POSTERIOR_INPUTS)
+  if (runs->outputs > INFERENCE_OUTPUTS || runs->inputs > INFERENCE_INPUTS)
     return status_fail(error, STATUS_CONTENT, "a fit has at most %d inputs and %d measured numbers, not %zu and %zu",
-                       POSTERIOR_INPUTS, POSTERIOR_OUTPUTS, runs->inputs, runs->outputs);
+                       INFERENCE_INPUTS, INFERENCE_OUTPUTS, runs->inputs, runs->outputs);
   memcpy(out->model.bounded, bounded, runs->inputs * sizeof *bounded);
   status code = STATUS_OK;
   for (size_t k = 0; code == STATUS_OK && k < runs->outputs; k++) {
@@ -144,7 +144,7 @@ status surfaces_fit(const struct surfaces_runs *runs, const struct posterior_dat
 }
 
 void surfaces_clear(struct surfaces *surfaces) {
-  for (size_t k = 0; k < POSTERIOR_OUTPUTS; k++) {
+  for (size_t k = 0; k < INFERENCE_OUTPUTS; k++) {
     kriging_free(surfaces->surface[k]);
     surfaces->surface[k] = NULL;
   }
@@ -153,7 +153,7 @@ void surfaces_clear(struct surfaces *surfaces) {
 /* Mean position of the last points. */
 static void middle_of(const struct surfaces_runs *runs, const bool *bounded, size_t members, double *x) {
   struct posterior_model place = {.inputs = runs->inputs};
-  double z[POSTERIOR_INPUTS] = {0};
+  double z[INFERENCE_INPUTS] = {0};
   memcpy(place.bounded, bounded, runs->inputs * sizeof *bounded);
   for (size_t i = runs->points - members; i < runs->points; i++)
     for (size_t a = 0; a < runs->inputs; a++)
@@ -164,7 +164,7 @@ static void middle_of(const struct surfaces_runs *runs, const bool *bounded, siz
 status surfaces_errors(const struct surfaces_runs *runs, const struct posterior_datum *data, const bool *bounded,
                        size_t members, double *gamma, struct error *error) {
   const size_t d = runs->outputs;
-  double x[POSTERIOR_INPUTS], deviation[POSTERIOR_OUTPUTS];
+  double x[INFERENCE_INPUTS], deviation[INFERENCE_OUTPUTS];
   middle_of(runs, bounded, members, x);
   find_correlations(runs, gamma);
   for (size_t k = 0; k < d; k++) {

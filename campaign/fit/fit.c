@@ -74,8 +74,8 @@ static status find_inputs(struct fit *fit, struct error *error) {
                          "vary.%s is a list of values; a fit needs a prior law: {uniform: [a, b]}, {log_uniform: [a, "
                          "b]}, {normal: ...} or {lognormal: ...}",
                          axis->row->path);
-    if (fit->inputs == POSTERIOR_INPUTS)
-      return status_fail(error, STATUS_CONTENT, "more than %d unknown inputs", POSTERIOR_INPUTS);
+    if (fit->inputs == INFERENCE_INPUTS)
+      return status_fail(error, STATUS_CONTENT, "more than %d unknown inputs", INFERENCE_INPUTS);
     fit->bounded[fit->inputs] = axis->kind == DESIGN_AXIS_UNIFORM || axis->kind == DESIGN_AXIS_LOG_UNIFORM;
     fit->axis[fit->inputs++] = i;
   }

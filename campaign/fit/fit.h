@@ -11,10 +11,7 @@
 #ifndef CLAST_CAMPAIGN_FIT_FIT_H
 #define CLAST_CAMPAIGN_FIT_FIT_H
 
-#include "analysis/inference/approximate.h"
-#include "analysis/inference/ensemble_kalman.h"
-#include "analysis/inference/identify.h"
-#include "analysis/inference/surfaces.h"
+#include "analysis/inference/inference.h"
 #include "campaign/document/observed.h"
 #include "campaign/driver/series.h"
 #include "db/ask/resolution.h"
@@ -43,8 +40,8 @@ struct fit {
   const char *scene_reference;     /* from the current folder; borrowed */
   struct fit_rule rule;
 
-  size_t inputs, axis[POSTERIOR_INPUTS]; /* axis of the campaign of each unknown input */
-  bool bounded[POSTERIOR_INPUTS];
+  size_t inputs, axis[INFERENCE_INPUTS]; /* axis of the campaign of each unknown input */
+  bool bounded[INFERENCE_INPUTS];
   struct posterior_datum data[OBSERVED_DATA];      /* a count N is compared as ln(1 + N) */
   struct ask_resolution resolution[OBSERVED_DATA]; /* from a study in the store, for data without `resolution` */
 

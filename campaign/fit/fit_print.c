@@ -46,7 +46,7 @@ static status print_inputs(const struct fit *fit, bool check, struct error *erro
  * measurement. */
 static double seeds_of(const struct fit *fit, size_t k) {
   const struct observed_datum *datum = &fit->observed->data[k];
-  double x[POSTERIOR_INPUTS];
+  double x[INFERENCE_INPUTS];
   posterior_place(&fit->surfaces.model, fit->found.centre, x);
   const double variance = seed_scatter_variance(&fit->surfaces.scatter[k], x) / (double)fit->data[k].specimens;
   return sqrt(variance) * (datum->ask.kind == ASK_SPECIMENS_COUNT ? 1 + datum->value : 1);

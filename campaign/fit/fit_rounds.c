@@ -204,8 +204,8 @@ static status after_ensemble(struct fit *fit, struct error *error) {
  * errors of measurement and resolution are drawn at random for each particle. */
 static void find_distances(struct fit *fit, double *distance) {
   const size_t d = fit->observed->datum_count;
-  double middle[POSTERIOR_INPUTS], c[POSTERIOR_INPUTS * POSTERIOR_INPUTS];
-  double mean[POSTERIOR_OUTPUTS], spread[POSTERIOR_OUTPUTS * POSTERIOR_OUTPUTS];
+  double middle[INFERENCE_INPUTS], c[INFERENCE_INPUTS * INFERENCE_INPUTS];
+  double mean[INFERENCE_OUTPUTS], spread[INFERENCE_OUTPUTS * INFERENCE_OUTPUTS];
   posterior_moments(&fit->posterior, middle, c);
   posterior_expect(&fit->surfaces.model, middle, mean, spread);
   for (size_t n = 0; n < fit->proposed; n++) {

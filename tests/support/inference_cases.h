@@ -8,9 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/inference/ensemble_kalman.h"
-#include "analysis/inference/identify.h"
-#include "analysis/inference/surfaces.h"
+#include "analysis/inference/inference.h"
 #include "engine/random.h"
 
 /* Standard normal numbers of a test. The program does not use purpose 100. */
@@ -25,8 +23,8 @@ typedef double (*case_model)(const double *u, size_t k, uint64_t seed);
 
 struct case_fit {
   size_t inputs, outputs, points;
-  double z[CASE_POINTS * POSTERIOR_INPUTS];
-  double values[POSTERIOR_OUTPUTS * CASE_POINTS * CASE_REPLICATES]; /* packed: outputs x points x replicates */
+  double z[CASE_POINTS * INFERENCE_INPUTS];
+  double values[INFERENCE_OUTPUTS * CASE_POINTS * CASE_REPLICATES]; /* packed: outputs x points x replicates */
   struct surfaces surfaces;
   struct posterior posterior;
   size_t rounds;
@@ -53,7 +51,7 @@ static inline struct surfaces_runs case_runs(const struct case_fit *fit, double 
 
 /* A round of the ensemble: runs of its members with seeds first_seed + r. */
 static inline void case_run(struct case_fit *fit, case_model model, const double *members, uint64_t first_seed) {
-  double u[POSTERIOR_INPUTS];
+  double u[INFERENCE_INPUTS];
   for (size_t j = 0; j < CASE_MEMBERS; j++, fit->points++) {
     memcpy(fit->z + fit->points * fit->inputs, members + j * fit->inputs, fit->inputs * sizeof(double));
     case_quantiles(fit->inputs, members + j * fit->inputs, u);
@@ -68,9 +66,9 @@ static inline void case_run(struct case_fit *fit, case_model model, const double
 static inline status case_solve(struct case_fit *fit, case_model model, const struct posterior_datum *data,
                                 const bool *bounded, uint64_t seed, struct error *error) {
   const size_t p = fit->inputs, d = fit->outputs;
-  static double packed[POSTERIOR_OUTPUTS * CASE_POINTS * CASE_REPLICATES];
-  double members[CASE_MEMBERS * POSTERIOR_INPUTS], g[CASE_MEMBERS * POSTERIOR_OUTPUTS], y[POSTERIOR_OUTPUTS];
-  double gamma[POSTERIOR_OUTPUTS * POSTERIOR_OUTPUTS];
+  static double packed[INFERENCE_OUTPUTS * CASE_POINTS * CASE_REPLICATES];
+  double members[CASE_MEMBERS * INFERENCE_INPUTS], g[CASE_MEMBERS * INFERENCE_OUTPUTS], y[INFERENCE_OUTPUTS];
+  double gamma[INFERENCE_OUTPUTS * INFERENCE_OUTPUTS];
   struct ensemble_kalman e =
       {.members = CASE_MEMBERS, .inputs = p, .outputs = d, .z = members, .g = g, .y = y, .gamma = gamma, .seed = seed};
   /* A Latin hypercube: each stratum j of input i is given to one member. The strides have no divisor in common with the

@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "analysis/analysis.h"
-#include "analysis/inference/approximate.h"
+#include "analysis/inference/inference.h"
 #include "tests/support/inference_cases.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

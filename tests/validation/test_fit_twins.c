@@ -29,18 +29,18 @@ static double skewed(const double *u, size_t k, uint64_t seed) {
 }
 
 struct count {
-  size_t cases, held[POSTERIOR_INPUTS], rounds;
-  double width[POSTERIOR_INPUTS];
+  size_t cases, held[INFERENCE_INPUTS], rounds;
+  double width[INFERENCE_INPUTS];
 };
 
 static void run_twins(size_t inputs, size_t outputs, case_model model, size_t number, struct count *count) {
   static struct case_fit fit;
-  const bool bounded[POSTERIOR_INPUTS] = {true, true, true, true};
+  const bool bounded[INFERENCE_INPUTS] = {true, true, true, true};
   struct error error;
   *count = (struct count){.cases = number};
   for (size_t c = 0; c < number; c++) {
-    struct posterior_datum data[POSTERIOR_OUTPUTS];
-    double truth[POSTERIOR_INPUTS];
+    struct posterior_datum data[INFERENCE_OUTPUTS];
+    double truth[INFERENCE_INPUTS];
     for (size_t i = 0; i < inputs; i++)
       truth[i] = random_draw(c, 100, 1000000007, i);
     for (size_t k = 0; k < outputs; k++) {
