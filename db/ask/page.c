@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/scatter.h"
 #include "analysis/statistics/sample.h"
+#include "analysis/statistics/scatter.h"
 #include "db/ask/canned.h"
 #include "db/ask/columns.h"
 #include "db/ask/group.h"

@@ -160,7 +160,7 @@ bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
     *row = (struct ask_pairs_row){{first->point, second->point},
                                   first->inputs,
                                   sample_difference(first->count, a->values + first->first, second->count,
-                                                     b->values + second->first, 0.95)};
+                                                    b->values + second->first, 0.95)};
     pairs->found++;
     return true;
   }

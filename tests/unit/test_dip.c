@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "analysis/statistics/scatter.h"
 #include "analysis/statistics/sample.h"
+#include "analysis/statistics/scatter.h"
 #include "engine/random.h"
 
 /* The definition, by all pairs and triples of knots. A distribution function G is within d of F at both sides of every
@@ -123,7 +123,8 @@ static void large_samples(void **state) {
   (void)state;
   /* Maechler's diptest documents p = 0.087 for the 63 values of its data set statfaculty, whose dip is 0.0595. */
   assert_true(fabs(scatter_dip_share(63, 0.05952381) - 0.087) < 0.02);
-  const double share = scatter_dip_share(1000, 0.5 / sqrt(1000)), larger = scatter_dip_share(100000, 0.5 / sqrt(100000));
+  const double share = scatter_dip_share(1000, 0.5 / sqrt(1000)),
+               larger = scatter_dip_share(100000, 0.5 / sqrt(100000));
   assert_true(share > 0.01 && share < 0.1 && fabs(larger - share) < 1e-12);
   assert_true(isnan(scatter_dip_share(3, 0.2)));
 }
