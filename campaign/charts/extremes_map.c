@@ -1,5 +1,5 @@
 /* Makes rows of tiles from the rows of a store. Inputs with more than ten values are divided into ten ranges. */
-#include "campaign/charts/extremes_map.h"
+#include "campaign/charts/charts.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Collects the tiles of a map and draws them. */
-#include "campaign/charts/map_tiles.h"
+#include "campaign/charts/charts.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -45,21 +45,21 @@ static status add(void *context, const struct quantity_row *row, struct error *e
 static status draw(struct store *store, const struct map_tiles *map, const struct picture_page *page,
                    struct error *error) {
   const struct quantity *quantity = &map->quantity;
-  char x[CHART_OPTION_LABEL], y[CHART_OPTION_LABEL], z[CHART_OPTION_LABEL];
+  char x[CHARTS_LABEL], y[CHARTS_LABEL], z[CHARTS_LABEL];
   char title[ASK_GROUP_POOLED + 400], caption[1100], pooled[ASK_GROUP_POOLED], intervals[600], resolution[400];
-  status code = chart_option_axis(store, quantity->column[0], x, error);
+  status code = charts_axis(store, quantity->column[0], x, error);
   if (code == STATUS_OK)
-    code = chart_option_axis(store, quantity->column[1], y, error);
+    code = charts_axis(store, quantity->column[1], y, error);
   if (code == STATUS_OK)
-    code = chart_option_axis(store, quantity->name, z, error);
+    code = charts_axis(store, quantity->name, z, error);
   if (code)
     return code;
-  chart_option_labels(quantity->pooled, pooled, sizeof pooled);
+  charts_labels(quantity->pooled, pooled, sizeof pooled);
   snprintf(title, sizeof title, "%s: %s%s%s", z, quantity->exponent ? "fit to all runs of a point" : "mean over seeds",
            *pooled ? " and " : "", pooled);
   title[0] = (char)toupper((unsigned char)title[0]);
-  chart_option_intervals(quantity->pooled, intervals, sizeof intervals);
-  chart_option_resolution(store, quantity->name, "", resolution, sizeof resolution);
+  charts_intervals(quantity->pooled, intervals, sizeof intervals);
+  charts_resolution(store, quantity->name, "", resolution, sizeof resolution);
   if (map->widest > 0)
     snprintf(caption, sizeof caption, "At most \xc2\xb1 %.2g: %s; %s", map->widest, intervals, resolution);
   else

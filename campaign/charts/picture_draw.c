@@ -1,5 +1,5 @@
 /* Draws the body of a fields file: grains in the plane or particles in space, as the file holds them. */
-#include "campaign/charts/picture_draw.h"
+#include "campaign/charts/charts.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -167,7 +167,7 @@ static status draw_profile(const char *fields, const char *picture, const struct
   if (code)
     goto cleanup;
   name_look(&(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
-  const struct picture_page page = chart_option_page(picture, &options->chart);
+  const struct picture_page page = charts_page(picture, &options->chart);
   const struct picture_words words = {options->caption ? options->caption : title, NULL, "depth at the start (m)",
                                       NULL};
   code = picture_profile(&page, &words, count, depth, panels, profile, error);

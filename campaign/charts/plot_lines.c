@@ -1,5 +1,5 @@
 /* Collects the lines of a plot and draws them. */
-#include "campaign/charts/plot_lines.h"
+#include "campaign/charts/charts.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -118,9 +118,9 @@ static void label_lines(struct plot_lines *plot, const char *by) {
 
 /* "threshold of beams in angle (rad): mean over seeds" */
 static void title_of(const struct quantity *quantity, const char *y, char *title, size_t size) {
-  char pooled[ASK_GROUP_POOLED], x[CHART_OPTION_LABEL];
-  chart_option_labels(quantity->pooled, pooled, sizeof pooled);
-  chart_option_label(quantity->column[0], x);
+  char pooled[ASK_GROUP_POOLED], x[CHARTS_LABEL];
+  charts_labels(quantity->pooled, pooled, sizeof pooled);
+  charts_label(quantity->column[0], x);
   snprintf(title, size, "%s over %s: %s%s%s", y, x,
            quantity->exponent ? "fit to all runs of a point" : "mean over seeds", *pooled ? " and " : "", pooled);
   if (*title >= 'a' && *title <= 'z')
@@ -129,13 +129,13 @@ static void title_of(const struct quantity *quantity, const char *y, char *title
 
 static status draw(struct store *store, struct plot_lines *plot, const struct picture_page *page, struct error *error) {
   const struct quantity *quantity = &plot->quantity;
-  char x[CHART_OPTION_LABEL], by[CHART_OPTION_LABEL] = "", y[CHART_OPTION_LABEL], name[CHART_OPTION_LABEL];
-  char title[ASK_GROUP_POOLED + 3 * CHART_OPTION_LABEL], caption[1200], intervals[600], resolution[400];
-  status code = chart_option_axis(store, quantity->column[0], x, error);
+  char x[CHARTS_LABEL], by[CHARTS_LABEL] = "", y[CHARTS_LABEL], name[CHARTS_LABEL];
+  char title[ASK_GROUP_POOLED + 3 * CHARTS_LABEL], caption[1200], intervals[600], resolution[400];
+  status code = charts_axis(store, quantity->column[0], x, error);
   if (code == STATUS_OK && quantity->axes == 2)
-    code = chart_option_axis(store, quantity->column[1], by, error);
+    code = charts_axis(store, quantity->column[1], by, error);
   if (code == STATUS_OK)
-    code = chart_option_axis(store, quantity->name, y, error);
+    code = charts_axis(store, quantity->name, y, error);
   if (code)
     return code;
   label_lines(plot, by);
@@ -145,10 +145,10 @@ static status draw(struct store *store, struct plot_lines *plot, const struct pi
     curves[i].count = plot->line[i].count;
     curves[i].mean = plot->line[i].means;
   }
-  chart_option_label(quantity->name, name);
+  charts_label(quantity->name, name);
   title_of(quantity, name, title, sizeof title);
-  chart_option_intervals(quantity->pooled, intervals, sizeof intervals);
-  chart_option_resolution(store, quantity->name, "thin bars add ", resolution, sizeof resolution);
+  charts_intervals(quantity->pooled, intervals, sizeof intervals);
+  charts_resolution(store, quantity->name, "thin bars add ", resolution, sizeof resolution);
   snprintf(caption, sizeof caption, "Bars: %s; %s", intervals, resolution);
   return picture_curves(page, &(struct picture_words){title, caption, x, y}, plot->count, curves, error);
 }

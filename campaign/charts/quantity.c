@@ -1,5 +1,5 @@
 /* Reads the quantity from groups of runs, or fits the exponent of each point. */
-#include "campaign/charts/quantity.h"
+#include "campaign/charts/charts.h"
 
 #include <stdio.h>
 #include <string.h>

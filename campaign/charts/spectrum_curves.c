@@ -1,5 +1,5 @@
 /* Makes the curves of spectra with their fits, and draws them. */
-#include "campaign/charts/spectrum_curves.h"
+#include "campaign/charts/charts.h"
 
 #include <math.h>
 #include <stdio.h>

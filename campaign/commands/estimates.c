@@ -1,6 +1,6 @@
 /* `clast estimates STORE`: the share of the largest fragment and the exponents of every point, pooled over seeds.
  * Computed from the masses in the store each time, so that they include all present runs. */
-#include "campaign/print/estimates_table.h"
+#include "campaign/print/print.h"
 
 #include "campaign/commands/commands.h"
 
@@ -13,9 +13,9 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct ask_points_choice choice = {.campaign = options->campaign, .point = options->point};
   status code = ask_points_known(store, options->point, error);
   if (code == STATUS_OK)
-    code = estimates_table_print(store, &choice, line->format, stdout, error);
+    code = print_estimates(store, &choice, line->format, stdout, error);
   if (code == STATUS_OK && line->format == TABLE_TEXT)
-    estimates_table_explain(store);
+    print_estimates_legend(store);
   return code;
 }
 

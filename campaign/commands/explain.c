@@ -1,15 +1,358 @@
-/* `clast explain [PATH|WORD|SCENE]`: what an input or result means; what a scene models and costs. */
+/* `clast explain [PATH|WORD|SCENE]`: every path that has a row (of engines, the outcome, estimates and campaigns), the
+ * words of the glossary, the columns of the store, and the model of a scene with its cost and its active inputs. */
+#include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/estimates.h"
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/explain_path.h"
-#include "campaign/terminal/explain_scene.h"
-#include "campaign/terminal/table.h"
+#include "campaign/document/campaign_keys.h"
+#include "campaign/print/print.h"
+#include "db/store/schema.h"
 #include "engine/file_name.h"
+#include "engine/scene_settings.h"
+#include "schemas/text.h"
 
 struct options {
   struct option_list set;
 };
+
+/* ---- words ---- */
+
+/* glossary.txt, embedded by CMakeLists.txt: words, with their other words behind them; indented, their meaning. Entries
+ * are separated by empty lines. */
+extern const char glossary_text[];
+enum { WORDS = 128 };
+
+/* Copies the words and the meaning of the entry at *text, and goes on to the next one. False: there is none. */
+static bool read_entry(const char **text, char words[WORDS], char meaning[1024]) {
+  if (!**text)
+    return false;
+  const char *from = strchr(*text, '\n'), *end = strstr(from, "\n\n");
+  const size_t length = end ? (size_t)(end - from) : strlen(from) - 1;
+  snprintf(words, WORDS, "%.*s", (int)(from - *text), *text);
+  snprintf(meaning, 1024, "%.*s", (int)length, from);
+  *text = end ? end + 2 : "";
+  return true;
+}
+
+static bool explain_column(const char *word) {
+  size_t found = 0;
+  for (size_t t = 0; t < schema_tables_count; t++)
+    for (size_t i = 0; i < schema_tables[t].count; i++) {
+      const struct schema_column *column = &schema_tables[t].columns[i];
+      if (strcmp(column->name, word) != 0)
+        continue;
+      if (found++ == 0)
+        printf("%s: a column of a store\n", word);
+      printf("  in %s: %s%s%s\n", schema_tables[t].name, column->meaning, column->unit ? ", " : "",
+             column->unit ? column->unit : "");
+    }
+  return found > 0;
+}
+
+static bool explain_exponent(const char *word) {
+  enum exponent_method method;
+  enum estimates_window window;
+  struct error missed;
+  bool is = false;
+  if (estimates_named(word, &is, &method, &window, &missed) != STATUS_OK || !is)
+    return false;
+  printf("%s\n    Exponent of F(m) ~ m^-beta by %s in the window %s (clast explain beta, ML, window).\n", word,
+         exponent_method_names[method], estimates_window_names[window]);
+  return true;
+}
+
+/* Prints the meaning of a word of clast or a column of the store. False: it is neither. */
+static bool explain_word(const char *word) {
+  char words[WORDS], meaning[1024];
+  for (const char *text = glossary_text; read_entry(&text, words, meaning);) {
+    if (!text_has_word(words, word))
+      continue;
+    printf("%s\n", word);
+    text_wrap(meaning, 0, 4, 96, stdout);
+    return true;
+  }
+  return explain_exponent(word) || explain_column(word);
+}
+
+/* Offers all words to the search for the nearest name. `name` keeps the one that is the nearest. */
+static void guess_word(struct text_guess *guess, char name[WORDS]) {
+  char words[WORDS], meaning[1024];
+  for (const char *text = glossary_text; read_entry(&text, words, meaning);) {
+    struct text_guess offered = *guess;
+    words[strcspn(words, " ")] = '\0';
+    text_guess_offer(&offered, words);
+    if (offered.nearest != words)
+      continue;
+    snprintf(name, WORDS, "%s", words);
+    *guess = offered;
+    guess->nearest = name;
+  }
+}
+
+/* The path of a result by one of its names in tables: "energy_kinetic" of "result_dem_energy_kinetic", and of
+ * "energy_kinetic_mean". *said: meaning of the rest of the name, or NULL. The result points into `name` or `plain`. */
+static const char *result_of(const char *name, char plain[256], const char **said) {
+  static const char *const ends[][2] = {{"_mean", "mean over the runs of a point"},
+                                        {"_sd", "standard deviation between the runs of a point"},
+                                        {"_se", "standard error of the mean over the runs of a point"},
+                                        {"_resolution_verdict", "what is known of the error of the resolution"},
+                                        {"_resolution", "how far finer settings may move the result"},
+                                        {"_hw95", "half width of the 95 % interval of the mean over seeds"}};
+  *said = NULL;
+  for (size_t i = 0; i < engine_count(); i++) {
+    char prefix[64];
+    snprintf(prefix, sizeof prefix, "result_%s_", engine_at(i)->name);
+    if (strncmp(name, prefix, strlen(prefix)) == 0) {
+      name += strlen(prefix);
+      break;
+    }
+  }
+  const size_t length = strlen(name);
+  for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+    const size_t tail = strlen(ends[i][0]);
+    if (length <= tail || length - tail >= 256 || strcmp(name + length - tail, ends[i][0]) != 0)
+      continue;
+    snprintf(plain, 256, "%.*s", (int)(length - tail), name);
+    *said = ends[i][1];
+    return plain;
+  }
+  return name;
+}
+
+/* ---- paths ---- */
+
+enum { TABLES_MAXIMUM = 24 };
+
+/* All field tables of which `clast explain` knows the paths. */
+static size_t tables(const struct field_table *list[TABLES_MAXIMUM]) {
+  size_t count = 0;
+  for (size_t i = 0; i < engine_count() && count + 5 < TABLES_MAXIMUM; i++) {
+    list[count++] = engine_at(i)->inputs;
+    list[count++] = engine_at(i)->results;
+  }
+  list[count++] = &outcome_table;
+  list[count++] = &estimates_table;
+  list[count++] = &campaign_table;
+  list[count++] = &campaign_design_table;
+  return count;
+}
+
+static bool has_prefix(const struct field_table *table, const char *prefix) {
+  size_t length = strlen(prefix);
+  for (size_t i = 0; i < table->count; i++)
+    if (strncmp(table->rows[i].path, prefix, length) == 0 && table->rows[i].path[length] == '.')
+      return true;
+  return false;
+}
+
+static void explain_key(const struct campaign_key *key) {
+  printf("%s: %s\n%s: %s\n%s", campaign_table.name, campaign_table.doc, key->name, key->doc, key->forms);
+  if (!key->table)
+    return;
+  putchar('\n');
+  field_explain(key->table, "", stdout);
+}
+
+/* Prints what the paths of all tables say about `path`. Returns how many tables know it. */
+static size_t explain_rows(const char *path, struct text_guess *guess) {
+  const struct field_table *list[TABLES_MAXIMUM];
+  const size_t count = tables(list);
+  size_t found = 0;
+  for (size_t i = 0; i < count; i++) {
+    struct error missed = {.status = STATUS_OK};
+    const struct field *row = field_find(list[i], path, &missed);
+    if (!row && !has_prefix(list[i], path)) {
+      field_guess(list[i], guess);
+      continue;
+    }
+    printf("%s%s: %s\n", found++ ? "\n" : "", list[i]->name, list[i]->doc);
+    field_explain(list[i], row ? row->path : path, stdout);
+  }
+  return found;
+}
+
+static void explain_table(const struct field_table *table, const char *before) {
+  printf("%s%s: %s\n", before, table->name, table->doc);
+  field_explain(table, "", stdout);
+}
+
+static void explain_results(void) {
+  puts("results: what a run reports. In a store they are columns of the view `runs`, with underscores for dots.\n");
+  explain_table(&outcome_table, "");
+  for (size_t i = 0; i < engine_count(); i++)
+    explain_table(engine_at(i)->results, "\n");
+}
+
+static void explain_campaign(void) {
+  explain_table(&campaign_table, "");
+  for (size_t i = 0; i < campaign_keys_count; i++)
+    printf("\n%s: %s\n%s", campaign_keys[i].name, campaign_keys[i].doc, campaign_keys[i].forms);
+}
+
+/* A word for a whole table: campaign, results, outcome, estimates, or an engine's name. */
+static bool explain_whole(const char *word) {
+  if (strcmp(word, "campaign") == 0)
+    explain_campaign();
+  else if (strcmp(word, "results") == 0)
+    explain_results();
+  else if (strcmp(word, "outcome") == 0)
+    explain_table(&outcome_table, "");
+  else if (strcmp(word, "estimates") == 0)
+    explain_table(&estimates_table, "");
+  else {
+    struct error missed;
+    const struct engine_kind *kind = engine_find(word, &missed);
+    if (!kind)
+      return false;
+    explain_table(kind->inputs, "");
+    explain_table(kind->results, "\n");
+  }
+  return true;
+}
+
+/* Explains on stdout all rows that a path, its unique ending, a section or a key names. STATUS_CONTENT: there is none;
+ * *error has the nearest known path. */
+static status explain_path(const char *path, struct error *error) {
+  struct text_guess guess = text_guess(path);
+  const struct campaign_key *key = campaign_keys_find(path);
+  const size_t found = explain_rows(path, &guess);
+  if (found)
+    return STATUS_OK;
+  if (key) {
+    explain_key(key);
+    return STATUS_OK;
+  }
+  char plain[256];
+  const char *said = NULL, *result = result_of(path, plain, &said);
+  if (explain_whole(path) || explain_word(path))
+    return STATUS_OK;
+  if (strcmp(result, path) != 0 && explain_rows(result, &guess)) {
+    printf("%s: %s%s\n", path, said ? said : "its name in a store with runs of two engines",
+           said ? ", in a store" : "");
+    return STATUS_OK;
+  }
+  for (size_t i = 0; i < campaign_keys_count; i++)
+    text_guess_offer(&guess, campaign_keys[i].name);
+  char word[WORDS];
+  guess_word(&guess, word);
+  const char *nearest = guess.nearest;
+  return status_fail(error, STATUS_CONTENT,
+                     "nothing is called \"%.128s\"%s%s%s `clast explain` lists all paths, `clast scenes` all scenes",
+                     path, nearest ? "; did you mean " : ";", nearest ? nearest : "", nearest ? "?" : "");
+}
+
+/* The row's default as text; empty for a row without default. */
+static void default_text(const struct field_table *of, const struct field *row, char *text, size_t size) {
+  text[0] = '\0';
+  if (of == &outcome_table || of == &estimates_table || (row->flags & (FIELD_REQUIRED | FIELD_DERIVED)))
+    return;
+  struct field_value value;
+  field_default(row, &value);
+  field_print(row, &value, text, size);
+}
+
+static void list_row(struct table *table, const char *of, const char *path, const char *unit, const char *value,
+                     const char *doc) {
+  char text[FIELD_TEXT_SIZE];
+  text_sentence(doc, text, sizeof text);
+  table_text(table, of);
+  table_text(table, path);
+  table_text(table, unit && strcmp(unit, "1") != 0 ? unit : NULL);
+  table_text(table, *value ? value : NULL);
+  table_text(table, text);
+}
+
+/* A table of all paths, on stdout. */
+static status explain_path_list(enum table_format format, struct error *error) {
+  const struct field_table *list[TABLES_MAXIMUM];
+  size_t count = tables(list);
+  struct table *table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"of", "path", "unit", "default", "meaning", NULL});
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < list[i]->count; k++) {
+      const struct field *row = &list[i]->rows[k];
+      char text[FIELD_TEXT_SIZE];
+      default_text(list[i], row, text, sizeof text);
+      list_row(table, list[i]->name, row->path, row->unit, text, row->doc);
+    }
+  for (size_t i = 0; i < campaign_keys_count; i++)
+    list_row(table, campaign_table.name, campaign_keys[i].name, NULL, "", campaign_keys[i].doc);
+  return table_end(table, error);
+}
+
+/* ---- scenes ---- */
+
+static void print_inputs(const struct scene *scene, FILE *out) {
+  const struct field_table *inputs = scene->kind->inputs;
+  int widest = 0;
+  for (size_t i = 0; i < inputs->count; i++) {
+    const int length = (int)strlen(inputs->rows[i].path);
+    if (length > widest && field_is_active(inputs, &inputs->rows[i], scene->inputs))
+      widest = length;
+  }
+  for (size_t i = 0; i < inputs->count; i++) {
+    const struct field *row = &inputs->rows[i];
+    if (!field_is_active(inputs, row, scene->inputs))
+      continue;
+    struct field_value value;
+    char text[FIELD_TEXT_SIZE], doc[FIELD_TEXT_SIZE];
+    field_get(row, scene->inputs, &value);
+    if (row->kind == FIELD_REAL && !field_is_off(value.number)) /* six digits are enough for people */
+      snprintf(text, sizeof text, "%.6g%s%s", value.number, strcmp(row->unit, "1") == 0 ? "" : " ",
+               strcmp(row->unit, "1") == 0 ? "" : row->unit);
+    else
+      field_print(row, &value, text, sizeof text);
+    text_sentence(row->doc, doc, sizeof doc);
+    fprintf(out, "  %-*s  %-20s %s\n", widest, row->path, text, doc);
+  }
+}
+
+/* The same for programs. */
+static status list_inputs(const struct scene *scene, enum table_format format, struct error *error) {
+  const struct field_table *inputs = scene->kind->inputs;
+  struct table *table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"path", "value", "unit", "meaning", NULL});
+  for (size_t i = 0; i < inputs->count; i++)
+    if (field_is_active(inputs, &inputs->rows[i], scene->inputs))
+      print_results_row(table, &inputs->rows[i], scene->inputs);
+  return table_end(table, error);
+}
+
+/* "basalt-sphere@draft: particles 10000, precision float" */
+static void list_settings(const struct scene *scene) {
+  for (size_t i = 0; i < scene->settings_count; i++) {
+    const struct scene_settings *settings = &scene->settings[i];
+    printf("  %s@%s:", scene->name, settings->name);
+    for (size_t j = 0; j < settings->count; j++) {
+      const struct field *row = &scene->kind->inputs->rows[settings->item[j].row];
+      printf("%s %s ", j ? "," : "", row->path);
+      field_json_value(row, &settings->item[j].value, stdout);
+      if (row->unit && strcmp(row->unit, "1") != 0)
+        printf(" %s", row->unit);
+    }
+    putchar('\n');
+  }
+}
+
+/* Prints on stdout; for programs only the inputs. */
+static status explain_scene(const struct scene *scene, enum table_format format, struct error *error) {
+  if (format != TABLE_TEXT)
+    return list_inputs(scene, format, error);
+  char *description = scene->kind->describe(scene->inputs);
+  if (!description)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  printf("%s, engine %s\n\n%s%s\ninputs:\n", scene->name, scene->kind->name, description,
+         *description && description[strlen(description) - 1] == '\n' ? "" : "\n");
+  free(description);
+  print_inputs(scene, stdout);
+  if (scene->settings_count > 0)
+    puts("\nnamed settings (campaign/accuracy.md):");
+  list_settings(scene);
+  return STATUS_OK;
+}
+
+/* ---- the command ---- */
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;

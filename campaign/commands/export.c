@@ -2,9 +2,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/export/cinema.h"
-#include "campaign/export/export_crate.h"
-#include "campaign/export/export_files.h"
+#include "campaign/export/export.h"
 
 struct options {
   const char *per, *license, *author;

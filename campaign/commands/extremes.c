@@ -1,7 +1,7 @@
 /* `clast extremes STORE`: which runs of a store are safe, warned or refused, and why. */
-#include "campaign/charts/extremes_map.h"
+#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/rows.h"
+#include "campaign/terminal/table.h"
 #include "db/ask/campaign.h"
 
 enum { PICTURE_WIDTH = 1200 };
@@ -15,11 +15,11 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct options *options = line->options;
   const bool both = line->format == TABLE_TEXT; /* programs get one table */
   if (both || !options->why)
-    TRY(rows_print(ask_campaign_extremes(store, error), false, line->format, stdout));
+    TRY(table_answer(ask_campaign_extremes(store, error), false, line->format, stdout));
   if (both)
     putchar('\n');
   if (both || options->why)
-    TRY(rows_print(ask_campaign_reasons(store, error), false, line->format, stdout));
+    TRY(table_answer(ask_campaign_reasons(store, error), false, line->format, stdout));
   return options->picture ? extremes_map_draw(store, options->picture, PICTURE_WIDTH, error) : STATUS_OK;
 }
 

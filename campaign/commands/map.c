@@ -1,5 +1,5 @@
 /* `clast map STORE PICTURE`: a quantity over two varied inputs, as a picture. */
-#include "campaign/charts/map_tiles.h"
+#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
 
 struct options {
@@ -16,7 +16,7 @@ static status check(const struct command_line *line, struct error *error) {
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  const struct picture_page page = chart_option_page(line->arguments[1], &options->chart);
+  const struct picture_page page = charts_page(line->arguments[1], &options->chart);
   return map_tiles_draw(store, options->x, options->y, options->quantity, &page, error);
 }
 

@@ -1,5 +1,5 @@
 /* `clast picture FIELDS PICTURE`: draws the body of a fields file, whichever engine wrote it. */
-#include "campaign/charts/picture_draw.h"
+#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
 
 static status run(const struct command_line *line, struct error *error) {

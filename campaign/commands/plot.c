@@ -1,5 +1,5 @@
 /* `clast plot STORE PICTURE`: a result or an exponent over one varied input, a line for each value of another. */
-#include "campaign/charts/plot_lines.h"
+#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
 
 struct options {
@@ -16,7 +16,7 @@ static status check(const struct command_line *line, struct error *error) {
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  const struct picture_page page = chart_option_page(line->arguments[1], &options->chart);
+  const struct picture_page page = charts_page(line->arguments[1], &options->chart);
   return plot_lines_draw(store, options->x, options->by, options->quantity, &page, error);
 }
 

@@ -2,8 +2,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/print/canned_table.h"
-#include "campaign/terminal/rows.h"
+#include "campaign/terminal/table.h"
 #include "db/ask/canned.h"
 
 enum { PARAMETERS_MAXIMUM = 64 };
@@ -40,15 +39,32 @@ static status ask(struct store *store, const struct command_line *line, struct e
     return STATUS_USAGE;
   TRY(read_parameters(options, &parameters, error));
   TRY(ask_register_functions(store, error));
-  return rows_print(answer_to_user(store, canned ? canned->sql : line->arguments[1], options->with.count,
-                                   parameters.all, (double)options->seconds, error),
-                    false, line->format, stdout);
+  return table_answer(answer_to_user(store, canned ? canned->sql : line->arguments[1], options->with.count,
+                                     parameters.all, (double)options->seconds, error),
+                      false, line->format, stdout);
+}
+
+/* Lists the canned queries: name, parameters and meaning; for programs also the SQL. */
+static status print_canned(enum table_format format, struct error *error) {
+  struct table *table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"name", "with", "answers", NULL});
+  if (format != TABLE_TEXT)
+    table_column(table, "sql", NULL);
+  for (size_t i = 0; i < ask_canned_count(); i++) {
+    const struct query_canned *canned = ask_canned_at(i);
+    table_text(table, canned->name);
+    table_text(table, canned->parameters);
+    table_text(table, canned->doc);
+    if (format != TABLE_TEXT)
+      table_text(table, canned->sql);
+  }
+  return table_end(table, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   if (options->list)
-    return canned_table_print(line->format, error);
+    return print_canned(line->format, error);
   if (line->count == 0 || (line->count == 2) == (options->named != NULL))
     return status_fail(error, STATUS_USAGE,
                        "clast query needs a store, and either an SQL statement or --named NAME; `clast query --list` "

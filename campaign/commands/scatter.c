@@ -2,9 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
-#include "campaign/print/scatter_print.h"
-#include "campaign/terminal/chart_option.h"
+#include "campaign/print/print.h"
 #include "db/ask/points.h"
 #include "engine/outcome.h"
 
@@ -36,13 +36,13 @@ static status ask(struct store *store, const struct command_line *line, struct e
   if (code)
     return code;
   if (options->split)
-    return scatter_print_split(store, &choice, line->format, error);
-  code = options->plot ? scatter_print_plots(store, &choice, options->ascii, error)
-                       : scatter_print_rows(store, &choice, line->format, error);
+    return print_shares_variance(store, &choice, line->format, error);
+  code = options->plot ? print_scatter_plots(store, &choice, options->ascii, error)
+                       : print_scatter_rows(store, &choice, line->format, error);
   if (code || !options->picture)
     return code;
-  const struct picture_page page = chart_option_page(options->picture, &options->chart);
-  return scatter_print_picture(store, &choice, &page, error);
+  const struct picture_page page = charts_page(options->picture, &options->chart);
+  return print_scatter_picture(store, &choice, &page, error);
 }
 
 static const struct option_row option_rows[] = {

@@ -4,7 +4,7 @@
 
 #include "campaign/commands/commands.h"
 #include "campaign/document/sensitivity_design.h"
-#include "campaign/print/sensitivity_print.h"
+#include "campaign/print/print.h"
 #include "engine/outcome.h"
 
 struct options {
@@ -28,7 +28,7 @@ static status write_design(const struct command_line *line, struct error *error)
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  return sensitivity_print(store, line->arguments[1], options->quantity, line->format, error);
+  return print_shares_sensitivity(store, line->arguments[1], options->quantity, line->format, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {

@@ -3,7 +3,7 @@
 #include "campaign/document/campaign_warn.h"
 #include "campaign/one_run/one_run.h"
 #include "campaign/one_run/resume.h"
-#include "campaign/terminal/results.h"
+#include "campaign/print/print.h"
 
 struct options {
   struct one_run_options run;
@@ -18,7 +18,7 @@ static status simulate(const struct scene *scene, const struct one_run_options *
   status code = one_run(scene, options, &result, error);
   /* Results are printed also when a file could not be written: hours of computing must not be lost for that. */
   if (result.result) {
-    const status printed = results_print(scene, options->seed, &result, format, code ? NULL : error);
+    const status printed = print_results(scene, options->seed, &result, format, code ? NULL : error);
     code = code ? code : printed;
   }
   if (code)

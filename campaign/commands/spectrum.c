@@ -1,7 +1,7 @@
 /* `clast spectrum STORE`: fragment spectra, pooled over seeds or inputs, beside a measured spectrum. */
+#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
-#include "campaign/print/spectrum_table.h"
-#include "campaign/terminal/chart_option.h"
+#include "campaign/print/print.h"
 #include "db/ask/points.h"
 #include "schemas/unit.h"
 
@@ -14,13 +14,13 @@ struct options {
 
 static status print(struct store *store, const struct options *options, const struct spectrum_choice *choice,
                     enum table_format format, struct error *error) {
-  const struct picture_page page = chart_option_page(options->picture, &options->chart);
+  const struct picture_page page = charts_page(options->picture, &options->chart);
   const struct spectrum_drawing drawing = {options->picture ? &page : NULL, options->plot, options->ascii};
   status code = ask_points_known(store, options->point, error);
   if (code == STATUS_OK && choice->measured)
-    code = spectrum_table_match(store, choice, format, error);
+    code = print_spectrum_match(store, choice, format, error);
   else if (code == STATUS_OK && !options->plot)
-    code = spectrum_table_print(store, choice, format, error);
+    code = print_spectrum(store, choice, format, error);
   if (code == STATUS_OK && (drawing.page || drawing.text))
     code = spectrum_curves_draw(store, choice, &drawing, error);
   return code;

@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
-#include "campaign/charts/quantity.h"
+#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/rows.h"
+#include "campaign/terminal/table.h"
 #include "db/ask/group.h"
 #include "engine/outcome.h"
 
@@ -51,7 +51,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct options *options = line->options;
   const char *quantity = strcmp(options->quantity, "main") == 0 ? NULL : options->quantity;
   char pooled[ASK_GROUP_POOLED] = "";
-  TRY(rows_print(ask_group(store, options->by, quantity, pooled, error), true, line->format, stdout));
+  TRY(table_answer(ask_group(store, options->by, quantity, pooled, error), true, line->format, stdout));
   if (*pooled)
     fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
   if (line->format == TABLE_TEXT)

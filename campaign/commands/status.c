@@ -1,11 +1,11 @@
 /* `clast status STORE`: the progress of each campaign of a store. */
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/rows.h"
+#include "campaign/terminal/table.h"
 #include "db/ask/campaign.h"
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const bool writing = store_is_being_written(line->arguments[0]);
-  return rows_print(ask_campaign_progress(store, writing, error), false, line->format, stdout);
+  return table_answer(ask_campaign_progress(store, writing, error), false, line->format, stdout);
 }
 
 const struct command status_command = {

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "campaign/charts/charts.h"
 #include "campaign/converge/study_print.h"
-#include "campaign/terminal/chart_option.h"
 
 enum { CURVES = PICTURE_SERIES, MARKS = STUDY_KNOBS * KNOB_LEVELS };
 
@@ -73,11 +73,11 @@ status study_picture(const struct study *study, bool of_errors, const char *path
     add_frontier(drawing);
   add_knobs(drawing, CURVES, of_errors ? error_of : mean_of);
 
-  char title[800], quantity[CHART_OPTION_LABEL], y[CHART_OPTION_LABEL + 16];
-  chart_option_label(study->quantity[0].name, quantity);
+  char title[800], quantity[CHARTS_LABEL], y[CHARTS_LABEL + 16];
+  charts_label(study->quantity[0].name, quantity);
   snprintf(y, sizeof y, "%s%s", of_errors ? "error of " : "", quantity);
   snprintf(title, sizeof title, "%s: %s over the cost of a run", study->ladder[0].base->name, y);
-  const struct picture_page page = chart_option_page(path, NULL);
+  const struct picture_page page = charts_page(path, NULL);
   const struct picture_words words =
       {title,
        of_errors ? "A mark is a level of a knob: how far finer settings may move the mean, all knobs together"

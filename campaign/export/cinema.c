@@ -1,13 +1,12 @@
 /* Draws the pictures of a Cinema database and writes its table. */
-#include "campaign/export/cinema.h"
+#include "campaign/export/export.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "campaign/charts/picture_draw.h"
-#include "campaign/charts/spectrum_curves.h"
-#include "campaign/terminal/rows.h"
+#include "campaign/charts/charts.h"
+#include "campaign/terminal/table.h"
 #include "db/ask/run.h"
 #include "schemas/file.h"
 
@@ -60,7 +59,7 @@ static status write_run(struct cinema *cinema, const struct answer *runs, struct
   cinema->not_drawn += code != STATUS_OK;
   for (size_t i = 0; i < fields; i++) {
     const struct query_value value = answer_value(runs, i);
-    rows_cell(cinema->table, &value);
+    table_value(cinema->table, &value);
   }
   file_cell(cinema, code == STATUS_OK, "run", run);
   file_cell(cinema, cinema->spectrum, "point", point);

@@ -2,7 +2,7 @@
  *
  * The graph has the crate; the program, one entity for each version that computed; an action for each session, from the
  * campaign's file to the store; and one for this export, from the store to the tables. */
-#include "campaign/export/export_crate.h"
+#include "campaign/export/export.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -13,7 +13,6 @@
 #include <time.h>
 
 #include "campaign/build_facts.h"
-#include "campaign/export/export_files.h"
 #include "db/ask/campaign.h"
 #include "schemas/file.h"
 #include "schemas/text.h"

@@ -1,14 +1,14 @@
 /* Writes views and bits of a store as text. */
-#include "campaign/export/export_files.h"
+#include "campaign/export/export.h"
 
-#include "campaign/terminal/rows.h"
+#include "db/ask/columns.h"
 #include "schemas/file.h"
 
 static const char *const exported[] = {"runs", "points", "spectra", "estimates", "column_doc"};
 
 static status write_rows(struct store *store, const char *view, enum table_format format, FILE *out,
                          struct error *error) {
-  return view ? rows_print(ask_columns_view(store, view, error), false, format, out)
+  return view ? table_answer(ask_columns_view(store, view, error), false, format, out)
               : store_export_digests(store, out, error);
 }
 

@@ -2,9 +2,9 @@
 #ifndef CLAST_CAMPAIGN_FIT_FIT_LAUNCH_H
 #define CLAST_CAMPAIGN_FIT_FIT_LAUNCH_H
 
+#include "campaign/charts/charts.h"
 #include "campaign/fit/fit.h"
 #include "campaign/launch/launch.h"
-#include "campaign/terminal/chart_option.h"
 
 struct fit_launch_options {
   struct launch_options launch;

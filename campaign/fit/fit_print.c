@@ -149,13 +149,13 @@ status fit_print(const struct fit *fit, enum table_format format, struct error *
 static void label_of(const struct fit *fit, size_t k, char *label, size_t size) {
   const struct observed_datum *datum = &fit->observed->data[k];
   const char *shot = fit->observed->shot_count > 1 ? fit->observed->shots[datum->shot].name : "";
-  char name[CHART_OPTION_LABEL];
+  char name[CHARTS_LABEL];
   if (datum->ask.kind == ASK_SPECIMENS_COUNT)
     snprintf(name, sizeof name, "fragments above %.3g M", datum->share);
   else if (datum->ask.kind == ASK_SPECIMENS_SHARE)
     snprintf(name, sizeof name, "mass share of fragments above %.3g M", datum->share);
   else
-    chart_option_label(datum->ask.row ? datum->ask.row->path : datum->quantity, name);
+    charts_label(datum->ask.row ? datum->ask.row->path : datum->quantity, name);
   snprintf(label, size, "%.40s%s%s = %.4g", shot, shot[0] ? ": " : "", name, datum->value);
 }
 
@@ -172,7 +172,7 @@ status fit_print_picture(const struct fit *fit, const char *path, const struct c
       rows[k].quantile[q] = predicted(fit, k, levels[q]);
   }
   snprintf(title, sizeof title, "%s: one more experiment, as the fit predicts it", fit->observed->name);
-  const struct picture_page page = chart_option_page(path, chart);
+  const struct picture_page page = charts_page(path, chart);
   const struct picture_words words =
       {title, "Over the posterior; with the scatter of specimens, the errors of measurement and of the resolution",
        "predicted over measured", NULL};

@@ -2,8 +2,8 @@
 #ifndef CLAST_CAMPAIGN_FIT_FIT_PRINT_H
 #define CLAST_CAMPAIGN_FIT_FIT_PRINT_H
 
+#include "campaign/charts/charts.h"
 #include "campaign/fit/fit.h"
-#include "campaign/terminal/chart_option.h"
 #include "campaign/terminal/table.h"
 
 /* For people a table of the inputs, a table of the measurements, and conclusions in sentences. For programs one table:

@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-#include "campaign/print/estimates_table.h"
+#include "campaign/print/print.h"
 #include "schemas/clock.h"
 
 enum { MANY_POINTS = 64 }; /* above this number the table at the end is printed only with --json or --csv */
@@ -39,17 +39,17 @@ static status print_table(struct store *store, const char *path, const struct as
             choice->campaign);
     return STATUS_OK;
   }
-  status code = estimates_table_print(store, choice, format, stdout, error);
+  status code = print_estimates(store, choice, format, stdout, error);
   if (!code && format == TABLE_TEXT && !quiet) {
     fflush(stdout); /* the legend comes below the table */
-    estimates_table_explain(store);
+    print_estimates_legend(store);
   }
   return code;
 }
 
 /* Reads the store again, so that it prints what any later reader will find. */
-static status print_estimates(const char *path, int64_t campaign, enum table_format format, bool quiet,
-                              struct error *error) {
+static status print_answers(const char *path, int64_t campaign, enum table_format format, bool quiet,
+                            struct error *error) {
   struct store *store = NULL;
   const struct ask_points_choice choice = {.campaign = campaign};
   TRY(store_open_reader(path, &store, error));
@@ -92,8 +92,8 @@ static status run_campaign(void *context, struct launch *launch, struct error *e
     print_summary(&summary, launching->store, wall_s, code);
   if (!done)
     return code;
-  const status printed = print_estimates(launching->store, summary.campaign_id, launching->format, quiet,
-                                         code ? NULL : error);
+  const status printed = print_answers(launching->store, summary.campaign_id, launching->format, quiet,
+                                       code ? NULL : error);
   return printed ? printed : code;
 }
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "campaign/charts/picture_draw.h"
+#include "campaign/charts/charts.h"
 #include "campaign/one_run/resume.h"
 #include "campaign/one_run/snapshots.h"
 

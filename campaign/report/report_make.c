@@ -9,7 +9,7 @@
 
 #include "analysis/report/page.h"
 #include "campaign/build_facts.h"
-#include "campaign/charts/picture_draw.h"
+#include "campaign/charts/charts.h"
 #include "db/ask/columns.h"
 #include "db/ask/page.h"
 #include "db/ask/pairs.h"
@@ -45,11 +45,11 @@ static status add_facts(struct making *making, const char *name, struct error *e
 static status add_label(void *context, const char *column, struct error *error) {
   struct making *making = context;
   struct ask_column written;
-  char label[CHART_OPTION_LABEL], unit[96];
+  char label[CHARTS_LABEL], unit[96];
   const status code = ask_columns_written(making->store, column, &written, error);
   if (code)
     return code;
-  chart_option_label(column, label);
+  charts_label(column, label);
   field_label_unit(written.unit, unit, sizeof unit);
   return ask_page_label(making->page, column, label, unit, written.factor, error);
 }

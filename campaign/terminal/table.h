@@ -12,7 +12,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "schemas/status.h"
+#include "db/ask/answer.h"
 
 enum table_format { TABLE_TEXT, TABLE_CSV, TABLE_JSON, TABLE_JSON_LINES };
 
@@ -42,6 +42,14 @@ void table_drop(struct table *table); /* frees the table without printing the re
 
 /* True when the pipe is closed or writing has failed: more rows are not needed. */
 bool table_broken(const struct table *table);
+
+/* Prints all rows of an answer as a table, and ends the answer. Headings have the units of the store's table
+ * column_doc; with `written`, a table for people shows varied inputs in the campaign's units. A closed pipe is not an
+ * error. */
+status table_answer(struct answer answer, bool written, enum table_format format, FILE *out);
+
+/* Adds one cell: number, text or missing. Not for QUERY_BLOB. */
+void table_value(struct table *table, const struct query_value *value);
 
 /* Flushes stdout; returns the same statuses as table_end. For commands that print text. */
 status table_flush(FILE *out, struct error *error);

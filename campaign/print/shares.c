@@ -1,14 +1,217 @@
-/* Reads the runs of a design block by block, and prints its indices. */
-#include "campaign/print/sensitivity_print.h"
-
+/* Shares of inputs and seeds in the variance of a result: over all points of a store, and as the sensitivity indices of
+ * a design. Both read the runs in cells, one for each set of varied inputs, with the seeds that the cells share. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "analysis/statistics/sensitivity.h"
 #include "campaign/document/sensitivity_design.h"
-#include "campaign/print/run_cells.h"
+#include "campaign/print/print.h"
+#include "db/ask/columns.h"
+#include "engine/grow.h"
 #include "schemas/text.h"
+
+struct run_cells_run {
+  int64_t seed;
+  double value;
+};
+struct run_cell {
+  size_t runs;
+  struct run_cells_run *run;  /* by seed */
+  char *input[ASK_POOL_AXES]; /* as text: a number with 17 digits, a choice, "off" */
+};
+struct run_cells {
+  size_t axes, count, room;
+  char column[ASK_POOL_AXES][ASK_GROUP_NAME];
+  struct run_cell *cell;
+};
+
+static int by_seed(const void *a, const void *b) {
+  const int64_t p = ((const struct run_cells_run *)a)->seed, q = ((const struct run_cells_run *)b)->seed;
+  return p < q ? -1 : p > q;
+}
+
+static status no_memory(struct error *error) {
+  return status_fail(error, STATUS_MEMORY, "no memory for the runs of the points");
+}
+
+static status add_cell(struct run_cells *cells, const struct ask_pool *pool, struct error *error) {
+  if (!grow_room(&cells->cell, &cells->room, cells->count + 1, sizeof *cells->cell))
+    return no_memory(error);
+  struct run_cell *cell = &cells->cell[cells->count++];
+  *cell = (struct run_cell){.run = malloc((pool->data.runs.count + 1) * sizeof *cell->run)};
+  cells->axes = pool->axes;
+  memcpy(cells->column, pool->column, sizeof cells->column);
+  for (size_t a = 0; a < pool->axes; a++) {
+    char text[ASK_POOL_TEXT] = "off";
+    if (pool->input[a].kind == QUERY_TEXT)
+      snprintf(text, sizeof text, "%s", pool->input[a].text);
+    else if (pool->input[a].kind != QUERY_NULL)
+      snprintf(text, sizeof text, "%.17g", pool->input[a].real);
+    cell->input[a] = strdup(text);
+    if (!cell->input[a])
+      return no_memory(error);
+  }
+  if (!cell->run)
+    return no_memory(error);
+  for (size_t r = 0; r < pool->data.runs.count; r++)
+    if (isfinite(pool->value[r]))
+      cell->run[cell->runs++] = (struct run_cells_run){pool->seed[r], pool->value[r]};
+  qsort(cell->run, cell->runs, sizeof *cell->run, by_seed);
+  return STATUS_OK;
+}
+
+/* Adds a cell per pool of ask_pools to `cells`, which is zeroed before the first call. */
+static status run_cells_read(struct store *store, const struct ask_pool_choice *choice, const char *quantity,
+                             struct run_cells *cells, struct error *error) {
+  ASK_POOLS pools = ask_pools(store, choice, quantity, error);
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));)
+    TRY(add_cell(cells, pool, error));
+  return ask_pools_end(&pools);
+}
+
+static void run_cells_release(struct run_cells *cells) {
+  for (size_t c = 0; c < cells->count; c++) {
+    free(cells->cell[c].run);
+    for (size_t a = 0; a < cells->axes; a++)
+      free(cells->cell[c].input[a]);
+  }
+  free(cells->cell);
+  *cells = (struct run_cells){0};
+}
+
+/* Runs of the first cell whose seed every cell has; *shared has room for them. */
+static size_t find_shared(size_t count, struct run_cell *const *cell, struct run_cells_run *shared) {
+  size_t common = 0;
+  for (size_t r = 0; r < cell[0]->runs; r++) {
+    size_t c = 1;
+    while (c < count && bsearch(&cell[0]->run[r], cell[c]->run, cell[c]->runs, sizeof *shared, by_seed))
+      c++;
+    if (c >= count)
+      shared[common++] = cell[0]->run[r];
+  }
+  return common;
+}
+
+/* Keeps the runs of a cell with these seeds. The cell has all of them; both lists are ascending. */
+static void keep_shared(struct run_cell *cell, const struct run_cells_run *shared, size_t common) {
+  size_t from = 0;
+  for (size_t r = 0; r < common; r++, from++) {
+    while (cell->run[from].seed != shared[r].seed)
+      from++;
+    cell->run[r] = cell->run[from];
+  }
+  cell->runs = common;
+}
+
+/* Puts runs with the same seeds first in all cells: the seeds that all cells have, if there are at least two (or one,
+ * and some cell has only one run). Otherwise takes as many runs as every cell has, with any seeds. Returns the number
+ * of runs per cell. */
+static size_t run_cells_balance(size_t count, struct run_cell *const *cell, bool *same_seeds) {
+  size_t least = SIZE_MAX;
+  *same_seeds = false;
+  for (size_t c = 0; c < count; c++)
+    least = cell[c]->runs < least ? cell[c]->runs : least;
+  if (count == 0 || least == 0)
+    return 0;
+  struct run_cells_run *shared = malloc(cell[0]->runs * sizeof *shared);
+  const size_t common = shared ? find_shared(count, cell, shared) : 0;
+  *same_seeds = common >= 2 || (common == 1 && least == 1);
+  for (size_t c = 0; *same_seeds && c < count; c++)
+    keep_shared(cell[c], shared, common);
+  free(shared);
+  return *same_seeds ? common : least;
+}
+
+/* ---- the split of a variance ---- */
+
+/* Numbers the values of each axis in the order of their first points. */
+static void number_levels(const struct run_cells *cells, uint32_t *level) {
+  for (size_t a = 0; a < cells->axes; a++) {
+    uint32_t next = 0;
+    for (size_t c = 0; c < cells->count; c++) {
+      size_t same = 0;
+      while (strcmp(cells->cell[same].input[a], cells->cell[c].input[a]) != 0)
+        same++;
+      level[c * cells->axes + a] = same < c ? level[same * cells->axes + a] : next++;
+    }
+  }
+}
+
+static status split(struct run_cells *cells, struct scatter_part *parts, size_t *runs, struct error *error) {
+  struct run_cell **all = calloc(cells->count + 1, sizeof *all);
+  bool same_seeds;
+  if (!all)
+    return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
+  for (size_t c = 0; c < cells->count; c++)
+    all[c] = &cells->cell[c];
+  *runs = run_cells_balance(cells->count, all, &same_seeds);
+  free(all);
+  if (cells->count < 2 || *runs < 2)
+    return status_fail(error, STATUS_USAGE, "splitting a variance needs at least two points with two runs each");
+  uint32_t *level = malloc((cells->count * cells->axes + 1) * sizeof *level);
+  double *value = malloc(cells->count * *runs * sizeof *value);
+  status code = level && value ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory to split a variance");
+  for (size_t c = 0; code == STATUS_OK && c < cells->count; c++)
+    for (size_t r = 0; r < *runs; r++)
+      value[c * *runs + r] = cells->cell[c].run[r].value;
+  if (code == STATUS_OK) {
+    number_levels(cells, level);
+    const struct scatter_table table = {cells->count, *runs, cells->axes, level, value};
+    code = scatter_split(&table, parts, error);
+  }
+  free(level);
+  free(value);
+  return code;
+}
+
+static status print_parts(const struct run_cells *cells, const struct scatter_part *parts, enum table_format format,
+                          struct error *error) {
+  static const char *const names[SCATTER_PARTS] = {"all inputs together", "seeds", "seeds, in all points alike",
+                                                   "whole"};
+  struct table *table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"part", "variance", "share", "low", "high", NULL});
+  for (size_t i = 0; i < cells->axes + SCATTER_PARTS; i++) {
+    table_text(table, i < cells->axes ? cells->column[i] : names[i - cells->axes]);
+    table_real(table, parts[i].variance);
+    table_real(table, parts[i].share);
+    table_real(table, parts[i].share - parts[i].half_width);
+    table_real(table, parts[i].share + parts[i].half_width);
+  }
+  return table_end(table, error);
+}
+
+status print_shares_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
+                             struct error *error) {
+  struct ask_column axis[ASK_POOL_AXES];
+  struct run_cells cells = {0};
+  struct scatter_part parts[ASK_POOL_AXES + SCATTER_PARTS];
+  char by[ASK_POOL_AXES * (sizeof axis[0].name + 1)] = "";
+  size_t axes = 0, runs = 0;
+  struct ask_pool_choice pool = choice->pool;
+  status code = ask_columns_axes(store, false, ASK_POOL_AXES, axis, &axes, error);
+  for (size_t a = 0; a < axes; a++)
+    text_append(by, sizeof by, "%s%s", a ? "," : "", axis[a].name);
+  if (!pool.by)
+    pool.by = by;
+  if (code == STATUS_OK)
+    code = run_cells_read(store, &pool, choice->quantity, &cells, error);
+  if (code == STATUS_OK)
+    code = split(&cells, parts, &runs, error);
+  if (code == STATUS_OK)
+    code = print_parts(&cells, parts, format, error);
+  if (code == STATUS_OK && format == TABLE_TEXT)
+    fprintf(stderr,
+            "clast: %zu points with %zu seeds each, which count alike. An input: variance of its means over the other "
+            "inputs (in a full grid; else ask `clast sensitivity`); what the inputs together have beyond their sum is "
+            "their interplay. Low, high: 95 %% interval over seeds\n",
+            cells.count, runs);
+  run_cells_release(&cells);
+  return code;
+}
+
+/* ---- sensitivity indices ---- */
 
 struct reading {
   const struct campaign *campaign;
@@ -192,8 +395,8 @@ static status print_morris(const struct reading *r, enum table_format format, st
   return code;
 }
 
-status sensitivity_print(struct store *store, const char *path, const char *quantity, enum table_format format,
-                         struct error *error) {
+status print_shares_sensitivity(struct store *store, const char *path, const char *quantity, enum table_format format,
+                                struct error *error) {
   struct campaign *campaign = NULL;
   struct reading r = {0};
   status code = campaign_load(path, &campaign, error);

@@ -1,5 +1,5 @@
 /* Names of quantities and the page of a chart. */
-#include "campaign/terminal/chart_option.h"
+#include "campaign/charts/charts.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 
 enum { WIDTH = 900 };
 
-struct picture_page chart_option_page(const char *path, const struct chart_options *options) {
+struct picture_page charts_page(const char *path, const struct chart_options *options) {
   return (struct picture_page){path, WIDTH, options && options->keep_script, options ? options->templates : NULL};
 }
 
@@ -28,9 +28,9 @@ static const struct field *row_of(const struct field_table *table, const char *c
   return NULL;
 }
 
-void chart_option_label(const char *column, char label[CHART_OPTION_LABEL]) {
+void charts_label(const char *column, char label[CHARTS_LABEL]) {
   if (strncmp(column, "beta", 4) == 0 && (column[4] == '\0' || column[4] == '_')) {
-    snprintf(label, CHART_OPTION_LABEL, "exponent \xce\xb2 of F(m) ~ m^-\xce\xb2");
+    snprintf(label, CHARTS_LABEL, "exponent \xce\xb2 of F(m) ~ m^-\xce\xb2");
     return;
   }
   char plain[256];
@@ -42,42 +42,42 @@ void chart_option_label(const char *column, char label[CHART_OPTION_LABEL]) {
       row = row_of(input ? engine_at(i)->inputs : engine_at(i)->results, input ? name : plain);
   }
   if (row)
-    field_label(row, label, CHART_OPTION_LABEL);
+    field_label(row, label, CHARTS_LABEL);
   else
-    field_label_path(column, label, CHART_OPTION_LABEL);
+    field_label_path(column, label, CHARTS_LABEL);
 }
 
-status chart_option_axis(struct store *store, const char *column, char label[CHART_OPTION_LABEL], struct error *error) {
+status charts_axis(struct store *store, const char *column, char label[CHARTS_LABEL], struct error *error) {
   char shown[96];
   struct ask_column written;
   status code = ask_columns_written(store, column, &written, error);
-  chart_option_label(column, label);
+  charts_label(column, label);
   field_label_unit(written.unit, shown, sizeof shown);
   if (*shown)
-    text_append(label, CHART_OPTION_LABEL, " (%s)", shown);
+    text_append(label, CHARTS_LABEL, " (%s)", shown);
   return code;
 }
 
-void chart_option_labels(const char *paths, char *labels, size_t size) {
+void charts_labels(const char *paths, char *labels, size_t size) {
   labels[0] = '\0';
   while (*paths) {
-    char path[256], label[CHART_OPTION_LABEL];
+    char path[256], label[CHARTS_LABEL];
     const size_t length = strcspn(paths, ",");
     snprintf(path, sizeof path, "%.*s", (int)length, paths);
-    chart_option_label(path, label);
+    charts_label(path, label);
     text_append(labels, size, "%s%s", *labels ? ", " : "", label);
     paths += length;
     paths += strspn(paths, ", ");
   }
 }
 
-void chart_option_intervals(const char *pooled, char *text, size_t size) {
+void charts_intervals(const char *pooled, char *text, size_t size) {
   char names[ASK_GROUP_POOLED];
-  chart_option_labels(pooled, names, sizeof names);
+  charts_labels(pooled, names, sizeof names);
   snprintf(text, size, "95 %% intervals over %s%s", *pooled ? "points that differ in " : "seeds", names);
 }
 
-void chart_option_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size) {
+void charts_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size) {
   struct ask_resolution resolution;
   char words[UNCERTAINTY_TEXT] = "resolution: not known";
   const char *before = "";

@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "campaign/charts/quantity.h"
-#include "campaign/print/estimates_table.h"
-#include "campaign/terminal/rows.h"
+#include "campaign/charts/charts.h"
+#include "campaign/print/print.h"
+#include "campaign/terminal/table.h"
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/columns.h"
 #include "db/ask/point.h"
@@ -64,7 +64,7 @@ static status row_for_programs(struct printing *printing, const struct ask_point
   struct table *table = printing->table;
   table_integer(table, row->point_id);
   for (size_t i = 0; i < row->input_count; i++)
-    rows_cell(table, &row->inputs[i]);
+    table_value(table, &row->inputs[i]);
   table_integer(table, row->n);
   table_integer(table, row->failed);
   table_real(table, row->mean);
@@ -123,7 +123,7 @@ static void axis_cell(struct table *table, const struct ask_column *axis, const 
   const struct query_value shown = ask_columns_value(axis, value);
   char text[sizeof axis->unit + 40];
   if ((shown.kind != QUERY_REAL && shown.kind != QUERY_INTEGER) || !*axis->unit || strcmp(axis->unit, "1") == 0) {
-    rows_cell(table, &shown);
+    table_value(table, &shown);
     return;
   }
   snprintf(text, sizeof text, "%.5g %s", shown.real, axis->unit);
@@ -232,14 +232,14 @@ static const char *const estimates_legend =
     "likelihood, without the largest fragment of each run.\n"
     "window from_5: n fragments heavier than 4.5 mean grains (or particles), from_10: than 9.5, from_2: than 1.5.\n";
 
-void estimates_table_explain(struct store *store) {
+void print_estimates_legend(struct store *store) {
   fputs(estimates_legend, stderr);
   quantity_tell_resolution(store, OUTCOME_DEFAULT, "");
   quantity_tell_resolution(store, "beta", "");
 }
 
-status estimates_table_print(struct store *store, const struct ask_points_choice *choice, enum table_format format,
-                             FILE *out, struct error *error) {
+status print_estimates(struct store *store, const struct ask_points_choice *choice, enum table_format format, FILE *out,
+                       struct error *error) {
   struct printing printing = {.store = store, .format = format};
   status code = ask_columns_axes(store, format == TABLE_TEXT, ASK_POINTS_INPUTS, printing.axis, &printing.axes, error);
   if (code)

@@ -1,11 +1,11 @@
 /* Writes spectra and their distances as rows. */
-#include "campaign/print/spectrum_table.h"
+#include "campaign/print/print.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
-#include "campaign/terminal/rows.h"
+#include "campaign/terminal/table.h"
 
 struct printing {
   const struct spectrum_choice *choice;
@@ -27,7 +27,7 @@ static void name_pools(struct printing *printing, const struct ask_pool *pool) {
 
 static void tell_pool(struct printing *printing, const struct ask_pool *pool) {
   for (size_t a = 0; a < pool->axes; a++)
-    rows_cell(printing->table, &pool->input[a]);
+    table_value(printing->table, &pool->input[a]);
   table_integer(printing->table, printing->choice->pool.by ? (int64_t)pool->points : pool->data.point_id);
 }
 
@@ -114,8 +114,8 @@ static status end_table(struct table *table, status code, struct error *error) {
   return table_end(table, error);
 }
 
-status spectrum_table_print(struct store *store, const struct spectrum_choice *choice, enum table_format format,
-                            struct error *error) {
+status print_spectrum(struct store *store, const struct spectrum_choice *choice, enum table_format format,
+                      struct error *error) {
   struct printing printing = {.choice = choice, .format = format};
   const status code = each_pool(store, print_pool, &printing, error);
   if (!printing.table && code)
@@ -151,7 +151,7 @@ static status print_match(struct printing *printing, const struct ask_pool *pool
   return STATUS_OK;
 }
 
-status spectrum_table_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
+status print_spectrum_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
                             struct error *error) {
   struct printing printing = {.choice = choice, .format = format, .complete = choice->measured->complete};
   ASK_POOLS pools = ask_pools(store, &choice->pool, NULL, error);

@@ -1,5 +1,5 @@
 /* Prints a run's results: long for people, wide for programs. */
-#include "campaign/terminal/results.h"
+#include "campaign/print/print.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,7 +26,7 @@ static bool empty(const struct field *row, const void *object) {
   return row->kind == FIELD_REAL && isnan(value.number);
 }
 
-void results_row(struct table *table, const struct field *row, const void *object) {
+void print_results_row(struct table *table, const struct field *row, const void *object) {
   char meaning[FIELD_TEXT_SIZE];
   text_sentence(row->doc, meaning, sizeof meaning);
   table_text(table, row->path);
@@ -40,7 +40,7 @@ static void list(struct table *table, const struct field_table *fields, const vo
     const struct field *row = &fields->rows[i];
     if (!empty(row, object) &&
         row->kind != FIELD_TEXT) /* else: does not apply to this scene; the message goes to stderr */
-      results_row(table, row, object);
+      print_results_row(table, row, object);
   }
 }
 
@@ -103,7 +103,7 @@ static status print_long(const char *scene, const struct engine_kind *kind, cons
   return code ? code : table_flush(stdout, error);
 }
 
-status results_print(const struct scene *scene, int64_t seed, const struct run_result *result, enum table_format format,
+status print_results(const struct scene *scene, int64_t seed, const struct run_result *result, enum table_format format,
                      struct error *error) {
   return format == TABLE_TEXT ? print_long(scene->name, scene->kind, result, error)
                               : print_wide(scene->kind, seed, result, format, error);

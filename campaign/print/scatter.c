@@ -1,12 +1,12 @@
 /* Prints and draws how runs scatter. */
-#include "campaign/print/scatter_print.h"
+#include "campaign/print/print.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "campaign/terminal/chart_option.h"
-#include "campaign/terminal/rows.h"
+#include "campaign/charts/charts.h"
+#include "campaign/terminal/table.h"
 
 enum { COLUMNS = 100 };
 
@@ -28,7 +28,7 @@ static void start(struct printing *printing, const struct ask_pool *pool) {
 static void row(const struct printing *printing, const struct ask_pool *pool, const char *name, double value,
                 double low, double high) {
   for (size_t a = 0; a < pool->axes; a++)
-    rows_cell(printing->table, &pool->input[a]);
+    table_value(printing->table, &pool->input[a]);
   table_integer(printing->table, printing->choice->pool.by ? (int64_t)pool->points : pool->data.point_id);
   table_text(printing->table, name);
   table_real(printing->table, value);
@@ -80,7 +80,7 @@ static status print_pool(struct printing *printing, const struct ask_pool *pool,
   return table_broken(printing->table) ? STATUS_IO : STATUS_OK;
 }
 
-status scatter_print_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,
+status print_scatter_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,
                           struct error *error) {
   struct printing printing = {.choice = choice, .format = format};
   ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
@@ -123,7 +123,7 @@ static status plot_pool(bool ascii, const struct ask_pool *pool, struct error *e
   return STATUS_OK;
 }
 
-status scatter_print_plots(struct store *store, const struct scatter_choice *choice, bool ascii, struct error *error) {
+status print_scatter_plots(struct store *store, const struct scatter_choice *choice, bool ascii, struct error *error) {
   ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));)
     TRY(plot_pool(ascii, pool, error));
@@ -171,15 +171,15 @@ static status draw_samples(const struct samples *samples, const char *axis, cons
   return code;
 }
 
-status scatter_print_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
+status print_scatter_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
                              struct error *error) {
-  char column[ASK_GROUP_NAME], axis[CHART_OPTION_LABEL] = "";
+  char column[ASK_GROUP_NAME], axis[CHARTS_LABEL] = "";
   struct samples *samples = calloc(1, sizeof *samples);
   if (!samples)
     return status_fail(error, STATUS_MEMORY, "no memory for a picture");
   status code = ask_group_quantity(store, choice->quantity, column, error);
   if (code == STATUS_OK)
-    code = chart_option_axis(store, column, axis, error);
+    code = charts_axis(store, column, axis, error);
   if (code == STATUS_OK)
     code = take_samples(store, choice, samples, error);
   if (code == STATUS_OK)

@@ -1,0 +1,152 @@
+/* Charts and pictures of a store: the options and the names that all charts share, quantities over varied inputs, and
+ * what each command draws. */
+#ifndef CLAST_CAMPAIGN_CHARTS_CHARTS_H
+#define CLAST_CAMPAIGN_CHARTS_CHARTS_H
+
+#include "analysis/pictures/picture.h"
+#include "analysis/statistics/exponent.h"
+#include "analysis/statistics/measured.h"
+#include "campaign/terminal/option.h"
+#include "db/ask/group.h"
+#include "db/ask/pool.h"
+#include "engine/outcome.h"
+
+struct chart_options {
+  bool keep_script;
+  const char *templates;
+};
+/* clang-format off */
+#define CHART_OPTIONS(type_, member_)                                                                                  \
+  OPTION_ROW_FLAG("keep-script", 0, type_, member_.keep_script,                                                        \
+                  "Leave NAME.gp and NAME.dat beside the chart NAME.png: change them, and gnuplot draws it again."),   \
+  OPTION_ROW_TEXT("templates", 0, "FOLDER", type_, member_.templates, NULL,                                            \
+                  "Draw with the gnuplot templates of this folder: your changed copies of share/clast/templates.")
+/* clang-format on */
+
+/* A page of the usual width. */
+struct picture_page charts_page(const char *path, const struct chart_options *options);
+
+/* The name of a column of the views by its row: "mass share of the largest fragment M₁/M"; of an exponent "exponent β
+ * of F(m)". Without a row: the words of the column. */
+enum { CHARTS_LABEL = 300 };
+void charts_label(const char *column, char label[CHARTS_LABEL]);
+/* The same with the unit in the store: "impact speed (m/s)". */
+status charts_axis(struct store *store, const char *column, char label[CHARTS_LABEL], struct error *error);
+/* The paths of inputs, separated by ", ", as their names: "impact speed, weibull m". */
+void charts_labels(const char *paths, char *labels, size_t size);
+/* "95 % intervals over seeds", or over points that differ in the pooled inputs (of ask_group; "": none). */
+void charts_intervals(const char *pooled, char *text, size_t size);
+/* Describes the known error of the resolution of a quantity at the points of the store, after `adds` if there is
+ * one. */
+void charts_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size);
+
+/* ---- a quantity over one or two varied inputs: the mean of a result over the runs that share the inputs, or an
+ * exponent fitted to the runs of each point ---- */
+
+/* Options of both commands: the input on the horizontal axis, and the quantity. */
+#define QUANTITY_AXIS_OPTION(type_, member_)                                                                           \
+  OPTION_ROW_TEXT("x", 'x', "AXIS", type_, member_, NULL,                                                              \
+                  "Varied input on the horizontal axis: a path or its unique ending.")
+#define QUANTITY_OPTION(type_, member_)                                                                                \
+  OPTION_ROW_TEXT("quantity", 'q', "NAME", type_, member_, OUTCOME_DEFAULT,                                            \
+                  "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a "    \
+                  "point: beta, or beta_METHOD_WINDOW (beta_masses_from_2).")
+
+struct quantity_choice {
+  const char *axis[2]; /* varied inputs by path or unique ending; the second may be NULL */
+  const char *name;    /* a result column, beta, or beta_METHOD_WINDOW */
+  bool newest;         /* exponents: only of each point's newest results_version, including points without runs */
+  const char *refusal; /* message when these are not one or two different inputs and one quantity */
+};
+
+struct quantity {
+  bool exponent;
+  size_t axes;                   /* 1 or 2 */
+  char column[2][256];           /* the axes' columns in the views */
+  char name[256];                /* column of the quantity, or the exponent's name */
+  char pooled[ASK_GROUP_POOLED]; /* other varied inputs that the means average over, with points as units; "": none */
+};
+
+struct quantity_row {
+  const struct query_value *input; /* one value for each axis, in the campaign's unit; borrowed for the call */
+  int64_t results_version;
+  double value, lower, upper; /* bounds of the 95 % interval; NaN: unknown */
+  double resolution;          /* possible change of the value by finer settings; NaN: unknown */
+};
+
+/* Passes every value to `each`; `quantity` is filled in before the first call. A status of `each` other than STATUS_OK
+ * ends the reading and is returned. STATUS_USAGE: unknown names. */
+status quantity_read(struct store *store, const struct quantity_choice *choice, struct quantity *quantity,
+                     status (*each)(void *context, const struct quantity_row *row, struct error *error), void *context,
+                     struct error *error);
+
+/* Prints a line on stderr: the meaning of the intervals, and the error of the resolution. pooled: from ask_group. */
+void quantity_tell_resolution(struct store *store, const char *name, const char *pooled);
+/* Prints a line for each of several comma-separated names; "main": the default quantity. */
+void quantity_tell_resolutions(struct store *store, const char *names, const char *pooled);
+
+/* Reads the quantity over `x`, a line for each value of `by` (may be NULL), and draws it. STATUS_USAGE: x is not a
+ * number, too many lines or points, unknown names. */
+status plot_lines_draw(struct store *store, const char *x, const char *by, const char *quantity,
+                       const struct picture_page *page, struct error *error);
+
+/* Reads the quantity over x and y and draws it. STATUS_USAGE: too many tiles, unknown names. */
+status map_tiles_draw(struct store *store, const char *x, const char *y, const char *quantity,
+                      const struct picture_page *page, struct error *error);
+
+/* ---- spectra ---- */
+
+struct spectrum_choice {
+  struct ask_pool_choice pool;
+  bool cumulative, runs;           /* runs: also every single run */
+  double density;                  /* kg/m^3: sizes are shown instead of masses; 0: masses */
+  const struct measured *measured; /* NULL: none */
+};
+
+/* Reads a measured spectrum for the choice. The choice's density and the store's dimensions relate sizes and masses. */
+status spectrum_curves_measured(struct store *store, const char *path, struct spectrum_choice *choice,
+                                struct measured *measured, struct error *error);
+
+/* A pool's spectrum with its headline fit, which only a pool of one point has. */
+struct spectrum_curve {
+  char label[ASK_POOL_LABEL + 64], fit_label[96];
+  struct pooled_form form;
+  struct pooled_bin *bins; /* owned */
+  size_t count;
+  double complete_mass; /* kg; NaN: not known */
+  struct picture_fit fit;
+  struct pooled_rivals rivals; /* n 0: not requested */
+  struct picture_thin *thin;   /* one for each run; owned with their bins */
+  size_t thin_count;
+};
+/* with_rivals: also computes likelihood ratios of the pure power law against other laws. */
+status spectrum_curves_make(const struct spectrum_choice *choice, bool with_rivals, const struct ask_pool *pool,
+                            struct spectrum_curve *curve, struct error *error);
+void spectrum_curves_release(struct spectrum_curve *curve);                       /* a zeroed one is fine */
+struct picture_series spectrum_curves_series(const struct spectrum_curve *curve); /* borrows the curve */
+
+/* The first eight pools, with the measured spectrum. page NULL: no picture. text: a plot on stdout. */
+struct spectrum_drawing {
+  const struct picture_page *page;
+  bool text, ascii;
+};
+status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice,
+                            const struct spectrum_drawing *drawing, struct error *error);
+
+/* ---- bodies ---- */
+
+/* The options of the command; NULL: not given. */
+struct picture_choice {
+  const char *caption, *what, *view, *axis, *at;
+  struct chart_options chart; /* options of a profile's chart */
+  double width;               /* width of a body's picture, pixels; 0: default */
+};
+
+/* STATUS_USAGE: options that do not suit the file; also the statuses of analysis/pictures/picture.h. */
+status picture_draw(const char *fields, const char *picture, const struct picture_choice *options, struct error *error);
+
+/* The stability map of a store as a picture: how many runs are safe, warned and refused, for each value of each varied
+ * input. */
+status extremes_map_draw(struct store *store, const char *path, double width, struct error *error);
+
+#endif

@@ -1,0 +1,39 @@
+/* What `clast export` writes besides a copy of the store. */
+#ifndef CLAST_CAMPAIGN_EXPORT_EXPORT_H
+#define CLAST_CAMPAIGN_EXPORT_EXPORT_H
+
+#include "campaign/terminal/table.h"
+#include "db/store/store.h"
+
+/* Writes the rows of a view (runs, points, ...; NULL: the bits) into a file; path NULL: to standard output. The file is
+ * written under a temporary name and renamed: a file with its final name is complete. A pipe or a device (/dev/stdout)
+ * is written directly. */
+status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
+                          struct error *error);
+
+/* runs.csv, points.csv, spectra.csv, estimates.csv and column_doc.csv in the folder, which is made. */
+status export_files_folder(struct store *store, const char *folder, struct error *error);
+
+/* ---- an RO-Crate 1.1 of the profile Process Run Crate 0.5, for an archive ---- */
+
+struct export_crate_options {
+  const char *folder;  /* must not exist, or be empty */
+  const char *license; /* URL or sentence; NULL: not chosen */
+  const char *author;  /* "Name" or "Name <URL>"; NULL: not told */
+};
+
+/* Writes the store, the campaigns' files, tables as CSV, and ro-crate-metadata.json, last. The columns of the tables
+ * are explained in column_doc.csv. STATUS_IO: the folder cannot be written, or is not empty. */
+status export_crate(struct store *store, const char *store_path, const struct export_crate_options *options,
+                    struct error *error);
+
+/* A Cinema database: a folder with pictures and a table of them (data.csv, Cinema specification D), which the Cinema
+ * viewers open: the validator cinema_lib 1.2.1 finds it valid, also with empty cells, and Cinema:View 1.1 shows every
+ * row. */
+
+/* One row per run whose fields are kept: its inputs and main results, FILE (its broken body) and FILE_spectrum
+ * (spectrum of its point). data.csv is written last. Reports how many runs have no picture because their fields cannot
+ * be read. STATUS_USAGE: the store has no run with fields. STATUS_MISSING: no gnuplot. STATUS_IO. */
+status cinema_write(struct store *store, const char *folder, struct error *error);
+
+#endif

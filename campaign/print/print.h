@@ -1,0 +1,63 @@
+/* Answers as tables: what a store or a run has, for people and for programs. */
+#ifndef CLAST_CAMPAIGN_PRINT_PRINT_H
+#define CLAST_CAMPAIGN_PRINT_PRINT_H
+
+#include "campaign/charts/charts.h"
+#include "campaign/driver/run.h"
+#include "campaign/terminal/table.h"
+#include "db/ask/points.h"
+
+/* ---- results of one run: for people one quantity per line with unit and meaning, for programs one row ---- */
+
+/* Path, value (off and NaN are missing), unit and first sentence of a row of the object: four cells. */
+void print_results_row(struct table *table, const struct field *row, const void *object);
+
+status print_results(const struct scene *scene, int64_t seed, const struct run_result *result, enum table_format format,
+                     struct error *error);
+
+/* ---- estimates: the table that `clast run` prints at its end, and `clast estimates` prints again ---- */
+
+/* One row per point and window: the point's varied inputs, its runs, M_1/M and the exponents by each method, all with
+ * the half widths of their 95 % intervals. Only runs that count, of the point's newest results_version. */
+status print_estimates(struct store *store, const struct ask_points_choice *choice, enum table_format format, FILE *out,
+                       struct error *error);
+
+/* Explains on stderr the columns of the aligned table, its intervals, and the known errors of the resolution. */
+void print_estimates_legend(struct store *store);
+
+/* ---- spectra as rows, and their distances from a measured spectrum ---- */
+
+/* Prints one row per bin of each pool (or of each run). */
+status print_spectrum(struct store *store, const struct spectrum_choice *choice, enum table_format format,
+                      struct error *error);
+/* Prints one row per pool: its distance from the measured spectrum. */
+status print_spectrum_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
+                            struct error *error);
+
+/* ---- how the runs of pools scatter, as rows, text and a picture, and the split of a variance ---- */
+
+struct scatter_choice {
+  struct ask_pool_choice pool;
+  const char *quantity;
+  double half_width; /* wanted half width of the mean's interval, in the quantity's unit; NaN: none */
+};
+
+/* Prints a row per statistic of each pool. */
+status print_scatter_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,
+                          struct error *error);
+/* Prints a text histogram of each pool. */
+status print_scatter_plots(struct store *store, const struct scatter_choice *choice, bool ascii, struct error *error);
+/* Draws histograms and distribution functions of the first eight pools. */
+status print_scatter_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
+                             struct error *error);
+/* Prints a row per part of the variance over all points. */
+status print_shares_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
+                             struct error *error);
+
+/* campaign: path of the campaign whose runs are in the store. Prints a row for each input and one for the seed. Blocks
+ * of the design that lack a point are left out and reported. STATUS_USAGE: the campaign's points are not such a design,
+ * or the store lacks them. */
+status print_shares_sensitivity(struct store *store, const char *campaign, const char *quantity,
+                                enum table_format format, struct error *error);
+
+#endif
