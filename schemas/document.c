@@ -1,4 +1,4 @@
-/* Opening, closing and walking through a document. */
+/* Documents: opening, closing, walking through the tree, and changing it. */
 #include "schemas/document.h"
 
 #include <errno.h>
@@ -10,6 +10,7 @@
 
 #include "schemas/document_tree.h"
 #include "schemas/file.h"
+#include "schemas/text.h"
 
 /* A document that holds a copy of the text; NULL without memory. */
 static struct document *create(const char *name, const char *text, size_t size) {
@@ -40,7 +41,7 @@ status document_parse(const char *name, const char *text, size_t size, struct do
   struct document *document = create(name, text, size);
   if (!document)
     return status_fail(error, STATUS_MEMORY, "%s: no memory for %zu bytes", name, size);
-  const status code = document_guard(document) ? document_build(document) : STATUS_CONTENT;
+  const status code = document_build(document);
   if (code == STATUS_OK) {
     *out = document;
     return STATUS_OK;
@@ -118,32 +119,28 @@ void document_free(struct document *document) {
   free(document);
 }
 
-/* "first\nsecond", where either may be NULL; frees both. Returns the first one alone when memory runs out. */
-static char *join(char *first, char *second) {
-  char *both = NULL;
-  if (!first || !second)
-    return first ? first : second;
-  const size_t size = strlen(first) + strlen(second) + 2;
-  both = malloc(size);
-  if (both)
-    snprintf(both, size, "%s\n%s", first, second);
-  free(second);
-  if (!both)
-    return first;
-  free(first);
-  return both;
-}
-
-static char *own_report(struct document *document) {
-  return document->error_count ? document_report_text(document) : NULL;
+/* A document, then its included ones. */
+static const struct document *after(const struct document *document, const struct document *other) {
+  return other == document ? document->included : other->next_included;
 }
 
 /* The reports of a document and of its included documents, one after the other. */
 static char *whole_report(struct document *document) {
-  char *text = own_report(document);
-  for (struct document *other = document->included; other; other = other->next_included)
-    text = join(text, own_report(other));
-  return text;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = text_open(&text, &size);
+  if (!out)
+    return NULL;
+  const char *between = "";
+  for (struct document *other = document; other; other = (struct document *)after(document, other)) {
+    char *report = other->error_count ? document_report_text(other) : NULL;
+    if (report) {
+      fprintf(out, "%s%s", between, report);
+      between = "\n";
+    }
+    free(report);
+  }
+  return text_close(out, &text);
 }
 
 status document_finish(struct document *document, const char **report) {
@@ -154,8 +151,7 @@ status document_finish(struct document *document, const char **report) {
   free(document->report);
   document->report = whole_report(document);
   *report = document->report ? document->report : "no memory for the report of errors";
-  for (const struct document *other = document; other;
-       other = other == document ? other->included : other->next_included)
+  for (const struct document *other = document; other; other = after(document, other))
     if (other->no_memory)
       return STATUS_MEMORY;
   return document->elsewhere == errors ? STATUS_USAGE : STATUS_CONTENT;
@@ -199,4 +195,208 @@ document_node *document_item(document_node *node, size_t index, const char **key
   if (key)
     *key = node->pairs[index].key ? node->pairs[index].key->text : NULL;
   return node->pairs[index].value;
+}
+
+/* ---- nodes ---- */
+
+document_node *document_node_make(struct document *document, enum document_kind kind, const char *text, size_t length) {
+  document_node *node = calloc(1, sizeof *node + length + 1);
+  if (!node)
+    return NULL;
+  node->document = document;
+  node->kind = kind;
+  if (length)
+    memcpy(node->text, text, length);
+  node->next = document->nodes;
+  document->nodes = node;
+  document->node_count++;
+  return node;
+}
+
+bool document_node_append(document_node *to, document_node *key, document_node *value) {
+  if (to->count == to->capacity) {
+    const size_t capacity = to->capacity ? 2 * to->capacity : 4;
+    struct document_pair *pairs = realloc(to->pairs, capacity * sizeof *pairs);
+    if (!pairs)
+      return false;
+    to->pairs = pairs;
+    to->capacity = capacity;
+  }
+  to->pairs[to->count++] = (struct document_pair){.key = key, .value = value};
+  value->parent = to;
+  value->key = key;
+  return true;
+}
+
+struct document_pair *document_node_find(const document_node *mapping, const char *key) {
+  for (size_t i = 0; i < mapping->count; i++)
+    if (strcmp(mapping->pairs[i].key->text, key) == 0)
+      return &mapping->pairs[i];
+  return NULL;
+}
+
+/* ---- putting ---- */
+
+/* A plain node that is not part of the text. Errors about it are about `place`; NULL: about the origin of values that
+ * are put. NULL: no memory. */
+static document_node *make_plain(struct document *document, enum document_kind kind, const char *text,
+                                 const document_node *place) {
+  document_node *node = document_node_make(document, kind, text, strlen(text));
+  if (!node)
+    return NULL;
+  node->plain = true;
+  node->put = !place;
+  node->start = place ? place->start : 0;
+  node->end = place ? place->end : 0;
+  return node;
+}
+
+/* Sets mapping[key]; replaces an existing value. */
+static bool set(document_node *mapping, const char *key, document_node *value) {
+  document_node *name = make_plain(mapping->document, DOCUMENT_SCALAR, key, NULL);
+  if (!name)
+    return false;
+  struct document_pair *pair = document_node_find(mapping, key);
+  if (!pair)
+    return document_node_append(mapping, name, value);
+  pair->key = name;
+  pair->value = value;
+  value->parent = mapping;
+  value->key = name;
+  return true;
+}
+
+/* The value at a key of the document, or a new mapping if it is absent or null. The value may be no mapping. NULL: no
+ * memory. */
+static document_node *section_at(struct document *document, const char *key) {
+  const struct document_pair *pair = document_node_find(document->root, key);
+  if (pair && !document_value_is_null(pair->value)) /* "set:" without a value */
+    return pair->value;
+  document_node *section = make_plain(document, DOCUMENT_MAPPING, "", NULL);
+  return section && set(document->root, key, section) ? section : NULL;
+}
+
+status document_change_put(struct document *document, const char *const keys[2], const char *value, const char *origin,
+                           struct error *error) {
+  if (!document->origin)
+    document->origin = strdup(origin);
+  document_node *into = keys[1] ? section_at(document, keys[0]) : document->root;
+  if (into && into->kind != DOCUMENT_MAPPING)
+    return status_fail(error, STATUS_CONTENT, "%s: `%s` is no mapping, so it cannot hold `%.100s` of %s",
+                       document->name, keys[0], keys[1], origin);
+  document_node *scalar = make_plain(document, DOCUMENT_SCALAR, value, NULL);
+  const char *key = keys[1] ? keys[1] : keys[0];
+  if (!document->origin || !into || !scalar || !set(into, key, scalar))
+    return status_fail(error, STATUS_MEMORY, "%s: no memory", document->name);
+  document->changed = true;
+  return STATUS_OK;
+}
+
+/* ---- writing ---- */
+
+/* Plain text that means the same inside brackets: words, numbers with units. Other text is quoted. */
+#define DIGITS  "0123456789"
+#define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+static bool stays_plain(const char *text) {
+  const size_t length = strlen(text), sign = strspn(text, "-+.") == 1;
+  const char *first = sign ? DIGITS : DIGITS LETTERS;
+  if (length == sign || !strchr(first, text[sign]))
+    return false;
+  return strspn(text, DIGITS LETTERS " ._%/^*()+-") == length && text[length - 1] != ' ';
+}
+
+static void write_scalar(const document_node *node, FILE *out) {
+  if (node->plain && (!*node->text || stays_plain(node->text)))
+    fputs(*node->text ? node->text : "null", out);
+  else
+    text_json_string(node->text, out);
+}
+
+static void write_node(const document_node *node, FILE *out) {
+  if (node->kind == DOCUMENT_SCALAR) {
+    write_scalar(node, out);
+    return;
+  }
+  const bool mapping = node->kind == DOCUMENT_MAPPING;
+  fputc(mapping ? '{' : '[', out);
+  for (size_t i = 0; i < node->count; i++) {
+    fputs(i ? ", " : "", out);
+    if (mapping) {
+      write_scalar(node->pairs[i].key, out);
+      fputs(": ", out);
+    }
+    write_node(node->pairs[i].value, out);
+  }
+  fputc(mapping ? '}' : ']', out);
+}
+
+char *document_change_text(const struct document *document) {
+  if (!document->changed)
+    return strdup(document->text);
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = text_open(&text, &size);
+  if (!out)
+    return NULL;
+  fprintf(out, "# as read, with values of the %s; comments are left out\n", document->origin);
+  for (size_t i = 0; i < document->root->count; i++) {
+    write_scalar(document->root->pairs[i].key, out);
+    fputs(": ", out);
+    write_node(document->root->pairs[i].value, out);
+    fputc('\n', out);
+  }
+  return text_close(out, &text);
+}
+
+/* ---- contents of another document: a material's file as the material of a body ---- */
+
+/* Values that `to` already has stay unchanged. */
+static bool merge(document_node *to, document_node *from, const char *const *leave_out) {
+  for (size_t i = 0; i < from->count; i++) {
+    document_node *key = from->pairs[i].key, *value = from->pairs[i].value;
+    if (text_is_one_of(key->text, leave_out))
+      continue;
+    const struct document_pair *own = document_node_find(to, key->text);
+    const bool sections = own && own->value->kind == DOCUMENT_MAPPING && value->kind == DOCUMENT_MAPPING;
+    if (!own && !document_node_append(to, key, value))
+      return false;
+    if (sections && !merge(own->value, value, NULL))
+      return false;
+  }
+  return true;
+}
+
+/* A scalar becomes an empty mapping; a mapping stays unchanged. */
+static void make_section(document_node *section) {
+  if (section->kind == DOCUMENT_SCALAR)
+    section->count = 0;
+  section->kind = DOCUMENT_MAPPING;
+}
+
+bool document_graft_word(document_node *section, const char *key, const char *word) {
+  struct document *document = section->document;
+  document_node *name = make_plain(document, DOCUMENT_SCALAR, key, section);
+  document_node *value = make_plain(document, DOCUMENT_SCALAR, word, section);
+  if (!name || !value)
+    return false;
+  make_section(section);
+  return document_node_find(section, key) || document_node_append(section, name, value);
+}
+
+bool document_graft(document_node *section, struct document *other, const char *const *leave_out) {
+  struct document *document = section->document;
+  other->owner = document;
+  other->next_included = document->included;
+  document->included = other;
+  document->foreign_errors += other->error_count;
+  make_section(section);
+  return merge(section, other->root, leave_out);
+}
+
+void document_graft_drop(document_node *mapping, const char *key) {
+  struct document_pair *pair = document_node_find(mapping, key);
+  if (!pair)
+    return;
+  memmove(pair, pair + 1, (size_t)(mapping->pairs + mapping->count - pair - 1) * sizeof *pair);
+  mapping->count--;
 }

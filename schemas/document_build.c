@@ -8,10 +8,113 @@
 #include "schemas/document_tree.h"
 #include "schemas/text.h"
 
+/* ---- bytes that must not reach libfyaml or a terminal ---- */
+
+/* YAML 1.2.2, 5.1: characters that are not printable there are refused. Also refused are the line ends of YAML 1.1 and
+ * byte order marks inside the text, which tools treat differently. */
+static const struct {
+  uint32_t first, last;
+} refused[] = {
+    {0x00, 0x08},     {0x0B, 0x0C},     {0x0E, 0x1F}, /* all but tab, line feed and carriage return */
+    {0x7F, 0x9F},     {0x2028, 0x2029},               /* U+0085, U+2028, U+2029: line ends of YAML 1.1 */
+    {0xFEFF, 0xFEFF}, {0xFFFE, 0xFFFF},               /* byte order mark; noncharacters */
+};
+
+static bool is_refused(uint32_t character) {
+  for (size_t k = 0; k < sizeof refused / sizeof refused[0]; k++)
+    if (character >= refused[k].first && character <= refused[k].last)
+      return true;
+  return false;
+}
+
+size_t document_guard_text(const char *text, size_t size) {
+  size_t i = 0;
+  while (i < size) {
+    size_t length = text_utf8_length(text + i, size - i);
+    if (length == 0 || is_refused(text_utf8_character(text + i, length)))
+      return i;
+    i += length;
+  }
+  return size;
+}
+
+static void report_byte(struct document *document, size_t at) {
+  const char *text = document->text + at;
+  const unsigned char byte = (unsigned char)*text;
+  if (byte == 0)
+    document_report_at(document, at, at + 1, NULL, "a NUL byte: this is not text; save the file as UTF-8");
+  else if (text_utf8_length(text, document->size - at) == 0)
+    document_report_at(document, at, at + 1, NULL, "invalid UTF-8 (byte 0x%02x); save the file as UTF-8", byte);
+  else
+    document_report_at(document, at, at + 1, NULL, "a control character (first byte 0x%02x); remove it", byte);
+}
+
+/* False: an error was reported. Tabs as indentation are refused, too. */
+static bool guard(struct document *document) {
+  const char *text = document->text;
+  const size_t size = document->size, bad = document_guard_text(text, size);
+  if (bad < size) {
+    report_byte(document, bad);
+    return false;
+  }
+  bool good = true, margin = true; /* margin: only spaces since the start of the line */
+  for (size_t i = 0; i < size; i++) {
+    if (margin && text[i] == '\t') {
+      document_report_at(document, i, i + 1, NULL, "a tab as indentation; YAML wants spaces");
+      good = false;
+      margin = false;
+    }
+    margin = text[i] == '\n' || (margin && text[i] == ' ');
+  }
+  return good;
+}
+
+/* ---- keys that one mapping contains twice ---- */
+
+static int by_text(const void *a, const void *b) {
+  const document_node *const *left = a, *const *right = b;
+  int order = strcmp((*left)->text, (*right)->text);
+  if (order)
+    return order;
+  return ((*left)->start > (*right)->start) - ((*left)->start < (*right)->start);
+}
+
+static void report_duplicate(document_node *key, const char *path, const document_node *first) {
+  struct document *document = key->document;
+  if (document->error_count >= DOCUMENT_MOST_ERRORS) {
+    document->error_count++; /* only counted */
+    return;
+  }
+  char whole[400];
+  snprintf(whole, sizeof whole, "%.200s%s%.150s", path, *path ? "." : "", key->text);
+  document_report(key, whole, "given twice; the first is in line %zu; remove one",
+                  document_report_line(document, first->start));
+}
+
+/* Keys are sorted, not compared pairwise: a file of a hundred thousand keys must not take minutes. False: no memory. */
+static bool report_duplicates(const document_node *mapping, const char *path) {
+  document_node **keys = malloc((mapping->count + 1) * sizeof(document_node *));
+  if (!keys)
+    return false;
+  for (size_t i = 0; i < mapping->count; i++)
+    keys[i] = mapping->pairs[i].key;
+  qsort(keys, mapping->count, sizeof *keys, by_text);
+  for (size_t i = 1, first = 0; i < mapping->count; i++) {
+    if (strcmp(keys[first]->text, keys[i]->text) != 0 || keys[i]->faulty || keys[first]->faulty)
+      first = i;
+    else
+      report_duplicate(keys[i], path, keys[first]);
+  }
+  free(keys);
+  return true;
+}
+
+/* ---- the tree ---- */
+
 enum { PATH_SIZE = 200 };
 
 struct anchor {
-  char *name; /* malloc'd */
+  char *name; /* owned */
   document_node *node;
 };
 
@@ -45,11 +148,6 @@ static document_node *create(struct builder *b, enum document_kind kind, const c
   return node;
 }
 
-static void append(struct builder *b, document_node *to, document_node *key, document_node *value) {
-  if (!document_node_append(to, key, value))
-    b->failed = true;
-}
-
 /* The path of the node that is being read, such as "vary.grain.density[2]". */
 static const char *where(const struct builder *b, char path[PATH_SIZE]) {
   *path = 0;
@@ -72,7 +170,7 @@ static void attach(struct builder *b, document_node *node) {
   }
   document_node *parent = b->open[b->depth - 1], **key = &b->key[b->depth - 1];
   if (parent->kind == DOCUMENT_SEQUENCE) {
-    append(b, parent, NULL, node);
+    b->failed |= !document_node_append(parent, NULL, node);
     return;
   }
   if (!*key) {
@@ -88,7 +186,7 @@ static void attach(struct builder *b, document_node *node) {
     node->start = (*key)->start;
     node->end = (*key)->end;
   }
-  append(b, parent, *key, node);
+  b->failed |= !document_node_append(parent, *key, node);
   *key = NULL;
 }
 
@@ -107,7 +205,7 @@ static document_node *copy(struct builder *b, const document_node *from, size_t 
     document_node *key = from->pairs[i].key ? copy(b, from->pairs[i].key, depth + 1) : NULL;
     document_node *value = copy(b, from->pairs[i].value, depth + 1);
     if (value && (key || !from->pairs[i].key))
-      append(b, node, key, value);
+      b->failed |= !document_node_append(node, key, value);
   }
   return node;
 }
@@ -141,18 +239,13 @@ static document_node *anchored(const struct builder *b, const char *name, size_t
   return NULL;
 }
 
-static bool is_open(const struct builder *b, const document_node *node) {
-  for (size_t i = 0; i < b->depth; i++)
-    if (b->open[i] == node)
-      return true;
-  return false;
-}
-
 static document_node *alias(struct builder *b, struct fy_token *token, size_t start, size_t end) {
   size_t length = 0;
   const char *name = fy_token_get_text(token, &length);
   const document_node *target = name ? anchored(b, name, length) : NULL;
-  const bool inside = target && is_open(b, target);
+  bool inside = false;
+  for (size_t i = 0; target && i < b->depth; i++)
+    inside |= b->open[i] == target;
   if (target && !inside)
     return copy(b, target, b->depth);
 
@@ -208,15 +301,13 @@ static void close_collection(struct builder *b, size_t end) {
   if (end > node->start && (first == '{' || first == '['))
     node->end = end; /* for other nodes the first character is marked */
   char path[PATH_SIZE];
-  if (node->kind == DOCUMENT_MAPPING && node->count > 1 && !document_duplicates_report(node, where(b, path)))
+  if (node->kind == DOCUMENT_MAPPING && node->count > 1 && !report_duplicates(node, where(b, path)))
     b->failed = true;
   attach(b, node);
 }
 
 static void report_tag(struct builder *b, document_node *node) {
-  char path[PATH_SIZE];
-  if (node)
-    document_report(node, where(b, path), "a tag; write the value without '!'");
+  document_report(node, where(b, (char[PATH_SIZE]){0}), "a tag; write the value without '!'");
 }
 
 /* False: this is a second document. */
@@ -239,7 +330,7 @@ static void take_collection(struct builder *b, enum document_kind kind, struct f
                             const struct fy_token *tag, size_t start, size_t end) {
   document_node *node = create(b, kind, "", 0, start, end);
   remember(b, anchor, node);
-  if (tag)
+  if (tag && node)
     report_tag(b, node);
   open_collection(b, node);
 }
@@ -346,6 +437,8 @@ static status check_root(struct document *document) {
 }
 
 status document_build(struct document *document) {
+  if (!guard(document))
+    return STATUS_CONTENT;
   status code = STATUS_MEMORY;
   struct builder b = {.document = document};
   struct fy_diag *diag = create_diag();

@@ -54,26 +54,21 @@ struct document {
   bool si;        /* numbers without a unit are in SI */
 };
 
-/* document_node.c. Makes a node that belongs to the document but is not part of its text; NULL: no memory. */
+/* Makes a node that belongs to the document but is not part of its text; NULL: no memory. */
 document_node *document_node_make(struct document *document, enum document_kind kind, const char *text, size_t length);
 /* Adds a value at the end of a list (key NULL) or mapping. False: no memory. */
 bool document_node_append(document_node *to, document_node *key, document_node *value);
 /* The pair of a mapping with this key, faulty or not; NULL when there is none. */
 struct document_pair *document_node_find(const document_node *mapping, const char *key);
 
-/* Bytes that must never reach libfyaml or a terminal: NUL, invalid UTF-8, control characters, tabs as indentation.
- * False: an error was reported. */
-bool document_guard(struct document *document);
 /* The offset of the first byte that is not well-formed UTF-8 or begins a control character other than tab and line
  * ends; size when there is none. */
 size_t document_guard_text(const char *text, size_t size);
 
-/* Turns the guarded text into the tree. STATUS_CONTENT when no tree could be made; the errors are reported. Duplicate
+/* Turns the text into the tree. STATUS_CONTENT when no tree could be made; the errors are reported. Bytes that must
+ * never reach libfyaml or a terminal (NUL, invalid UTF-8, control characters, tabs as indentation) make none. Duplicate
  * keys, tags and undefined aliases are reported too, but leave a tree: the status is STATUS_OK. */
 status document_build(struct document *document);
-
-/* Reports keys that the mapping at `path` contains twice. False: no memory. */
-bool document_duplicates_report(const document_node *mapping, const char *path);
 
 /* Reports an error about bytes [start, end) of the text. */
 void document_report_at(struct document *document, size_t start, size_t end, const char *path, const char *format, ...)
@@ -86,9 +81,5 @@ const char *document_value_path(const document_node *node, char *path, size_t si
 /* The kind of a node in words, for messages: "a list", "nothing", "keys and values". */
 const char *document_value_what(const document_node *node);
 bool document_value_is_null(const document_node *node); /* a plain scalar that the core schema calls null */
-
-/* Reports a key that no table has. `known`: the names that are allowed at its level. `elsewhere` (may be NULL): a whole
- * path that may have been meant. */
-void document_unknown_key(document_node *key, const char *path, const char *const *known, const char *elsewhere);
 
 #endif

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 /* A decimal number, perhaps with a unit behind it. A schema cannot check the unit or the value in SI; the reader checks
@@ -47,40 +48,30 @@ static void bare(const struct field *row, FILE *out) {
   fputs("}, ", out);
 }
 
-static void type_real(const struct field *row, FILE *out) {
-  const char *pattern = field_needs_unit(row) ? NUMBER_IN_UNIT : NUMBER_AND_UNIT;
-  fputs("\"anyOf\": [", out);
-  bare(row, out);
-  fprintf(out, "{\"type\": \"string\", \"pattern\": \"%s\"}", pattern);
-  fputs(row->flags & FIELD_MAY_BE_OFF ? ", {\"const\": \"off\"}]" : "]", out);
-}
-
-static void type_integer(const struct field *row, FILE *out) {
-  if (field_needs_unit(row)) {
+static void type(const struct field *row, FILE *out) {
+  const bool unit = field_needs_unit(row);
+  switch (row->kind) {
+  case FIELD_INTEGER:
+    if (!unit) {
+      fputs("\"type\": \"integer\"", out);
+      range(row, out);
+      break;
+    }
+    __attribute__((fallthrough));
+  case FIELD_REAL:
     fputs("\"anyOf\": [", out);
     bare(row, out);
-    fputs("{\"type\": \"string\", \"pattern\": \"" NUMBER_IN_UNIT "\"}]", out);
-    return;
-  }
-  fputs("\"type\": \"integer\"", out);
-  range(row, out);
-}
-
-static void type_choice(const struct field *row, FILE *out) {
-  fputs("\"enum\": [", out);
-  for (size_t i = 0; row->choices[i]; i++) {
-    fputs(i ? ", " : "", out);
-    text_json_string(row->choices[i], out);
-  }
-  fputc(']', out);
-}
-
-static void type(const struct field *row, FILE *out) {
-  switch (row->kind) {
-  case FIELD_REAL: type_real(row, out); break;
-  case FIELD_INTEGER: type_integer(row, out); break;
+    fprintf(out, "{\"type\": \"string\", \"pattern\": \"%s\"}", unit ? NUMBER_IN_UNIT : NUMBER_AND_UNIT);
+    fputs(row->flags & FIELD_MAY_BE_OFF ? ", {\"const\": \"off\"}]" : "]", out);
+    break;
   case FIELD_BOOLEAN: fputs("\"type\": \"boolean\"", out); break;
-  case FIELD_CHOICE: type_choice(row, out); break;
+  case FIELD_CHOICE:
+    for (size_t i = 0; row->choices[i]; i++) {
+      fputs(i ? ", " : "\"enum\": [", out);
+      text_json_string(row->choices[i], out);
+    }
+    fputc(']', out);
+    break;
   case FIELD_TEXT: /* a plain 12 or true is accepted as text, too */
     fprintf(out, "\"type\": [\"string\", \"number\", \"boolean\"], %s\"maxLength\": %d",
             row->flags & FIELD_REQUIRED ? "\"minLength\": 1, " : "", FIELD_TEXT_SIZE - 1);
@@ -97,20 +88,13 @@ static void describe_choices(const struct field *row, FILE *out) {
   }
 }
 
-static void describe_number(const struct field *row, FILE *out) {
-  if (row->unit && strcmp(row->unit, "1"))
-    fprintf(out, " With its unit, such as %s.", row->unit);
-  if (row->flags & FIELD_PERCENT)
-    fputs(" In percent: 3 %.", out);
-  if (row->flags & FIELD_MAY_BE_OFF)
-    fputs(" Or `off`.", out);
-}
-
 static void describe(const struct field *row, FILE *out) {
-  if (row->doc)
-    fputs(row->doc, out);
-  if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER)
-    describe_number(row, out);
+  const bool number = row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
+  fputs(row->doc ? row->doc : "", out);
+  if (number && row->unit && strcmp(row->unit, "1"))
+    fprintf(out, " With its unit, such as %s.", row->unit);
+  fputs(row->flags & FIELD_PERCENT ? " In percent: 3 %." : "", out);
+  fputs(row->flags & FIELD_MAY_BE_OFF ? " Or `off`." : "", out);
   if (row->kind == FIELD_CHOICE)
     describe_choices(row, out);
   if (row->when) {
@@ -314,9 +298,7 @@ static void values(const struct field *row, const char *list, bool excluded, FIL
 
 /* True when the condition holds in an empty document. */
 static bool holds_by_default(const struct field_table *table, const struct field *row, const char *when) {
-  void *object = calloc(1, table->size);
-  if (!object)
-    return false;
+  void *object = memory_small(1, table->size);
   field_defaults(table, object);
   struct field probe = {.path = "", .when = when};
   /* Only this condition is tested: the controlling row's own condition has its own clause. */

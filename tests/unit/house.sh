@@ -73,18 +73,26 @@ check_printing() {
 }
 
 # fits SYMBOL FILE: the file's name, or a folder's below the top one and the file's, is the prefix of the symbol. In
-# engine/sph/pairs/chunks.c: chunks_..., pairs_chunks_..., sph_chunks_...
+# engine/sph/pairs/chunks.c: chunks_..., pairs_chunks_..., sph_chunks_... The name of a header that several files share
+# will do, too: mesh_... in engine/mesh/formats.c beside mesh.h, field_... in schemas/field_print.c beside field.h.
 fits() {
-  local symbol=$1 stem=${2##*/} rooms=${2%/*} room
+  local symbol=$1 stem=${2##*/} folder=${2%/*} rooms names room name
   stem=${stem%.c}
-  case "$symbol" in "$stem" | "$stem"_*) return 0 ;; esac
-  while [ "$rooms" != "${rooms%/*}" ]; do
-    room=${rooms##*/}
-    rooms=${rooms%/*}
-    case "$symbol" in
-      "${room}_$stem"*) return 0 ;;
-      "$room"_*) [ "$room" != "$stem" ] || return 0 ;;
-    esac
+  names=$stem
+  [ ! -f "$folder/${stem%%_*}.h" ] || names+=" ${stem%%_*}"
+  rooms=${folder##*/}
+  [ "$rooms" = "$folder" ] || [ ! -f "$folder/$rooms.h" ] || names+=" $rooms"
+  for name in $names; do
+    rooms=$folder
+    case "$symbol" in "$name" | "$name"_*) return 0 ;; esac
+    while [ "$rooms" != "${rooms%/*}" ]; do
+      room=${rooms##*/}
+      rooms=${rooms%/*}
+      case "$symbol" in
+        "${room}_$name"*) return 0 ;;
+        "$room"_*) [ "$room" != "$stem" ] || return 0 ;;
+      esac
+    done
   done
   return 1
 }
