@@ -1,14 +1,16 @@
 /* Compares a measured spectrum with simulated ones: Kolmogorov's distance and a likelihood, above the complete mass. */
 #include "analysis/statistics/measured.h"
 
-#include <errno.h>
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "engine/grow.h"
-#include "schemas/file.h"
+#include "schemas/csv.h"
+#include "schemas/text.h"
 #include "schemas/unit.h"
 
 void measured_release(struct measured *measured) {
@@ -41,6 +43,11 @@ status measured_bins(const struct measured *measured, const struct pooled_form *
                      size_t *count, struct error *error) {
   const struct pooled_form one = {.cumulative = form->cumulative, .size = form->size};
   *count = 0;
+  *bins = NULL;
+  if (measured->weighed)
+    return status_fail(error, STATUS_CONTENT,
+                       "the measured spectrum has masses of classes and no numbers of fragments, so it has no curve "
+                       "here; leave --picture out");
   if (measured->single && !form->cumulative) {
     const size_t first[2] = {0, measured->n};
     const struct pooled_runs runs = {1, first, measured->mass};
@@ -59,13 +66,14 @@ status measured_bins(const struct measured *measured, const struct pooled_form *
   return STATUS_OK;
 }
 
-/* Ascending masses, a part of a sorted array. */
+/* Ascending masses, a part of a sorted array. `above` (NULL: numbers are compared) has n + 1 sums: of the masses from
+ * the i-th on. */
 struct sorted {
   size_t n;
-  const double *mass;
+  const double *mass, *above;
 };
 
-/* The number of masses of at least `mass`; with `beyond`, of more than `mass`. */
+/* The number, or the sum, of masses of at least `mass`; with `beyond`, of more than `mass`. */
 static double at_least(const struct sorted *sorted, double mass, bool beyond) {
   size_t low = 0, high = sorted->n;
   while (low < high) {
@@ -75,14 +83,18 @@ static double at_least(const struct sorted *sorted, double mass, bool beyond) {
     else
       low = middle + 1;
   }
-  return (double)(sorted->n - low);
+  return sorted->above ? sorted->above[low] : (double)(sorted->n - low);
+}
+
+static double whole_of(const struct sorted *sorted) {
+  return sorted->above ? sorted->above[0] : (double)sorted->n;
 }
 
 /* Two shares of fragments above a mass, and their greatest difference so far. `own`: a run that is excluded from the
  * pool, or NULL. */
 struct distance {
   const struct sorted *pool, *own;
-  double whole, most; /* fragments of the pool */
+  double whole, most; /* of the pool: number or mass of its fragments */
 };
 
 static void look_at(struct distance *d, double mass, bool beyond, double share) {
@@ -104,16 +116,16 @@ static double distance_of_sample(const struct sorted *sample, const struct sorte
 /* Distance of a run, evaluated at thresholds. */
 static double distance_at(const struct measured *at, size_t first, const struct sorted *run,
                           const struct sorted *pool) {
-  struct distance d = {pool, run, (double)(pool->n - run->n), 0};
+  struct distance d = {pool, run, whole_of(pool) - whole_of(run), 0};
   for (size_t i = first; i < at->n; i++)
-    look_at(&d, at->mass[i], false, at_least(run, at->mass[i], false) / (double)run->n);
+    look_at(&d, at->mass[i], false, at_least(run, at->mass[i], false) / whole_of(run));
   return d.most;
 }
 
 static double measured_distance(const struct measured *m, size_t first, const struct sorted *pool) {
   if (m->single)
-    return distance_of_sample(&(struct sorted){m->n - first, m->mass + first}, pool, false);
-  struct distance d = {pool, NULL, (double)pool->n, 0};
+    return distance_of_sample(&(struct sorted){m->n - first, m->mass + first, NULL}, pool, false);
+  struct distance d = {pool, NULL, whole_of(pool), 0};
   for (size_t i = first; i < m->n; i++)
     look_at(&d, m->mass[i], false, m->above[i] / m->above[first]);
   return d.most;
@@ -153,7 +165,7 @@ static double log_likelihood(const struct measured *m, size_t first, double from
       sum += class_likelihood(threshold_class(m, i), pool, whole);
     return sum;
   }
-  const struct sorted mine = {m->n - first, m->mass + first};
+  const struct sorted mine = {m->n - first, m->mass + first, NULL};
   const int begin = spectrum_bin(from), end = spectrum_bin(m->mass[m->n - 1]);
   const double whole = (double)pool->n + 0.5 * (double)(end - begin + 1);
   for (int bin = begin; bin <= end; bin++)
@@ -161,14 +173,20 @@ static double log_likelihood(const struct measured *m, size_t first, double from
   return sum;
 }
 
-/* Copies the masses of run r of at least `from` into `room`, ascending. */
-static struct sorted sort_run(const struct pooled_runs *runs, size_t r, double from, double *room) {
+/* Copies the masses of run r of at least `from` into `room`, ascending; with `weighed` their sums follow. */
+static struct sorted sort_run(const struct pooled_runs *runs, size_t r, double from, bool weighed, double *room) {
   size_t n = 0;
   for (size_t i = runs->first[r]; i < runs->first[r + 1]; i++)
     if (runs->masses[i] >= from && isfinite(runs->masses[i]))
       room[n++] = runs->masses[i];
   qsort(room, n, sizeof *room, sample_ascending);
-  return (struct sorted){n, room};
+  if (!weighed)
+    return (struct sorted){n, room, NULL};
+  double *above = room + n;
+  above[n] = 0;
+  for (size_t i = n; i-- > 0;)
+    above[i] = above[i + 1] + room[i];
+  return (struct sorted){n, room, above};
 }
 
 static void compare_runs(const struct measured *m, size_t first, const struct pooled_runs *runs,
@@ -176,7 +194,7 @@ static void compare_runs(const struct measured *m, size_t first, const struct po
   struct sample_moments moments = {0};
   size_t judged = 0, far = 0;
   for (size_t r = 0; r < runs->count; r++) {
-    const struct sorted run = sort_run(runs, r, out->from, room);
+    const struct sorted run = sort_run(runs, r, out->from, m->weighed, room);
     sample_add(&moments, (double)run.n);
     if (run.n == 0 || run.n == pool->n)
       continue;
@@ -196,56 +214,61 @@ status measured_compare(const struct measured *measured, const struct pooled_run
   while (first < measured->n && measured->mass[first] < complete)
     first++;
   *out = (struct measured_match){complete, 0, {0, NAN, NAN, NAN, NAN}, NAN, NAN, NAN};
-  if (first == measured->n)
+  if (first == measured->n || !(measured->above[first] > 0))
     return STATUS_OK;
   if (!measured->single || !(complete > 0))
     out->from = measured->mass[first];
-  out->fragments = measured->above[first];
-  double *masses = malloc((2 * all + 1) * sizeof *masses);
+  out->fragments = measured->weighed ? (double)NAN : measured->above[first];
+  double *masses = malloc(2 * (2 * all + 1) * sizeof *masses);
   if (!masses)
     return status_fail(error, STATUS_MEMORY, "no memory to compare a measured spectrum");
   const struct pooled_runs together = {1, (const size_t[]){0, all}, runs->masses};
-  const struct sorted pool = sort_run(&together, 0, out->from, masses);
+  const struct sorted pool = sort_run(&together, 0, out->from, measured->weighed, masses);
   if (pool.n > 0) {
     out->distance = measured_distance(measured, first, &pool);
-    out->log_likelihood = log_likelihood(measured, first, out->from, &pool);
+    out->log_likelihood = measured->weighed ? (double)NAN : log_likelihood(measured, first, out->from, &pool);
   }
-  compare_runs(measured, first, runs, &pool, masses + all, out);
+  compare_runs(measured, first, runs, &pool, masses + 2 * all + 1, out);
   free(masses);
   return STATUS_OK;
 }
 
 /* ---- Reads a measured spectrum. The file may come from an untrusted source: every cell is checked. ---- */
 
-enum { LINE = 4096, CELL = 128, MOST_ROWS = 10000000 };
+enum { MOST_ROWS = 10000000 };
 
-enum count_kind { SINGLE, COUNTS, CUMULATIVE };
+/* What the second column says about the fragments of a row. */
+enum amount { SINGLE, COUNT, COUNT_ABOVE, RETAINED, RETAINED_ABOVE, PASSING };
 
 struct row {
-  double mass, number;
+  double mass, amount;
 };
 
 struct reading {
   const char *path;
-  size_t line;
+  struct csv csv;
   struct spectrum_size size;
-  int place, number;   /* indices of columns; `number` is -1: no such column */
-  bool named, by_size; /* the header line was read; fragments are given by size */
-  enum count_kind kind;
-  char unit[CELL], complete[CELL];
+  size_t place, amount; /* indices of columns */
+  bool by_size;         /* fragments are given by size */
+  bool shares;          /* masses of classes are shares of the whole */
+  enum amount kind;
+  const char *place_unit, *amount_unit, *amount_name; /* parts of the file */
+  const char *complete;
   struct row *rows;
   size_t count, room;
   struct measured *out;
 };
 
+enum { NO_COLUMN = CSV_CELLS };
+
 static status refuse(const struct reading *r, struct error *error, const char *what, const char *text) {
-  return status_fail(error, STATUS_CONTENT, "%s:%zu: %s '%.80s'", r->path, r->line, what, text);
+  return status_fail(error, STATUS_CONTENT, "%s:%lld: %s '%.80s'", r->path, (long long)r->csv.line, what, text);
 }
 
 static char *trim(char *text) {
-  text += strspn(text, " \t\r\n\"");
+  text += strspn(text, " \t\"");
   size_t n = strlen(text);
-  while (n > 0 && strchr(" \t\r\n\"", text[n - 1]))
+  while (n > 0 && strchr(" \t\"", text[n - 1]))
     text[--n] = '\0';
   return text;
 }
@@ -260,88 +283,148 @@ static status take_remark(struct reading *r, char *text, struct error *error) {
   if (strcmp(key, "source") == 0)
     snprintf(r->out->source, sizeof r->out->source, "%s", value);
   if (strcmp(key, "complete from") == 0)
-    snprintf(r->complete, sizeof r->complete, "%s", value);
+    r->complete = value;
   if (strcmp(key, "density") != 0)
     return STATUS_OK;
-  if (unit_read(value, "kg/m^3", &r->size.density, error) || !(r->size.density > 0))
+  if (unit_is_bare(value) || unit_read(value, "kg/m^3", &r->size.density, error) || !(r->size.density > 0))
     return refuse(r, error, "the density needs a number and a unit, such as 2.7 g/cm^3, not", value);
   return STATUS_OK;
 }
 
-/* Splits a line at commas, semicolons or tabs. Returns the number of cells. */
-static int split(char *line, char *cells[], int most) {
-  int count = 0;
-  for (char *from = line; from && count < most; count++) {
-    char *end = from + strcspn(from, ",;\t");
-    char *next = *end ? end + 1 : NULL;
-    *end = '\0';
-    cells[count] = trim(from);
-    from = next;
-  }
-  return count;
-}
-
-/* Meanings of column names. */
+/* The names that laboratories use, in lower case with single spaces. "percent" and "%" in a name are its unit. */
 static const struct meaning {
-  const char *name;
-  enum { MASS, SIZE, NUMBER } of;
-  enum count_kind kind;
-} meanings[] = {{"mass", MASS, SINGLE},
-                {"size", SIZE, SINGLE},
-                {"diameter", SIZE, SINGLE},
-                {"count", NUMBER, COUNTS},
-                {"cumulative", NUMBER, CUMULATIVE}};
+  enum { MASS, SIZE, AMOUNT, LABEL } of;
+  enum amount kind;
+  const char *const *names;
+} meanings[] = {
+    {MASS, SINGLE, (const char *const[]){"mass", "fragment mass", "m", NULL}},
+    {SIZE, SINGLE,
+     (const char *const[]){"size", "diameter", "fragment size", "particle size", "grain size", "sieve", "sieve size",
+                           "sieve opening", "aperture", "aperture size", "sieve aperture", "opening", "d", NULL}},
+    {AMOUNT, COUNT,
+     (const char *const[]){"count", "counts", "number", "n", "frequency", "number of fragments", "fragments",
+                           "fragment count", "number of particles", "particle count", NULL}},
+    {AMOUNT, COUNT_ABOVE,
+     (const char *const[]){"cumulative", "cumulative count", "cumulative number", "count above", "number above",
+                           "n(>m)", "n(>=m)", "n(>d)", "n(>=d)", "n(>l)", "n(>=l)", NULL}},
+    {AMOUNT, RETAINED,
+     (const char *const[]){"retained", "mass retained", "weight retained", "retained mass", "retained weight",
+                           "mass in class", "mass per class", "class mass", "mass fraction", "mass share", NULL}},
+    {AMOUNT, RETAINED_ABOVE,
+     (const char *const[]){"cumulative retained", "cumulative mass retained", "cumulative weight retained",
+                           "retained cumulative", "mass above", "coarser", "oversize", "cumulative oversize", NULL}},
+    {AMOUNT, PASSING,
+     (const char *const[]){"passing", "cumulative passing", "mass passing", "weight passing", "cumulative mass passing",
+                           "finer", "finer by mass", "finer by weight", "undersize", "cumulative undersize",
+                           "cumulative finer", NULL}},
+    {LABEL, SINGLE,
+     (const char *const[]){"name", "label", "id", "no", "no.", "nr", "sample", "specimen", "fragment", "remark",
+                           "remarks", "note", "notes", "comment", NULL}},
+};
+
+/* "Cumulative % passing" becomes "cumulative passing"; *percent is then true. Words are those between blanks, '_' and
+ * '-'. */
+static void plain_name(const char *name, char *out, size_t size, bool *percent) {
+  static const char between[] = " \t\r\n_-";
+  *out = '\0';
+  *percent = false;
+  for (name += strspn(name, between); *name; name += strspn(name, between)) {
+    const size_t length = strcspn(name, between);
+    if ((length == 1 && *name == '%') || (length == 7 && strncasecmp(name, "percent", 7) == 0))
+      *percent = true;
+    else
+      text_append(out, size, "%s%.*s", *out ? " " : "", (int)(length < size ? length : size), name);
+    name += length;
+  }
+  for (; *out; out++)
+    *out = (char)tolower((unsigned char)*out);
+}
 
 static const struct meaning *find_meaning(const char *name) {
   for (size_t k = 0; k < sizeof meanings / sizeof meanings[0]; k++)
-    if (strcmp(name, meanings[k].name) == 0)
+    if (text_is_one_of(name, meanings[k].names))
       return &meanings[k];
   return NULL;
 }
 
-/* Reads "mass (g)" as the name of column i. Among columns of masses and sizes the first one counts. */
-static void take_name(struct reading *r, int i, const char *cell) {
-  char name[CELL], unit[CELL] = "";
-  if (sscanf(cell, "%127[^(](%127[^)])", name, unit) < 1)
-    return;
-  const struct meaning *meaning = find_meaning(trim(name));
+static status take_name(struct reading *r, size_t i, struct error *error) {
+  char name[80], *cell = r->csv.cells[i].text;
+  bool percent;
+  plain_name(cell, name, sizeof name, &percent);
+  const struct meaning *meaning = find_meaning(name); /* "N(>m)" has no unit */
+  const char *unit = meaning ? "" : csv_take_unit(cell);
+  plain_name(cell, name, sizeof name, &percent);
   if (!meaning)
-    return;
-  if (meaning->of == NUMBER) {
-    r->number = i;
-    r->kind = meaning->kind;
-    return;
+    meaning = find_meaning(name);
+  if (!meaning)
+    return refuse(r, error,
+                  "no such column: name mass (g) or size (mm), alone or with count, cumulative (the number from this "
+                  "mass or size on), retained (g), cumulative retained (%), passing (%); and name, id, note; not",
+                  cell);
+  if (meaning->of == LABEL)
+    return STATUS_OK;
+  const bool amount = meaning->of == AMOUNT;
+  size_t *const place = amount ? &r->amount : &r->place;
+  if (*place != NO_COLUMN && !amount && (meaning->of == SIZE) != r->by_size)
+    return refuse(r, error,
+                  "a mass beside a size: name it retained (g) if it is the mass on a sieve; leave the size out if it "
+                  "is the mass of a fragment; not",
+                  cell);
+  if (*place != NO_COLUMN)
+    return refuse(r, error, "two columns say the same; leave out", cell);
+  *place = i;
+  if (!amount) {
+    r->by_size = meaning->of == SIZE;
+    r->place_unit = unit;
+    return STATUS_OK;
   }
-  if (r->place >= 0)
-    return;
-  r->place = i;
-  r->by_size = meaning->of == SIZE;
-  const char *usual = r->by_size ? "m" : "kg";
-  snprintf(r->unit, sizeof r->unit, "%s", *unit ? unit : usual);
+  r->kind = meaning->kind;
+  r->amount_name = cell;
+  r->amount_unit = *unit || !percent ? unit : "%";
+  const bool counts = r->kind == COUNT || r->kind == COUNT_ABOVE;
+  if (counts && *r->amount_unit && strcmp(r->amount_unit, "1") != 0)
+    return refuse(r, error, "a number of fragments has no unit; not", r->amount_unit);
+  return STATUS_OK;
 }
 
-static status take_names(struct reading *r, int count, char *const cells[], struct error *error) {
-  r->place = r->number = -1;
-  for (int i = 0; i < count; i++)
-    take_name(r, i, cells[i]);
-  if (r->place < 0)
-    return refuse(r, error,
-                  "the first line names the columns: mass (g) or size (mm), alone or with count or cumulative; not",
-                  cells[0]);
+static status take_names(struct reading *r, struct error *error) {
+  r->place = r->amount = NO_COLUMN;
+  for (size_t i = 0; i < r->csv.count; i++)
+    TRY(take_name(r, i, error));
+  if (r->place == NO_COLUMN)
+    return refuse(r, error, "the first line names the columns: mass (g) or size (mm), alone or with count; not",
+                  r->csv.cells[0].text);
   if (r->by_size && !(r->size.density > 0))
     return status_fail(error, STATUS_CONTENT,
-                       "%s:%zu: sizes need a density: add a line `# density: 2.7 g/cm^3` above the names", r->path,
-                       r->line);
+                       "%s:%lld: sizes need a density: add a line `# density: 2.7 g/cm^3` above the names", r->path,
+                       (long long)r->csv.line);
+  return STATUS_OK;
+}
+
+enum { QUANTITY = 300 };
+
+/* Gives a bare number the unit of its column. */
+static status add_unit(const struct reading *r, const char *text, const char *unit, char quantity[QUANTITY],
+                       struct error *error) {
+  const bool bare = unit_is_bare(text), fraction = strcmp(unit, "1") == 0;
+  if (bare && !*unit)
+    return refuse(r, error, "a number without a unit; write mass (g), size (mm), retained (%) above the column, not",
+                  text);
+  snprintf(quantity, QUANTITY, "%.120s%s%.120s", text, bare && !fraction ? " " : "", bare && !fraction ? unit : "");
   return STATUS_OK;
 }
 
 /* Reads "0.5" in the unit of the column, or "0.5 g", as a mass in kg. */
 static status read_mass(const struct reading *r, const char *text, const char *unit, double *mass,
                         struct error *error) {
-  char quantity[2 * CELL + 2];
+  char quantity[QUANTITY];
   double place;
-  snprintf(quantity, sizeof quantity, "%.127s %s", text, unit);
+  TRY(add_unit(r, text, unit, quantity, error));
   const status code = unit_read(quantity, r->by_size ? "m" : "kg", &place, error);
+  if (code == STATUS_OK && r->kind >= RETAINED && place == 0) { /* below the finest sieve */
+    *mass = 0;
+    return STATUS_OK;
+  }
   if (code || !(place > 0))
     return refuse(r, error, r->by_size ? "expected a size above 0, not" : "expected a mass above 0, not", quantity);
   *mass = r->by_size ? spectrum_size_mass(&r->size, place) : place;
@@ -350,19 +433,43 @@ static status read_mass(const struct reading *r, const char *text, const char *u
   return STATUS_OK;
 }
 
-static status take_row(struct reading *r, int count, char *const cells[], struct error *error) {
-  struct row row = {.number = 1};
-  if (r->place >= count || r->number >= count)
-    return refuse(r, error, "the line has too few cells; it begins with", cells[0]);
-  status code = read_mass(r, cells[r->place], r->unit, &row.mass, error);
-  if (code)
-    return code;
-  if (r->number >= 0) {
-    char *end;
-    row.number = strtod(cells[r->number], &end);
-    if (end == cells[r->number] || *end || !(row.number >= 0) || !isfinite(row.number))
-      return refuse(r, error, "expected a number of fragments, not", cells[r->number]);
+/* A number of fragments, a mass in kg, or a share of the mass. */
+static status read_amount(struct reading *r, const char *text, double *amount, struct error *error) {
+  struct unit unit, mass;
+  char quantity[QUANTITY];
+  if (r->kind == COUNT || r->kind == COUNT_ABOVE) {
+    if (!unit_is_bare(text) || unit_read(text, "1", amount, error) || !(*amount >= 0))
+      return refuse(r, error, "expected a number of fragments, not", text);
+    return STATUS_OK;
   }
+  TRY(unit_parse("kg", &mass, error));
+  if (*r->amount_unit && unit_parse(r->amount_unit, &unit, error))
+    return refuse(r, error, "the unit of masses is g, kg or %, not", r->amount_unit);
+  const bool weighed = *r->amount_unit && unit_same_dimension(&unit, &mass);
+  r->shares = !weighed;
+  if (weighed && r->kind == PASSING)
+    return refuse(r, error, "the mass that passes is given in % of the whole, not in", r->amount_unit);
+  TRY(add_unit(r, text, r->amount_unit, quantity, error));
+  if (unit_read(quantity, weighed ? "kg" : "1", amount, error))
+    return refuse(r, error, "expected a mass of fragments, not", quantity);
+  if (!(*amount >= 0) || (!weighed && *amount > 1))
+    return refuse(r, error, weighed ? "expected a mass of 0 or more, not" : "expected a share from 0 to 100 %, not",
+                  quantity);
+  if (r->kind == PASSING)
+    *amount = 1 - *amount;
+  return STATUS_OK;
+}
+
+static status take_row(struct reading *r, struct error *error) {
+  struct row row = {.amount = 1};
+  struct csv_cell *place = &r->csv.cells[r->place], *amount = r->kind == SINGLE ? NULL : &r->csv.cells[r->amount];
+  if (!csv_number(&r->csv, place) || (amount && !csv_number(&r->csv, amount)))
+    return status_fail(error, STATUS_CONTENT, "%s:%lld: %s", r->path, (long long)r->csv.line, r->csv.wrong);
+  const bool pan = r->kind >= RETAINED && strcasecmp(place->text, "pan") == 0;
+  if (!pan)
+    TRY(read_mass(r, place->text, r->place_unit, &row.mass, error));
+  if (amount)
+    TRY(read_amount(r, amount->text, &row.amount, error));
   if (r->count == MOST_ROWS)
     return status_fail(error, STATUS_CONTENT, "%s: more than %d rows", r->path, MOST_ROWS);
   if (!grow_room(&r->rows, &r->room, r->count + 1, sizeof *r->rows))
@@ -371,48 +478,46 @@ static status take_row(struct reading *r, int count, char *const cells[], struct
   return STATUS_OK;
 }
 
-/* The first line that is no remark names the columns; the next ones are rows. */
-static status take_line(struct reading *r, char *text, struct error *error) {
-  char *cells[64];
-  if (r->line == 1 && strncmp(text, "\xef\xbb\xbf", 3) == 0)
-    text += 3;
-  text = trim(text);
-  if (*text == '\0')
-    return STATUS_OK;
-  if (*text == '#')
-    return take_remark(r, text + 1, error);
-  const int count = split(text, cells, 64);
-  if (r->named)
-    return take_row(r, count, cells, error);
-  r->named = true;
-  return take_names(r, count, cells, error);
-}
-
-static status read_lines(struct reading *r, FILE *file, struct error *error) {
-  char line[LINE];
-  while (fgets(line, sizeof line, file)) {
-    r->line++;
-    if (strlen(line) == sizeof line - 1)
-      return status_fail(error, STATUS_CONTENT, "%s:%zu: the line is too long", r->path, r->line);
-    const status code = take_line(r, line, error);
-    if (code)
-      return code;
-  }
-  if (ferror(file))
-    return status_fail(error, STATUS_IO, "%s: cannot be read: %s", r->path, strerror(errno));
+static status read_items(struct reading *r, struct error *error) {
+  enum csv_item item;
+  while ((item = csv_next(&r->csv)) != CSV_END)
+    switch (item) {
+    case CSV_REMARK: TRY(take_remark(r, r->csv.cells[0].text, error)); break;
+    case CSV_NAMES: TRY(take_names(r, error)); break;
+    case CSV_RECORD: TRY(take_row(r, error)); break;
+    default: return status_fail(error, STATUS_CONTENT, "%s:%lld: %s", r->path, (long long)r->csv.line, r->csv.wrong);
+    }
   if (r->count == 0)
     return status_fail(error, STATUS_CONTENT, "%s: there is no row with a fragment", r->path);
-  return STATUS_OK;
+  return *r->complete ? read_mass(r, r->complete, "", &r->out->complete, error) : STATUS_OK;
+}
+
+/* A column `number` or `n` may count fragments or number the rows. */
+static bool numbers_rows(const struct reading *r) {
+  if (r->kind != COUNT || r->count < 2 ||
+      (strcasecmp(r->amount_name, "number") != 0 && strcasecmp(r->amount_name, "n") != 0))
+    return false;
+  for (size_t i = 0; i < r->count; i++)
+    if (r->rows[i].amount != (double)(i + 1))
+      return false;
+  return true;
 }
 
 static int ascending(const void *a, const void *b) {
   return sample_ascending(&((const struct row *)a)->mass, &((const struct row *)b)->mass);
 }
 
-/* Converts rows into N(>= m) at ascending masses. */
+/* Converts rows into what is at least as heavy, at ascending masses. */
 static status take_rows(struct reading *r, struct error *error) {
   struct measured *out = r->out;
+  const bool cumulative = r->kind == COUNT_ABOVE || r->kind == RETAINED_ABOVE || r->kind == PASSING;
+  if (numbers_rows(r))
+    return status_fail(
+        error, STATUS_CONTENT,
+        "%s: column '%s' is 1, 2, 3, ...: name it id if it numbers the rows, count if it counts fragments", r->path,
+        r->amount_name);
   out->single = r->kind == SINGLE;
+  out->weighed = r->kind >= RETAINED;
   out->mass = malloc(r->count * sizeof *out->mass);
   out->above = malloc(r->count * sizeof *out->above);
   if (!out->mass || !out->above)
@@ -421,17 +526,19 @@ static status take_rows(struct reading *r, struct error *error) {
   qsort(r->rows, r->count, sizeof *r->rows, ascending);
   double above = 0;
   for (size_t i = r->count; i-- > 0;) {
-    if (r->kind == CUMULATIVE && r->rows[i].number < above)
+    if (cumulative && r->rows[i].amount < above)
       return status_fail(error, STATUS_CONTENT,
-                         "%s: the cumulative number at %g kg is below that of a larger mass; it counts from this mass "
-                         "upwards",
-                         r->path, r->rows[i].mass);
-    above = r->kind == CUMULATIVE ? r->rows[i].number : above + r->rows[i].number;
+                         "%s: the cumulative %s at %g kg is %s that of a larger mass; it counts from this mass %s",
+                         r->path, out->weighed ? "mass" : "number", r->rows[i].mass,
+                         r->kind == PASSING ? "above" : "below", r->kind == PASSING ? "downwards" : "upwards");
+    above = cumulative ? r->rows[i].amount : above + r->rows[i].amount;
     out->mass[i] = r->rows[i].mass;
     out->above[i] = above;
   }
   if (!(above > 0))
     return status_fail(error, STATUS_CONTENT, "%s: there is no fragment in it", r->path);
+  if (r->kind == RETAINED && r->shares && above > 1.01) /* the classes are rounded */
+    return status_fail(error, STATUS_CONTENT, "%s: %.4g %% of the mass are in its classes", r->path, 100 * above);
   if (!isfinite(above))
     return status_fail(error, STATUS_CONTENT, "%s: there are more fragments than a number can hold in it", r->path);
   return STATUS_OK;
@@ -439,17 +546,12 @@ static status take_rows(struct reading *r, struct error *error) {
 
 status measured_read(const char *path, const struct spectrum_size *size, struct measured *out, struct error *error) {
   *out = (struct measured){0};
-  struct reading r = {.path = path, .size = *size, .kind = SINGLE, .out = out};
-  TRY(file_input(path, error));
-  FILE *file = fopen(path, "r");
-  if (!file)
-    return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "%s: %s", path, strerror(errno));
-  status code = read_lines(&r, file, error);
-  fclose(file);
-  if (code == STATUS_OK && *r.complete)
-    code = read_mass(&r, r.complete, "", &out->complete, error);
+  struct reading r = {.path = path, .size = *size, .complete = "", .out = out};
+  TRY(csv_open(&r.csv, path, "measured spectrum", error));
+  status code = read_items(&r, error);
   if (code == STATUS_OK)
     code = take_rows(&r, error);
+  csv_close(&r.csv);
   free(r.rows);
   if (code)
     measured_release(out);

@@ -55,8 +55,8 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_FLAG("runs", 0, struct options, runs,
                     "Show every run separately: in the table, and as thin lines in the picture."),
     OPTION_ROW_TEXT("with", 0, "FILE.csv", struct options, with, NULL,
-                    "Compare with a measured spectrum: columns mass (g) or size (mm), alone or with count or "
-                    "cumulative. Prints distances; --picture also draws the measured spectrum."),
+                    "Compare with a measured spectrum: columns mass (g) or size (mm), alone or with count, cumulative, "
+                    "retained (g) or passing (%). Prints distances; --picture also draws the measured spectrum."),
     OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture,
                       "Also draw the first eight spectra with fitted power laws. PNG, SVG or PDF by the ending."),
     OPTION_ROW_FLAG("plot", 0, struct options, plot, "Plot them as text instead of the table."),

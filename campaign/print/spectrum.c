@@ -166,8 +166,8 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   if (code == STATUS_OK && format == TABLE_TEXT)
     fprintf(stderr,
             "clast: fragments from %.3g kg on, where the measured and all simulated spectra are complete. distance: "
-            "Kolmogorov's, of the shapes; runs_as_far: share of the runs that are as far from the other runs as the "
+            "Kolmogorov's, of %s; runs_as_far: share of the runs that are as far from the other runs as the "
             "measured one (one experiment is one specimen; below 0.05 speaks against the point)\n",
-            printing.complete);
+            printing.complete, choice->measured->weighed ? "the shares of mass" : "the shapes");
   return end_table(printing.table, code, error);
 }

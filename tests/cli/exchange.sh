@@ -93,6 +93,14 @@ points_say 'strain\n"0.02\n' "points.csv:2: a double quote is not closed"
 points_say 'strain\n' "no points"
 points_say '' "no points"
 points_say 'strain,beam.friction\n0.02,\0\n' "points.csv:"
+points_say 'strain;threshold.angle [deg]\n2,5 %%;3\n2.5 %%;4\n' "points.csv:3: threshold.strain: '2.5 %': numbers above have the other decimal mark"
+points_say 'strain [1],threshold.angle [deg]\n"1,234",3\n' "points.csv:2: threshold.strain: '1,234'" "write a decimal point"
+points_say 'strain [1]\n0,02\n' "points.csv:2: 2 cells, but the header has 1; a decimal comma needs semicolons"
+printf 'strain [%%];threshold.angle [deg]\n2;2\n5;2\n2;6\n5,0;6,0 deg\n' >in/points.csv
+expect 0 "$clast" run in/design.yaml --store european.db -j 2 --quiet
+"$clast" query european.db "select identity, largest_fraction from runs order by 1" --csv | cmp -s - grid.csv ||
+  fail "points with decimal commas are not those of the grid"
+ok "semicolons and decimal commas mean the same points"
 rm in/points.csv
 expect 65 "$clast" plan in/design.yaml --no-trial
 says "cannot open 'in/points.csv'"
@@ -130,4 +138,4 @@ done
 cd ..
 [ "$(ls guide/block-*.sh | wc -l)" -ge 2 ] && [ "$(ls guide/block-*.python | wc -l)" -ge 2 ] || fail "too few blocks in the guide"
 ok "blocks of the guide"
-done_after 41
+done_after 46

@@ -54,6 +54,16 @@ is_svg beside.svg
 grep -q 'measured: &lt;made up>' beside.svg || fail "the source of the measured spectrum is not in the picture"
 grep -q 'N(>L), fragments' beside.svg && grep -q 'intervals over seeds; of' beside.svg && grep -q 'not studied' beside.svg || fail "the picture does not tell its axes and errors"
 ok "what was measured is drawn, and the errors are told"
+printf '%s\n' 'mass (kg);passing (%)' '0,1;12,5' '0,4;21,5' '1,5;40' '2,5;60' '6;100' >sieves.csv
+expect 0 "$clast" spectrum small.db --with sieves.csv --csv
+python - <<'PY'
+import csv
+rows = list(csv.DictReader(open("out")))
+assert len(rows) == 4 and all(0 <= float(r["distance"]) <= 1 and r["measured"] == r["log_likelihood"] == "" for r in rows), rows
+PY
+expect 65 "$clast" spectrum small.db --with sieves.csv --picture sieves.svg
+says "no numbers of fragments"
+ok "shares of mass from a sieve table"
 expect 0 "$clast" spectrum small.db --point 1 --runs --cumulative --json
 python -c "
 import json; rows = json.load(open('out'))
@@ -209,4 +219,4 @@ for r in json.load(open("out")):
         assert abs(r["F(L)"] - r["N(>L)"] - 1) < 1e-12 and 0 < r["p"] <= 1 and 0 < r["distance"] < 1, r
 PY
 ok "exponents by their names"
-done_after 81
+done_after 84

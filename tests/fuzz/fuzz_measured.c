@@ -34,7 +34,8 @@ static void write_file(const uint8_t *bytes, size_t size) {
 }
 
 static void judge(const struct measured *m) {
-  must(m->n > 0 && m->mass[0] > 0 && isfinite(m->mass[m->n - 1]) && m->above[0] > 0 && isfinite(m->above[0]));
+  must(m->n > 0 && (m->mass[0] > 0 || (m->weighed && m->mass[0] == 0)) && isfinite(m->mass[m->n - 1]) &&
+       m->above[0] > 0 && isfinite(m->above[0]));
   must(m->complete >= 0 && isfinite(m->complete) && m->above[m->n - 1] >= 0);
   for (size_t i = 1; i < m->n; i++)
     must(m->mass[i] >= m->mass[i - 1] && m->above[i] <= m->above[i - 1]);

@@ -7,25 +7,29 @@
 
 #include <string.h>
 
-#include "campaign/document/csv.h"
+#include "schemas/csv.h"
 #include "schemas/sha256.h"
+#include "schemas/text.h"
 
-/* Reads `text` (of `size` bytes) and joins cells with '|' and records with '/'; ends with '!' and the reason when a
- * cell cannot be read. */
+static struct error error;
+
+/* Joins the cells of `text` (of `size` bytes) with '|', and ends a record with '/', a remark with '#', and what cannot
+ * be read with '!' and the reason. */
 static const char *joined(const char *text, size_t size) {
-  static char out[2048];
-  char cell[CSV_CELL];
-  struct csv csv = {.text = text, .end = text + size, .line = 1};
+  static char out[4096];
+  struct csv csv;
+  enum csv_item item;
   *out = '\0';
-  while (csv_record(&csv)) {
-    for (bool last = false; !last;) {
-      if (!csv_cell(&csv, cell, &last)) {
-        strcat(strcat(out, "!"), csv.wrong);
-        return out;
-      }
-      strcat(strcat(out, cell), last ? "/" : "|");
-    }
+  if (csv_text(&csv, "t", text, size, &error) != STATUS_OK)
+    return error.message;
+  while ((item = csv_next(&csv)) != CSV_END) {
+    const size_t count = item == CSV_REMARK ? 1 : item == CSV_WRONG ? 0 : csv.count;
+    for (size_t i = 0; i < count; i++)
+      text_append(out, sizeof out, "%s%s", i ? "|" : "", csv.cells[i].text);
+    text_append(out, sizeof out, "%s%s", item == CSV_REMARK ? "#" : item == CSV_WRONG ? "!" : "/", csv.wrong);
+    csv.wrong[0] = '\0';
   }
+  csv_close(&csv);
   return out;
 }
 
@@ -36,41 +40,112 @@ static void cells(void **state) {
   } cases[] = {
       {"", ""},
       {"a,b\n1,2\n", "a|b/1|2/"},
-      {"a,b\r\n1,2", "a|b/1|2/"},       /* CRLF, no line break at the end */
-      {"\n# a note\na\n\n1\n", "a/1/"}, /* empty lines and notes */
+      {"\xEF\xBB\xBF"
+       "a,b\r\n1,2",
+       "a|b/1|2/"}, /* byte order mark, CRLF, no line break at the end */
+      {"a,b\r\n1,2\r", "a|b/1|2/"},
+      {"\n# a note\na\n\n1\n", " a note#a/1/"},  /* empty lines and remarks */
+      {"# a;b\na,b\n,\n1,2\n", " a;b#a|b/1|2/"}, /* a remark decides nothing; a row of separators is empty */
+      {"\"# source: A, 1991\",,\n# 2 g;;\na,b,c\n1,2,3", " source: A, 1991# 2 g#a|b|c/1|2|3/"}, /* by spreadsheets */
       {"\"a,b\",\"say \"\"x\"\"\"\n", "a,b|say \"x\"/"},
       {"\"two\nlines\",2\n", "two\nlines|2/"},
       {" a , b \n", "a|b/"},
-      {"\ta\t,b\t\n", "a|b/"},
-      {"a,\n,b\n", "a|/|b/"}, /* empty cells */
-      {"\"\",x\n", "|x/"},
-      {"\"open\n1,2\n", "!a double quote is not closed"},
-      {"\"a\"b,c\n", "!text after a closing double quote"},
+      {"\ta\t,b\t\n", "|a|,b|/"}, /* a tab among the names is a separator */
+      {"a\tb\n\t2\n", "a|b/|2/"},
+      {"a;b\n2,5;214\n", "a|b/2,5|214/"},
+      {"\"a;b\",c\n1,2\n", "a;b|c/1|2/"}, /* not in quotes */
+      {"a,\n,b\n", "a|/|b/"},             /* empty cells */
+      {"a,b\n\"\",x\n", "a|b/|x/"},
+      {"a,b\n\"\",\n", "a|b/|/"},
+      {"a\n\"open\n1,2\n", "a/!a double quote is not closed"},
+      {"a,b\n\"a\"b,c\n1,2\n", "a|b/!text after a closing double quote1|2/"},
       {"a\"b,c\n", "a\"b|c/"}, /* a quote inside an unquoted cell is an ordinary character */
+      {"a\n1,5\n2\n", "a/!2 cells, but the header has 1; a decimal comma needs semicolons between the cells, or double "
+                      "quotes2/"},
+      {"a,b\n1\n", "a|b/!1 cells, but the header has 2; a decimal comma needs semicolons between the cells, or double "
+                   "quotes"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
     assert_string_equal(joined(cases[i].text, strlen(cases[i].text)), cases[i].cells);
-  assert_string_equal(joined("a\0b\n", 4), "!a NUL byte; is this a text file?");
-  char wide[400];
-  memset(wide, 'x', sizeof wide);
-  assert_string_equal(joined(wide, 255) + 255, "/");
-  assert_string_equal(joined(wide, 256), "!a cell of more than 255 bytes");
+  assert_string_equal(joined("a\nb\0\n", 5), "t:2: a NUL byte; is this a text file? Save it as UTF-8");
+  char wide[1 + CSV_CELLS + 1];
+  memset(wide, ',', sizeof wide);
+  wide[0] = 'x';
+  assert_string_equal(joined(wide, CSV_CELLS + 1), "!more than 1000 columns");
+  assert_string_equal(joined(wide, CSV_CELLS) + CSV_CELLS, "/");
 }
 
 static void lines(void **state) {
   (void)state;
   static const char text[] = "a\n\"1\n2\"\r\n# note\n\n3\n";
-  static const int64_t expected[] = {1, 2, 6};
-  char cell[CSV_CELL];
-  struct csv csv = {.text = text, .end = text + sizeof text - 1, .line = 1};
-  bool last;
-  for (size_t i = 0; i < 3; i++) {
-    assert_true(csv_record(&csv));
+  static const int64_t expected[] = {1, 2, 4, 6, 7};
+  struct csv csv;
+  assert_int_equal(csv_text(&csv, "t", text, sizeof text - 1, &error), STATUS_OK);
+  for (size_t i = 0; i < 5; i++) {
+    assert_true((csv_next(&csv) == CSV_END) == (i == 4));
     assert_int_equal(csv.line, expected[i]);
-    assert_true(csv_cell(&csv, cell, &last));
-    assert_true(last);
   }
-  assert_false(csv_record(&csv));
+  csv_close(&csv);
+}
+
+/* A number means one thing, or it is refused. */
+static void numbers(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *last; /* the last cell of the text as a number; "!": refused */
+  } cases[] = {
+      {"a\n1\n", "1"},
+      {"a\n1.5 g\n", "1.5 g"},
+      {"a\n\"1,5 g\"\n", "1.5 g"},
+      {"a;b\n1;-2,5e3\n", "-2.5e3"},
+      {"a;b\n1;1,234\n", "1.234"},
+      {"a;b\n1;,5\n", ".5"},
+      {"a\n\"1,2345\"\n", "1.2345"},
+      {"a\n\"0,234\"\n", "0.234"},
+      {"a\n\"1,234\"\n", "!"}, /* a fraction, or a thousand */
+      {"a\n\"1,234.5\"\n", "!"},
+      {"a;b\n1;1.234,5\n", "!"},
+      {"a;b\n1;1,234,567\n", "!"},
+      {"a\tb\n1\t2,5\n", "!"},
+      {"a;b\n1;2.5\n1;2,5\n", "!"}, /* two marks in one file */
+      {"a;b\n1;2,5\n1;3\n1;2.5\n", "!"},
+      {"a\nup, down\n", "!"},
+      {"a\noff\n", "off"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct csv csv;
+    enum csv_item item;
+    bool good = true;
+    char last[40] = "";
+    assert_int_equal(csv_text(&csv, "t", cases[i].text, strlen(cases[i].text), &error), STATUS_OK);
+    while ((item = csv_next(&csv)) != CSV_END) {
+      if (item == CSV_NAMES)
+        continue;
+      good = item == CSV_RECORD && csv_number(&csv, &csv.cells[csv.count - 1]);
+      snprintf(last, sizeof last, "%s", csv.cells[csv.count - 1].text);
+    }
+    assert_string_equal(good ? last : "!", cases[i].last);
+    assert_true(good || csv.wrong[0]);
+    csv_close(&csv);
+  }
+}
+
+static void units(void **state) {
+  (void)state;
+  static const char *const cases[][3] = {{"mass (g)", "mass", "g"},
+                                         {"threshold.angle [deg]", "threshold.angle", "deg"},
+                                         {"a(m)", "a", "m"},
+                                         {"a ( 1/m^3)", "a", "1/m^3"},
+                                         {"mass", "mass", ""},
+                                         {"", "", ""},
+                                         {"a (b) [m]", "a (b)", "m"},
+                                         {"a)", "a)", ""}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char name[40];
+    snprintf(name, sizeof name, "%s", cases[i][0]);
+    assert_string_equal(csv_take_unit(name), cases[i][2]);
+    assert_string_equal(name, cases[i][1]);
+  }
 }
 
 /* FIPS 180-4's examples, and Python's hashlib (another implementation) for bytes 0, 1, 2, ... of these lengths, around
@@ -107,6 +182,7 @@ static void sums(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(cells), cmocka_unit_test(lines), cmocka_unit_test(sums)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(cells), cmocka_unit_test(lines), cmocka_unit_test(numbers),
+                                     cmocka_unit_test(units), cmocka_unit_test(sums)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -72,12 +72,13 @@ static void bad_files(void **state) {
   static const struct {
     const char *text, *says;
   } bad[] = {
-      {"weight (g)\n1\n", ":1: the first line names the columns"},
+      {"weight (g)\n1\n", ":1: no such column"},
+      {"name,id\n1,2\n", ":1: the first line names the columns"},
       {"mass (mm)\n1\n", ":2: expected a mass above 0, not '1 mm'"},
       {"mass (g)\n1\nx\n", ":3: expected a mass"},
       {"mass (g)\n-1\n", ":2: expected a mass"},
       {"mass (g)\nnan\n", ":2: expected a mass"},
-      {"mass (g),count\n1\n", ":2: the line has too few cells"},
+      {"mass (g),count\n1\n", ":2: 1 cells, but the header has 2"},
       {"mass (g),count\n1,-3\n", ":2: expected a number of fragments"},
       {"mass (g),count\n1,inf\n", ":2: expected a number of fragments"},
       {"mass (g),cumulative\n1,3\n2,5\n", "is below that of a larger mass"},
@@ -89,6 +90,26 @@ static void bad_files(void **state) {
       {"# density: heavy\nsize (mm)\n1\n", ":1: the density needs a number"},
       {"# complete from: 1 km\nmass (g)\n1\n", "expected a mass"},
       {"", "there is no row"},
+      /* A file means one thing. */
+      {"mass\n94\n31\n", ":2: a number without a unit"},
+      {"# complete from: 1\nmass (g)\n1\n", "a number without a unit"},
+      {"# density: 2.7\nsize (mm)\n1\n", ":1: the density needs a number and a unit"},
+      {"mass (kg)\n1,5\n2,5\n", ":2: 2 cells, but the header has 1"},
+      {"mass (kg)\n\"1,500\"\n", ":2: '1,500': it may be a decimal comma"},
+      {"mass (kg),speed (m/s)\n1,2\n", ":1: no such column"},
+      {"mass (g),mass (kg)\n1,2\n", ":1: two columns say the same"},
+      {"# density: 2.7 g/cm^3\nsize (mm),mass (g)\n100,1200\n200,300\n", ":2: a mass beside a size"},
+      {"mass (g),size (mm)\n100,1200\n", ":1: a mass beside a size"},
+      {"mass (g),count (%)\n100,12\n", ":1: a number of fragments has no unit"},
+      {"mass (g),count\n100,12 g\n", ":2: expected a number of fragments"},
+      {"number,mass (g)\n1,94\n2,31\n3,12\n", "column 'number' is 1, 2, 3"},
+      {"mass (g),retained\n1,5\n", ":2: a number without a unit"},
+      {"mass (g),retained (mm)\n1,5\n", ":2: expected a mass of fragments"},
+      {"mass (g),retained (%)\n1,50\n2,61\n", "111 % of the mass"},
+      {"mass (g),passing (g)\n1,50\n", ":2: the mass that passes is given in %"},
+      {"mass (g),passing (%)\n1,50\n2,101\n", ":3: expected a share from 0 to 100 %"},
+      {"mass (g),passing (%)\n1,50\n2,40\n", "it counts from this mass downwards"},
+      {"mass (g),passing (%)\n1,100\n", "there is no fragment"},
       {"mass (g)\n", "there is no row"},
   };
   struct measured m;
@@ -100,6 +121,67 @@ static void bad_files(void **state) {
   }
   assert_int_equal(measured_read("no-such.csv", &no_size, &m, &error), STATUS_MISSING);
   assert_int_equal(measured_read(".", &no_size, &m, &error), STATUS_IO);
+}
+
+/* What laboratories write: the same masses or numbers in several forms. */
+static void forms_of_laboratories(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    bool single, weighed;
+    double mass[3], above[3];
+  } cases[] = {
+      {"mass (g);count\n2,5;214\n4,5;58\n150,5;3\n", false, false, {0.0025, 0.0045, 0.1505}, {275, 61, 3}},
+      {"mass (g),count\n\"2,5\",214\n\"4,5\",58\n\"150,5\",3\n", false, false, {0.0025, 0.0045, 0.1505}, {275, 61, 3}},
+      {"mass [kg]\tnumber of fragments\n1\t3\n2\t2\n4\t1\n", false, false, {1, 2, 4}, {6, 3, 1}},
+      {"mass (kg),N(>m)\n1,6\n2,3\n4,1\n", false, false, {1, 2, 4}, {6, 3, 1}},
+      {"mass (kg);name\n\"1,5\";a\n\"2,5\";b\n3;c\n", true, false, {1.5, 2.5, 3}, {3, 2, 1}},
+      {"name,mass\na,1 kg\nb,2000 g\nc,4 kg\n", true, false, {1, 2, 4}, {3, 2, 1}},
+      {"mass (kg),retained (g)\n1,1200\n2,300\n4,500\n", false, true, {1, 2, 4}, {2, 0.8, 0.5}},
+      {"mass (kg),Mass_Retained (%)\n4,25\n2,25\n1,50\n", false, true, {1, 2, 4}, {1, 0.5, 0.25}},
+      {"mass (kg),% retained\n4,25\n2,25\npan,50\n", false, true, {0, 2, 4}, {1, 0.5, 0.25}},
+      {"mass (kg),Cumulative % Passing\n4,100\n2,75\n1,50\n", false, true, {1, 2, 4}, {0.5, 0.25, 0}},
+      {"mass (kg),passing [1]\n4,1\n2,0.75\n1,0.5\n", false, true, {1, 2, 4}, {0.5, 0.25, 0}},
+      {"mass (kg),cumulative retained (kg)\n4,1\n2,2\n1,6\n", false, true, {1, 2, 4}, {6, 2, 1}},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct measured m;
+    if (read_text(cases[i].text, &no_size, &m) != STATUS_OK)
+      fail_msg("%s: %s", cases[i].text, error.message);
+    assert_true(m.single == cases[i].single && m.weighed == cases[i].weighed && m.n == 3);
+    for (size_t k = 0; k < 3; k++) {
+      near(m.mass[k], cases[i].mass[k]);
+      near(m.above[k] + 1, cases[i].above[k] + 1);
+    }
+    measured_release(&m);
+  }
+}
+
+/* A sieve table compares shares of mass. Runs of masses 1, 2, 3, 4: shares of the mass from 1, 2, 3, 4 kg on are 1,
+ * 0.9, 0.7, 0.4. */
+static void sieves(void **state) {
+  (void)state;
+  const size_t first[5] = {0, 4, 8, 12, 16};
+  double masses[16];
+  for (int i = 0; i < 16; i++)
+    masses[i] = 4 - i % 4;
+  const struct pooled_runs runs = {4, first, masses};
+  struct measured m;
+  struct measured_match match;
+  assert_int_equal(read_text("mass (kg),retained (%)\n1,10\n2,20\n3,50\n4,20\n", &no_size, &m), STATUS_OK);
+  assert_int_equal(measured_compare(&m, &runs, 1, &match, &error), STATUS_OK);
+  near(match.distance, 0.2); /* from 4 kg on 0.2 instead of 0.4 */
+  near(match.from, 1);
+  near(match.share + 1, 1);
+  near(match.simulated.mean, 4);
+  assert_true(isnan(match.fragments) && isnan(match.log_likelihood));
+  assert_int_equal(measured_compare(&m, &runs, 2, &match, &error), STATUS_OK);
+  near(match.distance, 4 / 9.0 - 2 / 9.0);
+  struct pooled_bin *bins;
+  size_t count;
+  assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, &bins, &count, &error), STATUS_CONTENT);
+  assert_null(bins);
+  measured_release(&m);
 }
 
 /* Four runs of masses 1, 2, 3, 4; measured 2.5 and 4, or the same numbers at thresholds. */
@@ -167,7 +249,7 @@ static void a_run_among_runs(void **state) {
     for (int i = 0; i < EACH; i++)
       above[i] = EACH - i;
     struct measured_match match;
-    assert_int_equal(measured_compare(&(struct measured){true, EACH, mass, above, 0, ""},
+    assert_int_equal(measured_compare(&(struct measured){.single = true, .n = EACH, .mass = mass, .above = above},
                                       &(struct pooled_runs){RUNS - 1, first, masses}, 1, &match, &error),
                      STATUS_OK);
     mean += match.share / CASES;
@@ -176,7 +258,11 @@ static void a_run_among_runs(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_three_kinds), cmocka_unit_test(bad_files),
-                                     cmocka_unit_test(distances), cmocka_unit_test(a_run_among_runs)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_three_kinds),
+                                     cmocka_unit_test(bad_files),
+                                     cmocka_unit_test(forms_of_laboratories),
+                                     cmocka_unit_test(sieves),
+                                     cmocka_unit_test(distances),
+                                     cmocka_unit_test(a_run_among_runs)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
