@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-#include "engine/sph/material/materials.h"
-#include "engine/sph/observe/observe.h"
+#include "engine/sph/material/material.h"
+#include "engine/sph/run/run.h"
 
 static void complete(void *inputs, const bool *given) {
   sph_inputs_complete(inputs, given);

@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "engine/sph/material/materials.h"
-#include "engine/sph/modules/ranges.h"
+#include "engine/sph/material/material.h"
 #include "engine/sph/step/system.h"
 #include "tests/support/case_parameters.h"
 

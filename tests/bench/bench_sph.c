@@ -13,9 +13,8 @@
 
 #include "engine/cpu_class.h"
 #include "engine/sph/body/bodies.h"
-#include "engine/sph/body/hilbert.h"
+#include "engine/sph/body/kd_tree.h"
 #include "engine/sph/pairs/pairs.h"
-#include "engine/sph/pairs/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/bench/sph_whole_runs.h"
 #include "tests/support/noise.h"
@@ -47,7 +46,7 @@ struct cloud {
 };
 
 static double *column(size_t n) {
-  double *a = calloc(n + 7, sizeof *a); /* neighbours.h reads up to 7 elements beyond n */
+  double *a = calloc(n + 7, sizeof *a); /* neighbours.c reads up to 7 elements beyond n */
   if (!a)
     fail("memory", NULL);
   return a;

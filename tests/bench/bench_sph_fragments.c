@@ -6,7 +6,7 @@
 
 #include "engine/random.h"
 #include "engine/sph/body/bodies.h"
-#include "engine/sph/observe/sph_fragments.h"
+#include "engine/sph/observe/observe.h"
 
 static double now(void) {
   struct timespec t;

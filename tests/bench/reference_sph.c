@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/sph/pairs/spline.h"
+#include "engine/sph/pairs/pairs.h"
 
 static double image(double along, double length) {
   return isnan(length) ? along : along - length * nearbyint(along / length);
@@ -71,7 +71,7 @@ void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, con
     }
 }
 
-/* Appends one chunk's lists; false when they break the rules of neighbours.h. */
+/* Appends one chunk's lists; false when they break the rules of pairs/lists.h. */
 static bool append(const struct sph_neighbour_lists *lists, size_t first, size_t own, size_t *used,
                    struct reference_sph_lists *out) {
   bool good = lists->start[0] == 0;

@@ -3,7 +3,7 @@
 #ifndef CLAST_TESTS_BENCH_REFERENCE_SPH_H
 #define CLAST_TESTS_BENCH_REFERENCE_SPH_H
 
-#include "engine/sph/pairs/neighbours.h"
+#include "engine/sph/pairs/lists.h"
 #include "engine/sph/pairs/pairs.h"
 
 /* Neighbours j > i of i: j[start[i]] .. j[start[i] + count[i] - 1], ascending. */
@@ -13,7 +13,7 @@ struct reference_sph_lists {
 };
 
 /* Makes those lists from the result of sph_neighbours_list for chunks of `chunk` particles; arguments as for
- * sph_neighbours_find. Lists that break the rules of neighbours.h are an error. */
+ * sph_neighbours_find. Lists that break the rules of pairs/lists.h are an error. */
 status reference_sph_lists_make(size_t n, size_t chunk, const double *const at[3], const double *reach,
                                 const double periodic[3], int threads, struct reference_sph_lists *out,
                                 struct error *error);

@@ -8,7 +8,7 @@
 
 #include "engine/scene.h"
 #include "engine/sph/run/run.h"
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/step/system.h"
 
 static _Noreturn void fail(const char *what, const struct error *error) {
   fprintf(stderr, "bench_sph: %s %s\n", what, error ? error->message : "");
@@ -58,7 +58,7 @@ static struct phases measure(struct sph_system *s) {
   volatile bool stale = sph_pairs_slack(s->pairs, 0, s->n, f.x, f.y, f.z, f.h) < 0;
   (void)stale;
   const double tested = clock_of(CLOCK_PROCESS_CPUTIME_ID);
-  if (!sph_system_list_again(s))
+  if (!sph_system_step_relist(s))
     fail(s->failure, NULL);
   return (struct phases){summed - start, tested - summed, clock_of(CLOCK_PROCESS_CPUTIME_ID) - tested};
 }
@@ -138,7 +138,7 @@ static void to_listing(struct scene *scene, struct sph_run *run, uint64_t count)
     fail("a run ended early:", &error);
 }
 
-enum { LISTINGS = 8 }; /* particles are sorted once in this many list rebuilds: system_list.c */
+enum { LISTINGS = 8 }; /* particles are sorted once in this many list rebuilds: system_step.c */
 
 /* Seconds per particle-step near the start, best of `tries`. The run covers enough list rebuilds that every size
  * includes its share of rebuilding and sorting. The first rebuild is left out because it allocates. */

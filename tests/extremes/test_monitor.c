@@ -3,7 +3,7 @@
 #include "engine/dem/run/run.h"
 #include "engine/dem/step/system_layout.h"
 #include "engine/sph/run/run.h"
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/step/system.h"
 #include "engine/warnings.h"
 #include "schemas/clock.h"
 #include "tests/support/run_case.h"

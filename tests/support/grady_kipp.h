@@ -4,7 +4,7 @@
 #define CLAST_TESTS_GRADY_KIPP_H
 
 #include "engine/sph/body/flaws.h"
-#include "engine/sph/material/fracture.h"
+#include "engine/sph/material/material.h"
 
 /* Number of particle i's flaws that are open at this ln(strain). */
 static inline size_t grady_kipp_open(const struct sph_flaws *flaws, size_t i, double log_strain) {
@@ -24,8 +24,8 @@ static inline double grady_kipp_grow(double damage_cbrt, size_t open, size_t tot
                                      double dt) {
   if (!open)
     return damage_cbrt;
-  double grown = damage_cbrt + sph_fracture_rate(open, growth) * rate * dt;
-  const double limit = sph_fracture_limit(open, total, cap);
+  double grown = damage_cbrt + sph_material_damage_rate(open, growth) * rate * dt;
+  const double limit = sph_material_damage_cap(open, total, cap);
   if (grown > limit)
     grown = limit;
   return grown > damage_cbrt ? grown : damage_cbrt;

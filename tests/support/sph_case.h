@@ -12,7 +12,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "engine/sph/modules/ranges.h"
+#include "engine/sph/step/system.h"
 #include "tests/support/case_parameters.h"
 
 #define CASE_UNUSED __attribute__((unused))

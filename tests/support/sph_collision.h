@@ -4,7 +4,7 @@
 
 #include "tests/support/sph_case.h"
 
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/step/system.h"
 
 enum { SIDE = 8, SMALL = 3 };
 static const double spacing = 1e-3;

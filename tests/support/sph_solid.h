@@ -23,7 +23,7 @@
 #include <cmocka.h> /* after what it needs */
 
 #include "engine/sph/body/bodies.h"
-#include "engine/sph/material/tillotson.h"
+#include "engine/sph/material/material.h"
 #include "engine/sph/step/system.h"
 #include "tests/support/case_parameters.h"
 

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/pairs/pairs_kernels.h"
+#include "engine/sph/pairs/pairs.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/support/noise.h"
 

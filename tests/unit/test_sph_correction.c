@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/pairs/pairs_kernels.h"
+#include "engine/sph/pairs/pairs.h"
 
 /* Moments are diagonal in axes turned relative to the coordinates; so is B. Eigenvalues size (1, 1 + d, 1 - d): the
  * mean is `size`, the determinant over its cube 1 - d^2. */

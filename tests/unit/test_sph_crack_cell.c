@@ -1,10 +1,9 @@
 /* Cells that crack as one (module crack_cell): which particles share a cell, the flaws of a cell, the values that its
  * particles share, and identical bits after a restart. The body is a cube under tension along z, whose ends are held.
  */
-#include "engine/sph/body/cells.h"
 #include "engine/sph/body/flaws.h"
-#include "engine/sph/material/derived.h"
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/material/material.h"
+#include "engine/sph/step/system.h"
 #include "tests/support/sph_solid.h"
 
 static const double side = 0.01, load = 1e-3; /* m; strain: more than twice the threshold of the weakest flaw */
@@ -33,7 +32,7 @@ static void cubes(void **state) {
   struct solid_case c = pulled(0, 1, &flaws);
   const struct sph_particles *p = c.particles;
   for (uint64_t k = 0; k < 3; k++)
-    assert_int_equal(sph_cells_make(1 + k % 2, 0, width, p, c.range[0], &cells[k], &error), STATUS_OK);
+    assert_int_equal(sph_flaws_cells(1 + k % 2, 0, width, p, c.range[0], &cells[k], &error), STATUS_OK);
   assert_true(cells[0]->count > 64 && cells[0]->count < 216); /* the cube is cut by a turned grid */
   unsigned char *seen = calloc(cells[0]->count, 1);
   for (size_t i = 0; i < p->n; i++) {
@@ -46,7 +45,7 @@ static void cubes(void **state) {
   assert_memory_not_equal(cells[0]->of, cells[1]->of, p->n * sizeof *cells[0]->of);
   assert_memory_equal(cells[0]->of, cells[2]->of, p->n * sizeof *cells[0]->of);
   for (int k = 0; k < 3; k++)
-    sph_cells_free(cells[k]);
+    sph_flaws_cells_free(cells[k]);
   free(seen);
   sph_flaws_free(flaws);
   solid_end(&c);
@@ -118,7 +117,7 @@ static void shared(void **state) {
       }
     assert_true(fabs(sum / volume - pressure[k]) < 1e-3 * largest);
     const double radius = cbrt(3 * at_start / (4 * M_PI));
-    assert_true(fabs(rate * radius / sph_derived_crack_speed(&c.physics[0].material) - 1) < 1e-12); /* rounding */
+    assert_true(fabs(rate * radius / sph_material_crack_speed(&c.physics[0].material) - 1) < 1e-12); /* rounding */
   }
   free(damage);
   free(pressure);

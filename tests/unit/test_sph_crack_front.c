@@ -2,9 +2,8 @@
  * identical bits after a restart. A cube under even tension along z, whose ends are held, with one flaw, in its middle.
  */
 #include "engine/sph/body/flaws.h"
-#include "engine/sph/material/derived.h"
-#include "engine/sph/modules/crack_front_links.h"
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/material/material.h"
+#include "engine/sph/step/system.h"
 #include "tests/support/sph_solid.h"
 
 static const double side = 0.01, load = 4e-4; /* m; strain */
@@ -46,7 +45,7 @@ static void speed_and_plane(void **state) {
   size_t middle, reached = 0, broken = 0;
   struct solid_case c = pulled(SPH_CRACK_FRONT_PLANE, 0, &flaws, &middle);
   const struct sph_particles *p = c.particles;
-  const double h = c.range[0].h, crack_speed = sph_derived_crack_speed(&c.physics[0].material);
+  const double h = c.range[0].h, crack_speed = sph_material_crack_speed(&c.physics[0].material);
   solid_start(&c);
   while (sph_system_time(c.system) < 0.4 * side / crack_speed)
     solid_step(&c, INFINITY);

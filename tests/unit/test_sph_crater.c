@@ -8,8 +8,7 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/modules/palpha_results.h"
-#include "engine/sph/observe/crater.h"
+#include "engine/sph/observe/observe.h"
 
 enum { SIDE = 60, HIGH = 30 };
 static const double dx = 1e-3;
@@ -42,7 +41,7 @@ static const struct sph_crater_options options = {.count = SIDE * SIDE * HIGH,
 static void measure(const struct sph_particles *start, const struct sph_particles *now,
                     const struct sph_crater_options *o, double initial, struct sph_results *results) {
   assert_int_equal(sph_crater_measure(start, now, o, results, NULL), STATUS_OK);
-  sph_palpha_results_compaction(start, now, o, initial, results);
+  sph_crater_compaction(start, now, o, initial, results);
 }
 
 static void untouched(void **state) {

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "engine/restart.h"
-#include "engine/sph/observe/observe.h"
+#include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 
 static const char *const scenes[] = {"basalt-sphere",       "tensile-rod", "gabbro-crater", "elastic-bar",
@@ -72,7 +72,7 @@ static void flaws_are_described(void **state) {
   const char *at = strstr(text, "the weakest opens at strain ");
   assert_true(at && sscanf(at, "the weakest opens at strain %lf (%lf Pa)", &strain, &pascal) == 2);
   assert_true(fabs(strain / want - 1) < 0.005 &&
-              fabs(pascal / (want * sph_derived_young_modulus(&inputs.target.material)) - 1) < 0.005); /* 3 digits */
+              fabs(pascal / (want * sph_material_young_modulus(&inputs.target.material)) - 1) < 0.005); /* 3 digits */
   free(text);
 }
 
@@ -137,7 +137,7 @@ static void stretch_and_vibration_start(void **state) {
   for (size_t i = 0; i < run->start->n; i++) {
     double z = run->start->z[i];
     assert_true(fabs(run->start->vz[i] - 60 * z) < 1e-12);
-    assert_true(fabs(run->start->vx[i] + sph_derived_poisson_ratio(&rod.target.material) * 60 * run->start->x[i]) <
+    assert_true(fabs(run->start->vx[i] + sph_material_poisson_ratio(&rod.target.material) * 60 * run->start->x[i]) <
                 1e-12);
     assert_true((run->start->held[i] != 0) == (fabs(z) > 0.02 - rod.stretch.grip));
     held += run->start->held[i] != 0;
@@ -149,7 +149,7 @@ static void stretch_and_vibration_start(void **state) {
   assert_int_equal(sph_run_create(&bar, 3, &run, NULL), STATUS_OK);
   for (size_t i = 0; i < run->start->n; i++) { /* the mode, and its sides' share: div v = (1 - 2 nu) dv_z/dz */
     double k = M_PI / 0.04,
-           aside = -sph_derived_poisson_ratio(&bar.target.material) * k * 0.1 * cos(k * run->start->z[i]);
+           aside = -sph_material_poisson_ratio(&bar.target.material) * k * 0.1 * cos(k * run->start->z[i]);
     assert_true(fabs(run->start->vz[i] - 0.1 * sin(k * run->start->z[i])) < 1e-12);
     assert_true(fabs(run->start->vy[i] - aside * run->start->y[i]) < 1e-12);
   }

@@ -19,7 +19,7 @@
 #include "analysis/pictures/picture.h"
 #include "engine/random.h"
 #include "engine/sph/body/bodies.h"
-#include "engine/sph/observe/observe.h"
+#include "engine/sph/run/run.h"
 #include "engine/sph/scene/inputs.h"
 #include "tests/support/sweep.h"
 

@@ -11,7 +11,7 @@
 
 #include "engine/outcome.h"
 #include "engine/random.h"
-#include "engine/sph/observe/sph_fragments.h"
+#include "engine/sph/observe/observe.h"
 
 static double draw(uint64_t seed, size_t i, uint64_t k) {
   return random_draw(seed, 900, i, k);

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/body/hilbert.h"
+#include "engine/sph/body/kd_tree.h"
 #include "tests/support/noise.h"
 
 enum { SIDE = 12, COUNT = SIDE * SIDE * SIDE, GRID = 16, CELLS = GRID * GRID * GRID };

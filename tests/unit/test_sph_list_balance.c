@@ -10,7 +10,8 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/pairs/chunks.h"
+#include "engine/sph/pairs/lists.h"
+#include "engine/sph/pairs/pairs.h"
 #include "tests/support/noise.h"
 
 enum { SIDE = 11, MOST = SIDE * SIDE * SIDE };

@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/pairs/neighbours.h"
-#include "engine/sph/pairs/pairs_kernels.h"
+#include "engine/sph/pairs/lists.h"
+#include "engine/sph/pairs/pairs.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/support/pair_cloud.h"
 

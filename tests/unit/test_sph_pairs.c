@@ -11,7 +11,6 @@
 #include <cmocka.h>
 
 #include "engine/sph/pairs/pairs.h"
-#include "engine/sph/pairs/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/support/pair_cloud.h"
 #include "tests/support/pair_sums.h"

@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "engine/random.h"
+#include "engine/sph/material/material.h"
 #include "engine/sph/material/palpha.h"
-#include "engine/sph/material/tillotson.h"
 
 static const struct sph_material aluminium = {.density = 2700,
                                               .tillotson = {7.52e10, 6.5e10, 0.5, 1.63, 5, 5, 5e6, 3e6, 1.39e7}};

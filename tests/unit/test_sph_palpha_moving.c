@@ -3,8 +3,8 @@
 #include "tests/support/sph_case.h"
 
 #include "engine/random.h"
+#include "engine/sph/material/material.h"
 #include "engine/sph/material/palpha.h"
-#include "engine/sph/material/tillotson.h"
 
 static const struct sph_palpha_material porous_basalt = {.distention = 1.5,
                                                          .curve = SPH_CRUSH_QUADRATIC,

@@ -4,8 +4,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "engine/sph/observe/observe.h"
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/run/run.h"
+#include "engine/sph/step/system.h"
 
 static void more_than_memory_is_refused(void **state) {
   (void)state;

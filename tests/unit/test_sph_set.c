@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/modules/set.h"
+#include "engine/sph/modules/module.h"
 
 enum { MOST = 130 };
 static const size_t sizes[] = {1, 63, 64, 65, 128, MOST};

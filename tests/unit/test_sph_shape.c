@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "engine/random.h"
-#include "engine/sph/body/shape.h"
+#include "engine/sph/body/bodies.h"
 
 static const struct sph_shape sphere = {.kind = SPH_SHAPE_SPHERE, .centre = {1, 2, 3}, .radius = 2};
 static const struct sph_shape rod = {.kind = SPH_SHAPE_CYLINDER,

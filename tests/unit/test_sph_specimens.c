@@ -1,8 +1,8 @@
 /* Seeds of engine sph: the effect of a seed, and the number of flaws of a specimen. */
 #include "tests/support/run_case.h"
 
-#include "engine/sph/observe/observe.h"
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/run/run.h"
+#include "engine/sph/step/system.h"
 
 /* A small sphere whose run ends soon. */
 #define SMALL(...) SPH_CASE("basalt-sphere", "fidelity.particles=400", "fidelity.projectile_spacing=0.7", __VA_ARGS__)

@@ -1,7 +1,7 @@
 /* Tillotson: derivatives against finite differences over all branches, continuity across them, known traps. */
 #include "tests/support/sph_case.h"
 
-#include "engine/sph/material/tillotson.h"
+#include "engine/sph/material/material.h"
 
 static const double basalt_density = 2700;
 static const struct sph_tillotson_material basalt = {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6, 1.82e7};

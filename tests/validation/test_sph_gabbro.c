@@ -90,7 +90,7 @@ static double add_run(const struct sph_inputs *inputs, uint64_t seed, size_t see
   assert_int_equal(run->state.frame.outcome_state, OUTCOME_END_TIME); /* damage grew within the last two crossings */
 
   const struct sph_particles *now = sph_run_read(run), *start = run->start;
-  const double K = sph_derived_bulk_modulus(&inputs->target.material),
+  const double K = sph_material_bulk_modulus(&inputs->target.material),
                mu = inputs->target.material.elastic.shear_modulus;
   double mass[SHELLS] = {0}, damage[SHELLS] = {0}, speed[SHELLS] = {0};
   for (size_t i = 0; i < run->targets; i++) {

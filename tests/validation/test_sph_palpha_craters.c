@@ -18,8 +18,8 @@
 #include "engine/fragments.h"
 #include "engine/outcome.h"
 #include "engine/scene.h"
-#include "engine/sph/observe/observe.h"
 #include "engine/sph/observe/results.h"
+#include "engine/sph/run/run.h"
 
 static bool full(void) {
   const char *text = getenv("CLAST_FULL");

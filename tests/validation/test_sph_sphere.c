@@ -11,7 +11,7 @@
 #include "tests/support/run_case.h"
 
 #include "analysis/statistics/sample.h"
-#include "engine/sph/observe/observe.h"
+#include "engine/sph/run/run.h"
 
 enum { MOST_RUNS = 1000 };
 static const double radius = 0.03;

@@ -112,13 +112,13 @@ static void pieces(void **state) {
   assert_true(grady_kipp_grow(0.9, 1, 8, 0, SPH_CAP_COUNT, 9, 9) == 0.9);
   assert_true(grady_kipp_grow(0.3, 0, 8, 0, SPH_CAP_NONE, 9, 9) == 0.3);
   /* principal values: diagonal, pure shear, and a rotated uniaxial tension */
-  assert_true(sph_fracture_largest_tension(3, 0, 0, -5, 0, 1) == 3 ||
-              fabs(sph_fracture_largest_tension(3, 0, 0, -5, 0, 1) - 3) < 1e-14);
-  assert_true(fabs(sph_fracture_largest_tension(0, 2, 0, 0, 0, 0) - 2) < 1e-14);
-  assert_true(sph_fracture_largest_tension(-4, 0, 0, -4, 0, -4) == -4);
+  assert_true(sph_material_largest_tension(3, 0, 0, -5, 0, 1) == 3 ||
+              fabs(sph_material_largest_tension(3, 0, 0, -5, 0, 1) - 3) < 1e-14);
+  assert_true(fabs(sph_material_largest_tension(0, 2, 0, 0, 0, 0) - 2) < 1e-14);
+  assert_true(sph_material_largest_tension(-4, 0, 0, -4, 0, -4) == -4);
   double n[3] = {2.0 / 7, 3.0 / 7, 6.0 / 7};
   assert_true(
-      fabs(sph_fracture_largest_tension(n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]) -
+      fabs(sph_material_largest_tension(n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]) -
            1) < 1e-14);
 }
 

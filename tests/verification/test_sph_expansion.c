@@ -5,7 +5,7 @@
  *
  * CLAST_FULL=1: up to 64 000 particles. */
 #include "engine/sph/body/bodies.h"
-#include "engine/sph/material/tillotson.h"
+#include "engine/sph/material/material.h"
 #include "tests/support/sph_case.h"
 
 static const double radius = 1e-2;

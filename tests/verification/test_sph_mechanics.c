@@ -9,9 +9,9 @@
 #include "tests/support/sph_case.h"
 
 #include "engine/random.h"
-#include "engine/sph/material/tillotson.h"
-#include "engine/sph/modules/range_tools.h"
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/material/material.h"
+#include "engine/sph/modules/ranges.h"
+#include "engine/sph/step/system.h"
 /* the loops themselves, for their formulas (this build's own CPU class) */
 #define SPH_MODULE_LOOPS
 #include "engine/sph/modules/declarations.h"
@@ -264,7 +264,7 @@ static void shear(void **state) {
 
 static double strain_of(const struct sph_particles *p, size_t i,
                         double young) { /* as BA95 eq. 21, from what is read back */
-  const double tension = sph_fracture_largest_tension(p->stress[0][i], p->stress[1][i], p->stress[2][i],
+  const double tension = sph_material_largest_tension(p->stress[0][i], p->stress[1][i], p->stress[2][i],
                                                       p->stress[3][i], p->stress[4][i], p->stress[5][i]);
   return (tension - p->pressure[i]) / young;
 }
@@ -408,7 +408,7 @@ static void principal_values(void **state) {
     if (k % 4 == 2)
       s[1] = s[2] = s[4] = 0;
     const double size = sqrt(s[0] * s[0] + s[3] * s[3] + s[1] * s[1] + s[2] * s[2] + s[4] * s[4]);
-    const double plain = sph_fracture_largest_tension(s[0], s[1], s[2], s[3], s[4], -(s[0] + s[3]));
+    const double plain = sph_material_largest_tension(s[0], s[1], s[2], s[3], s[4], -(s[0] + s[3]));
     worst = fmax(worst, fabs(fracture_largest(s[0], s[1], s[2], s[3], s[4]) - plain) / size);
   }
   print_message("largest principal value: off by %.1e of |S|\n", worst);

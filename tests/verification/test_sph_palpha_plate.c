@@ -2,8 +2,8 @@
  * engine's exact answer against jump conditions solved independently of the engine (palpha_exact.h): front speeds, the
  * plateau behind the shock, the precursor, the energy; converging. By default a weak shock at 100 and 200 points along
  * the bar, and the fastest at 200; CLAST_FULL=1: four speeds, 200, 400 and 800 points. */
-#include "engine/sph/material/materials.h"
-#include "engine/sph/material/plane_shock.h"
+#include "engine/sph/material/material.h"
+#include "engine/sph/material/palpha.h"
 #include "palpha_exact.h"
 #include "tests/support/run_case.h"
 

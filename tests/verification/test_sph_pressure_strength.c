@@ -6,8 +6,7 @@
  * triaxial test of its own. */
 #include "tests/support/sph_case.h"
 
-#include "engine/sph/material/derived.h"
-#include "engine/sph/material/tillotson.h"
+#include "engine/sph/material/material.h"
 
 static const double spacing = 1e-3, rate = 1e5, time_step = 2e-9;
 

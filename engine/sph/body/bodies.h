@@ -10,8 +10,135 @@
 #ifndef CLAST_ENGINE_SPH_BODY_BODIES_H
 #define CLAST_ENGINE_SPH_BODY_BODIES_H
 
-#include "engine/sph/body/lattice.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/sph/body/particles.h"
+#include "schemas/status.h"
+
+/* The true shapes of bodies: what is inside, sizes, distances, and points drawn uniformly from them. Both particles and
+ * flaws are placed by these functions, so that a body is the same at every resolution. */
+
+enum sph_shape_kind { SPH_SHAPE_SPHERE, SPH_SHAPE_CYLINDER, SPH_SHAPE_BOX, SPH_SHAPE_MESH, SPH_SHAPES };
+
+struct mesh;
+
+struct sph_shape {
+  int kind;                /* enum sph_shape_kind */
+  double centre[3];        /* m */
+  double radius;           /* m: sphere, cylinder */
+  double inner_radius;     /* m: hole along a cylinder's axis (then it is a ring); 0: none */
+  double length;           /* m: cylinder */
+  double axis[3];          /* cylinder: direction of its axis, of any length but 0 */
+  double side[3];          /* m: box, along x, y, z */
+  const struct mesh *mesh; /* mesh: its surface, borrowed (engine/mesh); `centre` is its centre of mass */
+  double unit;             /* m: mesh, one unit of its file */
+};
+
+/* STATUS_CONTENT: a size is not positive and finite, a hole is as wide as its cylinder, or an axis has no length. */
+status sph_shape_check(const struct sph_shape *shape, struct error *error);
+double sph_shape_volume(const struct sph_shape *shape); /* m^3 */
+bool sph_shape_inside(const struct sph_shape *shape, const double point[3]);
+/* The exact signed distance to the nearest surface, m, positive outside. `normal` (NULL is fine) points outwards there.
+ */
+double sph_shape_distance(const struct sph_shape *shape, const double point[3], double normal[3]);
+/* The depth below each of the surfaces (faces, barrel, hole), m, negative outside, and their outward normals. Returns
+ * their number, up to SPH_SHAPE_WALLS. */
+enum { SPH_SHAPE_WALLS = 6 };
+int sph_shape_walls(const struct sph_shape *shape, const double point[3], double depth[SPH_SHAPE_WALLS],
+                    double normal[SPH_SHAPE_WALLS][3]);
+/* The extent of the shape from its centre along a unit direction, m; of a ring that of its hull. */
+double sph_shape_reach(const struct sph_shape *shape, const double direction[3]);
+/* The point where the ray from the centre along `direction` leaves the hull (of a mesh: the mesh, for the last time),
+ * and the outward normal there. False: a mesh that the ray does not meet. */
+bool sph_shape_surface(const struct sph_shape *shape, const double direction[3], double point[3], double normal[3]);
+/* Turns three uniforms of [0, 1) into a point that is uniform in the shape. For a mesh the point is uniform in the box
+ * around it. False: the point is outside of the mesh; draw again. */
+bool sph_shape_place(const struct sph_shape *shape, const double uniform[3], double point[3]);
+double sph_shape_mesh_area(const struct sph_shape *shape); /* m^2, of a mesh */
+/* The distance of two shapes, m; negative: the depth of their overlap. Rings count as their hulls. Exact when one is a
+ * sphere, else to about 1e-6 of their size. Of two meshes, or of a mesh and a box or cylinder, the depth is that of the
+ * deepest place found, and a gap may be too large where both are concave. */
+double sph_shape_gap(const struct sph_shape *a, const struct sph_shape *b);
+/* The smallest gap (m) from now on while b moves past a with the relative velocity of b (m/s), and its time (s) in
+ * *when (NULL is fine). */
+double sph_shape_gap_ahead(const struct sph_shape *a, const struct sph_shape *b, const double velocity[3],
+                           double *when);
+/* A right-handed frame, in columns, whose third axis is the cylinder's; the identity for other shapes. */
+void sph_shape_frame(const struct sph_shape *shape, double frame[3][3]);
+
+/* The places of a body's particles at rest: a lattice that is cut by, or fitted to, the body's shape, or irregular
+ * points.
+ *
+ * `spacing` is the side of the cube that holds one particle, (V/n)^(1/3), for every lattice. The nearest neighbours are
+ * `nearest` apart: 1.1225 spacings (2^(1/6)) on the hexagonal lattice, 1 on the cubic one. Each particle has V/n of the
+ * true volume V, so its mass is density x V/n, and the sum is exact.
+ *
+ * Lattices in boxes along the axes are fitted: whole rows and layers, stretched a little per direction, half a row from
+ * each side, so that periodic sides match. The number of particles is that of whole planes: within 1 % of the wanted
+ * one in hexagonal cubes of 12000 and in long bars of fewer, within 2 % in cubic cubes, coarser where planes are few.
+ * In cylinders layers are whole along the axis. All other lattices, turned ones included, are cut by the surface: their
+ * offset is searched to give the wanted number. Then the lattice is scaled (by less than 0.1 % where it has hundreds of
+ * particles) so that its volume per particle is exactly V/n. */
+
+enum sph_lattice_kind {
+  SPH_LATTICE_HEXAGONAL, /* close packed, ABAB; rows along x (third axis: the cylinder's) */
+  SPH_LATTICE_CUBIC,
+  SPH_LATTICE_IRREGULAR, /* random points, pushed apart until the density sum is uniform */
+  SPH_LATTICES
+};
+
+/* Finer spacing near a point: s(d) = fine + growth d^2/(d + 4 fine), where d is the distance from the sphere of
+ * `radius` about `point`. Graded bodies always have irregular points, as no lattice changes its spacing without
+ * defects. */
+struct sph_grading {
+  double fine;     /* m, spacing within `radius`; 0: no grading */
+  double point[3]; /* m */
+  double radius;   /* m */
+  double growth;   /* largest growth of spacing per distance, up to 0.12; NaN: found from `particles` */
+};
+
+struct sph_lattice {
+  int kind;         /* enum sph_lattice_kind */
+  double particles; /* wanted number; NaN: from `spacing` */
+  double spacing;   /* m; used when `particles` is NaN */
+  bool turned;      /* lattices: orientation and offset are drawn from the seed */
+  bool periodic[3]; /* boxes, and cylinders along their axis: the direction is periodic; the body begins at 0 in it */
+  uint64_t seed;
+  uint64_t body; /* bodies of one seed have different points */
+  struct sph_grading grading;
+};
+
+struct sph_points {
+  size_t n;
+  double *x, *y, *z;
+  double *share;  /* graded: volume of each particle over V/n; NULL: all equal */
+  double spacing; /* m, (V/n)^(1/3) */
+  double nearest; /* m, distance of nearest neighbours (irregular points: the mean) */
+  double stretch; /* largest spacing of a direction over the ideal one; 1: not stretched */
+};
+
+/* STATUS_CONTENT: no particles, a shape too thin for its particles, or impossible sizes; STATUS_MEMORY, with the
+ * number, before anything is allocated. On failure *points is empty. */
+status sph_lattice_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
+                        struct error *error);
+void sph_lattice_empty(struct sph_points *points); /* frees the arrays in `points` */
+
+/* The length (m) of direction 0 to 2 that holds whole periods of the unstretched lattice, next above `at_least`.
+ * Periodic lengths of thin bars should be at least 4h and the skin, so that no particle meets its own image. */
+double sph_lattice_period(int kind, double spacing, int direction, double at_least);
+
+/* Memory for n places. STATUS_MEMORY. */
+status sph_lattice_allocate(struct sph_points *points, size_t n, struct error *error);
+/* The refusal of a body that has no room for its particles. */
+status sph_lattice_too_thin(double wanted, double spacing, struct error *error);
+
+/* irregular.c: irregular points, uniform or finer near a point. `wanted`: number of uniform particles (not used with a
+ * grading). Fills *points: x, y, z, n, and share when graded. STATUS_MEMORY; STATUS_CONTENT when a grading cannot give
+ * the number of particles. */
+status sph_irregular_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, double wanted,
+                          struct sph_points *points, struct error *error);
 
 /* h over spacing, where spacing = (V/n)^(1/3). It gives 56 neighbours within 2h on the hexagonal and cubic lattices at
  * rest (48 by volume). On a lattice the sum of (m_j/rho_j) x dW/dx, a factor of every strain and every force, depends

@@ -9,6 +9,69 @@
 #include "engine/random.h"
 #include "engine/sph/body/kd_tree.h"
 
+/* Sorts the particles of a body into the cubes of a turned grid. */
+
+struct place {
+  int64_t cube[3];
+  uint32_t particle;
+};
+
+static int by_cube(const void *a, const void *b) {
+  const struct place *p = a, *q = b;
+  for (int d = 0; d < 3; d++)
+    if (p->cube[d] != q->cube[d])
+      return p->cube[d] < q->cube[d] ? -1 : 1;
+  return (p->particle > q->particle) - (p->particle < q->particle);
+}
+
+/* Finds the cube of each particle. `shift` is in cube widths. */
+static void find_cubes(const struct sph_particles *p, struct sph_range range, const double frame[3][3], double width,
+                       const double shift[3], struct place *place) {
+  for (size_t i = 0; i < range.n; i++) {
+    const size_t k = range.first + i;
+    place[i].particle = (uint32_t)i;
+    for (int d = 0; d < 3; d++) {
+      const double along = frame[d][0] * p->x[k] + frame[d][1] * p->y[k] + frame[d][2] * p->z[k];
+      place[i].cube[d] = (int64_t)fmax(-1e18, fmin(1e18, floor(along / width + shift[d])));
+    }
+  }
+}
+
+status sph_flaws_cells(uint64_t seed, uint64_t body, double width, const struct sph_particles *p,
+                       struct sph_range range, struct sph_cells **out, struct error *error) {
+  double frame[3][3], shift[3];
+  struct sph_cells *cells = calloc(1, sizeof *cells);
+  struct place *place = malloc((range.n ? range.n : 1) * sizeof *place);
+  if (cells)
+    cells->of = malloc((range.n ? range.n : 1) * sizeof *cells->of);
+  *out = NULL;
+  if (!cells || !cells->of || !place) {
+    sph_flaws_cells_free(cells);
+    free(place);
+    return status_fail(error, STATUS_MEMORY, "no memory for the cells of %zu particles", range.n);
+  }
+  random_rotation(seed, RANDOM_CELL, body, 0, frame);
+  for (int d = 0; d < 3; d++)
+    shift[d] = random_draw(seed, RANDOM_CELL, body, 1 + (uint64_t)d);
+  find_cubes(p, range, frame, width, shift, place);
+  qsort(place, range.n, sizeof *place, by_cube);
+  cells->particles = range.n;
+  for (size_t i = 0; i < range.n; i++) {
+    cells->count += i == 0 || memcmp(place[i].cube, place[i - 1].cube, sizeof place[i].cube) != 0;
+    cells->of[place[i].particle] = (uint32_t)(cells->count - 1);
+  }
+  free(place);
+  *out = cells;
+  return STATUS_OK;
+}
+
+void sph_flaws_cells_free(struct sph_cells *cells) {
+  if (!cells)
+    return;
+  free(cells->of);
+  free(cells);
+}
+
 struct placed {
   size_t particle;
   double log_strain;
@@ -154,7 +217,7 @@ void sph_flaws_free(struct sph_flaws *flaws) {
     return;
   free(flaws->first);
   free(flaws->log_strain);
-  sph_cells_free(flaws->cells);
+  sph_flaws_cells_free(flaws->cells);
   free(flaws);
 }
 
@@ -259,7 +322,7 @@ static bool find_marks(const struct sph_particles *p, struct sph_range range, co
 static status find_owners(const struct sph_flaw_law *law, const struct sph_particles *p, struct sph_range range,
                           const struct sph_middle *middle, struct owners *o, struct error *error) {
   if (law->cell_width > 0) {
-    const status code = sph_cells_make(law->seed, law->body, law->cell_width, p, range, &o->cells, error);
+    const status code = sph_flaws_cells(law->seed, law->body, law->cell_width, p, range, &o->cells, error);
     if (code)
       return code;
   }
@@ -296,9 +359,147 @@ status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *s
   owners.cells = NULL;
 cleanup:
   sph_kd_tree_free(owners.nearest);
-  sph_cells_free(owners.cells);
+  sph_flaws_cells_free(owners.cells);
   free(owners.ends);
   free(owners.ends_cells);
   free(owners.share);
   return code;
+}
+
+/* ---- lists of thresholds ---- */
+
+struct sph_flaws_lists {
+  size_t lists, count; /* number of lists (one per owner of flaws); of flaws */
+  size_t particles;
+  uint32_t *cell; /* by particle: its list; NULL: each has its own */
+  /* exact */
+  size_t *first;
+  double *strain;
+  /* compact */
+  double *lowest, *exponent;
+  uint32_t *total;
+};
+
+void sph_flaws_lists_free(void *prepared) {
+  struct sph_flaws_lists *w = prepared;
+  if (!w)
+    return;
+  free(w->cell);
+  free(w->first);
+  free(w->strain);
+  free(w->lowest);
+  free(w->exponent);
+  free(w->total);
+  free(w);
+}
+
+static bool fill_exact(struct sph_flaws_lists *w, const struct sph_flaws *flaws) {
+  w->first = malloc((w->lists + 1) * sizeof *w->first);
+  w->strain = malloc((w->count ? w->count : 1) * sizeof *w->strain);
+  if (!w->first || !w->strain)
+    return false;
+  for (size_t i = 0; i <= w->lists; i++)
+    w->first[i] = flaws->first[i];
+  for (size_t f = 0; f < w->count; f++)
+    w->strain[f] = exp(flaws->log_strain[f]);
+  return true;
+}
+
+static bool fill_compact(struct sph_flaws_lists *w, const struct sph_flaws *flaws) {
+  const size_t room = w->lists ? w->lists : 1;
+  w->lowest = malloc(room * sizeof *w->lowest);
+  w->exponent = malloc(room * sizeof *w->exponent);
+  w->total = malloc(room * sizeof *w->total);
+  if (!w->lowest || !w->exponent || !w->total)
+    return false;
+  for (size_t i = 0; i < w->lists; i++) {
+    const size_t first = flaws->first[i], last = flaws->first[i + 1];
+    w->total[i] = (uint32_t)(last - first);
+    w->lowest[i] = last > first ? exp(flaws->log_strain[first]) : HUGE_VAL;
+    const double span = last > first ? flaws->log_strain[last - 1] - flaws->log_strain[first] : 0;
+    w->exponent[i] = span > 0 ? log((double)(last - first)) / span : 0;
+  }
+  return true;
+}
+
+static bool fill_cells(struct sph_flaws_lists *w, const struct sph_flaws *flaws) {
+  if (!flaws->cells)
+    return true;
+  w->cell = malloc(w->particles * sizeof *w->cell);
+  if (w->cell)
+    memcpy(w->cell, flaws->cells->of, w->particles * sizeof *w->cell);
+  return w->cell != NULL;
+}
+
+status sph_flaws_lists_make(const struct sph_flaws *flaws, bool compact, void **out, struct error *error) {
+  struct sph_flaws_lists *w = calloc(1, sizeof *w);
+  if (w) {
+    w->particles = flaws->particles;
+    w->lists = flaws->cells ? flaws->cells->count : flaws->particles;
+    w->count = flaws->count;
+  }
+  if (!w || !(compact ? fill_compact : fill_exact)(w, flaws) || !fill_cells(w, flaws)) {
+    sph_flaws_lists_free(w);
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", flaws->count);
+  }
+  *out = w;
+  return STATUS_OK;
+}
+
+size_t sph_flaws_lists_bytes(const void *prepared) {
+  const struct sph_flaws_lists *w = prepared;
+  return sizeof *w + (w->cell ? w->particles * sizeof *w->cell : 0) +
+         (w->strain ? (w->lists + 1) * sizeof *w->first + w->count * sizeof *w->strain
+                    : w->lists * (2 * sizeof *w->lowest + sizeof *w->total));
+}
+
+static size_t list_of(const struct sph_flaws_lists *w, size_t particle) {
+  return w->cell ? w->cell[particle] : particle;
+}
+
+double sph_flaws_lowest(const struct sph_flaws_lists *w, size_t particle) {
+  const size_t i = list_of(w, particle);
+  if (!w->strain)
+    return w->lowest[i];
+  return w->first[i] < w->first[i + 1] ? w->strain[w->first[i]] : HUGE_VAL;
+}
+
+uint32_t sph_flaws_total(const struct sph_flaws_lists *w, size_t particle) {
+  const size_t i = list_of(w, particle);
+  return w->strain ? (uint32_t)(w->first[i + 1] - w->first[i]) : w->total[i];
+}
+
+static uint32_t active_exact(const struct sph_flaws_lists *w, size_t i, double strain, double bracket[2]) {
+  const size_t first = w->first[i], last = w->first[i + 1];
+  size_t low = first, high = last;
+  while (low < high) { /* first flaw stronger than the strain */
+    const size_t middle = low + (high - low) / 2;
+    if (w->strain[middle] <= strain)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  bracket[0] = low > first ? w->strain[low - 1] : -HUGE_VAL;
+  bracket[1] = low < last ? w->strain[low] : HUGE_VAL;
+  return (uint32_t)(low - first);
+}
+
+static uint32_t active_compact(const struct sph_flaws_lists *w, size_t i, double strain, double bracket[2]) {
+  const double lowest = w->lowest[i], q = w->exponent[i], total = (double)w->total[i];
+  bracket[0] = -HUGE_VAL;
+  bracket[1] = lowest;
+  if (!(strain >= lowest))
+    return 0;
+  double open = total;
+  if (q > 0 && lowest > 0) { /* else one flaw, all equal, or thresholds of 0: all open at once */
+    const double law = floor(pow(strain / lowest, q) * (1 + 1e-12)); /* the highest is reached, not missed */
+    open = law < 1 ? 1 : law < total ? law : total;
+  }
+  bracket[0] = open > 1 && q > 0 ? lowest * pow(open, 1 / q) : lowest;
+  bracket[1] = open < total ? lowest * pow(open + 1, 1 / q) : HUGE_VAL;
+  return (uint32_t)open;
+}
+
+uint32_t sph_flaws_active(const struct sph_flaws_lists *w, size_t particle, double strain, double bracket[2]) {
+  return (w->strain ? active_exact : active_compact)(w, list_of(w, particle), strain, bracket);
 }

@@ -16,9 +16,22 @@
 #include <stdint.h>
 
 #include "engine/sph/body/bodies.h"
-#include "engine/sph/body/cells.h"
 #include "engine/sph/material/material.h"
 #include "schemas/status.h"
+
+/* Cells of a body that crack as one (modules/crack_cell.h): cubes of a fixed width. The grid of cubes is turned and
+ * shifted by the seed. A cube cut by the surface is a smaller cell. */
+
+struct sph_cells {
+  size_t particles, count; /* number of particles; number of cells that have a particle */
+  uint32_t *of;            /* by particle of the body: its cell */
+};
+
+/* Sorts the particles of a body, at their initial places, into cells of this width (m). Drawn from (seed,
+ * RANDOM_CELL, body). STATUS_MEMORY. */
+status sph_flaws_cells(uint64_t seed, uint64_t body, double width, const struct sph_particles *particles,
+                       struct sph_range range, struct sph_cells **out, struct error *error);
+void sph_flaws_cells_free(struct sph_cells *cells); /* NULL is fine */
 
 enum sph_flaw_draw { SPH_FLAWS_RANKED, SPH_FLAWS_POISSON, SPH_FLAW_DRAWS };
 
@@ -35,8 +48,8 @@ struct sph_flaw_law {
   uint64_t number;
   const double *share;         /* with `number`: part of the volume of each particle; NULL: 1/n */
   const unsigned char *exempt; /* particles that have no flaws (owner() must not name them); NULL: none */
-  double
-      cell_width; /* m, sph_flaws_place: particles of a cell of this width share flaws (cells.h). 0: each has its own */
+  double cell_width; /* m, sph_flaws_place: particles of a cell of this width share flaws (struct sph_cells). 0: each
+                        has its own */
 };
 
 /* Flaws by owner: owner i has first[i] .. first[i+1]-1, log_strain ascending within it. Owners are the particles, or
@@ -75,5 +88,21 @@ status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *s
 
 /* The place of flaw `flaw` = 0, 1, ... */
 void sph_flaws_point(uint64_t seed, uint64_t body, uint64_t flaw, const struct sph_shape *shape, double point[3]);
+
+/* The flaws of one body, as thresholds of strain per particle. Exact: every threshold of every particle, ascending.
+ * Compact: (lowest, exponent, number) per particle, with
+ *   n(eps) = min(total, floor((eps/lowest)^q)),  q = ln(total)/ln(highest/lowest),
+ * a power law that counts 1 at the lowest and all at the highest threshold; so codes of this kind save memory (Benz &
+ * Asphaug 1994). A threshold beyond the range of a double is infinite (it never opens) or 0. */
+struct sph_flaws_lists; /* opaque; body->prepared[SPH_MODULE_weibull] */
+
+/* STATUS_MEMORY. *out is a struct sph_flaws_lists. */
+status sph_flaws_lists_make(const struct sph_flaws *flaws, bool compact, void **out, struct error *error);
+void sph_flaws_lists_free(void *lists); /* NULL is fine */
+size_t sph_flaws_lists_bytes(const void *lists);
+double sph_flaws_lowest(const struct sph_flaws_lists *lists, size_t particle);
+uint32_t sph_flaws_total(const struct sph_flaws_lists *lists, size_t particle);
+/* Number of open flaws; the same for every strain with bracket[0] <= strain < bracket[1]. */
+uint32_t sph_flaws_active(const struct sph_flaws_lists *lists, size_t particle, double strain, double bracket[2]);
 
 #endif

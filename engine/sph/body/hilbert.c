@@ -1,5 +1,5 @@
 /* Hilbert's curve through the cube around the particles, and the sort along it. */
-#include "engine/sph/body/hilbert.h"
+#include "engine/sph/body/kd_tree.h"
 
 #include <math.h>
 #include <stdlib.h>

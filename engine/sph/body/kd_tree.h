@@ -23,4 +23,12 @@ size_t sph_kd_tree_other(const struct sph_kd_tree *nearest, const double point[3
 size_t sph_kd_tree_within(const struct sph_kd_tree *nearest, const double point[3], double radius, uint32_t *out,
                           size_t capacity);
 
+/* Sorts particles along Hilbert's curve: particles that are near in space are then near in memory, and consecutive
+ * particles fill a compact region. Deterministic: ties are sorted by id. */
+
+/* order[k] is the index of the particle at place k. Distant particles cost nothing extra, because there is no grid.
+ * STATUS_MEMORY. */
+status sph_hilbert_find(size_t n, const double *x, const double *y, const double *z, uint32_t *order,
+                        struct error *error);
+
 #endif

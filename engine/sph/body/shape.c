@@ -1,12 +1,148 @@
-/* Spheres, cylinders, boxes: volume, distance, surface, random points. Meshes are in shape_mesh.c. */
-#include "engine/sph/body/shape.h"
+/* Spheres, cylinders, boxes: volume, distance, surface, random points. Meshes in metres, with their centre of mass at
+ * the centre of the shape; and distances of two shapes: gaps, depths of overlap, and the nearest approach of a flight.
+ */
+#include "engine/sph/body/bodies.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
-#include "engine/sph/body/shape_mesh.h"
+#include "engine/mesh/mesh.h"
 #include "engine/vector3.h"
+
+/* ---- meshes ---- */
+
+static double mesh_shape_volume(const struct sph_shape *s) {
+  return s->mesh ? s->mesh->volume * s->unit * s->unit * s->unit : (double)NAN;
+}
+
+static status mesh_shape_check(const struct sph_shape *s, struct error *error) {
+  if (!s->mesh)
+    return status_fail(error, STATUS_CONTENT, "a mesh without its shape file: name the file in the scene.");
+  if (!(s->unit > 0) || !isnormal(mesh_shape_volume(s)))
+    return status_fail(error, STATUS_CONTENT, "a unit of the shape file is %g m, which makes %g m^3 of the body.",
+                       s->unit, mesh_shape_volume(s));
+  return STATUS_OK;
+}
+
+double sph_shape_mesh_area(const struct sph_shape *s) {
+  return s->mesh ? s->mesh->area * s->unit * s->unit : (double)NAN;
+}
+
+static void to_file(const struct sph_shape *s, const double point[3], double out[3]) {
+  for (int k = 0; k < 3; k++)
+    out[k] = (point[k] - s->centre[k]) / s->unit;
+}
+
+static void from_file(const struct sph_shape *s, const double place[3], double out[3]) {
+  for (int k = 0; k < 3; k++)
+    out[k] = s->centre[k] + s->unit * place[k];
+}
+
+static bool mesh_shape_inside(const struct sph_shape *s, const double point[3]) {
+  double p[3];
+  to_file(s, point, p);
+  return s->mesh && mesh_inside(s->mesh, p);
+}
+
+static double mesh_shape_distance(const struct sph_shape *s, const double point[3], double normal[3]) {
+  double p[3];
+  to_file(s, point, p);
+  return s->mesh ? s->unit * mesh_distance(s->mesh, p, normal) : (double)NAN;
+}
+
+static double mesh_shape_reach(const struct sph_shape *s, const double direction[3]) {
+  return s->mesh ? s->unit * mesh_reach(s->mesh, direction) : (double)NAN;
+}
+
+static bool mesh_shape_surface(const struct sph_shape *s, const double direction[3], double point[3],
+                               double normal[3]) {
+  double p[3] = {0, 0, 0};
+  const bool found = s->mesh && mesh_surface(s->mesh, direction, p, normal);
+  from_file(s, p, point);
+  return found;
+}
+
+static bool mesh_shape_place(const struct sph_shape *s, const double u[3], double point[3]) {
+  double p[3];
+  for (int k = 0; k < 3; k++)
+    p[k] = s->mesh->low[k] + u[k] * (s->mesh->high[k] - s->mesh->low[k]);
+  from_file(s, p, point);
+  return mesh_inside(s->mesh, p);
+}
+
+/* ---- gaps ---- */
+
+static double between(const double a[3], const double b[3]) {
+  const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
+
+static const double golden = 0.6180339887498949;
+
+/* A point of a face: the part `along` of the way from its first corner to the point at `across` of the opposite edge.
+ */
+static void point_of(const double corner[3][3], double across, double along, double p[3]) {
+  for (int k = 0; k < 3; k++) {
+    const double end = corner[1][k] + across * (corner[2][k] - corner[1][k]);
+    p[k] = corner[0][k] + along * (end - corner[0][k]);
+  }
+}
+
+/* The least signed distance of `other` from the points at `across` of a face. */
+static double ray_gap(const double corner[3][3], double across, const struct sph_shape *other, int turns) {
+  double low = 0, high = 1, gap = INFINITY;
+  for (int turn = 0; turn < turns; turn++) {
+    double p[3], distance[2];
+    const double along[2] = {high - golden * (high - low), low + golden * (high - low)};
+    for (int i = 0; i < 2; i++) {
+      point_of(corner, across, along[i], p);
+      distance[i] = sph_shape_distance(other, p, NULL);
+    }
+    gap = fmin(gap, fmin(distance[0], distance[1]));
+    *(distance[0] <= distance[1] ? &high : &low) = along[distance[0] <= distance[1]];
+  }
+  return gap;
+}
+
+/* The same of the whole face. The distance from a convex body is a convex function, so golden sections end at its least
+ * value; from a mesh it is one of the low ones. */
+static double face_gap(const double corner[3][3], const struct sph_shape *other) {
+  const int turns = other->kind == SPH_SHAPE_MESH ? 20 : 36;
+  double low = 0, high = 1, gap = INFINITY;
+  for (int turn = 0; turn < turns; turn++) {
+    const double across[2] = {high - golden * (high - low), low + golden * (high - low)};
+    const double distance[2] = {ray_gap(corner, across[0], other, turns), ray_gap(corner, across[1], other, turns)};
+    gap = fmin(gap, fmin(distance[0], distance[1]));
+    *(distance[0] <= distance[1] ? &high : &low) = across[distance[0] <= distance[1]];
+  }
+  return gap;
+}
+
+static double mesh_shape_gap(const struct sph_shape *s, const struct sph_shape *other) {
+  const struct mesh *m = s->mesh;
+  double gap = INFINITY;
+  if (!m || (other->kind == SPH_SHAPE_MESH && !other->mesh))
+    return NAN;
+  for (size_t f = 0; f < m->faces; f++) {
+    double corner[3][3], middle[3], radius = 0;
+    for (int c = 0; c < 3; c++)
+      from_file(s, m->vertex[m->face[f][c]], corner[c]);
+    for (int k = 0; k < 3; k++)
+      middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
+    for (int c = 0; c < 3; c++)
+      radius = fmax(radius, between(corner[c], middle));
+    const double distance = sph_shape_distance(other, middle, NULL);
+    if (distance - radius < gap)
+      gap = fmin(gap, fmin(distance, face_gap(corner, other)));
+  }
+  /* One may be wholly inside the other. The other's surface above its centre is a point of it. */
+  double point[3], normal[3];
+  const double up[3] = {0, 0, 1};
+  if (gap > 0 && sph_shape_surface(other, up, point, normal))
+    gap = fmin(gap, fmax(-sph_shape_reach(other, up), sph_shape_distance(s, point, NULL)));
+  return gap;
+}
 
 static status positive(double value, const char *name, struct error *error) {
   if (value > 0 && isfinite(value) && isnormal(value * value * value))
@@ -49,7 +185,7 @@ status sph_shape_check(const struct sph_shape *s, struct error *error) {
   case SPH_SHAPE_SPHERE: return positive(s->radius, "the radius of a sphere", error);
   case SPH_SHAPE_CYLINDER: return check_cylinder(s, error);
   case SPH_SHAPE_BOX: return check_box(s, error);
-  case SPH_SHAPE_MESH: return sph_shape_mesh_check(s, error);
+  case SPH_SHAPE_MESH: return mesh_shape_check(s, error);
   default: return status_fail(error, STATUS_INTERNAL, "shape %d is unknown", s->kind);
   }
 }
@@ -58,7 +194,7 @@ double sph_shape_volume(const struct sph_shape *s) {
   switch (s->kind) {
   case SPH_SHAPE_SPHERE: return 4 * M_PI / 3 * s->radius * s->radius * s->radius;
   case SPH_SHAPE_CYLINDER: return M_PI * (s->radius - s->inner_radius) * (s->radius + s->inner_radius) * s->length;
-  case SPH_SHAPE_MESH: return sph_shape_mesh_volume(s);
+  case SPH_SHAPE_MESH: return mesh_shape_volume(s);
   default: return s->side[0] * s->side[1] * s->side[2];
   }
 }
@@ -163,7 +299,7 @@ static double cylinder_distance(const struct sph_shape *s, const double p[3], do
 double sph_shape_distance(const struct sph_shape *s, const double point[3], double normal[3]) {
   double p[3], unused[3];
   if (s->kind == SPH_SHAPE_MESH)
-    return sph_shape_mesh_distance(s, point, normal);
+    return mesh_shape_distance(s, point, normal);
   if (!normal)
     normal = unused;
   vector3_subtract(point, s->centre, p);
@@ -216,7 +352,7 @@ int sph_shape_walls(const struct sph_shape *s, const double point[3], double dep
 bool sph_shape_inside(const struct sph_shape *s, const double point[3]) {
   double p[3];
   switch (s->kind) {
-  case SPH_SHAPE_MESH: return sph_shape_mesh_inside(s, point);
+  case SPH_SHAPE_MESH: return mesh_shape_inside(s, point);
   case SPH_SHAPE_SPHERE: vector3_subtract(point, s->centre, p); return vector3_dot(p, p) < s->radius * s->radius;
   default: return sph_shape_distance(s, point, NULL) < 0;
   }
@@ -232,7 +368,7 @@ static double cylinder_reach(const struct sph_shape *s, const double direction[3
 double sph_shape_reach(const struct sph_shape *s, const double d[3]) {
   switch (s->kind) {
   case SPH_SHAPE_SPHERE: return s->radius;
-  case SPH_SHAPE_MESH: return sph_shape_mesh_reach(s, d);
+  case SPH_SHAPE_MESH: return mesh_shape_reach(s, d);
   case SPH_SHAPE_BOX: return 0.5 * (fabs(d[0]) * s->side[0] + fabs(d[1]) * s->side[1] + fabs(d[2]) * s->side[2]);
   default: return cylinder_reach(s, d);
   }
@@ -269,7 +405,7 @@ bool sph_shape_surface(const struct sph_shape *s, const double direction[3], dou
   double d[3] = {0, 0, 1}, ray;
   vector3_unit(direction, d);
   switch (s->kind) {
-  case SPH_SHAPE_MESH: return sph_shape_mesh_surface(s, d, point, normal);
+  case SPH_SHAPE_MESH: return mesh_shape_surface(s, d, point, normal);
   case SPH_SHAPE_BOX: ray = box_ray(s, d, normal); break;
   case SPH_SHAPE_CYLINDER: ray = cylinder_ray(s, d, normal); break;
   default: ray = s->radius; memcpy(normal, d, sizeof d);
@@ -304,7 +440,7 @@ static void place_in_ring(const struct sph_shape *s, const double u[3], double p
 bool sph_shape_place(const struct sph_shape *s, const double u[3], double point[3]) {
   double p[3];
   switch (s->kind) {
-  case SPH_SHAPE_MESH: return sph_shape_mesh_place(s, u, point);
+  case SPH_SHAPE_MESH: return mesh_shape_place(s, u, point);
   case SPH_SHAPE_BOX: place_in_box(s, u, p); break;
   case SPH_SHAPE_SPHERE: place_in_sphere(s, u, p); break;
   default: place_in_ring(s, u, p);
@@ -312,4 +448,156 @@ bool sph_shape_place(const struct sph_shape *s, const double u[3], double point[
   for (int k = 0; k < 3; k++)
     point[k] = s->centre[k] + p[k];
   return true;
+}
+
+/* ---- distances of two shapes ---- */
+
+static struct sph_shape hull(const struct sph_shape *s) {
+  struct sph_shape h = *s;
+  h.inner_radius = 0;
+  return h;
+}
+
+enum { DIRECTIONS = 64 };
+
+/* Directions that may separate two hulls, of any length: those of faces and edges, of the centres (d), and a cover of
+ * the sphere. */
+static void directions(const struct sph_shape *a, const struct sph_shape *b, const double d[3],
+                       double try[DIRECTIONS][3]) {
+  double fa[3][3], fb[3][3];
+  sph_shape_frame(a, fa);
+  sph_shape_frame(b, fb);
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) {
+      try[i][k] = fa[k][i];
+      try[3 + i][k] = fb[k][i];
+    }
+  int count = 6;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++, count++)
+      vector3_cross(try[i], try[3 + j], try[count]);
+  memcpy(try[count++], d, sizeof try[0]);
+  for (int i = 0; count < DIRECTIONS; i++, count++) { /* an even cover of half the sphere */
+    const double z = (i + 0.5) / 48, across = sqrt(1 - z * z), turn = 2.399963229728653 * i;
+    try[count][0] = across * cos(turn);
+    try[count][1] = across * sin(turn);
+    try[count][2] = z;
+  }
+}
+
+/* Two hulls, and the direction that separates them best so far. */
+struct separation {
+  const struct sph_shape *a, *b;
+  double between[3]; /* m, of their centres */
+  double direction[3], distance;
+};
+
+/* Takes the direction of `towards`, which is longer than `least`, if it separates the hulls better. */
+static bool improve(struct separation *s, const double towards[3], double least) {
+  double v[3];
+  if (!(vector3_unit(towards, v) > least))
+    return false;
+  const double distance = fabs(vector3_dot(v, s->between)) - sph_shape_reach(s->a, v) - sph_shape_reach(s->b, v);
+  if (!(distance > s->distance))
+    return false;
+  s->distance = distance;
+  memcpy(s->direction, v, sizeof v);
+  return true;
+}
+
+/* Tries to turn the direction a little, both ways about each axis. */
+static bool turn(struct separation *s, double step) {
+  for (int side = 0; side < 6; side++) {
+    double w[3];
+    memcpy(w, s->direction, sizeof w);
+    w[side / 2] += side % 2 ? step : -step;
+    if (improve(s, w, 0))
+      return true;
+  }
+  return false;
+}
+
+/* The depth of overlap, negative, is the least push along any direction that separates two hulls. Tries some
+ * directions, then searches about the best. */
+static double depth(const struct sph_shape *a, const struct sph_shape *b) {
+  struct separation s = {.a = a, .b = b, .direction = {0, 0, 1}, .distance = -INFINITY};
+  double try[DIRECTIONS][3];
+  vector3_subtract(b->centre, a->centre, s.between);
+  directions(a, b, s.between, try);
+  for (int i = 0; i < DIRECTIONS; i++)
+    improve(&s, try[i], 1e-9);
+  for (double step = 0.3; step > 1e-7;)
+    if (!turn(&s, step))
+      step *= 0.5;
+  return s.distance;
+}
+
+/* Between convex bodies, alternate projections onto one and the other end at the nearest pair of points. */
+static double convex_gap(const struct sph_shape *a, const struct sph_shape *b) {
+  double p[3], normal[3], gap = INFINITY;
+  memcpy(p, b->centre, sizeof p);
+  const double x[3] = {1, 0, 0}, size = sph_shape_reach(a, x) + sph_shape_reach(b, x);
+  for (int round = 0; round < 2000; round++) {
+    const double before = gap;
+    for (int side = 0; side < 2; side++) {
+      gap = sph_shape_distance(side ? b : a, p, normal);
+      for (int k = 0; k < 3 && gap > 0; k++)
+        p[k] -= gap * normal[k];
+    }
+    if (gap <= 1e-9 * size)
+      return fmin(depth(a, b), 0);
+    if (before - gap < 1e-12 * size && round)
+      break;
+  }
+  return gap;
+}
+
+double sph_shape_gap(const struct sph_shape *ring_a, const struct sph_shape *ring_b) {
+  const struct sph_shape a = hull(ring_a), b = hull(ring_b);
+  if (b.kind == SPH_SHAPE_SPHERE)
+    return sph_shape_distance(&a, b.centre, NULL) - b.radius;
+  if (a.kind == SPH_SHAPE_SPHERE)
+    return sph_shape_distance(&b, a.centre, NULL) - a.radius;
+
+  const bool mesh_a = a.kind == SPH_SHAPE_MESH, mesh_b = b.kind == SPH_SHAPE_MESH;
+  if (mesh_a && mesh_b)
+    return fmin(mesh_shape_gap(&a, &b), mesh_shape_gap(&b, &a));
+  if (mesh_a)
+    return mesh_shape_gap(&a, &b);
+  if (mesh_b)
+    return mesh_shape_gap(&b, &a);
+  return convex_gap(&a, &b);
+}
+
+double sph_shape_gap_ahead(const struct sph_shape *a, const struct sph_shape *b, const double velocity[3],
+                           double *when) {
+  double direction[3], d[3], least = sph_shape_gap(a, b), unused;
+  if (!when)
+    when = &unused;
+  *when = 0;
+  const double speed = vector3_unit(velocity, direction);
+  if (!(speed > 0) || least <= 0)
+    return least;
+
+  /* Between convex bodies the gap is a convex function of the way: golden section. */
+  vector3_subtract(a->centre, b->centre, d);
+  const double reach = sph_shape_reach(b, direction);
+  double low = 0, high = fmax(0, vector3_dot(d, direction)) + sph_shape_reach(a, direction) + reach;
+  for (int turn = 0; turn < 200 && high - low > 1e-12 * (high + reach) && !(least <= 0); turn++) {
+    const double ways[2] = {high - golden * (high - low), low + golden * (high - low)};
+    double gaps[2];
+    for (int i = 0; i < 2; i++) {
+      struct sph_shape moved = *b;
+      for (int k = 0; k < 3; k++)
+        moved.centre[k] = b->centre[k] + ways[i] * direction[k];
+      gaps[i] = sph_shape_gap(a, &moved);
+    }
+    if (gaps[0] <= gaps[1])
+      high = ways[1];
+    else
+      low = ways[0];
+    least = fmin(least, fmin(gaps[0], gaps[1]));
+    *when = 0.5 * (low + high) / speed;
+  }
+  return least;
 }

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "engine/sph/material/tillotson.h"
+#include "engine/sph/material/material.h"
 
 /* 1. Curves */
 

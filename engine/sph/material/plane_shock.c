@@ -1,12 +1,10 @@
 /* One or two fronts ahead of a piston, by bisection on the jump conditions. */
-#include "engine/sph/material/plane_shock.h"
+#include "engine/sph/material/palpha.h"
 
 #include <math.h>
 #include <stddef.h>
 
-#include "engine/sph/material/derived.h"
-#include "engine/sph/material/palpha.h"
-#include "engine/sph/material/tillotson.h"
+#include "engine/sph/material/material.h"
 
 enum { HALVINGS = 100 }; /* of a bracket: to the last bit */
 static const double most_pressure = 1e16;
@@ -84,7 +82,7 @@ static void find_fronts(const struct matter *m, const struct sph_front *rest, do
 
 status sph_plane_shock(const struct sph_material *material, double piston, struct sph_plane_shock *out,
                        struct error *error) {
-  const bool porous = sph_derived_solid_ratio(material) > 1;
+  const bool porous = sph_material_solid_ratio(material) > 1;
   struct sph_palpha_law law;
   *out = (struct sph_plane_shock){.precursor = none, .shock = none};
   status code = porous ? sph_palpha_prepare(&material->palpha, material, &law, error) : STATUS_OK;

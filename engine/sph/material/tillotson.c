@@ -1,5 +1,5 @@
 /* Pressure and sound speed of one particle. */
-#include "engine/sph/material/tillotson.h"
+#include "engine/sph/material/material.h"
 
 #include <math.h>
 

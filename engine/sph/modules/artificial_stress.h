@@ -1,4 +1,14 @@
-/* Artificial stress, a term of the pair loop: it adds f^n (R_i + R_j) to the stress of a pair.
+/* Artificial stress against clumping in tension: a term of the pair loop. It makes R from the stress of each particle,
+ * and adds f^n (R_i + R_j) to each pair.
+ *
+ *   method.artificial_stress   Monaghan's epsilon; 0: none
+ *
+ * The factor f^n belongs to a pair, so that R is conjugate to no velocity gradient and its power is not sigma : eps.
+ * The pair loop sums the power pair by pair, and each of the two particles gets half of it as internal energy. Total
+ * energy is then conserved. R grows as two particles come close, and it can take more energy than was stored: the
+ * internal energy of a particle is then held at zero, and the ledger counts the difference (energy.clamped).
+ *
+ * Artificial stress, a term of the pair loop: it adds f^n (R_i + R_j) to the stress of a pair.
  *
  * The artificial stress of Monaghan 2000 (J. Comput. Phys. 159, 290) in the principal axes of the stress, as in Gray,
  * Monaghan & Swift 2001: R = -epsilon times the tensile part of sigma/rho^2. It repels particles that a tension would
@@ -178,5 +188,30 @@ INLINE vec TYPED(artificial_stress_stress_added)(const struct sph_pair_constants
     return work * p->per_densities;
   return work;
 }
+
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_REAL(method.artificial_stress, artificial_stress.epsilon, "1", 0, 0, 1,
+           .doc = "Monaghan's epsilon against clumping in tension, for bodies that do not crack. 0: it is absent.",
+           .source = "Monaghan 2000; Gray, Monaghan & Swift 2001"),
+#endif
+
+#ifdef SPH_MODULE_DESCRIPTORS
+
+    static bool artificial_stress_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)body, (void)inputs;
+  return inputs->artificial_stress.epsilon > 0;
+}
+
+static const struct sph_module artificial_stress_module = {
+    .name = "artificial_stress",
+    .doc = "Repulsion between particles under tension, against their clumping: for elastic bodies that do not crack.",
+    .source = "Monaghan 2000; Gray, Monaghan & Swift 2001",
+    .when = "artificial_stress above 0",
+    .on = artificial_stress_on,
+    .bytes_in_pairs = 6 * sizeof(double), /* R */
+    .cost = 70,
+};
 
 #endif

@@ -1,4 +1,16 @@
-/* How the front of a crack goes from particle to particle.
+/* Cracks that run on beyond the particle of their flaw (equations below).
+ *
+ *   fracture.front         plane turns the module on
+ *   fracture.front_arrest  smallest tension ahead of a front, over the tension that opens its flaw
+ *
+ * Without this module a crack ends at its particle, and every particle must fail by a flaw of its own, whose threshold
+ * grows as (k V_p)^(-1/m). So strength grows with the number of particles without end. With it, strength depends on the
+ * flaws of the body alone (tests/validation/crack_front.md).
+ *
+ * Neighbours are those of the body at the start: a front runs through rock that is still one piece. It does not cross
+ * the periodic sides of a box.
+ *
+ * How the front of a crack goes from particle to particle.
  *
  * A particle whose damage begins is the start of a crack: its plane goes through the particle across the largest
  * tension, n, and its front begins then. A neighbour j of a reached particle i is reached at the earliest of
@@ -23,6 +35,28 @@ struct sph_crack_front_inputs {
   int front;     /* enum sph_crack_front */
   double arrest; /* 1 */
 };
+
+/* Data of crack fronts beside the columns: the neighbours of every particle at the start, and the progress of cracks.
+ * Particles are named by their number within their body, which sorting does not change. */
+/* The columns front_* of a particle, where its neighbours can read them. */
+struct sph_crack_front_tip {
+  double time;   /* s, when the front was here; infinite: not yet */
+  double offset; /* m, of the particle from the crack's plane, along the normal */
+  double stress; /* Pa: the front goes on where the tension across the plane is at least this */
+  double normal[3];
+};
+
+/* Hooks before the pair loop read `tip` and `near`; hooks after it write them. So no block sees what another has found
+ * in the same step, and the bits do not depend on the number of threads. */
+struct sph_crack_front_links {
+  size_t particles;
+  double speed;                    /* m/s, c_g */
+  double *place;                   /* m, three coordinates of each particle at the start */
+  size_t *first;                   /* particle q has the neighbours other[first[q]] ... other[first[q + 1] - 1] */
+  uint32_t *other;                 /* within 2h at the start */
+  struct sph_crack_front_tip *tip; /* a particle is reached once at most */
+  unsigned char *near;             /* 1: a front has been at a neighbour */
+};
 #endif
 
 COLUMN(front_time)      /* s, when a crack's front reached the particle; infinite: not yet */
@@ -30,10 +64,30 @@ COLUMN(front_offset)    /* m: this and the next as in struct sph_crack_front_tip
 COLUMN(front_stress)    /* Pa */
 COLUMN(front_normal[3]) /* 1 */
 
-#ifdef SPH_MODULE_LOOPS
+#if defined(SPH_MODULE_LOOPS) || defined(SPH_MODULE_DESCRIPTORS)
 
-#include "engine/sph/modules/crack_front_links.h"
-#include "engine/sph/modules/range_tools.h"
+/* Copies the columns front_* of the particles low .. high - 1 to `tip`, where their neighbours read them. */
+static void crack_front_publish(struct sph_system *s, const struct sph_solid *body, size_t low, size_t high) {
+  struct sph_crack_front_links *l = body->prepared[SPH_MODULE_crack_front];
+  const struct sph_columns *c = &s->c;
+  for (size_t i = low; i < high; i++) {
+    struct sph_crack_front_tip *tip = &l->tip[s->id[i] - body->first];
+    if (!isfinite(c->front_time[i]) || isfinite(tip->time))
+      continue;
+    *tip = (struct sph_crack_front_tip){.time = c->front_time[i],
+                                        .offset = c->front_offset[i],
+                                        .stress = c->front_stress[i],
+                                        .normal = {c->front_normal[0][i], c->front_normal[1][i],
+                                                   c->front_normal[2][i]}};
+    const size_t own = s->id[i] - body->first;
+    for (size_t k = l->first[own]; k < l->first[own + 1]; k++)
+      __atomic_store_n(&l->near[l->other[k]], 1, __ATOMIC_RELAXED); /* several threads may write here; all write 1 */
+  }
+}
+
+#endif
+
+#ifdef SPH_MODULE_LOOPS
 
 /* Unit vector of the largest principal stress: the largest cross product of two rows of S - lambda. Any direction where
  * all principal stresses are equal. */
@@ -110,16 +164,16 @@ static void crack_front_arrive(struct sph_system *s, const struct sph_crack_fron
 
 RANGE_HOOK void crack_front_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const struct sph_crack_front_links *l = body->prepared[SPH_MODULE_crack_front];
-  const struct sph_weibull_lists *flaws = body->prepared[SPH_MODULE_weibull];
+  const struct sph_flaws_lists *flaws = body->prepared[SPH_MODULE_weibull];
   const double *damage = fracture_own_damage(s, body), now = s->now.time + s->dt;
-  const double arrest = s->in.crack_front.arrest * sph_derived_young_modulus(&body->physics.material);
+  const double arrest = s->in.crack_front.arrest * sph_material_young_modulus(&body->physics.material);
   for (size_t i = b->low; i < b->high; i++) {
     const size_t own = s->id[i] - body->first;
     if (isfinite(s->c.front_time[i])) {
       crack_front_break(&s->c, i);
     } else if (damage[i] > 0) {
       struct sph_crack_front_tip start = {.time = now};
-      start.stress = arrest * sph_weibull_lowest(flaws, own);
+      start.stress = arrest * sph_flaws_lowest(flaws, own);
       crack_front_normal(&s->c, i, start.normal);
       crack_front_set(&s->c, i, &start);
     } else if (l->near[own]) {
@@ -129,10 +183,134 @@ RANGE_HOOK void crack_front_range(struct sph_system *s, const struct sph_solid *
 }
 
 RANGE_HOOK void crack_front_after(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  sph_crack_front_publish(s, body, b->low, b->high);
+  crack_front_publish(s, body, b->low, b->high);
 }
 
 static const sph_hook crack_front_hooks[SPH_STAGES] =
     {[SPH_CRACK] = crack_front_range, [SPH_RATES] = crack_front_after};
+
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_CHOICE(fracture.front, crack_front.front,
+             FIELD_WORDS_HERE(SPH_CRACK_FRONTS, [SPH_CRACK_FRONT_NONE] = "none", [SPH_CRACK_FRONT_PLANE] = "plane"),
+             .absent = "none", .when = "target.fracture=auto|on",
+             .choice_docs =
+                 "it ends at its particle, and each particle breaks by flaws of its own, as printed: strength "
+                 "grows with the number of particles\n"
+                 "it runs on in its plane at c_g",
+             .doc = "Length of a crack that starts at a flaw.", .source = "BA95 for `none`; `plane` is ours"),
+    INPUT_REAL(fracture.front_arrest, crack_front.arrest, "1", 0.5, 0, 1, .when = "fracture.front=plane",
+               .doc = "A crack continues where the tension across its plane is at least this share of the tension that "
+                      "opens its flaw. 0: any tension will do.",
+               .source = "our choice"),
+#endif
+
+#ifdef SPH_MODULE_DESCRIPTORS
+
+    static bool crack_front_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  return body->flaws != NULL && inputs->crack_front.front == SPH_CRACK_FRONT_PLANE;
+}
+
+static void crack_front_free_prepared(void *prepared) {
+  struct sph_crack_front_links *links = prepared;
+  if (!links)
+    return;
+  free(links->place);
+  free(links->first);
+  free(links->other);
+  free(links->tip);
+  free(links->near);
+  free(links);
+}
+
+static size_t crack_front_bytes_prepared(const void *prepared) {
+  const struct sph_crack_front_links *l = prepared;
+  return sizeof *l + l->first[l->particles] * sizeof *l->other +
+         l->particles * (3 * sizeof *l->place + sizeof *l->first + sizeof *l->tip + sizeof *l->near);
+}
+
+/* Particles within 2h of particle q, itself included; written if there is room. */
+static size_t crack_front_within(const struct sph_crack_front_links *l, const struct sph_kd_tree *tree, double h,
+                                 size_t q, uint32_t *out, size_t room) {
+  return sph_kd_tree_within(tree, l->place + 3 * q, 2 * h, out, room);
+}
+
+/* The lists of neighbours. h: of each particle. False without memory. */
+static bool crack_front_link_up(struct sph_crack_front_links *l, const struct sph_kd_tree *tree, const double *h) {
+  l->first[0] = 0;
+  for (size_t q = 0; q < l->particles; q++)
+    l->first[q + 1] = l->first[q] + crack_front_within(l, tree, h[q], q, NULL, 0);
+  l->other = malloc(l->first[l->particles] * sizeof *l->other);
+  for (size_t q = 0; l->other && q < l->particles; q++)
+    crack_front_within(l, tree, h[q], q, l->other + l->first[q], l->first[q + 1] - l->first[q]);
+  return l->other != NULL;
+}
+
+static bool crack_front_take(struct sph_crack_front_links *l, size_t n) {
+  l->particles = n;
+  l->place = malloc(3 * n * sizeof *l->place);
+  l->first = malloc((n + 1) * sizeof *l->first);
+  l->tip = malloc(n * sizeof *l->tip);
+  l->near = calloc(n, sizeof *l->near);
+  return l->place && l->first && l->tip && l->near;
+}
+
+static status crack_front_prepare(const struct sph_inputs *inputs, const struct sph_particles *p,
+                                  struct sph_solid *body, struct error *error) {
+  (void)inputs;
+  struct sph_kd_tree *tree = NULL;
+  const size_t n = body->last - body->first, from = body->first;
+  struct sph_crack_front_links *links = calloc(1, sizeof *links);
+  if (!links || !crack_front_take(links, n)) {
+    crack_front_free_prepared(links);
+    return status_fail(error, STATUS_MEMORY, "no memory for the crack fronts of %zu particles", n);
+  }
+  links->speed = sph_material_crack_speed(&body->physics.material);
+  for (size_t q = 0; q < n; q++) {
+    const double at[3] = {p->x[from + q], p->y[from + q], p->z[from + q]};
+    memcpy(links->place + 3 * q, at, sizeof at);
+    links->tip[q] = (struct sph_crack_front_tip){.time = INFINITY};
+  }
+  status code = sph_kd_tree_create(n, p->x + from, p->y + from, p->z + from, &tree, error);
+  if (!code && !crack_front_link_up(links, tree, p->h + from))
+    code = status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);
+  sph_kd_tree_free(tree);
+  if (code)
+    crack_front_free_prepared(links);
+  else
+    body->prepared[SPH_MODULE_crack_front] = links;
+  return code;
+}
+
+static void crack_front_restored(struct sph_system *s, const struct sph_solid *body) {
+  struct sph_crack_front_links *l = body->prepared[SPH_MODULE_crack_front];
+  memset(l->near, 0, l->particles);
+  for (size_t q = 0; q < l->particles; q++)
+    l->tip[q].time = INFINITY;
+  crack_front_publish(s, body, body->first, body->last);
+}
+
+static const struct sph_column_need crack_front_columns[] = {{SPH_COLUMNS_OF(front_time), INFINITY, NULL},
+                                                             {SPH_COLUMNS_OF(front_offset), 0, NULL},
+                                                             {SPH_COLUMNS_OF(front_stress), 0, NULL},
+                                                             {SPH_COLUMNS_OF(front_normal), 0, NULL},
+                                                             {0}};
+
+static const struct sph_module crack_front_module = {
+    .name = "crack_front",
+    .doc = "A crack runs on from the particle of its flaw, in its plane, at c_g, where the tension across the plane is "
+           "at least what opens the flaw. A particle that the front has reached breaks while it is in tension, without "
+           "a flaw of its own and without a cap.",
+    .source = "our choice; c_g and what opens a flaw as in Benz & Asphaug 1995",
+    .when = "a body whose material has Weibull parameters, with fracture.front: plane",
+    .on = crack_front_on,
+    .columns = crack_front_columns,
+    .bytes_linked = 350, /* of a particle with 56 neighbours */
+    .prepare = crack_front_prepare,
+    .free_prepared = crack_front_free_prepared,
+    .bytes_prepared = crack_front_bytes_prepared,
+    .restored = crack_front_restored,
+};
 
 #endif

@@ -1,12 +1,14 @@
 /* Declarations of modules. Tables and structs are made from them. Each NAME.h of a module has lines of the kinds below,
- * and then its loops. A file that makes a table of one kind defines that kind as a macro and includes this file; lines
- * of other kinds vanish. So everything about a module is in its two files, and no table is written twice.
+ * and behind them its sections. A file that makes a table of one kind defines that kind as a macro and includes this
+ * file; lines of other kinds vanish. A file that needs a section defines its name and includes this file. So everything
+ * about a module is in its one file, nothing is written twice, and NAME.h includes nothing itself.
  *
- *   MODULE(name)            the module: sph_NAME_module in NAME.c
+ *   MODULE(name)            the module: NAME_module
  *   MODULE_HOOKS(name)      it has loops: NAME_hooks
- *   MODULE_INPUTS(name)     it has inputs: struct sph_NAME_inputs, and in NAME.c the table of their rows, of that name
- *   MODULE_MATERIAL(name)   likewise values of a material, sph_NAME_material: paths are those of its document
- *   MODULE_RESULTS(name)    likewise results, sph_NAME_results
+ *   MODULE_INPUTS(name)     it has inputs: struct sph_NAME_inputs, the member NAME of struct sph_inputs
+ *   MODULE_MATERIAL(name)   likewise values of a material, struct sph_NAME_material of struct sph_material
+ *   MODULE_RESULTS(name)    likewise results, struct sph_NAME_results of struct sph_results
+ *   MODULE_REPORT(name)     it fills results: NAME_report
  *
  *   COLUMN(member)                     of the moving system (struct sph_columns): an array of doubles
  *   COLUMN(member[n])                  n such arrays
@@ -29,8 +31,15 @@
  *
  *   TIME_STEP_LIMIT(NAME, member, doc)   SPH_LIMIT_NAME, and the result limited.member
  *
- * Three ready-made kinds: SPH_MODULE_STRUCTS takes the structs (structs.h), SPH_MODULE_LOOPS the loops (ranges_body.h),
- * SPH_PAIR_TERM the functions of terms (pairs/pairs_kernels_body.h). */
+ * Sections, each behind `#ifdef`:
+ *   SPH_MODULE_STRUCTS         structs of inputs, values of a material and results (structs.h)
+ *   SPH_MODULE_INPUT_ROWS, SPH_MODULE_MATERIAL_ROWS, SPH_MODULE_RESULT_ROWS
+ *                              the rows of their members (scene/inputs.c, material/material.c, observe/results.c)
+ *   SPH_MODULE_LOOPS           loops over particles, and NAME_hooks, the table of them (ranges.h)
+ *   SPH_PAIR_TERM              functions of a term (pairs/pairs_kernels_body.h)
+ *   SPH_MODULE_DESCRIPTORS     checks, preparation and NAME_module, the descriptor (modules.c)
+ *   SPH_MODULE_REPORT          NAME_report(run, results), for runs with a body that has the module (observe/report.c)
+ */
 #ifndef MODULE
 #define MODULE(...)
 #endif
@@ -45,6 +54,9 @@
 #endif
 #ifndef MODULE_RESULTS
 #define MODULE_RESULTS(...)
+#endif
+#ifndef MODULE_REPORT
+#define MODULE_REPORT(...)
 #endif
 #ifndef COLUMN
 #define COLUMN(...)
@@ -101,16 +113,51 @@
 #define TIME_STEP_LIMIT(...)
 #endif
 
-#include "engine/sph/modules/list.h"
+/* The modules of the solid, in the order in which they act within a stage. This is the only list of them: the
+ * descriptors, the loops of every CPU class and what modules declare follow.
+ *
+ *   elastic             first, because the others act on its stress
+ *   tillotson, palpha   the last of them that is on sets the pressure
+ *   yield, pressure_strength   the last of them that is on sets the yield limit
+ *   tension_limit       after the modules that set the pressure and the yield limit, which it bounds
+ *   weibull, fracture   last, because the stress that opens flaws is within the yield limit
+ *   crack_cell          after fracture, whose R_s it sets for cells of particles
+ *   crack_front         after fracture, whose thresholds, rates and caps it changes for the next step
+ *   the rest            options of the pair loop, without loops here
+ * motion.h is no module: it has the loops of every body.
+ *
+ * To add a module: NAME.h with what it declares and its sections, and a line below. */
+/* clang-format off */
+#include "engine/sph/modules/motion.h"
+#include "engine/sph/modules/elastic.h"
+#include "engine/sph/modules/tillotson.h"
+#include "engine/sph/modules/palpha.h"
+#include "engine/sph/modules/yield.h"
+#include "engine/sph/modules/pressure_strength.h"
+#include "engine/sph/modules/tension_limit.h"
+#include "engine/sph/modules/weibull.h"
+#include "engine/sph/modules/fracture.h"
+#include "engine/sph/modules/crack_cell.h"
+#include "engine/sph/modules/crack_front.h"
+#include "engine/sph/modules/viscosity.h"
+#include "engine/sph/modules/artificial_stress.h"
+#include "engine/sph/modules/gradient_correction.h"
+/* clang-format on */
 
 #undef SPH_MODULE_STRUCTS
 #undef SPH_MODULE_LOOPS
 #undef SPH_PAIR_TERM
+#undef SPH_MODULE_INPUT_ROWS
+#undef SPH_MODULE_MATERIAL_ROWS
+#undef SPH_MODULE_RESULT_ROWS
+#undef SPH_MODULE_DESCRIPTORS
+#undef SPH_MODULE_REPORT
 #undef MODULE
 #undef MODULE_HOOKS
 #undef MODULE_INPUTS
 #undef MODULE_MATERIAL
 #undef MODULE_RESULTS
+#undef MODULE_REPORT
 #undef COLUMN
 #undef PARTICLE_ARRAYS
 #undef PARTICLE_COLUMN

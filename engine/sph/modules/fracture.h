@@ -1,4 +1,11 @@
-/* Which flaws are open, and D^(1/3) that grows with them [BA95 section 4.3].
+/* Damage that grows from open flaws (material/material.h has the law, weibull.h the
+ * flaws).
+ *
+ *   fracture.growth, fracture.cap   rate and largest damage with n open flaws
+ *   fracture.crack_radius           R_s of the rate c_g/R_s
+ *   fidelity.damage_step            largest change of D^(1/3) in a step
+ *
+ * Which flaws are open, and D^(1/3) that grows with them [BA95 section 4.3].
  *
  * Local strain (eq. 21) of the damaged stress: eps = sigma_t/((1-D) E), with sigma_t the largest principal value of
  * (1-D) S - P (P < 0: (1-D) P). The factors cancel:  E eps = lambda(S) - P                where P < 0,
@@ -43,11 +50,6 @@ COLUMN(crack_rate) /* c_g / R_s, 1/s */
 TIME_STEP_LIMIT(DAMAGE, damage, "the growth of damage")
 
 #ifdef SPH_MODULE_LOOPS
-
-#include "engine/sph/material/derived.h"
-#include "engine/sph/material/fracture.h"
-#include "engine/sph/modules/range_tools.h"
-#include "engine/sph/modules/weibull_lists.h"
 
 /* cos(2/3 acos(s)) on [0, 1]: Chebyshev interpolation, in powers of 2 s - 1. */
 RANGE_INLINE double fracture_third_cosine(double s) {
@@ -113,14 +115,14 @@ RANGE_INLINE void fracture_grow(struct sph_system *s, const struct sph_solid *bo
   const double rate = s->c.damage_rate[i], cap = s->c.damage_cap[i];
   double *damage = fracture_own_damage(s, body) + i;
   if (!(load.strain >= s->c.open_from[i] && load.strain < s->c.open_below[i])) {
-    const struct sph_weibull_lists *flaws = body->prepared[SPH_MODULE_weibull];
+    const struct sph_flaws_lists *flaws = body->prepared[SPH_MODULE_weibull];
     const size_t own = s->id[i] - body->first;
     double bracket[2];
-    const uint32_t open = sph_weibull_active(flaws, own, load.strain / young, bracket);
+    const uint32_t open = sph_flaws_active(flaws, own, load.strain / young, bracket);
     s->c.open_from[i] = bracket[0] * young;
     s->c.open_below[i] = bracket[1] * young;
-    s->c.open_rate[i] = open ? sph_fracture_rate(open, s->in.fracture.growth) * s->c.crack_rate[i] : 0;
-    s->c.damage_cap[i] = open ? sph_fracture_limit(open, sph_weibull_total(flaws, own), s->in.fracture.cap) : 0;
+    s->c.open_rate[i] = open ? sph_material_damage_rate(open, s->in.fracture.growth) * s->c.crack_rate[i] : 0;
+    s->c.damage_cap[i] = open ? sph_material_damage_cap(open, sph_flaws_total(flaws, own), s->in.fracture.cap) : 0;
   }
   const double limit = range_smaller(range_larger(cap, s->c.damage_cap[i]), load.shut);
   const double grown = *damage + 0.5 * s->dt * (rate + s->c.open_rate[i]);
@@ -150,7 +152,7 @@ RANGE_HOOK void fracture_range(struct sph_system *s, const struct sph_solid *bod
   }
   if (!count)
     return;
-  const double young = sph_derived_young_modulus(&body->physics.material);
+  const double young = sph_material_young_modulus(&body->physics.material);
   double largest[SPH_BLOCK];
   RANGE_LOOP
   for (size_t m = 0; m < count; m++) {
@@ -164,5 +166,84 @@ RANGE_HOOK void fracture_range(struct sph_system *s, const struct sph_solid *bod
 }
 
 static const sph_hook fracture_hooks[SPH_STAGES] = {[SPH_CRACK] = fracture_range};
+
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_CHOICE(fracture.growth, fracture.growth,
+             FIELD_WORDS_HERE(SPH_GROWTHS, [SPH_GROWTH_CUBE_ROOT] = "cube-root", [SPH_GROWTH_LINEAR] = "linear"),
+             .when = "target.fracture=auto|on",
+             .choice_docs = "n^(1/3) c_g/R_s, which gives Grady and Kipp's rate law\nn c_g/R_s, as printed",
+             .doc = "Rate of D^(1/3) of a particle with n open flaws.", .source = "BA95 section 4.3 for `linear`"),
+    INPUT_CHOICE(
+        fracture.cap, fracture.cap,
+        FIELD_WORDS_HERE(SPH_CAPS, [SPH_CAP_BA95] = "ba95", [SPH_CAP_COUNT] = "count", [SPH_CAP_NONE] = "none"),
+        .when = "target.fracture=auto|on", .choice_docs = "(n/n_tot)^(1/3), as printed\nn/n_tot\n1",
+        .doc = "Largest damage of a particle with n of its n_tot flaws open.", .source = "BA95 eq. 22 for `ba95`"),
+    INPUT_CHOICE(
+        fracture.crack_radius, fracture.crack_radius,
+        FIELD_WORDS_HERE(SPH_CRACK_RADII, [SPH_CRACK_RADIUS_VOLUME] = "volume", [SPH_CRACK_RADIUS_SUPPORT] = "support"),
+        .when = "target.fracture=auto|on",
+        .choice_docs = "radius of the sphere of the particle's volume\n"
+                       "2h: strength falls with R_s, and most of a body is destroyed where `volume` leaves a core",
+        .doc = "R_s: length that a crack has to grow until its particle is broken.",
+        .source = "BA95 eq. 15; the paper gives no value"),
+    INPUT_REAL(fidelity.damage_step, fracture.damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
+               .doc = "Largest change of D^(1/3) in a time step."),
+#endif
+
+#ifdef SPH_MODULE_DESCRIPTORS
+
+    static bool fracture_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)inputs;
+  return body->flaws != NULL;
+}
+
+static status fracture_check(const struct sph_body_physics *body, const struct sph_particles *particles, size_t first,
+                             size_t last, struct error *error) {
+  (void)particles;
+  if (!(body->strength && body->material.elastic.shear_modulus > 0))
+    return status_fail(error, STATUS_CONTENT,
+                       "flaws but no strength: only a solid cracks; set strength: true or fracture: off");
+  if (body->flaws->particles != last - first)
+    return status_fail(error, STATUS_CONTENT, "%zu particles, but flaws for %zu", last - first, body->flaws->particles);
+  return STATUS_OK;
+}
+
+static void fracture_fill(struct sph_system *s, const struct sph_solid *body, const struct sph_particles *p) {
+  const struct sph_flaws_lists *flaws = body->prepared[SPH_MODULE_weibull];
+  const double young = sph_material_young_modulus(&body->physics.material),
+               crack_speed = sph_material_crack_speed(&body->physics.material);
+  for (size_t i = body->first; i < body->last; i++) {
+    const double volume = p->mass[i] / p->density[i];
+    const double radius = s->in.fracture.crack_radius == SPH_CRACK_RADIUS_SUPPORT ? 2 * p->h[i]
+                                                                                  : cbrt(3 * volume / (4 * M_PI));
+    s->c.damage[i] = p->damage_cbrt ? p->damage_cbrt[i] : 0;
+    s->c.crack_rate[i] = crack_speed / radius;
+    s->c.weakest[i] = young * sph_flaws_lowest(flaws, i - body->first);
+  }
+}
+
+static const struct sph_column_need fracture_columns[] = {{SPH_COLUMNS_OF(damage), 0, NULL},
+                                                          {SPH_COLUMNS_OF(damage_rate), 0, NULL},
+                                                          {SPH_COLUMNS_OF(damage_cap), 0, NULL},
+                                                          {SPH_COLUMNS_OF(weakest), INFINITY, NULL},
+                                                          {SPH_COLUMNS_OF(open_from), 0, NULL},
+                                                          {SPH_COLUMNS_OF(open_below), 0, NULL},
+                                                          {SPH_COLUMNS_OF(open_rate), 0, NULL},
+                                                          {SPH_COLUMNS_OF(crack_rate), 0, NULL},
+                                                          {0}};
+
+static const struct sph_module fracture_module = {
+    .name = "fracture",
+    .doc = "Damage grows from open flaws, D^(1/3) at n^p c_g/R_s up to its cap, and takes tension and shear away: "
+           "(1-D) S (unless damage acts through the yield stress), and (1-D) P where P < 0. It never heals.",
+    .source = "Grady & Kipp 1980; Benz & Asphaug 1995, sections 3 and 4.3",
+    .when = "a body whose material has Weibull parameters",
+    .on = fracture_on,
+    .columns = fracture_columns,
+    .check = fracture_check,
+    .fill = fracture_fill,
+};
 
 #endif

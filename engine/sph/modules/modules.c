@@ -1,12 +1,18 @@
-/* Which modules a body has, and what they need. */
-#include "engine/sph/modules/modules.h"
+/* The descriptors of all modules; which modules a body has, and what they need. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
-#include "engine/sph/run/run.h"
+#include "engine/sph/body/kd_tree.h"
+#include "engine/sph/material/palpha.h"
 #include "engine/sph/scene/derived.h"
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/step/system.h"
+
+#define SPH_MODULE_DESCRIPTORS
+#include "engine/sph/modules/declarations.h"
 
 static const struct sph_module *const list[SPH_MODULES] = {
-#define MODULE(name) &sph_##name##_module,
+#define MODULE(name) &name##_module,
 #include "engine/sph/modules/declarations.h"
 };
 
@@ -55,15 +61,6 @@ void sph_modules_complete_material(struct sph_material *material, const bool *gi
   for (size_t m = 0; m < SPH_MODULES; m++)
     if (list[m]->complete_material)
       list[m]->complete_material(material, given);
-}
-
-void sph_modules_report(const struct sph_run *run, struct sph_results *results) {
-  struct sph_module_set modules = {0};
-  for (size_t b = 0; b < run->system->body_count; b++)
-    set_unite(modules.word, run->system->solid[b].modules.word, SPH_MODULES);
-  FOR_MODULES(m, modules)
-    if (list[m]->report)
-      list[m]->report(run, results);
 }
 
 size_t sph_modules_bytes_in_pairs(const struct sph_module_set *modules) {

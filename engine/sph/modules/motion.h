@@ -12,8 +12,6 @@ TIME_STEP_LIMIT(DENSITY, density, "the change of density")
 
 #ifdef SPH_MODULE_LOOPS
 
-#include "engine/sph/modules/range_tools.h"
-
 /* (1 + e)^(1/3) for the small change e of density in a step. The error is below e^4/24; |e| stays below 0.1. */
 RANGE_INLINE double motion_cube_root(double e) {
   return 1 + e * (1.0 / 3 - e * (1.0 / 9 - e * (5.0 / 81)));

@@ -1,4 +1,13 @@
-/* P-alpha over a range: (alpha, P), sound speed, f, the deviator's change with alpha, damage by compaction.
+/* Pores far below the resolution as one number per particle, the distention alpha (material/palpha.h has the law and
+ * its equations).
+ *
+ *   material.porosity.*        the crush curve and the elastic branch; curve: none and distention 1 are a solid
+ *   fidelity.distention_step   largest change of alpha in a step
+ *
+ * It sets the pressure. It publishes the density of the solid between the pores and the effective 2 mu f/alpha; it
+ * turns the yield limit of the solid into that of the body, Y/alpha; it adds damage by closed pores to damage by flaws.
+ *
+ * P-alpha over a range: (alpha, P), sound speed, f, the deviator's change with alpha, damage by compaction.
  *
  * Nearly all particles are on their elastic branch in cold or compressed matter, and alpha moves little in a step. Two
  * Newton steps from the last alpha are made for all particles, without branches, so that they vectorise. The other
@@ -10,6 +19,7 @@ MODULE_HOOKS(palpha)
 MODULE_MATERIAL(palpha)
 MODULE_INPUTS(palpha)
 MODULE_RESULTS(palpha)
+MODULE_REPORT(palpha)
 
 #ifdef SPH_MODULE_STRUCTS
 struct sph_palpha_material {
@@ -57,9 +67,6 @@ PROFILE_COLUMN(distention, rest_distention, distention, 1, "1",
 TIME_STEP_LIMIT(DISTENTION, distention, "the closing of pores")
 
 #ifdef SPH_MODULE_LOOPS
-
-#include "engine/sph/material/palpha.h"
-#include "engine/sph/modules/range_tools.h"
 
 struct palpha_try {
   double next, miss, pressure, slope;   /* bulk P at `next` (by its slope); dalpha/dP of the branch */
@@ -258,5 +265,242 @@ static const sph_hook palpha_hooks[SPH_STAGES] = {[SPH_RESPOND] = palpha_range,
                                                   [SPH_YIELD_OF_BODY] = palpha_yield,
                                                   [SPH_DAMAGE] = palpha_damage,
                                                   [SPH_RATES] = palpha_limit};
+
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_REAL(fidelity.distention_step, palpha.distention_step, "1", 0.01, 1e-6, 1,
+           .when = "target.material.porosity.curve=quadratic|two-power",
+           .doc = "Largest change of a porous particle's distention in a time step.",
+           .source = "Jutzi, Benz & Michel 2008"),
+#endif
+
+#ifdef SPH_MODULE_MATERIAL_ROWS
+#define PORES(member, unit, low, high, ...)                                                                            \
+  MATERIAL_REAL(porosity.member, palpha.member, unit, NAN, low, high, .when = "porosity.curve=quadratic|two-power",    \
+                __VA_ARGS__)
+#define TWO_POWER(member, unit, low, high, flags_, ...)                                                                \
+  MATERIAL_REAL(porosity.member, palpha.member, unit, NAN, low, high, .when = "porosity.curve=two-power",              \
+                .flags = FIELD_REQUIRED | (flags_), __VA_ARGS__)
+    MATERIAL_CHOICE(
+        porosity.curve, palpha.curve,
+        FIELD_WORDS_HERE(SPH_CRUSHES, [SPH_CRUSH_NONE] = "none", [SPH_CRUSH_QUADRATIC] = "quadratic",
+                         [SPH_CRUSH_TWO_POWER] = "two-power"),
+        .label = "crush curve",
+        .choice_docs = "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"
+                       "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",
+        .doc = "Crush curve: how pores far below the resolution close under pressure (P-alpha). The material's density "
+               "and yield_stress are then those of the solid between the pores, and the porous body yields at "
+               "Y_0/alpha. tension_limit is that of the porous body, as strengths are measured (our choice); of the "
+               "solid's value give that over alpha_0.",
+        .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"),
+    PORES(distention, "1", 1, 100, .flags = FIELD_REQUIRED,
+          .doc = "alpha_0: density of the solid over that of the porous body. 1: no pores, the solid itself to the "
+                 "bit. In a scene porosity.fraction may be given instead.",
+          .source = "Herrmann 1969"),
+    PORES(fraction, "1", 0, 0.99, .flags = FIELD_MAY_BE_OFF,
+          .doc = "Porosity, 1 - 1/alpha_0: give it or porosity.distention, not both; the other follows."),
+    PORES(elastic_pressure, "Pa", 0, 1e15, .flags = FIELD_REQUIRED,
+          .doc = "P_e: above this pressure pores close and stay closed.", .source = "Jutzi, Benz & Michel 2008"),
+    PORES(solid_pressure, "Pa", 0, 1e15, .flags = FIELD_REQUIRED | FIELD_ABOVE_MINIMUM,
+          .doc = "P_s: above this pressure all pores are closed.", .source = "Jutzi, Benz & Michel 2008"),
+    PORES(sound_speed, "m/s", 0, 1e6, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
+          .doc = "c_e: bulk sound speed of the porous body, not above the solid's. off: pores do not give way "
+                 "elastically, and the solid's speed is taken.",
+          .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"),
+    TWO_POWER(elastic_distention, "1", 1, 100, FIELD_ABOVE_MINIMUM,
+              .doc = "alpha_e: distention at the beginning of the crush curve, at P_e. A body of lower alpha_0 keeps "
+                     "it until it meets the curve.",
+              .source = "Jutzi et al. 2009"),
+    TWO_POWER(transition_distention, "1", 1, 100, 0,
+              .doc = "alpha_t: distention at the end of the first power law, at P_t.", .source = "Jutzi et al. 2009"),
+    TWO_POWER(transition_pressure, "Pa", 0, 1e15, FIELD_ABOVE_MINIMUM,
+              .doc = "P_t: pressure at the end of the first power law.", .source = "Jutzi et al. 2009"),
+    TWO_POWER(exponent_low, "1", 1, 100, 0, .doc = "n1: exponent of the law between P_e and P_t.",
+              .source = "Jutzi et al. 2009"),
+    TWO_POWER(exponent_high, "1", 1, 100, 0, .doc = "n2: exponent of the law up to P_s.",
+              .source = "Jutzi et al. 2009"),
+#endif
+
+#ifdef SPH_MODULE_RESULT_ROWS
+    RESULT_REAL(mean_distention, palpha.mean_distention, "1", 1,
+                .doc = "Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off "
+                       "without pores.",
+                .source = "Jutzi, Benz & Michel 2008"),
+    RESULT_SHARE(compaction.mass_fraction, palpha.compaction.mass_fraction,
+                 .doc =
+                     "Impact: mass share of the target that was compacted: its distention at zero pressure fell from "
+                     "1.01 or more to below 1.01. Off without pores.",
+                 .source = "Jutzi & Benz, figure 2"),
+    RESULT_REAL(compaction.volume, palpha.compaction.volume, "m^3", 0,
+                .doc = "Impact: volume that the retained matter lost as its pores closed; off without pores."),
+    RESULT_REAL(compaction.depth, palpha.compaction.depth, "m", 0,
+                .doc = "Impact: depth at the start of the deepest compacted particle near the axis; off without "
+                       "pores."),
+    RESULT_REAL(compaction.reach, palpha.compaction.reach, "m", 0,
+                .doc = "Impact: largest distance from the point of impact at which matter lost a hundredth of its "
+                       "pores; off without pores."),
+    RESULT_REAL(shock.distention, palpha.shock, "1", 1,
+                .doc = "Piston: mean distention behind the shock, in the same region; off without pores."),
+    RESULT_REAL(shock.distention_exact, palpha.shock_exact, "1", 1,
+                .doc = "Piston: distention behind the shock by the jump conditions and the crush curve."),
+    RESULT_REAL(precursor.distention, palpha.precursor, "1", 1,
+                .doc = "Piston: mean distention between precursor and shock."),
+    RESULT_REAL(precursor.distention_exact, palpha.precursor_exact, "1", 1,
+                .doc = "Piston: distention behind the precursor on the elastic branch."),
+#endif
+
+#ifdef SPH_MODULE_REPORT
+
+    /* Of the target, by mass. */
+    static double palpha_mean_distention(const struct sph_run *run) {
+  const struct sph_particles *p = run->now;
+  double mass = 0, distention = 0;
+  for (size_t i = 0; i < run->targets; i++) {
+    mass += p->mass[i];
+    distention += p->mass[i] * p->rest_distention[i];
+  }
+  return mass > 0 ? sph_results_finite(distention / mass) : (double)NAN;
+}
+
+static void palpha_report_fronts(const struct sph_run *run, struct sph_results *r) {
+  struct sph_plate_regions regions = sph_plate_regions(run);
+  if (run->exact.has_shock) {
+    r->palpha.shock = sph_plate_mean(run, run->now->distention, regions.shock);
+    r->palpha.shock_exact = run->exact.shock.distention;
+  }
+  if (run->exact.has_precursor) {
+    r->palpha.precursor = sph_plate_mean(run, run->now->distention, regions.precursor);
+    r->palpha.precursor_exact = run->exact.precursor.distention;
+  }
+}
+
+static void palpha_report(const struct sph_run *run, struct sph_results *results) {
+  const struct sph_material *target = &run->inputs.target.material;
+  results->palpha.mean_distention = palpha_mean_distention(run);
+  if (run->inputs.kind == SPH_PISTON)
+    palpha_report_fronts(run, results);
+  const struct sph_crater_options crater = sph_report_crater_options(run);
+  if (run->inputs.kind == SPH_IMPACT && crater.count && crater.spacing > 0 && sph_material_solid_ratio(target) > 1)
+    sph_crater_compaction(run->start, run->now, &crater, sph_material_solid_ratio(target), results);
+}
+
+#endif
+
+#ifdef SPH_MODULE_DESCRIPTORS
+
+static bool palpha_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)inputs;
+  return body->material.palpha.curve != SPH_CRUSH_NONE && body->material.palpha.distention != 1;
+}
+
+/* Distention and fraction agree (they do unless both were given), and the values make a crush curve. */
+static status palpha_check_material(const struct sph_material *m, struct error *error) {
+  const struct sph_palpha_material *p = &m->palpha;
+  struct sph_palpha_law law;
+  if (p->curve == SPH_CRUSH_NONE)
+    return STATUS_OK;
+  if (!(fabs(p->fraction - (1 - 1 / p->distention)) < 1e-9))
+    return status_fail(error, STATUS_CONTENT,
+                       "porosity: distention %.9g is a fraction of %.9g, but fraction is %.9g: give one of the two",
+                       p->distention, 1 - 1 / p->distention, p->fraction);
+  return p->distention > 1 ? sph_palpha_prepare(p, m, &law, error) : STATUS_OK;
+}
+
+/* Takes the porosity by the name that was given (of two), else the material's own distention. */
+static void palpha_complete_material(struct sph_material *m, const bool *given) {
+  const size_t distention = sph_materials_row(offsetof(struct sph_material, palpha.distention)),
+               fraction = sph_materials_row(offsetof(struct sph_material, palpha.fraction));
+  if (given[fraction] && !given[distention])
+    m->palpha.distention = 1 / (1 - m->palpha.fraction);
+  else if (!given[fraction])
+    m->palpha.fraction = 1 - 1 / m->palpha.distention;
+}
+
+static bool palpha_with_strength(const struct sph_body_physics *body) {
+  return body->strength;
+}
+
+static bool palpha_with_flaws(const struct sph_body_physics *body) {
+  return body->strength && body->flaws;
+}
+
+static status palpha_check(const struct sph_body_physics *body, const struct sph_particles *particles, size_t first,
+                           size_t last, struct error *error) {
+  const double top = body->material.palpha.distention;
+  for (size_t i = first; particles->distention && i < last; i++)
+    if (!(particles->distention[i] >= 1 && particles->distention[i] <= top))
+      return status_fail(error, STATUS_CONTENT,
+                         "particle %zu has distention %g; it must lie between 1 and its body's %g", i,
+                         particles->distention[i], top);
+  return STATUS_OK;
+}
+
+static void palpha_set_up(const struct sph_body_physics *body, struct sph_particles *particles, size_t first,
+                          size_t last) {
+  for (size_t i = first; i < last; i++)
+    particles->distention[i] = body->material.palpha.distention;
+}
+
+static status palpha_prepare(const struct sph_inputs *inputs, const struct sph_particles *particles,
+                             struct sph_solid *body, struct error *error) {
+  struct sph_palpha_law *law = malloc(sizeof *law);
+  (void)inputs, (void)particles;
+  if (!law)
+    return status_fail(error, STATUS_MEMORY, "no memory for a crush curve");
+  body->prepared[SPH_MODULE_palpha] = law;
+  return sph_palpha_prepare(&body->physics.material.palpha, &body->physics.material, law, error);
+}
+
+static size_t palpha_bytes_prepared(const void *prepared) {
+  (void)prepared;
+  return sizeof(struct sph_palpha_law);
+}
+
+/* Distention as the particles have it (or alpha_0), at its pressure. Their damage is that of all causes. */
+static void palpha_fill(struct sph_system *s, const struct sph_solid *body, const struct sph_particles *p) {
+  const struct sph_palpha_law *law = body->prepared[SPH_MODULE_palpha];
+  for (size_t i = body->first; i < body->last; i++) {
+    const double alpha = p->distention ? p->distention[i] : law->given.distention;
+    const struct sph_pressure solid = sph_tillotson(&law->solid, law->solid_density, alpha * p->density[i],
+                                                    p->energy[i]);
+    const double rest = sph_palpha_rest(law, alpha, solid.pressure / alpha);
+    s->c.distention[i] = alpha;
+    s->c.rest_distention[i] = rest;
+    if (!sph_solid_has(body, SPH_COLUMN(compaction)))
+      continue;
+    s->c.compaction[i] = s->c.damage[i] = sph_palpha_damage_cbrt(law, rest);
+    if (sph_solid_has(body, SPH_COLUMN(flaw_damage)) && p->damage_cbrt)
+      s->c.flaw_damage[i] = cbrt(fmax(0, pow(p->damage_cbrt[i], 3) - pow(s->c.compaction[i], 3)));
+  }
+}
+
+static const struct sph_column_need palpha_columns[] = {{SPH_COLUMNS_OF(distention), 1, NULL},
+                                                        {SPH_COLUMNS_OF(rest_distention), 1, NULL},
+                                                        {SPH_COLUMNS_OF(shear_factor), 1, NULL},
+                                                        {SPH_COLUMNS_OF(two_mu), 0, palpha_with_strength},
+                                                        {SPH_COLUMNS_OF(damage), 0, palpha_with_strength},
+                                                        {SPH_COLUMNS_OF(compaction), 0, palpha_with_strength},
+                                                        {SPH_COLUMNS_OF(flaw_damage), 0, palpha_with_flaws},
+                                                        {0}};
+
+static const struct sph_module palpha_module = {
+    .name = "palpha",
+    .doc = "Pores below the resolution: distention alpha follows a crush curve under load and an elastic branch when "
+           "unloaded; it acts on pressure, deviator, yield stress, sound speed and damage.",
+    .source = "Herrmann 1969; Jutzi, Benz & Michel 2008",
+    .when = "a body with porosity (distention above 1)",
+    .on = palpha_on,
+    .sets = SPH_SETS_PRESSURE,
+    .columns = palpha_columns,
+    .check_material = palpha_check_material,
+    .check = palpha_check,
+    .set_up = palpha_set_up,
+    .prepare = palpha_prepare,
+    .free_prepared = free,
+    .bytes_prepared = palpha_bytes_prepared,
+    .fill = palpha_fill,
+    .complete_material = palpha_complete_material,
+};
 
 #endif

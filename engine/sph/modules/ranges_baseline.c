@@ -1,3 +1,3 @@
 /* The range loops for CPU class baseline. */
 #define RANGES_TABLE sph_ranges_baseline
-#include "engine/sph/modules/ranges_body.h"
+#include "engine/sph/modules/ranges.h"

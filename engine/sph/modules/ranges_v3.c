@@ -2,5 +2,5 @@
 #if defined(__x86_64__) && defined(__GNUC__)
 #pragma GCC target("arch=x86-64-v3")
 #define RANGES_TABLE sph_ranges_v3
-#include "engine/sph/modules/ranges_body.h"
+#include "engine/sph/modules/ranges.h"
 #endif

@@ -1,4 +1,8 @@
-/* Monaghan's artificial viscosity, the term of the pair loop that every combination has. */
+/* Artificial viscosity: a term of the pair loop that is always compiled in.
+ *
+ *   viscosity.alpha, viscosity.beta   linear and quadratic; both 0: none
+ *
+ * Monaghan's artificial viscosity, the term of the pair loop that every combination has. */
 
 MODULE(viscosity)
 MODULE_INPUTS(viscosity)
@@ -22,5 +26,29 @@ INLINE void TYPED(viscosity_pair)(const struct sph_pair_constants *k, const stru
   if (SINGLE && k->volume_weights)
     p->viscous *= me->record[PAIR_DENSITY] * its[PAIR_DENSITY];
 }
+
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_REAL(viscosity.alpha, viscosity.alpha, "1", 1.5, 0, 100, .doc = "Monaghan's linear artificial viscosity.",
+           .source = "Monaghan 1992"),
+    INPUT_REAL(viscosity.beta, viscosity.beta, "1", 3, 0, 100, .doc = "Monaghan's quadratic artificial viscosity.",
+               .source = "Monaghan 1992"),
+#endif
+
+#ifdef SPH_MODULE_DESCRIPTORS
+
+    static bool viscosity_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)body, (void)inputs;
+  return inputs->viscosity.alpha > 0 || inputs->viscosity.beta > 0;
+}
+
+static const struct sph_module viscosity_module = {
+    .name = "viscosity",
+    .doc = "Monaghan's artificial viscosity on approaching pairs, damaged ones included, and its heating.",
+    .source = "Monaghan 1992; Benz & Asphaug 1995, section 4.1",
+    .when = "viscosity alpha or beta above 0",
+    .on = viscosity_on,
+};
 
 #endif

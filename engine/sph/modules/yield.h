@@ -1,4 +1,14 @@
-/* Von Mises: Y = Y0 (1 - u/u_melt), zero beyond, as the yield limit of each particle [BA95 eqs. 8-10]. A yield law only
+/* Von Mises' yield limit, Y0 (1 - u/u_melt) and 0 beyond .
+ *
+ *   material.yield_stress   Y0; off: the body never yields
+ *   material.melt_energy    u_melt; off: the limit does not depend on the energy
+ *
+ * Another yield law is a module like this one: its loop of the stage SPH_YIELD writes the terms' yield_limit, a bound
+ * of sqrt(3 J2) of the solid's stress in Pa, and its descriptor sets SPH_SETS_YIELD_LIMIT. In declarations.h it comes
+ * after this one and before tension_limit; where it is on, this one is off. It may read pressure (of the body),
+ * density, energy and, where sph_solid_has(body, SPH_COLUMN(damage)), the predicted D^(1/3).
+ *
+ * Von Mises: Y = Y0 (1 - u/u_melt), zero beyond, as the yield limit of each particle [BA95 eqs. 8-10]. A yield law only
  * writes the limit; `elastic` brings the stress back to it. */
 
 MODULE(yield)
@@ -13,8 +23,6 @@ struct sph_yield_material {
 
 #ifdef SPH_MODULE_LOOPS
 
-#include "engine/sph/modules/range_tools.h"
-
 RANGE_HOOK void yield_limit(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const double y0 = body->physics.material.yield.stress, melt = body->physics.material.melt_energy;
   const double softening = melt > 0 ? 1 / melt : 0; /* NaN: none */
@@ -27,5 +35,30 @@ RANGE_HOOK void yield_limit(struct sph_system *s, const struct sph_solid *body, 
 }
 
 static const sph_hook yield_hooks[SPH_STAGES] = {[SPH_YIELD] = yield_limit};
+
+#endif
+
+#ifdef SPH_MODULE_MATERIAL_ROWS
+MATERIAL_REAL(yield_stress, yield.stress, "Pa", NAN, 0, 1e15, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
+              .when = "../strength=true",
+              .doc = "Y_0: von Mises yield stress of cold solid matter. off: elastic at any stress.",
+              .source = "Benz & Asphaug 1995, eq. 9"),
+#endif
+
+#ifdef SPH_MODULE_DESCRIPTORS
+
+    static bool yield_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)inputs;
+  return body->strength && isfinite(body->material.yield.stress);
+}
+
+static const struct sph_module yield_module = {
+    .name = "yield",
+    .doc = "Von Mises: the deviator returns radially to sqrt(3 J2) = Y, with Y = Y0 (1 - u/u_melt) and 0 beyond.",
+    .source = "Benz & Asphaug 1995, eqs. 8-10, with the square root that eq. 9 lacks",
+    .when = "a body with strength whose yield_stress is finite",
+    .on = yield_on,
+    .sets = SPH_SETS_YIELD_LIMIT,
+};
 
 #endif

@@ -1,5 +1,5 @@
 /* Crater and ejecta of a target. */
-#include "engine/sph/observe/crater.h"
+#include "engine/sph/observe/observe.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -183,6 +183,38 @@ status sph_crater_measure(const struct sph_particles *start, const struct sph_pa
   code = measure_hole(&map, o, results, error);
   free(map.before);
   return code;
+}
+
+static const double compacted = 1.01; /* distention below which matter counts as compacted */
+
+/* By the distention at P = 0. Fractured matter is under (undamaged) tension, which opens the pores of the elastic
+ * branch again; at rest only permanently closed pores count. */
+void sph_crater_compaction(const struct sph_particles *start, const struct sph_particles *now,
+                           const struct sph_crater_options *o, double initial, struct sph_results *results) {
+  const double top = sph_crater_top(start, o, 2);
+  double ejecta_volume = 0, mass = 0, closed_volume = 0, depth = 0, reach = 0;
+  for (size_t i = o->first; i < o->first + o->count; i++) {
+    double alpha = now->rest_distention[i], alpha_start = start->distention[i];
+    double closed = (alpha_start - alpha) / alpha_start;
+    double volume = start->mass[i] / start->density[i];
+    bool crushed = closed > 0 && alpha < compacted && alpha_start >= compacted;
+    if (crushed)
+      mass += now->mass[i];
+    if (sph_crater_is_ejected(now, i, o)) {
+      ejecta_volume += volume;
+      continue;
+    }
+    closed_volume += fmax(closed, 0) * volume; /* the volume of the solid does not change */
+    if (crushed && sph_crater_off_axis(start, i, o) < 2 * o->spacing)
+      depth = fmax(depth, top - start->z[i]);
+    if (closed > 0 && alpha_start - alpha > 0.01 * (initial - 1))
+      reach = fmax(reach, hypot(sph_crater_off_axis(start, i, o), top - start->z[i]));
+  }
+  results->crater.compaction_share = sph_results_share(closed_volume, closed_volume + ejecta_volume);
+  results->palpha.compaction.mass_fraction = sph_results_share(mass, o->mass);
+  results->palpha.compaction.volume = sph_results_finite(closed_volume);
+  results->palpha.compaction.depth = depth;
+  results->palpha.compaction.reach = reach;
 }
 
 size_t sph_crater_profile(const struct sph_particles *start, const struct sph_particles *now,

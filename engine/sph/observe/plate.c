@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/sph/observe/observe.h"
+#include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 
 /* A layer of matter that was one spacing thick at the start: sums over its particles. */

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/sph/material/derived.h"
-#include "engine/sph/modules/modules.h"
-#include "engine/sph/observe/observe.h"
+#include "engine/sph/material/material.h"
+#include "engine/sph/modules/module.h"
+#include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 
 /* `link_h` of the inputs; parts of a rod count as separate when each is more than 1/ROD_PARTS of it. */
@@ -255,6 +255,20 @@ static void report_steps(const struct sph_run *run, const struct sph_ledger *led
   results->neighbours = sph_results_finite(sph_system_neighbours(run->system));
 }
 
+#define SPH_MODULE_REPORT
+#include "engine/sph/modules/declarations.h"
+
+/* The results of modules that a body of the run has. */
+static void report_modules(const struct sph_run *run, struct sph_results *results) {
+  struct sph_module_set modules = {0};
+  for (size_t b = 0; b < run->system->body_count; b++)
+    set_unite(modules.word, run->system->solid[b].modules.word, SPH_MODULES);
+#define MODULE_REPORT(name)                                                                                            \
+  if (set_has(modules.word, SPH_MODULE_##name))                                                                        \
+    name##_report(run, results);
+#include "engine/sph/modules/declarations.h"
+}
+
 static status fill_results(const struct sph_run *run, const struct sph_ledger *ledger, double input,
                            const struct sph_fragments *found, struct sph_results *results, struct error *error) {
   field_defaults(&sph_results, results); /* every quantity is off or zero */
@@ -278,7 +292,7 @@ static status fill_results(const struct sph_run *run, const struct sph_ledger *l
     return code;
   code = report_protocol(run, results, error);
   if (!code)
-    sph_modules_report(run, results);
+    report_modules(run, results);
   return code;
 }
 

@@ -129,7 +129,7 @@ static const struct field rows[] = {
     REAL(precursor.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure between precursor and shock."),
     REAL(precursor.pressure_exact, "Pa", 0,
          .doc = "Piston: exact pressure behind the precursor: P_e, or less when the piston is slow."),
-#define MODULE_RESULTS(name) {.offset = offsetof(struct sph_results, name), .nest = &sph_##name##_results},
+#define SPH_MODULE_RESULT_ROWS
 #include "engine/sph/modules/declarations.h"
 };
 

@@ -2,7 +2,7 @@
  * fragments, results, the curve that a protocol records, and the profile of an impact or a plate. */
 #include <stdlib.h>
 
-#include "engine/sph/observe/observe.h"
+#include "engine/sph/run/run.h"
 #include "engine/sph/sph.h"
 
 enum { VTK_VERTEX = 1, MOST_LAYERS = 4096 };

@@ -1,12 +1,269 @@
 /* Fragments of SPH particles: cores, their damaged layers, single particles. */
-#include "engine/sph/observe/sph_fragments.h"
+#include "engine/sph/observe/observe.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/sph/material/fracture.h"
-#include "engine/sph/observe/cell_grid.h"
+#include "engine/sph/material/material.h"
+
+/* ---- pairs of particles ---- */
+
+/* A cell grid: finds all pairs of particles within a multiple of their mean smoothing length. The cells are hashed, on
+ * one level per halving of h. Memory grows with n only: neither distant particles (1e9 m away) nor a wide range of
+ * sizes cost any. */
+
+enum cell_grid_role { CELL_GRID_ABSENT, CELL_GRID_ACTIVE, CELL_GRID_PASSIVE };
+enum { LEVELS = 64 };
+
+struct item {
+  double at[3], half; /* half = reach h / 2 */
+  uint32_t id;
+  uint8_t level, role;
+};
+
+struct cell_grid {
+  size_t n, mask;    /* present particles; buckets - 1 */
+  struct item *item; /* by bucket */
+  uint32_t *start;   /* by bucket, and one more */
+  double coarsest;   /* m, cells of level 0; each level halves them */
+  double period[3];  /* m; 0 = open */
+  int levels;
+};
+
+struct level {
+  double size[3];
+  int64_t wrap[3]; /* cells along a periodic axis; 1: fewer than three, all in one cell; 0: the axis is open */
+};
+
+static struct level level_at(const struct cell_grid *t, int number) {
+  struct level level;
+  for (int d = 0; d < 3; d++) {
+    level.size[d] = ldexp(t->coarsest, -number);
+    level.wrap[d] = 0;
+    if (t->period[d] > 0) {
+      double cells = floor(t->period[d] / level.size[d]);
+      level.wrap[d] = cells < 3 ? 1 : (int64_t)fmin(cells, 1e15);
+      level.size[d] = t->period[d] / (double)level.wrap[d];
+    }
+  }
+  return level;
+}
+
+static int64_t cell_along(const struct level *level, int axis, double x) {
+  if (level->wrap[axis] == 1)
+    return 0;
+  double cell = floor(x / level->size[axis]);
+  int64_t at = (int64_t)fmin(fmax(cell, -4e18), 4e18);
+  if (level->wrap[axis] > 1) {
+    at %= level->wrap[axis];
+    at += at < 0 ? level->wrap[axis] : 0;
+  }
+  return at;
+}
+
+/* Cells that are neighbours along x have neighbouring buckets. Odd multipliers scatter rows and levels. */
+static size_t bucket_of(const struct cell_grid *t, int level, const int64_t at[3]) {
+  return (size_t)((uint64_t)at[0] + (uint64_t)at[1] * 0x9e3779b97f4a7c15u + (uint64_t)at[2] * 0xc2b2ae3d27d4eb4fu +
+                  (uint64_t)level * 0x165667b19e3779f9u) &
+         t->mask;
+}
+
+static size_t home_of(const struct cell_grid *t, const struct level *level, const struct item *item) {
+  int64_t at[3];
+  for (int d = 0; d < 3; d++)
+    at[d] = cell_along(level, d, item->at[d]);
+  return bucket_of(t, item->level, at);
+}
+
+/* Counting sort into buckets; inside a bucket by ascending id. */
+static void sort_items(struct cell_grid *t, const struct level *level, const struct item *from, uint32_t *bucket) {
+  for (size_t k = 0; k < t->n; k++) {
+    bucket[k] = (uint32_t)home_of(t, &level[from[k].level], &from[k]);
+    t->start[bucket[k] + 1]++;
+  }
+  for (size_t b = 0; b <= t->mask; b++)
+    t->start[b + 1] += t->start[b];
+  for (size_t k = t->n; k-- > 0;)
+    t->item[--t->start[bucket[k] + 1]] = from[k];
+  for (size_t b = 0; b <= t->mask; b++) /* the loop above moved each start to the entry before it: move it back */
+    t->start[b] = t->start[b + 1];
+  t->start[t->mask + 1] = (uint32_t)t->n;
+}
+
+/* The particles that are not absent. Returns the largest reach h, m. */
+static double collect_items(struct cell_grid *t, size_t n, const double *x, const double *y, const double *z,
+                            const double *h, const uint8_t *role, double reach, struct item *items) {
+  double largest = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (role[i] == CELL_GRID_ABSENT)
+      continue;
+    items[t->n++] = (struct item){.at = {x[i], y[i], z[i]},
+                                  .half = 0.5 * reach * h[i],
+                                  .id = (uint32_t)i,
+                                  .role = role[i]};
+    largest = fmax(largest, reach * h[i]);
+  }
+  return largest;
+}
+
+/* The finest level whose cells are at least reach h wide. Level 0 has cells of `largest`. */
+static uint8_t level_for(const struct item *item, double largest) {
+  uint8_t level = 0;
+  for (double bound = largest; 4 * item->half <= bound && level < LEVELS - 1; bound /= 2)
+    level++;
+  return level;
+}
+
+static void cell_grid_free(struct cell_grid *t) {
+  if (!t)
+    return;
+  free(t->item);
+  free(t->start);
+  free(t);
+}
+
+/* A grid for the pairs with r <= reach (h_i + h_j)/2. An axis whose `periodic` length (m) is not NaN uses the minimum
+ * image. The position and h of a particle that is not absent must be finite, h > 0. The data are copied.
+ * STATUS_MEMORY. */
+static status cell_grid_create(size_t n, const double *x, const double *y, const double *z, const double *h,
+                               const uint8_t *role, double reach, const double periodic[3], struct cell_grid **out,
+                               struct error *error) {
+  *out = NULL;
+  status code = STATUS_OK;
+  struct cell_grid *t = calloc(1, sizeof *t);
+  struct item *from = malloc((n + 1) * sizeof *from);
+  uint32_t *bucket = malloc((n + 1) * sizeof *bucket);
+  struct level level[LEVELS];
+  if (!t || !from || !bucket)
+    goto no_memory;
+
+  double largest = collect_items(t, n, x, y, z, h, role, reach, from);
+  for (t->mask = 1; t->mask < 2 * t->n;)
+    t->mask = 2 * t->mask + 1;
+  t->item = malloc((t->n + 1) * sizeof *t->item);
+  t->start = calloc(t->mask + 2, sizeof *t->start);
+  if (!t->item || !t->start)
+    goto no_memory;
+
+  t->coarsest = largest * (1 + 1e-9); /* a rounded distance must not skip a cell */
+  for (int d = 0; d < 3; d++)
+    t->period[d] = periodic[d] > 0 ? periodic[d] : 0;
+  t->levels = 1;
+  for (size_t k = 0; k < t->n; k++) {
+    from[k].level = level_for(&from[k], largest);
+    if (from[k].level >= t->levels)
+      t->levels = from[k].level + 1;
+  }
+  for (int l = 0; l < t->levels; l++)
+    level[l] = level_at(t, l);
+  sort_items(t, level, from, bucket);
+  *out = t;
+  goto cleanup;
+no_memory:
+  cell_grid_free(t);
+  code = status_fail(error, STATUS_MEMORY, "no memory to find which of %zu particles are neighbours", n);
+cleanup:
+  free(from);
+  free(bucket);
+  return code;
+}
+
+/* `square`: r^2 of the pair, m^2; the same bits for (i, j) and (j, i). */
+typedef void (*cell_grid_pair)(void *context, uint32_t i, uint32_t j, double square);
+struct visit {
+  const struct cell_grid *t;
+  cell_grid_pair pair;
+  void *context;
+  bool passive, periodic;
+};
+
+/* The items of one level in `count` successive buckets. own: the buckets are those of the item's own cell, where a pair
+ * is visited from the lower id only. */
+static void visit_buckets(const struct visit *visit, const struct item *item, int number, bool own, size_t bucket,
+                          size_t count) {
+  const struct cell_grid *t = visit->t;
+  for (uint32_t k = t->start[bucket]; k < t->start[bucket + count]; k++) {
+    const struct item *other = &t->item[k];
+    if (other->level != number || other->id == item->id || (own && other->id < item->id))
+      continue;
+    if (visit->passive ? other->role == item->role : other->role == CELL_GRID_PASSIVE)
+      continue;
+    double square = 0, within = item->half + other->half;
+    for (int d = 0; d < 3; d++) {
+      double along = item->at[d] - other->at[d];
+      if (visit->periodic && t->period[d] > 0)
+        along -= t->period[d] * nearbyint(along / t->period[d]);
+      square += along * along;
+    }
+    if (square <= within * within)
+      visit->pair(visit->context, item->id, other->id, square);
+  }
+}
+
+/* One cell, at its image inside the box where an axis is periodic. */
+static void visit_cell(const struct visit *visit, const struct item *item, int number, bool own,
+                       const struct level *level, const int64_t cell[3]) {
+  int64_t at[3];
+  for (int d = 0; d < 3; d++)
+    at[d] = level->wrap[d] ? (cell[d] + level->wrap[d]) % level->wrap[d] : cell[d];
+  visit_buckets(visit, item, number, own, bucket_of(visit->t, number, at), 1);
+}
+
+/* A row of cells along x, from `first` to `last` cells beside home; `own`: the item's own cell is the first of them. */
+static void visit_row(const struct visit *visit, const struct item *item, int number, bool own,
+                      const struct level *level, const int64_t home[3], int first, int last) {
+  const size_t count = (size_t)(last - first + 1);
+  const size_t row = bucket_of(visit->t, number, (int64_t[3]){home[0] + first, home[1], home[2]});
+  const bool in_order = row + count <= visit->t->mask + 1; /* the row of cells is a row of buckets */
+  if (!visit->periodic && !own && in_order) {
+    visit_buckets(visit, item, number, false, row, count);
+    return;
+  }
+  for (int c = first; c <= last; c++)
+    visit_cell(visit, item, number, own && c == 0, level, (const int64_t[3]){home[0] + c, home[1], home[2]});
+}
+
+/* The cells round an item. A pair of two levels is found from its finer item, because the coarser cells hold the reach
+ * of both. On the item's own level only the cells that follow its own are visited. */
+static void visit_level(const struct visit *visit, const struct item *item, int number, const struct level *level) {
+  int64_t home[3];
+  int reach[3]; /* cells to either side */
+  for (int d = 0; d < 3; d++) {
+    home[d] = cell_along(level, d, item->at[d]);
+    reach[d] = level->wrap[d] == 1 ? 0 : 1;
+  }
+  const bool same = item->level == number;
+  for (int a = same ? 0 : -reach[2]; a <= reach[2]; a++)
+    for (int b = same && a == 0 ? 0 : -reach[1]; b <= reach[1]; b++) {
+      const bool own = same && a == 0 && b == 0;
+      const int64_t beside[3] = {home[0], home[1] + b, home[2] + a};
+      visit_row(visit, item, number, own, level, beside, own ? 0 : -reach[0], reach[0]);
+    }
+}
+
+/* Visits the pairs of an active and a passive particle if `passive`, else the pairs of two active ones. A pair may come
+ * twice (two cells can share a bucket), and the order of the pairs is arbitrary: the result of `pair` must not depend
+ * on either. */
+static void cell_grid_visit(const struct cell_grid *t, bool passive, cell_grid_pair pair, void *context) {
+  const struct visit visit = {.t = t,
+                              .pair = pair,
+                              .context = context,
+                              .passive = passive,
+                              .periodic = t->period[0] > 0 || t->period[1] > 0 || t->period[2] > 0};
+  bool filled[LEVELS] = {false};
+  struct level level[LEVELS];
+  for (int l = 0; l < t->levels; l++)
+    level[l] = level_at(t, l);
+  for (size_t k = 0; k < t->n; k++)
+    filled[t->item[k].level] = true;
+  for (size_t k = 0; k < t->n; k++)
+    for (int l = 0; l <= t->item[k].level; l++)
+      if (filled[l] && (passive || t->item[k].role == CELL_GRID_ACTIVE))
+        visit_level(&visit, &t->item[k], l, &level[l]);
+}
+
+/* ---- fragments ---- */
 
 struct sph_fragments_options sph_fragments_default(void) {
   return (struct sph_fragments_options){.damage = 1, .link_length = 1, .layer = true, .periodic = {NAN, NAN, NAN}};
@@ -17,11 +274,11 @@ struct search {
   const struct sph_particles *p;
   const struct sph_fragments_options *options;
   struct sph_fragments *out;
-  uint8_t *role;     /* by particle: enum sph_cell_grid_role; active: unbroken, passive: may join a layer */
-  uint32_t *parent;  /* by particle: union-find of the cores */
-  double *core_mass; /* by particle that is a root: kg of its core; else 0 */
-  double *nearest;   /* by broken particle: r^2 to its nearest unbroken one, m^2 */
-  uint32_t *mate;    /* by broken particle: that unbroken one; UINT32_MAX: none */
+  uint8_t *role;                  /* by particle: enum cell_grid_role; active: unbroken, passive: may join a layer */
+  uint32_t *parent;               /* by particle: union-find of the cores */
+  double *core_mass;              /* by particle that is a root: kg of its core; else 0 */
+  double *nearest;                /* by broken particle: r^2 to its nearest unbroken one, m^2 */
+  uint32_t *mate;                 /* by broken particle: that unbroken one; UINT32_MAX: none */
   struct fragment_member *member; /* by member */
   uint32_t *place, *particle;     /* member of a particle (UINT32_MAX: left out), particle of a member */
   uint32_t (*link)[2];            /* between members: a forest, so fewer than members */
@@ -38,7 +295,7 @@ static double tension(const struct sph_particles *p, size_t i, double damage, bo
   double left = 1 - damage, pressure = p->pressure[i] < 0 ? left * p->pressure[i] : p->pressure[i];
   if (!p->stress[0])
     return -pressure;
-  return (whole_shear ? 1 : left) * sph_fracture_largest_tension(p->stress[0][i], p->stress[1][i], p->stress[2][i],
+  return (whole_shear ? 1 : left) * sph_material_largest_tension(p->stress[0][i], p->stress[1][i], p->stress[2][i],
                                                                  p->stress[3][i], p->stress[4][i], p->stress[5][i]) -
          pressure;
 }
@@ -72,7 +329,7 @@ static void classify(struct search *s) {
     s->parent[i] = (uint32_t)i;
     s->mate[i] = UINT32_MAX;
     s->nearest[i] = HUGE_VAL;
-    s->role[i] = SPH_CELL_GRID_ABSENT;
+    s->role[i] = CELL_GRID_ABSENT;
     s->out->part[i] = SPH_FRAGMENTS_LEFT_OUT;
     s->place[i] = UINT32_MAX;
     if (is_left_out(s->options, p, i))
@@ -86,9 +343,9 @@ static void classify(struct search *s) {
       continue;
     if (unbroken) {
       s->out->part[i] = SPH_FRAGMENTS_CORE;
-      s->role[i] = SPH_CELL_GRID_ACTIVE;
+      s->role[i] = CELL_GRID_ACTIVE;
     } else if (s->options->layer) {
-      s->role[i] = SPH_CELL_GRID_PASSIVE;
+      s->role[i] = CELL_GRID_PASSIVE;
     }
   }
 }
@@ -113,7 +370,7 @@ static void choose_mate(void *context, uint32_t i, uint32_t j, double square) {
   struct search *s = context;
   if (!friends(s, i, j))
     return;
-  uint32_t broken = s->role[i] == SPH_CELL_GRID_PASSIVE ? i : j, unbroken = broken == i ? j : i;
+  uint32_t broken = s->role[i] == CELL_GRID_PASSIVE ? i : j, unbroken = broken == i ? j : i;
   if (square > s->nearest[broken])
     return;
   if (square == s->nearest[broken]) {
@@ -130,19 +387,18 @@ static void choose_mate(void *context, uint32_t i, uint32_t j, double square) {
 /* Step 3 where the depth of the layer is given: the pairs within it come from a grid of their own. */
 static status choose_mates_within(struct search *s, double width, struct error *error) {
   const struct sph_particles *p = s->p;
-  struct sph_cell_grid *grid = NULL;
+  struct cell_grid *grid = NULL;
   double *reach = malloc((p->n + 1) * sizeof *reach);
   if (!reach)
     return status_fail(error, STATUS_MEMORY, "no memory for the damaged layers of %zu particles", p->n);
   for (size_t i = 0; i < p->n; i++)
     reach[i] = width;
-  const status code = sph_cell_grid_create(p->n, p->x, p->y, p->z, reach, s->role, 1, s->options->periodic, &grid,
-                                           error);
+  const status code = cell_grid_create(p->n, p->x, p->y, p->z, reach, s->role, 1, s->options->periodic, &grid, error);
   free(reach);
   if (code)
     return code;
-  sph_cell_grid_visit(grid, true, choose_mate, s);
-  sph_cell_grid_free(grid);
+  cell_grid_visit(grid, true, choose_mate, s);
+  cell_grid_free(grid);
   return STATUS_OK;
 }
 
@@ -150,18 +406,18 @@ static status choose_mates_within(struct search *s, double width, struct error *
 static status link_members(struct search *s, struct error *error) {
   const struct sph_particles *p = s->p;
   const double width = s->options->layer_width;
-  struct sph_cell_grid *grid = NULL;
-  status code = sph_cell_grid_create(p->n, p->x, p->y, p->z, s->options->h ? s->options->h : p->h, s->role,
-                                     s->options->link_length, s->options->periodic, &grid, error);
+  struct cell_grid *grid = NULL;
+  status code = cell_grid_create(p->n, p->x, p->y, p->z, s->options->h ? s->options->h : p->h, s->role,
+                                 s->options->link_length, s->options->periodic, &grid, error);
   if (code)
     return code;
-  sph_cell_grid_visit(grid, false, join, s);
+  cell_grid_visit(grid, false, join, s);
   for (size_t i = 0; i < p->n; i++)
-    if (s->role[i] == SPH_CELL_GRID_ACTIVE)
+    if (s->role[i] == CELL_GRID_ACTIVE)
       s->core_mass[fragments_root(s->parent, (uint32_t)i)] += p->mass[i];
   if (s->options->layer && !(width > 0))
-    sph_cell_grid_visit(grid, true, choose_mate, s);
-  sph_cell_grid_free(grid);
+    cell_grid_visit(grid, true, choose_mate, s);
+  cell_grid_free(grid);
   if (s->options->layer && width > 0)
     code = choose_mates_within(s, width, error);
   if (code)

@@ -1,8 +1,9 @@
 /* Makes the lists of all chunks: of neighbours (neighbours.c), balanced, with slots in place of particle numbers. */
-#include "engine/sph/pairs/chunks.h"
-
 #include <stdlib.h>
 #include <string.h>
+#include "engine/sph/pairs/lists.h"
+
+#include "engine/sph/pairs/pairs.h"
 
 enum { BITS = 64 };
 

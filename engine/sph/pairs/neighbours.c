@@ -1,15 +1,16 @@
-/* The tree of boxes, and the search in it (neighbours.h).
+/* The tree of boxes, and the search in it (lists.h).
  *
  *   level 2    [........]                     nodes of eight boxes side by side
  *   level 1    [........][........] ...       each box of a level holds one node of the level below
  *   level 0    [........][........] ...       leaf boxes of up to LEAF particles; a node belongs to one chunk
  *
  * The top level has at most TOP nodes. A search starts with all of them; the kernels test eight boxes at a time. */
-#include "engine/sph/pairs/neighbours.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "engine/sph/pairs/lists.h"
+
+#include "engine/sph/pairs/pairs.h"
 
 #include "engine/grow.h"
 

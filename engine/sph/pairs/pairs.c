@@ -1,7 +1,7 @@
 /* The pair loop: making and freeing it, its lists (when they are stale, and new ones), and the pass over all pairs:
  * chunk by chunk, on one thread or several.
  *
- * A chunk (chunks.h) is summed in records of its own particles and of its halo, which stay in the cache meanwhile:
+ * A chunk (lists.h) is summed in records of its own particles and of its halo, which stay in the cache meanwhile:
  *
  *   columns -> pack -> records -> sum -> records of sums: | own particles | halo |
  *                                                              |             |
@@ -25,11 +25,10 @@
 
 #include "engine/cpu_class.h"
 #include "engine/grow.h"
-#include "engine/sph/pairs/chunks.h"
-#include "engine/sph/pairs/pairs_kernels.h"
-#include "engine/sph/pairs/spline.h"
+#include "engine/sph/pairs/lists.h"
+#include "engine/sph/pairs/pairs.h"
 
-enum { PAD = 7 }; /* neighbours.h reads so many elements beyond the end */
+enum { PAD = 7 }; /* neighbours.c reads so many elements beyond the end */
 
 /* A buffer of one piece's sums has a row for each of them, and one for the power. */
 enum {

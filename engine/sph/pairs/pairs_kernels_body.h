@@ -1,5 +1,5 @@
 /* All kernels of one CPU class. The including file sets WIDTH (bytes of a register), KERNELS_TABLE and KERNELS_NAME. */
-#include "engine/sph/pairs/pairs_kernels.h"
+#include "engine/sph/pairs/pairs.h"
 
 /* The order matters: each header uses the names of those before it. */
 /* clang-format off */

@@ -1,4 +1,4 @@
-/* The search for neighbours (neighbours.h). Eight candidates at a time in every CPU class, always in double. */
+/* The search for neighbours (neighbours.c). Eight candidates at a time in every CPU class, always in double. */
 
 typedef double near_vector __attribute__((vector_size(64)));
 

@@ -97,7 +97,7 @@ INLINE void pair_distance(const struct sph_pair_constants *k, const struct pair_
   p->near &= SINGLE ? vec_less(zero, p->t) : vec_less(square, 4 * hh); /* not near where q is not a number */
 }
 
-/* The spline's slope (spline.h) over r, and its gradient. */
+/* The spline's slope (pairs.h) over r, and its gradient. */
 INLINE void pair_slope(const struct sph_pair_constants *k, const struct pair_member *me, vec its_volume,
                        struct pair_batch *p) {
   const vec zero = {0};

@@ -5,9 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/sph/observe/observe.h"
 #include "engine/sph/scene/derived.h"
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/step/system.h"
 #include "engine/warnings.h"
 
 enum { LOOK_INTERVAL = 8 }; /* steps between two checks of the damage */

@@ -10,7 +10,7 @@
 enum { PISTON_LAYERS = 4 }; /* thicker than a support: no pair joins the plate and the piston's back */
 
 double sph_derived_wave_speed(const struct sph_body_inputs *b) {
-  return sph_derived_longitudinal_speed(&b->material, b->strength);
+  return sph_material_longitudinal_speed(&b->material, b->strength);
 }
 
 bool sph_derived_cracks(const struct sph_body_inputs *b) {
@@ -28,7 +28,7 @@ struct sph_body_physics sph_derived_physics(const struct sph_body_inputs *b, con
 }
 
 double sph_derived_density(const struct sph_body_inputs *b) {
-  return sph_derived_bulk_density(&b->material);
+  return sph_material_bulk_density(&b->material);
 }
 
 bool sph_derived_has_projectile(const struct sph_inputs *in) {

@@ -2,8 +2,8 @@
 #ifndef CLAST_ENGINE_SPH_SCENE_DERIVED_H
 #define CLAST_ENGINE_SPH_SCENE_DERIVED_H
 
-#include "engine/sph/body/shape.h"
-#include "engine/sph/material/derived.h"
+#include "engine/sph/body/bodies.h"
+#include "engine/sph/material/material.h"
 #include "engine/sph/scene/inputs.h"
 #include "engine/sph/step/system.h"
 

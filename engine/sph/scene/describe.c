@@ -6,11 +6,11 @@
 
 #include "engine/builtin.h"
 #include "engine/mesh/mesh.h"
-#include "engine/sph/material/plane_shock.h"
-#include "engine/sph/modules/modules.h"
+#include "engine/sph/material/palpha.h"
+#include "engine/sph/modules/module.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/step/system.h"
 #include "schemas/text.h"
 
 /* Memory beside the moving system: per particle (particles as set up and as read back, and fragments at the end; the
@@ -181,11 +181,11 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
   double speed = sph_derived_wave_speed(target), crossing = sph_derived_crossing(in);
   fprintf(out, "  waves: c_p %.0f m/s, through the target in %.3g s", speed, crossing);
   if (target->strength)
-    fprintf(out, "; Young's modulus %.4g Pa, Poisson's ratio %.3g", sph_derived_young_modulus(&target->material),
-            sph_derived_poisson_ratio(&target->material));
+    fprintf(out, "; Young's modulus %.4g Pa, Poisson's ratio %.3g", sph_material_young_modulus(&target->material),
+            sph_material_poisson_ratio(&target->material));
   fputc('\n', out);
   if (sph_derived_cracks(target)) {
-    double E = sph_derived_young_modulus(&target->material), m = target->material.weibull.m, n = flaws_expected(in);
+    double E = sph_material_young_modulus(&target->material), m = target->material.weibull.m, n = flaws_expected(in);
     double log_kv = log(target->material.weibull.k) +
                     log(sph_derived_target_mass(in) / target->material.density); /* solid volume */
     fprintf(
@@ -193,7 +193,7 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
         "  flaws: about %.3g; the weakest opens at strain %.3g (%.3g Pa), the last at %.3g (%.3g Pa); cracks grow at "
         "%.0f m/s\n",
         n, exp(-log_kv / m), E * exp(-log_kv / m), exp((log(n) - log_kv) / m), E * exp((log(n) - log_kv) / m),
-        sph_derived_crack_speed(&target->material));
+        sph_material_crack_speed(&target->material));
   }
   if (sph_derived_has_projectile(in)) {
     struct sph_shape projectile = sph_derived_projectile(in);
@@ -205,7 +205,7 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
   }
   if (in->kind == SPH_VIBRATION && target->strength)
     fprintf(out, "  a thin bar of that length rings at %.5g Hz\n",
-            sqrt(sph_derived_young_modulus(&target->material) / target->material.density) / (2 * target->length));
+            sqrt(sph_material_young_modulus(&target->material) / target->material.density) / (2 * target->length));
 }
 
 static void plate(const struct sph_inputs *in, FILE *out) {

@@ -8,8 +8,7 @@
 #include "engine/input_rows.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/body/flaws.h"
-#include "engine/sph/material/materials.h"
-#include "engine/sph/pairs/pairs.h"
+#include "engine/sph/material/material.h"
 
 static FIELD_WORDS(kinds, SPH_KINDS, [SPH_IMPACT] = "impact", [SPH_STRETCH] = "stretch", [SPH_VIBRATION] = "vibration",
                    [SPH_COLLISION] = "collision", [SPH_PISTON] = "piston");
@@ -100,10 +99,10 @@ static const struct field projectile_outline[] = {
 };
 static const struct field projectile_matter[] = {{.path = "material.name", .doc = MATERIAL_DOC("nylon")}, {0}};
 
-/* ---- inputs of modules, in the order of modules/list.h ---- */
+/* ---- inputs of modules, in the order of modules/declarations.h ---- */
 
 static const struct field module_rows[] = {
-#define MODULE_INPUTS(name) {.offset = offsetof(struct sph_inputs, name), .nest = &sph_##name##_inputs},
+#define SPH_MODULE_INPUT_ROWS
 #include "engine/sph/modules/declarations.h"
 };
 static const struct field_table modules = FIELD_TABLE(module_rows, struct sph_inputs, "modules", NULL);

@@ -19,6 +19,10 @@ enum sph_projectile_by { SPH_BY_SIZE, SPH_BY_MASS, SPH_BY_ENERGY, SPH_PROJECTILE
 enum sph_far_side { SPH_FAR_FREE, SPH_FAR_DAMPED, SPH_FAR_SIDES };
 enum sph_link_h { SPH_LINK_H_INITIAL, SPH_LINK_H_CURRENT, SPH_LINK_LENGTHS };
 
+/* In float precision the pair loop reads and sums floats; all else stays double. Positions are read as integers in
+ * units of h/2^20, so that a scene of kilometres is as accurate as a small one. */
+enum sph_precision { SPH_DOUBLE, SPH_FLOAT, SPH_PRECISIONS };
+
 struct sph_mesh_inputs {
   char file[FIELD_TEXT_SIZE]; /* SHA-256 of the shape file (engine/mesh/files.h) */
   double unit;                /* m */

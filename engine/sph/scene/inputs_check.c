@@ -5,9 +5,9 @@
 
 #include "engine/builtin.h"
 #include "engine/sph/body/bodies.h"
-#include "engine/sph/material/materials.h"
-#include "engine/sph/material/plane_shock.h"
-#include "engine/sph/modules/modules.h"
+#include "engine/sph/material/material.h"
+#include "engine/sph/material/palpha.h"
+#include "engine/sph/modules/module.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/scene/inputs.h"
 

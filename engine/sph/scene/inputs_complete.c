@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "engine/builtin.h"
-#include "engine/sph/material/materials.h"
-#include "engine/sph/material/plane_shock.h"
-#include "engine/sph/modules/modules.h"
+#include "engine/sph/material/material.h"
+#include "engine/sph/material/palpha.h"
+#include "engine/sph/modules/module.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/scene/inputs.h"
 
@@ -51,7 +51,7 @@ static double static_strength(const struct sph_inputs *in) {
                       (log(in->target.material.weibull.k) +
                        log(sph_shape_volume(&shape) * sph_derived_density(&in->target) / in->target.material.density)) /
                           m; /* solid volume */
-  double strength = sph_derived_young_modulus(&in->target.material) * exp(log_strain);
+  double strength = sph_material_young_modulus(&in->target.material) * exp(log_strain);
   return strength > 0 && strength <= 1e15 ? strength : (double)NAN;
 }
 

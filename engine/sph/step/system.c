@@ -5,10 +5,539 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
+#include "engine/cpu_class.h"
 #include "engine/restart.h"
-#include "engine/sph/modules/weibull_lists.h"
-#include "engine/sph/step/system_layout.h"
+#include "engine/sph/body/bodies.h"
+#include "engine/sph/material/material.h"
+
+/* The columns of a system: which exist, their memory, and copying particles into them and back. The arrays of the
+ * state, of a restart file and of the estimate of memory are all made from the set sph_system.columns. */
+
+/* Columns that particles are set up with or read back into. */
+static const struct {
+  size_t column, member; /* SPH_COLUMN, and the place in struct sph_particles */
+  bool filled, read;
+  double absent; /* value read when no body has the column; NaN: nothing is written */
+} carried[] = {
+#define CARRIED(name, member_, filled_, read_, absent_)                                                                \
+  { SPH_COLUMN(name), offsetof(struct sph_particles, member_), filled_, read_, absent_ }
+    CARRIED(x, x, true, true, NAN), /* the positions first: they are wrapped */
+    CARRIED(y, y, true, true, NAN),
+    CARRIED(z, z, true, true, NAN),
+    CARRIED(vx, vx, true, true, NAN),
+    CARRIED(vy, vy, true, true, NAN),
+    CARRIED(vz, vz, true, true, NAN),
+    CARRIED(mass, mass, true, true, NAN),
+    CARRIED(density, density, true, true, NAN),
+    CARRIED(energy, energy, true, true, NAN),
+    CARRIED(h, h, true, true, NAN),
+    CARRIED(h_initial, h, true, false, NAN),
+    CARRIED(pressure, pressure, false, true, NAN),
+    CARRIED(damping, damping, true, true, NAN),
+    CARRIED(damage, damage_cbrt, false, true, NAN),
+#define PARTICLE_COLUMN(FLAG, member, absent, ...) CARRIED(member, member, false, true, absent),
+#include "engine/sph/modules/declarations.h"
+};
+
+static double **slot_of(struct sph_columns *columns, size_t column) {
+  return (double **)(void *)columns + column;
+}
+
+static double *member_of(const struct sph_particles *p, size_t member) {
+  double *array;
+  memcpy(&array, (const char *)p + member, sizeof array);
+  return array;
+}
+
+struct sph_column_set sph_system_columns_of_all(bool damped) {
+  struct sph_column_set columns = {0};
+  set_add(columns.word, SPH_COLUMN(x), SPH_COLUMN(pressure_term) + 1 - SPH_COLUMN(x));
+  if (damped)
+    set_add(columns.word, SPH_COLUMN(damping), 1);
+  return columns;
+}
+
+int sph_system_columns_arrays(const struct sph_column_set *columns) {
+  int arrays = 0;
+  if (set_has(columns->word, SPH_COLUMN(stress)))
+    arrays |= SPH_WITH_STRESS;
+  if (set_has(columns->word, SPH_COLUMN(damage)))
+    arrays |= SPH_WITH_DAMAGE;
+#define PARTICLE_ARRAYS(FLAG, column) arrays |= set_has(columns->word, SPH_COLUMN(column)) ? SPH_WITH_##FLAG : 0;
+#include "engine/sph/modules/declarations.h"
+  return arrays;
+}
+
+size_t sph_system_columns_list(const struct sph_system *s, double *column[SPH_COLUMNS]) {
+  struct sph_columns columns = s->c;
+  size_t count = 0;
+  FOR_SET(k, s->columns.word, SPH_COLUMNS)
+  column[count++] = *slot_of(&columns, k);
+  return count;
+}
+
+/* Dozens of columns are read side by side: pages of 4 kB would overflow the address cache (TLB) of a core. */
+static double *huge_pages(size_t bytes) {
+  const size_t page = (size_t)1 << 21;
+  if (bytes < 2 * page)
+    return aligned_alloc(64, (bytes + 63) / 64 * 64);
+  double *memory = aligned_alloc(page, (bytes + page - 1) / page * page);
+#ifdef MADV_HUGEPAGE
+  if (memory)
+    madvise(memory, (bytes + page - 1) / page * page, MADV_HUGEPAGE); /* a hint: it may fail */
+#endif
+  return memory;
+}
+
+static bool has(const struct sph_system *s, size_t column) {
+  return set_has(s->columns.word, column);
+}
+
+static void fill_column(struct sph_system *s, size_t column, double value) {
+  double *values = *slot_of(&s->c, column);
+  for (size_t i = 0; i < s->n; i++)
+    values[i] = value;
+}
+
+static void set_initial(struct sph_system *s, size_t module) {
+  for (const struct sph_column_need *need = sph_modules_at(module)->columns; need && need->count; need++)
+    for (size_t k = need->first; need->initial != 0 && k < need->first + need->count; k++)
+      if (has(s, k))
+        fill_column(s, k, need->initial);
+}
+
+static status take_columns(struct sph_system *s, const struct sph_particles *p, struct error *error) {
+  const size_t count = set_size(s->columns.word, SPH_COLUMNS);
+  s->stride = (s->n + 7) / 8 * 8 + 8; /* columns must not share sets of the cache */
+  s->arena_doubles = count * s->stride;
+  s->arena = huge_pages(s->arena_doubles * sizeof(double));
+  s->id = malloc(s->n * sizeof *s->id);
+  s->order = malloc(s->n * sizeof *s->order);
+  if (p->held)
+    s->held = malloc(s->n * sizeof *s->held);
+  if (!s->arena || !s->id || !s->order || (p->held && !s->held))
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu particles of %zu columns (%.3g GB)", s->n, count,
+                       (double)(s->arena_doubles * sizeof(double)) / 1e9);
+  memset(s->arena, 0, s->arena_doubles * sizeof(double));
+  double *next = s->arena;
+  FOR_SET(k, s->columns.word, SPH_COLUMNS) {
+    *slot_of(&s->c, k) = next;
+    next += s->stride;
+  }
+  for (size_t m = 0; m < SPH_MODULES; m++)
+    set_initial(s, m);
+  return STATUS_OK;
+}
+
+static void fill_columns(struct sph_system *s, const struct sph_particles *p) {
+  for (size_t k = 0; k < sizeof carried / sizeof *carried; k++)
+    if (carried[k].filled && has(s, carried[k].column))
+      memcpy(*slot_of(&s->c, carried[k].column), member_of(p, carried[k].member), s->n * sizeof(double));
+  if (s->held)
+    memcpy(s->held, p->held, s->n);
+  for (size_t i = 0; i < s->n; i++)
+    s->id[i] = (uint32_t)i;
+  for (size_t b = 0; b < s->body_count; b++)
+    FOR_MODULES(m, s->solid[b].modules)
+      if (sph_modules_at(m)->fill)
+        sph_modules_at(m)->fill(s, &s->solid[b], p);
+}
+
+double sph_system_columns_bytes(const struct sph_column_set *columns, size_t pairs,
+                                const struct sph_fidelity *fidelity) {
+  enum { RECORDS = 378, LISTS = 108 }; /* of the pair loop at the usual h, without options; measured */
+  const double reach = fidelity->smoothing / SPH_BODIES_H * (1 + fidelity->skin);
+  return (double)(set_size(columns->word, SPH_COLUMNS) * sizeof(double) + 2 * sizeof(uint32_t) + pairs + RECORDS) +
+         LISTS * reach * reach * reach;
+}
+
+double sph_system_columns_wrapped(double x, double length) {
+  if (!(length > 0))
+    return x;
+  x -= length * floor(x / length);
+  return x < length ? x : 0;
+}
+
+/* One column by particles' ids. */
+static void read_column(const struct sph_system *s, const double *column, double *out, double absent) {
+  if (!column && isnan(absent))
+    return;
+  for (size_t i = 0; i < s->n; i++)
+    out[s->id[i]] = column ? column[i] : absent;
+}
+
+/* The sixth component follows: the deviator has no trace. */
+static void read_stress(const struct sph_system *s, double *const out[6]) {
+  for (size_t i = 0; i < s->n; i++) {
+    for (int k = 0; k < 5; k++)
+      out[k][s->id[i]] = s->c.stress[k][i];
+    out[5][s->id[i]] = -(s->c.stress[0][i] + s->c.stress[3][i]);
+  }
+}
+
+void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
+  struct sph_columns columns = s->c;
+  for (size_t k = 0; k < sizeof carried / sizeof *carried; k++) {
+    double *to = member_of(out, carried[k].member);
+    if (!carried[k].read || !to)
+      continue;
+    read_column(s, *slot_of(&columns, carried[k].column), to, carried[k].absent);
+    for (size_t i = 0; k < 3 && i < s->n; i++)
+      to[i] = sph_system_columns_wrapped(to[i], s->domain.periodic[k]);
+  }
+  if (out->stress[0] && s->c.stress[0])
+    read_stress(s, out->stress);
+  for (size_t i = 0; out->held && s->held && i < s->n; i++)
+    out->held[s->id[i]] = s->held[i];
+  for (size_t b = 0; b < s->body_count; b++)
+    memset(out->body + s->solid[b].first, (int)b, s->solid[b].last - s->solid[b].first);
+}
+
+/* Builds a moving system from particles at rest on their lattices: bodies with their modules and hooks, columns,
+ * blocks. Bodies and inputs that a system cannot compute are refused first, with a message that names the body, the
+ * particle or the input. */
+
+/* ---- checks ---- */
+
+/* The checks of a body's modules; its particles are first .. last - 1. */
+static status check_body(size_t index, const struct sph_body_physics *b, const struct sph_particles *particles,
+                         size_t first, size_t last, const struct sph_inputs *inputs, struct error *error) {
+  for (size_t m = 0; m < SPH_MODULES; m++) {
+    const struct sph_module *module = sph_modules_at(m);
+    struct error why = {0};
+    if (!module->check || !module->on(b, inputs))
+      continue;
+    const status code = module->check(b, particles, first, last, &why);
+    if (code)
+      return status_fail(error, code, "body %zu: %.3000s", index, why.message);
+  }
+  return STATUS_OK;
+}
+
+/* Does the row describe a member of one of the sections that a system reads? */
+static bool is_read(const struct field *row) {
+  const struct {
+    size_t offset, size;
+  } section[] = {
+#define SECTION(member_) {offsetof(struct sph_inputs, member_), sizeof(((struct sph_inputs *)0)->member_)}
+      SECTION(viscosity), SECTION(method), SECTION(fracture), SECTION(fidelity)};
+  for (size_t k = 0; k < sizeof section / sizeof *section; k++)
+    if (row->offset >= section[k].offset && row->offset - section[k].offset < section[k].size)
+      return true;
+  return false;
+}
+
+/* Inputs lie within the ranges of their rows. Derived inputs may still be missing; the system reads none of them. */
+static status check_inputs(const struct sph_inputs *inputs, struct error *error) {
+  for (size_t k = 0; k < sph_inputs.count; k++) {
+    const struct field *row = &sph_inputs.rows[k];
+    struct field_value value, unused;
+    if (!is_read(row) || row->flags & FIELD_DERIVED)
+      continue;
+    field_get(row, inputs, &value);
+    const status code = field_set_value(row, &value, &unused, error);
+    if (code)
+      return code;
+  }
+  return STATUS_OK;
+}
+
+static status check_domain(const struct sph_domain *domain, struct error *error) {
+  for (int k = 0; k < 3; k++)
+    if (domain->periodic[k] <= 0 || isinf(domain->periodic[k]))
+      return status_fail(error, STATUS_CONTENT, "the periodic box is %g m long along %c; give a positive length",
+                         domain->periodic[k], "xyz"[k]);
+  if (!(domain->spacing_over_h > 0) || isinf(domain->spacing_over_h))
+    return status_fail(error, STATUS_CONTENT, "the spacing over h is %g; it must be above 0", domain->spacing_over_h);
+  if (domain->largest_time_step <= 0) /* NaN: off */
+    return status_fail(error, STATUS_CONTENT, "the largest time step is %g s; it must be above 0",
+                       domain->largest_time_step);
+  if (!(domain->lowest_density > 0 && domain->lowest_density <= 1))
+    return status_fail(error, STATUS_CONTENT, "the lowest density is %g of the first; it must be above 0, at most 1",
+                       domain->lowest_density);
+  return STATUS_OK;
+}
+
+/* Are position and velocity within bounds, mass, density and h positive, and energy not negative? */
+static bool is_matter(const struct sph_particles *p, size_t i) {
+  const double motion = fabs(p->x[i]) + fabs(p->y[i]) + fabs(p->z[i]) + fabs(p->vx[i]) + fabs(p->vy[i]) +
+                        fabs(p->vz[i]);
+  const double amount = p->mass[i] + p->density[i] + p->h[i] + p->energy[i];
+  const double least = fmin(p->mass[i], fmin(p->density[i], p->h[i]));
+  return motion < 1e30 && amount < 1e60 && least > 0 && p->energy[i] >= 0;
+}
+
+static status check_particles(const struct sph_particles *p, size_t body_count, struct error *error) {
+  if (p->n == 0 || p->n >= UINT32_MAX)
+    return status_fail(error, STATUS_CONTENT, "there are %zu particles", p->n);
+  for (size_t i = 0; i < p->n; i++) {
+    if (!is_matter(p, i))
+      return status_fail(error, STATUS_CONTENT,
+                         "particle %zu is no matter: mass %g, density %g, h %g, energy %g, at %g %g %g m", i,
+                         p->mass[i], p->density[i], p->h[i], p->energy[i], p->x[i], p->y[i], p->z[i]);
+    const bool in_order = i == 0 || p->body[i] >= p->body[i - 1];
+    if (p->body[i] >= body_count || !in_order)
+      return status_fail(error, STATUS_CONTENT, "particle %zu belongs to body %u of %zu, or out of order", i,
+                         (unsigned)p->body[i], body_count);
+  }
+  return STATUS_OK;
+}
+
+/* Refused before anything is allocated. */
+static status check_memory(const struct sph_particles *p, size_t body_count, const struct sph_body_physics *bodies,
+                           const struct sph_inputs *inputs, struct error *error) {
+  struct sph_column_set columns = sph_system_columns_of_all(p->damping != NULL);
+  size_t pairs = 0;
+  for (size_t b = 0; b < body_count; b++) {
+    const struct sph_module_set modules = sph_modules_of(&bodies[b], inputs);
+    const struct sph_column_set own = sph_modules_columns(&modules, &bodies[b]);
+    set_unite(columns.word, own.word, SPH_COLUMNS);
+    pairs = sph_modules_bytes_in_pairs(&modules); /* options of the pair loop: the same for all bodies */
+  }
+  const double bytes = (double)p->n * sph_system_columns_bytes(&columns, pairs, &inputs->fidelity);
+  const double there = (double)sph_particles_memory();
+  if (bytes > there)
+    return status_fail(error, STATUS_MEMORY,
+                       "%zu particles need about %.3g GB; this machine, or the limit set, has %.3g GB", p->n,
+                       bytes / 1e9, there / 1e9);
+  return STATUS_OK;
+}
+
+/* Everything that is refused: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */
+static status check_all(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,
+                        const struct sph_inputs *inputs, const struct sph_domain *domain, struct error *error) {
+  status code = check_inputs(inputs, error);
+  if (code)
+    return code;
+  code = check_domain(domain, error);
+  if (code)
+    return code;
+  code = check_particles(particles, body_count, error);
+  if (code)
+    return code;
+
+  size_t first = 0;
+  for (size_t b = 0; b < body_count; b++) {
+    size_t last = first;
+    while (last < particles->n && particles->body[last] == b)
+      last++;
+    code = check_body(b, &bodies[b], particles, first, last, inputs, error);
+    if (code)
+      return code;
+    first = last;
+  }
+  return check_memory(particles, body_count, bodies, inputs, error);
+}
+
+/* ---- bodies ---- */
+
+static void add(sph_hook *hooks, size_t *count, sph_hook hook) {
+  hooks[(*count)++] = hook;
+}
+
+static void add_stage(const struct sph_system *s, const struct sph_solid *b, int stage, sph_hook *hooks,
+                      size_t *count) {
+  FOR_MODULES(m, b->modules) {
+    const sph_hook *of_module = s->ranges->module[m];
+    if (of_module && of_module[stage])
+      add(hooks, count, of_module[stage]);
+  }
+}
+
+static bool has_yield_law(const struct sph_solid *b) {
+  FOR_MODULES(m, b->modules)
+    if (sph_modules_at(m)->sets == SPH_SETS_YIELD_LIMIT)
+      return true;
+  return false;
+}
+
+/* Hooks before the sum over pairs. */
+static void choose_before(const struct sph_system *s, struct sph_solid *b, bool strength, bool damage) {
+  const bool yields = has_yield_law(b);
+  add(b->before, &b->before_count, s->ranges->predict);
+  for (int stage = SPH_PREDICT; stage < SPH_RATES; stage++) {
+    const bool of_yielding = stage >= SPH_YIELD && stage <= SPH_RETURN;
+    if (stage == SPH_CRACK)
+      b->first_count = b->before_count;
+    if (yields || !of_yielding)
+      add_stage(s, b, stage, b->before, &b->before_count);
+  }
+  const sph_hook output = strength ? s->ranges->output_whole : s->ranges->output_fluid;
+  add(b->before, &b->before_count, damage ? s->ranges->output_damaged : output);
+}
+
+/* Hooks after it. */
+static void choose_after(const struct sph_system *s, struct sph_solid *b, bool strength, bool damage) {
+  if (s->held || s->c.damping)
+    add(b->after, &b->after_count, s->ranges->hold);
+  if (!strength)
+    add(b->after, &b->after_count, s->ranges->fluid_rates);
+  add_stage(s, b, SPH_RATES, b->after, &b->after_count);
+  const sph_hook correct = strength ? s->ranges->correct_whole : s->ranges->correct_fluid;
+  add(b->after, &b->after_count, damage ? s->ranges->correct_damaged : correct);
+}
+
+static void choose_hooks(const struct sph_system *s, struct sph_solid *b) {
+  const bool strength = sph_solid_has(b, SPH_COLUMN(stress)), damage = sph_solid_has(b, SPH_COLUMN(damage));
+  choose_before(s, b, strength, damage);
+  FOR_MODULES(m, b->modules)
+    if (sph_modules_at(m)->meet)
+      b->meet = sph_modules_at(m)->meet;
+  choose_after(s, b, strength, damage);
+}
+
+static status make_body(struct sph_system *s, const struct sph_particles *p, struct sph_solid *b, struct error *error) {
+  FOR_MODULES(m, b->modules) {
+    const struct sph_module *module = sph_modules_at(m);
+    const status code = module->prepare ? module->prepare(&s->in, p, b, error) : STATUS_OK;
+    if (code)
+      return code;
+  }
+  b->density = sph_material_bulk_density(&b->physics.material);
+  b->lowest_density = s->domain.lowest_density * b->density;
+  b->physics.flaws = NULL; /* owned by the caller; the modules have their own data from them */
+  choose_hooks(s, b);
+  return STATUS_OK;
+}
+
+static size_t end_of_block(const struct sph_solid *body, size_t low) {
+  const size_t end = (low / SPH_BLOCK + 1) * SPH_BLOCK;
+  return end < body->last ? end : body->last;
+}
+
+static status make_blocks(struct sph_system *s, struct error *error) {
+  for (size_t b = 0; b < s->body_count; b++)
+    for (size_t low = s->solid[b].first; low < s->solid[b].last; low = end_of_block(&s->solid[b], low))
+      s->block_count++;
+  s->block = calloc(s->block_count ? s->block_count : 1, sizeof *s->block);
+  if (!s->block)
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu blocks", s->block_count);
+  size_t k = 0;
+  for (size_t b = 0; b < s->body_count; b++)
+    for (size_t low = s->solid[b].first; low < s->solid[b].last; low = end_of_block(&s->solid[b], low))
+      s->block[k++] = (struct sph_block){.low = low, .high = end_of_block(&s->solid[b], low), .body = (uint32_t)b};
+  return STATUS_OK;
+}
+
+static status make_pairs(struct sph_system *s, struct error *error) {
+  struct sph_pair_options o = {
+      .viscosity = s->in.viscosity,
+      .method = s->in.method,
+      .artificial_stress = s->in.artificial_stress,
+      .gradient_correction = s->in.gradient_correction,
+      .fidelity = s->in.fidelity,
+      .strength = s->c.stress[0] != NULL,
+      .spacing_over_h = s->domain.spacing_over_h,
+  };
+  memcpy(o.periodic, s->domain.periodic, sizeof o.periodic);
+  return sph_pairs_create(s->n, &o, &s->pairs, error);
+}
+
+/* However far matter expands, h stays within what a thin periodic box allows. */
+static void bound_h(struct sph_system *s, const struct sph_particles *p) {
+  const double most = sph_system_step_reach(&s->domain);
+  s->highest_h = SPH_HIGHEST_H;
+  for (size_t i = 0; i < p->n; i++)
+    s->highest_h = fmax(1, fmin(s->highest_h, most / (p->h[i] * (1 + s->in.fidelity.skin))));
+}
+
+/* The frame in which a particle is fast or slow: without it the time step would depend on the observer. */
+static void find_drift(struct sph_system *s, const struct sph_particles *p) {
+  const double *const v[3] = {p->vx, p->vy, p->vz};
+  double mass = 0;
+  for (size_t i = 0; i < p->n; i++)
+    mass += p->mass[i];
+  for (int k = 0; k < 3; k++)
+    for (size_t i = 0; i < p->n; i++)
+      s->drift[k] += p->mass[i] / mass * v[k][i];
+}
+
+static void find_bodies(struct sph_system *s, const struct sph_particles *p, const struct sph_body_physics *bodies) {
+  for (size_t i = 0; i < p->n; i++) {
+    struct sph_solid *b = &s->solid[p->body[i]];
+    if (b->last == 0)
+      b->first = i;
+    b->last = i + 1;
+  }
+  s->columns = sph_system_columns_of_all(p->damping != NULL);
+  for (size_t b = 0; b < s->body_count; b++) {
+    struct sph_solid *solid = &s->solid[b];
+    solid->physics = bodies[b];
+    solid->modules = sph_modules_of(&bodies[b], &s->in);
+    solid->columns = sph_modules_columns(&solid->modules, &bodies[b]);
+    set_unite(s->columns.word, solid->columns.word, SPH_COLUMNS);
+  }
+}
+
+static status build(struct sph_system *s, const struct sph_particles *p, const struct sph_body_physics *bodies,
+                    struct error *error) {
+  find_bodies(s, p, bodies);
+  status code = take_columns(s, p, error);
+  if (code)
+    return code;
+  for (size_t b = 0; b < s->body_count; b++) {
+    code = make_body(s, p, &s->solid[b], error);
+    if (code)
+      return code;
+  }
+  code = make_blocks(s, error);
+  if (code)
+    return code;
+  code = make_pairs(s, error);
+  if (code)
+    return code;
+
+  bound_h(s, p);
+  find_drift(s, p);
+  fill_columns(s, p);
+  if (!sph_system_step_begin(s))
+    return status_fail(error, s->fault == SPH_FAULT_MEMORY ? STATUS_MEMORY : STATUS_CONTENT, "at the start: %s",
+                       s->failure);
+  return STATUS_OK;
+}
+
+/* The loops of the CPU class that this process runs. */
+static const struct sph_ranges *choose_ranges(void) {
+#ifdef __x86_64__
+  const enum cpu_class best = cpu_class_choose();
+  if (best == CPU_V4)
+    return &sph_ranges_v4;
+  if (best == CPU_V3)
+    return &sph_ranges_v3;
+#endif
+  return &sph_ranges_baseline;
+}
+
+status sph_system_create(const struct sph_particles *particles, size_t body_count,
+                         const struct sph_body_physics *bodies, const struct sph_inputs *inputs,
+                         const struct sph_domain *domain, struct sph_system **out, struct error *error) {
+  *out = NULL;
+  status code = check_all(particles, body_count, bodies, inputs, domain, error);
+  if (code)
+    return code;
+  struct sph_system *s = calloc(1, sizeof *s);
+  struct sph_solid *solid = calloc(body_count, sizeof *solid);
+  if (!s || !solid) {
+    free(s);
+    free(solid);
+    return status_fail(error, STATUS_MEMORY, "no memory for a system");
+  }
+  s->in = *inputs;
+  s->domain = *domain;
+  s->n = particles->n;
+  s->body_count = body_count;
+  s->ranges = choose_ranges();
+  s->solid = solid;
+  code = build(s, particles, bodies, error);
+  if (code) {
+    sph_system_free(s);
+    return code;
+  }
+  *out = s;
+  return STATUS_OK;
+}
 
 void sph_system_free(struct sph_system *s) {
   if (!s)
@@ -61,11 +590,7 @@ double sph_system_neighbours(const struct sph_system *s) {
   return s->now.neighbours;
 }
 
-void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
-  sph_system_columns_read(s, out);
-}
-
-static const struct sph_weibull_lists *flaws_of(const struct sph_solid *body) {
+static const struct sph_flaws_lists *flaws_of(const struct sph_solid *body) {
   return body->prepared[SPH_MODULE_weibull];
 }
 
@@ -76,7 +601,7 @@ bool sph_system_flaws(const struct sph_system *s, uint32_t *count) {
   for (size_t b = 0; any && b < s->body_count; b++) {
     const struct sph_solid *body = &s->solid[b];
     for (size_t i = body->first; i < body->last; i++) /* bodies stand in the order of their ids */
-      count[i] = flaws_of(body) ? sph_weibull_total(flaws_of(body), i - body->first) : 0;
+      count[i] = flaws_of(body) ? sph_flaws_total(flaws_of(body), i - body->first) : 0;
   }
   return any;
 }
@@ -191,5 +716,5 @@ bool sph_system_state_load(struct sph_system *s, const void *bytes, size_t size)
         sph_modules_at(m)->restored(s, &s->solid[b]);
   s->fault = SPH_FAULT_NONE;
   s->failure[0] = '\0';
-  return sph_system_list_again(s);
+  return sph_system_step_relist(s);
 }

@@ -1,10 +1,9 @@
 /* Finding and reading the named materials. */
-#include "engine/sph/material/materials.h"
-
 #include <math.h>
 #include <string.h>
 
 #include "engine/builtin.h"
+#include "engine/sph/material/material.h"
 #include "schemas/document.h"
 #include "schemas/text.h"
 
@@ -17,7 +16,7 @@ static const struct field rows[] = {
                   .doc = "Energy at which the yield stress has fallen to zero, linearly. off: it does not depend on "
                          "energy.",
                   .source = "Benz & Asphaug 1995, section 2"),
-#define MODULE_MATERIAL(name) {.offset = offsetof(struct sph_material, name), .nest = &sph_##name##_material},
+#define SPH_MODULE_MATERIAL_ROWS
 #include "engine/sph/modules/declarations.h"
 };
 
@@ -177,3 +176,68 @@ const struct engine_materials sph_materials = {.values = &sph_materials_table,
                                                .load = load,
                                                .load_file = load_file,
                                                .source = sph_materials_source};
+
+/* Elastic constants, wave speeds and crack speeds that follow from a material. */
+
+double sph_material_bulk_modulus(const struct sph_material *m) {
+  return m->elastic.bulk_modulus > 0 ? m->elastic.bulk_modulus : m->tillotson.A;
+}
+
+double sph_material_young_modulus(const struct sph_material *m) {
+  const double K = sph_material_bulk_modulus(m);
+  return 9 * K * m->elastic.shear_modulus / (3 * K + m->elastic.shear_modulus);
+}
+
+double sph_material_poisson_ratio(const struct sph_material *m) {
+  const double K = sph_material_bulk_modulus(m);
+  return (3 * K - 2 * m->elastic.shear_modulus) / (2 * (3 * K + m->elastic.shear_modulus));
+}
+
+double sph_material_crack_speed(const struct sph_material *m) {
+  return 0.4 * sqrt((sph_material_bulk_modulus(m) + 4 * m->elastic.shear_modulus / 3) / m->density);
+}
+
+double sph_material_solid_ratio(const struct sph_material *m) {
+  return m->palpha.curve != SPH_CRUSH_NONE && m->palpha.distention > 1 ? m->palpha.distention : 1;
+}
+
+double sph_material_bulk_density(const struct sph_material *m) {
+  return m->density / sph_material_solid_ratio(m);
+}
+
+/* The pressure responds with A, even where K is given. */
+double sph_material_longitudinal_speed(const struct sph_material *m, bool strength) {
+  const double shear2 = strength ? 4.0 / 3 * m->elastic.shear_modulus / m->density : 0;
+  double bulk2 = m->tillotson.A / m->density;
+  if (sph_material_solid_ratio(m) > 1 && !isnan(m->palpha.sound_speed))
+    bulk2 = m->palpha.sound_speed * m->palpha.sound_speed;
+  return sqrt(bulk2 + shear2);
+}
+
+/* The largest principal tension, the growth rate of damage and its cap. */
+
+/* Trigonometric solution of the characteristic cubic (Smith 1961, Commun. ACM 4, 168), scaled by the tensor's size. */
+double sph_material_largest_tension(double xx, double xy, double xz, double yy, double yz, double zz) {
+  double mean = (xx + yy + zz) / 3;
+  double a = xx - mean, b = yy - mean, c = zz - mean;
+  double p2 = (a * a + b * b + c * c + 2 * (xy * xy + xz * xz + yz * yz)) / 6;
+  if (!(p2 > 0))
+    return mean;
+  double p = sqrt(p2);
+  a /= p, b /= p, c /= p, xy /= p, xz /= p, yz /= p;
+  double half_det = (a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)) / 2;
+  double angle = half_det <= -1 ? M_PI / 3 : half_det >= 1 ? 0 : acos(half_det) / 3;
+  return mean + 2 * p * cos(angle);
+}
+
+double sph_material_damage_rate(size_t active, int growth) {
+  const double n = (double)active;
+  return growth == SPH_GROWTH_LINEAR ? n : cbrt(n);
+}
+
+double sph_material_damage_cap(size_t active, size_t total, int cap) {
+  const double share = (double)active / (double)total;
+  return cap == SPH_CAP_BA95    ? cbrt(cbrt(share)) /* D_max = share^(1/3), and the state is its cube root */
+         : cap == SPH_CAP_COUNT ? cbrt(share)
+                                : 1;
+}

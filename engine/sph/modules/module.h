@@ -1,24 +1,71 @@
 /* Physics modules of the solid, as descriptors. Off means absent: the loops of a module run only on bodies that have
  * it, and columns that no body needs are not allocated. The scene decides which modules a body has.
- * A module owns its physics: NAME.c has its description, checks, preparation and report; NAME.h has what it
- * declares (structs of inputs, values of a material and results, columns: declarations.h), and its loops, compiled
- * once per CPU class (ranges.h). It acts on other modules only through columns and through struct sph_terms
- * (system_layout.h), never by a flag inside their loops:
+ * A module owns its physics: NAME.h has its description, what it declares (structs of inputs, values of a material and
+ * results, columns: declarations.h), its loops, compiled once per CPU class (ranges.h), checks, preparation and report.
+ * It acts on other modules only through columns and through struct sph_terms (step/system.h), never by a flag inside
+ * their loops:
  *
  *   solid_density  density of the solid matter, which the equation of state publishes
  *   yield_limit    a yield law sets it, other modules lower it, `elastic` brings the stress back to it
  *   two_mu         effective 2 mu, where it is not the material's
  *   flaw_damage    damage by flaws, where another module damages the body, too
  *   crack_stress, crack_pressure   the stress that opens flaws, where it is not the particle's own
- *   shear_damage   damage that scales the deviator, where it is not all damage (range_tools.h)
+ *   shear_damage   damage that scales the deviator, where it is not all damage (ranges.h)
  *
- * A step runs the stages in order, block by block, and within a stage the modules in the order of list.h. The pair loop
- * runs before SPH_RATES. */
-#ifndef CLAST_ENGINE_SPH_MODULES_MODULES_H
-#define CLAST_ENGINE_SPH_MODULES_MODULES_H
+ * A step runs the stages in order, block by block, and within a stage the modules in the order of declarations.h. The
+ * pair loop runs before SPH_RATES. */
+#ifndef CLAST_ENGINE_SPH_MODULES_MODULE_H
+#define CLAST_ENGINE_SPH_MODULES_MODULE_H
 
-#include "engine/sph/modules/set.h"
-#include "engine/sph/step/system.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/sph/scene/inputs.h"
+
+/* Sets of the numbers below a constant count: of columns, of modules. A set is a struct with `word`, a bit for each
+ * number in as many words as the count needs:
+ *
+ *   struct sph_column_set { uint64_t word[SET_WORDS(SPH_COLUMNS)]; };
+ *
+ * The functions take the words, so that they serve sets of any size. */
+
+enum { SET_BITS = 64 };
+#define SET_WORDS(count) (((count) + SET_BITS - 1) / SET_BITS)
+
+static inline bool set_has(const uint64_t *word, size_t number) {
+  return word[number / SET_BITS] >> number % SET_BITS & 1;
+}
+
+/* Adds `count` numbers from `first` on. */
+static inline void set_add(uint64_t *word, size_t first, size_t count) {
+  for (size_t k = first; k < first + count; k++)
+    word[k / SET_BITS] |= (uint64_t)1 << k % SET_BITS;
+}
+
+/* Adds all members of another set. Both are of numbers below `count`. */
+static inline void set_unite(uint64_t *word, const uint64_t *other, size_t count) {
+  for (size_t w = 0; w < SET_WORDS(count); w++)
+    word[w] |= other[w];
+}
+
+/* How many members a set of numbers below `count` has. */
+static inline size_t set_size(const uint64_t *word, size_t count) {
+  size_t size = 0;
+  for (size_t w = 0; w < SET_WORDS(count); w++)
+    size += (size_t)__builtin_popcountll(word[w]);
+  return size;
+}
+
+/* The first member from `from` on; `count` when there is none. */
+static inline size_t set_next(const uint64_t *word, size_t count, size_t from) {
+  while (from < count && !set_has(word, from))
+    from++;
+  return from;
+}
+
+/* The members in ascending order. */
+#define FOR_SET(k, word, count) for (size_t k = set_next(word, count, 0); k < (count); k = set_next(word, count, k + 1))
 
 enum sph_module_index {
 #define MODULE(name) SPH_MODULE_##name,
@@ -28,7 +75,14 @@ enum sph_module_index {
 struct sph_module_set {
   uint64_t word[SET_WORDS(SPH_MODULES)];
 };
-struct sph_column_set; /* step/system_layout.h */
+struct sph_column_set; /* step/system.h */
+
+/* Material and physics of one body. Off means absent: nothing is stored or called for it. */
+struct sph_body_physics {
+  struct sph_material material;
+  bool strength;                 /* deviatoric stress: Hooke, Jaumann, radial return */
+  const struct sph_flaws *flaws; /* NULL: no fracture; by the body's own particle order; copied at create */
+};
 
 enum sph_stage {
   SPH_PREDICT,       /* carries the module's own variables to the new time, by the rates of the old one */
@@ -54,10 +108,10 @@ struct sph_column_need {
   bool (*needed)(const struct sph_body_physics *body); /* NULL: in every body that has the module */
 };
 
+struct sph_flaws;
 struct sph_particles;
-struct sph_results;
-struct sph_run;
 struct sph_solid;
+struct sph_system;
 
 struct sph_module {
   const char *name;   /* "yield" */
@@ -93,12 +147,7 @@ struct sph_module {
   /* Values of a material that follow from others: `given` says of each row of sph_materials_table whether the scene
    * gives it. Called whether or not the module is on. */
   void (*complete_material)(struct sph_material *material, const bool *given);
-  /* Fills its results when the others are filled. Called in runs with a body that has the module. */
-  void (*report)(const struct sph_run *run, struct sph_results *results);
 };
-
-#define MODULE(name) extern const struct sph_module sph_##name##_module;
-#include "engine/sph/modules/declarations.h"
 
 const struct sph_module *sph_modules_at(size_t index); /* by enum sph_module_index */
 
@@ -114,9 +163,8 @@ void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_in
 /* Does damage scale the deviator of a body by 1 - D? Not where a module publishes the damage that does (shear_damage).
  */
 bool sph_modules_damage_scales_shear(const struct sph_body_inputs *body, const struct sph_inputs *inputs);
-/* complete_material of all modules; `report` of those that a body of the run has. */
+/* complete_material of all modules. */
 void sph_modules_complete_material(struct sph_material *material, const bool *given);
-void sph_modules_report(const struct sph_run *run, struct sph_results *results);
 /* Bytes per particle that they link (sph_module.bytes_linked). */
 size_t sph_modules_bytes_linked(const struct sph_module_set *modules);
 /* Bytes per particle that they add to the pair loop's records. */
