@@ -18,9 +18,9 @@ struct chart_options {
 /* clang-format off */
 #define CHART_OPTIONS(type_, member_)                                                                                  \
   OPTION_ROW_FLAG("keep-script", 0, type_, member_.keep_script,                                                        \
-                  "Leave NAME.gp and NAME.dat beside the chart NAME.png: change them, and gnuplot draws it again."),   \
+                  .doc = "Leave NAME.gp and NAME.dat beside the chart NAME.png: change them, and gnuplot draws it again."),   \
   OPTION_ROW_TEXT("templates", 0, "FOLDER", type_, member_.templates, NULL,                                            \
-                  "Draw with the gnuplot templates of this folder: your changed copies of share/clast/templates.")
+                  .doc = "Draw with the gnuplot templates of this folder: your changed copies of share/clast/templates.")
 /* clang-format on */
 
 /* A page of the usual width. */
@@ -46,11 +46,12 @@ void charts_resolution(struct store *store, const char *quantity, const char *ad
 /* Options of both commands: the input on the horizontal axis, and the quantity. */
 #define QUANTITY_AXIS_OPTION(type_, member_)                                                                           \
   OPTION_ROW_TEXT("x", 'x', "AXIS", type_, member_, NULL,                                                              \
-                  "Varied input on the horizontal axis: a path or its unique ending.")
+                  .doc = "Varied input on the horizontal axis: a path or its unique ending.")
 #define QUANTITY_OPTION(type_, member_)                                                                                \
-  OPTION_ROW_TEXT("quantity", 'q', "NAME", type_, member_, OUTCOME_DEFAULT,                                            \
-                  "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a "    \
-                  "point: beta, or beta_METHOD_WINDOW (beta_masses_from_2).")
+  OPTION_ROW_TEXT(                                                                                                     \
+      "quantity", 'q', "NAME", type_, member_, OUTCOME_DEFAULT,                                                        \
+      .doc = "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a "         \
+             "point: beta, or beta_METHOD_WINDOW (beta_masses_from_2).")
 
 struct quantity_choice {
   const char *axis[2]; /* varied inputs by path or unique ending; the second may be NULL */

@@ -174,7 +174,7 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     SCENE_OPTION_SET(struct options, set),
-    OPTION_ROW_FLAG("bibtex", 0, struct options, bibtex, "Print the papers as BibTeX entries."),
+    OPTION_ROW_FLAG("bibtex", 0, struct options, bibtex),
 };
 
 const struct command cite_command = {

@@ -72,12 +72,13 @@ status plan_campaign(const char *path, const struct campaign_option *changes, co
 /* Options of several commands: the points and runs that they read. */
 #define COMMANDS_POINT(type_, member_)                                                                                 \
   OPTION_ROW_INTEGER("point", 'p', "N", type_, member_, 0, INT64_MAX, "0",                                             \
-                     "Only this point (point_id in the view points); 0: all.")
+                     .doc = "Only this point (point_id in the view points); 0: all.")
 #define COMMANDS_WHERE(type_, member_)                                                                                 \
   OPTION_ROW_TEXT("where", 'w', "SQL", type_, member_, NULL,                                                           \
-                  "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\".")
+                  .doc = "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\".")
 #define COMMANDS_BY(type_, member_)                                                                                    \
-  OPTION_ROW_TEXT("by", 'b', "AXES", type_, member_, NULL,                                                             \
-                  "Pool all points that share these varied inputs (strain,angle); \"\" pools all. Default: by point.")
+  OPTION_ROW_TEXT(                                                                                                     \
+      "by", 'b', "AXES", type_, member_, NULL,                                                                         \
+      .doc = "Pool all points that share these varied inputs (strain,angle); \"\" pools all. Default: by point.")
 
 #endif

@@ -72,9 +72,10 @@ static void offer_words(const struct shell *shell, size_t count, char *const *wo
     }
   if (*typed == '-') {
     for (size_t i = 0; (row = option_row(command, i)); i++) {
-      char word[64], meaning[512];
+      char word[64], doc[OPTION_DOC], meaning[OPTION_DOC];
       snprintf(word, sizeof word, "--%s", row->name);
-      text_sentence(row->doc, meaning, sizeof meaning);
+      option_doc(command, row, doc);
+      text_sentence(doc, meaning, sizeof meaning);
       offer(shell, typed, word, meaning);
     }
     offer(shell, typed, "--help", "");

@@ -39,33 +39,18 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_LIST("knob", 'k', "NAMES", struct options, request.knobs,
-                    "Knobs to change: names or groups, comma-separated, or NAME=LEVEL,LEVEL... with levels of your "
-                    "own. May be given several times. Default: the groups resolution and settings."),
-    OPTION_ROW_TEXT(
-        "quantity", 'q', "NAMES", struct options, request.quantity, NULL,
-        "Results to study, comma-separated; beta or beta_METHOD_WINDOW is the exponent of all runs of a level "
-        "together. Default: the campaign's main quantity, or " OUTCOME_DEFAULT "."),
+    OPTION_ROW_LIST("knob", 'k', "NAMES", struct options, request.knobs),
+    OPTION_ROW_TEXT("quantity", 'q', "NAMES", struct options, request.quantity, NULL),
     SCENE_OPTION_SET(struct options, request.set),
-    OPTION_ROW_TEXT("within", 0, "WIDTH", struct options, request.within, "5 %",
-                    "Add seeds until the half width of every bias is below this: a number in the quantity's SI unit, a "
-                    "share of its value at the finest level (\"5 %\"), or off: one round only."),
-    OPTION_ROW_TEXT("seconds", 0, "S", struct options, request.seconds, NULL,
-                    "Stop adding runs after this wall time, and leave out levels whose first runs would take longer."),
-    OPTION_ROW_INTEGER("seeds", 0, "N", struct options, request.first_seeds, 2, 1000000, "4",
-                       "Seeds of the first round."),
-    OPTION_ROW_INTEGER("max-seeds", 0, "N", struct options, request.most_seeds, 2, 1000000, "32",
-                       "Most seeds of a level. Each round doubles them."),
-    OPTION_ROW_INTEGER("first-seed", 0, "N", struct options, request.first_seed, 0, INT64_MAX, "0",
-                       "The first seed. 0: the campaign's, or 1."),
-    OPTION_ROW_TEXT("store", 0, "FILE", struct options, request.store, NULL,
-                    "Store of the runs. Default: the campaign's, or SCENE-converge.db."),
-    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE", struct options, picture,
-                      "Draw the first quantity over the cost of a run, a curve per knob (.png, .svg or .pdf)."),
-    OPTION_ROW_OUTPUT(OPTION_PICTURE, "frontier", 0, "FILE", struct options, frontier,
-                      "Draw its error over the cost of a run, with the frontier: no other level has less error at the "
-                      "same or lower cost."),
-    OPTION_ROW_FLAG("list", 0, struct options, list, "Print all knobs and stop."),
+    OPTION_ROW_TEXT("within", 0, "WIDTH", struct options, request.within, "5 %"),
+    OPTION_ROW_TEXT("seconds", 0, "S", struct options, request.seconds, NULL),
+    OPTION_ROW_INTEGER("seeds", 0, "N", struct options, request.first_seeds, 2, 1000000, "4"),
+    OPTION_ROW_INTEGER("max-seeds", 0, "N", struct options, request.most_seeds, 2, 1000000, "32"),
+    OPTION_ROW_INTEGER("first-seed", 0, "N", struct options, request.first_seed, 0, INT64_MAX, "0"),
+    OPTION_ROW_TEXT("store", 0, "FILE", struct options, request.store, NULL),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE", struct options, picture),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "frontier", 0, "FILE", struct options, frontier),
+    OPTION_ROW_FLAG("list", 0, struct options, list),
     LAUNCH_OPTIONS(struct options, launch),
 };
 

@@ -21,8 +21,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
 
 static const struct option_row option_rows[] = {
     COMMANDS_POINT(struct options, point),
-    OPTION_ROW_INTEGER("campaign", 0, "N", struct options, campaign, 0, INT64_MAX, "0",
-                       "Only the points of this campaign (`clast status` lists them); 0: all."),
+    OPTION_ROW_INTEGER("campaign", 0, "N", struct options, campaign, 0, INT64_MAX, "0"),
 };
 
 const struct command estimates_command = {

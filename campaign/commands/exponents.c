@@ -82,9 +82,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
 static const struct option_row option_rows[] = {
     COMMANDS_POINT(struct options, point),
     COMMANDS_WHERE(struct options, where),
-    OPTION_ROW_INTEGER(
-        "draws", 0, "N", struct options, draws, 100, 1000000, "2500",
-        "Samples of the bootstrap; 2500 give p within 0.01. The bootstrap ends earlier when p is large."),
+    OPTION_ROW_INTEGER("draws", 0, "N", struct options, draws, 100, 1000000, "2500"),
 };
 
 const struct command exponents_command = {

@@ -60,28 +60,14 @@ static status ask(struct store *store, const struct command_line *line, struct e
 }
 
 static const struct option_row option_rows[] = {
-    OPTION_ROW_TEXT("per", 0, "run|point", struct options, per, NULL,
-                    "Write a row for each run or each point: inputs and results in SI units. As CSV, to standard "
-                    "output if no TARGET is given."),
-    OPTION_ROW_FLAG("jsonl", 0, struct options, lines, "With --per: JSON Lines, one object on each line."),
-    OPTION_ROW_FLAG("csv", 0, struct options, csv,
-                    "Write a folder of CSV files: runs, points, spectra, estimates, and column_doc with the meaning "
-                    "and unit of each column."),
-    OPTION_ROW_FLAG(
-        "bits", 0, struct options, bits,
-        "Write a line for each point and run, in the order of identities, with the digest of all values that "
-        "do not depend on the place and time of the computation. Two stores of one campaign give the same "
-        "file; `clast check` tells whether the values match their digests."),
-    OPTION_ROW_FLAG(
-        "cinema", 0, struct options, cinema,
-        "Write a Cinema database (specification D) for its viewers: a folder with data.csv, and pictures of "
-        "all runs whose fields are kept and of their points' spectra."),
-    OPTION_ROW_FLAG("crate", 0, struct options, crate,
-                    "Write an RO-Crate (Process Run Crate) for an archive: a folder with the store, the campaigns, "
-                    "tables as CSV, and metadata (program and time)."),
-    OPTION_ROW_TEXT("license", 0, "URL", struct options, license, NULL,
-                    "License of the crate, such as https://creativecommons.org/licenses/by/4.0/."),
-    OPTION_ROW_TEXT("author", 0, "NAME", struct options, author, NULL, "Of the crate."),
+    OPTION_ROW_TEXT("per", 0, "run|point", struct options, per, NULL),
+    OPTION_ROW_FLAG("jsonl", 0, struct options, lines),
+    OPTION_ROW_FLAG("csv", 0, struct options, csv),
+    OPTION_ROW_FLAG("bits", 0, struct options, bits),
+    OPTION_ROW_FLAG("cinema", 0, struct options, cinema),
+    OPTION_ROW_FLAG("crate", 0, struct options, crate),
+    OPTION_ROW_TEXT("license", 0, "URL", struct options, license, NULL),
+    OPTION_ROW_TEXT("author", 0, "NAME", struct options, author, NULL),
 };
 
 const struct command export_command = {

@@ -24,10 +24,8 @@ static status ask(struct store *store, const struct command_line *line, struct e
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_OUTPUT(
-        OPTION_PICTURE, "picture", 'p', "FILE.png", struct options, picture,
-        "Draw the map: a row of tiles for each varied input, divided into safe, warned and refused runs."),
-    OPTION_ROW_FLAG("why", 0, struct options, why, "With --json or --csv: print the reasons instead of the campaigns."),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 'p', "FILE.png", struct options, picture),
+    OPTION_ROW_FLAG("why", 0, struct options, why),
 };
 
 const struct command extremes_command = {

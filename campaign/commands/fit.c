@@ -9,18 +9,11 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_INTEGER("rounds", 'r', "N", struct fit_launch_options, rounds, 3, FIT_MOST_ROUNDS, "8",
-                       "Maximum number of rounds: all but two move the ensemble, one runs at its last points, one at "
-                       "points drawn from the posterior."),
-    OPTION_ROW_INTEGER("check", 0, "N", struct fit_launch_options, check, 0, 100000, "0",
-                       "Then fit again by approximate Bayesian computation with N particles (100 or more), each a "
-                       "specimen of its own: for results with two modes. 0: no check."),
-    OPTION_ROW_INTEGER("seed", 0, "N", struct fit_launch_options, seed, 0, INT64_MAX, "1",
-                       "Seed of the fit's random numbers. The seeds of the runs are the campaign's."),
-    OPTION_ROW_TEXT("store", 0, "FILE", struct fit_launch_options, store, NULL,
-                    "Store of the runs. Default: the campaign's."),
-    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE", struct fit_launch_options, picture,
-                      "Draw the measurements beside the prediction for one more experiment (.png, .svg, .pdf)."),
+    OPTION_ROW_INTEGER("rounds", 'r', "N", struct fit_launch_options, rounds, 3, FIT_MOST_ROUNDS, "8"),
+    OPTION_ROW_INTEGER("check", 0, "N", struct fit_launch_options, check, 0, 100000, "0"),
+    OPTION_ROW_INTEGER("seed", 0, "N", struct fit_launch_options, seed, 0, INT64_MAX, "1"),
+    OPTION_ROW_TEXT("store", 0, "FILE", struct fit_launch_options, store, NULL),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE", struct fit_launch_options, picture),
     CHART_OPTIONS(struct fit_launch_options, chart),
     LAUNCH_OPTIONS(struct fit_launch_options, launch),
 };

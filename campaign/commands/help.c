@@ -35,7 +35,7 @@ static void print_lines(const char *line, int length, FILE *out) {
 static void print_row(char letter, const char *name, const char *argument, const char *doc, const char *initial,
                       FILE *out) {
   const bool has_default = initial && *initial;
-  char shown[160], text[1024], start[4] = "   ";
+  char shown[160], text[OPTION_DOC + 100], start[4] = "   ";
   if (letter)
     snprintf(start, sizeof start, "-%c,", letter);
   snprintf(shown, sizeof shown, "  %s --%s%s%s", start, name, argument ? " " : "", argument ? argument : "");
@@ -53,11 +53,14 @@ static void print_row(char letter, const char *name, const char *argument, const
 void help_one(const struct command *command, FILE *out) {
   int length;
   const struct option_row *row;
-  const char *options = option_row(command, 0) ? "[OPTIONS]" : "", *doc = option_part(command, OPTION_DOC, &length);
+  const char *options = option_row(command, 0) ? "[OPTIONS]" : "", *doc = option_part(command, OPTION_ABOUT, &length);
   fprintf(out, "usage: clast %s %s%s%s\n\n%.*s\n\noptions:\n", command->name, options,
           *options && *command->arguments ? " " : "", command->arguments, length, doc);
-  for (size_t i = 0; (row = option_row(command, i)); i++)
-    print_row(row->letter, row->name, row->argument, row->doc, row->initial, out);
+  for (size_t i = 0; (row = option_row(command, i)); i++) {
+    char meaning[OPTION_DOC];
+    option_doc(command, row, meaning);
+    print_row(row->letter, row->name, row->argument, meaning, row->initial, out);
+  }
   print_row('h', "help", NULL, "Print this text.", NULL, out);
   fputs("\nexamples:\n", out);
   const char *examples = option_part(command, OPTION_EXAMPLES, &length);
@@ -133,14 +136,16 @@ static void print_examples(const char *lines, int length, FILE *out) {
   fputs("\n.EE\n.RE\n", out);
 }
 
-static void print_option(const struct option_row *row, FILE *out) {
+static void print_option(const struct command *command, const struct option_row *row, FILE *out) {
+  char doc[OPTION_DOC];
+  option_doc(command, row, doc);
   fputs(".TP 15\n", out);
   if (row->letter)
     fprintf(out, "\\fB\\-%c\\fR, ", row->letter);
   print_word("\\fB\\-\\-", row->name, out);
   print_word(row->argument ? "\\fR \\fI" : "", row->argument ? row->argument : "", out);
   fputs("\\fR\n", out);
-  print_prose(row->doc, out);
+  print_prose(doc, out);
   if (row->initial && *row->initial) {
     print_word(" (default ", row->initial, out);
     fputc(')', out);
@@ -155,11 +160,11 @@ static void print_command(const struct command *command, FILE *out) {
           *command->arguments ? " " : "");
   print_word("", command->arguments, out);
   fputc('\n', out);
-  const char *doc = option_part(command, OPTION_DOC, &length);
+  const char *doc = option_part(command, OPTION_ABOUT, &length);
   print_roff(doc, length, true, out);
   fputc('\n', out);
   for (size_t k = 0; (row = option_row(command, k)); k++)
-    print_option(row, out);
+    print_option(command, row, out);
   fputs(".PP\nExamples:\n", out);
   const char *examples = option_part(command, OPTION_EXAMPLES, &length);
   print_examples(examples, length, out);
@@ -228,8 +233,7 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_FLAG("man", 0, struct options, man,
-                    "Print the manual page clast(1), every command in one text, as roff."),
+    OPTION_ROW_FLAG("man", 0, struct options, man),
 };
 
 const struct command help_command = {

@@ -22,7 +22,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
 
 static const struct option_row rows[] = {
     QUANTITY_AXIS_OPTION(struct options, x),
-    OPTION_ROW_TEXT("y", 'y', "AXIS", struct options, y, NULL, "Varied input on the vertical axis."),
+    OPTION_ROW_TEXT("y", 'y', "AXIS", struct options, y, NULL),
     QUANTITY_OPTION(struct options, quantity),
     CHART_OPTIONS(struct options, chart),
 };

@@ -63,13 +63,10 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     CAMPAIGN_OPTION(struct options, campaign),
-    OPTION_ROW_INTEGER("slots", 'j', "N", struct options, slots, 0, 1000000, "0",
-                       "Simultaneous runs, for the expected wall time. 0: one per core of this machine."),
-    OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL,
-                    "Count the runs that this store has, instead of the campaign's store."),
-    OPTION_ROW_FLAG("no-trial", 0, struct options, no_trial,
-                    "Do not time a trial run. Times then come from the runs in the store."),
-    OPTION_ROW_FLAG("json", 0, struct options, json, "Print one JSON object."),
+    OPTION_ROW_INTEGER("slots", 'j', "N", struct options, slots, 0, 1000000, "0"),
+    OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL),
+    OPTION_ROW_FLAG("no-trial", 0, struct options, no_trial),
+    OPTION_ROW_FLAG("json", 0, struct options, json),
 };
 
 const struct command plan_command = {

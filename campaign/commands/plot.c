@@ -22,8 +22,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
 
 static const struct option_row rows[] = {
     QUANTITY_AXIS_OPTION(struct options, x),
-    OPTION_ROW_TEXT("by", 'b', "AXIS", struct options, by, NULL,
-                    "Another varied input, with one line for each of its values, at most 8."),
+    OPTION_ROW_TEXT("by", 'b', "AXIS", struct options, by, NULL),
     QUANTITY_OPTION(struct options, quantity),
     CHART_OPTIONS(struct options, chart),
 };

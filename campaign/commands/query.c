@@ -73,12 +73,10 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows_of_options[] = {
-    OPTION_ROW_FLAG("list", 'l', struct options, list, "List the ready queries (with --json: also their SQL)."),
-    OPTION_ROW_TEXT("named", 'n', "NAME", struct options, named, NULL, "Run a ready query."),
-    OPTION_ROW_LIST("with", 'w', "NAME=VALUE", struct options, with,
-                    "Value of a parameter :NAME in the SQL. May be given several times."),
-    OPTION_ROW_INTEGER("seconds", 0, "S", struct options, seconds, 0, 1000000, "0",
-                       "Stop the query after this many seconds (exit 75); 0: never."),
+    OPTION_ROW_FLAG("list", 'l', struct options, list),
+    OPTION_ROW_TEXT("named", 'n', "NAME", struct options, named, NULL),
+    OPTION_ROW_LIST("with", 'w', "NAME=VALUE", struct options, with),
+    OPTION_ROW_INTEGER("seconds", 0, "S", struct options, seconds, 0, 1000000, "0"),
 };
 
 const struct command query_command = {

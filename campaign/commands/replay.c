@@ -75,8 +75,7 @@ static status check(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_OUTPUT(OPTION_OUTPUT, "fields", 0, "FILE.h5", struct options, fields,
-                      "Write the fields of the run as an HDF5 file, for `clast picture` or ParaView."),
+    OPTION_ROW_OUTPUT(OPTION_OUTPUT, "fields", 0, "FILE.h5", struct options, fields),
 };
 
 const struct command replay_command = {

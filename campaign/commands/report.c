@@ -57,13 +57,9 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row option_rows[] = {
-    OPTION_ROW_OUTPUT(OPTION_OUTPUT, "output", 'o', "PAGE.html", struct options, output,
-                      "Name of the page. Default: the name of the first store with .html, in the current folder."),
-    OPTION_ROW_FLAG("watch", 0, struct options, watch,
-                    "Make the page again while a campaign writes a store, and once more when it ends. An open page "
-                    "loads itself again."),
-    OPTION_ROW_INTEGER("every", 0, "S", struct options, every, 1, EVERY_MOST, "10",
-                       "With --watch: seconds between two pages."),
+    OPTION_ROW_OUTPUT(OPTION_OUTPUT, "output", 'o', "PAGE.html", struct options, output),
+    OPTION_ROW_FLAG("watch", 0, struct options, watch),
+    OPTION_ROW_INTEGER("every", 0, "S", struct options, every, 1, EVERY_MOST, "10"),
 };
 
 const struct command report_command = {

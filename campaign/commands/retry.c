@@ -66,16 +66,11 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_TEXT("status", 0, "failed", struct options, status, "failed",
-                    "Runs to compute again. failed: every attempt ended by a limit, a crash or a lost worker."),
-    OPTION_ROW_TEXT("time", 0, "TIME", struct options, time, NULL,
-                    "Time limit of an attempt (\"30 min\", off). Default: twice the campaign's."),
-    OPTION_ROW_TEXT("memory", 0, "SIZE", struct options, memory, NULL,
-                    "Memory limit of an attempt (\"4 GiB\", off). Default: twice the campaign's."),
-    OPTION_ROW_INTEGER("campaign", 0, "N", struct options, campaign, 0, INT32_MAX, "0",
-                       "Campaign of the store (`clast status` lists them); 0: the last one."),
-    OPTION_ROW_TEXT("folder", 0, "DIR", struct options, folder, NULL,
-                    "Folder that the path of the campaign's scene file starts from. Default: the current folder."),
+    OPTION_ROW_TEXT("status", 0, "failed", struct options, status, "failed"),
+    OPTION_ROW_TEXT("time", 0, "TIME", struct options, time, NULL),
+    OPTION_ROW_TEXT("memory", 0, "SIZE", struct options, memory, NULL),
+    OPTION_ROW_INTEGER("campaign", 0, "N", struct options, campaign, 0, INT32_MAX, "0"),
+    OPTION_ROW_TEXT("folder", 0, "DIR", struct options, folder, NULL),
     LAUNCH_OPTIONS(struct options, launch),
 };
 

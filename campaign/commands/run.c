@@ -35,8 +35,8 @@ static status run(const struct command_line *line, struct error *error) {
 static const struct option_row rows[] = {
     CAMPAIGN_OPTION(struct options, campaign),
     LAUNCH_OPTIONS(struct options, launch),
-    OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL, "Write this store instead of the campaign's."),
-    OPTION_ROW_FLAG("dry-run", 'n', struct options, dry_run, "Print what would be done, like `clast plan`, and stop."),
+    OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL),
+    OPTION_ROW_FLAG("dry-run", 'n', struct options, dry_run),
 };
 
 const struct command run_command = {

@@ -51,7 +51,7 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_TEXT("engine", 0, "NAME", struct options, engine, "dem", "Engine whose scenes the schema describes."),
+    OPTION_ROW_TEXT("engine", 0, "NAME", struct options, engine, "dem"),
 };
 
 const struct command schema_command = {

@@ -37,14 +37,10 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row option_rows[] = {
-    OPTION_ROW_TEXT("design", 0, "KIND", struct options, design, NULL,
-                    "Write a design: saltelli (Sobol indices) or morris (elementary effects: fewer runs)."),
-    OPTION_ROW_INTEGER("blocks", 0, "N", struct options, blocks, 2, 1 << 20, "64",
-                       "Blocks of the design: of inputs + 2 points (saltelli; best a power of two) or inputs + 1 "
-                       "(morris; 10 to 50)."),
-    OPTION_ROW_INTEGER("seed", 0, "N", struct options, seed, 0, INT64_MAX, "1", "Seed of the design, not of the runs."),
-    OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT,
-                    "Result: a column of the view runs."),
+    OPTION_ROW_TEXT("design", 0, "KIND", struct options, design, NULL),
+    OPTION_ROW_INTEGER("blocks", 0, "N", struct options, blocks, 2, 1 << 20, "64"),
+    OPTION_ROW_INTEGER("seed", 0, "N", struct options, seed, 0, INT64_MAX, "1"),
+    OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
 };
 
 const struct command sensitivity_command = {

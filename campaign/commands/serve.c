@@ -65,24 +65,14 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_INTEGER("port", 'p', "N", struct options, port, 0, 65535, "4242",
-                       "Port of the server; 0: any free port."),
-    OPTION_ROW_TEXT(
-        "listen", 0, "ADDRESS", struct options, address, "127.0.0.1",
-        "Address of the server. Only this machine can reach the default; 0.0.0.0 lets all others reach it, too."),
-    OPTION_ROW_TEXT(
-        "quantity", 'q', "NAMES", struct options, quantity, NULL,
-        "Results in the answer, comma-separated. Default: the campaign's main quantity. A request may name others."),
-    OPTION_ROW_TEXT(
-        "knob", 'k', "NAME[=VALUES]", struct options, knob, NULL,
-        "Levels for requests with a level, coarse to fine: grains=1.2cm,0.9cm (see `clast converge --list`)."),
-    OPTION_ROW_INTEGER("wait", 0, "S", struct options, wait, 0, 1000000, "3600",
-                       "After this many seconds answer a request with an error; its runs continue. 0: never."),
-    OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL, "Write this store instead of the campaign's."),
-    OPTION_ROW_INTEGER("slots", 'j', "N", struct options, launch.slots, 0, 4096, "0",
-                       "Runs at a time. 0: one per core, or under mpirun or srun one per rank."),
-    OPTION_ROW_FLAG("in-process", 0, struct options, launch.in_process,
-                    "Compute runs in the slot's own process. Faster for runs of a few milliseconds."),
+    OPTION_ROW_INTEGER("port", 'p', "N", struct options, port, 0, 65535, "4242"),
+    OPTION_ROW_TEXT("listen", 0, "ADDRESS", struct options, address, "127.0.0.1"),
+    OPTION_ROW_TEXT("quantity", 'q', "NAMES", struct options, quantity, NULL),
+    OPTION_ROW_TEXT("knob", 'k', "NAME[=VALUES]", struct options, knob, NULL),
+    OPTION_ROW_INTEGER("wait", 0, "S", struct options, wait, 0, 1000000, "3600"),
+    OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL),
+    OPTION_ROW_INTEGER("slots", 'j', "N", struct options, launch.slots, 0, 4096, "0"),
+    OPTION_ROW_FLAG("in-process", 0, struct options, launch.in_process),
 };
 
 const struct command serve_command = {

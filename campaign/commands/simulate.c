@@ -47,23 +47,13 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_INTEGER("seed", 0, "N", struct options, run.seed, 0, INT64_MAX, "1",
-                       "Seed of the run: the same seed gives the same bits."),
+    OPTION_ROW_INTEGER("seed", 0, "N", struct options, run.seed, 0, INT64_MAX, "1"),
     SCENE_OPTION_SET(struct options, set),
-    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 'p', "FILE.png", struct options, run.picture,
-                      "Draw the body at the end: the fragments (grains), or the damage on a cut (particles)."),
-    OPTION_ROW_OUTPUT(
-        OPTION_OUTPUT, "fields", 0, "FILE.hdf", struct options, run.fields,
-        "Write all grains or particles, fragments, inputs and results at the end as an HDF5 file. ParaView opens it if "
-        "its name ends in .hdf."),
-    OPTION_ROW_INTEGER("snapshots", 0, "N", struct options, run.snapshots, 0, 100000, "0",
-                       "Write up to N such files during the run, SCENE_000000.hdf and so on, at equal intervals up to "
-                       "the end time. SCENE.hdf.series lists them with their times for ParaView."),
-    OPTION_ROW_OUTPUT(
-        OPTION_OUTPUT, "restart", 0, "FILE", struct options, run.restart,
-        "Continue from this file if it exists. The run writes it every five minutes and at an interruption "
-        "(exit 75; the same command continues, with the same bits), and removes it at the end."),
-    OPTION_ROW_FLAG("quiet", 'q', struct options, run.quiet, "No progress on the terminal."),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 'p', "FILE.png", struct options, run.picture),
+    OPTION_ROW_OUTPUT(OPTION_OUTPUT, "fields", 0, "FILE.hdf", struct options, run.fields),
+    OPTION_ROW_INTEGER("snapshots", 0, "N", struct options, run.snapshots, 0, 100000, "0"),
+    OPTION_ROW_OUTPUT(OPTION_OUTPUT, "restart", 0, "FILE", struct options, run.restart),
+    OPTION_ROW_FLAG("quiet", 'q', struct options, run.quiet),
 };
 
 const struct command simulate_command = {

@@ -47,20 +47,13 @@ static const struct option_row option_rows[] = {
     COMMANDS_POINT(struct options, point),
     COMMANDS_WHERE(struct options, where),
     COMMANDS_BY(struct options, by),
-    OPTION_ROW_FLAG("cumulative", 'c', struct options, cumulative,
-                    "Print N(>m), the number of fragments per run of at least a mass, instead of F(m)."),
-    OPTION_ROW_TEXT(
-        "size", 0, "DENSITY", struct options, size, NULL,
-        "Print sizes instead of masses: diameters of spheres (dem: discs) of this density, \"2700 kg/m^3\"."),
-    OPTION_ROW_FLAG("runs", 0, struct options, runs,
-                    "Show every run separately: in the table, and as thin lines in the picture."),
-    OPTION_ROW_TEXT("with", 0, "FILE.csv", struct options, with, NULL,
-                    "Compare with a measured spectrum: columns mass (g) or size (mm), alone or with count, cumulative, "
-                    "retained (g) or passing (%). Prints distances; --picture also draws the measured spectrum."),
-    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture,
-                      "Also draw the first eight spectra with fitted power laws. PNG, SVG or PDF by the ending."),
-    OPTION_ROW_FLAG("plot", 0, struct options, plot, "Plot them as text instead of the table."),
-    OPTION_ROW_FLAG("ascii", 0, struct options, ascii, "Use ASCII characters only in the plot."),
+    OPTION_ROW_FLAG("cumulative", 'c', struct options, cumulative),
+    OPTION_ROW_TEXT("size", 0, "DENSITY", struct options, size, NULL),
+    OPTION_ROW_FLAG("runs", 0, struct options, runs),
+    OPTION_ROW_TEXT("with", 0, "FILE.csv", struct options, with, NULL),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture),
+    OPTION_ROW_FLAG("plot", 0, struct options, plot),
+    OPTION_ROW_FLAG("ascii", 0, struct options, ascii),
     CHART_OPTIONS(struct options, chart),
 };
 

@@ -60,13 +60,8 @@ static status ask(struct store *store, const struct command_line *line, struct e
 }
 
 static const struct option_row rows_of_options[] = {
-    OPTION_ROW_TEXT(
-        "by", 'b', "AXES", struct options, by, "",
-        "Varied inputs to group by: comma-separated paths or unique endings of paths (strain,angle). Default: all runs "
-        "are one group."),
-    OPTION_ROW_TEXT(
-        "quantity", 'q', "NAMES", struct options, quantity, OUTCOME_DEFAULT,
-        "Results to average, comma-separated; main: the main results, a wide table. `clast explain` lists all."),
+    OPTION_ROW_TEXT("by", 'b', "AXES", struct options, by, ""),
+    OPTION_ROW_TEXT("quantity", 'q', "NAMES", struct options, quantity, OUTCOME_DEFAULT),
 };
 
 const struct command stats_command = {

@@ -45,7 +45,7 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_FLAG("json", 0, struct options, json, "Print one JSON object."),
+    OPTION_ROW_FLAG("json", 0, struct options, json),
 };
 
 const struct command version_command = {

@@ -16,13 +16,14 @@ struct launch_options {
 #define LAUNCH_OPTIONS(type_, member_)                                                                                 \
   OPTION_ROW_INTEGER(                                                                                                  \
       "slots", 'j', "N", type_, member_.slots, 0, 4096, "0",                                                           \
-      "Runs at a time. Under mpirun or srun: per rank. 0: one per core, or under mpirun or srun one per rank."),       \
-      OPTION_ROW_FLAG(                                                                                                 \
-          "in-process", 0, type_, member_.in_process,                                                                  \
-          "Compute runs in the slot's own process. Faster for runs of a few milliseconds, but a crash ends the slot "  \
-          "too."),                                                                                                     \
+      .doc =                                                                                                           \
+          "Runs at a time. Under mpirun or srun: per rank. 0: one per core, or under mpirun or srun one per rank."),   \
+      OPTION_ROW_FLAG("in-process", 0, type_, member_.in_process,                                                      \
+                      .doc = "Compute runs in the slot's own process. Faster for runs of a few milliseconds, but a "   \
+                             "crash ends the slot "                                                                    \
+                             "too."),                                                                                  \
       OPTION_ROW_FLAG("quiet", 'q', type_, member_.quiet,                                                              \
-                      "Print no progress and no remarks on stderr. Warnings and errors are printed.")
+                      .doc = "Print no progress and no remarks on stderr. Warnings and errors are printed.")
 
 /* Context of launch_note, which prints remarks for the user. */
 struct launch_notes {

@@ -18,8 +18,8 @@ struct table_options {
   bool json, csv;
 };
 static const struct option_row table_rows[] = {
-    OPTION_ROW_FLAG("json", 0, struct table_options, json, "Print JSON: one array of objects, SI units."),
-    OPTION_ROW_FLAG("csv", 0, struct table_options, csv, "Print CSV with a header line, SI units."),
+    OPTION_ROW_FLAG("json", 0, struct table_options, json, .doc = "Print JSON: one array of objects, SI units."),
+    OPTION_ROW_FLAG("csv", 0, struct table_options, csv, .doc = "Print CSV with a header line, SI units."),
 };
 
 const struct option_row *option_row(const struct command *command, size_t index) {
@@ -30,16 +30,34 @@ const struct option_row *option_row(const struct command *command, size_t index)
 }
 
 const char *option_part(const struct command *command, enum option_part part, int *length) {
-  static const char mark[] = "\n\nexamples:\n";
-  const char *doc = strstr(command->text, "\n\n"), *end = doc ? strstr(doc, mark) : NULL;
-  if (!end) { /* a test looks at every command's text */
-    *length = 0;
-    return command->text;
+  static const char *const marks[] =
+      {[OPTION_ABOUT] = "\n\n", [OPTION_ROWS] = "\n\noptions:\n", [OPTION_EXAMPLES] = "\n\nexamples:\n"};
+  const char *from = command->text, *end = NULL;
+  if (part != OPTION_SUMMARY) {
+    from = strstr(from, marks[part]);
+    from += from ? strlen(marks[part]) : 0;
   }
-  const char *const from[] = {command->text, doc + 2, end + strlen(mark), end + strlen(end)};
-  const char *const to[] = {doc, end, from[OPTION_EXAMPLES + 1] - 1};
-  *length = (int)(to[part] - from[part]);
-  return from[part];
+  for (int next = (int)part + 1; from && next <= OPTION_EXAMPLES && !end; next++)
+    end = strstr(from, marks[next]);
+  *length = end ? (int)(end - from) : from ? (int)strlen(from) - 1 : 0;
+  return from ? from : "";
+}
+
+void option_doc(const struct command *command, const struct option_row *row, char doc[OPTION_DOC]) {
+  char mark[WORD_MAXIMUM + 4];
+  int length;
+  size_t size = 0;
+  const char *rows = option_part(command, OPTION_ROWS, &length), *end = rows + length;
+  snprintf(mark, sizeof mark, "\n%s: ", row->name);
+  const char *at = length ? strstr(rows - 1, mark) : NULL;
+  at += at ? strlen(mark) : 0;
+  for (; at && at < end && (*at != '\n' || strncmp(at, "\n  ", 3) == 0) && size + 1 < OPTION_DOC; at++) {
+    doc[size++] = *at == '\n' ? ' ' : *at;
+    at += *at == '\n' ? 2 : 0;
+  }
+  doc[size] = '\0';
+  if (row->doc)
+    snprintf(doc, OPTION_DOC, "%s", row->doc);
 }
 
 const char *option_nearest(const char *typed, size_t count, const char *const *names) {

@@ -37,31 +37,29 @@ struct option_row {
   size_t offset;            /* in the command's options struct */
   int64_t minimum, maximum; /* OPTION_INTEGER */
   const char *initial;      /* default, as a user would type it; NULL: zero, false, NULL */
-  const char *doc;          /* one or two sentences */
+  const char *doc;          /* one or two sentences, of a row of several commands; NULL: in the command's text */
 };
 
-/* Rows by kind: long name, letter or 0, name of the value, struct and member, range, default, doc. */
-#define OPTION_ROW_FLAG(name_, letter_, type_, member_, doc_)                                                          \
-  { .name = name_, .letter = letter_, .kind = OPTION_FLAG, .offset = offsetof(type_, member_), .doc = doc_ }
-#define OPTION_ROW_TEXT(name_, letter_, argument_, type_, member_, initial_, doc_)                                     \
+/* Rows by kind: long name, letter or 0, name of the value, struct and member, range, default; `.doc = ...` follows in a
+ * row of several commands. */
+#define OPTION_ROW_FLAG(name_, letter_, type_, member_, ...)                                                           \
+  { .name = name_, .letter = letter_, .kind = OPTION_FLAG, .offset = offsetof(type_, member_), __VA_ARGS__ }
+#define OPTION_ROW_TEXT(name_, letter_, argument_, type_, member_, initial_, ...)                                      \
   {                                                                                                                    \
     .name = name_, .letter = letter_, .kind = OPTION_TEXT, .argument = argument_, .offset = offsetof(type_, member_),  \
-    .initial = initial_, .doc = doc_                                                                                   \
+    .initial = initial_, __VA_ARGS__                                                                                   \
   }
-#define OPTION_ROW_OUTPUT(kind_, name_, letter_, argument_, type_, member_, doc_)                                      \
-  {                                                                                                                    \
-    .name = name_, .letter = letter_, .kind = kind_, .argument = argument_, .offset = offsetof(type_, member_),        \
-    .doc = doc_                                                                                                        \
-  }
-#define OPTION_ROW_LIST(name_, letter_, argument_, type_, member_, doc_)                                               \
+#define OPTION_ROW_OUTPUT(kind_, name_, letter_, argument_, type_, member_)                                            \
+  { .name = name_, .letter = letter_, .kind = kind_, .argument = argument_, .offset = offsetof(type_, member_) }
+#define OPTION_ROW_LIST(name_, letter_, argument_, type_, member_, ...)                                                \
   {                                                                                                                    \
     .name = name_, .letter = letter_, .kind = OPTION_LIST, .argument = argument_, .offset = offsetof(type_, member_),  \
-    .doc = doc_                                                                                                        \
+    __VA_ARGS__                                                                                                        \
   }
-#define OPTION_ROW_INTEGER(name_, letter_, argument_, type_, member_, minimum_, maximum_, initial_, doc_)              \
+#define OPTION_ROW_INTEGER(name_, letter_, argument_, type_, member_, minimum_, maximum_, initial_, ...)               \
   {                                                                                                                    \
     .name = name_, .letter = letter_, .kind = OPTION_INTEGER, .argument = argument_,                                   \
-    .offset = offsetof(type_, member_), .minimum = minimum_, .maximum = maximum_, .initial = initial_, .doc = doc_     \
+    .offset = offsetof(type_, member_), .minimum = minimum_, .maximum = maximum_, .initial = initial_, __VA_ARGS__     \
   }
 
 /* Argument of a command. */
@@ -111,11 +109,18 @@ status option_claim_outputs(const struct command *command, const void *options, 
 /* The rows of a command, with those of its table: NULL behind the last one. */
 const struct option_row *option_row(const struct command *command, size_t index);
 
-/* A part of a command's text, without its last newline; *length: its bytes. The text is a line with the summary for
- * `clast help`; an empty line; what the command does and prints, with lines broken by hand; an empty line; the line
- * "examples:"; commands that work unchanged in a folder with such files. */
-enum option_part { OPTION_SUMMARY, OPTION_DOC, OPTION_EXAMPLES };
+/* A part of a command's text, without its last newline; *length: its bytes. The parts, with an empty line between them:
+ * - the summary for `clast help`, one line;
+ * - what the command does and prints, with lines broken by hand;
+ * - if it has options of its own, "options:" and below it a line "NAME: one or two sentences" for each; a line that
+ *   begins with two spaces continues the one above;
+ * - "examples:" and below it commands that work unchanged in a folder with such files. */
+enum option_part { OPTION_SUMMARY, OPTION_ABOUT, OPTION_ROWS, OPTION_EXAMPLES };
 const char *option_part(const struct command *command, enum option_part part, int *length);
+
+/* Copies what the help tells about an option, as one line; empty: nothing, which a test finds. */
+enum { OPTION_DOC = 1024 };
+void option_doc(const struct command *command, const struct option_row *row, char doc[OPTION_DOC]);
 
 /* The nearest of `count` names to what was typed, or NULL when none is near (schemas/text.h). */
 const char *option_nearest(const char *typed, size_t count, const char *const *names);
@@ -126,8 +131,9 @@ const char *option_nearest(const char *typed, size_t count, const char *const *n
 #define SCENE_OPTION_SET(type_, member_)                                                                               \
   OPTION_ROW_LIST(                                                                                                     \
       "set", 's', "PATH=VALUE", type_, member_,                                                                        \
-      "Override an input of the scene: threshold.strain=3%, impact.speed='50 m/s'. May be given several times. "       \
-      "clast drops inputs of the scene that no longer have an effect.")
+      .doc =                                                                                                           \
+          "Override an input of the scene: threshold.strain=3%, impact.speed='50 m/s'. May be given several times. "   \
+          "clast drops inputs of the scene that no longer have an effect.")
 
 /* Loads the scene `name` (built-in or a file), sets each PATH=VALUE of `set`, and checks it. The caller frees *scene,
  * also on errors. STATUS_USAGE, STATUS_CONTENT, what scene_load returns. */
@@ -143,11 +149,12 @@ struct campaign_option {
 };
 
 #define CAMPAIGN_OPTION(type_, member_)                                                                                \
-  OPTION_ROW_LIST("set", 's', "PATH=VALUE", type_, member_.set,                                                        \
-                  "Another value of an input, like a line under `set` of the campaign: contact.friction=0.3. May be "  \
-                  "given several times."),                                                                             \
+  OPTION_ROW_LIST(                                                                                                     \
+      "set", 's', "PATH=VALUE", type_, member_.set,                                                                    \
+      .doc = "Another value of an input, like a line under `set` of the campaign: contact.friction=0.3. May be "       \
+             "given several times."),                                                                                  \
       OPTION_ROW_INTEGER("seeds", 0, "N", type_, member_.seeds, 0, 1000000000000, "0",                                 \
-                         "Number of seeds for every point, instead of the campaign's; 0: the campaign's.")
+                         .doc = "Number of seeds for every point, instead of the campaign's; 0: the campaign's.")
 
 /* campaign_load with the changes. STATUS_USAGE when a change is wrong. */
 status option_load_campaign(const char *path, const struct campaign_option *option, struct campaign **campaign,

@@ -132,16 +132,30 @@ static void test_help_is_whole(void **state) {
     fclose(out);
     const struct option_row *row;
     for (size_t k = 0; (row = option_row(each, k)); k++) {
-      char name[64];
+      char name[64], doc[OPTION_DOC];
+      option_doc(each, row, doc);
+      if (strlen(doc) < 6 || strlen(doc) > OPTION_DOC - 2)
+        fail_msg("%s.txt has no words about %s, or too many", each->name, row->name);
       snprintf(name, sizeof name, "--%s", row->name);
       if (!strstr(text, name))
         fail_msg("%s: help lacks %s", each->name, name);
     }
     int length;
     for (int part = OPTION_SUMMARY; part <= OPTION_EXAMPLES; part++) {
+      if (part == OPTION_ROWS) /* not every command has options of its own */
+        continue;
       const char *words = option_part(each, (enum option_part)part, &length);
       if (length == 0 || words[length - 1] == '\n' || words[0] == '\n')
         fail_msg("%s.txt: part %d is empty, or has an empty line too much", each->name, part);
+    }
+    const char *told = option_part(each, OPTION_ROWS, &length), *end = told + length;
+    for (; told < end; told += strcspn(told, "\n") + 1) { /* and no words about options that it does not have */
+      size_t k = 0;
+      while ((row = option_row(each, k)) &&
+             (strncmp(told, row->name, strlen(row->name)) != 0 || strncmp(told + strlen(row->name), ": ", 2) != 0))
+        k++;
+      if (!row && strncmp(told, "  ", 2) != 0)
+        fail_msg("%s.txt: no option: %.40s", each->name, told);
     }
     assert_non_null(strstr(option_part(each, OPTION_EXAMPLES, &length), each->name));
     assert_true((each->run != NULL) != (each->ask != NULL));
