@@ -1,8 +1,8 @@
 /* `clast version`, also as `clast --version`: sources and build of this program, and the machine that it runs on. */
+#include <jansson.h>
+
 #include "campaign/build_facts.h"
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/table.h"
-#include "schemas/text.h"
 
 struct options {
   bool json;
@@ -12,19 +12,17 @@ struct fact {
   const char *name, *value;
 };
 
-static void print_json(size_t count, const struct fact *facts) {
-  fputc('{', stdout);
-  for (size_t i = 0; i < count; i++) {
-    fputs(i ? ",\n " : "\n ", stdout);
-    text_json_string(facts[i].name, stdout);
-    fputs(": ", stdout);
-    text_json_string(facts[i].value, stdout);
-  }
-  fputs("\n}\n", stdout);
+static status print_json(size_t count, const struct fact *facts, struct error *error) {
+  json_t *object = json_object();
+  for (size_t i = 0; i < count; i++)
+    json_object_set_new(object, facts[i].name, json_string(facts[i].value));
+  const bool all = json_object_size(object) == count && json_dumpf(object, stdout, JSON_INDENT(1)) == 0;
+  putchar('\n');
+  json_decref(object);
+  return all ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the facts");
 }
 
 static status run(const struct command_line *line, struct error *error) {
-  (void)error;
   const struct fact facts[] = {
       {"version", BUILD_VERSION},  {"commit", BUILD_DIRTY ? BUILD_COMMIT " with local changes" : BUILD_COMMIT},
       {"commit_date", BUILD_DATE}, {"compiler", BUILD_COMPILER},
@@ -35,8 +33,7 @@ static status run(const struct command_line *line, struct error *error) {
   };
   size_t facts_count = sizeof facts / sizeof facts[0];
   if (((const struct options *)line->options)->json) {
-    print_json(facts_count, facts);
-    return STATUS_OK;
+    return print_json(facts_count, facts, error);
   }
   printf("clast %s\n", facts[0].value);
   for (size_t i = 1; i < facts_count; i++)
@@ -48,11 +45,4 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("json", 0, struct options, json),
 };
 
-const struct command version_command = {
-    .name = "version",
-    .group = "about clast",
-    .arguments = "",
-    .text = version_text,
-    COMMAND_OPTIONS(struct options, rows),
-    .run = run,
-};
+COMMAND(version, "about clast", "", COMMAND_OPTIONS(struct options, rows), .run = run);

@@ -7,6 +7,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -21,15 +22,12 @@
 #define PROFILE       "https://w3id.org/ro/wfrun/process/0.5"
 #define STORE         "store.db"
 #define METADATA      "ro-crate-metadata.json"
-enum { PATH_SIZE = 4096, PROGRAMS = 64 };
+enum { PATH_SIZE = 4096 };
 
 struct crate {
   const struct export_crate_options *options;
-  FILE *graph, *parts, *actions; /* text of the entities; of the lists hasPart and mentions */
-  char *graph_text, *parts_text, *actions_text;
-  size_t graph_size, parts_size, actions_size;
-  char programs[PROGRAMS][96]; /* ids of programs that were written */
-  size_t program_count;
+  json_t *graph, *parts, *actions; /* the entities; the lists hasPart and mentions */
+  bool failed;                     /* there was no memory for an entity */
 };
 
 static bool join(char path[PATH_SIZE], const char *folder, const char *name) {
@@ -38,67 +36,58 @@ static bool join(char path[PATH_SIZE], const char *folder, const char *name) {
 
 /* ---- JSON ---- */
 
-/* Begins an entity of the graph; the caller adds members and closes it with "}". */
-static void entity(struct crate *crate, const char *id, const char *type) {
-  fputs(",\n  {\"@id\": ", crate->graph);
-  text_json_string(id, crate->graph);
-  fputs(", \"@type\": ", crate->graph);
-  text_json_string(type, crate->graph);
+/* A text from a user: bytes that are not UTF-8 become U+FFFD. */
+static json_t *text_of(const char *text) {
+  json_t *made = json_string(text);
+  char *quoted = NULL;
+  size_t size = 0;
+  FILE *out = made ? NULL : text_open(&quoted, &size);
+  if (!out)
+    return made;
+  text_json_string(text, out);
+  if (text_close(out, &quoted))
+    made = json_loads(quoted, JSON_DECODE_ANY, NULL);
+  free(quoted);
+  return made;
 }
 
-static void member(struct crate *crate, const char *name, const char *text) {
-  fprintf(crate->graph, ", \"%s\": ", name);
-  text_json_string(text, crate->graph);
+static json_t *id_of(const char *id) {
+  return json_pack("{s:o}", "@id", text_of(id));
 }
 
-static void link_to(struct crate *crate, const char *name, const char *id) {
-  fprintf(crate->graph, ", \"%s\": {\"@id\": ", name);
-  text_json_string(id, crate->graph);
-  fputc('}', crate->graph);
+/* Appends a value that was made; NULL: there was no memory for it. */
+static void append(struct crate *crate, json_t *list, json_t *made) {
+  if (json_array_append_new(list, made))
+    crate->failed = true;
 }
 
-static void end(struct crate *crate) {
-  fputc('}', crate->graph);
-}
-
-/* Adds the "@id" of an entity to a list. */
-static void list(FILE *out, const char *id) {
-  fputs(ftell(out) > 0 ? ", {\"@id\": " : "{\"@id\": ", out);
-  text_json_string(id, out);
-  fputc('}', out);
-}
-
-static void file_entity(struct crate *crate, const char *name, const char *format, const char *description) {
+static void add_file(struct crate *crate, const char *name, const char *format, const char *description) {
   char path[PATH_SIZE], size[32];
   struct stat facts;
-  entity(crate, name, "File");
-  member(crate, "name", name);
-  member(crate, "encodingFormat", format);
-  member(crate, "description", description);
-  if (join(path, crate->options->folder, name) && stat(path, &facts) == 0) {
+  const bool known = join(path, crate->options->folder, name) && stat(path, &facts) == 0;
+  if (known)
     snprintf(size, sizeof size, "%lld", (long long)facts.st_size);
-    member(crate, "contentSize", size);
-  }
-  end(crate);
-  list(crate->parts, name);
+  append(crate, crate->graph,
+         json_pack("{s:s, s:s, s:s, s:s, s:o, s:s*}", "@id", name, "@type", "File", "name", name, "encodingFormat",
+                   format, "description", text_of(description), "contentSize", known ? size : NULL));
+  append(crate, crate->parts, id_of(name));
 }
 
-/* Writes the program's entity, once for each version, and returns its id. */
-static const char *program(struct crate *crate, const char *version, const char *commit) {
-  char id[96];
-  snprintf(id, sizeof id, "#clast-%.32s-%.40s", version, commit);
-  for (size_t i = 0; i < crate->program_count; i++)
-    if (strcmp(crate->programs[i], id) == 0)
-      return crate->programs[i];
-  const size_t place = crate->program_count < PROGRAMS ? crate->program_count++ : PROGRAMS - 1;
-  memcpy(crate->programs[place], id, sizeof id);
-  entity(crate, id, "SoftwareApplication");
-  member(crate, "name", "clast");
-  member(crate, "softwareVersion", version);
-  member(crate, "description", "Ensembles of simulations of brittle fragmentation");
-  member(crate, "identifier", commit);
-  end(crate);
-  return crate->programs[place];
+enum { ID = 96 };
+/* Adds the program, once for each version; its id. */
+static void add_program(struct crate *crate, const char *version, const char *commit, char id[ID]) {
+  size_t i;
+  json_t *entity;
+  snprintf(id, ID, "#clast-%.32s-%.40s", version, commit);
+  text_make_plain(id, "");
+  json_array_foreach(crate->graph, i, entity) {
+    if (strcmp(json_string_value(json_object_get(entity, "@id")), id) == 0)
+      return;
+  }
+  append(crate, crate->graph,
+         json_pack("{s:s, s:s, s:s, s:o, s:s, s:o}", "@id", id, "@type", "SoftwareApplication", "name", "clast",
+                   "softwareVersion", text_of(version), "description",
+                   "Ensembles of simulations of brittle fragmentation", "identifier", text_of(commit)));
 }
 
 /* ---- from the store ---- */
@@ -111,34 +100,26 @@ static status add_campaign(struct crate *crate, const struct answer *row, struct
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
   TRY(file_write(path, "campaign", answer_text(row, 2), strlen(answer_text(row, 2)), error));
   snprintf(description, sizeof description, "The campaign \"%.400s\" as it was read", answer_text(row, 1));
-  file_entity(crate, name, "application/yaml", description);
+  add_file(crate, name, "application/yaml", description);
   return STATUS_OK;
 }
 
 /* session, campaign, started, ended, outcome, version, commit, command */
 static void add_session(struct crate *crate, const struct answer *row) {
-  char id[64], campaign[64], name[96];
+  char id[64], campaign[64], name[96], program[ID];
   snprintf(id, sizeof id, "#session-%" PRId64, answer_integer(row, 0));
   snprintf(name, sizeof name, "Session %" PRId64 " of the store", answer_integer(row, 0));
   snprintf(campaign, sizeof campaign, "campaign-%" PRId64 ".yaml", answer_integer(row, 1));
-  const char *tool = program(crate, answer_text(row, 5), answer_text(row, 6));
-  entity(crate, id, "CreateAction");
-  member(crate, "name", name);
-  member(crate, "description", answer_text(row, 7));
-  member(crate, "startTime", answer_text(row, 2));
-  if (*answer_text(row, 3))
-    member(crate, "endTime", answer_text(row, 3));
-  link_to(crate, "instrument", tool);
-  if (answer_value(row, 1).kind == QUERY_INTEGER)
-    link_to(crate, "object", campaign);
-  link_to(crate, "result", STORE);
-  if (crate->options->author)
-    link_to(crate, "agent", "#author");
+  add_program(crate, answer_text(row, 5), answer_text(row, 6), program);
   const bool failed = strcmp(answer_text(row, 4), "failed") == 0;
-  link_to(crate, "actionStatus",
-          failed ? "http://schema.org/FailedActionStatus" : "http://schema.org/CompletedActionStatus");
-  end(crate);
-  list(crate->actions, id);
+  append(crate, crate->graph,
+         json_pack("{s:s, s:s, s:s, s:o, s:o, s:o*, s:o, s:o*, s:o, s:o*, s:o}", "@id", id, "@type", "CreateAction",
+                   "name", name, "description", text_of(answer_text(row, 7)), "startTime", text_of(answer_text(row, 2)),
+                   "endTime", *answer_text(row, 3) ? text_of(answer_text(row, 3)) : NULL, "instrument", id_of(program),
+                   "object", answer_value(row, 1).kind == QUERY_INTEGER ? id_of(campaign) : NULL, "result",
+                   id_of(STORE), "agent", crate->options->author ? id_of("#author") : NULL, "actionStatus",
+                   id_of(failed ? "http://schema.org/FailedActionStatus" : "http://schema.org/CompletedActionStatus")));
+  append(crate, crate->actions, id_of(id));
 }
 
 /* ---- the crate ---- */
@@ -149,7 +130,7 @@ static void now_text(char text[32]) {
   strftime(text, 32, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
 }
 
-static status tables(struct crate *crate, struct store *store, struct error *error) {
+static status add_tables(struct crate *crate, struct store *store, struct error *error) {
   static const char *const described[][2] = {
       {"runs.csv", "A row for each run: inputs, every result, state, times. SI units; column_doc.csv tells them"},
       {"points.csv", "A row for each point: inputs, and means over its runs with 95 % intervals"},
@@ -157,83 +138,66 @@ static status tables(struct crate *crate, struct store *store, struct error *err
       {"estimates.csv", "A row for each exponent of the fragment mass distribution"},
       {"column_doc.csv", "Meaning and unit of every column of the store and of these tables"},
   };
-  const size_t count = sizeof described / sizeof described[0];
-  char date[32];
-  const status code = export_files_folder(store, crate->options->folder, error);
-  if (code)
-    return code;
-  for (size_t i = 0; i < count; i++)
-    file_entity(crate, described[i][0], "text/csv", described[i][1]);
-  const char *tool = program(crate, BUILD_VERSION, BUILD_COMMIT);
-  now_text(date);
-  entity(crate, "#export", "CreateAction");
-  member(crate, "name", "Export of the tables");
-  member(crate, "description", "clast export --crate");
-  member(crate, "endTime", date);
-  link_to(crate, "instrument", tool);
-  link_to(crate, "object", STORE);
-  fputs(", \"result\": [", crate->graph);
-  for (size_t i = 0; i < count; i++) {
-    fputs(i ? ", {\"@id\": " : "{\"@id\": ", crate->graph);
-    text_json_string(described[i][0], crate->graph);
-    fputc('}', crate->graph);
+  char date[32], program[ID];
+  TRY(export_files_folder(store, crate->options->folder, error));
+  json_t *tables = json_array();
+  for (size_t i = 0; i < sizeof described / sizeof described[0]; i++) {
+    add_file(crate, described[i][0], "text/csv", described[i][1]);
+    append(crate, tables, id_of(described[i][0]));
   }
-  fputc(']', crate->graph);
-  end(crate);
-  list(crate->actions, "#export");
+  add_program(crate, BUILD_VERSION, BUILD_COMMIT, program);
+  now_text(date);
+  append(crate, crate->graph,
+         json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o}", "@id", "#export", "@type", "CreateAction", "name",
+                   "Export of the tables", "description", "clast export --crate", "endTime", date, "instrument",
+                   id_of(program), "object", id_of(STORE), "result", tables));
+  append(crate, crate->actions, id_of("#export"));
   return STATUS_OK;
 }
 
-/* Writes author and licence. */
-static void people(struct crate *crate) {
+/* Adds author and licence. */
+static void add_people(struct crate *crate) {
   const char *author = crate->options->author, *license = crate->options->license;
-  if (author) {
-    entity(crate, "#author", "Person");
-    member(crate, "name", author);
-    end(crate);
-  }
-  if (license && strstr(license, "://")) {
-    entity(crate, license, "CreativeWork");
-    member(crate, "name", license);
-    member(crate, "description", "The licence of this data set");
-    end(crate);
-  }
+  if (author)
+    append(crate, crate->graph,
+           json_pack("{s:s, s:s, s:o}", "@id", "#author", "@type", "Person", "name", text_of(author)));
+  if (license && strstr(license, "://"))
+    append(crate, crate->graph,
+           json_pack("{s:o, s:s, s:o, s:s}", "@id", text_of(license), "@type", "CreativeWork", "name", text_of(license),
+                     "description", "The licence of this data set"));
 }
 
-/* Writes the metadata, after all other files. */
+/* Writes the metadata, after all other files: what describes the crate, then the entities. */
 static status finish(struct crate *crate, const char *title, struct error *error) {
   const char *license = crate->options->license;
   char path[PATH_SIZE], date[32];
   now_text(date);
   if (!join(path, crate->options->folder, METADATA))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
+  json_t *root = json_pack(
+      "{s:[s, s], s:[{s:s, s:s, s:o, s:o}, {s:s, s:s, s:o, s:o, s:s, s:s, s:o, s:o*, s:O, s:O}, {s:s, s:s, s:s, s:s}]}",
+      "@context", SPECIFICATION "/context", "https://w3id.org/ro/terms/workflow-run/context", "@graph",   /* */
+      "@id", METADATA, "@type", "CreativeWork", "conformsTo", id_of(SPECIFICATION), "about", id_of("./"), /* */
+      "@id", "./", "@type", "Dataset", "conformsTo", id_of(PROFILE), "name", text_of(title), "description",
+      "An ensemble of simulations of brittle fragmentation: every run with its inputs, results and fragment masses",
+      "datePublished", date, "license",
+      !license                 ? json_string("No licence was chosen: ask the authors before you use it.")
+      : strstr(license, "://") ? id_of(license)
+                               : text_of(license),
+      "author", crate->options->author ? id_of("#author") : NULL, "hasPart", crate->parts, "mentions", crate->actions,
+      "@id", PROFILE, "@type", "CreativeWork", "name", "Process Run Crate", "version", "0.5");
+  status code = STATUS_OK;
   struct file_output file;
-  TRY(file_begin(&file, path, "metadata", error));
-  FILE *const out = file.out;
-  fputs("{\"@context\": [\"" SPECIFICATION "/context\", \"https://w3id.org/ro/terms/workflow-run/context\"],\n"
-        " \"@graph\": [\n  {\"@id\": \"" METADATA "\", \"@type\": \"CreativeWork\", \"conformsTo\": {\"@id\": "
-        "\"" SPECIFICATION "\"}, \"about\": {\"@id\": \"./\"}},\n  {\"@id\": \"./\", \"@type\": \"Dataset\", "
-        "\"conformsTo\": {\"@id\": \"" PROFILE "\"}, \"name\": ",
-        out);
-  text_json_string(title, out);
-  fprintf(out,
-          ", \"description\": \"An ensemble of simulations of brittle fragmentation: every run with its inputs, "
-          "results and fragment masses\", \"datePublished\": \"%s\", \"license\": ",
-          date);
-  if (license && strstr(license, "://"))
-    fputs("{\"@id\": ", out);
-  text_json_string(license ? license : "No licence was chosen: ask the authors before you use it.", out);
-  if (license && strstr(license, "://"))
-    fputc('}', out);
-  if (crate->options->author)
-    fputs(", \"author\": {\"@id\": \"#author\"}", out);
-  fprintf(out, ", \"hasPart\": [%s], \"mentions\": [%s]},\n", crate->parts_text, crate->actions_text);
-  fputs("  {\"@id\": \"" PROFILE
-        "\", \"@type\": \"CreativeWork\", \"name\": \"Process Run Crate\", \"version\": \"0.5\"}",
-        out);
-  fputs(crate->graph_text, out);
-  fputs("\n ]\n}\n", out);
-  return file_end(&file, STATUS_OK, error);
+  if (!root || crate->failed || json_array_extend(json_object_get(root, "@graph"), crate->graph))
+    code = status_fail(error, STATUS_MEMORY, "no memory for the metadata");
+  if (code == STATUS_OK)
+    code = file_begin(&file, path, "metadata", error);
+  if (code == STATUS_OK) {
+    const bool written = json_dumpf(root, file.out, JSON_INDENT(1)) == 0 && fputc('\n', file.out) != EOF;
+    code = file_end(&file, written ? STATUS_OK : status_fail(error, STATUS_IO, "cannot write %s", path), error);
+  }
+  json_decref(root);
+  return code;
 }
 
 /* Makes the folder, or checks that it is empty. */
@@ -254,9 +218,9 @@ static status fill(struct crate *crate, struct store *store, const char *title, 
   if (!join(path, crate->options->folder, STORE))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
   TRY(store_export(store, path, error));
-  file_entity(crate, STORE, "application/vnd.sqlite3",
-              "Every run with its inputs, results and fragment masses; any SQLite tool reads it, and its table "
-              "column_doc explains it");
+  add_file(crate, STORE, "application/vnd.sqlite3",
+           "Every run with its inputs, results and fragment masses; any SQLite tool reads it, and its table "
+           "column_doc explains it");
   ANSWER campaigns = ask_campaign_documents(store, error);
   while (answer_next(&campaigns))
     TRY(add_campaign(crate, &campaigns, error));
@@ -265,31 +229,20 @@ static status fill(struct crate *crate, struct store *store, const char *title, 
   while (answer_next(&sessions))
     add_session(crate, &sessions);
   TRY(answer_end(&sessions));
-  TRY(tables(crate, store, error));
-  people(crate);
-  if (fflush(crate->graph) | fflush(crate->parts) | fflush(crate->actions))
-    return status_fail(error, STATUS_MEMORY, "no memory for the metadata");
+  TRY(add_tables(crate, store, error));
+  add_people(crate);
   return finish(crate, title, error);
 }
 
 status export_crate(struct store *store, const char *store_path, const struct export_crate_options *options,
                     struct error *error) {
-  struct crate crate = {.options = options};
+  struct crate crate = {.options = options, .graph = json_array(), .parts = json_array(), .actions = json_array()};
   const char *slash = strrchr(store_path, '/');
   status code = take_folder(options->folder, error);
-  if (code)
-    return code;
-  crate.graph = text_open(&crate.graph_text, &crate.graph_size);
-  crate.parts = text_open(&crate.parts_text, &crate.parts_size);
-  crate.actions = text_open(&crate.actions_text, &crate.actions_size);
-  code = crate.graph && crate.parts && crate.actions ? fill(&crate, store, slash ? slash + 1 : store_path, error)
-                                                     : status_fail(error, STATUS_MEMORY, "no memory for the metadata");
-  FILE *const streams[] = {crate.graph, crate.parts, crate.actions};
-  for (size_t i = 0; i < 3; i++)
-    if (streams[i])
-      fclose(streams[i]);
-  free(crate.graph_text);
-  free(crate.parts_text);
-  free(crate.actions_text);
+  if (code == STATUS_OK)
+    code = fill(&crate, store, slash ? slash + 1 : store_path, error);
+  json_decref(crate.graph);
+  json_decref(crate.parts);
+  json_decref(crate.actions);
   return code;
 }

@@ -57,7 +57,8 @@ check_libraries() {
   only 'gsl' 'analysis|campaign/design'
   only 'mpi\.h' campaign/farm
   only 'libqhull' tests
-  only 'microhttpd|jansson' campaign/serve
+  only 'microhttpd' campaign/serve
+  only 'jansson' campaign
 }
 
 # Nothing below the commands prints to the terminal or ends the process. Only the reader of fields files has a child to
