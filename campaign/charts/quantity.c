@@ -1,62 +1,78 @@
-/* Reads the quantity from groups of runs, or fits the exponent of each point. */
-#include "campaign/charts/charts.h"
-
+/* A quantity over one or two varied inputs: reads it from groups of runs, or fits the exponent of each point, and draws
+ * it as the lines of `clast plot` or the tiles of `clast map`. */
+#include <ctype.h>
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
+#include "campaign/charts/charts.h"
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/columns.h"
-#include "db/ask/group.h"
 #include "db/ask/point.h"
 #include "db/ask/points.h"
-#include "engine/outcome.h"
+#include "engine/grow.h"
 
 /* Columns of ask_group after the axes. */
 enum { VERSION = 1, MEAN = 6, HALF_WIDTH = 9, RESOLUTION = 10, COLUMNS = 12 };
 
-enum { QUANTITY_AXES = 64 };
+enum { QUANTITY_AXES = 64, MOST_ROWS = 10000, MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, INPUT_TEXT = 200 };
 
-struct reading {
-  struct store *store;
-  const struct quantity_choice *choice;
-  struct quantity *quantity;
-  enum exponent_method method;
-  enum estimates_window window;
-  struct ask_column written[QUANTITY_AXES]; /* the varied inputs, in the units that the campaign gives */
-  size_t written_count;
-  const struct ask_column *axis[2]; /* the written unit of each axis; NULL: SI */
-  status (*each)(void *context, const struct quantity_row *row, struct error *error);
-  void *context;
+struct row {
+  double input[2];            /* in the campaign's unit; NaN: a text, off, or does not apply */
+  char text[2][INPUT_TEXT];   /* the inputs for people; "": off, or does not apply */
+  int64_t version;            /* results_version */
+  double value, lower, upper; /* bounds of the 95 % interval; NaN: unknown */
+  double resolution;          /* possible change of the value by finer settings; NaN: unknown */
 };
 
-static const struct ask_column *written_axis(const struct reading *reading, const char *name) {
-  for (size_t i = 0; i < reading->written_count; i++)
-    if (strcmp(reading->written[i].name, name) == 0)
-      return &reading->written[i];
-  return NULL;
-}
+struct quantity {
+  bool exponent;
+  size_t axes;                   /* 1 or 2 */
+  char column[2][256];           /* the axes' columns in the views */
+  char name[256];                /* column of the quantity, or the exponent's name */
+  char pooled[ASK_GROUP_POOLED]; /* other varied inputs that the means average over, with points as units; "": none */
+  struct row *row;               /* owned */
+  size_t count, room;
+  struct ask_column written[QUANTITY_AXES]; /* the varied inputs, in the units that the campaign gives */
+  size_t written_count;
+  const struct ask_column *unit[2]; /* the written unit of each axis; NULL: SI */
+};
 
-/* Passes a row to the caller, its inputs in the campaign's units. */
-static status give(const struct reading *reading, struct quantity_row *row, struct error *error) {
-  struct query_value inputs[2];
-  for (size_t i = 0; i < reading->quantity->axes; i++)
-    inputs[i] = reading->axis[i] ? ask_columns_value(reading->axis[i], &row->input[i]) : row->input[i];
-  row->input = inputs;
-  return reading->each(reading->context, row, error);
+/* Adds a row with its inputs in the campaign's units. */
+static status add_row(struct quantity *quantity, const struct query_value *inputs, struct row row,
+                      struct error *error) {
+  if (quantity->count == MOST_ROWS)
+    return status_fail(error, STATUS_USAGE, "a chart has at most %d points: choose axes with fewer values", MOST_ROWS);
+  if (!grow_room(&quantity->row, &quantity->room, quantity->count + 1, sizeof row))
+    return status_fail(error, STATUS_MEMORY, "no memory for a chart");
+  for (size_t i = 0; i < quantity->axes; i++) {
+    const struct query_value value = quantity->unit[i] ? ask_columns_value(quantity->unit[i], &inputs[i]) : inputs[i];
+    row.input[i] = value.kind == QUERY_TEXT ? (double)NAN : value.real;
+    row.text[i][0] = '\0';
+    if (value.kind == QUERY_TEXT)
+      snprintf(row.text[i], INPUT_TEXT, "%s", value.text);
+    else if (value.kind != QUERY_NULL)
+      snprintf(row.text[i], INPUT_TEXT, "%.6g", value.real);
+  }
+  quantity->row[quantity->count++] = row;
+  return STATUS_OK;
 }
 
 /* Takes the names of the inputs and of the quantity from the columns of ask_group. */
-static status read_names(struct reading *reading, const struct answer *groups, struct error *error) {
-  struct quantity *quantity = reading->quantity;
+static status read_names(struct quantity *quantity, const struct answer *groups, const char *refusal,
+                         struct error *error) {
   const size_t axes = quantity->axes;
   if (answer_count(groups) != axes + COLUMNS ||
       (axes == 2 && strcmp(answer_name(groups, 0), answer_name(groups, 1)) == 0))
-    return status_fail(error, STATUS_USAGE, "%s", reading->choice->refusal);
+    return status_fail(error, STATUS_USAGE, "%s", refusal);
 
   for (size_t i = 0; i < axes; i++) {
     snprintf(quantity->column[i], sizeof quantity->column[i], "%s", answer_name(groups, i));
-    reading->axis[i] = written_axis(reading, quantity->column[i]);
+    for (size_t k = 0; k < quantity->written_count; k++)
+      if (strcmp(quantity->written[k].name, quantity->column[i]) == 0)
+        quantity->unit[i] = &quantity->written[k];
   }
   const char *mean = answer_name(groups, axes + MEAN);
   if (!quantity->exponent)
@@ -64,66 +80,64 @@ static status read_names(struct reading *reading, const struct answer *groups, s
   return STATUS_OK;
 }
 
-static status read_groups(struct reading *reading, struct answer *groups, struct error *error) {
-  const size_t axes = reading->quantity->axes;
+static status read_groups(struct quantity *quantity, struct answer *groups, struct error *error) {
+  const size_t axes = quantity->axes;
   while (answer_next(groups)) {
     const struct query_value inputs[2] = {answer_value(groups, 0), answer_value(groups, axes - 1)};
     const double mean = answer_real(groups, axes + MEAN);
     const double half_width = answer_real(groups, axes + HALF_WIDTH); /* NaN for one run */
-    struct quantity_row row = {inputs,
-                               answer_integer(groups, axes + VERSION),
-                               mean,
-                               mean - half_width,
-                               mean + half_width,
-                               answer_real(groups, axes + RESOLUTION)};
-    TRY(give(reading, &row, error));
+    const struct row row = {.version = answer_integer(groups, axes + VERSION),
+                            .value = mean,
+                            .lower = mean - half_width,
+                            .upper = mean + half_width,
+                            .resolution = answer_real(groups, axes + RESOLUTION)};
+    TRY(add_row(quantity, inputs, row, error));
   }
   return answer_end(groups);
 }
 
-static status read_exponents(struct reading *reading, struct error *error) {
-  const char *inputs[2] = {reading->quantity->column[0], reading->quantity->column[1]};
-  const bool newest = reading->choice->newest;
-  ANSWER points = ask_points_rows(reading->store, &(struct ask_points_choice){0}, newest, reading->quantity->axes,
-                                  inputs, error);
+/* newest: only of each point's newest results_version, including points without runs. */
+static status read_exponents(struct store *store, struct quantity *quantity, enum exponent_method method,
+                             enum estimates_window window, bool newest, struct error *error) {
+  const char *inputs[2] = {quantity->column[0], quantity->column[1]};
+  ANSWER points = ask_points_rows(store, &(struct ask_points_choice){0}, newest, quantity->axes, inputs, error);
   for (struct ask_points_row point; ask_points_next(&points, &point);) {
     struct pooled_exponent fit;
     struct ask_resolution resolution;
     if (point.n == 0 && !newest)
       continue;
-    TRY(point_exponent(reading->store, point.point_id, newest ? 0 : point.results_version, reading->method,
-                       reading->window, 0.95, &fit, error));
-    TRY(ask_resolution(reading->store, point.point_id, reading->choice->name, &resolution, error));
+    TRY(point_exponent(store, point.point_id, newest ? 0 : point.results_version, method, window, 0.95, &fit, error));
+    TRY(ask_resolution(store, point.point_id, quantity->name, &resolution, error));
     const double half_width = fit.interval.half_width;
-    struct quantity_row row = {point.inputs,
-                               point.results_version,
-                               fit.fit.beta,
-                               fit.fit.beta - half_width,
-                               fit.fit.beta + half_width,
-                               resolution.half_width};
-    TRY(give(reading, &row, error));
+    const struct row row = {.version = point.results_version,
+                            .value = fit.fit.beta,
+                            .lower = fit.fit.beta - half_width,
+                            .upper = fit.fit.beta + half_width,
+                            .resolution = resolution.half_width};
+    TRY(add_row(quantity, point.inputs, row, error));
   }
   return answer_end(&points);
 }
 
-status quantity_read(struct store *store, const struct quantity_choice *choice, struct quantity *quantity,
-                     status (*each)(void *context, const struct quantity_row *row, struct error *error), void *context,
-                     struct error *error) {
-  struct reading reading = {.store = store, .choice = choice, .quantity = quantity, .each = each, .context = context};
-  *quantity = (struct quantity){.axes = choice->axis[1] ? 2 : 1};
-  snprintf(quantity->name, sizeof quantity->name, "%s", choice->name);
-  TRY(estimates_named(choice->name, &quantity->exponent, &reading.method, &reading.window, error));
-  TRY(ask_columns_axes(store, true, QUANTITY_AXES, reading.written, &reading.written_count, error));
+/* Reads the quantity `name` over x and y (NULL: over x alone). STATUS_USAGE: unknown names; `refusal` if they are not
+ * one or two different inputs and one quantity. The caller frees quantity->row, also after an error. */
+static status read_quantity(struct store *store, const char *x, const char *y, const char *name, bool newest,
+                            const char *refusal, struct quantity *quantity, struct error *error) {
+  enum exponent_method method;
+  enum estimates_window window;
   char by[600];
-  snprintf(by, sizeof by, "%s%s%s", choice->axis[0], choice->axis[1] ? "," : "",
-           choice->axis[1] ? choice->axis[1] : "");
-  ANSWER groups = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : choice->name, quantity->pooled, error);
+  quantity->axes = y ? 2 : 1;
+  snprintf(quantity->name, sizeof quantity->name, "%s", name);
+  TRY(estimates_named(name, &quantity->exponent, &method, &window, error));
+  TRY(ask_columns_axes(store, true, QUANTITY_AXES, quantity->written, &quantity->written_count, error));
+  snprintf(by, sizeof by, "%s%s%s", x, y ? "," : "", y ? y : "");
+  ANSWER groups = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : name, quantity->pooled, error);
   TRY(answer_status(&groups));
-  TRY(read_names(&reading, &groups, error));
+  TRY(read_names(quantity, &groups, refusal, error));
   if (!quantity->exponent)
-    return read_groups(&reading, &groups, error);
+    return read_groups(quantity, &groups, error);
   quantity->pooled[0] = '\0'; /* exponents belong to single points */
-  return read_exponents(&reading, error);
+  return read_exponents(store, quantity, method, window, newest, error);
 }
 
 void quantity_tell_resolution(struct store *store, const char *name, const char *pooled) {
@@ -145,4 +159,199 @@ void quantity_tell_resolutions(struct store *store, const char *names, const cha
     quantity_tell_resolution(store, name + strspn(name, " "), pooled);
     names += length + (names[length] == ',');
   }
+}
+
+/* How the values of a chart were made: "mean over seeds and ...". */
+static void made_of(const struct quantity *quantity, char *text, size_t size) {
+  char pooled[ASK_GROUP_POOLED];
+  charts_labels(quantity->pooled, pooled, sizeof pooled);
+  snprintf(text, size, "%s%s%s", quantity->exponent ? "fit to all runs of a point" : "mean over seeds",
+           *pooled ? " and " : "", pooled);
+}
+
+/* ---- lines ---- */
+
+struct line {
+  const struct row *first; /* has the value of the input that has one line for each value, and the results_version;
+                              results of different versions are different lines, never mixed */
+  char label[2 * CHARTS_LABEL];
+  struct picture_mean *means; /* owned; room for MOST_MEANS */
+  size_t count;
+};
+
+struct plot {
+  struct quantity quantity;
+  struct line line[MOST_LINES];
+  size_t count;
+};
+
+/* Finds the line of this row, or makes it. */
+static status find_line(struct plot *plot, const struct row *row, struct line **found, struct error *error) {
+  for (size_t i = 0; i < plot->count; i++) {
+    *found = &plot->line[i];
+    if (strcmp((*found)->first->text[1], row->text[1]) == 0 && (*found)->first->version == row->version)
+      return STATUS_OK;
+  }
+  if (plot->count == MOST_LINES)
+    return status_fail(error, STATUS_USAGE, "a chart has at most %d lines: choose a --by with fewer values",
+                       MOST_LINES);
+  struct line *line = &plot->line[plot->count];
+  line->means = malloc(MOST_MEANS * sizeof *line->means);
+  if (!line->means)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  line->first = row;
+  plot->count++;
+  *found = line;
+  return STATUS_OK;
+}
+
+static status add_mean(struct plot *plot, const struct row *row, struct error *error) {
+  const char *column = plot->quantity.column[0];
+  const double x = row->input[0];
+  struct line *line = NULL;
+  if (isnan(x) && *row->text[0])
+    return status_fail(error, STATUS_USAGE, "%s is no number, so it cannot be an axis: give it to --by", column);
+  if (isnan(x))
+    return STATUS_OK; /* off, or does not apply: an axis of numbers cannot show it */
+  TRY(find_line(plot, row, &line, error));
+  if (line->count == MOST_MEANS)
+    return status_fail(error, STATUS_USAGE, "a line has at most %d points: choose an axis with fewer values",
+                       MOST_MEANS);
+  for (size_t i = 0; plot->quantity.exponent && i < line->count; i++)
+    if (line->means[i].x == x)
+      return status_fail(
+          error, STATUS_USAGE,
+          "several points share %s = %g and one line, and their exponents cannot be averaged: separate them by --by",
+          column, x);
+  line->means[line->count++] = (struct picture_mean){x, row->value, row->lower, row->upper, row->resolution};
+  return STATUS_OK;
+}
+
+static int ascending(const void *a, const void *b) {
+  const double x = ((const struct picture_mean *)a)->x, y = ((const struct picture_mean *)b)->x;
+  return (x > y) - (x < y);
+}
+
+/* "weibull_k (1/m^3) = 5e+34"; the version is given only if there are several. */
+static void label_lines(struct plot *plot, const char *by) {
+  bool several = false;
+  for (size_t i = 1; i < plot->count; i++)
+    several |= plot->line[i].first->version != plot->line[0].first->version;
+  const bool two = plot->quantity.axes == 2;
+  for (size_t i = 0; i < plot->count; i++) {
+    struct line *line = &plot->line[i];
+    const char *value = line->first->text[1];
+    char version[40] = "", input[sizeof line->label - sizeof version] = "";
+    if (two)
+      snprintf(input, sizeof input, *value ? "%s = %s" : "%s: none", by, value);
+    if (several)
+      snprintf(version, sizeof version, "%sresults_version %lld", two ? ", " : "", (long long)line->first->version);
+    snprintf(line->label, sizeof line->label, "%s%s", input, version);
+    qsort(line->means, line->count, sizeof *line->means, ascending);
+  }
+}
+
+static status draw_lines(struct store *store, struct plot *plot, const struct picture_page *page, struct error *error) {
+  const struct quantity *quantity = &plot->quantity;
+  char x[CHARTS_LABEL], by[CHARTS_LABEL] = "", y[CHARTS_LABEL], name[CHARTS_LABEL], over[CHARTS_LABEL];
+  char title[ASK_GROUP_POOLED + 3 * CHARTS_LABEL], caption[1200], intervals[600], resolution[400];
+  char made[ASK_GROUP_POOLED + 40];
+  TRY(charts_axis(store, quantity->column[0], x, error));
+  if (quantity->axes == 2)
+    TRY(charts_axis(store, quantity->column[1], by, error));
+  TRY(charts_axis(store, quantity->name, y, error));
+  label_lines(plot, by);
+  struct picture_curve curves[MOST_LINES] = {0};
+  for (size_t i = 0; i < plot->count; i++) {
+    curves[i].label = *plot->line[i].label ? plot->line[i].label : NULL;
+    curves[i].count = plot->line[i].count;
+    curves[i].mean = plot->line[i].means;
+  }
+  charts_label(quantity->name, name);
+  charts_label(quantity->column[0], over);
+  made_of(quantity, made, sizeof made);
+  snprintf(title, sizeof title, "%s over %s: %s", name, over, made);
+  if (*title >= 'a' && *title <= 'z')
+    *title = (char)(*title - 'a' + 'A');
+  charts_intervals(quantity->pooled, intervals, sizeof intervals);
+  charts_resolution(store, quantity->name, "thin bars add ", resolution, sizeof resolution);
+  snprintf(caption, sizeof caption, "Bars: %s; %s", intervals, resolution);
+  return picture_curves(page, &(struct picture_words){title, caption, x, y}, plot->count, curves, error);
+}
+
+status quantity_plot(struct store *store, const char *x, const char *by, const char *name,
+                     const struct picture_page *page, struct error *error) {
+  struct plot plot = {0};
+  status code = read_quantity(store, x, by, name, false,
+                              "a plot has one axis below (--x), at most one input that tells its lines apart (--by, "
+                              "another one), and one quantity",
+                              &plot.quantity, error);
+  for (size_t i = 0; code == STATUS_OK && i < plot.quantity.count; i++)
+    code = add_mean(&plot, &plot.quantity.row[i], error);
+  if (code == STATUS_OK)
+    code = draw_lines(store, &plot, page, error);
+  if (code == STATUS_OK)
+    quantity_tell_resolution(store, plot.quantity.name, plot.quantity.pooled);
+  for (size_t i = 0; i < plot.count; i++)
+    free(plot.line[i].means);
+  free(plot.quantity.row);
+  return code;
+}
+
+/* ---- tiles ---- */
+
+static status draw_tiles(struct store *store, const struct quantity *quantity, size_t count, const double (*tile)[3],
+                         double widest, const struct picture_page *page, struct error *error) {
+  char x[CHARTS_LABEL], y[CHARTS_LABEL], z[CHARTS_LABEL], title[ASK_GROUP_POOLED + 400], caption[1100];
+  char made[ASK_GROUP_POOLED + 40], intervals[600], resolution[400];
+  TRY(charts_axis(store, quantity->column[0], x, error));
+  TRY(charts_axis(store, quantity->column[1], y, error));
+  TRY(charts_axis(store, quantity->name, z, error));
+  made_of(quantity, made, sizeof made);
+  snprintf(title, sizeof title, "%s: %s", z, made);
+  title[0] = (char)toupper((unsigned char)title[0]);
+  charts_intervals(quantity->pooled, intervals, sizeof intervals);
+  charts_resolution(store, quantity->name, "", resolution, sizeof resolution);
+  if (widest > 0)
+    snprintf(caption, sizeof caption, "At most \xc2\xb1 %.2g: %s; %s", widest, intervals, resolution);
+  else
+    snprintf(caption, sizeof caption, "No interval: one run a point; %s", resolution);
+  return picture_map(page, &(struct picture_words){title, caption, x, y}, z, count, tile, error);
+}
+
+/* Makes a tile (x, y, value) of each row that has two numbers, and draws them. */
+static status make_tiles(struct store *store, const struct quantity *quantity, double (*tile)[3],
+                         const struct picture_page *page, struct error *error) {
+  double widest = 0; /* half width of the widest interval, in the quantity's unit; 0: there is none */
+  size_t count = 0;
+  for (size_t r = 0; r < quantity->count; r++) {
+    const struct row *row = &quantity->row[r];
+    if (isnan(row->input[0]) || isnan(row->input[1]))
+      continue; /* off, or does not apply: an axis of numbers cannot show it */
+    for (size_t i = 0; quantity->exponent && i < count; i++)
+      if (tile[i][0] == row->input[0] && tile[i][1] == row->input[1])
+        return status_fail(error, STATUS_USAGE,
+                           "several points share %s = %g and %s = %g: their exponents are not averaged",
+                           quantity->column[0], row->input[0], quantity->column[1], row->input[1]);
+    tile[count][0] = row->input[0];
+    tile[count][1] = row->input[1];
+    tile[count++][2] = row->value;
+    widest = fmax(widest, row->upper - row->value); /* NaN: no interval */
+  }
+  return draw_tiles(store, quantity, count, (const double(*)[3])tile, widest, page, error);
+}
+
+status quantity_map(struct store *store, const char *x, const char *y, const char *name,
+                    const struct picture_page *page, struct error *error) {
+  struct quantity quantity = {0};
+  status code = read_quantity(store, x, y, name, true, "a map needs two different inputs (--x, --y) and one quantity",
+                              &quantity, error);
+  double(*tile)[3] = calloc(quantity.count + 1, sizeof *tile);
+  if (code == STATUS_OK)
+    code = tile ? make_tiles(store, &quantity, tile, page, error) : status_fail(error, STATUS_MEMORY, "out of memory");
+  if (code == STATUS_OK)
+    quantity_tell_resolution(store, name, quantity.pooled);
+  free(tile);
+  free(quantity.row);
+  return code;
 }

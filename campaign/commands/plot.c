@@ -17,7 +17,7 @@ static status check(const struct command_line *line, struct error *error) {
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const struct picture_page page = charts_page(line->arguments[1], &options->chart);
-  return plot_lines_draw(store, options->x, options->by, options->quantity, &page, error);
+  return quantity_plot(store, options->x, options->by, options->quantity, &page, error);
 }
 
 static const struct option_row rows[] = {
@@ -27,12 +27,4 @@ static const struct option_row rows[] = {
     CHART_OPTIONS(struct options, chart),
 };
 
-const struct command plot_command = {
-    .name = "plot",
-    .group = "results",
-    .arguments = "STORE PICTURE.png",
-    .text = plot_text,
-    COMMAND_OPTIONS(struct options, rows),
-    .check = check,
-    .ask = ask,
-};
+COMMAND(plot, "results", "STORE PICTURE.png", COMMAND_OPTIONS(struct options, rows), .check = check, .ask = ask);
