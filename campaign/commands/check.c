@@ -25,10 +25,4 @@ static status ask(struct store *store, const struct command_line *line, struct e
   return code;
 }
 
-const struct command check_command = {
-    .name = "check",
-    .group = "the store",
-    .arguments = "STORE",
-    .text = check_text,
-    .ask = ask,
-};
+COMMAND(check, "the store", "STORE", .ask = ask);

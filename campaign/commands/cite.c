@@ -177,12 +177,4 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("bibtex", 0, struct options, bibtex),
 };
 
-const struct command cite_command = {
-    .name = "cite",
-    .group = "scenes and inputs",
-    .arguments = "SCENE",
-    .text = cite_text,
-    COMMAND_OPTIONS(struct options, rows),
-    .has_table = true,
-    .run = run,
-};
+COMMAND(cite, "scenes and inputs", "SCENE", COMMAND_OPTIONS(struct options, rows), .has_table = true, .run = run);

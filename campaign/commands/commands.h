@@ -5,46 +5,54 @@
 #include "campaign/terminal/option.h"
 
 /* The commands in the order of `clast help`. */
-#define COMMANDS(COMMAND)                                                                                              \
-  /* running */ COMMAND(run)                                                                                           \
-  COMMAND(plan)                                                                                                        \
-  COMMAND(simulate)                                                                                                    \
-  COMMAND(converge)                                                                                                    \
-  COMMAND(fit)                                                                                                         \
-  COMMAND(serve)                                                                                                       \
-  COMMAND(retry)                                                                                                       \
-  /* scenes and inputs */ COMMAND(scenes)                                                                              \
-  COMMAND(materials)                                                                                                   \
-  COMMAND(explain)                                                                                                     \
-  COMMAND(schema)                                                                                                      \
-  COMMAND(cite)                                                                                                        \
-  /* results */ COMMAND(status)                                                                                        \
-  COMMAND(estimates)                                                                                                   \
-  COMMAND(exponents)                                                                                                   \
-  COMMAND(stats)                                                                                                       \
-  COMMAND(scatter)                                                                                                     \
-  COMMAND(sensitivity)                                                                                                 \
-  COMMAND(spectrum)                                                                                                    \
-  COMMAND(compare)                                                                                                     \
-  COMMAND(query)                                                                                                       \
-  COMMAND(plot)                                                                                                        \
-  COMMAND(map)                                                                                                         \
-  COMMAND(extremes)                                                                                                    \
-  COMMAND(picture)                                                                                                     \
-  COMMAND(report)                                                                                                      \
-  /* the store */ COMMAND(check)                                                                                       \
-  COMMAND(export)                                                                                                      \
-  COMMAND(merge)                                                                                                       \
-  COMMAND(replay)                                                                                                      \
-  /* about clast */ COMMAND(help)                                                                                      \
-  COMMAND(version)                                                                                                     \
-  COMMAND(completion)
+#define COMMANDS(ENTRY)                                                                                                \
+  /* running */ ENTRY(run)                                                                                             \
+  ENTRY(plan)                                                                                                          \
+  ENTRY(simulate)                                                                                                      \
+  ENTRY(converge)                                                                                                      \
+  ENTRY(fit)                                                                                                           \
+  ENTRY(serve)                                                                                                         \
+  ENTRY(retry)                                                                                                         \
+  /* scenes and inputs */ ENTRY(scenes)                                                                                \
+  ENTRY(materials)                                                                                                     \
+  ENTRY(explain)                                                                                                       \
+  ENTRY(schema)                                                                                                        \
+  ENTRY(cite)                                                                                                          \
+  /* results */ ENTRY(status)                                                                                          \
+  ENTRY(estimates)                                                                                                     \
+  ENTRY(exponents)                                                                                                     \
+  ENTRY(stats)                                                                                                         \
+  ENTRY(scatter)                                                                                                       \
+  ENTRY(sensitivity)                                                                                                   \
+  ENTRY(spectrum)                                                                                                      \
+  ENTRY(compare)                                                                                                       \
+  ENTRY(query)                                                                                                         \
+  ENTRY(plot)                                                                                                          \
+  ENTRY(map)                                                                                                           \
+  ENTRY(extremes)                                                                                                      \
+  ENTRY(picture)                                                                                                       \
+  ENTRY(report)                                                                                                        \
+  /* the store */ ENTRY(check)                                                                                         \
+  ENTRY(export)                                                                                                        \
+  ENTRY(merge)                                                                                                         \
+  ENTRY(replay)                                                                                                        \
+  /* about clast */ ENTRY(help)                                                                                        \
+  ENTRY(version)                                                                                                       \
+  ENTRY(completion)
 
 /* The record of each command, and its text, which CMakeLists.txt embeds. */
 #define COMMANDS_DECLARE(name_)                                                                                        \
   extern const struct command name_##_command;                                                                         \
   extern const char name_##_text[];
 COMMANDS(COMMANDS_DECLARE)
+
+/* Defines the record of a command: name, heading in `clast help`, arguments, and other members of struct command. */
+#define COMMAND(name_, group_, arguments_, ...)                                                                        \
+  const struct command name_##_command = {.name = #name_,                                                              \
+                                          .group = group_,                                                             \
+                                          .arguments = arguments_,                                                     \
+                                          .text = name_##_text,                                                        \
+                                          __VA_ARGS__}
 
 size_t commands_count(void);
 const struct command *const *commands_all(void);

@@ -32,10 +32,7 @@ static status run(const struct command_line *line, struct error *error) {
   for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
     print(table, &row);
   status code = ask_pairs_end(pairs, error);
-  if (code)
-    table_drop(table);
-  else
-    code = table_end(table, error);
+  code = table_finish(table, code, error);
   if (code == STATUS_OK && line->format == TABLE_TEXT)
     fprintf(stderr,
             "clast: %s: b less a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "
@@ -49,12 +46,4 @@ static const struct option_row rows[] = {
     OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
 };
 
-const struct command compare_command = {
-    .name = "compare",
-    .group = "results",
-    .arguments = "A B",
-    .text = compare_text,
-    COMMAND_OPTIONS(struct options, rows),
-    .has_table = true,
-    .run = run,
-};
+COMMAND(compare, "results", "A B", COMMAND_OPTIONS(struct options, rows), .has_table = true, .run = run);

@@ -100,10 +100,4 @@ static status run(const struct command_line *line, struct error *error) {
                      line->arguments[0]);
 }
 
-const struct command completion_command = {
-    .name = "completion",
-    .group = "about clast",
-    .arguments = "SHELL [WORD...]",
-    .text = completion_text,
-    .run = run,
-};
+COMMAND(completion, "about clast", "SHELL [WORD...]", .run = run);

@@ -54,13 +54,5 @@ static const struct option_row rows[] = {
     LAUNCH_OPTIONS(struct options, launch),
 };
 
-const struct command converge_command = {
-    .name = "converge",
-    .group = "running",
-    .arguments = "[SCENE|CAMPAIGN.yaml]",
-    .text = converge_text,
-    .has_runs = true,
-    COMMAND_OPTIONS(struct options, rows),
-    .has_table = true,
-    .run = run,
-};
+COMMAND(converge, "running", "[SCENE|CAMPAIGN.yaml]", .has_runs = true, COMMAND_OPTIONS(struct options, rows),
+        .has_table = true, .run = run);

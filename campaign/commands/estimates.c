@@ -24,12 +24,4 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_INTEGER("campaign", 0, "N", struct options, campaign, 0, INT64_MAX, "0"),
 };
 
-const struct command estimates_command = {
-    .name = "estimates",
-    .group = "results",
-    .arguments = "STORE",
-    .text = estimates_text,
-    COMMAND_OPTIONS(struct options, option_rows),
-    .has_table = true,
-    .ask = ask,
-};
+COMMAND(estimates, "results", "STORE", COMMAND_OPTIONS(struct options, option_rows), .has_table = true, .ask = ask);

@@ -378,12 +378,5 @@ static const struct option_row rows[] = {
     SCENE_OPTION_SET(struct options, set),
 };
 
-const struct command explain_command = {
-    .name = "explain",
-    .group = "scenes and inputs",
-    .arguments = "[PATH|WORD|SCENE]",
-    .text = explain_text,
-    COMMAND_OPTIONS(struct options, rows),
-    .has_table = true,
-    .run = run,
-};
+COMMAND(explain, "scenes and inputs", "[PATH|WORD|SCENE]", COMMAND_OPTIONS(struct options, rows), .has_table = true,
+        .run = run);

@@ -11,14 +11,6 @@ struct options {
   const char *where;
 };
 
-static void print_headings(struct table *table) {
-  table_column(table, "point_id", NULL);
-  table_column(table, "from", "kg");
-  table_column(table, OUTCOME_NAME(complete_mass), "kg");
-  table_columns(table, (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "N(>m)", "F(L)", "N(>L)",
-                                             "N(>L)_hw95", "distance", "p", "cutoff_p", "lognormal_p", NULL});
-}
-
 /* Prints a point's exponent under its four names, with the goodness of its fit by `draws` samples of the bootstrap.
  * Points without estimates have no row. */
 static status print_pool(struct table *table, size_t draws, const struct ask_pool *pool, struct error *error) {
@@ -60,18 +52,18 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct ask_pool_choice choice = {.point = options->point, .where = options->where};
   TRY(ask_points_known(store, options->point, error));
   struct table *table = table_new(line->format, stdout);
-  print_headings(table);
+  table_column(table, "point_id", NULL);
+  table_column(table, "from", "kg");
+  table_column(table, OUTCOME_NAME(complete_mass), "kg");
+  table_columns(table, (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "N(>m)", "F(L)", "N(>L)",
+                                             "N(>L)_hw95", "distance", "p", "cutoff_p", "lognormal_p", NULL});
   ASK_POOLS pools = ask_pools(store, &choice, NULL, error);
   status code = STATUS_OK;
   for (const struct ask_pool *pool; code == STATUS_OK && !table_broken(table) && (pool = ask_pools_next(&pools));)
     code = print_pool(table, (size_t)options->draws, pool, error);
   if (code == STATUS_OK)
     code = ask_pools_end(&pools);
-  if (code && !table_broken(table)) {
-    table_drop(table);
-    return code;
-  }
-  code = table_end(table, error);
+  code = table_finish(table, code, error);
   if (code == STATUS_OK && line->format == TABLE_TEXT)
     fputs("clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete mass. "
           "p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better\n",
@@ -85,12 +77,4 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_INTEGER("draws", 0, "N", struct options, draws, 100, 1000000, "2500"),
 };
 
-const struct command exponents_command = {
-    .name = "exponents",
-    .group = "results",
-    .arguments = "STORE",
-    .text = exponents_text,
-    COMMAND_OPTIONS(struct options, option_rows),
-    .has_table = true,
-    .ask = ask,
-};
+COMMAND(exponents, "results", "STORE", COMMAND_OPTIONS(struct options, option_rows), .has_table = true, .ask = ask);

@@ -70,12 +70,5 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("author", 0, "NAME", struct options, author, NULL),
 };
 
-const struct command export_command = {
-    .name = "export",
-    .group = "the store",
-    .arguments = "STORE [TARGET]",
-    .text = export_text,
-    COMMAND_OPTIONS(struct options, option_rows),
-    .check = check,
-    .ask = ask,
-};
+COMMAND(export, "the store", "STORE [TARGET]", COMMAND_OPTIONS(struct options, option_rows), .check = check,
+        .ask = ask);

@@ -28,12 +28,4 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("why", 0, struct options, why),
 };
 
-const struct command extremes_command = {
-    .name = "extremes",
-    .group = "results",
-    .arguments = "STORE",
-    .text = extremes_text,
-    COMMAND_OPTIONS(struct options, rows),
-    .has_table = true,
-    .ask = ask,
-};
+COMMAND(extremes, "results", "STORE", COMMAND_OPTIONS(struct options, rows), .has_table = true, .ask = ask);

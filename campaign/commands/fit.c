@@ -18,13 +18,5 @@ static const struct option_row rows[] = {
     LAUNCH_OPTIONS(struct fit_launch_options, launch),
 };
 
-const struct command fit_command = {
-    .name = "fit",
-    .group = "running",
-    .arguments = "MEASURED.yaml CAMPAIGN.yaml",
-    .text = fit_text,
-    .has_runs = true,
-    COMMAND_OPTIONS(struct fit_launch_options, rows),
-    .has_table = true,
-    .run = run,
-};
+COMMAND(fit, "running", "MEASURED.yaml CAMPAIGN.yaml", .has_runs = true,
+        COMMAND_OPTIONS(struct fit_launch_options, rows), .has_table = true, .run = run);

@@ -236,11 +236,4 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("man", 0, struct options, man),
 };
 
-const struct command help_command = {
-    .name = "help",
-    .group = "about clast",
-    .arguments = "[COMMAND]",
-    .text = help_text,
-    COMMAND_OPTIONS(struct options, rows),
-    .run = run,
-};
+COMMAND(help, "about clast", "[COMMAND]", COMMAND_OPTIONS(struct options, rows), .run = run);

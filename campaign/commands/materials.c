@@ -41,8 +41,7 @@ static status list(const struct engine_materials *materials, enum table_format f
     table_text(table, what);
   }
   free(material);
-  status ended = table_end(table, code ? NULL : error);
-  return code ? code : ended;
+  return table_finish(table, code, error);
 }
 
 /* Prints the document of a named material, or checks a file and prints it unchanged. */
@@ -84,11 +83,4 @@ static status run(const struct command_line *line, struct error *error) {
   return print_document(materials_of(line->arguments[0]), line->arguments[0], error);
 }
 
-const struct command materials_command = {
-    .name = "materials",
-    .group = "scenes and inputs",
-    .arguments = "[NAME|FILE]",
-    .text = materials_text,
-    .has_table = true,
-    .run = run,
-};
+COMMAND(materials, "scenes and inputs", "[NAME|FILE]", .has_table = true, .run = run);

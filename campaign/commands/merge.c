@@ -51,10 +51,4 @@ static status run(const struct command_line *line, struct error *error) {
   return STATUS_OK;
 }
 
-const struct command merge_command = {
-    .name = "merge",
-    .group = "the store",
-    .arguments = "TARGET SOURCE...",
-    .text = merge_text,
-    .run = run,
-};
+COMMAND(merge, "the store", "TARGET SOURCE...", .run = run);

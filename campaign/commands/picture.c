@@ -15,11 +15,4 @@ static const struct option_row rows[] = {
     CHART_OPTIONS(struct picture_choice, chart),
 };
 
-const struct command picture_command = {
-    .name = "picture",
-    .group = "results",
-    .arguments = "FIELDS.hdf PICTURE.png",
-    .text = picture_text,
-    COMMAND_OPTIONS(struct picture_choice, rows),
-    .run = run,
-};
+COMMAND(picture, "results", "FIELDS.hdf PICTURE.png", COMMAND_OPTIONS(struct picture_choice, rows), .run = run);

@@ -69,11 +69,4 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("json", 0, struct options, json),
 };
 
-const struct command plan_command = {
-    .name = "plan",
-    .group = "running",
-    .arguments = "CAMPAIGN.yaml",
-    .text = plan_text,
-    COMMAND_OPTIONS(struct options, rows),
-    .run = run,
-};
+COMMAND(plan, "running", "CAMPAIGN.yaml", COMMAND_OPTIONS(struct options, rows), .run = run);

@@ -79,12 +79,5 @@ static const struct option_row rows_of_options[] = {
     OPTION_ROW_INTEGER("seconds", 0, "S", struct options, seconds, 0, 1000000, "0"),
 };
 
-const struct command query_command = {
-    .name = "query",
-    .group = "results",
-    .arguments = "[STORE] [SQL]",
-    .text = query_text,
-    COMMAND_OPTIONS(struct options, rows_of_options),
-    .has_table = true,
-    .run = run,
-};
+COMMAND(query, "results", "[STORE] [SQL]", COMMAND_OPTIONS(struct options, rows_of_options), .has_table = true,
+        .run = run);

@@ -23,8 +23,7 @@ static status print_differences(struct store *store, int64_t run_id, const struc
     table_drop(table);
     return code;
   }
-  status ended = table_end(table, code ? NULL : error);
-  return code ? code : ended;
+  return table_finish(table, code, error);
 }
 
 /* Explains the result of the comparison to people. */
@@ -78,13 +77,5 @@ static const struct option_row rows[] = {
     OPTION_ROW_OUTPUT(OPTION_OUTPUT, "fields", 0, "FILE.h5", struct options, fields),
 };
 
-const struct command replay_command = {
-    .name = "replay",
-    .group = "the store",
-    .arguments = "STORE RUN",
-    .text = replay_text,
-    COMMAND_OPTIONS(struct options, rows),
-    .has_table = true,
-    .check = check,
-    .ask = ask,
-};
+COMMAND(replay, "the store", "STORE RUN", COMMAND_OPTIONS(struct options, rows), .has_table = true, .check = check,
+        .ask = ask);

@@ -62,11 +62,4 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_INTEGER("every", 0, "S", struct options, every, 1, EVERY_MOST, "10"),
 };
 
-const struct command report_command = {
-    .name = "report",
-    .group = "results",
-    .arguments = "STORE...",
-    .text = report_text,
-    COMMAND_OPTIONS(struct options, option_rows),
-    .run = run,
-};
+COMMAND(report, "results", "STORE...", COMMAND_OPTIONS(struct options, option_rows), .run = run);

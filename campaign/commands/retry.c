@@ -74,13 +74,5 @@ static const struct option_row rows[] = {
     LAUNCH_OPTIONS(struct options, launch),
 };
 
-const struct command retry_command = {
-    .name = "retry",
-    .group = "running",
-    .arguments = "STORE",
-    .text = retry_text,
-    .has_runs = true,
-    COMMAND_OPTIONS(struct options, rows),
-    .has_table = true,
-    .run = run,
-};
+COMMAND(retry, "running", "STORE", .has_runs = true, COMMAND_OPTIONS(struct options, rows), .has_table = true,
+        .run = run);

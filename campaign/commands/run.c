@@ -39,13 +39,5 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("dry-run", 'n', struct options, dry_run),
 };
 
-const struct command run_command = {
-    .name = "run",
-    .group = "running",
-    .arguments = "CAMPAIGN.yaml",
-    .text = run_text,
-    .has_runs = true,
-    COMMAND_OPTIONS(struct options, rows),
-    .has_table = true,
-    .run = run,
-};
+COMMAND(run, "running", "CAMPAIGN.yaml", .has_runs = true, COMMAND_OPTIONS(struct options, rows), .has_table = true,
+        .run = run);

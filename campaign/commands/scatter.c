@@ -58,12 +58,4 @@ static const struct option_row option_rows[] = {
     CHART_OPTIONS(struct options, chart),
 };
 
-const struct command scatter_command = {
-    .name = "scatter",
-    .group = "results",
-    .arguments = "STORE",
-    .text = scatter_text,
-    COMMAND_OPTIONS(struct options, option_rows),
-    .has_table = true,
-    .ask = ask,
-};
+COMMAND(scatter, "results", "STORE", COMMAND_OPTIONS(struct options, option_rows), .has_table = true, .ask = ask);

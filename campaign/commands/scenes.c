@@ -44,8 +44,7 @@ static status print_list(enum table_format format, struct error *error) {
   status code = STATUS_OK;
   for (size_t i = 0; !code && i < scene_builtin_count(); i++)
     code = add_row(table, scene_builtin_name(i), error);
-  const status ended = table_end(table, code ? NULL : error);
-  return code ? code : ended;
+  return table_finish(table, code, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {
@@ -55,11 +54,4 @@ static status run(const struct command_line *line, struct error *error) {
   return print_document(line->arguments[0], error);
 }
 
-const struct command scenes_command = {
-    .name = "scenes",
-    .group = "scenes and inputs",
-    .arguments = "[NAME]",
-    .text = scenes_text,
-    .has_table = true,
-    .run = run,
-};
+COMMAND(scenes, "scenes and inputs", "[NAME]", .has_table = true, .run = run);

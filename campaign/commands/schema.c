@@ -54,11 +54,4 @@ static const struct option_row rows[] = {
     OPTION_ROW_TEXT("engine", 0, "NAME", struct options, engine, "dem"),
 };
 
-const struct command schema_command = {
-    .name = "schema",
-    .group = "scenes and inputs",
-    .arguments = "scene|campaign",
-    .text = schema_text,
-    COMMAND_OPTIONS(struct options, rows),
-    .run = run,
-};
+COMMAND(schema, "scenes and inputs", "scene|campaign", COMMAND_OPTIONS(struct options, rows), .run = run);

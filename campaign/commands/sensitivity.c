@@ -43,12 +43,5 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
 };
 
-const struct command sensitivity_command = {
-    .name = "sensitivity",
-    .group = "results",
-    .arguments = "STORE|CAMPAIGN.yaml NEW.yaml",
-    .text = sensitivity_text,
-    COMMAND_OPTIONS(struct options, option_rows),
-    .has_table = true,
-    .run = run,
-};
+COMMAND(sensitivity, "results", "STORE|CAMPAIGN.yaml NEW.yaml", COMMAND_OPTIONS(struct options, option_rows),
+        .has_table = true, .run = run);

@@ -75,11 +75,4 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("in-process", 0, struct options, launch.in_process),
 };
 
-const struct command serve_command = {
-    .name = "serve",
-    .group = "running",
-    .arguments = "CAMPAIGN.yaml",
-    .text = serve_text,
-    COMMAND_OPTIONS(struct options, rows),
-    .run = run,
-};
+COMMAND(serve, "running", "CAMPAIGN.yaml", COMMAND_OPTIONS(struct options, rows), .run = run);

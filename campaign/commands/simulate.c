@@ -56,13 +56,5 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("quiet", 'q', struct options, run.quiet),
 };
 
-const struct command simulate_command = {
-    .name = "simulate",
-    .group = "running",
-    .arguments = "SCENE",
-    .text = simulate_text,
-    .has_runs = true,
-    COMMAND_OPTIONS(struct options, rows),
-    .has_table = true,
-    .run = run,
-};
+COMMAND(simulate, "running", "SCENE", .has_runs = true, COMMAND_OPTIONS(struct options, rows), .has_table = true,
+        .run = run);

@@ -57,12 +57,4 @@ static const struct option_row option_rows[] = {
     CHART_OPTIONS(struct options, chart),
 };
 
-const struct command spectrum_command = {
-    .name = "spectrum",
-    .group = "results",
-    .arguments = "STORE",
-    .text = spectrum_text,
-    COMMAND_OPTIONS(struct options, option_rows),
-    .has_table = true,
-    .ask = ask,
-};
+COMMAND(spectrum, "results", "STORE", COMMAND_OPTIONS(struct options, option_rows), .has_table = true, .ask = ask);

@@ -64,13 +64,5 @@ static const struct option_row rows_of_options[] = {
     OPTION_ROW_TEXT("quantity", 'q', "NAMES", struct options, quantity, OUTCOME_DEFAULT),
 };
 
-const struct command stats_command = {
-    .name = "stats",
-    .group = "results",
-    .arguments = "STORE",
-    .text = stats_text,
-    COMMAND_OPTIONS(struct options, rows_of_options),
-    .has_table = true,
-    .check = check,
-    .ask = ask,
-};
+COMMAND(stats, "results", "STORE", COMMAND_OPTIONS(struct options, rows_of_options), .has_table = true, .check = check,
+        .ask = ask);

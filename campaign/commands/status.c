@@ -8,11 +8,4 @@ static status ask(struct store *store, const struct command_line *line, struct e
   return table_answer(ask_campaign_progress(store, writing, error), false, line->format, stdout);
 }
 
-const struct command status_command = {
-    .name = "status",
-    .group = "results",
-    .arguments = "STORE",
-    .text = status_text,
-    .has_table = true,
-    .ask = ask,
-};
+COMMAND(status, "results", "STORE", .has_table = true, .ask = ask);

@@ -261,11 +261,7 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
     code = print_point(&printing, &row, error);
   if (code == STATUS_OK)
     code = answer_end(&points);
-  if (code && !table_broken(printing.table)) {
-    table_drop(printing.table);
-    return code;
-  }
-  code = table_end(printing.table, error);
+  code = table_finish(printing.table, code, error);
   if (format == TABLE_TEXT && printing.shown < printing.axes)
     fprintf(stderr, "clast: %zu of %zu varied inputs are not shown for lack of room; --csv and --json have all\n",
             printing.axes - printing.shown, printing.axes);

@@ -25,6 +25,12 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
 /* Explains on stderr the columns of the aligned table, its intervals, and the known errors of the resolution. */
 void print_estimates_legend(struct store *store);
 
+/* ---- pools: the columns and cells that tell them apart, which are the inputs of --by and the number of points, or the
+ * point ---- */
+
+void print_pool_columns(struct table *table, const struct ask_pools *pools);
+void print_pool_cells(struct table *table, const struct ask_pools *pools, const struct ask_pool *pool);
+
 /* ---- spectra as rows, and their distances from a measured spectrum ---- */
 
 /* Prints one row per bin of each pool (or of each run). */

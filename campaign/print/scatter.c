@@ -6,39 +6,22 @@
 #include <stdlib.h>
 
 #include "campaign/charts/charts.h"
-#include "campaign/terminal/table.h"
 
 enum { COLUMNS = 100 };
 
 struct printing {
   const struct scatter_choice *choice;
-  enum table_format format;
   struct table *table;
-  bool several; /* a pool has more than one point */
+  const struct ask_pools *pools;
+  const struct ask_pool *pool;
 };
 
-static void start(struct printing *printing, const struct ask_pool *pool) {
-  printing->table = table_new(printing->format, stdout);
-  for (size_t a = 0; pool && a < pool->axes; a++)
-    table_column(printing->table, pool->column[a], NULL);
-  table_column(printing->table, printing->choice->pool.by ? "points" : "point_id", NULL);
-  table_columns(printing->table, (const char *const[]){"statistic", "value", "low", "high", NULL});
-}
-
-static void row(const struct printing *printing, const struct ask_pool *pool, const char *name, double value,
-                double low, double high) {
-  for (size_t a = 0; a < pool->axes; a++)
-    table_value(printing->table, &pool->input[a]);
-  table_integer(printing->table, printing->choice->pool.by ? (int64_t)pool->points : pool->data.point_id);
+static void row(const struct printing *printing, const char *name, double value, double low, double high) {
+  print_pool_cells(printing->table, printing->pools, printing->pool);
   table_text(printing->table, name);
   table_real(printing->table, value);
   table_real(printing->table, low);
   table_real(printing->table, high);
-}
-
-static void about(const struct printing *printing, const struct ask_pool *pool, const char *name, double value,
-                  double half_width) {
-  row(printing, pool, name, value, value - half_width, value + half_width);
 }
 
 /* Number of runs for the wanted interval, from the standard deviation. NaN: not known. */
@@ -47,66 +30,58 @@ static double needed(double deviation, double half_width) {
   return runs ? (double)runs : (double)NAN;
 }
 
-static void print_scatter(const struct printing *printing, const struct ask_pool *pool, const struct scatter *s) {
+static void print_scatter(const struct printing *printing, const struct scatter *s) {
   static const char *const names[SCATTER_QUANTILES] = {"q05", "q25", "median", "q75", "q95"};
   const double wanted = printing->choice->half_width, deviation = s->deviation.estimate;
-  const double room = s->deviation.half_width;
-  row(printing, pool, "runs", (double)s->n, NAN, NAN);
-  about(printing, pool, "mean", s->mean.mean, s->mean.half_width);
-  row(printing, pool, "standard deviation", deviation, fmax(deviation - room, 0), deviation + room);
-  about(printing, pool, "skewness", s->skewness.estimate, s->skewness.half_width);
+  const double least = fmax(deviation - s->deviation.half_width, 0), most = deviation + s->deviation.half_width;
+  const double mean = s->mean.mean, skewness = s->skewness.estimate, room = s->skewness.half_width;
+  row(printing, "runs", (double)s->n, NAN, NAN);
+  row(printing, "mean", mean, mean - s->mean.half_width, mean + s->mean.half_width);
+  row(printing, "standard deviation", deviation, least, most);
+  row(printing, "skewness", skewness, skewness - room, skewness + room);
   for (int q = 0; q < SCATTER_QUANTILES; q++)
-    row(printing, pool, names[q], s->quantile[q].value, s->quantile[q].low, s->quantile[q].high);
-  row(printing, pool, "dip", s->dip, NAN, NAN);
-  row(printing, pool, "dip p", s->dip_share, NAN, NAN);
+    row(printing, names[q], s->quantile[q].value, s->quantile[q].low, s->quantile[q].high);
+  row(printing, "dip", s->dip, NAN, NAN);
+  row(printing, "dip p", s->dip_share, NAN, NAN);
   if (isfinite(s->between)) {
-    row(printing, pool, "lower mode", s->lower_mode, s->sorted[0], s->between);
-    row(printing, pool, "upper mode", s->upper_mode, s->between, s->sorted[s->n - 1]);
-    row(printing, pool, "share of upper mode", s->upper_share, s->upper_low, s->upper_high);
+    row(printing, "lower mode", s->lower_mode, s->sorted[0], s->between);
+    row(printing, "upper mode", s->upper_mode, s->between, s->sorted[s->n - 1]);
+    row(printing, "share of upper mode", s->upper_share, s->upper_low, s->upper_high);
   }
   if (isfinite(wanted))
-    row(printing, pool, "runs needed", needed(deviation, wanted), needed(fmax(deviation - room, 0), wanted),
-        needed(deviation + room, wanted));
-}
-
-static status print_pool(struct printing *printing, const struct ask_pool *pool, struct error *error) {
-  struct scatter scatter;
-  TRY(scatter_make(pool->data.runs.count, pool->value, &scatter, error));
-  if (!printing->table)
-    start(printing, pool);
-  printing->several |= pool->points > 1;
-  print_scatter(printing, pool, &scatter);
-  scatter_release(&scatter);
-  return table_broken(printing->table) ? STATUS_IO : STATUS_OK;
+    row(printing, "runs needed", needed(deviation, wanted), needed(least, wanted), needed(most, wanted));
 }
 
 status print_scatter_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,
                           struct error *error) {
-  struct printing printing = {.choice = choice, .format = format};
   ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
+  TRY(pools.code);
+  struct printing printing = {.choice = choice, .table = table_new(format, stdout), .pools = &pools};
+  print_pool_columns(printing.table, &pools);
+  table_columns(printing.table, (const char *const[]){"statistic", "value", "low", "high", NULL});
+  bool several = false; /* a pool has more than one point */
   status code = STATUS_OK;
-  for (const struct ask_pool *pool; code == STATUS_OK && (pool = ask_pools_next(&pools));)
-    code = print_pool(&printing, pool, error);
+  while (code == STATUS_OK && !table_broken(printing.table) && (printing.pool = ask_pools_next(&pools))) {
+    struct scatter scatter;
+    several |= printing.pool->points > 1;
+    code = scatter_make(printing.pool->data.runs.count, printing.pool->value, &scatter, error);
+    if (code)
+      break;
+    print_scatter(&printing, &scatter);
+    scatter_release(&scatter);
+  }
   if (code == STATUS_OK)
     code = ask_pools_end(&pools);
-  if (code && !printing.table)
-    return code;
-  if (!printing.table)
-    start(&printing, NULL);
-  if (code && !table_broken(printing.table)) {
-    (void)table_end(printing.table, NULL);
-    return code;
-  }
   if (code == STATUS_OK && format == TABLE_TEXT)
     fputs(
         "clast: low and high: 95 % intervals over runs; of modes the values that belong to them. dip p below 0.05: the "
         "runs have two modes\n",
         stderr);
-  if (printing.several)
+  if (code == STATUS_OK && several)
     fputs("clast: pooled over points: the scatter holds that of the inputs; the intervals take the runs as "
           "independent\n",
           stderr);
-  return table_end(printing.table, error);
+  return table_finish(printing.table, code, error);
 }
 
 static status plot_pool(bool ascii, const struct ask_pool *pool, struct error *error) {

@@ -378,6 +378,16 @@ status table_end(struct table *table, struct error *error) {
   return verdict(out, write_error, error);
 }
 
+status table_finish(struct table *table, status code, struct error *error) {
+  if (code == STATUS_OK || table_broken(table))
+    return table_end(table, error);
+  if (table->rows == 0)
+    table_drop(table);
+  else
+    (void)table_end(table, NULL);
+  return code;
+}
+
 status table_text_only(enum table_format format, const char *what, struct error *error) {
   if (format != TABLE_TEXT)
     return status_fail(error, STATUS_USAGE, "%s is text, not a table: leave --%s out", what,
@@ -487,9 +497,5 @@ status table_answer(struct answer answer, bool written, enum table_format format
   free(rows.place);
   const status end = answer_end(&answer);
   code = code ? code : end;
-  if (code && !table_broken(rows.table)) { /* the printed rows stay */
-    (void)table_end(rows.table, NULL);
-    return code;
-  }
-  return table_end(rows.table, answer.error);
+  return table_finish(rows.table, code, answer.error);
 }

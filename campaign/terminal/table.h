@@ -38,6 +38,10 @@ void table_missing(struct table *table);
  * head`) is not an error. */
 status table_end(struct table *table, struct error *error);
 
+/* The same after a loop that ended with the status `code`: after an error the rows so far are printed, and nothing if
+ * there is none. Returns `code`, or for a table that could not be written what table_end returns. */
+status table_finish(struct table *table, status code, struct error *error);
+
 void table_drop(struct table *table); /* frees the table without printing the remaining rows */
 
 /* True when the pipe is closed or writing has failed: more rows are not needed. */

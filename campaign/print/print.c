@@ -1,4 +1,4 @@
-/* Prints a run's results: long for people, wide for programs. */
+/* Cells that several tables have, and a run's results: long for people, wide for programs. */
 #include "campaign/print/print.h"
 
 #include <math.h>
@@ -7,6 +7,18 @@
 #include "analysis/statistics/estimates.h"
 #include "campaign/terminal/uncertainty.h"
 #include "schemas/text.h"
+
+void print_pool_columns(struct table *table, const struct ask_pools *pools) {
+  for (size_t a = 0; a < pools->axes; a++)
+    table_column(table, pools->column[a], NULL);
+  table_column(table, pools->choice.by ? "points" : "point_id", NULL);
+}
+
+void print_pool_cells(struct table *table, const struct ask_pools *pools, const struct ask_pool *pool) {
+  for (size_t a = 0; a < pool->axes; a++)
+    table_value(table, &pool->input[a]);
+  table_integer(table, pools->choice.by ? (int64_t)pool->points : pool->data.point_id);
+}
 
 static void value_cell(struct table *table, const struct field *row, const void *object) {
   struct field_value value;
