@@ -8,6 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "schemas/text.h"
 #include "schemas/unit_names.h"
 
 /* Names of dimensions, for messages. */
@@ -164,12 +165,12 @@ static status term(struct parser *p, struct unit *unit, bool divide) {
 
 static status product(struct parser *p, struct unit *unit) {
   *unit = one;
-  bool divided = false, divide = false;
+  bool divide = *p->at == '/' && p->at == p->whole, divided = divide; /* "/m^3", as in "5e34 /m^3" */
+  p->at += divide;
   for (;;) {
     skip_spaces(p);
-    status code = term(p, unit, divide);
-    if (code)
-      return code;
+    TRY(term(p, unit, divide));
+    const char *const end = p->at;
     skip_spaces(p);
     if (*p->at == 0 || *p->at == ')')
       return STATUS_OK;
@@ -177,6 +178,9 @@ static status product(struct parser *p, struct unit *unit) {
     divide = *p->at == '/';
     if (divide || *p->at == '*' || *p->at == '.')
       p->at++;
+    else if (p->at == end && *end != '(' && end[-1] != ')')
+      return status_fail(p->error, STATUS_CONTENT, "unexpected '%.*s' in a unit; put a space or '*' between two units",
+                         QUOTE, end);
     if (divided && !divide)
       return status_fail(p->error, STATUS_CONTENT,
                          "unit '%.*s' is ambiguous: put the factors below the '/' in parentheses, such as J/(kg K)",
@@ -185,12 +189,43 @@ static status product(struct parser *p, struct unit *unit) {
   }
 }
 
+enum { UNIT_LENGTH = 200 };
+
+/* Writes typeset signs as the grammar has them: "kg·m⁻³" becomes "kg*m^-3". False: the unit is too long. */
+static bool plain_form(const char *text, char plain[UNIT_LENGTH]) {
+  static const char *const signs[][2] = {
+      {"\u00B7", "*"}, {"\u22C5", "*"}, {"\u00D7", "*"}, {"\u2212", "-"}, /* dots, cross, minus */
+      {"\u207B", "-"}, {"\u2070", "0"}, {"\u00B9", "1"}, {"\u00B2", "2"}, {"\u00B3", "3"}, {"\u2074", "4"},
+      {"\u2075", "5"}, {"\u2076", "6"}, {"\u2077", "7"}, {"\u2078", "8"}, {"\u2079", "9"}, /* superscripts */
+  };
+  enum { SIGNS = sizeof signs / sizeof signs[0], RAISED = 4 };
+  bool raised = false, whole = true;
+  plain[0] = '\0';
+  while (*text && whole) {
+    size_t k = 0;
+    while (k < SIGNS && strncmp(text, signs[k][0], strlen(signs[k][0])) != 0)
+      k++;
+    const bool raise = k < SIGNS && k >= RAISED;
+    if (k < SIGNS)
+      whole = text_append(plain, UNIT_LENGTH, "%s%s", raise && !raised ? "^" : "", signs[k][1]);
+    else
+      whole = text_append(plain, UNIT_LENGTH, "%c", *text);
+    text += k < SIGNS ? strlen(signs[k][0]) : 1;
+    raised = raise;
+  }
+  return whole;
+}
+
 status unit_parse(const char *text, struct unit *unit, struct error *error) {
-  struct parser p = {.whole = text, .at = text, .error = error};
+  char plain[UNIT_LENGTH];
+  struct parser p = {.whole = plain, .at = plain, .error = error};
   *unit = one;
-  status code = product(&p, unit);
-  if (code)
-    return code;
+  if (!plain_form(text, plain))
+    return status_fail(error, STATUS_CONTENT, "unit '%.*s' is too long", QUOTE, text);
+  const char *percent = strchr(plain, '%');
+  if (percent && strchr(percent + 1, '%'))
+    return status_fail(error, STATUS_CONTENT, "unit '%.*s' has two percent signs; write one", QUOTE, text);
+  TRY(product(&p, unit));
   if (*p.at)
     return status_fail(error, STATUS_CONTENT, "unexpected '%.*s' in a unit", QUOTE, p.at);
   unit->factor = unit->times / unit->per * pow(10, unit->ten);
