@@ -276,6 +276,10 @@ static document_node *section_at(struct document *document, const char *key) {
   return section && set(document->root, key, section) ? section : NULL;
 }
 
+bool document_is_put(const document_node *node) {
+  return node->put;
+}
+
 status document_change_put(struct document *document, const char *const keys[2], const char *value, const char *origin,
                            struct error *error) {
   if (!document->origin)

@@ -33,6 +33,7 @@ const char *document_text(const struct document *document); /* the file as read,
  * Call before the document is read. STATUS_CONTENT: keys[0] exists and is no mapping; STATUS_MEMORY. */
 status document_change_put(struct document *document, const char *const keys[2], const char *value, const char *origin,
                            struct error *error);
+bool document_is_put(const document_node *node); /* is it a value of document_change_put? */
 /* The document as text that document_parse reads to the same values; the caller frees it. It is the file as read or,
  * after document_change_put, the values without comments. NULL: no memory. */
 char *document_change_text(const struct document *document);

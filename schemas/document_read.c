@@ -240,6 +240,26 @@ static void read_row(struct reading *r, const struct field *row, document_node *
     field_set_unchecked(row, r->object, &value);
 }
 
+/* "first, per_point, max": the keys of a section. */
+static void keys_below(const struct field_table *table, const char *section, char *text, size_t size) {
+  const size_t length = strlen(section);
+  const char *last = "";
+  size_t last_length = 0;
+  *text = '\0';
+  for (size_t i = 0; i < table->count; i++) {
+    const char *path = table->rows[i].path;
+    if (strncmp(path, section, length) != 0 || path[length] != '.')
+      continue;
+    const char *key = path + length + 1;
+    const size_t key_length = strcspn(key, ".");
+    if (key_length == last_length && strncmp(key, last, key_length) == 0)
+      continue;
+    text_append(text, size, "%s%.*s", *text ? ", " : "", (int)key_length, key);
+    last = key;
+    last_length = key_length;
+  }
+}
+
 static void walk(struct reading *r, document_node *mapping, const char *prefix) {
   for (size_t i = 0; i < mapping->count; i++) {
     document_node *key = mapping->pairs[i].key, *node = mapping->pairs[i].value;
@@ -257,7 +277,10 @@ static void walk(struct reading *r, document_node *mapping, const char *prefix) 
       text_append(path, sizeof path, ".");
       walk(r, node, path);
     } else if (meaning.section) {
-      document_report(node, document_value_path(node, path, sizeof path), "expected keys and values below it, got %s",
+      char keys[200];
+      keys_below(r->table, path, keys, sizeof keys);
+      document_report(node, document_value_path(node, path, sizeof path),
+                      "expected keys and values below it (%s), got %s", keys,
                       document_value_is_null(node) ? "nothing" : document_value_what(node));
     } else {
       unknown(r, mapping, key, prefix);

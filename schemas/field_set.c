@@ -169,9 +169,16 @@ static status parse_text(const struct field *row, const char *text, struct field
   return STATUS_OK;
 }
 
+/* The number of 15 digits, without the residue of a conversion. */
+static double fifteen_digits(double number) {
+  char text[32];
+  snprintf(text, sizeof text, "%.15g", number);
+  return strtod(text, NULL);
+}
+
 static status percent_missing(const struct field *row, const char *text, int length, struct error *error) {
   char percent[32];
-  field_print_number(100 * strtod(text, NULL), percent);
+  field_print_number(fifteen_digits(100 * strtod(text, NULL)), percent);
   return status_fail(error, STATUS_CONTENT, "%s: %.*s is a percentage or a fraction; write '%.*s %%' or '%s %%'",
                      row->path, length, text, length, text, percent);
 }
@@ -193,6 +200,24 @@ static status check_unit(const struct field *row, const char *text, struct error
                      text, unit);
 }
 
+/* Tells the range of a number in the unit of its text: "below 90 deg, got 90 deg". */
+static status check_range_of_text(const struct field *row, const char *text, const struct field_value *came,
+                                  struct error *error) {
+  const char *unit = unit_of(text);
+  struct field_value ignored, told = *came;
+  struct unit written;
+  if (row->kind != FIELD_REAL || !*unit || strcmp(unit, field_shown_unit(row)) == 0 ||
+      unit_parse(unit, &written, NULL) != STATUS_OK || field_set_value(row, came, &ignored, NULL) == STATUS_OK)
+    return STATUS_OK;
+  struct field in_unit = *row;
+  in_unit.unit = unit;
+  in_unit.flags &= ~(unsigned)FIELD_PERCENT;
+  in_unit.minimum = fifteen_digits(row->minimum / written.factor);
+  in_unit.maximum = fifteen_digits(row->maximum / written.factor);
+  told.number = fifteen_digits(came->number / written.factor);
+  return field_set_value(&in_unit, &told, &ignored, error); /* or the message in SI, if this one can be accepted */
+}
+
 status field_parse_si(const struct field *row, const char *text, struct field_value *value, struct error *error) {
   struct field_value came = {.kind = row->kind};
   switch (row->kind) {
@@ -209,6 +234,7 @@ status field_parse_si(const struct field *row, const char *text, struct field_va
     field_copy_text(came.text, text);
     break;
   }
+  TRY(check_range_of_text(row, text, &came, error));
   return field_set_value(row, &came, value, error);
 }
 

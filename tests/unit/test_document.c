@@ -116,12 +116,14 @@ static void each_error_says_this(void **state) {
       {"name: ~\n", "a.yaml:1:7: error: name: expected text, got nothing\n"
                     "  name: ~\n"
                     "        ^"},
-      {"body: 3\n", "a.yaml:1:7: error: body: expected keys and values below it, got a single value\n"
-                    "  body: 3\n"
-                    "        ^"},
-      {"body:\nname: x\n", "a.yaml:1:1: error: body: expected keys and values below it, got nothing\n"
-                           "  body:\n"
-                           "  ^~~~"},
+      {"body: 3\n",
+       "a.yaml:1:7: error: body: expected keys and values below it (length, limit, count), got a single value\n"
+       "  body: 3\n"
+       "        ^"},
+      {"body:\nname: x\n",
+       "a.yaml:1:1: error: body: expected keys and values below it (length, limit, count), got nothing\n"
+       "  body:\n"
+       "  ^~~~"},
       {"shape: block\n", "a.yaml:1:1: error: block.height: is missing and has no default; Height of the block.\n"
                          "  shape: block\n"
                          "  ^"},

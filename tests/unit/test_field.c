@@ -259,7 +259,7 @@ static void parses_or_says_why(void **state) {
   } cases[] = {
       {"body.length", "40 cm", "0.4 m", NULL},
       {"body.length", "0", NULL, "body.length: expected above 0 m, got 0 m"},
-      {"body.length", "-3 km", NULL, "body.length: expected above 0 m, got -3000 m"},
+      {"body.length", "-3 km", NULL, "body.length: expected above 0 km, got -3 km"},
       {"body.length", "3 s", NULL, "body.length: expected a length such as m, got a time (s)"},
       {"body.length", "off", NULL, "body.length: cannot be switched off"},
       {"body.limit", "off", "off", NULL},
