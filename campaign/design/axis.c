@@ -4,7 +4,11 @@
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "schemas/unit.h"
 
 void design_axis_free_all(struct design_axis *axes, size_t count) {
   for (size_t i = 0; axes && i < count; i++)
@@ -12,15 +16,40 @@ void design_axis_free_all(struct design_axis *axes, size_t count) {
   free(axes);
 }
 
-double design_axis_spaced(double from, double to, size_t n, bool logarithmic, size_t i) {
-  if (i == 0 || n < 2)
-    return from;
-  if (i == n - 1)
-    return to;
-  double share = (double)i / (double)(n - 1);
-  if (logarithmic)
-    return exp(log(from) + share * (log(to) - log(from)));
-  return from + share * (to - from);
+/* A quantity as a number in `unit`, with the digits of its text if it has this unit. */
+static long double number_in(const char *text, const char *unit, const char *si) {
+  struct unit factor;
+  char digits[32];
+  double value = NAN;
+  if (strcmp(unit_of(text), unit) == 0)
+    return strtold(text, NULL);
+  (void)unit_read(text, si, &value, NULL);
+  if (*unit && unit_parse(unit, &factor, NULL) == STATUS_OK)
+    value /= factor.factor;
+  snprintf(digits, sizeof digits, "%.15g", value);
+  return strtold(digits, NULL);
+}
+
+double design_axis_spaced(const char *from, const char *to, const char *si, size_t n, bool logarithmic, size_t i) {
+  double value = NAN;
+  if (i == 0 || i == n - 1) {
+    (void)unit_read(i == 0 ? from : to, si, &value, NULL);
+    return value;
+  }
+  const char *unit = *unit_of(from) ? unit_of(from) : unit_of(to); /* the other end may be a bare 0 */
+  const long double a = number_in(from, unit, si), b = number_in(to, unit, si), gaps = (long double)(n - 1);
+  const long double up = (long double)i, down = (long double)(n - 1 - i);
+  const long double level = logarithmic ? a * powl(b / a, up / gaps) : (down * a + up * b) / gaps;
+  /* 15 digits of the larger end: near zero a sum has no more */
+  const double largest = logarithmic ? (double)fabsl(level) : (double)fmaxl(fabsl(a), fabsl(b));
+  const int decimals = 14 - (int)floor(log10(largest));
+  char text[512];
+  if (decimals >= 0 && decimals <= 300)
+    snprintf(text, sizeof text, "%.*Lf %.80s", decimals, level, unit);
+  else
+    snprintf(text, sizeof text, "%.14Le %.80s", level, unit);
+  (void)unit_read(text, si, &value, NULL);
+  return value + 0.0; /* -0 becomes 0 */
 }
 
 /* Quantile of the standard normal law cut to (lower, upper). In the upper half the survival function is used: its small

@@ -42,7 +42,9 @@ void design_axis_describe(const struct design_axis *axes, size_t index, FILE *ou
 /* Level of a LEVELS axis at quantile u. */
 size_t design_axis_level(const struct design_axis *axis, double u);
 
-/* Evenly spaced levels, ends exact: linear or (both ends positive) logarithmic. n >= 2, or n == 1 gives `from`. */
-double design_axis_spaced(double from, double to, size_t n, bool logarithmic, size_t i);
+/* Level i of n >= 2 evenly spaced ones between two quantities such as "1 %" and "6 %", linear or (both positive)
+ * logarithmic, in the SI unit `si`. The ends are exact. A level between them is the number of 15 digits that a person
+ * would write in the unit of the ends, so ranges that share levels share them to the last bit. */
+double design_axis_spaced(const char *from, const char *to, const char *si, size_t n, bool logarithmic, size_t i);
 
 #endif

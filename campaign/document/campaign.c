@@ -155,14 +155,14 @@ static char *text_for_store(const char *document, const struct campaign *campaig
 }
 
 static status from_document(struct document *document, const struct campaign_changes *changes, const char *folder,
-                            struct campaign **out, struct error *error) {
+                            bool stored, struct campaign **out, struct error *error) {
   status code = changes ? campaign_change(document, changes, error) : STATUS_OK;
   if (code != STATUS_OK)
     return code;
   struct campaign *campaign = calloc(1, sizeof *campaign);
   if (!campaign)
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
-  campaign_read(document_root(document), folder, campaign); /* its defaults clear the whole struct */
+  campaign_read(document_root(document), folder, stored, campaign); /* its defaults clear the whole struct */
   char *changed = document_change_text(document);
   campaign->text = changed ? text_for_store(changed, campaign) : NULL;
   free(changed);
@@ -189,7 +189,7 @@ static status from_text(const char *name, const char *text, size_t size, const c
   if (code == STATUS_OK && si)
     document_take_si(document);
   if (code == STATUS_OK)
-    code = from_document(document, NULL, folder, out, error);
+    code = from_document(document, NULL, folder, si, out, error);
   document_free(document);
   return code;
 }
@@ -220,7 +220,7 @@ status campaign_load_changed(const char *path, const struct campaign_changes *ch
   if (slash && !folder)
     code = status_fail(error, STATUS_MEMORY, "no memory for the campaign");
   else
-    code = from_document(document, changes, folder, out, error);
+    code = from_document(document, changes, folder, false, out, error);
   free(folder);
   document_free(document);
   return code;

@@ -9,46 +9,59 @@
 #include "campaign/document/campaign_vary.h"
 #include "campaign/document/campaign_walk.h"
 #include "db/store/place.h"
+#include "schemas/memory.h"
 
 static document_node *key_of(document_node *mapping, const char *key) {
   return mapping && document_kind(mapping) == DOCUMENT_MAPPING ? document_key(mapping, key) : NULL;
 }
 
-/* Reads one entry of `set`. `path` is its path in the document. */
-static void read_set_value(document_node *node, const char *key, const char *path, struct campaign *campaign) {
+/* Reads one entry of `set`. `path` is its path in the document. Returns the input; NULL: reported. */
+static const struct field *read_set_value(document_node *node, const char *key, const char *path,
+                                          struct campaign *campaign) {
   struct error error = {0};
   struct field_value value;
   if (!key || document_kind(node) != DOCUMENT_SCALAR) {
     document_report(node, path, "expected one value; several values belong in `vary`");
-    return;
+    return NULL;
   }
   const struct field *row = field_find(campaign->scene->kind->inputs, key, &error);
-  if (!row) {
-    document_report_error(node, path, &error);
-    return;
-  }
-  if (campaign_axis(campaign, row)) {
+  if (row && campaign_axis(campaign, row))
     document_report(node, path, "set here and varied in `vary`; leave one of them out");
-    return;
-  }
-  if (document_value(node, row, &value) && scene_set(campaign->scene, row->path, &value, &error) != STATUS_OK)
+  else if (!row ||
+           (document_value(node, row, &value) && scene_set(campaign->scene, row->path, &value, &error) != STATUS_OK))
     document_report_error(node, path, &error);
+  return row;
 }
 
-static void read_set(document_node *set, struct campaign *campaign) {
+/* One input under two of its names is a slip, which a document of a store may still have. A value of the command line
+ * replaces that of the document. */
+static void read_set(document_node *set, bool stored, struct campaign *campaign) {
+  const struct field_table *inputs = campaign->scene->kind->inputs;
   if (!set)
     return;
   if (document_kind(set) != DOCUMENT_MAPPING) {
     document_report(set, "set", "expected a mapping of paths to values, e.g. contact.friction: 0.2");
     return;
   }
+  const char **names = memory_small(inputs->count, sizeof *names); /* the key that has set an input */
   for (size_t i = 0; i < document_count(set); i++) {
     const char *key = NULL;
     char path[320];
     document_node *node = document_item(set, i, &key);
     snprintf(path, sizeof path, "set.%.300s", key ? key : "");
-    read_set_value(node, key, path, campaign);
+    const struct field *row = read_set_value(node, key, path, campaign);
+    if (!row)
+      continue;
+    const char **name = &names[row - inputs->rows];
+    if (*name && document_is_put(node) && !document_is_put(document_key(set, *name))) {
+      document_graft_drop(set, *name);
+      i--;
+    } else if (*name && !stored) {
+      document_report(node, path, "the same input as set.%.200s; leave one of them out", *name);
+    }
+    *name = key;
   }
+  free(names);
 }
 
 /* The number of "first 12": at least 1, up to 9 digits, no sign or blanks. 0: the text has another form. */
@@ -248,7 +261,7 @@ static bool read_scene(document_node *root, const char *folder, struct campaign 
   return false;
 }
 
-void campaign_read(document_node *root, const char *folder, struct campaign *campaign) {
+void campaign_read(document_node *root, const char *folder, bool stored, struct campaign *campaign) {
   static const char *const also[] = {"vary", "set", "design", "keep", NULL};
   field_defaults(&campaign_table, campaign);
   const bool plain = document_read(root, &campaign_table, also, campaign);
@@ -261,7 +274,7 @@ void campaign_read(document_node *root, const char *folder, struct campaign *cam
   if (!read_scene(root, folder, campaign))
     return; /* the other keys cannot be read without a scene */
   const bool varied = read_axes(root, folder, campaign);
-  read_set(set, campaign);
+  read_set(set, stored, campaign);
   check_quantities(root, campaign);
   if (plain && varied)
     check_points(root, campaign);

@@ -6,7 +6,8 @@
 #include "schemas/document.h"
 
 /* Fills the whole struct, text excepted. Errors are reported to the document: see document_finish(). The paths of scene
- * and design.file are relative to `folder` (NULL: the current one). */
-void campaign_read(document_node *root, const char *folder, struct campaign *campaign);
+ * and design.file are relative to `folder` (NULL: the current one). `stored`: the document is
+ * that of a store, which may set an input twice. */
+void campaign_read(document_node *root, const char *folder, bool stored, struct campaign *campaign);
 
 #endif

@@ -118,7 +118,8 @@ static bool read_values(struct reading *r, document_node *node) {
   return good;
 }
 
-static bool read_spaced(struct reading *r, double from, double to, bool logarithmic) {
+static bool read_spaced(struct reading *r, document_node *from, document_node *to, double range, bool logarithmic) {
+  const char *const unit = r->axis->row->unit ? r->axis->row->unit : "1";
   document_node *node = document_key(r->node, "n");
   struct field row = number_row(r, "1", 2, MOST_LEVELS, 0);
   row.kind = FIELD_INTEGER;
@@ -130,7 +131,8 @@ static bool read_spaced(struct reading *r, double from, double to, bool logarith
   if (!make_levels(r, (size_t)n.integer))
     return false;
   for (size_t i = 0; i < r->axis->level_count; i++) {
-    double x = design_axis_spaced(from, to, r->axis->level_count, logarithmic, i);
+    const double x = design_axis_spaced(document_scalar(from), document_scalar(to), unit, r->axis->level_count,
+                                        logarithmic, i);
     struct field_value *value = &r->axis->levels[i];
     value->kind = r->axis->row->kind;
     if (value->kind == FIELD_INTEGER)
@@ -138,7 +140,7 @@ static bool read_spaced(struct reading *r, double from, double to, bool logarith
     else
       value->number = x;
   }
-  if (r->axis->row->kind == FIELD_INTEGER && fabs(to - from) < (double)(r->axis->level_count - 1))
+  if (r->axis->row->kind == FIELD_INTEGER && range < (double)(r->axis->level_count - 1))
     return wrong(r, node, "more values than whole numbers in the range");
   return true;
 }
@@ -242,12 +244,13 @@ static bool read_spaced_form(struct reading *r, document_node *from) {
   document_node *to = document_key(r->node, "to");
   if (!to)
     return wrong(r, NULL, "'to' is missing");
-  return read_own(r, from, &a) && read_own(r, to, &b) && read_spaced(r, a, b, false);
+  return read_own(r, from, &a) && read_own(r, to, &b) && read_spaced(r, from, to, fabs(b - a), false);
 }
 
 static bool read_logarithmic_form(struct reading *r, document_node *pair) {
   double a = 0, b = 0;
-  return read_pair(r, pair, true, &a, &b) && read_spaced(r, a, b, true);
+  return read_pair(r, pair, true, &a, &b) &&
+         read_spaced(r, document_item(pair, 0, NULL), document_item(pair, 1, NULL), b - a, true);
 }
 
 static bool read_uniform(struct reading *r, document_node *pair) {
@@ -328,6 +331,51 @@ static bool check_links(struct reading *readings, struct campaign *campaign) {
   return true;
 }
 
+static int by_place(const void *a, const void *b) {
+  const struct field_value *x = *(const struct field_value *const *)a, *y = *(const struct field_value *const *)b;
+  return (x > y) - (x < y);
+}
+
+/* Any order that has equal values side by side, the first of them first. */
+static int by_value(const void *a, const void *b) {
+  const struct field_value *x = *(const struct field_value *const *)a, *y = *(const struct field_value *const *)b;
+  int order = memcmp(&x->number, &y->number, sizeof x->number);
+  if (order == 0)
+    order = memcmp(&x->integer, &y->integer, sizeof x->integer);
+  if (order == 0)
+    order = strcmp(x->text, y->text);
+  return order ? order : by_place(a, b);
+}
+
+/* Equal values of a grid are one point: 7 % and 0.07 m/m. Keeps the first of them, unless the values of another input
+ * belong to each. */
+static bool drop_equal(struct reading *r) {
+  struct design_axis *axis = r->axis;
+  for (size_t i = 0; i < r->campaign->axis_count; i++) {
+    const struct design_axis *other = &r->campaign->axes[i];
+    if (other->kind == DESIGN_AXIS_LINKED && other->level_count && &r->campaign->axes[other->linked] == axis)
+      return true;
+  }
+  const struct field_value **sorted = calloc(axis->level_count, sizeof *sorted);
+  if (!sorted) {
+    document_report_memory(r->node, r->path);
+    return false;
+  }
+  for (size_t i = 0; i < axis->level_count; i++)
+    sorted[i] = &axis->levels[i];
+  qsort(sorted, axis->level_count, sizeof *sorted, by_value);
+  size_t kept = 0;
+  for (size_t i = 0; i < axis->level_count; i++)
+    if (kept == 0 || !field_same_value(axis->row, sorted[i], sorted[kept - 1]))
+      sorted[kept++] = sorted[i];
+  qsort(sorted, kept, sizeof *sorted, by_place);
+  for (size_t i = 0; i < kept; i++)
+    axis->levels[i] = *sorted[i]; /* which is level i or a later one */
+  axis->level_count = kept;
+  free(sorted);
+  return true;
+}
+
 /* Finds the input of the index-th key and makes its axis. */
 static bool begin_axis(struct reading *readings, size_t index, document_node *vary, struct campaign *campaign) {
   const char *key = NULL;
@@ -356,7 +404,11 @@ static bool read_axes(struct reading *readings, size_t count, document_node *var
   bool good = true;
   for (size_t i = 0; i < count; i++)
     good &= read_axis(&readings[i]);
-  return good && check_links(readings, campaign);
+  good = good && check_links(readings, campaign);
+  for (size_t i = 0; good && campaign->design.kind == CAMPAIGN_GRID && i < count; i++)
+    if (campaign->axes[i].kind == DESIGN_AXIS_LEVELS)
+      good = drop_equal(&readings[i]);
+  return good;
 }
 
 bool campaign_vary_read(document_node *vary, struct campaign *campaign) {

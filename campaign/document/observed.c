@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "schemas/document.h"
+#include "schemas/memory.h"
 #include "schemas/rows.h"
 
 #define COUNT_ABOVE "count_above"
@@ -242,6 +243,7 @@ static void read_set(struct reading *r, document_node *set, struct scene *scene)
     document_report(set, "set", "expected a mapping of paths to values, e.g. impact.speed: 3.2 km/s");
     return;
   }
+  const char **names = memory_small(scene->kind->inputs->count, sizeof *names); /* the key that has set an input */
   for (size_t i = 0; i < document_count(set); i++) {
     const char *key = NULL;
     struct error error = {0};
@@ -254,9 +256,15 @@ static void read_set(struct reading *r, document_node *set, struct scene *scene)
       document_report(node, path, "expected one value");
     else if (row && campaign_axis(r->campaign, row))
       document_report(node, path, "known here and unknown in the campaign (`vary`); leave one of them out");
+    else if (row && names[row - scene->kind->inputs->rows])
+      document_report(node, path, "the same input as set.%.200s; leave one of them out",
+                      names[row - scene->kind->inputs->rows]);
     else if (!row || scene_set_text(scene, key, text, &error) != STATUS_OK)
       document_report_error(node, path, &error);
+    if (row)
+      names[row - scene->kind->inputs->rows] = key;
   }
+  free(names);
 }
 
 static void read_shot(struct reading *r, document_node *node) {

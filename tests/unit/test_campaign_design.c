@@ -14,6 +14,7 @@
 #include <time.h>
 
 #include "campaign/design/design.h"
+#include "schemas/unit.h"
 
 static const struct field real_row = {.path = "x",
                                       .kind = FIELD_REAL,
@@ -42,14 +43,36 @@ static struct design_axis law(int kind, double a, double b, double lower, double
   return (struct design_axis){.row = &real_row, .kind = kind, .a = a, .b = b, .lower = lower, .upper = upper};
 }
 
-static void spaced_levels_hit_their_ends(void **state) {
+/* The levels are the numbers that a person writes, to the last bit. */
+static void spaced_levels_are_written_numbers(void **state) {
   (void)state;
-  assert_true(design_axis_spaced(1e30, 1e36, 4, true, 0) == 1e30);
-  assert_true(design_axis_spaced(1e30, 1e36, 4, true, 3) == 1e36);
-  assert_true(fabs(design_axis_spaced(1e30, 1e36, 4, true, 1) / 1e32 - 1) <
-              1e-13); /* exp and log round: a few ulp x 70 */
-  assert_true(design_axis_spaced(0.1, 0.3, 3, false, 2) == 0.3);
-  assert_true(fabs(design_axis_spaced(0.1, 0.3, 3, false, 1) - 0.2) < 1e-15);
+  static const struct {
+    const char *from, *to, *si;
+    size_t n;
+    bool logarithmic;
+    const char *levels[4]; /* the first ones */
+  } cases[] = {
+      {"1e30", "1e36", "1/m^3", 4, true, {"1e30", "1e32", "1e34", "1e36"}},
+      {"0.1", "0.3", "1", 3, false, {"0.1", "0.2", "0.3"}},
+      {"1 %", "10 %", "1", 10, false, {"1 %", "2 %", "3 %", "4 %"}},
+      {"1 %", "6 %", "1", 6, false, {"1 %", "2 %", "3 %", "4 %"}},
+      {"1 deg", "7 deg", "rad", 7, false, {"1 deg", "2 deg", "3 deg", "4 deg"}},
+      {"0", "9 deg", "rad", 4, false, {"0", "3 deg", "6 deg", "9 deg"}},
+      {"-0.3 mm", "0.2 mm", "m", 6, false, {"-0.3 mm", "-0.2 mm", "-0.1 mm", "0"}},
+      {"5 mm", "2 cm", "m", 4, false, {"5 mm", "10 mm", "15 mm", "2 cm"}},
+      {"1 mm", "1000 mm", "m", 4, true, {"1 mm", "10 mm", "100 mm", "1 m"}},
+      {"0.1 h", "100 h", "s", 4, true, {"0.1 h", "1 h", "10 h", "100 h"}},
+      {"0", "1", "1", 4, false, {"0", "0.33333333333333", "0.66666666666667", "1"}},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
+    for (size_t i = 0; i < 4 && cases[k].levels[i]; i++) {
+      double expected = NAN;
+      assert_int_equal(unit_read(cases[k].levels[i], cases[k].si, &expected, NULL), STATUS_OK);
+      const double level = design_axis_spaced(cases[k].from, cases[k].to, cases[k].si, cases[k].n, cases[k].logarithmic,
+                                              i);
+      if (level != expected || signbit(level) != signbit(expected))
+        fail_msg("%s to %s, level %zu: %.17g is not %.17g", cases[k].from, cases[k].to, i, level, expected);
+    }
 }
 
 static void grid_walks_the_last_axis_fastest(void **state) {
@@ -324,7 +347,7 @@ static void a_million_points_are_a_counter(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(spaced_levels_hit_their_ends),
+      cmocka_unit_test(spaced_levels_are_written_numbers),
       cmocka_unit_test(grid_walks_the_last_axis_fastest),
       cmocka_unit_test(list_goes_in_step_and_links_by_level),
       cmocka_unit_test(refusals_say_the_remedy),

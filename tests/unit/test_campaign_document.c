@@ -148,8 +148,65 @@ static void independent_seeds_follow_the_point(void **state) {
   campaign_free(campaign);
 }
 
+static void equal_values_are_one_point(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    uint64_t points;
+  } cases[] = {
+      {"vary: {strain: [7 %, 7.0 %, 0.07 m/m]}\n", 1},
+      {"vary: {strain: [7 %, 1 %, 7.0 %, 3 %, 1 %]}\n", 3},
+      {"vary: {strain: [1 %, 1 %], contact.law: [printed, conservative, printed], contact.bonded: [true, true]}\n", 2},
+      {"vary: {strain: [1 %, 1 %], threshold.angle: {linked: strain, values: [2 deg, 3 deg]}}\n", 2},
+      {"design: list\nvary: {strain: [1 %, 1 %], threshold.angle: [2 deg, 3 deg]}\n", 2},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char text[300];
+    snprintf(text, sizeof text, HEAD "%s", cases[i].text);
+    struct campaign *campaign = good(text);
+    assert_int_equal(points_of(campaign), cases[i].points);
+    campaign_free(campaign);
+  }
+  struct campaign *campaign = good(HEAD "vary: {strain: [7 %, 1 %, 7.0 %, 3 %]}\n");
+  assert_true(campaign->axes[0].levels[0].number == 0.07 && campaign->axes[0].levels[2].number == 0.03);
+  campaign_free(campaign);
+}
+
+/* Two names of one input are a slip; documents of stores may have them, the last one counts. */
+static void one_input_is_set_once(void **state) {
+  (void)state;
+  static const char twice[] = HEAD "set: {body.diameter: 8 cm, diameter: 9 cm}\n";
+  bad(twice, "t.yaml:3:|set.diameter: the same input as set.body.diameter");
+  struct campaign *campaign = NULL;
+  struct error error = {0};
+  assert_int_equal(campaign_parse_stored("t", twice, NULL, &campaign, &error), STATUS_OK);
+  campaign_free(campaign);
+
+  /* The command line replaces the value of the document, under any name. */
+  FILE *file = fopen("t-set.yaml", "w");
+  assert_non_null(file);
+  fputs(HEAD "set: {body.diameter: 8 cm}\n", file);
+  fclose(file);
+  const struct campaign_changes once = {1, (const char *const[]){"diameter=9 cm"}, 0};
+  assert_int_equal(campaign_load_changed("t-set.yaml", &once, &campaign, &error), STATUS_OK);
+  assert_null(strstr(campaign->text, "8 cm"));
+  struct field_value value;
+  field_get(field_find(campaign->scene->kind->inputs, "body.diameter", &error), campaign->scene->inputs, &value);
+  assert_true(value.number == 0.09);
+  campaign_free(campaign);
+  const struct campaign_changes both = {2, (const char *const[]){"diameter=9 cm", "body.diameter=7 cm"}, 0};
+  campaign = NULL;
+  const status code = campaign_load_changed("t-set.yaml", &both, &campaign, &error);
+  remove("t-set.yaml");
+  assert_int_equal(code, STATUS_USAGE);
+}
+
 static void bad_documents_are_told_what_to_do(void **state) {
   (void)state;
+  bad(HEAD "seeds: 4\n", "t.yaml:3:8: error: seeds: expected keys and values below it|per_point");
+  bad(HEAD "set: {body.diameter: 2e9 cm}\n", "and at most|cm, got 2e9 cm");
+  bad(HEAD "set: {threshold.strain: 5 %%}\n", "two percent signs");
+  bad(HEAD "set: {threshold.strain: 0.07}\n", "write '0.07 %' or '7 %'");
   bad("scene: disc-explosion\n", "name");
   bad("name: t\n", "scene");
   bad("name: t\nscene: disc-explosoin\n", "t.yaml:2:8: error: scene|disc-explosion");
@@ -342,6 +399,8 @@ int main(void) {
       cmocka_unit_test(axes_are_shown_with_units),
       cmocka_unit_test(values_that_do_not_fit_make_no_point),
       cmocka_unit_test(independent_seeds_follow_the_point),
+      cmocka_unit_test(equal_values_are_one_point),
+      cmocka_unit_test(one_input_is_set_once),
       cmocka_unit_test(bad_documents_are_told_what_to_do),
       cmocka_unit_test(all_errors_come_at_once),
       cmocka_unit_test(odd_bytes_are_refused),
