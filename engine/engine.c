@@ -3,6 +3,9 @@
 
 #include <string.h>
 
+FIELD_WORDS(engine_knob_groups, KNOB_GROUPS, [KNOB_RESOLUTION] = "resolution", [KNOB_PART] = "part",
+            [KNOB_MODEL] = "model", [KNOB_SETTINGS] = "settings");
+
 size_t engine_count(void) {
   size_t count = 0;
   while (engines_list[count])

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "engine/warnings.h"
+#include "schemas/text.h"
 
 static FIELD_WORDS(states, OUTCOME_STATES, [OUTCOME_COMPLETED] = "completed", [OUTCOME_END_TIME] = "end-time",
                    [OUTCOME_NOT_FINITE] = "not-finite", [OUTCOME_TIME_STEP] = "time-step", [OUTCOME_ENERGY] = "energy",
@@ -119,4 +119,14 @@ void outcome_fragments(struct outcome *outcome, size_t count, const struct fragm
   outcome->second_fraction = count > 1 ? fragments[1].mass / mass : 0;
   outcome->mean_fragment_mass = over(square, mass);
   outcome->mean_fragment_mass_rest = count > 1 ? over(fmax(square - largest * largest, 0), mass - largest) : 0;
+}
+
+void outcome_warnings(unsigned set, char *text, size_t size) {
+#define WORD(name_, word_, doc_) word_,
+  static const char *const words[WARNINGS_COUNT] = {WARNINGS(WORD)};
+#undef WORD
+  text[0] = 0;
+  for (size_t k = 0; k < WARNINGS_COUNT; k++)
+    if (set >> k & 1)
+      text_append(text, size, "%s%s", *text ? ", " : "", words[k]);
 }

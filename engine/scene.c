@@ -1,16 +1,15 @@
-/* Scenes: built-in documents, reading, overrides, checks, identity. */
+/* Scenes: built-in documents, reading, materials, files, settings, overrides, checks, identity. */
 #include "engine/scene.h"
 
+#include <ctype.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/blake2s.h"
 #include "engine/builtin.h"
-#include "engine/file_name.h"
-#include "engine/scene_files.h"
-#include "engine/scene_materials.h"
-#include "engine/scene_settings.h"
 #include "schemas/document.h"
+#include "schemas/file.h"
 #include "schemas/json_schema.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
@@ -48,6 +47,250 @@ static status unknown_builtin(const char *name, struct error *error) {
                      "there is no built-in scene '%.100s'; 'clast scenes' lists them. A file is named with its folder "
                      "or ending, such as ./%.100s.yaml",
                      name, name);
+}
+
+/* ---- materials by name or file ----
+ *
+ * Sections of a scene may come from a named document. Their input `name` is the name of a document or `custom`. A scene
+ * gives such a section as a word, as the name of a file, or by its values; all forms become one. `material: basalt`
+ * becomes {name: basalt}. `material: ./my-rock.yaml`, or the key `file` in the section, becomes the content of the
+ * file, with name custom; the scene's own values take precedence. */
+
+enum { PATH_SIZE = 256 };
+
+/* Keys of a material's document that are not values. */
+static const char *const material_words[] = {"material", "source", "sources", NULL};
+
+static bool is_named(const struct field_table *inputs, const char *section, const char *key) {
+  char path[PATH_SIZE + 64];
+  snprintf(path, sizeof path, "%s.%s", section, key);
+  for (size_t i = 0; i < inputs->count; i++)
+    if (strcmp(inputs->rows[i].path, path) == 0)
+      return inputs->rows[i].kind == FIELD_CHOICE;
+  return false;
+}
+
+/* `place`: where errors about the file are reported. */
+static void include_material(document_node *section, document_node *place, const char *path, const char *file,
+                             const char *folder) {
+  struct document *other = NULL;
+  struct error error;
+  char *whole = file_name_in(folder, file);
+  if (!whole) {
+    document_report_memory(place, path);
+    return;
+  }
+  if (document_open(whole, &other, &error) != STATUS_OK)
+    document_report_error(place, path, &error);
+  else if (!document_graft(section, other, material_words) || !document_graft_word(section, "name", "custom"))
+    document_report_memory(place, path);
+  (void)document_graft_word(section, "name", "custom"); /* after an error: prevents further errors about the section */
+  free(whole);
+}
+
+/* `material: {file: ./my-rock.yaml, ...}` */
+static void take_section(document_node *section, const char *path, const char *folder) {
+  document_node *file = document_key(section, "file");
+  if (!file)
+    return;
+  const char *word = document_scalar(file);
+  if (!word || !*word) {
+    document_report(file, path, "expected the name of a material's file, such as ./my-rock.yaml");
+    return;
+  }
+  document_graft_drop(section, "file");
+  include_material(section, file, path, word, folder);
+}
+
+/* `material: basalt`, or `material: ./my-rock.yaml` */
+static void take_word(document_node *node, const char *path, const char *folder) {
+  const char *text = document_scalar(node);
+  if (!text || !*text)
+    return; /* the reader describes the error */
+  char word[4096];
+  snprintf(word, sizeof word, "%s", text);
+  if (file_name_is_document(word))
+    include_material(node, node, path, word, folder);
+  else if (!document_graft_word(node, "name", word))
+    document_report_memory(node, path);
+}
+
+/* `section`: its path, empty at the root. Files are relative to `folder` (NULL: the current one). */
+static void take_materials(document_node *mapping, const struct field_table *inputs, const char *section,
+                           const char *folder) {
+  for (size_t i = 0; i < document_count(mapping); i++) {
+    const char *key = NULL;
+    document_node *node = document_item(mapping, i, &key);
+    char path[PATH_SIZE];
+    if (!key || (size_t)snprintf(path, sizeof path, "%s%s%s", section, *section ? "." : "", key) >= sizeof path)
+      continue;
+    const bool is_material = is_named(inputs, path, "name"), is_section = document_kind(node) == DOCUMENT_MAPPING;
+    if (is_material && is_section)
+      take_section(node, path, folder);
+    else if (is_material)
+      take_word(node, path, folder);
+    else if (is_section)
+      take_materials(node, inputs, path, folder);
+  }
+}
+
+/* ---- inputs that name shape files ---- */
+
+static bool is_hash(const char *text) {
+  return strlen(text) == MESH_HASH_SIZE - 1 && strspn(text, "0123456789abcdef") == MESH_HASH_SIZE - 1;
+}
+
+static status find_file(const char *text, const char *folder, const struct mesh_file **file, struct error *error) {
+  *file = mesh_files_find(text);
+  if (*file)
+    return STATUS_OK;
+  const status code = mesh_files_open(text, folder, file, error);
+  if (code == STATUS_MISSING && is_hash(text))
+    return status_fail(error, STATUS_MISSING,
+                       "this is the SHA-256 of a shape file that is not here: give the name of the file");
+  return code;
+}
+
+static void take_file(document_node *section, document_node *node, const char *key, const char *path,
+                      const char *folder) {
+  const char *text = document_scalar(node);
+  const struct mesh_file *file = NULL;
+  struct error error;
+  if (!text || !*text) {
+    document_report(node, path, "expected the name of a shape file, such as ./bennu.obj");
+    return;
+  }
+  if (find_file(text, folder, &file, &error)) {
+    document_report_error(node, path, &error);
+    document_graft_drop(section, key);
+    (void)document_graft_word(section, key, "none"); /* prevents further errors about it */
+    return;
+  }
+  document_graft_drop(section, key);
+  if (!document_graft_word(section, key, file->hash))
+    document_report_memory(node, path);
+}
+
+/* The section of a dotted path, and the last word of the path. */
+static document_node *section_of(document_node *root, const char *path, const char **key) {
+  document_node *section = root;
+  for (const char *dot; section && (dot = strchr(path, '.')); path = dot + 1) {
+    char word[64];
+    if (document_kind(section) != DOCUMENT_MAPPING || (size_t)(dot - path) >= sizeof word)
+      return NULL;
+    memcpy(word, path, (size_t)(dot - path));
+    word[dot - path] = 0;
+    section = document_key(section, word);
+  }
+  *key = path;
+  return section && document_kind(section) == DOCUMENT_MAPPING ? section : NULL;
+}
+
+/* Puts the SHA-256 of the files that a document names in place of the names. A value that is already the SHA-256 of a
+ * file read before does not change (scenes of a store). */
+static void take_files(document_node *root, const struct field_table *inputs, const char *folder) {
+  for (size_t i = 0; i < inputs->count && document_kind(root) == DOCUMENT_MAPPING; i++) {
+    const char *key = NULL, *path = inputs->rows[i].path;
+    document_node *section = inputs->rows[i].flags & FIELD_FILE ? section_of(root, path, &key) : NULL;
+    document_node *node = section ? document_key(section, key) : NULL;
+    if (node)
+      take_file(section, node, key, path, folder);
+  }
+}
+
+/* The same for one value, of --set. STATUS_MISSING, STATUS_IO, STATUS_CONTENT. */
+static status set_file(const struct field *row, struct field_value *value, struct error *error) {
+  const struct mesh_file *file = NULL;
+  struct error why;
+  if (!(row->flags & FIELD_FILE))
+    return STATUS_OK;
+  const status code = find_file(value->text, NULL, &file, &why);
+  if (code)
+    return status_fail(error, code, "%s: %s", row->path, why.message);
+  field_copy_text(value->text, file->hash);
+  return STATUS_OK;
+}
+
+size_t scene_files_of(const struct field_table *inputs, const void *object,
+                      const struct mesh_file *files[SCENE_FILES_MOST]) {
+  size_t count = 0;
+  for (size_t i = 0; i < inputs->count && count < SCENE_FILES_MOST; i++) {
+    const struct field *row = &inputs->rows[i];
+    struct field_value value;
+    if (!(row->flags & FIELD_FILE) || !field_is_active(inputs, row, object))
+      continue;
+    field_get(row, object, &value);
+    files[count] = mesh_files_find(value.text);
+    count += files[count] != NULL;
+  }
+  return count;
+}
+
+/* ---- named settings ---- */
+
+static bool is_settings_name(const char *name) {
+  for (const char *c = name; *c; c++)
+    if (!islower((unsigned char)*c) && !isdigit((unsigned char)*c) && *c != '-')
+      return false;
+  return *name && strlen(name) < SCENE_SETTINGS_NAME && strcmp(name, SCENE_SETTINGS_STANDARD) != 0;
+}
+
+static void read_item(document_node *node, const char *path, const struct field_table *inputs,
+                      struct scene_settings *settings) {
+  char place[FIELD_TEXT_SIZE];
+  struct error error = {0};
+  snprintf(place, sizeof place, "settings.%s.%.128s", settings->name, path ? path : "");
+  const struct field *row = path ? field_find(inputs, path, &error) : NULL;
+  if (!row)
+    document_report(node, place, "%s", path ? error.message : "expected the path of an input");
+  else if (settings->count == SCENE_SETTINGS_ITEMS)
+    document_report(node, place, "more than %d inputs in one of the settings", SCENE_SETTINGS_ITEMS);
+  else if (document_value(node, row, &settings->item[settings->count].value))
+    settings->item[settings->count++].row = (size_t)(row - inputs->rows);
+}
+
+static void read_setting(document_node *node, const char *name, const struct field_table *inputs,
+                         struct scene_settings *settings) {
+  if (!name || !is_settings_name(name)) {
+    document_report(node, "settings",
+                    "a name has small letters, digits and '-', at most %d of them; '%s' is the scene "
+                    "as written",
+                    SCENE_SETTINGS_NAME - 1, SCENE_SETTINGS_STANDARD);
+    return;
+  }
+  if (document_kind(node) != DOCUMENT_MAPPING) {
+    document_report(node, "settings", "expected inputs and their values, such as {fidelity.particles: 3000}");
+    return;
+  }
+  snprintf(settings->name, sizeof settings->name, "%s", name);
+  for (size_t i = 0; i < document_count(node); i++) {
+    const char *path = NULL;
+    document_node *item = document_item(node, i, &path);
+    read_item(item, path, inputs, settings);
+  }
+}
+
+/* Reads the mapping `node` (NULL: there is none) into scene->settings. Errors are reported to the document. */
+static void read_settings(document_node *node, struct scene *scene) {
+  if (!node)
+    return;
+  if (document_kind(node) != DOCUMENT_MAPPING || document_count(node) > SCENE_SETTINGS_MOST) {
+    document_report(node, "settings", "expected at most %d names with their inputs, such as draft: {...}",
+                    SCENE_SETTINGS_MOST);
+    return;
+  }
+  const size_t count = document_count(node);
+  scene->settings = calloc(count ? count : 1, sizeof *scene->settings);
+  if (!scene->settings) {
+    document_report_memory(node, "settings");
+    return;
+  }
+  scene->settings_count = count;
+  for (size_t i = 0; i < count; i++) {
+    const char *name = NULL;
+    document_node *item = document_item(node, i, &name);
+    read_setting(item, name, scene->kind->inputs, &scene->settings[i]);
+  }
 }
 
 /* ---- reading ---- */
@@ -118,11 +361,11 @@ static status read_scene(document_node *root, const char *folder, const char *fa
   struct scene *scene = *out = create(kind);
   if (!scene)
     return status_fail(error, STATUS_MEMORY, "no memory for a scene");
-  scene_materials_take(root, kind->inputs, folder);
-  scene_files_take(root, kind->inputs, folder);
+  take_materials(root, kind->inputs, "", folder);
+  take_files(root, kind->inputs, folder);
   document_read_given(root, kind->inputs, own_keys, scene->inputs, scene->given, kind->complete);
   snprintf(scene->name, sizeof scene->name, "%s", name.text);
-  scene_settings_read(document_key(root, "settings"), scene);
+  read_settings(document_key(root, "settings"), scene);
   return STATUS_OK;
 }
 
@@ -255,7 +498,7 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
   if (!row)
     return STATUS_CONTENT;
   struct field_value taken = *value;
-  TRY(scene_files_set(row, &taken, error));
+  TRY(set_file(row, &taken, error));
   TRY(field_set(row, scene->inputs, &taken, error));
   scene->given[row - table->rows] = scene->overridden[row - table->rows] = true;
   if (scene->kind->complete)
@@ -309,6 +552,40 @@ status scene_check(struct scene *scene, struct error *error) {
   if (code || !scene->kind->check_given)
     return code;
   return scene->kind->check_given(scene->inputs, scene->given, error);
+}
+
+/* ---- using named settings ---- */
+
+const struct scene_settings *scene_settings_find(const struct scene *scene, const char *name) {
+  for (size_t i = 0; i < scene->settings_count; i++)
+    if (strcmp(scene->settings[i].name, name) == 0)
+      return &scene->settings[i];
+  return NULL;
+}
+
+static status unknown_settings(const struct scene *scene, const char *name, struct error *error) {
+  char known[512] = SCENE_SETTINGS_STANDARD;
+  for (size_t i = 0; i < scene->settings_count; i++)
+    text_append(known, sizeof known, ", %s", scene->settings[i].name);
+  return status_fail(error, STATUS_MISSING, "%s has no settings '%.64s'; it has %s (`settings` in its document)",
+                     scene->name, name, known);
+}
+
+status scene_settings_use(struct scene *scene, const char *name, struct error *error) {
+  if (strcmp(name, SCENE_SETTINGS_STANDARD) == 0)
+    return STATUS_OK;
+  const struct scene_settings *settings = scene_settings_find(scene, name);
+  if (!settings)
+    return unknown_settings(scene, name, error);
+
+  status code = STATUS_OK;
+  for (size_t i = 0; code == STATUS_OK && i < settings->count; i++) {
+    const size_t row = settings->item[i].row;
+    const bool overridden = scene->overridden[row];
+    code = scene_set(scene, scene->kind->inputs->rows[row].path, &settings->item[i].value, error);
+    scene->overridden[row] = overridden;
+  }
+  return code;
 }
 
 /* ---- output ---- */

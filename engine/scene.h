@@ -5,8 +5,25 @@
 #define CLAST_ENGINE_SCENE_H
 
 #include "engine/engine.h"
+#include "engine/mesh/mesh.h"
 
-struct scene_settings;
+/* Named settings of a scene: numerical choices that belong together, such as those of a quick draft. A document gives
+ * them under `settings`:
+ *     settings:
+ *       draft: {fidelity.particles: 3000, fidelity.precision: float}
+ *       reference: {fidelity.particles: 90000}
+ * `NAME@draft` is the scene NAME with the settings draft. The scene as written is called standard. */
+#define SCENE_SETTINGS_STANDARD "standard"
+enum { SCENE_SETTINGS_ITEMS = 12, SCENE_SETTINGS_MOST = 8, SCENE_SETTINGS_NAME = 32 };
+
+struct scene_settings {
+  char name[SCENE_SETTINGS_NAME];
+  size_t count;
+  struct {
+    size_t row; /* index into the engine's inputs */
+    struct field_value value;
+  } item[SCENE_SETTINGS_ITEMS];
+};
 
 struct scene {
   const struct engine_kind *kind;
@@ -14,7 +31,7 @@ struct scene {
   bool *given;                     /* per input row: set by the document or an override */
   bool *overridden;                /* per input row: set by an override */
   char name[FIELD_TEXT_SIZE];      /* built-in name, or the document's own `name:` */
-  struct scene_settings *settings; /* named settings (engine/scene_settings.h), owned; NULL: none */
+  struct scene_settings *settings; /* owned; NULL: none */
   size_t settings_count;
 };
 
@@ -23,7 +40,7 @@ const char *scene_builtin_name(size_t index);
 const char *scene_builtin_text(const char *name); /* the document, or NULL */
 
 /* `reference` is a built-in name or a path (a path when it holds '/' or ends in .yaml/.yml/.json), relative to `folder`
- * (NULL: the current one). `@NAME` after it chooses named settings (engine/scene_settings.h): basalt-sphere@draft.
+ * (NULL: the current one). `@NAME` after it chooses named settings: basalt-sphere@draft.
  * *error lists all errors of the document.
  * STATUS_MISSING (with nearest built-in name), STATUS_CONTENT, STATUS_IO. */
 status scene_load(const char *reference, const char *folder, struct scene **out, struct error *error);
@@ -37,9 +54,20 @@ void scene_free(struct scene *scene);
  * not given are completed again. Conditions across fields are not checked. */
 status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error);
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error);
+/* The settings of this name, or NULL. */
+const struct scene_settings *scene_settings_find(const struct scene *scene, const char *name);
+/* Applies settings, as if the document gave their inputs. "standard" changes nothing. STATUS_MISSING: unknown name; the
+ * message lists the known ones. STATUS_CONTENT: the scene refuses a value. */
+status scene_settings_use(struct scene *scene, const char *name, struct error *error);
 /* Checks a scene after its last override. A line of the document that has no effect because of an override counts as
  * not given; an override without effect is refused; conditions across fields are checked. */
 status scene_check(struct scene *scene, struct error *error);
+
+/* Lists the shape files that active inputs name (FIELD_FILE) and returns their number. The inputs hold the SHA-256 of a
+ * file's content, so a run's identity depends on the content. Files that were not read are left out. */
+enum { SCENE_FILES_MOST = 4 }; /* inputs of one engine with FIELD_FILE */
+size_t scene_files_of(const struct field_table *inputs, const void *object,
+                      const struct mesh_file *files[SCENE_FILES_MOST]);
 
 /* JSON Schema of this engine's scene documents: what schemas/scene-<engine>.schema.json holds. */
 void scene_schema(const struct engine_kind *kind, FILE *out);

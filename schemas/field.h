@@ -31,7 +31,7 @@ enum field_flags {
   FIELD_PERCENT = 32, /* FIELD_REAL of unit "1": a strain or share that users give in percent and that may exceed 1. A
                          number without % is refused */
   FIELD_FILE = 64,    /* FIELD_TEXT of inputs: a scene's document names a file, and the value is its SHA-256
-                       * (engine/scene_files.h) */
+                       * (engine/scene.h) */
 };
 
 struct field {

@@ -129,6 +129,24 @@ status file_read(const char *path, const char *what, unsigned char **bytes, size
   return status_fail(error, STATUS_IO, "cannot read the %s '%s': %s", what, path, strerror(why));
 }
 
+/* ---- names ---- */
+
+bool file_name_is_document(const char *word) {
+  static const char *const endings[] = {".yaml", ".yml", ".json", NULL};
+  const char *ending = strrchr(word, '.');
+  return strchr(word, '/') || (ending && text_is_one_of(ending, endings));
+}
+
+char *file_name_in(const char *folder, const char *name) {
+  if (name[0] == '/' || !folder || !*folder)
+    return strdup(name);
+  const size_t size = strlen(folder) + strlen(name) + 2;
+  char *whole = malloc(size);
+  if (whole)
+    snprintf(whole, size, "%s/%s", folder, name);
+  return whole;
+}
+
 /* ---- what an output may not replace ---- */
 
 /* The first bytes of a file, with a 0 after them. */

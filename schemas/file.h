@@ -56,4 +56,12 @@ status file_write(const char *path, const char *what, const void *bytes, size_t 
 /* Makes a folder, unless it exists; a new one outlives a power cut. STATUS_IO. */
 status file_folder(const char *path, struct error *error);
 
+/* Is the word the name of a document file, and not of a built-in document? It has a slash, or ends in .yaml, .yml or
+ * .json. */
+bool file_name_is_document(const char *word);
+
+/* Joins a folder and a file name; malloc'd, NULL without memory. An absolute name does not change, nor does any name
+ * when `folder` is NULL or empty (the current folder). */
+char *file_name_in(const char *folder, const char *name);
+
 #endif

@@ -178,7 +178,7 @@ static bool requires(const struct field_table *table, const char *prefix, size_t
 
 static void properties(const struct field_table *table, const char *prefix, size_t length, int indent, FILE *out);
 
-/* A section with a choice `name` may be a word or a file instead (engine/scene_materials.h). */
+/* A section with a choice `name` may be a word or a file instead (engine/scene.c). */
 static bool is_named(const struct field_table *table, const char *path, size_t whole) {
   for (size_t i = 0; i < table->count; i++)
     if (same_start(table->rows[i].path, path, whole) && strcmp(table->rows[i].path + whole, "name") == 0)

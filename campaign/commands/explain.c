@@ -8,8 +8,8 @@
 #include "campaign/document/campaign_keys.h"
 #include "campaign/print/print.h"
 #include "db/store/schema.h"
-#include "engine/file_name.h"
-#include "engine/scene_settings.h"
+#include "engine/scene.h"
+#include "schemas/file.h"
 #include "schemas/text.h"
 
 struct options {

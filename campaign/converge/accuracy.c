@@ -10,7 +10,7 @@
 #include "campaign/converge/study_quantity.h"
 #include "campaign/document/campaign_walk.h"
 #include "db/ask/convergence.h"
-#include "engine/scene_settings.h"
+#include "engine/scene.h"
 
 enum { FEWEST_SEEDS = 3, MOST_SEEDS = 10000, LOOKED_AT = 1000 };
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/scene_settings.h"
+#include "engine/scene.h"
 #include "schemas/text.h"
 
 struct making {

@@ -2,7 +2,7 @@
 #ifndef CLAST_CAMPAIGN_CONVERGE_LADDER_H
 #define CLAST_CAMPAIGN_CONVERGE_LADDER_H
 
-#include "engine/knob.h"
+#include "engine/engine.h"
 #include "engine/scene.h"
 
 struct ladder_level {

@@ -89,7 +89,7 @@ static status add_knob(struct subject *subject, const struct request *request, c
 
 static int group_of(const char *name) {
   for (int group = 0; group < KNOB_GROUPS; group++)
-    if (strcmp(name, knob_group_names[group]) == 0)
+    if (strcmp(name, engine_knob_groups[group]) == 0)
       return group;
   return -1;
 }

@@ -13,7 +13,7 @@ status study_print_knobs(enum table_format format, struct error *error) {
     for (const struct knob *knob = engine_at(i)->knobs; knob && knob->name; knob++) {
       table_text(table, engine_at(i)->name);
       table_text(table, knob->name);
-      table_text(table, knob_group_names[knob->group]);
+      table_text(table, engine_knob_groups[knob->group]);
       table_text(table, knob->inputs[0].path ? knob->inputs[0].path : "");
       table_text(table, knob->meaning);
     }

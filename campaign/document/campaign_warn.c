@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "campaign/document/campaign_walk.h"
-#include "engine/warnings.h"
+#include "engine/outcome.h"
 #include "schemas/text.h"
 
 enum { LOOKED_AT = 1000, LINE = 400 };

@@ -4,7 +4,7 @@
 
 #include "campaign/document/campaign.h"
 
-/* Writes a line per kind of warning (engine/warnings.h): `before`, the number of points that have it, and the engine's
+/* Writes a line per kind of warning (engine/outcome.h): `before`, the number of points that have it, and the engine's
  * text for the first of them. Looks at the first 1000 points. */
 void campaign_warn(const struct campaign *campaign, const char *before, FILE *out);
 /* The same for one scene, without a number of points. */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/restart.h"
-#include "engine/scene_files.h"
+#include "engine/scene.h"
 #include "schemas/file.h"
 
 /* The encodings begin with these marks. All ranks of a farm run one binary, so arrays of structs are sent as they are

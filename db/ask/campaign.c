@@ -8,7 +8,6 @@
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "engine/outcome.h"
-#include "engine/warnings.h"
 
 /* Sessions with their campaigns. The last one has the largest number: clocks are set back at times. A read-only store
  * of an older program does not name the campaign: it is then one of the campaigns of the session's runs. */

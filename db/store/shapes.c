@@ -5,7 +5,7 @@
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
-#include "engine/scene_files.h"
+#include "engine/scene.h"
 
 status shapes_add(struct store *store, const struct scene *scene, struct error *error) {
   static const char doing[] = "adding a shape file";

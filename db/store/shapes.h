@@ -7,7 +7,7 @@
 
 /* Adds the files of a scene that the store lacks, within the open batch. */
 status shapes_add(struct store *store, const struct scene *scene, struct error *error);
-/* Makes the files of a run's scene known (engine/mesh/files.h), so that its scene can be read; run_id 0: all files of
+/* Makes the files of a run's scene known (engine/mesh/mesh.h), so that its scene can be read; run_id 0: all files of
  * the store. STATUS_CONTENT: a file is damaged. */
 status shapes_load(struct store *store, int64_t run_id, struct error *error);
 /* Adds the files of the attached store `other` that `main` lacks. */

@@ -24,20 +24,12 @@ status mesh_soup_face(struct mesh_soup *soup, size_t line, const uint32_t corner
 /* formats.c: reads a file into the soup. `text` ends with a NUL behind its `size` bytes. */
 status mesh_formats_read(struct mesh_soup *soup, const char *text, size_t size, struct error *error);
 
-/* closed.c: merges equal vertices, and checks that every edge has two faces that turn opposite ways and every face an
- * area. */
-status mesh_closed_make(struct mesh_soup *soup, struct error *error);
-
-/* inside.c: lists the faces by column, and checks that lines enter and leave the solid in turn. */
-status mesh_inside_make(struct mesh *mesh, struct error *error);
-void mesh_inside_free(struct mesh_columns *columns);
-status mesh_inside_check(const struct mesh *mesh, const struct mesh_soup *soup, struct error *error);
+/* search.c: lists the faces by column, checks that lines enter and leave the solid in turn, and makes the tree of
+ * boxes. STATUS_CONTENT, STATUS_MEMORY. */
+status mesh_search_make(struct mesh *mesh, const struct mesh_soup *soup, struct error *error);
+void mesh_search_free(struct mesh *mesh);
 
 /* The unit normal of a face, outwards. */
 void mesh_normal(const struct mesh *mesh, uint32_t face, double normal[3]);
-
-/* distance.c: the tree of boxes. */
-status mesh_distance_make(struct mesh *mesh, struct error *error);
-void mesh_distance_free(struct mesh_tree *tree);
 
 #endif

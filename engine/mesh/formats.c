@@ -199,10 +199,7 @@ static status read_stl_binary(struct mesh_soup *soup, const char *bytes, size_t 
     for (size_t c = 0; c < 3; c++) {
       const char *at = bytes + HEAD + EACH * f + 12 * (c + 1);
       corner[c] = (uint32_t)soup->vertices;
-      const status code = mesh_soup_vertex(soup, f + 1, (double[3]){float_at(at), float_at(at + 4), float_at(at + 8)},
-                                           error);
-      if (code)
-        return code;
+      TRY(mesh_soup_vertex(soup, f + 1, (double[3]){float_at(at), float_at(at + 4), float_at(at + 8)}, error));
     }
     TRY(mesh_soup_face(soup, f + 1, corner, error));
   }
@@ -211,14 +208,11 @@ static status read_stl_binary(struct mesh_soup *soup, const char *bytes, size_t 
 
 status mesh_formats_read(struct mesh_soup *soup, const char *text, size_t size, struct error *error) {
   struct words w = {text, 1};
-  status code;
   if ((size >= HEAD && size == HEAD + EACH * (uint64_t)word_at(text + 80)) || strlen(text) < size)
-    code = read_stl_binary(soup, text, size, error);
+    TRY(read_stl_binary(soup, text, size, error));
   else if (take(&w, "solid"))
-    code = read_stl_text(soup, text, error);
+    TRY(read_stl_text(soup, text, error));
   else
-    code = read_obj(soup, text, error);
-  if (code)
-    return code;
+    TRY(read_obj(soup, text, error));
   return soup->faces ? STATUS_OK : mesh_refuse(soup, 0, error, "the file has no faces: expected an STL or OBJ file");
 }

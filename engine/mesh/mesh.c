@@ -1,5 +1,5 @@
-/* Makes a mesh from its file, with all checks in order. Volume, centre of mass, extent, and the point where a line
- * leaves the mesh. */
+/* Makes a mesh from its file, with all checks in order. Volume, centre of mass, extent, the point where a line leaves
+ * the mesh, and the list of files that were read. */
 #include "engine/mesh/mesh.h"
 
 #include <math.h>
@@ -7,10 +7,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "engine/grow.h"
 #include "engine/mesh/build.h"
 #include "engine/vector3.h"
+#include "schemas/file.h"
+#include "schemas/sha256.h"
 
 /* Least share of its box that a body fills (drawing points from a smaller one takes too long); largest coordinate, in
  * units of the file. */
@@ -59,6 +62,132 @@ status mesh_soup_face(struct mesh_soup *soup, size_t line, const uint32_t corner
   soup->line[soup->faces++] = (uint32_t)line;
   return STATUS_OK;
 }
+
+/* ---- from the faces of a file to a closed surface ---- */
+
+struct place {
+  double at[3];
+  uint32_t vertex;
+};
+
+static int compare_places(const void *a, const void *b) {
+  const struct place *p = a, *q = b;
+  for (int k = 0; k < 3; k++)
+    if (p->at[k] != q->at[k])
+      return p->at[k] < q->at[k] ? -1 : 1;
+  return p->vertex < q->vertex ? -1 : p->vertex > q->vertex;
+}
+
+/* The vertex with the lowest number stands for all that are equal. */
+static status merge_vertices(struct mesh_soup *soup, struct error *error) {
+  struct place *places = malloc((soup->vertices + 1) * sizeof *places);
+  uint32_t *same = malloc((soup->vertices + 1) * sizeof *same);
+  if (!places || !same) {
+    free(places);
+    free(same);
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu vertices", soup->vertices);
+  }
+  for (size_t v = 0; v < soup->vertices; v++) {
+    memcpy(places[v].at, soup->vertex[v], sizeof places[v].at);
+    places[v].vertex = (uint32_t)v;
+  }
+  qsort(places, soup->vertices, sizeof *places, compare_places);
+  for (size_t i = 0; i < soup->vertices; i++) {
+    const bool again = i > 0 && memcmp(places[i].at, places[i - 1].at, sizeof places[i].at) == 0;
+    same[places[i].vertex] = again ? same[places[i - 1].vertex] : places[i].vertex;
+  }
+  for (size_t f = 0; f < soup->faces; f++)
+    for (int c = 0; c < 3; c++)
+      soup->face[f][c] = same[soup->face[f][c]];
+  free(places);
+  free(same);
+  return STATUS_OK;
+}
+
+static status check_faces(const struct mesh_soup *soup, struct error *error) {
+  for (size_t f = 0; f < soup->faces; f++) {
+    const uint32_t *corner = soup->face[f];
+    const double *a = soup->vertex[corner[0]], *b = soup->vertex[corner[1]], *c = soup->vertex[corner[2]];
+    double n[3], squares = 0;
+    for (int k = 0; k < 3; k++) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      n[k] = (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
+      squares += n[k] * n[k];
+    }
+    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0] || !(squares > 0))
+      return mesh_refuse(soup, soup->line[f], error,
+                         "the face has no area: remove such faces (MeshLab: Remove Zero Area Faces, Merge Close "
+                         "Vertices)");
+  }
+  return STATUS_OK;
+}
+
+struct edge {
+  uint32_t low, high, face;
+  bool rises; /* from the lower vertex to the higher one */
+};
+
+static int compare_edges(const void *a, const void *b) {
+  const struct edge *p = a, *q = b;
+  if (p->low != q->low)
+    return p->low < q->low ? -1 : 1;
+  if (p->high != q->high)
+    return p->high < q->high ? -1 : 1;
+  return p->face < q->face ? -1 : p->face > q->face;
+}
+
+/* One edge that belongs to `count` faces. */
+static status check_edge(const struct mesh_soup *soup, const struct edge *edge, size_t count, struct error *error) {
+  const double *a = soup->vertex[edge->low], *b = soup->vertex[edge->high];
+  const size_t line = soup->line[edge->face];
+  if (count == 1)
+    return mesh_refuse(soup, line, error,
+                       "the surface is open: the edge of this face from (%g, %g, %g) to (%g, %g, %g) has no second "
+                       "face; close the hole (MeshLab: Merge Close Vertices, Close Holes)",
+                       a[0], a[1], a[2], b[0], b[1], b[2]);
+  if (count > 2)
+    return mesh_refuse(soup, line, error,
+                       "the edge of this face from (%g, %g, %g) to (%g, %g, %g) has %zu faces, and two are allowed: "
+                       "remove doubled faces (MeshLab: Repair Non Manifold Edges)",
+                       a[0], a[1], a[2], b[0], b[1], b[2], count);
+  if (edge[0].rises == edge[1].rises)
+    return mesh_refuse(soup, line, error,
+                       "this face and that of %s %u turn opposite ways, so that one of their normals points inwards: "
+                       "turn all normals outwards (MeshLab: Re-Orient All Faces Coherently)",
+                       soup->numbered ? "number" : "line", soup->line[edge[1].face]);
+  return STATUS_OK;
+}
+
+static status check_edges(const struct mesh_soup *soup, struct error *error) {
+  const size_t count = 3 * soup->faces;
+  struct edge *edges = malloc(count * sizeof *edges);
+  if (!edges)
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu edges", count);
+  for (size_t f = 0; f < soup->faces; f++)
+    for (size_t c = 0; c < 3; c++) {
+      const uint32_t from = soup->face[f][c], to = soup->face[f][(c + 1) % 3];
+      edges[3 * f + c] = from < to ? (struct edge){from, to, (uint32_t)f, true}
+                                   : (struct edge){to, from, (uint32_t)f, false};
+    }
+  qsort(edges, count, sizeof *edges, compare_edges);
+  status code = STATUS_OK;
+  for (size_t i = 0, next; i < count && !code; i = next) {
+    for (next = i + 1; next < count && edges[next].low == edges[i].low && edges[next].high == edges[i].high;)
+      next++;
+    code = check_edge(soup, &edges[i], next - i, error);
+  }
+  free(edges);
+  return code;
+}
+
+/* Merges equal vertices, and checks that every edge has two faces that turn opposite ways and every face an area. */
+static status close_surface(struct mesh_soup *soup, struct error *error) {
+  TRY(merge_vertices(soup, error));
+  TRY(check_faces(soup, error));
+  return check_edges(soup, error);
+}
+
+/* ---- measures ---- */
 
 static void find_box(struct mesh *m) {
   for (int k = 0; k < 3; k++) {
@@ -150,9 +279,7 @@ static status build(struct mesh *m, struct mesh_soup *soup, struct error *error)
   shift(m, middle); /* far from the origin volumes would cancel */
   measure(m);
   TRY(check_size(m, soup, error));
-  TRY(mesh_inside_make(m, error));
-  status code = mesh_inside_check(m, soup, error);
-  return code ? code : mesh_distance_make(m, error);
+  return mesh_search_make(m, soup, error);
 }
 
 status mesh_read(const char *name, const void *bytes, size_t size, struct mesh **out, struct error *error) {
@@ -169,14 +296,8 @@ status mesh_read(const char *name, const void *bytes, size_t size, struct mesh *
   if (size)
     memcpy(text, bytes, size);
   text[size] = 0;
-  code = mesh_formats_read(&soup, text, size, error);
-  if (code)
-    goto cleanup;
-  code = mesh_closed_make(&soup, error);
-  if (code)
-    goto cleanup;
-  code = build(mesh, &soup, error);
-  if (code)
+  if ((code = mesh_formats_read(&soup, text, size, error)) || (code = close_surface(&soup, error)) ||
+      (code = build(mesh, &soup, error)))
     goto cleanup;
   *out = mesh;
   mesh = NULL;
@@ -192,8 +313,7 @@ cleanup:
 void mesh_free(struct mesh *mesh) {
   if (!mesh)
     return;
-  mesh_inside_free(mesh->columns);
-  mesh_distance_free(mesh->tree);
+  mesh_search_free(mesh);
   free(mesh->vertex);
   free(mesh->face);
   free(mesh);
@@ -230,7 +350,7 @@ static void frame_of(const double d[3], double u[3], double v[3]) {
   vector3_cross(d, u, v);
 }
 
-/* Does the line through the origin along u x v meet the face from inside? As in inside.c, both faces of an edge do the
+/* Does the line through the origin along u x v meet the face from inside? As in search.c, both faces of an edge do the
  * same sum for it. */
 static bool leaves_by(const struct mesh *m, const uint32_t corner[3], const double u[3], const double v[3]) {
   int turned = 0;
@@ -265,4 +385,88 @@ bool mesh_surface(const struct mesh *m, const double direction[3], double point[
   for (int k = 0; k < 3; k++)
     point[k] = last * direction[k];
   return found;
+}
+
+/* ---- shape files that were read ---- */
+
+struct entry {
+  struct entry *next;
+  struct mesh_file file;
+};
+
+static struct entry *entries; /* entries are only added at the head: pointers to files stay valid */
+
+const struct mesh_file *mesh_files_find(const char *hash) {
+  for (const struct entry *e = entries; e; e = e->next)
+    if (strcmp(e->file.hash, hash) == 0)
+      return &e->file;
+  return NULL;
+}
+
+/* Takes ownership of the bytes. */
+static status add(const char *name, unsigned char *bytes, size_t size, const struct mesh_file **out,
+                  struct error *error) {
+  char hash[MESH_HASH_SIZE];
+  sha256_text(bytes, size, hash);
+  *out = mesh_files_find(hash);
+  if (*out) {
+    free(bytes);
+    return STATUS_OK;
+  }
+  struct entry *entry = calloc(1, sizeof *entry);
+  status code = entry ? mesh_read(name, bytes, size, &entry->file.mesh, error) : no_memory(name, error);
+  if (code) {
+    free(entry);
+    free(bytes);
+    return code;
+  }
+  memcpy(entry->file.hash, hash, sizeof hash);
+  entry->file.bytes = bytes;
+  entry->file.size = size;
+  entry->next = entries;
+  entries = entry;
+  *out = &entry->file;
+  return STATUS_OK;
+}
+
+status mesh_files_add(const char *name, const void *bytes, size_t size, const struct mesh_file **out,
+                      struct error *error) {
+  unsigned char *copy = malloc(size + 1);
+  if (!copy)
+    return no_memory(name, error);
+  if (size)
+    memcpy(copy, bytes, size);
+  return add(name, copy, size, out, error);
+}
+
+/* A device or a pipe may never end, and a large file is not read at all. */
+static status look(const char *path, struct error *error) {
+  struct stat about;
+  if (stat(path, &about) != 0)
+    return STATUS_OK; /* opening it reports the reason */
+  if (!S_ISREG(about.st_mode))
+    return status_fail(error, STATUS_IO, "%.3000s: is no regular file: name a shape file (STL or OBJ)", path);
+  if (about.st_size > MESH_MOST_BYTES)
+    return status_fail(error, STATUS_CONTENT,
+                       "%.3000s: the file has %lld MB, and %d MB is the most: take a coarser model", path,
+                       (long long)(about.st_size >> 20), MESH_MOST_BYTES >> 20);
+  return STATUS_OK;
+}
+
+status mesh_files_open(const char *name, const char *folder, const struct mesh_file **out, struct error *error) {
+  char *path = file_name_in(folder, name);
+  unsigned char *bytes = NULL;
+  size_t size = 0;
+  *out = NULL;
+  if (!path)
+    return status_fail(error, STATUS_MEMORY, "no memory for the name of a file");
+  status code = look(path, error);
+  if (!code)
+    code = file_input(path, error);
+  if (!code)
+    code = file_read(path, "shape file", &bytes, &size, error);
+  if (!code)
+    code = add(path, bytes, size, out, error);
+  free(path);
+  return code;
 }

@@ -26,8 +26,8 @@ struct mesh {
   double centre[3];    /* of mass, in the coordinates of the file */
   double volume, area;
   double low[3], high[3];       /* the box around it */
-  struct mesh_columns *columns; /* inside.c */
-  struct mesh_tree *tree;       /* distance.c */
+  struct mesh_columns *columns; /* search.c */
+  struct mesh_tree *tree;       /* search.c */
 };
 
 /* `name` is for messages. The format is found by the content. STATUS_CONTENT: not a shape file, or not a closed
@@ -46,5 +46,26 @@ double mesh_reach(const struct mesh *mesh, const double direction[3]);
 /* The last place where the line from the centre along the unit direction leaves the solid, and the normal of the face
  * there. False: it does not meet the solid (a ring). */
 bool mesh_surface(const struct mesh *mesh, const double direction[3], double point[3], double normal[3]);
+
+/* Shape files that scenes use, by their content. A scene keeps the SHA-256 of the file (an input with FIELD_FILE);
+ * this list keeps the bytes and the mesh of each until the process ends. So a run depends on what a file holds, not on
+ * its name; stores keep the bytes, and tasks carry them to other processes. */
+enum { MESH_HASH_SIZE = 65 }; /* 64 hexadecimal digits and a NUL, as `sha256sum FILE` prints them */
+
+struct mesh_file {
+  char hash[MESH_HASH_SIZE];
+  unsigned char *bytes;
+  size_t size;
+  struct mesh *mesh;
+};
+
+/* Reads a file; a name without a leading / is relative to `folder` (NULL: the current one). STATUS_MISSING, STATUS_IO,
+ * or as mesh_read. */
+status mesh_files_open(const char *name, const char *folder, const struct mesh_file **out, struct error *error);
+/* The same from the bytes that a store or a task holds. */
+status mesh_files_add(const char *name, const void *bytes, size_t size, const struct mesh_file **out,
+                      struct error *error);
+/* NULL: no file of this hash has been read. */
+const struct mesh_file *mesh_files_find(const char *hash);
 
 #endif

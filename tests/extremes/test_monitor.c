@@ -2,9 +2,9 @@
  * quantity, the grain or particle, the time and the remedy. Also the cost of the monitor. */
 #include "engine/dem/run/run.h"
 #include "engine/dem/step/system_layout.h"
+#include "engine/outcome.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/step/system.h"
-#include "engine/warnings.h"
 #include "schemas/clock.h"
 #include "tests/support/run_case.h"
 

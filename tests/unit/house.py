@@ -265,7 +265,6 @@ CIRCLES = (
     "schemas/document schemas/document_tree",
     "schemas/unit schemas/unit_names",
     "engine/mesh/build engine/mesh/mesh",
-    "engine/scene engine/scene_settings",
     "analysis/pictures/snapshot_hdf5 analysis/pictures/snapshot_read",
     "db/store/identities db/store/internal db/store/store",
     "campaign/document/campaign campaign/document/campaign_points campaign/document/campaign_read "

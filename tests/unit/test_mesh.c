@@ -10,7 +10,6 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-#include "engine/mesh/files.h"
 #include "engine/mesh/mesh.h"
 #include "engine/random.h"
 

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #define engine_find tiny_find
-#include "engine/scene_settings.h"
+#include "engine/scene.h"
 
 #include "engine/scene.c" /* with engine_find replaced */
 #undef engine_find

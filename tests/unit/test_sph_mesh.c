@@ -9,7 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "engine/mesh/files.h"
+#include "engine/mesh/mesh.h"
 #include "engine/random.h"
 #include "engine/scene.h"
 #include "engine/sph/body/bodies.h"

@@ -201,7 +201,7 @@ static void warn(const struct dem_run *run, const struct dem_ledger *ledger, dou
     set |= WARNINGS_PASSING;
   if (given(ledger) > WARNINGS_LARGEST_DRIFT * input)
     set |= WARNINGS_GAIN;
-  warnings_words(set, outcome->warnings, sizeof outcome->warnings);
+  outcome_warnings(set, outcome->warnings, sizeof outcome->warnings);
   if (set & WARNINGS_PASSING && outcome->state <= OUTCOME_END_TIME)
     snprintf(outcome->message, sizeof outcome->message,
              "grains closed in at %.4g m/s: above %.4g m/s they pass through each other, and the model has no answer",

@@ -7,7 +7,7 @@
 #include "engine/dem/step/system.h"
 #include "engine/engine.h"
 #include "engine/frame.h"
-#include "engine/warnings.h"
+#include "engine/outcome.h"
 
 /* One point of the stress-strain curve: means over the steps since the point before it. Extension is positive. */
 struct dem_sample {

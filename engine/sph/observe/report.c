@@ -12,7 +12,7 @@
 /* `link_h` of the inputs; parts of a rod count as separate when each is more than 1/ROD_PARTS of it. */
 enum { ROD_PARTS = 100 };
 
-/* Shares above which a run gets a warning (engine/warnings.h). */
+/* Shares above which a run gets a warning (engine/outcome.h). */
 static const double largest_clamped = 0.01, largest_held = 0.01;
 
 /* The fragments of `particles`: those of the run as they are now, or as they were at the start. */
@@ -334,7 +334,7 @@ static status warn(const struct sph_run *run, const struct sph_results *results,
     set |= WARNINGS_HELD;
   if (run->inputs.kind == SPH_PISTON && sph_plate_leaks(run))
     set |= WARNINGS_PISTON;
-  warnings_words(set, outcome->warnings, sizeof outcome->warnings);
+  outcome_warnings(set, outcome->warnings, sizeof outcome->warnings);
   return STATUS_OK;
 }
 

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/outcome.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system.h"
-#include "engine/warnings.h"
 
 enum { LOOK_INTERVAL = 8 }; /* steps between two checks of the damage */
 

@@ -5,6 +5,7 @@
 
 #include "engine/engine.h"
 #include "engine/frame.h"
+#include "engine/outcome.h"
 #include "engine/snapshot_file.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/material/palpha.h"
@@ -12,7 +13,6 @@
 #include "engine/sph/observe/results.h"
 #include "engine/sph/scene/inputs.h"
 #include "engine/sph/step/system.h"
-#include "engine/warnings.h"
 
 enum { SPH_RUN_BODIES = 2 };
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/mesh/files.h"
+#include "engine/mesh/mesh.h"
 #include "engine/sph/body/bodies.h"
 
 enum { PISTON_LAYERS = 4 }; /* thicker than a support: no pair joins the plate and the piston's back */

@@ -24,7 +24,7 @@ enum sph_link_h { SPH_LINK_H_INITIAL, SPH_LINK_H_CURRENT, SPH_LINK_LENGTHS };
 enum sph_precision { SPH_DOUBLE, SPH_FLOAT, SPH_PRECISIONS };
 
 struct sph_mesh_inputs {
-  char file[FIELD_TEXT_SIZE]; /* SHA-256 of the shape file (engine/mesh/files.h) */
+  char file[FIELD_TEXT_SIZE]; /* SHA-256 of the shape file (engine/mesh/mesh.h) */
   double unit;                /* m */
 };
 

@@ -1,9 +1,9 @@
 /* Warnings that follow from the inputs before a run. The limits are measured: tests/extremes/map.md. */
 #include <math.h>
 
+#include "engine/outcome.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
-#include "engine/warnings.h"
 
 /* Without much viscosity the energy drifts at smaller steps, too. */
 static const double largest_cfl = 0.5, largest_undamped_cfl = 0.2, least_viscosity = 0.5;
