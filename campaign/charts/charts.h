@@ -80,24 +80,6 @@ struct spectrum_choice {
 status spectrum_curves_measured(struct store *store, const char *path, struct spectrum_choice *choice,
                                 struct measured *measured, struct error *error);
 
-/* A pool's spectrum with its headline fit, which only a pool of one point has. */
-struct spectrum_curve {
-  char label[ASK_POOL_LABEL + 64], fit_label[96];
-  struct pooled_form form;
-  struct pooled_bin *bins; /* owned */
-  size_t count;
-  double complete_mass; /* kg; NaN: not known */
-  struct picture_fit fit;
-  struct pooled_rivals rivals; /* n 0: not requested */
-  struct picture_thin *thin;   /* one for each run; owned with their bins */
-  size_t thin_count;
-};
-/* with_rivals: also computes likelihood ratios of the pure power law against other laws. */
-status spectrum_curves_make(const struct spectrum_choice *choice, bool with_rivals, const struct ask_pool *pool,
-                            struct spectrum_curve *curve, struct error *error);
-void spectrum_curves_release(struct spectrum_curve *curve);                       /* a zeroed one is fine */
-struct picture_series spectrum_curves_series(const struct spectrum_curve *curve); /* borrows the curve */
-
 /* The first eight pools, with the measured spectrum. page NULL: no picture. text: a plot on stdout. */
 struct spectrum_drawing {
   const struct picture_page *page;

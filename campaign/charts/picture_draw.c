@@ -15,61 +15,54 @@ static double width_of(const struct picture_choice *options) {
   return options->width > 0 ? options->width : WIDTH;
 }
 
+/* Grains in the plane have one picture only. */
 static status draw_grains(const char *fields, const char *picture, const struct picture_choice *options,
                           struct error *error) {
   struct picture_panel panel = {0};
-  TRY(picture_body_read(fields, &panel.body, error));
   char numbers[160];
+  status code = STATUS_OK;
+  TRY(picture_body_read(fields, &panel.body, error));
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
-  status code = picture_fragments(picture, width_of(options), options->caption, numbers, 1, &panel, error);
+  if (options->what || options->view || options->axis || options->at)
+    code = status_fail(error, STATUS_USAGE,
+                       "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
+                       "are for particles in space",
+                       fields);
+  else
+    code = picture_fragments(picture, width_of(options), options->caption, numbers, 1, &panel, error);
   picture_body_clear(&panel.body);
   return code;
-}
-
-/* A view by its name; NULL leaves *view as it is. */
-static status choose_view(const char *name, enum picture_view *view, struct error *error) {
-  static const char *const names[] = {[PICTURE_CUT] = "cut", [PICTURE_OUTSIDE] = "outside", [PICTURE_APART] = "apart"};
-  if (!name)
-    return STATUS_OK;
-  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-    if (names[i] && strcmp(name, names[i]) == 0) {
-      *view = (enum picture_view)i;
-      return STATUS_OK;
-    }
-  return status_fail(error, STATUS_USAGE, "--view is cut, outside, apart or profile, not '%s'", name);
-}
-
-/* x, y or z; without it the picture is an oblique view from outside. */
-static status choose_axis(const char *axis, struct picture_look *look, struct error *error) {
-  if (!axis) {
-    look->axis = look->view == PICTURE_OUTSIDE ? -1 : 1;
-    return STATUS_OK;
-  }
-  if (strlen(axis) != 1 || !strchr("xyz", axis[0]))
-    return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", axis);
-  look->axis = axis[0] - 'x';
-  return STATUS_OK;
-}
-
-static status choose_plane(const char *at, struct picture_look *look, struct error *error) {
-  if (!at)
-    return STATUS_OK;
-  if (look->view != PICTURE_CUT)
-    return status_fail(error, STATUS_USAGE, "--at is the place of a cut: give --view cut, too");
-  return unit_read(at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
 }
 
 /* --what, --view, --axis and --at as a look; `what` NULL: fragments. */
 static status choose_look(const struct picture_choice *options, struct picture_look *look, const char **what,
                           struct error *error) {
+  static const char *const views[] = {[PICTURE_CUT] = "cut", [PICTURE_OUTSIDE] = "outside", [PICTURE_APART] = "apart"};
+  enum { VIEWS = sizeof views / sizeof views[0] };
+  const char *axis = options->axis;
   *what = options->what ? options->what : "damage";
   if (strcmp(*what, "fragments") == 0)
     *what = NULL;
   *look = (struct picture_look){.view = *what ? PICTURE_CUT : PICTURE_APART, .plane = NAN};
-  status code = choose_view(options->view, &look->view, error);
-  if (!code)
-    code = choose_axis(options->axis, look, error);
-  return code ? code : choose_plane(options->at, look, error);
+  if (options->view) {
+    size_t view = 0;
+    while (view < VIEWS && (!views[view] || strcmp(options->view, views[view]) != 0))
+      view++;
+    if (view == VIEWS)
+      return status_fail(error, STATUS_USAGE, "--view is cut, outside, apart or profile, not '%s'", options->view);
+    look->view = (enum picture_view)view;
+  }
+  if (axis && (strlen(axis) != 1 || !strchr("xyz", axis[0])))
+    return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", axis);
+  if (axis)
+    look->axis = axis[0] - 'x';
+  else
+    look->axis = look->view == PICTURE_OUTSIDE ? -1 : 1; /* -1: an oblique view */
+  if (!options->at)
+    return STATUS_OK;
+  if (look->view != PICTURE_CUT)
+    return status_fail(error, STATUS_USAGE, "--at is the place of a cut: give --view cut, too");
+  return unit_read(options->at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
 }
 
 static void name_look(const struct picture_look *look, const struct picture_cloud *cloud, char *text, size_t size) {
@@ -99,8 +92,8 @@ static status read_quantity(const char *fields, bool chosen, struct picture_clou
   return picture_cloud_read_column(fields, cloud, *what, &cloud->value, unit, error);
 }
 
-static status draw_particles(const char *fields, const char *picture, const char *caption,
-                             const struct picture_choice *options, struct error *error) {
+static status draw_particles(const char *fields, const char *picture, const struct picture_choice *options,
+                             struct error *error) {
   struct picture_look look;
   struct picture_cloud cloud = {0};
   const char *what;
@@ -112,7 +105,7 @@ static status draw_particles(const char *fields, const char *picture, const char
     goto cleanup;
   name_look(&look, &cloud, title, sizeof title);
   picture_particles_numbers(&cloud, numbers, sizeof numbers);
-  look.title = caption ? caption : title;
+  look.title = options->caption ? options->caption : title;
   look.subtitle = numbers;
   look.quantity = what;
   look.unit = unit;
@@ -140,11 +133,6 @@ static status read_panel(const char *fields, const char *name, size_t count, str
   return STATUS_OK;
 }
 
-static struct picture_profile profile_of(const struct panel *panel, const char *name) {
-  const bool share = strcmp(name, "damage") == 0;
-  return (struct picture_profile){panel->label, panel->values, {share ? 0 : HUGE_VAL, share ? 1 : -HUGE_VAL}};
-}
-
 /* Draws profiles along the axis: --what, or distention and damage. */
 static status draw_profile(const char *fields, const char *picture, const struct picture_choice *options,
                            struct error *error) {
@@ -162,7 +150,10 @@ static status draw_profile(const char *fields, const char *picture, const struct
     code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error);
   for (size_t k = 0; !code && k < panels; k++) {
     code = read_panel(fields, names[k], count, &panel[k], error);
-    profile[k] = profile_of(&panel[k], names[k]);
+    const bool share = strcmp(names[k], "damage") == 0;
+    profile[k] = (struct picture_profile){panel[k].label,
+                                          panel[k].values,
+                                          {share ? 0 : HUGE_VAL, share ? 1 : -HUGE_VAL}};
   }
   if (code)
     goto cleanup;
@@ -179,26 +170,12 @@ cleanup:
   return code;
 }
 
-/* Grains in the plane have one picture only. An unreadable file is reported before that. */
-static status refuse_options(const char *fields, struct error *error) {
-  struct picture_body body;
-  TRY(picture_body_read(fields, &body, error));
-  picture_body_clear(&body);
-  return status_fail(error, STATUS_USAGE,
-                     "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
-                     "are for particles in space",
-                     fields);
-}
-
 status picture_draw(const char *fields, const char *picture, const struct picture_choice *options,
                     struct error *error) {
-  if (!picture_cloud_in_file(fields)) {
-    if (options->what || options->view || options->axis || options->at)
-      return refuse_options(fields, error);
+  if (!picture_cloud_in_file(fields))
     return draw_grains(fields, picture, options, error);
-  }
   if (!options->view || strcmp(options->view, "profile") != 0)
-    return draw_particles(fields, picture, options->caption, options, error);
+    return draw_particles(fields, picture, options, error);
   if (options->axis || options->at)
     return status_fail(error, STATUS_USAGE, "--axis and --at are for pictures of the body, not for --view profile");
   return draw_profile(fields, picture, options, error);

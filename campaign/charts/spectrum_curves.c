@@ -18,8 +18,21 @@ status spectrum_curves_measured(struct store *store, const char *path, struct sp
   return code ? code : measured_read(path, &size, measured, error);
 }
 
+/* A pool's spectrum with its headline fit, which only a pool of one point has. */
+struct curve {
+  char label[ASK_POOL_LABEL + 64], fit_label[96];
+  struct pooled_form form;
+  struct pooled_bin *bins; /* owned */
+  size_t count;
+  double complete_mass; /* kg; NaN: not known */
+  struct picture_fit fit;
+  struct pooled_rivals rivals; /* n 0: not requested */
+  struct picture_thin *thin;   /* one for each run; owned with their bins */
+  size_t thin_count;
+};
+
 /* "beta = 2.03 +- 0.05 (seeds, 95 %)" with the name of the exponent in this form. */
-static void label_fit(struct spectrum_curve *curve, double beta, double half_width) {
+static void label_fit(struct curve *curve, double beta, double half_width) {
   static const char *const names[2][2] = {{"\xce\xb2", "\xce\xb2 \xe2\x88\x92 1"}, {"D + 1", "D"}};
   const char *name = names[curve->form.size.density > 0][curve->form.cumulative];
   const double value = pooled_spectrum_exponent(&curve->form, beta);
@@ -35,16 +48,15 @@ static void label_fit(struct spectrum_curve *curve, double beta, double half_wid
   text_append(label, size, " (seeds, 95 %%)");
 }
 
-static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct spectrum_curve *curve,
-                        struct error *error) {
+static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct curve *curve, struct error *error) {
   const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
   struct pooled_exponent headline;
   if (pool->points != 1 || !(lower > 0))
     return STATUS_OK;
-  status code = pooled_exponent(&pool->data.runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95,
-                                &headline, error);
-  if (code || !isfinite(headline.fit.beta))
-    return code;
+  TRY(pooled_exponent(&pool->data.runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &headline,
+                      error));
+  if (!isfinite(headline.fit.beta))
+    return STATUS_OK;
   const double runs = (double)pool->data.runs.count;
   label_fit(curve, headline.fit.beta, headline.interval.half_width);
   curve->fit = (struct picture_fit){NULL,
@@ -56,7 +68,7 @@ static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct sp
   return with_rivals ? pooled_rivals(&pool->data.runs, lower, &curve->rivals, error) : STATUS_OK;
 }
 
-static status make_thin(const struct ask_pool *pool, struct spectrum_curve *curve, struct error *error) {
+static status make_thin(const struct ask_pool *pool, struct curve *curve, struct error *error) {
   const struct pooled_runs *runs = &pool->data.runs;
   struct pooled_form form = curve->form;
   form.first_run = NULL;
@@ -65,45 +77,34 @@ static status make_thin(const struct ask_pool *pool, struct spectrum_curve *curv
     return status_fail(error, STATUS_MEMORY, "no memory for the spectra of %zu runs", runs->count);
   for (size_t r = 0; r < runs->count; r++) {
     struct pooled_bin *bins;
-    const status code = pooled_spectrum(&(struct pooled_runs){1, runs->first + r, runs->masses}, &form, &bins,
-                                        &curve->thin[r].count, error);
-    if (code)
-      return code;
+    TRY(pooled_spectrum(&(struct pooled_runs){1, runs->first + r, runs->masses}, &form, &bins, &curve->thin[r].count,
+                        error));
     curve->thin[curve->thin_count++].bins = bins;
   }
   return STATUS_OK;
 }
 
-status spectrum_curves_make(const struct spectrum_choice *choice, bool with_rivals, const struct ask_pool *pool,
-                            struct spectrum_curve *curve, struct error *error) {
+/* with_rivals: also computes likelihood ratios of the pure power law against other laws. */
+static status make_curve(const struct spectrum_choice *choice, bool with_rivals, const struct ask_pool *pool,
+                         struct curve *curve, struct error *error) {
   const size_t runs = pool->data.runs.count;
-  *curve = (struct spectrum_curve){.form = ask_pool_form(pool, choice->cumulative, choice->density),
-                                   .complete_mass = pool->data.complete_mass,
-                                   .fit = {.beta = NAN}};
+  *curve = (struct curve){.form = ask_pool_form(pool, choice->cumulative, choice->density),
+                          .complete_mass = pool->data.complete_mass,
+                          .fit = {.beta = NAN}};
   if (pool->points == 1)
     snprintf(curve->label, sizeof curve->label, "%s, %zu run%s", pool->label, runs, runs == 1 ? "" : "s");
   else
     snprintf(curve->label, sizeof curve->label, "%s, %zu points, %zu runs", pool->label, pool->points, runs);
-  status code = pooled_spectrum(&pool->data.runs, &curve->form, &curve->bins, &curve->count, error);
-  if (code == STATUS_OK)
-    code = fit_curve(pool, with_rivals, curve, error);
-  if (code == STATUS_OK && choice->runs)
-    code = make_thin(pool, curve, error);
+  TRY(pooled_spectrum(&pool->data.runs, &curve->form, &curve->bins, &curve->count, error));
+  TRY(fit_curve(pool, with_rivals, curve, error));
+  if (choice->runs)
+    TRY(make_thin(pool, curve, error));
   curve->form.first_run = NULL; /* belongs to the pool, which is released */
-  if (code)
-    spectrum_curves_release(curve);
-  return code;
+  return STATUS_OK;
 }
 
-void spectrum_curves_release(struct spectrum_curve *curve) {
-  for (size_t r = 0; r < curve->thin_count; r++)
-    free((void *)curve->thin[r].bins);
-  free(curve->thin);
-  free(curve->bins);
-  *curve = (struct spectrum_curve){0};
-}
-
-struct picture_series spectrum_curves_series(const struct spectrum_curve *curve) {
+/* Borrows the curve. */
+static struct picture_series series_of(const struct curve *curve) {
   return (struct picture_series){.label = curve->label,
                                  .count = curve->count,
                                  .bins = curve->bins,
@@ -130,11 +131,11 @@ static void print_rivals(const struct pooled_rivals *rivals) {
 
 struct curves {
   const struct spectrum_choice *choice;
-  bool with_rivals, several; /* several: a pool has more than one point */
+  bool several; /* a pool has more than one point */
   size_t count, most;
   bool more; /* there are more pools than are drawn */
   int64_t point;
-  struct spectrum_curve curve[PICTURE_SERIES];
+  struct curve curve[PICTURE_SERIES];
 };
 
 /* The meaning of axes and intervals, and the error of the resolution. */
@@ -168,7 +169,7 @@ static status draw_picture(struct store *store, const struct curves *curves, con
   if (curves->count)
     form = curves->curve[0].form;
   for (; count < curves->count; count++)
-    series[count] = spectrum_curves_series(&curves->curve[count]);
+    series[count] = series_of(&curves->curve[count]);
   if (measured) {
     series[count] = (struct picture_series){.measured = true, .complete_mass = measured->complete};
     TRY(measured_bins(measured, &form, &bins, &series[count].count, error));
@@ -188,8 +189,8 @@ static status draw_picture(struct store *store, const struct curves *curves, con
 static void print_plots(const struct curves *curves, bool ascii) {
   const bool sizes = curves->choice->density > 0;
   for (size_t i = 0; i < curves->count; i++) {
-    const struct spectrum_curve *curve = &curves->curve[i];
-    const struct picture_series series = spectrum_curves_series(curve);
+    const struct curve *curve = &curves->curve[i];
+    const struct picture_series series = series_of(curve);
     printf("%s%s\n", i ? "\n" : "", curve->label);
     text_plot_spectrum(stdout, COLUMNS, !ascii, sizes ? "m" : "kg",
                        curve->form.cumulative ? (sizes ? "N(>L)" : "N(>m)") : (sizes ? "F(L)" : "F(m)"), &curve->form,
@@ -198,33 +199,22 @@ static void print_plots(const struct curves *curves, bool ascii) {
   }
 }
 
-static status take_curves(struct store *store, struct curves *curves, struct error *error) {
+static status take_curves(struct store *store, bool with_rivals, struct curves *curves, struct error *error) {
   ASK_POOLS pools = ask_pools(store, &curves->choice->pool, NULL, error);
   for (const struct ask_pool *pool; !curves->more && (pool = ask_pools_next(&pools));) {
     curves->more = curves->count == curves->most; /* enough */
     if (curves->more)
       break;
-    struct spectrum_curve *curve = &curves->curve[curves->count];
-    TRY(spectrum_curves_make(curves->choice, curves->with_rivals, pool, curve, error));
+    curves->point = curves->count == 0 ? pool->data.point_id : 0;
+    struct curve *curve = &curves->curve[curves->count++];
+    TRY(make_curve(curves->choice, with_rivals, pool, curve, error));
     curve->fit.label = curve->fit_label;
     curves->several |= pool->points > 1;
-    curves->point = curves->count++ == 0 ? pool->data.point_id : 0;
   }
   TRY(ask_pools_end(&pools));
   if (curves->count > 0)
     return STATUS_OK;
   return status_fail(error, STATUS_USAGE, "no finished run to draw: the store has none, or none meets --where");
-}
-
-static status draw(struct store *store, const struct curves *curves, const struct spectrum_drawing *drawing,
-                   struct error *error) {
-  TRY(drawing->page ? draw_picture(store, curves, drawing->page, error) : STATUS_OK);
-  if (drawing->text)
-    print_plots(curves, drawing->ascii);
-  if (curves->more)
-    fprintf(stderr, "clast: only the first %zu spectra are drawn; --point, --where and --by choose others\n",
-            curves->count);
-  return STATUS_OK;
 }
 
 status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice,
@@ -233,13 +223,22 @@ status spectrum_curves_draw(struct store *store, const struct spectrum_choice *c
   if (!curves)
     return status_fail(error, STATUS_MEMORY, "no memory for the spectra");
   curves->choice = choice;
-  curves->with_rivals = drawing->text;
   curves->most = choice->measured ? PICTURE_SERIES - 1 : PICTURE_SERIES;
-  status code = take_curves(store, curves, error);
-  if (code == STATUS_OK)
-    code = draw(store, curves, drawing, error);
-  for (size_t i = 0; i < curves->count; i++)
-    spectrum_curves_release(&curves->curve[i]);
+  status code = take_curves(store, drawing->text, curves, error);
+  if (code == STATUS_OK && drawing->page)
+    code = draw_picture(store, curves, drawing->page, error);
+  if (code == STATUS_OK && drawing->text)
+    print_plots(curves, drawing->ascii);
+  if (code == STATUS_OK && curves->more)
+    fprintf(stderr, "clast: only the first %zu spectra are drawn; --point, --where and --by choose others\n",
+            curves->count);
+  for (size_t i = 0; i < curves->count; i++) {
+    struct curve *curve = &curves->curve[i];
+    for (size_t r = 0; r < curve->thin_count; r++)
+      free((void *)curve->thin[r].bins);
+    free(curve->thin);
+    free(curve->bins);
+  }
   free(curves);
   return code;
 }

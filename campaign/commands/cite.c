@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/table.h"
 #include "schemas/text.h"
 
 struct options {

@@ -46,3 +46,11 @@ status commands_run(const struct command *command, const struct command_line *li
     TRY(command->check(line, error));
   return commands_ask(line, command->ask, error);
 }
+
+void commands_headline(const char *text, char *line, size_t size) {
+  while (*text == '#' && strstr(text, "yaml-language-server") &&
+         strstr(text, "yaml-language-server") < strchr(text, '\n'))
+    text = strchr(text, '\n') + 1;
+  text += strspn(text, "# ");
+  snprintf(line, size, "%.*s", (int)strcspn(text, "\n"), text);
+}

@@ -64,6 +64,9 @@ status commands_run(const struct command *command, const struct command_line *li
 
 /* ---- shared by the commands ---- */
 
+/* The first comment line of a built-in document, which says what it is. */
+void commands_headline(const char *text, char *line, size_t size);
+
 /* Opens the store that the first argument names as a reader, calls `ask` and closes the store. */
 status commands_ask(const struct command_line *line,
                     status (*ask)(struct store *store, const struct command_line *line, struct error *error),

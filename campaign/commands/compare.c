@@ -2,7 +2,6 @@
 #include <stdio.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/table.h"
 #include "db/ask/pairs.h"
 
 struct options {

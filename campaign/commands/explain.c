@@ -146,14 +146,6 @@ static bool has_prefix(const struct field_table *table, const char *prefix) {
   return false;
 }
 
-static void explain_key(const struct campaign_key *key) {
-  printf("%s: %s\n%s: %s\n%s", campaign_table.name, campaign_table.doc, key->name, key->doc, key->forms);
-  if (!key->table)
-    return;
-  putchar('\n');
-  field_explain(key->table, "", stdout);
-}
-
 /* Prints what the paths of all tables say about `path`. Returns how many tables know it. */
 static size_t explain_rows(const char *path, struct text_guess *guess) {
   const struct field_table *list[TABLES_MAXIMUM];
@@ -177,36 +169,27 @@ static void explain_table(const struct field_table *table, const char *before) {
   field_explain(table, "", stdout);
 }
 
-static void explain_results(void) {
-  puts("results: what a run reports. In a store they are columns of the view `runs`, with underscores for dots.\n");
-  explain_table(&outcome_table, "");
-  for (size_t i = 0; i < engine_count(); i++)
-    explain_table(engine_at(i)->results, "\n");
-}
-
-static void explain_campaign(void) {
-  explain_table(&campaign_table, "");
-  for (size_t i = 0; i < campaign_keys_count; i++)
-    printf("\n%s: %s\n%s", campaign_keys[i].name, campaign_keys[i].doc, campaign_keys[i].forms);
-}
-
 /* A word for a whole table: campaign, results, outcome, estimates, or an engine's name. */
 static bool explain_whole(const char *word) {
-  if (strcmp(word, "campaign") == 0)
-    explain_campaign();
-  else if (strcmp(word, "results") == 0)
-    explain_results();
-  else if (strcmp(word, "outcome") == 0)
+  const struct engine_kind *kind = engine_find(word, NULL);
+  if (strcmp(word, "campaign") == 0) {
+    explain_table(&campaign_table, "");
+    for (size_t i = 0; i < campaign_keys_count; i++)
+      printf("\n%s: %s\n%s", campaign_keys[i].name, campaign_keys[i].doc, campaign_keys[i].forms);
+  } else if (strcmp(word, "results") == 0) {
+    puts("results: what a run reports. In a store they are columns of the view `runs`, with underscores for dots.\n");
     explain_table(&outcome_table, "");
-  else if (strcmp(word, "estimates") == 0)
+    for (size_t i = 0; i < engine_count(); i++)
+      explain_table(engine_at(i)->results, "\n");
+  } else if (strcmp(word, "outcome") == 0) {
+    explain_table(&outcome_table, "");
+  } else if (strcmp(word, "estimates") == 0) {
     explain_table(&estimates_table, "");
-  else {
-    struct error missed;
-    const struct engine_kind *kind = engine_find(word, &missed);
-    if (!kind)
-      return false;
+  } else if (kind) {
     explain_table(kind->inputs, "");
     explain_table(kind->results, "\n");
+  } else {
+    return false;
   }
   return true;
 }
@@ -216,11 +199,14 @@ static bool explain_whole(const char *word) {
 static status explain_path(const char *path, struct error *error) {
   struct text_guess guess = text_guess(path);
   const struct campaign_key *key = campaign_keys_find(path);
-  const size_t found = explain_rows(path, &guess);
-  if (found)
+  if (explain_rows(path, &guess))
     return STATUS_OK;
   if (key) {
-    explain_key(key);
+    printf("%s: %s\n%s: %s\n%s", campaign_table.name, campaign_table.doc, key->name, key->doc, key->forms);
+    if (key->table) {
+      putchar('\n');
+      field_explain(key->table, "", stdout);
+    }
     return STATUS_OK;
   }
   char plain[256];
@@ -240,16 +226,6 @@ static status explain_path(const char *path, struct error *error) {
   return status_fail(error, STATUS_CONTENT,
                      "nothing is called \"%.128s\"%s%s%s `clast explain` lists all paths, `clast scenes` all scenes",
                      path, nearest ? "; did you mean " : ";", nearest ? nearest : "", nearest ? "?" : "");
-}
-
-/* The row's default as text; empty for a row without default. */
-static void default_text(const struct field_table *of, const struct field *row, char *text, size_t size) {
-  text[0] = '\0';
-  if (of == &outcome_table || of == &estimates_table || (row->flags & (FIELD_REQUIRED | FIELD_DERIVED)))
-    return;
-  struct field_value value;
-  field_default(row, &value);
-  field_print(row, &value, text, size);
 }
 
 static void list_row(struct table *table, const char *of, const char *path, const char *unit, const char *value,
@@ -272,8 +248,14 @@ static status explain_path_list(enum table_format format, struct error *error) {
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < list[i]->count; k++) {
       const struct field *row = &list[i]->rows[k];
-      char text[FIELD_TEXT_SIZE];
-      default_text(list[i], row, text, sizeof text);
+      const bool has_default = list[i] != &outcome_table && list[i] != &estimates_table &&
+                               !(row->flags & (FIELD_REQUIRED | FIELD_DERIVED));
+      char text[FIELD_TEXT_SIZE] = "";
+      struct field_value value;
+      if (has_default) {
+        field_default(row, &value);
+        field_print(row, &value, text, sizeof text);
+      }
       list_row(table, list[i]->name, row->path, row->unit, text, row->doc);
     }
   for (size_t i = 0; i < campaign_keys_count; i++)

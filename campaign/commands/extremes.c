@@ -1,7 +1,6 @@
 /* `clast extremes STORE`: which runs of a store are safe, warned or refused, and why. */
 #include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/table.h"
 #include "db/ask/campaign.h"
 
 enum { PICTURE_WIDTH = 1200 };

@@ -3,14 +3,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/table.h"
 #include "engine/engine.h"
-
-/* The document's first comment line says what the material is. */
-static void headline(const char *text, char *line, size_t size) {
-  text += strspn(text, "# ");
-  snprintf(line, size, "%.*s", (int)strcspn(text, "\n"), text);
-}
 
 /* The materials of one engine. */
 static status list(const struct engine_materials *materials, enum table_format format, struct error *error) {
@@ -31,7 +24,7 @@ static status list(const struct engine_materials *materials, enum table_format f
     code = materials->load(materials->name(i), material, error);
     if (code)
       break;
-    headline(materials->text(materials->name(i)), what, sizeof what);
+    commands_headline(materials->text(materials->name(i)), what, sizeof what);
     table_text(table, materials->name(i));
     for (size_t k = 0; materials->overview[k][0]; k++) {
       struct field_value value;

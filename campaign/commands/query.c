@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/table.h"
 #include "db/ask/canned.h"
 
 enum { PARAMETERS_MAXIMUM = 64 };

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
 #include "campaign/print/print.h"
 #include "db/ask/points.h"

@@ -2,17 +2,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/table.h"
 #include "engine/scene.h"
-
-/* The document's first comment line says what the scene is. */
-static void headline(const char *text, char *line, size_t size) {
-  while (*text == '#' && strstr(text, "yaml-language-server") &&
-         strstr(text, "yaml-language-server") < strchr(text, '\n'))
-    text = strchr(text, '\n') + 1;
-  text += strspn(text, "# ");
-  snprintf(line, size, "%.*s", (int)strcspn(text, "\n"), text);
-}
 
 static status print_document(const char *name, struct error *error) {
   const char *text = scene_builtin_text(name);
@@ -30,7 +20,7 @@ static status add_row(struct table *table, const char *name, struct error *error
   struct scene *scene = NULL;
   char what[256];
   TRY(scene_load(name, NULL, &scene, error));
-  headline(scene_builtin_text(name), what, sizeof what);
+  commands_headline(scene_builtin_text(name), what, sizeof what);
   table_text(table, name);
   table_text(table, scene->kind->name);
   table_text(table, what);

@@ -1,5 +1,4 @@
 /* `clast spectrum STORE`: fragment spectra, pooled over seeds or inputs, beside a measured spectrum. */
-#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
 #include "campaign/print/print.h"
 #include "db/ask/points.h"

@@ -5,7 +5,6 @@
 #include "analysis/statistics/estimates.h"
 #include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/table.h"
 #include "db/ask/group.h"
 #include "engine/outcome.h"
 

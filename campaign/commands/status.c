@@ -1,6 +1,5 @@
 /* `clast status STORE`: the progress of each campaign of a store. */
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/table.h"
 #include "db/ask/campaign.h"
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 
 #include "campaign/charts/charts.h"
-#include "campaign/terminal/table.h"
 #include "db/ask/run.h"
 #include "schemas/file.h"
 

@@ -2,9 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "campaign/charts/charts.h"
 #include "campaign/print/print.h"
-#include "campaign/terminal/table.h"
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/columns.h"
 #include "db/ask/point.h"
@@ -37,16 +35,12 @@ static void columns_for_programs(struct printing *printing) {
                                              "largest_fraction_resolution", "largest_fraction_resolution_verdict",
                                              "window", "fragments", NULL});
   for (int m = 0; m < METHODS; m++) {
-    char name[64];
-    const char *method = exponent_method_names[methods[m]];
-    snprintf(name, sizeof name, "beta_%s", method);
-    table_column(table, name, NULL);
-    snprintf(name, sizeof name, "beta_%s_hw95", method);
-    table_column(table, name, NULL);
-    snprintf(name, sizeof name, "beta_%s_resolution", method);
-    table_column(table, name, NULL);
-    snprintf(name, sizeof name, "beta_%s_resolution_verdict", method);
-    table_column(table, name, NULL);
+    static const char *const ends[] = {"", "_hw95", "_resolution", "_resolution_verdict"};
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+      char name[64];
+      snprintf(name, sizeof name, "beta_%s%s", exponent_method_names[methods[m]], ends[i]);
+      table_column(table, name, NULL);
+    }
   }
 }
 
@@ -76,9 +70,7 @@ static status row_for_programs(struct printing *printing, const struct ask_point
   for (int m = 0; m < METHODS; m++) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
     struct ask_resolution resolution;
-    const status code = read_resolution(printing, row, m, window, &resolution, error);
-    if (code)
-      return code;
+    TRY(read_resolution(printing, row, m, window, &resolution, error));
     table_real(table, fit->fit.beta);
     table_real(table, fit->interval.half_width);
     table_real(table, resolution.half_width);
@@ -89,12 +81,8 @@ static status row_for_programs(struct printing *printing, const struct ask_point
 
 /* ---- for people: values with their intervals, and no wider than a terminal ---- */
 
-enum {
-  WIDTH = 100,
-  FIXED = 54,
-  METHOD = 11,
-  GAP = 2
-}; /* widths: table; columns other than axes and methods; a method; gap */
+/* Widths: the table; columns other than axes and methods; a method; the gap between columns; most values. */
+enum { WIDTH = 100, FIXED = 54, METHOD = 11, GAP = 2, NUMBER = 5 };
 
 /* A heading for the axis: the last word of its path where no other axis has it, else its whole name. */
 static const char *short_axis(const struct printing *printing, size_t axis) {
@@ -109,8 +97,6 @@ static const char *short_axis(const struct printing *printing, size_t axis) {
   }
   return strlen(word) > 1 ? word : name; /* "m" and "k" alone are not clear enough */
 }
-
-enum { NUMBER = 5 }; /* width of most values */
 
 static size_t axis_width(const struct printing *printing, size_t axis) {
   const char *unit = printing->axis[axis].unit;
@@ -241,12 +227,8 @@ void print_estimates_legend(struct store *store) {
 status print_estimates(struct store *store, const struct ask_points_choice *choice, enum table_format format, FILE *out,
                        struct error *error) {
   struct printing printing = {.store = store, .format = format};
-  status code = ask_columns_axes(store, format == TABLE_TEXT, ASK_POINTS_INPUTS, printing.axis, &printing.axes, error);
-  if (code)
-    return code;
-  code = ask_resolution_of_exponents(store, &printing.studied, error);
-  if (code)
-    return code;
+  TRY(ask_columns_axes(store, format == TABLE_TEXT, ASK_POINTS_INPUTS, printing.axis, &printing.axes, error));
+  TRY(ask_resolution_of_exponents(store, &printing.studied, error));
   const char *inputs[ASK_POINTS_INPUTS];
   for (size_t i = 0; i < printing.axes; i++)
     inputs[i] = printing.axis[i].name;
@@ -256,6 +238,7 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
     columns_for_people(&printing);
   else
     columns_for_programs(&printing);
+  status code = STATUS_OK;
   ANSWER points = ask_points_rows(store, choice, true, printing.axes, inputs, error);
   for (struct ask_points_row row; code == STATUS_OK && !table_broken(printing.table) && ask_points_next(&points, &row);)
     code = print_point(&printing, &row, error);

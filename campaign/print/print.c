@@ -32,12 +32,6 @@ static void value_cell(struct table *table, const struct field *row, const void 
   }
 }
 
-static bool empty(const struct field *row, const void *object) {
-  struct field_value value;
-  field_get(row, object, &value);
-  return row->kind == FIELD_REAL && isnan(value.number);
-}
-
 void print_results_row(struct table *table, const struct field *row, const void *object) {
   char meaning[FIELD_TEXT_SIZE];
   text_sentence(row->doc, meaning, sizeof meaning);
@@ -47,20 +41,16 @@ void print_results_row(struct table *table, const struct field *row, const void 
   table_text(table, meaning);
 }
 
+/* Lists the values of an object; left out is what does not apply to this scene, and the message, which goes to stderr.
+ */
 static void list(struct table *table, const struct field_table *fields, const void *object) {
   for (size_t i = 0; i < fields->count; i++) {
     const struct field *row = &fields->rows[i];
-    if (!empty(row, object) &&
-        row->kind != FIELD_TEXT) /* else: does not apply to this scene; the message goes to stderr */
+    struct field_value value;
+    field_get(row, object, &value);
+    if (row->kind != FIELD_TEXT && !(row->kind == FIELD_REAL && isnan(value.number)))
       print_results_row(table, row, object);
   }
-}
-
-/* Columns have the same names as in the store. */
-static void heading(struct table *table, const struct field *row) {
-  char name[FIELD_TEXT_SIZE];
-  field_column_name(row->path, name, sizeof name);
-  table_column(table, name, row->unit);
 }
 
 static status print_wide(const struct engine_kind *kind, int64_t seed, const struct run_result *result,
@@ -70,8 +60,11 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
   struct table *table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"engine", "seed", NULL});
   for (size_t t = 0; t < 2; t++)
-    for (size_t i = 0; i < tables[t]->count; i++)
-      heading(table, &tables[t]->rows[i]);
+    for (size_t i = 0; i < tables[t]->count; i++) { /* columns have the same names as in the store */
+      char name[FIELD_TEXT_SIZE];
+      field_column_name(tables[t]->rows[i].path, name, sizeof name);
+      table_column(table, name, tables[t]->rows[i].unit);
+    }
   for (size_t i = 0; i < result->estimate_count; i++) {
     char name[128];
     const char *method = exponent_method_names[result->estimates[i].fit.method];

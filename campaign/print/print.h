@@ -4,7 +4,6 @@
 
 #include "campaign/charts/charts.h"
 #include "campaign/driver/run.h"
-#include "campaign/terminal/table.h"
 #include "db/ask/points.h"
 
 /* ---- results of one run: for people one quantity per line with unit and meaning, for programs one row ---- */

@@ -5,8 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "campaign/charts/charts.h"
-
 enum { COLUMNS = 100 };
 
 struct printing {
