@@ -2,14 +2,11 @@
 #include <stdlib.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/converge/request.h"
-#include "campaign/converge/study_launch.h"
-#include "campaign/converge/study_print.h"
-#include "campaign/launch/launch.h"
+#include "campaign/converge/study.h"
 
 struct options {
   struct launch_options launch;
-  struct request request;
+  struct study_request request;
   const char *picture, *frontier;
   bool list;
 };
@@ -20,9 +17,9 @@ static status run(const struct command_line *line, struct error *error) {
     return study_print_knobs(line->format, error);
   if (line->count == 0)
     return status_fail(error, STATUS_USAGE, "name a scene or a campaign, or give --list");
-  struct request request = options->request;
+  struct study_request request = options->request;
   request.quiet = options->launch.quiet;
-  struct subject *subject = calloc(1, sizeof *subject);
+  struct study_subject *subject = calloc(1, sizeof *subject);
   if (!subject)
     return status_fail(error, STATUS_MEMORY, "out of memory");
   const struct study_launch launch = {.options = &options->launch,
@@ -30,10 +27,10 @@ static status run(const struct command_line *line, struct error *error) {
                                       .format = line->format,
                                       .picture = options->picture,
                                       .frontier = options->frontier};
-  status code = request_read(&request, line->arguments[0], subject, error);
+  status code = study_request_read(&request, line->arguments[0], subject, error);
   if (code == STATUS_OK)
-    code = study_launch(&subject->study, &launch, error);
-  subject_clear(subject);
+    code = study_rounds_launch(&subject->study, &launch, error);
+  study_request_clear(subject);
   free(subject);
   return launch_quiet_ranks(code, error);
 }

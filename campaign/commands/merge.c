@@ -2,7 +2,7 @@
 #include <inttypes.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/driver/pooling.h"
+#include "campaign/scheduler/scheduler.h"
 #include "db/store/store.h"
 
 static const char *plural(int64_t count) {

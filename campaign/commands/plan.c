@@ -3,8 +3,8 @@
 #include <unistd.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/converge/accuracy_print.h"
-#include "campaign/driver/plan.h"
+#include "campaign/converge/accuracy.h"
+#include "campaign/scheduler/plan.h"
 
 struct options {
   struct campaign_option campaign;
@@ -38,8 +38,8 @@ status plan_campaign(const char *path, const struct campaign_option *changes, co
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     options.slots = cores > 0 ? (int)cores : 1;
   }
-  status code = accuracy_print_settle(campaign, path, store ? store : campaign->store, json ? &alternatives : NULL,
-                                      error);
+  status code = accuracy_settle(campaign, path, store ? store : campaign->store, json ? ACCURACY_JSON : ACCURACY_TEXT,
+                                &alternatives, error);
   if (code != STATUS_OK)
     goto cleanup;
   code = plan_make(campaign, &options, &plan, error);

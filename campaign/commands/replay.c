@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/driver/provenance.h"
 #include "campaign/one_run/replay.h"
+#include "campaign/scheduler/provenance.h"
 #include "db/ask/run.h"
 
 struct options {

@@ -45,7 +45,7 @@ static status retry(const struct command_line *line, struct error *error) {
   if (code == STATUS_OK)
     code = campaign_raise(campaign, options->time, options->memory, attempts, error);
   if (code == STATUS_OK && !launch_other_rank())
-    code = accuracy_settle(campaign, "CAMPAIGN.yaml", path, error);
+    code = accuracy_settle(campaign, "CAMPAIGN.yaml", path, ACCURACY_SILENT, NULL, error);
   if (code == STATUS_OK)
     code = launch_campaign(campaign, path, &options->launch, line->format, line, error);
 cleanup:

@@ -28,9 +28,9 @@ static void tell(void *context, const struct serve_http *http) {
 
 static status serve_all(void *context, struct launch *launch, struct error *error) {
   struct serving *serving = context;
-  struct serve_jobs_counts counts;
+  struct serve_counts counts;
   serving->slots = farm_slots_total(launch->farm);
-  serving->options.facts = launch->driver.facts;
+  serving->options.facts = launch->scheduler.facts;
   const status code = serve_run(serving->model, launch->farm, &serving->options, &counts, error);
   if (!code && launch->manager)
     fprintf(stderr,

@@ -6,11 +6,12 @@
 #include <string.h>
 
 #include "analysis/statistics/sample.h"
-#include "campaign/converge/ladder.h"
-#include "campaign/converge/study_quantity.h"
+#include "campaign/converge/study.h"
 #include "campaign/document/campaign_walk.h"
+#include "campaign/terminal/table.h"
 #include "db/ask/convergence.h"
 #include "engine/scene.h"
+#include "schemas/text.h"
 
 enum { FEWEST_SEEDS = 3, MOST_SEEDS = 10000, LOOKED_AT = 1000 };
 
@@ -225,11 +226,55 @@ status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign
   return knob ? ladder_turn(knob, campaign->scene, option->setting, error) : STATUS_INTERNAL;
 }
 
-status accuracy_settle(struct campaign *campaign, const char *path, const char *store, struct error *error) {
+/* ---- the table of settings and seeds that reach an accuracy ---- */
+
+/* One row per way to run the campaign: cost of a point against that of the most accurate one. */
+static status print_alternatives(const struct accuracy *accuracy, enum table_format format, FILE *out,
+                                 struct error *error) {
+  const struct accuracy_option *reference = &accuracy->options[accuracy->reference];
+  struct table *table = table_new(format, out);
+  table_columns(table, (const char *const[]){"choice", "knob", "setting", "error", "known", "seeds", NULL});
+  table_column(table, "run_cpu", "s");
+  table_column(table, "point_cpu", "s");
+  table_column(table, "run_cost", NULL);
+  for (size_t i = 0; i < accuracy->count; i++) {
+    const struct accuracy_option *option = &accuracy->options[i];
+    table_text(table, i == accuracy->chosen ? "chosen" : "");
+    table_text(table, option->own ? "" : option->knob);
+    table_text(table, option->own ? "the scene's own" : option->setting);
+    table_real(table, option->error);
+    table_text(table, option->open ? "at least" : "yes");
+    if (option->seeds)
+      table_integer(table, option->seeds);
+    else
+      table_missing(table);
+    table_real(table, option->run_s);
+    table_real(table, option->cpu_s);
+    table_real(table, option->run_s / reference->run_s);
+  }
+  return table_end(table, error);
+}
+
+status accuracy_settle(struct campaign *campaign, const char *path, const char *store, enum accuracy_print print,
+                       char **json, struct error *error) {
+  struct accuracy accuracy;
   if (field_is_off(campaign->accuracy_within))
     return STATUS_OK;
-  struct accuracy accuracy;
-  status code = accuracy_find(campaign, path, store, &accuracy, error);
+  TRY(accuracy_find(campaign, path, store, &accuracy, error));
+  status code = STATUS_OK;
+  if (print == ACCURACY_JSON) {
+    size_t size = 0;
+    FILE *out = text_open(json, &size);
+    code = out ? print_alternatives(&accuracy, TABLE_JSON, out, error) : STATUS_OK;
+    if (!out || (!text_close(out, json) && code == STATUS_OK))
+      code = status_fail(error, STATUS_MEMORY, "out of memory");
+  } else if (print == ACCURACY_TEXT) {
+    printf("accuracy  %s within %g: error of resolution and 95 %% interval together. run_cost: against the smallest "
+           "error\n",
+           campaign->accuracy_quantity, campaign->accuracy_within);
+    code = print_alternatives(&accuracy, TABLE_TEXT, stdout, error);
+    putchar('\n');
+  }
   if (code == STATUS_OK)
     code = accuracy_apply(&accuracy, campaign, error);
   accuracy_clear(&accuracy);

@@ -38,8 +38,12 @@ void accuracy_clear(struct accuracy *accuracy); /* a zeroed one is fine */
  * accuracy. */
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error);
 
-/* Calls accuracy_find and accuracy_apply if the campaign has the key `accuracy`. */
-status accuracy_settle(struct campaign *campaign, const char *path, const char *store, struct error *error);
+enum accuracy_print { ACCURACY_SILENT, ACCURACY_TEXT, ACCURACY_JSON };
+
+/* Calls accuracy_find and accuracy_apply if the campaign has the key `accuracy`. Before it applies the chosen option it
+ * prints all of them, or makes *json of them, malloc'd. json: NULL, unless asked for. */
+status accuracy_settle(struct campaign *campaign, const char *path, const char *store, enum accuracy_print print,
+                       char **json, struct error *error);
 
 /* Number of seeds whose interval's half width is at most `margin`, by Student's t; at least 3. 0: margin is not above
  * 0, the scatter is not known, or more than 10 000 seeds would be needed, where finer settings are better. */

@@ -12,6 +12,25 @@
 #define CONFIDENCE 0.95
 #define NOTHING    ((double)NAN)
 
+status study_quantity_find(const struct engine_kind *kind, const char *name, struct study_quantity *quantity,
+                           struct error *error) {
+  *quantity = (struct study_quantity){0};
+  bool exponent;
+  TRY(estimates_named(name, &exponent, &quantity->method, &quantity->window, error));
+
+  if (exponent) {
+    snprintf(quantity->name, sizeof quantity->name, "%s", estimates_short_name(name));
+    snprintf(quantity->column, sizeof quantity->column, "%s", quantity->name);
+    return STATUS_OK;
+  }
+  quantity->row = campaign_quantity(kind, name, &quantity->of_outcome, error);
+  if (!quantity->row)
+    return STATUS_CONTENT;
+  snprintf(quantity->name, sizeof quantity->name, "%s", quantity->row->path);
+  field_column_name(quantity->row->path, quantity->column, sizeof quantity->column);
+  return STATUS_OK;
+}
+
 status study_add(struct study *study, const struct scene *base, struct ladder *levels, struct error *error) {
   struct study_ladder *grown = realloc(study->ladder, (study->ladder_count + 1) * sizeof *grown);
   if (grown)

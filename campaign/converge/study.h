@@ -2,20 +2,33 @@
  * increasing numbers of seeds, until the bias of every level is known to the wanted width or the budget is spent. Its
  * runs are ordinary runs of the store: a stopped study goes on where it ended, and runs of other campaigns are used.
  *
- *     study_add(study, base, &levels, &error);          // a knob of a scene; several
- *     farm_start(...);
- *     study_rounds_run(study, farm, &options, &error);         // every rank
- *     study_of_scene(study, 0, 0, found);               // rank 0: what was found */
+ *     study_request_read(&request, path, &subject, &error);      // sets up subject.study
+ *     study_rounds_launch(&subject.study, &launch, &error);      // farm, rounds, tables
+ *     study_request_clear(&subject); */
 #ifndef CLAST_CAMPAIGN_CONVERGE_STUDY_H
 #define CLAST_CAMPAIGN_CONVERGE_STUDY_H
 
 #include "analysis/statistics/convergence.h"
+#include "analysis/statistics/estimates.h"
 #include "campaign/converge/ladder.h"
-#include "campaign/converge/study_quantity.h"
 #include "campaign/document/campaign.h"
-#include "campaign/driver/driver.h"
+#include "campaign/launch/launch.h"
 
 enum { STUDY_QUANTITIES = 8, STUDY_KNOBS = 32 /* of one scene */ };
+
+/* The quantity of a study: a result of every run, or an exponent fitted to all runs of a point. */
+struct study_quantity {
+  const struct field *row; /* result of a run; NULL: an exponent */
+  bool of_outcome;
+  enum exponent_method method;
+  enum estimates_window window;
+  char name[FIELD_TEXT_SIZE];   /* the path of the row, or "beta", "beta_METHOD_WINDOW" */
+  char column[FIELD_TEXT_SIZE]; /* its name in the store's table convergence */
+};
+
+/* STATUS_CONTENT or STATUS_USAGE, with similar names: there is no such quantity. */
+status study_quantity_find(const struct engine_kind *kind, const char *name, struct study_quantity *quantity,
+                           struct error *error);
 
 /* One knob of one scene, and the values of its runs. */
 struct study_ladder {
@@ -49,19 +62,12 @@ struct study {
   size_t quantity_count;
   struct study_ladder *ladder; /* owned */
   size_t ladder_count;
-  int64_t runs_done, runs_failed; /* totals of this invocation */
-  double cpu_s;
   bool budget_spent;
 };
 
 /* Takes ownership of the ladder (also on errors). STATUS_MEMORY. */
 status study_add(struct study *study, const struct scene *base, struct ladder *levels, struct error *error);
 void study_clear(struct study *study);
-
-/* Every rank calls it. Rank 0 runs all rounds and reads the values of all ladders. STATUS_OK also when the budget is
- * spent; STATUS_STOPPED after a signal: the same command continues the study. */
-status study_rounds_run(struct study *study, struct farm *farm, const struct driver_options *options,
-                        struct error *error);
 
 /* The results of a ladder for a quantity: one row per level, NaN where runs are missing. */
 struct study_found {
@@ -78,13 +84,62 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
  * the number of ladders. */
 size_t study_of_scene(const struct study *study, size_t from, size_t quantity, struct study_found *found);
 
-/* ---- shared by study.c and study_rounds.c ---- */
-
 /* Index of the level that the others are compared with. */
 size_t study_reference(const struct study_ladder *ladder);
 /* Reads the values of a ladder's runs from the store. */
 status study_read(const struct study *study, struct study_ladder *ladder, struct store *store, struct error *error);
 /* Computes and stores the rows of all ladders and quantities. */
 status study_store(const struct study *study, struct store *store, struct error *error);
+
+/* ---- study_rounds.c ---- */
+
+struct study_launch {
+  const struct launch_options *options;
+  const struct command_line *line;
+  enum table_format format;
+  const char *picture, *frontier; /* pictures of means and of errors; NULL: none */
+};
+/* Starts the farm, runs all rounds and, on rank 0, stores and prints what was found and draws the pictures. STATUS_OK
+ * also when the budget is spent; STATUS_STOPPED after a signal: the same command continues the study. */
+status study_rounds_launch(struct study *study, const struct study_launch *asked, struct error *error);
+
+/* ---- study_print.c ---- */
+
+/* The table of knobs of every engine. */
+status study_print_knobs(enum table_format format, struct error *error);
+/* For people a table per scene and quantity, with a sentence per knob and, unless `quiet`, a legend on stderr. For
+ * programs the rows of convergence_table. */
+status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error);
+/* Draws the mean with its interval over the processor time of a run, or (`of_errors`) the error of each level and the
+ * frontier: one curve per knob of the first scene and quantity. */
+status study_print_picture(const struct study *study, bool of_errors, const char *path, struct error *error);
+
+/* ---- study_request.c ---- */
+
+/* A user's request as on the command line (`clast converge --help`); texts may be NULL. */
+struct study_request {
+  struct option_list knobs, set;
+  const char *quantity, *store, *within, *seconds;
+  int64_t first_seeds, most_seeds, first_seed;
+  bool quiet; /* prints no remarks on levels that are left out */
+};
+
+enum { STUDY_SCENES = 64 };
+
+/* The study of a scene or of every point of a campaign, and the objects that it borrows from. */
+struct study_subject {
+  struct study study;
+  struct campaign *campaign;          /* NULL: a scene was named */
+  struct scene *scenes[STUDY_SCENES]; /* owned */
+  size_t scene_count;
+  char reference[2 * FIELD_TEXT_SIZE]; /* path of the scene from the current folder */
+};
+
+/* Loads `path`, a file of a campaign or a scene or a built-in scene, and sets up its study: limits, quantities, rule,
+ * ladders. Clear *subject also after an error. STATUS_USAGE: unknown words; STATUS_CONTENT: too many points, knobs that
+ * do not apply; what the loaders return. */
+status study_request_read(const struct study_request *request, const char *path, struct study_subject *subject,
+                          struct error *error);
+void study_request_clear(struct study_subject *subject);
 
 #endif

@@ -1,28 +1,22 @@
-/* The rounds of a study: chooses the next levels and numbers of seeds, and runs a round as a campaign. */
+/* The rounds of a study as a series of campaigns: chooses the next levels and numbers of seeds. Runs a study from its
+ * farm to its tables. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "campaign/converge/study.h"
-#include "campaign/document/campaign_write.h"
-#include "campaign/driver/pooling.h"
 #include "schemas/clock.h"
 
-struct rounds { /* of one farm_run */
+struct rounds {
   struct study *study;
-  const struct driver_options *options;
-  struct store *store;
   double begin;
+  int slots;
+  bool begun;
   double seconds, work; /* sums over the levels that have run: their ratio predicts the other levels */
 
   /* The round under way. */
   struct study_ladder *ladder;
   int64_t seeds;
-  bool probe;                /* runs one seed of the cheapest level, because nothing has run yet */
-  struct campaign *campaign; /* owned */
-  struct driver *driver;     /* NULL between two rounds */
-  struct farm_manager calls; /* the driver's callbacks */
-  int out;                   /* tasks on slots */
-  struct error error;        /* error of a callback that cannot return one */
+  bool probe; /* runs one seed of the cheapest level, because nothing has run yet */
 };
 
 static double work_of(const struct scene *scene) {
@@ -75,7 +69,7 @@ static double wall_time(const struct rounds *rounds, const struct study_ladder *
   double seconds = 0;
   for (size_t l = 0; l < ladder->levels.count; l++)
     seconds += ladder->left_out[l] ? 0 : cost_of(rounds, ladder, l, seeds);
-  return seconds / fmax(1, rounds->options->slots);
+  return seconds / fmax(1, rounds->slots);
 }
 
 /* Leaves out the most expensive levels until the first round fits into the ladder's share of the time left. All ladders
@@ -171,59 +165,42 @@ static bool is_turned(const struct study_ladder *ladder, size_t input) {
   return false;
 }
 
-/* Makes axes of the inputs that the knob sets; their i-th values are the i-th level. */
-static status make_axes(const struct rounds *rounds, struct campaign *campaign, struct error *error) {
+/* A list of the levels: axes are the inputs that the knob sets, and their i-th values are the i-th level. */
+static status make_campaign(const struct rounds *rounds, struct campaign **out, struct error *error) {
+  const struct study *study = rounds->study;
   const struct ladder *levels = &rounds->ladder->levels;
-  const struct field_table *inputs = rounds->ladder->base->kind->inputs;
+  const struct scene *base = rounds->ladder->base;
+  const struct field_table *inputs = base->kind->inputs;
   const size_t cheapest = cheapest_level(rounds->ladder);
-  campaign->axes = calloc(inputs->count, sizeof *campaign->axes);
-  if (!campaign->axes)
-    return status_fail(error, STATUS_MEMORY, "no memory for a round");
+  const struct ladder_level *level[KNOB_LEVELS];
+  size_t axes = 0, points = 0;
+  for (size_t l = 0; l < levels->count; l++)
+    if (rounds->probe ? l == cheapest : !rounds->ladder->left_out[l])
+      level[points++] = &levels->level[l];
+  for (size_t i = 0; i < inputs->count; i++)
+    axes += is_turned(rounds->ladder, i);
+  TRY(driver_list_begin(&study->limits, base, axes, points, out, error));
+  struct design_axis *axis = (*out)->axes;
   for (size_t i = 0; i < inputs->count; i++) {
-    const struct field *row = &inputs->rows[i];
     if (!is_turned(rounds->ladder, i))
       continue;
-    struct design_axis *axis = &campaign->axes[campaign->axis_count++];
-    *axis = (struct design_axis){.row = row, .kind = DESIGN_AXIS_LEVELS, .lower = -HUGE_VAL, .upper = HUGE_VAL};
-    axis->levels = calloc(levels->count, sizeof *axis->levels);
-    if (!axis->levels)
-      return status_fail(error, STATUS_MEMORY, "no memory for a round");
-    for (size_t l = 0; l < levels->count; l++)
-      if (rounds->probe ? l == cheapest : !rounds->ladder->left_out[l])
-        field_get(row, levels->level[l].scene->inputs, &axis->levels[axis->level_count++]);
+    axis->row = &inputs->rows[i];
+    for (size_t l = 0; l < points; l++)
+      field_get(axis->row, level[l]->scene->inputs, &axis->levels[l]);
+    axis++;
   }
-  return STATUS_OK;
-}
-
-static status make_campaign(struct rounds *rounds, struct error *error) {
-  const struct study *study = rounds->study;
-  struct campaign *campaign = rounds->campaign = calloc(1, sizeof *campaign);
-  if (!campaign)
-    return status_fail(error, STATUS_MEMORY, "no memory for a round");
-  *campaign = study->limits;
-  campaign->design = (struct campaign_design_keys){.kind = CAMPAIGN_LIST};
-  campaign->per_point = rounds->seeds;
+  struct campaign *campaign = *out;
+  const char *knob = levels->knob->name;
   const struct field *row = study->quantity[0].row;
-  snprintf(campaign->quantity, sizeof campaign->quantity, "%s", row ? row->path : OUTCOME_DEFAULT);
-  snprintf(campaign->name, sizeof campaign->name, "%.200s %s", study->limits.name, rounds->ladder->levels.knob->name);
-  campaign->scene = scene_copy(rounds->ladder->base);
-  if (!campaign->scene)
-    return status_fail(error, STATUS_MEMORY, "no memory for a round");
-  TRY(make_axes(rounds, campaign, error));
   char comment[128];
-  snprintf(comment, sizeof comment, "Written by clast converge: levels of %s.", rounds->ladder->levels.knob->name);
-  campaign->text = campaign_write_list(campaign, study->scene_reference, comment);
-  return campaign->text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");
+  campaign->per_point = rounds->seeds;
+  snprintf(campaign->quantity, sizeof campaign->quantity, "%s", row ? row->path : OUTCOME_DEFAULT);
+  snprintf(campaign->name, sizeof campaign->name, "%.200s %s", study->limits.name, knob);
+  snprintf(comment, sizeof comment, "Written by clast converge: levels of %s.", knob);
+  return driver_list_end(campaign, study->scene_reference, comment, error);
 }
 
-static status begin_round(struct rounds *rounds, struct error *error) {
-  status code = make_campaign(rounds, error);
-  if (code == STATUS_OK)
-    code = driver_open(rounds->campaign, rounds->store, rounds->options, &rounds->driver, error);
-  if (code == STATUS_OK)
-    rounds->calls = driver_manager(rounds->driver);
-  return code;
-}
+/* ---- the series ---- */
 
 static void learn(struct rounds *rounds) {
   rounds->seconds = rounds->work = 0;
@@ -252,122 +229,69 @@ static void judge(struct rounds *rounds) {
     end_ladder(ladder, "the largest number of seeds has run");
 }
 
-/* `outcome`: outcome of the round's session in the store. */
-static status end_round(struct rounds *rounds, const char *outcome, struct error *error) {
-  struct driver_summary summary;
-  status code = driver_end(rounds->driver, error);
-  driver_summarise(rounds->driver, &summary);
-  rounds->study->runs_done += summary.runs_done;
-  rounds->study->runs_failed += summary.runs_failed;
-  rounds->study->cpu_s += summary.cpu_s;
-  driver_free(rounds->driver);
-  rounds->driver = NULL;
-  campaign_free(rounds->campaign);
-  rounds->campaign = NULL;
-  if (code == STATUS_OK)
-    code = store_end_session(rounds->store, summary.session_id, outcome, error);
+static status next_round(void *context, const struct scheduler *scheduler, struct campaign **campaign,
+                         struct error *error) {
+  struct rounds *rounds = context;
+  struct study *study = rounds->study;
+  rounds->slots = scheduler->options.slots;
+  for (size_t i = 0; !rounds->begun && i < study->ladder_count; i++)
+    TRY(study_read(study, &study->ladder[i], scheduler->store, error));
+  if (!rounds->begun)
+    learn(rounds);
+  rounds->begun = true;
+  study->budget_spent |= seconds_left(rounds) < 0;
+  rounds->ladder = choose_ladder(rounds);
+  if (!rounds->ladder)
+    return study_store(study, scheduler->store, error);
+  return make_campaign(rounds, campaign, error);
+}
+
+static status end_round(void *context, const struct scheduler *scheduler, struct error *error) {
+  struct rounds *rounds = context;
   if (!rounds->probe)
     rounds->ladder->seeds = rounds->seeds;
-  if (code == STATUS_OK)
-    code = store_flush(rounds->store, error); /* queries read exponents, and they do not read an open batch */
-  if (code == STATUS_OK)
-    code = study_read(rounds->study, rounds->ladder, rounds->store, error);
+  TRY(study_read(rounds->study, rounds->ladder, scheduler->store, error));
   learn(rounds);
   judge(rounds);
-  return code;
+  return STATUS_OK;
 }
 
-/* ---- the farm's callbacks ---- */
-
-static bool next_task(void *context, struct farm_task *task) {
+static bool is_enough(void *context) {
   struct rounds *rounds = context;
-  struct error *error = &rounds->error;
-  while (error->status == STATUS_OK) {
-    rounds->study->budget_spent |= seconds_left(rounds) < 0;
-    if (rounds->driver) {
-      if (!rounds->study->budget_spent && rounds->calls.next(rounds->calls.context, task)) {
-        rounds->out++;
-        return true;
-      }
-      if (rounds->out > 0)
-        return false;
-      error->status = end_round(rounds, "finished", error);
-      continue;
-    }
-    rounds->ladder = choose_ladder(rounds);
-    if (!rounds->ladder)
-      return false;
-    error->status = begin_round(rounds, error);
-  }
-  return false;
+  rounds->study->budget_spent |= seconds_left(rounds) < 0;
+  return rounds->study->budget_spent;
 }
 
-static status take_report(void *context, const struct farm_report *report, struct error *error) {
-  struct rounds *rounds = context;
-  rounds->out--;
-  return rounds->calls.report(rounds->calls.context, report, error);
+/* ---- from the farm to the tables ---- */
+
+struct launching {
+  struct study *study;
+  const struct study_launch *asked;
+};
+
+static status run_study(void *context, struct launch *launch, struct error *error) {
+  const struct launching *launching = context;
+  const struct study_launch *asked = launching->asked;
+  struct study *study = launching->study;
+  struct rounds rounds = {.study = study, .begin = clock_s()};
+  const struct series series = {.context = &rounds,
+                                .limits = &study->limits,
+                                .next = next_round,
+                                .done = end_round,
+                                .is_enough = is_enough};
+  struct series_summary summary;
+  launch->scheduler.store_path = study->limits.store;
+  const status code = driver_run_series(&series, launch->farm, &launch->scheduler, &summary, error);
+  launch_tell_series(launch, code, study->limits.store, &summary, false);
+  if (!launch->manager || code != STATUS_OK)
+    return code;
+  TRY(study_print(study, asked->format, asked->options->quiet, error));
+  if (asked->picture)
+    TRY(study_print_picture(study, false, asked->picture, error));
+  return asked->frontier ? study_print_picture(study, true, asked->frontier, error) : STATUS_OK;
 }
 
-static status tick(void *context, int running, struct error *error) {
-  struct rounds *rounds = context;
-  if (rounds->error.status != STATUS_OK) {
-    *error = rounds->error;
-    return rounds->error.status;
-  }
-  return rounds->driver ? rounds->calls.tick(rounds->calls.context, running, error) : STATUS_OK;
-}
-
-static void stopping(void *context, int signal_number) {
-  struct rounds *rounds = context;
-  if (rounds->driver)
-    rounds->calls.stopping(rounds->calls.context, signal_number);
-}
-
-static status run_rounds(struct rounds *rounds, struct farm *farm, struct error *error) {
-  struct study *study = rounds->study;
-  for (size_t i = 0; i < study->ladder_count; i++) {
-    TRY(study_read(study, &study->ladder[i], rounds->store, error));
-  }
-  learn(rounds);
-  const struct farm_manager manager = {.context = rounds,
-                                       .next = next_task,
-                                       .report = take_report,
-                                       .tick = tick,
-                                       .stopping = stopping};
-  status code = farm_run(farm, &manager, error);
-  if (code == STATUS_OK && rounds->error.status != STATUS_OK) {
-    *error = rounds->error;
-    code = rounds->error.status;
-  }
-  struct error ignored;
-  if (rounds->driver)
-    (void)end_round(rounds, code == STATUS_STOPPED ? "stopped" : "failed", &ignored);
-  if (code == STATUS_OK)
-    code = pooling_store(rounds->store, 0, error);
-  return code == STATUS_OK ? study_store(study, rounds->store, error) : code;
-}
-
-status study_rounds_run(struct study *study, struct farm *farm, const struct driver_options *options,
-                        struct error *error) {
-  if (farm_rank(farm) != 0)
-    return farm_run(farm, NULL, error);
-  struct driver_options own = *options;
-  own.slots = farm_slots_total(farm);
-  struct rounds rounds = {.study = study, .options = &own, .begin = clock_s()};
-  char warning[1024] = "";
-  status code = store_open_writer(own.store_path, &rounds.store, warning, sizeof warning, error);
-  if (code == STATUS_OK && warning[0] && own.note)
-    own.note(own.note_context, warning);
-  if (code == STATUS_OK)
-    code = run_rounds(&rounds, farm, error);
-  else
-    driver_release_ranks(farm);
-  campaign_free(rounds.campaign);
-  struct error closing = {0};
-  const status closed = store_close(rounds.store, &closing);
-  if (closed != STATUS_OK && code == STATUS_OK) {
-    *error = closing;
-    code = closed;
-  }
-  return code;
+status study_rounds_launch(struct study *study, const struct study_launch *asked, struct error *error) {
+  struct launching launching = {study, asked};
+  return launch_farm(&study->limits, asked->options, asked->line, run_study, &launching, error);
 }

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "campaign/design/design.h"
-#include "campaign/fit/fit_values.h"
 
 double fit_transform(const struct observed_datum *datum, double value) {
   return datum->ask.kind == ASK_SPECIMENS_COUNT ? log1p(value) : value;
@@ -178,11 +177,25 @@ void fit_free(struct fit *fit) {
 
 /* ---- the solution ---- */
 
+struct surfaces_runs fit_runs(const struct fit *fit, double *packed) {
+  const size_t d = fit->observed->datum_count, r = fit->replicates;
+  for (size_t i = 0; i < fit->points; i++)
+    for (size_t k = 0; k < d; k++)
+      memcpy(packed + (k * fit->points + i) * r, fit->values + (i * d + k) * r, r * sizeof *packed);
+  return (struct surfaces_runs){.points = fit->points,
+                                .inputs = fit->inputs,
+                                .outputs = d,
+                                .replicates = r,
+                                .z = fit->z,
+                                .values = packed,
+                                .shared_seeds = !fit->campaign->independent};
+}
+
 status fit_solve(struct fit *fit, struct error *error) {
   double *packed = calloc(fit->points * fit->observed->datum_count * fit->replicates, sizeof *packed);
   if (!packed)
     return status_fail(error, STATUS_MEMORY, "no memory for a fit");
-  const struct surfaces_runs runs = fit_values_runs(fit, packed);
+  const struct surfaces_runs runs = fit_runs(fit, packed);
   surfaces_clear(&fit->surfaces);
   posterior_clear(&fit->posterior);
   status code = surfaces_fit(&runs, fit->data, fit->bounded, &fit->surfaces, error);

@@ -2,18 +2,16 @@
  * sampled points are the first ensemble. Rounds of runs move the ensemble towards the data (analysis/inference).
  * Surfaces are fitted to the means of all runs and give the posterior.
  *
- *     campaign_load(...), observed_load(...);
- *     fit_create(campaign, observed, &rule, reference, &fit, &error);  // every rank
- *     series_run(&(struct series){fit, fit_rounds_next, fit_rounds_done}, farm, ...);
- *     fit_solve(fit, &error);                                           // rank 0
+ *     fit_rounds_launch(line, &options, format, &error);   // documents, farm, rounds, report
  *
  * The rounds depend only on the documents and the rule, so that a repeated command finds all its runs in the store. */
 #ifndef CLAST_CAMPAIGN_FIT_FIT_H
 #define CLAST_CAMPAIGN_FIT_FIT_H
 
 #include "analysis/inference/inference.h"
+#include "campaign/charts/charts.h"
 #include "campaign/document/observed.h"
-#include "campaign/driver/series.h"
+#include "campaign/launch/launch.h"
 #include "db/ask/resolution.h"
 
 enum { FIT_FEWEST_MEMBERS = 8, FIT_MOST_ROUNDS = 10, FIT_CHECK_ROUNDS = 12 };
@@ -79,15 +77,34 @@ double fit_number(const struct fit *fit, size_t input, double z);
 double fit_transform(const struct observed_datum *datum, double value);
 double fit_back(const struct observed_datum *datum, double transformed);
 
-/* The callbacks of struct series; context is the fit. */
-struct campaign *fit_rounds_next(void *context, struct store *store, struct error *error);
-status fit_rounds_done(void *context, struct store *store, struct error *error);
-/* Largest number of runs: all shots of all rounds, with or without the check. */
-int64_t fit_rounds_most(const struct fit *fit, bool check);
-
+/* The runs in the order that the algebra takes them; `packed` has room for all values. */
+struct surfaces_runs fit_runs(const struct fit *fit, double *packed);
 /* Surfaces and posterior from all points so far. */
 status fit_solve(struct fit *fit, struct error *error);
 /* The same, and the information that the data give about the inputs. */
 status fit_find(struct fit *fit, struct error *error);
+
+/* ---- fit_rounds.c ---- */
+
+struct fit_launch {
+  struct launch_options launch;
+  struct chart_options chart;
+  const char *store, *picture;
+  int64_t rounds, check, seed;
+};
+
+/* Reads both documents (line->arguments), runs the rounds, prints the report on rank 0. */
+status fit_rounds_launch(const struct command_line *line, const struct fit_launch *options, enum table_format format,
+                         struct error *error);
+
+/* ---- fit_print.c ---- */
+
+/* For people a table of the inputs, a table of the measurements, and conclusions in sentences. For programs one table:
+ * rows of kind input, then of kind measured, then of kind check. */
+status fit_print(const struct fit *fit, enum table_format format, struct error *error);
+
+/* Draws the measurements beside the predictions for one more experiment. */
+status fit_print_picture(const struct fit *fit, const char *path, const struct chart_options *chart,
+                         struct error *error);
 
 #endif

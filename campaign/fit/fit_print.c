@@ -1,9 +1,11 @@
-/* A fit as tables and as a picture. The sentences are fit_tell.c. */
-#include "campaign/fit/fit_print.h"
+/* A fit as tables, as sentences, and as a picture. The sentences say which inputs the data determine, which they do
+ * not, and what the errors include. */
+#include "campaign/fit/fit.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-#include "campaign/fit/fit_tell.h"
+#include "schemas/text.h"
 
 static const double levels[PICTURE_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
@@ -127,6 +129,184 @@ static status print_rows(const struct fit *fit, enum table_format format, struct
   return table_end(table, error);
 }
 
+/* ---- the sentences under the tables ---- */
+
+enum { WIDTH = 110 };
+
+static const char *name_of(const struct fit *fit, size_t input) {
+  return fit->campaign->axes[fit->axis[input]].row->path;
+}
+
+/* A paragraph of words, wrapped. */
+static void say(FILE *out, const char *text) {
+  text_wrap(text, 0, 0, WIDTH, out);
+}
+
+/* "a, b and c" of the inputs that are part of a direction. Returns how many. */
+static size_t list_mixed(const struct fit *fit, size_t direction, FILE *text) {
+  size_t count = 0, written = 0;
+  for (size_t i = 0; i < fit->inputs; i++)
+    count += identify_mixed(&fit->found, direction, i);
+  for (size_t i = 0; i < fit->inputs; i++)
+    if (identify_mixed(&fit->found, direction, i))
+      fprintf(text, "%s%s", written == 0 ? "" : written + 1 == count ? " and " : ", ", name_of(fit, i)), written++;
+  return count;
+}
+
+/* The inputs at both ends of the ridge: a standard deviation along it from the middle of the posterior. */
+static void list_ends(const struct fit *fit, size_t direction, FILE *text) {
+  const struct identify_direction *d = &fit->found.direction[direction];
+  size_t written = 0;
+  for (size_t i = 0; i < fit->inputs; i++) {
+    if (!identify_mixed(&fit->found, direction, i))
+      continue;
+    const double z = fit->found.centre[i], step = d->deviation * d->along[i];
+    fprintf(text, "%s%s from %.3g to %.3g", written++ ? ", " : "", name_of(fit, i), fit_number(fit, i, z - step),
+            fit_number(fit, i, z + step));
+  }
+}
+
+static void tell_open_direction(const struct fit *fit, size_t direction, FILE *out) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *words = text_open(&text, &size);
+  if (!words)
+    return;
+  size_t mixed = 0;
+  for (size_t i = 0; i < fit->inputs; i++)
+    mixed += identify_mixed(&fit->found, direction, i);
+  if (mixed > 1) {
+    fputs("RIDGE: these data cannot tell ", words);
+    list_mixed(fit, direction, words);
+    fputs(" apart. What was measured hardly changes while they change together: ", words);
+    list_ends(fit, direction, words);
+    fprintf(words,
+            ". Along this line the data tell %.2g times what the priors tell; its ends are set by the priors. "
+            "Quote the inputs together, or measure something that changes along it.",
+            fit->found.direction[direction].information);
+  } else {
+    fputs("NOT DETERMINED: ", words);
+    list_mixed(fit, direction, words);
+    fprintf(words, ". The data tell %.2g times what its prior tells; its interval is that of the prior.",
+            fit->found.direction[direction].information);
+  }
+  if (text_close(words, &text))
+    say(out, text);
+  free(text);
+}
+
+static void tell_determined(const struct fit *fit, FILE *out) {
+  char text[512];
+  const size_t known = fit->found.determined, p = fit->inputs;
+  if (known == p)
+    snprintf(text, sizeof text, "The data determine %s: in every direction they tell more than the priors.",
+             p == 1 ? "the input" : "all inputs");
+  else
+    snprintf(text, sizeof text, "The data determine %zu combination%s of the %zu unknown input%s.", known,
+             known == 1 ? "" : "s", p, p == 1 ? "" : "s");
+  say(out, text);
+  for (size_t i = known; i < p; i++)
+    tell_open_direction(fit, i, out);
+}
+
+/* Names the data whose error of resolution is unknown. */
+static void tell_not_studied(const struct fit *fit, FILE *out) {
+  char *text = NULL, label[2 * FIELD_TEXT_SIZE];
+  size_t size = 0, count = 0;
+  FILE *words = text_open(&text, &size);
+  if (!words)
+    return;
+  fputs("RESOLUTION: what a finer resolution would change is not known and counts as 0 for", words);
+  for (size_t k = 0; k < fit->observed->datum_count; k++) {
+    if (!isnan(fit->observed->data[k].resolution) || fit->resolution[k].verdict != ASK_RESOLUTION_NOT_STUDIED)
+      continue;
+    observed_label(fit->observed, k, label, sizeof label);
+    fprintf(words, "%s %s", count++ ? "," : "", label);
+  }
+  fprintf(words,
+          ". The intervals are too narrow. Give `resolution` with the value, or study it: `clast converge %s --store "
+          "%s` with what "
+          "the campaign sets (--set).",
+          fit->scene_reference, fit->campaign->store);
+  if (text_close(words, &text) && count)
+    say(out, text);
+  free(text);
+}
+
+static void tell_errors(const struct fit *fit, FILE *out) {
+  size_t single = 0;
+  for (size_t s = 0; s < fit->observed->shot_count; s++)
+    single += fit->observed->shots[s].specimens == 1;
+  if (single)
+    say(out, "One experiment is one specimen: sd_seeds is the scatter between seeds, not the standard error of a mean, "
+             "and the intervals hold it.");
+  tell_not_studied(fit, out);
+  for (size_t k = 0; k < fit->observed->datum_count; k++) {
+    char label[2 * FIELD_TEXT_SIZE], text[4 * FIELD_TEXT_SIZE];
+    const struct ask_resolution *r = &fit->resolution[k];
+    if (!isnan(fit->observed->data[k].resolution) || r->verdict == ASK_RESOLUTION_KNOWN ||
+        r->verdict == ASK_RESOLUTION_NOT_STUDIED)
+      continue;
+    observed_label(fit->observed, k, label, sizeof label);
+    snprintf(
+        text, sizeof text,
+        "RESOLUTION: %s %s with resolution; the study in the store tells an error of at least %.2g, which is in the "
+        "intervals.",
+        label, r->verdict == ASK_RESOLUTION_DIVERGES ? "does not converge" : "has no limit in sight", r->half_width);
+    say(out, text);
+  }
+}
+
+/* Names the assumptions of the algebra that do not hold. */
+static void tell_doubts(const struct fit *fit, FILE *out) {
+  char label[2 * FIELD_TEXT_SIZE], text[6 * FIELD_TEXT_SIZE];
+  for (size_t k = 0; k < fit->observed->datum_count; k++) {
+    const struct seed_scatter *scatter = &fit->surfaces.scatter[k];
+    const double below = posterior_below(&fit->surfaces.model, &fit->posterior, k);
+    observed_label(fit->observed, k, label, sizeof label);
+    /* For a normal law, skewness and excess have standard errors sqrt(6/n) and sqrt(24/n). */
+    const double n = (double)scatter->freedom;
+    if (fabs(scatter->skewness) > 4 * sqrt(6 / n) || fabs(scatter->excess) > 4 * sqrt(24 / n)) {
+      snprintf(
+          text, sizeof text,
+          "SCATTER: %s is not normal over seeds (skewness %.2g, excess kurtosis %.2g%s), as the likelihood takes it "
+          "to be. `--check` fits without that.",
+          label, scatter->skewness, scatter->excess, scatter->excess < -1 ? ": two heaps" : "");
+      say(out, text);
+    }
+    if (below < 0.025 || below > 0.975) {
+      snprintf(text, sizeof text,
+               "MISFIT: no inputs within the priors predict %s well: only %.2g of predicted experiments lie %s it.",
+               label, below < 0.5 ? below : 1 - below, below < 0.5 ? "below" : "above");
+      say(out, text);
+    }
+    if (fit->surfaces.left_out[k] > 1.5) {
+      snprintf(
+          text, sizeof text,
+          "SURFACE: for %s the points are missed by %.2g times what the surface says of its own error; more members "
+          "or more seeds help.",
+          label, fit->surfaces.left_out[k]);
+      say(out, text);
+    }
+  }
+}
+
+static void tell(const struct fit *fit, FILE *out) {
+  char text[512];
+  tell_determined(fit, out);
+  tell_errors(fit, out);
+  tell_doubts(fit, out);
+  snprintf(
+      text, sizeof text,
+      "Surfaces through %zu points of %zu seeds in %zu rounds; posterior %s. kept: width of the 90 %% interval over "
+      "that of the prior. below: share of predicted experiments below the value. Source of the data: %.200s",
+      fit->points, fit->replicates, fit->rounds, fit->posterior.sampled ? "sampled" : "on a grid",
+      fit->observed->source);
+  say(out, text);
+}
+
+/* ---- the whole report ---- */
+
 status fit_print(const struct fit *fit, enum table_format format, struct error *error) {
   if (format != TABLE_TEXT)
     return print_rows(fit, format, error);
@@ -136,7 +316,7 @@ status fit_print(const struct fit *fit, enum table_format format, struct error *
     code = print_data(fit, error);
   putchar('\n');
   if (code == STATUS_OK)
-    fit_tell(fit, stdout);
+    tell(fit, stdout);
   if (code == STATUS_OK && fit->check.kept) {
     printf("\nCheck without a formula for the likelihood (ABC, %zu runs nearest to the data, distance up to %.3g):\n",
            fit->check.kept, fit->check.tolerance);

@@ -1,21 +1,12 @@
-/* The rounds of a fit as campaigns: one campaign for each shot of a round, a list of the members' inputs. */
+/* The rounds of a fit as a series: one campaign for each shot of a round, a list of the members' inputs. Runs a fit
+ * from its documents to its report. */
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/document/campaign_write.h"
 #include "campaign/fit/fit.h"
-#include "campaign/fit/fit_values.h"
 #include "engine/random.h"
-
-int64_t fit_rounds_most(const struct fit *fit, bool check) {
-  const int64_t shots = (int64_t)fit->observed->shot_count;
-  int64_t specimens = 0;
-  for (size_t s = 0; s < fit->observed->shot_count; s++)
-    specimens += fit->observed->shots[s].specimens;
-  return check ? fit->rule.check * (FIT_CHECK_ROUNDS + 1) / 2 * specimens
-               : shots * fit->rule.rounds * (int64_t)(fit->members * fit->replicates);
-}
 
 /* ---- a round as campaigns ---- */
 
@@ -29,57 +20,31 @@ static const double *places(const struct fit *fit, size_t *count) {
   return is_check(fit) ? fit->check.z + fit->check.kept * fit->inputs : fit->place;
 }
 
-static status make_axes(const struct fit *fit, struct campaign *campaign, struct error *error) {
+static status make_campaign(const struct fit *fit, struct campaign **out, struct error *error) {
+  const struct observed_shot *shot = &fit->observed->shots[fit->shot];
+  const struct campaign *from = fit->campaign;
   size_t count;
   const double *z = places(fit, &count);
-  campaign->axes = calloc(fit->campaign->axis_count, sizeof *campaign->axes);
-  for (size_t i = 0; campaign->axes && i < fit->campaign->axis_count; i++) {
-    struct design_axis *axis = &campaign->axes[campaign->axis_count++];
-    *axis = (struct design_axis){.row = fit->campaign->axes[i].row,
-                                 .kind = DESIGN_AXIS_LEVELS,
-                                 .lower = -HUGE_VAL,
-                                 .upper = HUGE_VAL};
-    axis->levels = calloc(count, sizeof *axis->levels);
-    axis->level_count = count;
-    if (!axis->levels)
-      return status_fail(error, STATUS_MEMORY, "no memory for a round");
-  }
-  if (!campaign->axes)
-    return status_fail(error, STATUS_MEMORY, "no memory for a round");
+  TRY(driver_list_begin(from, shot->scene, from->axis_count, count, out, error));
+  struct campaign *campaign = *out;
+  for (size_t i = 0; i < from->axis_count; i++)
+    campaign->axes[i].row = from->axes[i].row;
   for (size_t j = 0; j < count; j++) {
     for (size_t i = 0; i < fit->inputs; i++)
       fit_value(fit, i, z[j * fit->inputs + i], &campaign->axes[fit->axis[i]].levels[j]);
-    for (size_t i = 0; i < campaign->axis_count; i++) {
-      const struct design_axis *from = &fit->campaign->axes[i];
-      if (from->kind == DESIGN_AXIS_LINKED)
-        design_axis_follow(from, &campaign->axes[from->linked].levels[j], 0, &campaign->axes[i].levels[j]);
+    for (size_t i = 0; i < from->axis_count; i++) {
+      const struct design_axis *axis = &from->axes[i];
+      if (axis->kind == DESIGN_AXIS_LINKED)
+        design_axis_follow(axis, &campaign->axes[axis->linked].levels[j], 0, &campaign->axes[i].levels[j]);
     }
   }
-  return STATUS_OK;
-}
-
-static status make_campaign(const struct fit *fit, struct campaign *campaign, struct error *error) {
-  const struct observed_shot *shot = &fit->observed->shots[fit->shot];
-  char comment[64];
-  *campaign = *fit->campaign;
-  campaign->axes = NULL; /* the fit's campaign owns these; they must not be freed twice */
-  campaign->axis_count = 0;
-  campaign->text = NULL;
-  campaign->scene = scene_copy(shot->scene);
-  campaign->design = (struct campaign_design_keys){.kind = CAMPAIGN_LIST};
-  campaign->keep = CAMPAIGN_KEEP_NONE;
   if (is_check(fit)) {
     campaign->per_point = shot->specimens;
     campaign->independent = true; /* each particle is a specimen of its own */
   }
-  snprintf(campaign->name, sizeof campaign->name, "%.100s %s %zu, %.100s", fit->campaign->name,
-           is_check(fit) ? "check" : "fit", is_check(fit) ? fit->check_rounds + 1 : fit->rounds + 1, shot->name);
-  if (!campaign->scene)
-    return status_fail(error, STATUS_MEMORY, "no memory for a round");
-  TRY(make_axes(fit, campaign, error));
-  snprintf(comment, sizeof comment, "Written by clast fit: a round of its runs.");
-  campaign->text = campaign_write_list(campaign, fit->scene_reference, comment);
-  return campaign->text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");
+  snprintf(campaign->name, sizeof campaign->name, "%.100s %s %zu, %.100s", from->name, is_check(fit) ? "check" : "fit",
+           is_check(fit) ? fit->check_rounds + 1 : fit->rounds + 1, shot->name);
+  return driver_list_end(campaign, fit->scene_reference, "Written by clast fit: a round of its runs.", error);
 }
 
 /* Reads the error of the resolution from a study in the store, for data without `resolution`. */
@@ -101,22 +66,120 @@ static status find_resolution(struct fit *fit, struct store *store, struct error
   return code;
 }
 
-struct campaign *fit_rounds_next(void *context, struct store *store, struct error *error) {
+static status next_round(void *context, const struct scheduler *scheduler, struct campaign **campaign,
+                         struct error *error) {
   struct fit *fit = context;
   if (fit->phase == FIT_DONE)
+    return STATUS_OK;
+  if (fit->rounds == 0 && fit->shot == 0)
+    TRY(find_resolution(fit, scheduler->store, error));
+  return make_campaign(fit, campaign, error);
+}
+
+/* ---- the values of a round's runs ---- */
+
+/* Values of one point and one quantity by replicate. */
+struct taking {
+  const struct observed_datum *datum;
+  const uint64_t *seeds;
+  double *values;
+  size_t count;
+};
+
+static void take(void *context, uint64_t seed, double value) {
+  const struct taking *taking = context;
+  for (size_t r = 0; r < taking->count; r++)
+    if (taking->seeds[r] == seed)
+      taking->values[r] = fit_transform(taking->datum, value);
+}
+
+/* The scene of a member of the shot. NULL with *error. */
+static struct scene *scene_of(const struct fit *fit, const double *z, struct error *error) {
+  const struct campaign *campaign = fit->campaign;
+  struct campaign shot = *campaign;
+  struct field_value *values = calloc(campaign->axis_count, sizeof *values);
+  if (!values) {
+    status_fail(error, STATUS_MEMORY, "no memory for a point");
     return NULL;
-  if (fit->rounds == 0 && fit->shot == 0) {
-    error->status = find_resolution(fit, store, error);
-    if (error->status != STATUS_OK)
-      return NULL;
   }
-  struct campaign *campaign = calloc(1, sizeof *campaign);
-  error->status = campaign ? make_campaign(fit, campaign, error)
-                           : status_fail(error, STATUS_MEMORY, "no memory for a round");
-  if (error->status == STATUS_OK)
-    return campaign;
-  campaign_free(campaign);
-  return NULL;
+  shot.scene = fit->observed->shots[fit->shot].scene;
+  for (size_t i = 0; i < fit->inputs; i++)
+    fit_value(fit, i, z[i], &values[fit->axis[i]]);
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    if (campaign->axes[i].kind == DESIGN_AXIS_LINKED)
+      design_axis_follow(&campaign->axes[i], &values[campaign->axes[i].linked], 0, &values[i]);
+  struct scene *scene = campaign_point_scene(&shot, values, error);
+  free(values);
+  return scene;
+}
+
+/* Reads the values of the shot's data at a point of the store; point 0: it has none. */
+static status read_data(const struct fit *fit, struct store *store, const struct scene *scene, int64_t point,
+                        const uint64_t *seeds, size_t count, double *values, size_t stride, struct error *error) {
+  status code = STATUS_OK;
+  for (size_t k = 0; code == STATUS_OK && k < fit->observed->datum_count; k++) {
+    const struct observed_datum *datum = &fit->observed->data[k];
+    if (datum->shot != fit->shot)
+      continue;
+    const struct taking taking = {datum, seeds, values + k * stride, count};
+    for (size_t r = 0; r < count; r++)
+      taking.values[r] = NAN;
+    if (point)
+      code = ask_specimens(store, point, scene->kind, &datum->ask, take, (void *)&taking, error);
+  }
+  return code;
+}
+
+/* Reads `count` replicates of the shot's data at z; the values of datum k begin at values + k * stride. A point that
+ * cannot be run has no values. */
+static status read_point(const struct fit *fit, struct store *store, const double *z, bool independent, size_t count,
+                         double *values, size_t stride, struct error *error) {
+  struct error invalid = {0};
+  struct campaign own = *fit->campaign;
+  struct scene *scene = scene_of(fit, z, &invalid);
+  uint64_t *seeds = calloc(count, sizeof *seeds);
+  int64_t point = 0;
+  status code = seeds ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a point");
+  own.independent = independent;
+  for (size_t r = 0; seeds && scene && r < count; r++)
+    seeds[r] = campaign_seed(&own, scene, (int64_t)r);
+  if (code == STATUS_OK && scene)
+    code = store_point_find(store, scene, &point, error);
+  if (code == STATUS_OK)
+    code = read_data(fit, store, scene, point, seeds, count, values, stride, error);
+  free(seeds);
+  scene_free(scene);
+  return code;
+}
+
+/* Reads the values of the shot under way for the members at z into fit->values, after the existing points. */
+static status read_members(struct fit *fit, struct store *store, const double *z, struct error *error) {
+  const size_t d = fit->observed->datum_count, r = fit->replicates;
+  status code = STATUS_OK;
+  for (size_t j = 0; code == STATUS_OK && j < fit->members; j++)
+    code = read_point(fit, store, z + j * fit->inputs, fit->campaign->independent, r,
+                      fit->values + (fit->points + j) * d * r, r, error);
+  return code;
+}
+
+/* Reads the values of the particles at z into fit->specimens: means over the shot's specimens. */
+static status read_particles(struct fit *fit, struct store *store, const double *z, struct error *error) {
+  const size_t d = fit->observed->datum_count, n = (size_t)fit->observed->shots[fit->shot].specimens;
+  double *values = calloc(n * d, sizeof *values);
+  status code = values ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a check");
+  for (size_t j = 0; code == STATUS_OK && j < fit->proposed; j++) {
+    code = read_point(fit, store, z + j * fit->inputs, true, n, values, n, error);
+    for (size_t k = 0; code == STATUS_OK && k < d; k++) {
+      if (fit->observed->data[k].shot != fit->shot)
+        continue;
+      double sum = 0;
+      for (size_t r = 0; r < n; r++)
+        sum += values[k * n + r];
+      fit->specimens[j * d + k] = sum / (double)n;
+    }
+  }
+  free(values);
+  return code;
 }
 
 /* ---- after a round ---- */
@@ -128,7 +191,7 @@ static status move_ensemble(struct fit *fit, struct error *error) {
   double *g = calloc(fit->members * d, sizeof *g), *packed = calloc(fit->points * d * fit->replicates, sizeof *packed);
   status code = g && packed ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");
   if (code == STATUS_OK) {
-    const struct surfaces_runs runs = fit_values_runs(fit, packed);
+    const struct surfaces_runs runs = fit_runs(fit, packed);
     for (size_t j = 0; j < fit->members; j++)
       for (size_t k = 0; k < d; k++)
         g[j * d + k] = surfaces_mean(&runs, k, from + j);
@@ -238,21 +301,88 @@ static status after_check(struct fit *fit, struct error *error) {
   return STATUS_OK;
 }
 
-status fit_rounds_done(void *context, struct store *store, struct error *error) {
+static status end_round(void *context, const struct scheduler *scheduler, struct error *error) {
   struct fit *fit = context;
   size_t count;
   const double *z = places(fit, &count);
-  status code = STATUS_OK;
-  if (is_check(fit))
-    code = fit_values_check(fit, store, z, error);
-  else
-    code = fit_values_read(fit, store, z, error);
-  if (code != STATUS_OK || ++fit->shot < fit->observed->shot_count)
-    return code;
+  TRY((is_check(fit) ? read_particles : read_members)(fit, scheduler->store, z, error));
+  if (++fit->shot < fit->observed->shot_count)
+    return STATUS_OK;
   fit->shot = 0;
   if (is_check(fit))
     return after_check(fit, error);
   memcpy(fit->z + fit->points * fit->inputs, fit->place, count * fit->inputs * sizeof *fit->z);
   fit->points += count;
   return after_ensemble(fit, error);
+}
+
+/* ---- from the documents to the report ---- */
+
+/* The two documents, and the objects made from them. */
+struct subject {
+  struct campaign *campaign;
+  struct observed *observed;
+  struct fit *fit;
+  char reference[2 * FIELD_TEXT_SIZE]; /* path of the scene from the current folder */
+};
+
+static status load(struct subject *subject, const struct command_line *line, const struct fit_launch *options,
+                   struct launch_notes *notes, struct error *error) {
+  const char *path = line->arguments[1], *slash = strrchr(path, '/');
+  TRY(campaign_load(path, &subject->campaign, error));
+  TRY(observed_load(line->arguments[0], subject->campaign, &subject->observed, error));
+  struct campaign *campaign = subject->campaign;
+  const char *scene = campaign->scene_reference;
+  const bool is_file = strchr(scene, '/') || strchr(scene, '.');
+  snprintf(subject->reference, sizeof subject->reference, "%.*s%s",
+           slash && is_file && scene[0] != '/' ? (int)(slash + 1 - path) : 0, path, scene);
+  if (options->store)
+    snprintf(campaign->store, sizeof campaign->store, "%s", options->store);
+  const struct fit_rule rule = {.rounds = options->rounds,
+                                .check = options->check,
+                                .seed = (uint64_t)options->seed,
+                                .note = launch_note,
+                                .note_context = notes};
+  return fit_create(campaign, subject->observed, &rule, subject->reference, &subject->fit, error);
+}
+
+struct launching {
+  struct subject subject;
+  const struct fit_launch *options;
+  enum table_format format;
+};
+
+static status run_fit(void *context, struct launch *launch, struct error *error) {
+  const struct launching *launching = context;
+  const struct fit_launch *options = launching->options;
+  struct fit *fit = launching->subject.fit;
+  const struct campaign *campaign = fit->campaign;
+  const struct series series = {.context = fit, .limits = campaign, .next = next_round, .done = end_round};
+  struct series_summary summary;
+  launch->scheduler.store_path = campaign->store;
+  if (launch->manager && !launch->notes.quiet)
+    fprintf(stderr, "clast: at most %" PRId64 " runs in %" PRId64 " rounds%s\n",
+            (int64_t)(fit->observed->shot_count * fit->members * fit->replicates) * options->rounds, options->rounds,
+            options->check ? ", and those of the check" : "");
+  const status code = driver_run_series(&series, launch->farm, &launch->scheduler, &summary, error);
+  launch_tell_series(launch, code, campaign->store, &summary, true);
+  if (!launch->manager || code != STATUS_OK)
+    return code;
+  TRY(fit_find(fit, error));
+  TRY(fit_print(fit, launching->format, error));
+  return options->picture ? fit_print_picture(fit, options->picture, &options->chart, error) : STATUS_OK;
+}
+
+status fit_rounds_launch(const struct command_line *line, const struct fit_launch *options, enum table_format format,
+                         struct error *error) {
+  struct launching launching = {.options = options, .format = format};
+  struct subject *subject = &launching.subject;
+  struct launch_notes notes = {.quiet = options->launch.quiet};
+  status code = load(subject, line, options, &notes, error);
+  if (code == STATUS_OK)
+    code = launch_farm(subject->campaign, &options->launch, line, run_fit, &launching, error);
+  fit_free(subject->fit);
+  observed_free(subject->observed);
+  campaign_free(subject->campaign);
+  return code;
 }

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "campaign/driver/provenance.h"
-#include "campaign/driver/run.h"
+#include "campaign/scheduler/provenance.h"
+#include "campaign/scheduler/run.h"
 #include "schemas/clock.h"
 
 void launch_note(void *context, const char *text) {
@@ -32,6 +32,17 @@ void launch_tell_runs(const char *store, int64_t computed, int64_t found, double
   fputc('\n', stderr);
 }
 
+void launch_tell_series(const struct launch *launch, status code, const char *store,
+                        const struct series_summary *summary, bool found) {
+  if (!launch->manager || launch->notes.quiet)
+    return;
+  if (code == STATUS_OK || code == STATUS_STOPPED)
+    launch_tell_runs(store, summary->runs_done, found ? summary->runs_reused : -1, summary->cpu_s,
+                     clock_s() - launch->begin_s);
+  if (summary->runs_failed)
+    fprintf(stderr, "some runs failed: clast query %s --named failures\n", store);
+}
+
 status launch_farm(const struct campaign *limits, const struct launch_options *options, const struct command_line *line,
                    status (*body)(void *context, struct launch *launch, struct error *error), void *context,
                    struct error *error) {
@@ -39,14 +50,14 @@ status launch_farm(const struct campaign *limits, const struct launch_options *o
                                       .in_process = options->in_process,
                                       .use_mpi = farm_under_mpi()};
   struct farm *farm = NULL;
-  driver_farm_options(limits, &farm_options);
+  scheduler_limits(limits, &farm_options);
   TRY(farm_start(&farm_options, run_work, &farm, error));
   struct launch launch = {.farm = farm, .manager = farm_rank(farm) == 0, .notes = {.quiet = options->quiet}};
   char *facts = provenance_json(farm_ranks(farm), farm_slots_total(farm), line->argc, line->argv);
-  launch.driver = (struct driver_options){.facts = facts,
-                                          .note = launch_note,
-                                          .note_context = &launch.notes,
-                                          .slots = farm_slots_total(farm)};
+  launch.scheduler = (struct scheduler_options){.facts = facts,
+                                                .note = launch_note,
+                                                .note_context = &launch.notes,
+                                                .slots = farm_slots_total(farm)};
   launch.begin_s = clock_s();
   status code = facts ? body(context, &launch, error) : status_fail(error, STATUS_MEMORY, "out of memory");
   free(facts);

@@ -3,7 +3,7 @@
 #define CLAST_CAMPAIGN_LAUNCH_LAUNCH_H
 
 #include "campaign/document/campaign.h"
-#include "campaign/driver/driver.h"
+#include "campaign/scheduler/driver.h"
 #include "campaign/terminal/option.h"
 #include "campaign/terminal/progress.h"
 #include "campaign/terminal/table.h"
@@ -35,7 +35,7 @@ void launch_note(void *notes, const char *text);
 /* Argument of the function that every rank runs between the farm's start and end. */
 struct launch {
   struct farm *farm;
-  struct driver_options driver; /* facts, notes and slots are filled in; the body adds the store */
+  struct scheduler_options scheduler; /* facts, notes and slots are filled in; the body adds the store */
   struct launch_notes notes;
   bool manager; /* rank 0 */
   double begin_s;
@@ -49,6 +49,11 @@ status launch_farm(const struct campaign *limits, const struct launch_options *o
 
 /* Prints a line on stderr: how many runs were computed, and how many were found in the store (-1: left out). */
 void launch_tell_runs(const char *store, int64_t computed, int64_t found, double cpu_s, double wall_s);
+
+/* The same for a series that ended with `code`, and a line when runs failed. Prints nothing on other ranks or when the
+ * user asked for quiet. found: whether to tell how many were found in the store. */
+void launch_tell_series(const struct launch *launch, status code, const char *store,
+                        const struct series_summary *summary, bool found);
 
 /* True on a rank other than 0. Before MPI_Init only the launcher's environment tells. */
 bool launch_other_rank(void);

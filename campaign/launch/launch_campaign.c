@@ -78,9 +78,9 @@ static status run_campaign(void *context, struct launch *launch, struct error *e
   const bool quiet = launch->notes.quiet;
   struct progress *progress = make_progress(launch);
   struct driver_summary summary = {0};
-  launch->notes.progress = launch->driver.progress = progress;
-  launch->driver.store_path = launching->store;
-  const status code = driver_run(launching->campaign, launch->farm, &launch->driver, &summary, error);
+  launch->notes.progress = launch->scheduler.progress = progress;
+  launch->scheduler.store_path = launching->store;
+  const status code = driver_run(launching->campaign, launch->farm, &launch->scheduler, &summary, error);
   const double wall_s = clock_s() - launch->begin_s;
   launch->notes.progress = NULL;
   progress_free(progress);

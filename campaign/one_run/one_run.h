@@ -2,7 +2,7 @@
 #ifndef CLAST_CAMPAIGN_ONE_RUN_ONE_RUN_H
 #define CLAST_CAMPAIGN_ONE_RUN_ONE_RUN_H
 
-#include "campaign/driver/run.h"
+#include "campaign/scheduler/run.h"
 #include "engine/scene.h"
 
 /* Files that are NULL are not written. */

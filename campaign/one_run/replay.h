@@ -2,7 +2,7 @@
 #ifndef CLAST_CAMPAIGN_ONE_RUN_REPLAY_H
 #define CLAST_CAMPAIGN_ONE_RUN_REPLAY_H
 
-#include "campaign/driver/run.h"
+#include "campaign/scheduler/run.h"
 #include "campaign/terminal/table.h"
 #include "db/ask/run.h"
 #include "engine/scene.h"

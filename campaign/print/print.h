@@ -3,7 +3,7 @@
 #define CLAST_CAMPAIGN_PRINT_PRINT_H
 
 #include "campaign/charts/charts.h"
-#include "campaign/driver/run.h"
+#include "campaign/scheduler/run.h"
 #include "db/ask/points.h"
 
 /* ---- results of one run: for people one quantity per line with unit and meaning, for programs one row ---- */

@@ -1,5 +1,5 @@
 /* Connections of libmicrohttpd. An evaluation under way suspends its connection. */
-#include "campaign/serve/http.h"
+#include "campaign/serve/serve.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -11,11 +11,12 @@
 
 #include "engine/grow.h"
 #include "schemas/clock.h"
+#include "schemas/memory.h"
 
 struct serve_http {
   struct MHD_Daemon *daemon;
   const struct serve_model *model;
-  struct serve_jobs *jobs;
+  struct serve *serve;
   size_t exchanges; /* requests whose answers are not completely sent */
   uint64_t events;  /* counts pieces of requests received and answers sent */
   bool loopback;
@@ -83,6 +84,7 @@ static const char *refused_at_once(const struct serve_http *server, struct MHD_C
   return NULL;
 }
 
+/* False: no memory. */
 static bool take_body(struct exchange *exchange, const char *bytes, size_t size) {
   if (!grow_room(&exchange->body, &exchange->capacity, exchange->size + size, sizeof *exchange->body))
     return false;
@@ -107,7 +109,7 @@ static enum MHD_Result judge(struct exchange *exchange, const char *method, cons
   struct serve_request request;
   if (serve_request_read(exchange->http->model, method, url, exchange->body ? exchange->body : "", exchange->size,
                          &request, &exchange->answer))
-    exchange->answer = serve_jobs_submit(exchange->http->jobs, &request, exchange);
+    exchange->answer = serve_submit(exchange->http->serve, &request, exchange);
   if (exchange->answer.http)
     return send_answer(exchange);
   exchange->suspended = true;
@@ -149,9 +151,8 @@ static void completed(void *context, struct MHD_Connection *connection, void **o
   *own = NULL;
 }
 
-void serve_http_answered(void *context, void *ticket, struct serve_answer answer) {
+void serve_http_answer(void *ticket, struct serve_answer answer) {
   struct exchange *exchange = ticket;
-  (void)context;
   exchange->answer = answer;
   exchange->suspended = false;
   MHD_resume_connection(exchange->connection);
@@ -177,19 +178,15 @@ static bool read_address(const char *text, int port, struct sockaddr_storage *ad
   return true;
 }
 
-status serve_http_open(const struct serve_model *model, const char *address, int port, struct serve_http **out,
-                       struct error *error) {
+status serve_http_open(const struct serve_model *model, struct serve *serve, const char *address, int port,
+                       struct serve_http **out, struct error *error) {
   struct sockaddr_storage place;
-  struct serve_http *http = *out = calloc(1, sizeof *http);
-  if (!http)
-    return status_fail(error, STATUS_MEMORY, "no memory for the server");
-  http->model = model;
-  if (!read_address(address, port, &place, &http->loopback)) {
-    serve_http_close(http);
-    *out = NULL;
+  bool loopback;
+  if (!read_address(address, port, &place, &loopback))
     return status_fail(error, STATUS_USAGE,
                        "--listen expects an address such as 127.0.0.1, ::1 or 0.0.0.0, got \"%.64s\"", address);
-  }
+  struct serve_http *http = *out = memory_small(1, sizeof *http);
+  *http = (struct serve_http){.model = model, .serve = serve, .loopback = loopback};
   const unsigned flags = MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | (place.ss_family == AF_INET6 ? MHD_USE_IPv6 : 0);
   errno = 0;
   http->daemon = MHD_start_daemon(flags, (uint16_t)port, NULL, NULL, handle, http, MHD_OPTION_SOCK_ADDR, &place,
@@ -199,14 +196,8 @@ status serve_http_open(const struct serve_model *model, const char *address, int
   if (http->daemon)
     return STATUS_OK;
   const int why = errno;
-  serve_http_close(http);
-  *out = NULL;
   return status_fail(error, STATUS_IO, "cannot listen at %s, port %d: %s", address, port,
                      why ? strerror(why) : "it may be in use; name another --port");
-}
-
-void serve_http_jobs(struct serve_http *http, struct serve_jobs *jobs) {
-  http->jobs = jobs;
 }
 
 int serve_http_port(const struct serve_http *http) {

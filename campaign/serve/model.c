@@ -1,5 +1,5 @@
 /* Checks that a campaign can be served, and makes scenes from vectors of numbers. */
-#include "campaign/serve/model.h"
+#include "campaign/serve/serve.h"
 
 #include <stdlib.h>
 #include <string.h>

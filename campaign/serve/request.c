@@ -1,5 +1,5 @@
 /* Reads requests of the protocol with jansson, and writes its answers. */
-#include "campaign/serve/request.h"
+#include "campaign/serve/serve.h"
 
 #include <inttypes.h>
 #include <jansson.h>

@@ -1,78 +1,350 @@
-/* Puts HTTP, evaluations, farm and store together. */
+/* The planner of a server: turns evaluations into runs, and runs into answers. Runs in the store are not computed
+ * again; a run that two evaluations need is computed once; all computed runs are stored. */
 #include "campaign/serve/serve.h"
 
-#include "campaign/driver/driver.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
-struct server {
-  struct serve_http *http;
-  struct serve_jobs *jobs;
+#define HASH_NONFATAL_OOM 1
+#include <uthash.h>
+
+#include "schemas/clock.h"
+#include "schemas/memory.h"
+
+struct job { /* an evaluation under way */
+  struct job *next;
+  struct serve_request request;
+  struct scene *scene;
+  int64_t point_id;
+  void *ticket;
+  double started; /* s, clock_s() */
+  bool answered;  /* it waited too long and was answered; only its runs are left */
+  size_t missing; /* runs of it that are waiting or on slots */
 };
 
-static bool next(void *context, struct farm_task *task) {
-  return serve_jobs_next(((struct server *)context)->jobs, task);
+struct wish { /* one job waits for one run */
+  struct job *job;
+  struct wish *next;
+};
+
+struct wanted { /* a run that waits or is on a slot */
+  struct scheduler_run run;
+  uint8_t identity[16];
+  struct scene *scene;
+  struct wish *wishes;
+  struct wanted *next; /* in the queue */
+  UT_hash_handle hh;   /* by identity */
+};
+
+struct serve {
+  const struct serve_model *model;
+  const struct serve_options *options;
+  struct serve_http *http;
+  struct scheduler *scheduler;
+  int64_t session_id, campaign_id;
+  const char **paths; /* paths of the varied inputs, for the store */
+  size_t path_count;
+  struct job *jobs;
+  struct wanted *runs;               /* uthash */
+  struct wanted *queue, *queue_last; /* those on no slot */
+  struct serve_counts counts;
+  bool stopping;
+};
+
+static void free_job(struct job *job) {
+  serve_request_clear(&job->request);
+  scene_free(job->scene);
+  free(job);
 }
 
-static status report(void *context, const struct farm_report *report, struct error *error) {
-  struct server *server = context;
-  const status code = serve_jobs_report(server->jobs, report, error);
-  serve_http_run(server->http);
+static void free_wanted(struct wanted *wanted) {
+  for (struct wish *wish = wanted->wishes, *next; wish; wish = next) {
+    next = wish->next;
+    free(wish);
+  }
+  scene_free(wanted->scene);
+  free(wanted);
+}
+
+static status begin(void *context, struct scheduler *scheduler, struct error *error) {
+  struct serve *serve = context;
+  const struct campaign *campaign = serve->model->campaign;
+  const struct ladder *ladder = &serve->model->ladder;
+  serve->scheduler = scheduler;
+  serve->paths = memory_small(campaign->axis_count + KNOB_INPUTS, sizeof *serve->paths);
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    serve->paths[serve->path_count++] = campaign->axes[i].row->path;
+  for (size_t i = 0; ladder->count && i < KNOB_INPUTS && ladder->knob->inputs[i].path; i++)
+    serve->paths[serve->path_count++] = ladder->knob->inputs[i].path;
+  TRY(scheduler_announce(scheduler, campaign, "{\"served\": true}", &serve->session_id, &serve->campaign_id, error));
+  TRY(store_flush(scheduler->store, error));
+  if (serve->options->ready)
+    serve->options->ready(serve->options->context, serve->http);
+  return STATUS_OK;
+}
+
+/* ---- what the store has of a job ---- */
+
+struct reading {
+  const struct serve *serve;
+  const struct job *job;
+  double *values; /* NaN: no usable run. May be NULL */
+  bool *there;    /* may be NULL */
+};
+
+static void take_stored(void *context, const struct store_point_run *run) {
+  const struct reading *reading = context;
+  const struct serve_config *config = &reading->job->request.config;
+  const int64_t r = scheduler_replicate(reading->serve->model->campaign, reading->job->scene, run);
+  if (r < config->first || r - config->first >= config->count)
+    return;
+  if (reading->values)
+    reading->values[r - config->first] = outcome_is_usable(run->state) ? run->value : (double)NAN;
+  if (reading->there)
+    reading->there[r - config->first] = true;
+}
+
+static status read_store(struct serve *serve, const struct job *job, const struct serve_result *result, double *values,
+                         bool *there, struct error *error) {
+  struct reading reading = {serve, job, values, there};
+  return store_point_runs(serve->scheduler->store, job->point_id, job->scene->kind, result->row, result->of_outcome,
+                          take_stored, &reading, error);
+}
+
+static struct serve_answer answer_of(struct serve *serve, const struct job *job) {
+  const struct serve_config *config = &job->request.config;
+  const size_t count = (size_t)config->count, size = config->result_count * count;
+  struct error error = {0};
+  double *values = malloc(size * sizeof *values);
+  status code = values ? STATUS_OK : status_fail(&error, STATUS_MEMORY, "out of memory");
+  for (size_t i = 0; values && i < size; i++)
+    values[i] = NAN;
+  for (size_t k = 0; !code && k < config->result_count; k++)
+    code = read_store(serve, job, &config->results[k], values + k * count, NULL, &error);
+  const struct serve_answer answer = code ? serve_request_error(503, "Unavailable", "%s", error.message)
+                                          : serve_request_answer(&job->request, values);
+  free(values);
+  return answer;
+}
+
+/* ---- evaluations in ---- */
+
+static void push(struct serve *serve, struct wanted *wanted) {
+  wanted->next = NULL;
+  if (serve->queue)
+    serve->queue_last->next = wanted;
+  else
+    serve->queue = wanted;
+  serve->queue_last = wanted;
+}
+
+/* The job waits for this run, unless the run has used up its attempts. */
+static status want(struct serve *serve, struct job *job, int64_t replicate, struct error *error) {
+  struct wanted *wanted = NULL;
+  uint8_t identity[16];
+  const uint64_t seed = campaign_seed(serve->model->campaign, job->scene, replicate);
+  scene_identity(job->scene, seed, identity);
+  HASH_FIND(hh, serve->runs, identity, sizeof identity, wanted);
+  if (!wanted && scheduler_attempts(serve->scheduler, identity) >= serve->model->campaign->attempts)
+    return STATUS_OK;
+  struct wish *wish = malloc(sizeof *wish);
+  struct scene *scene = wanted ? NULL : scene_copy(job->scene);
+  if (!wanted && wish && scene) {
+    wanted = memory_small(1, sizeof *wanted);
+    memcpy(wanted->identity, identity, sizeof identity);
+    wanted->scene = scene;
+    wanted->run = (struct scheduler_run){.scene = scene,
+                                         .point_id = job->point_id,
+                                         .session_id = serve->session_id,
+                                         .replicate = replicate,
+                                         .seed = seed,
+                                         .place = wanted};
+    HASH_ADD(hh, serve->runs, identity, sizeof identity, wanted);
+    push(serve, wanted);
+  }
+  if (!wanted || !wish) {
+    scene_free(scene);
+    free(wish);
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  }
+  *wish = (struct wish){job, wanted->wishes};
+  wanted->wishes = wish;
+  job->missing++;
+  return STATUS_OK;
+}
+
+/* Finds or adds the point in the store, and requests each missing run. */
+static status open_job(struct serve *serve, struct job *job, struct error *error) {
+  const struct serve_config *config = &job->request.config;
+  TRY(store_add_point(serve->scheduler->store, serve->campaign_id, job->scene, serve->path_count, serve->paths,
+                      &job->point_id, error));
+  bool *there = calloc((size_t)config->count, sizeof *there);
+  if (!there)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  status code = read_store(serve, job, &config->results[0], NULL, there, error);
+  for (int64_t r = 0; !code && r < config->count; r++) {
+    serve->counts.found += there[r];
+    if (!there[r])
+      code = want(serve, job, config->first + r, error);
+  }
+  free(there);
   return code;
 }
 
-static status tick(void *context, int running, struct error *error) {
-  struct server *server = context;
+struct serve_answer serve_submit(struct serve *serve, struct serve_request *request, void *ticket) {
+  if (serve->stopping) {
+    serve_request_clear(request);
+    return serve_request_error(503, "Unavailable", "the server is stopping");
+  }
+  struct error error = {0};
+  struct job *job = memory_small(1, sizeof *job);
+  struct serve_answer answer = {0};
+  serve->counts.evaluations++;
+  *job = (struct job){.request = *request, .ticket = ticket, .started = clock_s()};
+  *request = (struct serve_request){0};
+  job->scene = serve_model_scene(serve->model, job->request.inputs, job->request.config.level, &error);
+  if (!job->scene)
+    answer = error.status == STATUS_MEMORY ? serve_request_error(503, "Unavailable", "%s", error.message)
+                                           : serve_request_error(400, "InvalidInput", "%s", error.message);
+  else if (open_job(serve, job, &error) != STATUS_OK)
+    answer = serve_request_error(503, "Unavailable", "%s", error.message);
+  else if (job->missing == 0)
+    answer = answer_of(serve, job);
+  if (job->missing == 0) {
+    free_job(job);
+    return answer;
+  }
+  job->answered = answer.http != 0; /* runs may point to the job: it is freed when they are done */
+  job->next = serve->jobs;
+  serve->jobs = job;
+  return answer;
+}
+
+/* ---- runs out and in ---- */
+
+static status next(void *context, struct scheduler_run *run, struct error *error) {
+  struct serve *serve = context;
+  (void)error;
+  if (!serve->queue || serve->stopping)
+    return STATUS_OK;
+  *run = serve->queue->run;
+  serve->queue = serve->queue->next;
+  return STATUS_OK;
+}
+
+/* Answers the jobs that waited only for this run, which has ended. */
+static void settle(struct serve *serve, struct wanted *wanted) {
+  for (struct wish *wish = wanted->wishes; wish; wish = wish->next) {
+    struct job *job = wish->job, **at = &serve->jobs;
+    if (--job->missing > 0)
+      continue;
+    if (!job->answered)
+      serve_http_answer(job->ticket, answer_of(serve, job));
+    while (*at != job)
+      at = &(*at)->next;
+    *at = job->next;
+    free_job(job);
+  }
+  HASH_DELETE(hh, serve->runs, wanted);
+  free_wanted(wanted);
+}
+
+static status ended(void *context, const struct scheduler_run *run, const struct scheduler_end *end,
+                    struct error *error) {
+  struct serve *serve = context;
+  struct wanted *wanted = run->place;
+  (void)error;
+  if (end->ending == SCHEDULER_AGAIN && !serve->stopping) {
+    wanted->run.lost = run->lost;
+    push(serve, wanted);
+  } else {
+    serve->counts.computed += end->ending == SCHEDULER_DONE;
+    serve->counts.failed += end->ending != SCHEDULER_DONE;
+    settle(serve, wanted);
+  }
+  serve_http_run(serve->http);
+  return STATUS_OK;
+}
+
+/* Answers evaluations that waited too long. */
+static void tick(void *context, int running, bool last) {
+  struct serve *serve = context;
+  const double now = clock_s(), wait_s = serve->options->wait_s;
   (void)running;
-  serve_http_run(server->http);
-  return serve_jobs_tick(server->jobs, error);
+  if (last)
+    return;
+  serve_http_run(serve->http);
+  for (struct job *job = serve->jobs; job && wait_s > 0; job = job->next) {
+    if (job->answered || now - job->started < wait_s)
+      continue;
+    job->answered = true;
+    serve_http_answer(job->ticket, serve_request_error(503, "Unavailable",
+                                                       "%zu of the runs are not done after %g s; they go on, and the "
+                                                       "same request finds them",
+                                                       job->missing, wait_s));
+  }
 }
 
-static void stopping(void *context, int signal_number) {
-  (void)signal_number;
-  serve_jobs_stop(((struct server *)context)->jobs, false);
+/* ---- the end ---- */
+
+static void stopping(void *context) {
+  ((struct serve *)context)->stopping = true;
 }
 
-static status serve(struct server *server, struct farm *farm, struct error *error) {
-  const struct farm_manager manager = {.context = server,
-                                       .next = next,
-                                       .report = report,
-                                       .tick = tick,
-                                       .stopping = stopping,
-                                       .orders = serve_http_file(server->http)};
-  status code = farm_run(farm, &manager, error);
-  if (code == STATUS_STOPPED) /* a signal is the normal end of a server */
-    code = STATUS_OK;
-  serve_jobs_stop(server->jobs, true);
-  const status ended = serve_jobs_end(server->jobs, code ? NULL : error);
-  return code ? code : ended;
+/* Answers what is pending, writes the points' exponents for the view estimates, and ends the session. A signal is the
+ * normal end of a server. */
+static status end(void *context, status code, struct error *error) {
+  struct serve *serve = context;
+  struct store *store = serve->scheduler->store;
+  serve->stopping = true;
+  for (struct job *job = serve->jobs; job; job = job->next) {
+    if (!job->answered)
+      serve_http_answer(job->ticket, serve_request_error(503, "Unavailable", "the server was stopped"));
+    job->answered = true;
+  }
+  const bool good = code == STATUS_OK || code == STATUS_STOPPED;
+  const status pooled = pooling_store(store, serve->campaign_id, good ? error : NULL);
+  const status ended = store_end_session(store, serve->session_id, pooled ? "failed" : "finished",
+                                         good && !pooled ? error : NULL);
+  if (!good)
+    return code;
+  return pooled ? pooled : ended;
 }
 
 status serve_run(const struct serve_model *model, struct farm *farm, const struct serve_options *options,
-                 struct serve_jobs_counts *counts, struct error *error) {
-  *counts = (struct serve_jobs_counts){0};
-  if (farm_rank(farm) != 0)
-    return farm_run(farm, NULL, error);
-  struct server server = {0};
-  struct store *store = NULL;
-  status code = serve_http_open(model, options->address, options->port, &server.http, error);
-  if (!code)
-    code = store_open_writer(options->store, &store, NULL, 0, error);
-  const struct serve_jobs_options jobs = {.facts = options->facts,
-                                          .wait_s = options->wait_s,
-                                          .answered = serve_http_answered,
-                                          .context = server.http};
-  if (!code)
-    code = serve_jobs_open(model, store, &jobs, &server.jobs, error);
+                 struct serve_counts *counts, struct error *error) {
+  struct serve serve = {.model = model, .options = options};
+  status code = STATUS_OK;
+  *counts = (struct serve_counts){0};
+  if (farm_rank(farm) == 0)
+    code = serve_http_open(model, &serve, options->address, options->port, &serve.http, error);
   if (code) {
-    driver_release_ranks(farm);
+    scheduler_release_ranks(farm);
   } else {
-    serve_http_jobs(server.http, server.jobs);
-    if (options->ready)
-      options->ready(options->context, server.http);
-    code = serve(&server, farm, error);
-    *counts = serve_jobs_counts(server.jobs);
+    const struct scheduler_planner planner = {.context = &serve,
+                                              .limits = model->campaign,
+                                              .begin = begin,
+                                              .next = next,
+                                              .ended = ended,
+                                              .tick = tick,
+                                              .stopping = stopping,
+                                              .end = end,
+                                              .orders = serve.http ? serve_http_file(serve.http) : 0};
+    const struct scheduler_options own = {.store_path = options->store, .facts = options->facts};
+    code = scheduler_compute(&planner, farm, &own, error);
+    *counts = serve.counts;
   }
-  serve_http_close(server.http);
-  serve_jobs_free(server.jobs);
-  const status closed = store_close(store, code ? NULL : error);
-  return code ? code : closed;
+  serve_http_close(serve.http);
+  struct wanted *wanted, *following;
+  HASH_ITER(hh, serve.runs, wanted, following) {
+    HASH_DELETE(hh, serve.runs, wanted);
+    free_wanted(wanted);
+  }
+  for (struct job *job = serve.jobs, *after; job; job = after) {
+    after = job->next;
+    free_job(job);
+  }
+  free(serve.paths);
+  return code;
 }

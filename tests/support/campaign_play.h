@@ -1,4 +1,4 @@
-/* A farm played by the test: tasks are taken from a driver, computed by the toy engine and reported in an order that
+/* A farm played by the test: tasks are taken from a scheduler, computed by the toy engine and reported in an order that
  * the test chooses. */
 #ifndef CLAST_TESTS_CAMPAIGN_PLAY_H
 #define CLAST_TESTS_CAMPAIGN_PLAY_H
@@ -9,8 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "campaign/driver/driver.h"
-#include "campaign/driver/run.h"
+#include "campaign/scheduler/driver.h"
+#include "campaign/scheduler/run.h"
 #include "engine/random.h"
 #include "tests/support/toy_engine.h"
 
@@ -62,12 +62,12 @@ struct play {
   char *says;                /* message of the status that ended it, malloc'd */
 };
 
-static status play_farm(struct play *play, struct driver *driver, struct error *error) {
+static status play_farm(struct play *play, struct scheduler *scheduler, struct error *error) {
   struct {
     struct farm_task task;
     uint8_t *bytes;
   } out[64];
-  struct farm_manager manager = driver_manager(driver);
+  struct farm_manager manager = scheduler_manager(scheduler);
   int count = 0;
   status code = STATUS_OK;
   for (uint64_t turn = 0; code == STATUS_OK; turn++) {
@@ -122,20 +122,19 @@ static status play_farm(struct play *play, struct driver *driver, struct error *
 static status play_once(struct play *play, const struct campaign *campaign, const char *path,
                         struct driver_summary *summary) {
   struct error error = {0};
-  struct store *store = NULL;
-  struct driver *driver = NULL;
-  struct driver_options options = {.store_path = path, .facts = "{}", .progress = play->progress, .slots = play->slots};
-  status code = store_open_writer(path, &store, NULL, 0, &error);
+  struct driver *driver = driver_new(campaign);
+  struct scheduler scheduler =
+      {.planner = driver_planner(driver),
+       .options = {.store_path = path, .facts = "{}", .progress = play->progress, .slots = play->slots}};
+  status code = store_open_writer(path, &scheduler.store, NULL, 0, &error);
   if (code == STATUS_OK)
-    code = driver_open(campaign, store, &options, &driver, &error);
+    code = scheduler.planner.begin(driver, &scheduler, &error);
   if (code == STATUS_OK) {
-    code = play_farm(play, driver, &error);
-    status ended = driver_end(driver, code == STATUS_OK ? &error : NULL);
-    code = code != STATUS_OK ? code : ended;
-    driver_summarise(driver, summary);
+    code = scheduler_end(&scheduler, play_farm(play, &scheduler, &error), &error);
+    *summary = driver_summarise(driver);
   }
   driver_free(driver);
-  status closed = store_close(store, code == STATUS_OK ? &error : NULL);
+  status closed = store_close(scheduler.store, code == STATUS_OK ? &error : NULL);
   code = code != STATUS_OK ? code : closed;
   if (code != STATUS_OK && code != STATUS_STOPPED && code != STATUS_FAILED_RUNS)
     fprintf(stderr, "play: %s: %s\n", status_meaning(code), error.message);

@@ -269,10 +269,8 @@ CIRCLES = (
     "db/store/identities db/store/internal db/store/store",
     "campaign/document/campaign campaign/document/campaign_points campaign/document/campaign_read "
     "campaign/document/campaign_vary campaign/document/campaign_walk",
-    "campaign/driver/driver campaign/driver/private",
     "campaign/farm/farm campaign/farm/isolate campaign/farm/pool campaign/farm/pool_private campaign/farm/private "
     "campaign/farm/server campaign/farm/slot",
-    "campaign/fit/fit campaign/fit/fit_values",
 )
 
 

@@ -104,7 +104,7 @@ static void the_cheapest_that_reaches_it(void **state) {
   assert_true(accuracy.options[0].cpu_s == 35 && accuracy.options[1].cpu_s == 50 && accuracy.options[1].own);
   assert_int_equal(accuracy.reference, 2);
   accuracy_clear(&accuracy);
-  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_OK);
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_OK);
   assert_int_equal(campaign->per_point, 7);
   struct field_value value;
   field_get(field_find(campaign->scene->kind->inputs, "fidelity.time_step", &error), campaign->scene->inputs, &value);
@@ -113,18 +113,18 @@ static void the_cheapest_that_reaches_it(void **state) {
 
   /* A smaller margin: only the finest setting reaches it. */
   campaign = campaign_of(HEAD "accuracy: {quantity: largest_fraction, within: 0.025}\n");
-  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_OK);
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_OK);
   field_get(field_find(campaign->scene->kind->inputs, "fidelity.time_step", &error), campaign->scene->inputs, &value);
   assert_true(value.number == 2.5e-7);
   campaign_free(campaign);
 
   /* No setting reaches it, and a setting without a bound of its error does not count. */
   campaign = campaign_of(HEAD "accuracy: {within: 0.01}\n");
-  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_CONTENT);
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "0.01"));
   campaign->accuracy_within = 0.06;
   store_study(campaign, true);
-  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_CONTENT);
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
   campaign_free(campaign);
 }
 
@@ -144,9 +144,10 @@ static void a_varied_input_is_no_choice(void **state) {
 static void without_a_study_the_command_is_named(void **state) {
   (void)state;
   struct campaign *campaign = campaign_of(HEAD "set: {contact.friction: 0.3}\naccuracy: {within: 0.06}\n");
-  assert_int_equal(accuracy_settle(campaign, "t.yaml", "no-such.db", &error), STATUS_CONTENT);
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", "no-such.db", ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "clast converge t.yaml --quantity largest_fraction --store no-such.db"));
-  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_CONTENT); /* of another scene */
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error),
+                   STATUS_CONTENT); /* of another scene */
   assert_non_null(strstr(error.message, "clast converge"));
   campaign_free(campaign);
   static const char *const wrong[] = {"accuracy: {quantity: largest_fraction}\n", "accuracy: {within: 0}\n",

@@ -318,7 +318,7 @@ static void fields_that_cannot_be_written_stop_the_campaign(void **state) {
   toy_engine.write_snapshot = write_few_fields;
   campaign->keep = CAMPAIGN_KEEP_ALL;
   fields_left = 4;
-  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_STOPPED);
+  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_IO);
   assert_non_null(strstr(play.says, "no space"));
   assert_non_null(strstr(play.says, "The results are stored, these fields are not"));
   assert_int_equal(summary.fields_written, 4);

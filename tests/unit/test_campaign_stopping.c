@@ -11,8 +11,7 @@
 
 #include "analysis/analysis.h"
 #include "campaign/design/stopping.h"
-#include "campaign/driver/cost.h"
-#include "campaign/driver/point.h"
+#include "campaign/scheduler/point.h"
 #include "engine/random.h"
 
 static double normal(uint64_t seed, uint64_t item, uint64_t draw) {
@@ -161,16 +160,16 @@ static void fields_of_the_extremes(void **state) {
 
 static void costs_are_learnt(void **state) {
   (void)state;
-  struct cost_model model = {0};
-  struct cost_point cheap = {.work = 10}, dear = {.work = 30};
-  assert_true(cost_predict(&model, &dear) > cost_predict(&model, &cheap)); /* by work alone */
-  cost_learn(&model, &cheap, 2);
-  assert_true(fabs(cost_predict(&model, &dear) - 6) < 1e-12); /* 0.2 s per unit of work */
+  struct point_cost_model model = {0};
+  struct point_cost cheap = {.work = 10}, dear = {.work = 30};
+  assert_true(point_cost_predict(&model, &dear) > point_cost_predict(&model, &cheap)); /* by work alone */
+  point_cost_learn(&model, &cheap, 2);
+  assert_true(fabs(point_cost_predict(&model, &dear) - 6) < 1e-12); /* 0.2 s per unit of work */
   for (int i = 0; i < 999; i++)
-    cost_learn(&model, &cheap, 8); /* this point costs more than its work predicts */
-  cost_learn(&model, &dear, 1);
-  assert_true(fabs(cost_predict(&model, &cheap) - 8) < 0.01 && cost_predict(&model, &dear) < 13);
-  cost_learn(&model, &dear, NAN);
+    point_cost_learn(&model, &cheap, 8); /* this point costs more than its work predicts */
+  point_cost_learn(&model, &dear, 1);
+  assert_true(fabs(point_cost_predict(&model, &cheap) - 8) < 0.01 && point_cost_predict(&model, &dear) < 13);
+  point_cost_learn(&model, &dear, NAN);
   assert_int_equal(dear.runs, 1);
 }
 

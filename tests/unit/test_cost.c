@@ -10,47 +10,47 @@
 #include <string.h>
 
 #include "analysis/analysis.h"
-#include "campaign/driver/cost.h"
-#include "campaign/driver/pilot.h"
-#include "campaign/driver/plan.h"
+#include "campaign/scheduler/pilot.h"
+#include "campaign/scheduler/plan.h"
+#include "campaign/scheduler/point.h"
 
 #define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 static void time_left(void **state) {
   (void)state;
   /* Ten runs of 1 s on two busy slots, two of them half done: 9 s of work. */
-  struct cost_left left = {.missing_s = 10, .under_way_s = 1, .finished_s = 9, .elapsed_s = 5, .slots = 2};
-  NEAR(cost_time_left(&left), 4.5, 1e-12);
+  struct point_cost_left left = {.missing_s = 10, .under_way_s = 1, .finished_s = 9, .elapsed_s = 5, .slots = 2};
+  NEAR(point_cost_time_left(&left), 4.5, 1e-12);
   /* Runs of 1 ms that take 10 ms in all: 1000 of them on one slot are 10 s and not 1 s. */
-  left = (struct cost_left){.missing_s = 1, .finished_s = 0.2, .elapsed_s = 2, .slots = 1};
-  NEAR(cost_time_left(&left), 10, 1e-12);
+  left = (struct point_cost_left){.missing_s = 1, .finished_s = 0.2, .elapsed_s = 2, .slots = 1};
+  NEAR(point_cost_time_left(&left), 10, 1e-12);
   /* One long run delays the end, however many slots are free. */
-  left = (struct cost_left){.missing_s = 60,
-                            .under_way_s = 20,
-                            .finished_s = 380,
-                            .elapsed_s = 100,
-                            .longest_s = 40,
-                            .slots = 4};
-  NEAR(cost_time_left(&left), 40, 1e-12);
+  left = (struct point_cost_left){.missing_s = 60,
+                                  .under_way_s = 20,
+                                  .finished_s = 380,
+                                  .elapsed_s = 100,
+                                  .longest_s = 40,
+                                  .slots = 4};
+  NEAR(point_cost_time_left(&left), 40, 1e-12);
   /* No run has finished: the estimate assumes busy slots. */
-  left = (struct cost_left){.missing_s = 8, .elapsed_s = 3, .slots = 2};
-  NEAR(cost_time_left(&left), 4, 1e-12);
+  left = (struct point_cost_left){.missing_s = 8, .elapsed_s = 3, .slots = 2};
+  NEAR(point_cost_time_left(&left), 4, 1e-12);
 }
 
 /* Before any run: the work. Then the rate of all runs, which weighs as much as one run of the point itself. */
 static void prediction(void **state) {
   (void)state;
-  struct cost_model model = {0};
-  struct cost_point light = {.work = 10}, heavy = {.work = 40};
-  NEAR(cost_predict(&model, &heavy), 40, 0);
-  cost_learn(&model, &light, 5);
-  cost_learn(&model, &light, NAN); /* an attempt without a time counts for nothing */
-  NEAR(cost_predict(&model, &heavy), 20, 1e-12);
-  NEAR(cost_predict(&model, &light), (5 + 5) / 2.0, 1e-12);
-  cost_learn(&model, &heavy, 50); /* 55 s for 50 units of work: 44 s by the rate, 50 s by its own run */
-  NEAR(cost_predict(&model, &heavy), (44 + 50) / 2.0, 1e-12);
-  cost_learn(&model, &heavy, 32); /* 87 s for 90 */
-  NEAR(cost_predict(&model, &heavy), (87 / 90.0 * 40 + 50 + 32) / 3, 1e-12);
+  struct point_cost_model model = {0};
+  struct point_cost light = {.work = 10}, heavy = {.work = 40};
+  NEAR(point_cost_predict(&model, &heavy), 40, 0);
+  point_cost_learn(&model, &light, 5);
+  point_cost_learn(&model, &light, NAN); /* an attempt without a time counts for nothing */
+  NEAR(point_cost_predict(&model, &heavy), 20, 1e-12);
+  NEAR(point_cost_predict(&model, &light), (5 + 5) / 2.0, 1e-12);
+  point_cost_learn(&model, &heavy, 50); /* 55 s for 50 units of work: 44 s by the rate, 50 s by its own run */
+  NEAR(point_cost_predict(&model, &heavy), (44 + 50) / 2.0, 1e-12);
+  point_cost_learn(&model, &heavy, 32); /* 87 s for 90 */
+  NEAR(point_cost_predict(&model, &heavy), (87 / 90.0 * 40 + 50 + 32) / 3, 1e-12);
 }
 
 /* The piece has reached a quarter of the hard end after 10 steps; the coarse run had made 5 steps there, and ended

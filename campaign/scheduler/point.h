@@ -1,11 +1,45 @@
-/* One point of a campaign that is being computed: the states of its replicates, its prefix, its cost. For the driver
- * only. */
-#ifndef CLAST_CAMPAIGN_DRIVER_POINT_H
-#define CLAST_CAMPAIGN_DRIVER_POINT_H
+/* One point of a campaign that is being computed: the states of its replicates, its prefix, and what its runs cost. For
+ * driver.c only. */
+#ifndef CLAST_CAMPAIGN_SCHEDULER_POINT_H
+#define CLAST_CAMPAIGN_SCHEDULER_POINT_H
 
 #include "campaign/design/stopping.h"
 #include "campaign/document/campaign.h"
-#include "campaign/driver/cost.h"
+
+/* ---- cost ----
+ *
+ * Predicts the cost of a run from the finished runs: the engine's measure of work times a fitted rate, corrected by the
+ * mean of the point's own runs. The prediction gives the order of the runs (most expensive first, so that no long run
+ * starts last) and the time left. It is never part of a result. */
+
+struct point_cost_model { /* zero-initialised */
+  double seconds, work;   /* sums over finished runs: the rate is their ratio */
+  int64_t runs;
+};
+struct point_cost { /* costs of one point's runs; the caller sets `work` and zeroes the rest */
+  double work, seconds;
+  int64_t runs;
+};
+
+void point_cost_learn(struct point_cost_model *model, struct point_cost *point, double wall_s);
+/* Seconds of the point's next run. Before any run has finished: its work in the engine's unit, which gives the same
+ * order. */
+double point_cost_predict(const struct point_cost_model *model, const struct point_cost *point);
+
+/* Input of the estimate of the time left, in wall seconds. */
+struct point_cost_left {
+  double missing_s;   /* predicted total for all unfinished runs, started or not */
+  double under_way_s; /* time spent so far on running runs, for each at most its predicted time */
+  double finished_s;  /* total time of the runs that finished during the last `elapsed_s` */
+  double elapsed_s;
+  double longest_s; /* largest remaining time of a running run */
+  int slots;
+};
+/* Slots are not always busy: a run of a millisecond waits longer for its process and for the store than it computes.
+ * The share of the slots' time that runs used so far is assumed for the remaining runs. */
+double point_cost_time_left(const struct point_cost_left *left);
+
+/* ---- replicates ---- */
 
 /* POINT_LEFT: the machine ended all attempts; the next invocation tries the run again. The point stays undecided. */
 enum point_state { POINT_WANTED, POINT_OUT, POINT_DONE, POINT_FAILED, POINT_LEFT };
@@ -33,7 +67,7 @@ struct point {
   int64_t left;    /* replicates in state POINT_LEFT */
   int64_t out;     /* runs and replays on slots */
   int64_t replays; /* replays wanted and not yet started */
-  struct cost_point cost;
+  struct point_cost cost;
 };
 
 /* Takes ownership of the scene. NULL when memory is out (the scene is freed). */

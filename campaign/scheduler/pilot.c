@@ -1,5 +1,5 @@
 /* Times the first steps of runs, and whole runs of coarse scenes. */
-#include "campaign/driver/pilot.h"
+#include "campaign/scheduler/pilot.h"
 
 #include <math.h>
 #include <stdio.h>

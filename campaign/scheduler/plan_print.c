@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "campaign/document/campaign_warn.h"
-#include "campaign/driver/plan.h"
+#include "campaign/scheduler/plan.h"
 #include "campaign/terminal/progress.h"
 #include "schemas/text.h"
 

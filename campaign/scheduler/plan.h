@@ -1,7 +1,7 @@
 /* Predicts runs and cost of a campaign. Stores nothing. Times come from trial runs of up to 5 s in all: of the most
  * expensive sampled point, of a coarse version of it that runs to its end, and of other points. */
-#ifndef CLAST_CAMPAIGN_DRIVER_PLAN_H
-#define CLAST_CAMPAIGN_DRIVER_PLAN_H
+#ifndef CLAST_CAMPAIGN_SCHEDULER_PLAN_H
+#define CLAST_CAMPAIGN_SCHEDULER_PLAN_H
 
 #include "campaign/document/campaign.h"
 

@@ -1,8 +1,8 @@
 /* Computes one task of the farm: the same code in process, in children, over MPI and in `clast simulate`. A task holds
  * the engine's name, its encoded inputs, the seed and the files to keep. The answer is one versioned encoding of
  * outcome, engine results, fragments and estimates, made from the field tables. */
-#ifndef CLAST_CAMPAIGN_DRIVER_RUN_H
-#define CLAST_CAMPAIGN_DRIVER_RUN_H
+#ifndef CLAST_CAMPAIGN_SCHEDULER_RUN_H
+#define CLAST_CAMPAIGN_SCHEDULER_RUN_H
 
 #include "analysis/statistics/estimates.h"
 #include "engine/scene.h"

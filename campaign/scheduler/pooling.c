@@ -1,6 +1,6 @@
 /* Fits the exponents of every point that has runs and no estimates yet. A thread fits one point while the next one is
  * read: in a large store both take about as long. */
-#include "campaign/driver/pooling.h"
+#include "campaign/scheduler/scheduler.h"
 
 #include <pthread.h>
 #include <stdlib.h>

@@ -1,12 +1,12 @@
 /* Walks the design and times trial runs. */
-#include "campaign/driver/plan.h"
+#include "campaign/scheduler/plan.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "campaign/document/campaign_walk.h"
-#include "campaign/driver/pilot.h"
+#include "campaign/scheduler/pilot.h"
 #include "db/ask/run.h"
 #include "db/store/store.h"
 #include "schemas/clock.h"

@@ -1,5 +1,5 @@
 /* Computes one run, and encodes tasks and results as bytes. */
-#include "campaign/driver/run.h"
+#include "campaign/scheduler/run.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,12 +1,96 @@
-/* Reads the request of a study: quantities, when to stop, and knobs with their levels. */
-#include "campaign/converge/request.h"
+/* Reads the request of a study: scenes and limits, quantities, when to stop, and knobs with their levels. */
+#include "campaign/converge/study.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/converge/ladder.h"
+#include "campaign/document/campaign_walk.h"
+
+/* ---- the subject ---- */
+
+static status add_scene(struct study_subject *subject, const struct option_list *set, struct scene *scene,
+                        struct error *error) {
+  subject->scenes[subject->scene_count++] = scene;
+  return option_set_inputs(scene, set, error);
+}
+
+/* Every point of the campaign is a scene of its own. */
+static status add_points(struct study_subject *subject, const struct option_list *set, struct error *error) {
+  struct campaign_walk walk;
+  status code = campaign_walk_begin(&walk, subject->campaign, error);
+  while (code == STATUS_OK && campaign_walk_next(&walk)) {
+    struct scene *scene = campaign_walk_scene(&walk, error);
+    if (!scene)
+      code = STATUS_CONTENT;
+    else if (subject->scene_count < STUDY_SCENES)
+      code = add_scene(subject, set, scene, error);
+    else {
+      scene_free(scene);
+      code = status_fail(error, STATUS_CONTENT,
+                         "the campaign has more than %d points: study a campaign with fewer points, or one scene",
+                         STUDY_SCENES);
+    }
+  }
+  campaign_walk_end(&walk);
+  return code;
+}
+
+static status load_campaign(struct study_subject *subject, const char *path, const struct option_list *set,
+                            struct error *error) {
+  TRY(campaign_load(path, &subject->campaign, error));
+  const struct campaign *campaign = subject->campaign;
+  const char *slash = strrchr(path, '/'), *scene = campaign->scene_reference;
+  const bool is_file = strchr(scene, '/') || strchr(scene, '.');
+  snprintf(subject->reference, sizeof subject->reference, "%.*s%s",
+           slash && is_file && scene[0] != '/' ? (int)(slash + 1 - path) : 0, path, scene);
+  subject->study.limits = *campaign;
+  return add_points(subject, set, error);
+}
+
+static status load_scene(struct study_subject *subject, const char *reference, const struct option_list *set,
+                         struct error *error) {
+  struct scene *scene = NULL;
+  TRY(scene_load(reference, NULL, &scene, error));
+  struct campaign *limits = &subject->study.limits;
+  field_defaults(&campaign_table, limits);
+  snprintf(limits->name, sizeof limits->name, "%s", scene->name[0] ? scene->name : "scene");
+  snprintf(limits->store, sizeof limits->store, "%.200s-converge.db", limits->name);
+  for (char *slash = limits->store; (slash = strchr(slash, '/'));)
+    *slash = '-'; /* a name must not lead to another folder */
+  snprintf(subject->reference, sizeof subject->reference, "%s", reference);
+  return add_scene(subject, set, scene, error);
+}
+
+/* Only a campaign's document has the key `scene`. A name without a file is a built-in scene. */
+static bool is_campaign(const char *path) { /* whoever opens it next notes it as an input */
+  bool found = false;
+  char line[4096];
+  FILE *in = scene_builtin_text(path) ? NULL : fopen(path, "r");
+  while (in && !found && fgets(line, sizeof line, in))
+    found = strncmp(line, "scene:", 6) == 0 || strstr(line, "\"scene\"");
+  if (in)
+    fclose(in);
+  return found;
+}
+
+static status load(struct study_subject *subject, const char *path, const struct option_list *set,
+                   struct error *error) {
+  TRY(is_campaign(path) ? load_campaign(subject, path, set, error) : load_scene(subject, path, set, error));
+  struct campaign *limits = &subject->study.limits;
+  /* The study borrows these from the campaign, so they must not be freed twice. */
+  limits->axes = NULL;
+  limits->axis_count = 0;
+  limits->scene = NULL;
+  limits->text = NULL;
+  limits->independent = false;
+  limits->keep = CAMPAIGN_KEEP_NONE;
+  subject->study.scene_reference = subject->reference;
+  return STATUS_OK;
+}
+
+/* ---- quantities and rule ---- */
 
 static status read_quantities(struct study *study, const char *names, const struct engine_kind *kind,
                               struct error *error) {
@@ -54,7 +138,7 @@ static status read_within(struct study_rule *rule, const char *text, bool severa
   return STATUS_OK;
 }
 
-static status read_rule(struct study *study, const struct request *request, struct error *error) {
+static status read_rule(struct study *study, const struct study_request *request, struct error *error) {
   struct study_rule *rule = &study->rule;
   *rule = (struct study_rule){.within = NAN,
                               .seconds = HUGE_VAL,
@@ -72,7 +156,7 @@ static void note_lines(const char *text, bool quiet) {
 }
 
 /* A knob that does not apply is left out with a remark if it comes from a group, and refused if it was named. */
-static status add_knob(struct subject *subject, const struct request *request, const struct scene *scene,
+static status add_knob(struct study_subject *subject, const struct study_request *request, const struct scene *scene,
                        const struct knob *knob, const char *settings, bool named, struct error *error) {
   struct ladder levels;
   char *notes = NULL;
@@ -94,7 +178,7 @@ static int group_of(const char *name) {
   return -1;
 }
 
-static status add_named(struct subject *subject, const struct request *request, const struct scene *scene,
+static status add_named(struct study_subject *subject, const struct study_request *request, const struct scene *scene,
                         const char *name, const char *settings, struct error *error) {
   const int group = group_of(name);
   if (group < 0) {
@@ -109,7 +193,7 @@ static status add_named(struct subject *subject, const struct request *request, 
 }
 
 /* "particles,time_step" or "particles=1000,3000". */
-static status add_item(struct subject *subject, const struct request *request, const struct scene *scene,
+static status add_item(struct study_subject *subject, const struct study_request *request, const struct scene *scene,
                        const char *item, struct error *error) {
   const char *equals = strchr(item, '=');
   status code = STATUS_OK;
@@ -125,7 +209,7 @@ static status add_item(struct subject *subject, const struct request *request, c
   return code;
 }
 
-static status add_knobs(struct subject *subject, const struct request *request, struct error *error) {
+static status add_knobs(struct study_subject *subject, const struct study_request *request, struct error *error) {
   status code = STATUS_OK;
   for (size_t s = 0; code == STATUS_OK && s < subject->scene_count; s++) {
     const struct scene *scene = subject->scenes[s];
@@ -139,9 +223,10 @@ static status add_knobs(struct subject *subject, const struct request *request, 
   return code;
 }
 
-status request_read(const struct request *request, const char *path, struct subject *subject, struct error *error) {
+status study_request_read(const struct study_request *request, const char *path, struct study_subject *subject,
+                          struct error *error) {
   struct study *study = &subject->study;
-  TRY(subject_load(subject, path, &request->set, error));
+  TRY(load(subject, path, &request->set, error));
   if (request->first_seed > 0)
     study->limits.first_seed = request->first_seed;
   if (request->store)
@@ -151,4 +236,11 @@ status request_read(const struct request *request, const char *path, struct subj
   if (code == STATUS_OK)
     code = read_rule(study, request, error);
   return code == STATUS_OK ? add_knobs(subject, request, error) : code;
+}
+
+void study_request_clear(struct study_subject *subject) {
+  study_clear(&subject->study);
+  for (size_t i = 0; i < subject->scene_count; i++)
+    scene_free(subject->scenes[i]);
+  campaign_free(subject->campaign);
 }

@@ -1,5 +1,6 @@
-/* The states of a point's replicates, and which of them is next. */
-#include "campaign/driver/point.h"
+/* The states of a point's replicates and which of them is next. What a run costs: a fitted rate of work, corrected by
+ * each point's own runs. */
+#include "campaign/scheduler/point.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -156,4 +157,33 @@ int64_t point_missing(const struct point *point) {
   for (int64_t r = point->complete; r < point->prefix; r++)
     missing += !is_complete(point, r);
   return missing;
+}
+
+/* ---- cost ---- */
+
+void point_cost_learn(struct point_cost_model *model, struct point_cost *point, double wall_s) {
+  if (!(wall_s >= 0))
+    return;
+  model->seconds += wall_s;
+  model->work += point->work;
+  model->runs++;
+  point->seconds += wall_s;
+  point->runs++;
+}
+
+double point_cost_predict(const struct point_cost_model *model, const struct point_cost *point) {
+  if (model->runs == 0 || !(model->work > 0))
+    return point->work;
+  /* The model's guess weighs as much as one finished run of the point. */
+  double guess = model->seconds / model->work * point->work;
+  return (guess + point->seconds) / (double)(1 + point->runs);
+}
+
+double point_cost_time_left(const struct point_cost_left *left) {
+  const double slots = left->slots > 0 ? left->slots : 1;
+  double busy = (left->finished_s + left->under_way_s) / (left->elapsed_s * slots);
+  if (!(left->finished_s > 0) || !(busy > 0) || busy > 1)
+    busy = 1;
+  const double seconds = (left->missing_s - left->under_way_s) / (slots * busy);
+  return seconds > left->longest_s ? seconds : left->longest_s;
 }

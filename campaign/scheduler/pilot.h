@@ -1,7 +1,7 @@
 /* Times runs for a plan: the beginning of a run, whole runs, and coarse whole runs that tell which share of a run the
  * beginning was. All times are processor time of this process, so that other work on the machine does not count. */
-#ifndef CLAST_CAMPAIGN_DRIVER_PILOT_H
-#define CLAST_CAMPAIGN_DRIVER_PILOT_H
+#ifndef CLAST_CAMPAIGN_SCHEDULER_PILOT_H
+#define CLAST_CAMPAIGN_SCHEDULER_PILOT_H
 
 #include "engine/scene.h"
 

@@ -1,0 +1,685 @@
+/* Chooses the runs of a campaign: the window of points, the progress line, and campaigns in a series. */
+#include "campaign/scheduler/driver.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define HASH_NONFATAL_OOM         1
+#define uthash_nonfatal_oom(seen) free(seen)
+#include <uthash.h>
+
+#include "analysis/statistics/sample.h"
+#include "campaign/document/campaign_walk.h"
+#include "campaign/document/campaign_write.h"
+#include "campaign/scheduler/point.h"
+#include "schemas/clock.h"
+#include "schemas/memory.h"
+
+#define NOTHING ((double)NAN)
+
+/* Most points in the window. Campaigns of up to this many points start all runs in order of cost, most expensive first;
+ * a larger campaign orders only the points in the window. Filling the window may delay the first run by FILL_S. */
+enum { WINDOW = 1024 };
+#define FILL_S 0.05
+
+struct seen {
+  int64_t id;
+  UT_hash_handle hh;
+};
+
+struct driver {
+  const struct campaign *campaign;
+  struct scheduler *scheduler;
+  struct driver_summary summary;
+  struct campaign_walk walk;
+  const char **paths;      /* paths of the axes, for the store */
+  const struct field *row; /* main quantity */
+  bool row_of_outcome;
+  struct point **points; /* the window: points enter it with their stored runs in the order of the design, and leave it
+                            when they are finished */
+  size_t point_count;
+  uint64_t expanded; /* design points taken */
+  struct seen *seen; /* ids of the points met */
+  struct point_cost_model cost;
+  struct sample_moments moments;    /* of the main quantity */
+  int64_t first_done, first_failed; /* of the first CAMPAIGN_FIRST_RUNS of this invocation */
+  int64_t started_done;             /* runs finished in this invocation, for the rate */
+  double finished_s;                /* their wall time */
+  double begin, last_left, seconds_left;
+  int64_t fields_missing; /* fields files of stored runs that no longer exist */
+  int64_t wanted;         /* runs that the points met so far need */
+};
+
+struct driver *driver_new(const struct campaign *campaign) {
+  struct driver *driver = memory_small(1, sizeof *driver);
+  driver->campaign = campaign;
+  return driver;
+}
+
+void driver_free(struct driver *driver) {
+  if (!driver)
+    return;
+  for (size_t i = 0; i < driver->point_count; i++)
+    point_free(driver->points[i]);
+  struct seen *seen, *next;
+  HASH_ITER(hh, driver->seen, seen, next) {
+    HASH_DEL(driver->seen, seen);
+    free(seen);
+  }
+  campaign_walk_end(&driver->walk);
+  free(driver->paths);
+  free(driver->points);
+  free(driver);
+}
+
+struct driver_summary driver_summarise(const struct driver *driver) {
+  return driver->summary;
+}
+
+/* Writes session and plan into the store, committed: readers see the campaign from its first second. */
+static status begin(void *context, struct scheduler *scheduler, struct error *error) {
+  struct driver *driver = context;
+  const struct campaign *campaign = driver->campaign;
+  driver->scheduler = scheduler;
+  driver->begin = driver->last_left = clock_s();
+  driver->seconds_left = NAN;
+  driver->paths = memory_small(campaign->axis_count + 1, sizeof *driver->paths);
+  driver->points = memory_small(WINDOW, sizeof *driver->points);
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    driver->paths[i] = campaign->axes[i].row->path;
+  const char *quantity = campaign->per_point ? campaign->quantity : campaign->until_quantity;
+  driver->row = campaign_quantity(campaign->scene->kind, quantity, &driver->row_of_outcome, error);
+  if (!driver->row)
+    return STATUS_CONTENT;
+  TRY(campaign_walk_begin(&driver->walk, campaign, error));
+
+  char plan[256];
+  struct driver_summary *summary = &driver->summary;
+  snprintf(plan, sizeof plan,
+           "{\"design\": %d, \"points\": %llu, \"replicates_least\": %lld, \"replicates_most\": %lld}",
+           campaign->design.kind, (unsigned long long)design_points(driver->walk.design),
+           (long long)campaign_replicates_least(campaign), (long long)campaign_replicates_most(campaign));
+  TRY(scheduler_announce(scheduler, campaign, plan, &summary->session_id, &summary->campaign_id, error));
+  TRY(store_set_session(scheduler->store, summary->session_id, summary->campaign_id, error));
+  return store_flush(scheduler->store, error);
+}
+
+/* ---- a point enters the window ---- */
+
+/* True when the id is new. When memory is out a duplicate point is checked twice, which does no harm. */
+static bool remember(struct driver *driver, int64_t id) {
+  struct seen *seen = NULL;
+  HASH_FIND(hh, driver->seen, &id, sizeof id, seen);
+  if (seen)
+    return false;
+  seen = calloc(1, sizeof *seen);
+  if (!seen)
+    return true;
+  seen->id = id;
+  HASH_ADD(hh, driver->seen, id, sizeof seen->id, seen);
+  return true;
+}
+
+struct resuming {
+  struct driver *driver;
+  struct point *point;
+  bool out_of_memory;
+};
+
+/* Takes over a stored run. */
+static void take_stored(void *context, const struct store_point_run *run) {
+  struct resuming *resuming = context;
+  struct point *point = resuming->point;
+  struct driver *driver = resuming->driver;
+  const int64_t r = scheduler_replicate(driver->campaign, point->scene, run);
+  if (r < 0 || r >= campaign_replicates_most(driver->campaign))
+    return;
+  if (!point_reserve(point, r)) {
+    resuming->out_of_memory = true;
+    return;
+  }
+  const bool usable = outcome_is_usable(run->state), kept = run->fields_path && !run->fields_missing;
+  const double value = usable ? run->value : NOTHING;
+  point_finish_replicate(point, r, POINT_DONE, value);
+  point->replicates[r].surplus = run->surplus;
+  point->replicates[r].fields = kept || run->state == OUTCOME_INVALID;
+  if (driver->campaign->keep != CAMPAIGN_KEEP_NONE && run->fields_missing && driver->fields_missing++ == 0) {
+    char text[4400];
+    snprintf(text, sizeof text,
+             "fields file %.4000s of the store is missing, perhaps others too (`clast check` lists them): those that "
+             "the campaign keeps are computed again",
+             run->fields_path);
+    scheduler_note(driver->scheduler, text);
+  }
+  point_cost_learn(&driver->cost, &point->cost, run->wall_s);
+  driver->summary.runs_reused++;
+  driver->summary.runs_surplus += run->surplus;
+  driver->summary.runs_failed += !usable;
+  driver->summary.runs_censored += run->state == OUTCOME_END_TIME;
+  sample_add(&driver->moments, value);
+}
+
+/* Called after the prefix has grown: surplus runs inside it count from now on. A run that counts is never excluded
+ * again, so that a point shared with another campaign keeps that campaign's decision. */
+static status admit(struct driver *driver, struct point *point, struct error *error) {
+  bool any = false;
+  int64_t prefix = point->prefix;
+  for (int64_t r = 0; r < point->capacity; r++) {
+    struct point_replicate *replicate = &point->replicates[r];
+    if (replicate->state != POINT_DONE)
+      continue;
+    if (r < point->prefix && replicate->surplus) {
+      any = true;
+      replicate->surplus = false;
+      driver->summary.runs_surplus--;
+    } else if (r >= prefix && !replicate->surplus) {
+      prefix = r + 1;
+    }
+  }
+  return any ? store_set_prefix(driver->scheduler->store, point->id, prefix, error) : STATUS_OK;
+}
+
+/* Judges the point's prefixes and updates the prefix in the store. When the point is decided, marks the runs whose
+ * fields are wanted. */
+static status judge(struct driver *driver, struct point *point, struct error *error) {
+  const int64_t before = point->prefix;
+  if (!point_judge(point))
+    return STATUS_OK;
+  driver->wanted += point->prefix - before;
+  if (point->decided) {
+    driver->summary.points_done++;
+    driver->summary.points_interval_met += point->verdict == DESIGN_INTERVAL_MET;
+    driver->summary.points_cap_reached += point->verdict == DESIGN_CAP_REACHED;
+    point_want_fields(point, driver->campaign);
+  }
+  return admit(driver, point, error);
+}
+
+/* Takes the point's stored runs, then judges its prefixes. */
+static status resume(struct driver *driver, struct point *point, struct error *error) {
+  struct resuming resuming = {driver, point, false};
+  TRY(store_point_runs(driver->scheduler->store, point->id, point->scene->kind, driver->row, driver->row_of_outcome,
+                       take_stored, &resuming, error));
+  if (resuming.out_of_memory)
+    return status_fail(error, STATUS_MEMORY, "no memory for a point's runs");
+  TRY(judge(driver, point, error));
+  return admit(driver, point, error); /* a fixed number of replicates may cover runs that an older rule left out */
+}
+
+/* Takes the next design point and its stored runs into the window. *more is false when the window is full or the design
+ * has no more points. Points with an invalid combination of values are counted, and the first few noted. */
+static status expand(struct driver *driver, bool *more, struct error *error) {
+  *more = driver->point_count < WINDOW && campaign_walk_next(&driver->walk);
+  if (!*more)
+    return STATUS_OK;
+  driver->expanded++;
+  struct error why = {0};
+  struct scene *scene = campaign_walk_scene(&driver->walk, &why);
+  if (!scene && why.status == STATUS_MEMORY)
+    return status_fail(error, STATUS_MEMORY, "%s", why.message);
+  if (!scene) {
+    char text[sizeof why.message + 80];
+    snprintf(text, sizeof text, "point %llu of the design cannot be run: %s", (unsigned long long)driver->expanded,
+             why.message);
+    if (++driver->summary.points_invalid <= 5)
+      scheduler_note(driver->scheduler, text);
+    return STATUS_OK;
+  }
+
+  int64_t id = 0;
+  status code = store_add_point(driver->scheduler->store, driver->summary.campaign_id, scene,
+                                driver->campaign->axis_count, driver->paths, &id, error);
+  if (code != STATUS_OK || !remember(driver, id)) {
+    scene_free(scene);
+    return code;
+  }
+  struct point *point = point_create(driver->campaign, scene);
+  if (!point)
+    return status_fail(error, STATUS_MEMORY, "no memory for a point");
+  point->id = id;
+  driver->summary.points++;
+  driver->wanted += point->prefix;
+  code = resume(driver, point, error);
+  if (code != STATUS_OK || point_over(point))
+    point_free(point);
+  else
+    driver->points[driver->point_count++] = point;
+  return code;
+}
+
+static void drop(struct driver *driver, struct point *point) {
+  for (size_t i = 0; i < driver->point_count; i++)
+    if (driver->points[i] == point) {
+      /* Keeps the order: points of equal cost start in the order of the design. */
+      memmove(&driver->points[i], &driver->points[i + 1], (driver->point_count - i - 1) * sizeof *driver->points);
+      driver->point_count--;
+      break;
+    }
+  point_free(point);
+}
+
+/* ---- runs out ---- */
+
+/* The most expensive point that has a run to send out. The run is in the point's prefix, or with `ahead` may be beyond
+ * it. */
+static struct point *choose(struct driver *driver, bool ahead, int64_t *replicate) {
+  struct point *best = NULL;
+  double highest = -1;
+  for (size_t i = 0; i < driver->point_count; i++) {
+    struct point *point = driver->points[i];
+    const double cost = point_cost_predict(&driver->cost, &point->cost);
+    const int64_t r = cost > highest ? point_next(point, ahead) : -1;
+    if (r < 0)
+      continue;
+    best = point;
+    highest = cost;
+    *replicate = r;
+  }
+  return best;
+}
+
+/* A stored run whose fields are still to be written. */
+static struct point *choose_replay(struct driver *driver, int64_t *replicate) {
+  for (size_t i = 0; i < driver->point_count; i++) {
+    struct point *point = driver->points[i];
+    for (int64_t r = 0; point->replays > 0 && r < point->capacity; r++)
+      if (point->replicates[r].replay) {
+        *replicate = r;
+        return point;
+      }
+  }
+  return NULL;
+}
+
+/* First runs of the prefixes, then runs beyond them, so that no slot idles, then replays. Runs beyond a prefix start
+ * only when no further point can enter the window. */
+static status next(void *context, struct scheduler_run *run, struct error *error) {
+  struct driver *driver = context;
+  const struct campaign *campaign = driver->campaign;
+  const double deadline = clock_s() + FILL_S;
+  bool more = true, replay = false;
+  int64_t r = 0;
+  while (more && clock_s() < deadline)
+    TRY(expand(driver, &more, error));
+  struct point *point = choose(driver, false, &r);
+  for (more = true; !point && more; point = choose(driver, false, &r))
+    TRY(expand(driver, &more, error));
+  if (!point)
+    point = choose(driver, true, &r);
+  if (!point) {
+    point = choose_replay(driver, &r);
+    replay = true;
+  }
+  if (!point)
+    return STATUS_OK;
+
+  struct point_replicate *replicate = &point->replicates[r];
+  point->out++;
+  if (replay) {
+    replicate->replay = false;
+    replicate->replaying = true;
+    point->replays--;
+  } else {
+    replicate->state = POINT_OUT;
+  }
+  /* Runs with extreme values are known only afterwards; they are computed again. */
+  const bool fields = replay || campaign->keep == CAMPAIGN_KEEP_ALL ||
+                      (campaign->keep == CAMPAIGN_KEEP_FIRST && r < campaign->keep_first);
+  *run = (struct scheduler_run){.scene = point->scene,
+                                .point_id = point->id,
+                                .session_id = driver->summary.session_id,
+                                .replicate = r,
+                                .seed = campaign_seed(campaign, point->scene, r),
+                                .fields = fields,
+                                .replay = replay,
+                                .lost = replicate->lost,
+                                .place = point};
+  return STATUS_OK;
+}
+
+/* ---- and in ---- */
+
+static bool is_surplus(void *context, const struct scheduler_run *run) {
+  (void)context;
+  return run->replicate >= ((const struct point *)run->place)->prefix;
+}
+
+/* Many failures among the first runs mean that something is wrong with the campaign, not with chance. */
+static status judge_failures(struct driver *driver, bool failed, struct error *error) {
+  if (driver->first_done >= CAMPAIGN_FIRST_RUNS)
+    return STATUS_OK;
+  driver->first_done++;
+  driver->first_failed += failed;
+  if (driver->campaign->failures == 0 || driver->first_failed < driver->campaign->failures)
+    return STATUS_OK;
+  return status_fail(error, STATUS_FAILED_RUNS,
+                     "stopped: %lld of the first %lld runs failed. `clast query %s --named failures` says why. Correct "
+                     "the campaign, or set limits.failures: 0 to ignore failures",
+                     (long long)driver->first_failed, (long long)driver->first_done,
+                     driver->scheduler->options.store_path);
+}
+
+static status take_result(struct driver *driver, const struct scheduler_run *run, const struct scheduler_end *end,
+                          struct error *error) {
+  struct point *point = run->place;
+  struct driver_summary *summary = &driver->summary;
+  const struct outcome *outcome = &end->result->outcome;
+  const bool usable = campaign_usable(outcome), surplus = is_surplus(driver, run);
+  const double value = campaign_value(driver->row, driver->row_of_outcome, outcome, end->result->result);
+  point_finish_replicate(point, run->replicate, POINT_DONE, value);
+  point->replicates[run->replicate].surplus = surplus;
+  point->replicates[run->replicate].fields = end->fields || outcome->state == OUTCOME_INVALID;
+  point_cost_learn(&driver->cost, &point->cost, end->report->wall_s);
+  sample_add(&driver->moments, value);
+  summary->runs_done++;
+  summary->runs_failed += !usable;
+  summary->runs_surplus += surplus;
+  summary->runs_censored += outcome->state == OUTCOME_END_TIME;
+  summary->fields_written += end->fields;
+  summary->cpu_s += end->report->cpu_s;
+  return judge_failures(driver, !usable, error);
+}
+
+static status take_run(struct driver *driver, const struct scheduler_run *run, const struct scheduler_end *end,
+                       struct error *error) {
+  struct point *point = run->place;
+  if (end->report) {
+    driver->started_done++;
+    driver->finished_s += end->report->wall_s;
+    driver->summary.attempts_failed += end->ending != SCHEDULER_DONE;
+  }
+  switch (end->ending) {
+  case SCHEDULER_DONE: return take_result(driver, run, end, error);
+  case SCHEDULER_AGAIN:
+    point->replicates[run->replicate].lost = run->lost;
+    point_want_again(point, run->replicate);
+    return STATUS_OK;
+  case SCHEDULER_LEFT:
+    point_leave(point, run->replicate);
+    driver->summary.runs_left++;
+    return STATUS_OK;
+  case SCHEDULER_FAILED: break;
+  }
+  point_finish_replicate(point, run->replicate, POINT_FAILED, NAN);
+  driver->summary.runs_failed++;
+  return end->report ? judge_failures(driver, true, error) : STATUS_OK;
+}
+
+static status ended(void *context, const struct scheduler_run *run, const struct scheduler_end *end,
+                    struct error *error) {
+  struct driver *driver = context;
+  struct point *point = run->place;
+  status code = STATUS_OK;
+  point->out--;
+  if (run->replay) {
+    point->replicates[run->replicate].replaying = false;
+    point->replicates[run->replicate].fields = end->fields;
+    driver->summary.fields_written += end->fields;
+    driver->summary.runs_left += end->ending == SCHEDULER_LEFT;
+  } else {
+    code = take_run(driver, run, end, error);
+  }
+  if (code == STATUS_OK)
+    code = judge(driver, point, error);
+  else
+    (void)judge(driver, point, NULL); /* the stop keeps its own message */
+  if (point_over(point))
+    drop(driver, point);
+  return code;
+}
+
+/* ---- progress ---- */
+
+/* Estimates the seconds left from the missing runs of the points in the window and a mean for later points. It is
+ * updated once a second. */
+static double time_left(struct driver *driver, double now) {
+  if (now - driver->last_left < 1 && !isnan(driver->seconds_left))
+    return driver->seconds_left;
+  driver->last_left = now;
+  driver->seconds_left = NAN;
+  if (driver->cost.runs == 0)
+    return NAN;
+
+  struct point_cost_left left = {.finished_s = driver->finished_s,
+                                 .elapsed_s = now - driver->begin,
+                                 .slots = driver->scheduler->options.slots};
+  const double mean = driver->cost.seconds / (double)driver->cost.runs;
+  for (size_t i = 0; i < driver->point_count; i++)
+    left.missing_s += (double)point_missing(driver->points[i]) *
+                      point_cost_predict(&driver->cost, &driver->points[i]->cost);
+  const uint64_t unmet = design_points(driver->walk.design) - driver->expanded;
+  left.missing_s += (double)unmet * (double)campaign_replicates_least(driver->campaign) * mean;
+  for (size_t i = 0; i < driver->scheduler->places; i++) {
+    const struct scheduler_run *run = &driver->scheduler->out[i];
+    if (!run->scene || run->replay)
+      continue;
+    const struct point *point = run->place;
+    const double predicted = point_cost_predict(&driver->cost, &point->cost), had = now - run->started;
+    left.under_way_s += fmin(had, predicted);
+    left.longest_s = fmax(left.longest_s, predicted - had);
+  }
+  driver->seconds_left = point_cost_time_left(&left);
+  return driver->seconds_left;
+}
+
+static void tick(void *context, int running, bool last) {
+  struct driver *driver = context;
+  struct progress *progress = driver->scheduler->options.progress;
+  if (!progress)
+    return;
+  const struct driver_summary *summary = &driver->summary;
+  const double now = clock_s(), elapsed = now - driver->begin;
+  const uint64_t points = design_points(driver->walk.design), unmet = points - driver->expanded;
+  const struct sample_summary quantity = sample_summarise_moments(&driver->moments, 0.95);
+  struct progress_state state = {
+      .done = summary->runs_done + summary->runs_reused - summary->runs_surplus,
+      .failed = summary->runs_failed,
+      .running = running,
+      .total = driver->wanted + (int64_t)unmet * campaign_replicates_least(driver->campaign),
+      .total_is_minimum = driver->campaign->per_point == 0 &&
+                                  summary->points_done<summary->points, .rate = elapsed> 0 && driver->started_done > 0
+                              ? (double)driver->started_done / elapsed
+                              : NOTHING,
+      .seconds_left = last ? NOTHING : time_left(driver, now),
+      .quantity = driver->row->path,
+      .mean = quantity.mean,
+      .half_width = points == 1 ? quantity.half_width : NOTHING, /* of one point's seeds */
+  };
+  progress_update(progress, &state, now, last);
+}
+
+/* ---- a whole campaign ---- */
+
+static status verdict(const struct driver_summary *summary, struct error *error) {
+  if (summary->runs_left > 0)
+    return status_fail(error, STATUS_STOPPED,
+                       "%lld run%s left: signals from outside ended %s, or the machine had no memory or disk; the same "
+                       "command tries again, and `clast query STORE --named failures` says more",
+                       (long long)summary->runs_left, summary->runs_left == 1 ? " is" : "s are",
+                       summary->runs_left == 1 ? "it" : "them");
+  if (summary->runs_failed + (int64_t)summary->points_invalid == 0)
+    return STATUS_OK;
+  char points[64] = "";
+  if (summary->points_invalid)
+    snprintf(points, sizeof points, " and %llu point%s could not be run", (unsigned long long)summary->points_invalid,
+             summary->points_invalid == 1 ? "" : "s");
+  return status_fail(error, STATUS_FAILED_RUNS,
+                     "finished, but %lld run%s failed%s; `clast query STORE --named failures` says why",
+                     (long long)summary->runs_failed, summary->runs_failed == 1 ? "" : "s", points);
+}
+
+static status end(void *context, status code, struct error *error) {
+  const struct driver *driver = context;
+  const struct driver_summary *summary = &driver->summary;
+  struct store *store = driver->scheduler->store;
+  if (code == STATUS_OK) /* a stopped campaign pools in its next invocation */
+    code = pooling_store(store, summary->campaign_id, error);
+  if (code == STATUS_OK)
+    code = verdict(summary, error);
+  const char *outcome = code == STATUS_OK || code == STATUS_FAILED_RUNS ? "finished"
+                        : code == STATUS_STOPPED                        ? "stopped"
+                                                                        : "failed";
+  const status session = store_end_session(store, summary->session_id, outcome, code == STATUS_OK ? error : NULL);
+  return code != STATUS_OK ? code : session;
+}
+
+struct scheduler_planner driver_planner(struct driver *driver) {
+  return (struct scheduler_planner){.context = driver,
+                                    .limits = driver->campaign,
+                                    .begin = begin,
+                                    .next = next,
+                                    .is_surplus = is_surplus,
+                                    .ended = ended,
+                                    .tick = tick,
+                                    .end = end};
+}
+
+status driver_run(const struct campaign *campaign, struct farm *farm, const struct scheduler_options *options,
+                  struct driver_summary *summary, struct error *error) {
+  struct driver *driver = driver_new(campaign);
+  const struct scheduler_planner planner = driver_planner(driver);
+  const status code = scheduler_compute(&planner, farm, options, error);
+  *summary = driver->summary;
+  driver_free(driver);
+  return code;
+}
+
+/* ---- a series ---- */
+
+struct running {
+  const struct series *series;
+  struct series_summary *summary;
+  struct scheduler *scheduler;
+  struct campaign *campaign; /* owned; NULL between two campaigns */
+  struct driver *driver;     /* owned; NULL between two campaigns */
+  int out;                   /* runs on slots */
+  bool finished;             /* no campaign is left */
+};
+
+static status begin_series(void *context, struct scheduler *scheduler, struct error *error) {
+  (void)error;
+  ((struct running *)context)->scheduler = scheduler;
+  return STATUS_OK;
+}
+
+static status begin_campaign(struct running *running, struct error *error) {
+  TRY(running->series->next(running->series->context, running->scheduler, &running->campaign, error));
+  running->finished = !running->campaign;
+  if (running->finished)
+    return STATUS_OK;
+  struct driver *driver = driver_new(running->campaign);
+  const status code = begin(driver, running->scheduler, error);
+  if (code == STATUS_OK)
+    running->driver = driver;
+  else
+    driver_free(driver);
+  return code;
+}
+
+/* `outcome`: outcome of the campaign's session in the store. */
+static status end_campaign(struct running *running, const char *outcome, struct error *error) {
+  const struct driver_summary summary = running->driver->summary;
+  struct store *store = running->scheduler->store;
+  running->summary->runs_done += summary.runs_done;
+  running->summary->runs_failed += summary.runs_failed;
+  running->summary->runs_reused += summary.runs_reused;
+  running->summary->cpu_s += summary.cpu_s;
+  tick(running->driver, 0, true);
+  driver_free(running->driver);
+  campaign_free(running->campaign);
+  running->driver = NULL;
+  running->campaign = NULL;
+  TRY(store_end_session(store, summary.session_id, outcome, error));
+  return store_flush(store, error);
+}
+
+static status next_of_series(void *context, struct scheduler_run *run, struct error *error) {
+  struct running *running = context;
+  const struct series *series = running->series;
+  while (!running->finished) {
+    if (!running->driver)
+      TRY(begin_campaign(running, error));
+    if (running->finished)
+      break;
+    if (!series->is_enough || !series->is_enough(series->context))
+      TRY(next(running->driver, run, error));
+    running->out += run->scene != NULL;
+    if (running->out > 0)
+      return STATUS_OK;
+    TRY(end_campaign(running, "finished", error));
+    TRY(series->done(series->context, running->scheduler, error));
+  }
+  return STATUS_OK;
+}
+
+static bool is_surplus_of_series(void *context, const struct scheduler_run *run) {
+  return is_surplus(((struct running *)context)->driver, run);
+}
+
+static status ended_of_series(void *context, const struct scheduler_run *run, const struct scheduler_end *end,
+                              struct error *error) {
+  struct running *running = context;
+  running->out--;
+  return ended(running->driver, run, end, error);
+}
+
+static void tick_of_series(void *context, int on_slots, bool last) {
+  struct running *running = context;
+  if (running->driver && !last)
+    tick(running->driver, on_slots, false);
+}
+
+static status end_series(void *context, status code, struct error *error) {
+  struct running *running = context;
+  struct error ignored;
+  if (running->driver)
+    (void)end_campaign(running, code == STATUS_STOPPED ? "stopped" : "failed", &ignored);
+  return code == STATUS_OK ? pooling_store(running->scheduler->store, 0, error) : code;
+}
+
+status driver_run_series(const struct series *series, struct farm *farm, const struct scheduler_options *options,
+                         struct series_summary *summary, struct error *error) {
+  *summary = (struct series_summary){0};
+  struct running running = {.series = series, .summary = summary};
+  const struct scheduler_planner planner = {.context = &running,
+                                            .limits = series->limits,
+                                            .begin = begin_series,
+                                            .next = next_of_series,
+                                            .is_surplus = is_surplus_of_series,
+                                            .ended = ended_of_series,
+                                            .tick = tick_of_series,
+                                            .end = end_series};
+  const status code = scheduler_compute(&planner, farm, options, error);
+  campaign_free(running.campaign); /* one that could not begin */
+  return code;
+}
+
+status driver_list_begin(const struct campaign *like, const struct scene *scene, size_t axes, size_t points,
+                         struct campaign **out, struct error *error) {
+  struct campaign *campaign = *out = memory_small(1, sizeof *campaign);
+  *campaign = *like;
+  campaign->point_lines = NULL; /* what `like` owns is freed once */
+  campaign->text = NULL;
+  campaign->axis_count = 0;
+  campaign->design = (struct campaign_design_keys){.kind = CAMPAIGN_LIST};
+  campaign->keep = CAMPAIGN_KEEP_NONE;
+  campaign->axes = calloc(axes + 1, sizeof *campaign->axes);
+  campaign->scene = scene_copy(scene);
+  bool good = campaign->axes && campaign->scene;
+  for (size_t i = 0; good && i < axes; i++) {
+    struct design_axis *axis = &campaign->axes[campaign->axis_count++];
+    *axis = (struct design_axis){.kind = DESIGN_AXIS_LEVELS, .lower = -HUGE_VAL, .upper = HUGE_VAL};
+    axis->levels = calloc(points, sizeof *axis->levels);
+    axis->level_count = points;
+    good = axis->levels != NULL;
+  }
+  return good ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");
+}
+
+status driver_list_end(struct campaign *campaign, const char *scene_reference, const char *comment,
+                       struct error *error) {
+  campaign->text = campaign_write_list(campaign, scene_reference, comment);
+  return campaign->text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");
+}
