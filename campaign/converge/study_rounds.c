@@ -132,8 +132,13 @@ static struct study_ladder *choose_ladder(struct rounds *rounds) {
     if (!next)
       return NULL;
     rounds->probe = isnan(predict(rounds, next, 0));
-    rounds->seeds = rounds->probe ? 1 : next_seeds(rounds, next);
-    if (rounds->seeds > 0)
+    if (rounds->probe && rounds->study->budget_spent)
+      end_ladder(next, budget); /* no time to find out what a run takes */
+    else if (rounds->probe)
+      rounds->seeds = 1;
+    else
+      rounds->seeds = next_seeds(rounds, next);
+    if (!next->done)
       return next;
   }
 }

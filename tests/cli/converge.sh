@@ -142,6 +142,10 @@ sed -i 's/0.05/1e-9/' sharp.yaml
 expect 65 "$clast" run sharp.yaml
 says "smallest error"
 
+# Time that is spent before the first run ends the study.
+expect 0 timeout -k 1 30 "$clast" converge "${disc[@]}" --knob time_step --seconds 1e-9 --store spent.db -j 2
+prints "the time given is spent"
+
 expect 64 "$clast" converge
 expect 64 "$clast" converge disc-explosion --knob particles
 says "grains"
@@ -152,4 +156,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 43
+done_after 44
