@@ -34,29 +34,26 @@ static status check(const struct command_line *line, struct error *error) {
   return STATUS_OK;
 }
 
-static status write(struct store *store, const struct command_line *line, const char *target, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
+  const char *target = line->count > 1 ? line->arguments[1] : NULL;
   const struct export_crate_options crate = {target, options->license, options->author};
   if (options->per)
-    return export_files_write(store, target, strcmp(options->per, "run") == 0 ? "runs" : "points",
-                              options->lines ? TABLE_JSON_LINES : TABLE_CSV, error);
-  if (options->csv)
-    return export_files_folder(store, target, error);
-  if (options->cinema)
-    return cinema_write(store, target, error);
-  if (options->crate)
-    return export_crate(store, line->arguments[0], &crate, error);
-  if (options->bits)
-    return export_files_write(store, target, NULL, TABLE_CSV, error);
-  return store_export(store, target, error);
-}
-
-static status ask(struct store *store, const struct command_line *line, struct error *error) {
-  const char *target = line->count > 1 ? line->arguments[1] : NULL;
-  const status code = write(store, line, target, error);
-  if (code == STATUS_OK && target)
+    TRY(export_files_write(store, target, strcmp(options->per, "run") == 0 ? "runs" : "points",
+                           options->lines ? TABLE_JSON_LINES : TABLE_CSV, error));
+  else if (options->csv)
+    TRY(export_files_folder(store, target, error));
+  else if (options->cinema)
+    TRY(cinema_write(store, target, error));
+  else if (options->crate)
+    TRY(export_crate(store, line->arguments[0], &crate, error));
+  else if (options->bits)
+    TRY(export_files_write(store, target, NULL, TABLE_CSV, error));
+  else
+    TRY(store_export(store, target, error));
+  if (target)
     fprintf(stderr, "%s written\n", target);
-  return code;
+  return STATUS_OK;
 }
 
 static const struct option_row option_rows[] = {

@@ -76,9 +76,7 @@ static status write_table(struct cinema *cinema, struct error *error) {
     code = write_run(cinema, &runs, error);
   if (code == STATUS_OK)
     code = answer_end(&runs);
-  const status ended = table_end(cinema->table, code ? NULL : error);
-  if (code || ended)
-    return code ? code : ended;
+  TRY(table_finish(cinema->table, code, error));
   if (cinema->rows > 0)
     return STATUS_OK;
   return status_fail(error, STATUS_USAGE,

@@ -334,9 +334,7 @@ static void interval(struct table *table, const struct sample_interval *i) {
 static status print_sobol(const struct reading *r, enum table_format format, struct error *error) {
   struct sensitivity_index index[ASK_POOL_AXES + 1];
   const size_t n = r->table.inputs;
-  const status code = sensitivity_sobol(&r->table, index, error);
-  if (code)
-    return code;
+  TRY(sensitivity_sobol(&r->table, index, error));
   struct table *table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"input", "first", "first_hw95", "total", "total_hw95", NULL});
   for (size_t i = 0; i <= n; i++) {
@@ -359,14 +357,14 @@ static status print_sobol(const struct reading *r, enum table_format format, str
 static status print_morris(const struct reading *r, enum table_format format, struct error *error) {
   const size_t n = r->table.inputs;
   struct sensitivity_effect effect[ASK_POOL_AXES];
-  size_t *all = malloc(n * r->blocks * sizeof *all), *order = malloc(n * r->blocks * sizeof *order);
-  double *steps = malloc(n * r->blocks * sizeof *steps), *step = malloc(n * r->blocks * sizeof *step);
-  status code = all && order && steps && step ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a design");
+  size_t *order = malloc(n * r->blocks * sizeof *order);
+  double *step = malloc(n * r->blocks * sizeof *step);
+  status code = order && step ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a design");
   if (code == STATUS_OK) {
-    sensitivity_design_steps(r->campaign, r->blocks, all, steps);
-    for (size_t b = 0; b < r->whole; b++) {
-      memcpy(order + b * n, all + r->block[b] * n, n * sizeof *order);
-      memcpy(step + b * n, steps + r->block[b] * n, n * sizeof *step);
+    sensitivity_design_steps(r->campaign, r->blocks, order, step);
+    for (size_t b = 0; b < r->whole; b++) { /* the complete blocks move to the front */
+      memmove(order + b * n, order + r->block[b] * n, n * sizeof *order);
+      memmove(step + b * n, step + r->block[b] * n, n * sizeof *step);
     }
     code = sensitivity_morris(&r->table, order, step, effect, error);
   }
@@ -388,9 +386,7 @@ static status print_morris(const struct reading *r, enum table_format format, st
               r->whole);
     code = table_end(table, error);
   }
-  free(all);
   free(order);
-  free(steps);
   free(step);
   return code;
 }

@@ -36,19 +36,16 @@ static status add_facts(struct making *making, const char *name, struct error *e
                             {"program", "clast " BUILD_VERSION ", commit " BUILD_COMMIT},
                             {"default_quantity", OUTCOME_DEFAULT},
                             {"refresh", refresh}};
-  status code = STATUS_OK;
-  for (size_t i = 0; code == STATUS_OK && i < sizeof facts / sizeof facts[0]; i++)
-    code = ask_page_fact(making->page, facts[i][0], facts[i][1], error);
-  return code;
+  for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
+    TRY(ask_page_fact(making->page, facts[i][0], facts[i][1], error));
+  return STATUS_OK;
 }
 
 static status add_label(void *context, const char *column, struct error *error) {
   struct making *making = context;
   struct ask_column written;
   char label[CHARTS_LABEL], unit[96];
-  const status code = ask_columns_written(making->store, column, &written, error);
-  if (code)
-    return code;
+  TRY(ask_columns_written(making->store, column, &written, error));
   charts_label(column, label);
   field_label_unit(written.unit, unit, sizeof unit);
   return ask_page_label(making->page, column, label, unit, written.factor, error);

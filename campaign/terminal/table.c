@@ -25,8 +25,10 @@ struct table {
   struct column *columns;
   size_t column_count, cell;
   uint64_t rows;
-  char **kept; /* the aligned table's first rows: cells not yet printed */
-  bool *kept_text;
+  struct kept { /* cells of the aligned table's first rows, not yet printed */
+    char *text;
+    bool left;
+  } * kept;
   size_t kept_count;
   bool out_of_memory, broken;
   int write_error;
@@ -120,22 +122,20 @@ static void print_kept(struct table *table) {
     struct column *column = &table->columns[c];
     column->width = width_of(column->name) + (column->unit ? width_of(column->unit) + 3 : 0);
     for (size_t i = c; i < table->kept_count; i += table->column_count) {
-      size_t width = width_of(table->kept[i]);
+      size_t width = width_of(table->kept[i].text);
       column->width = width > column->width ? width : column->width;
-      column->text |= table->kept_text[i];
+      column->text |= table->kept[i].left;
     }
   }
   for (size_t c = 0; c < table->column_count; c++)
     print_aligned(table, c, table->columns[c].name, table->columns[c].unit, table->columns[c].text);
   for (size_t i = 0; i < table->kept_count; i++) {
     size_t c = i % table->column_count;
-    print_aligned(table, c, table->kept[i], NULL, table->columns[c].text);
-    free(table->kept[i]);
+    print_aligned(table, c, table->kept[i].text, NULL, table->columns[c].text);
+    free(table->kept[i].text);
   }
   free(table->kept);
-  free(table->kept_text);
   table->kept = NULL;
-  table->kept_text = NULL;
   table->kept_count = 0;
 }
 
@@ -190,17 +190,13 @@ struct cell {
 /* The aligned table's first rows are kept until their widths are known. */
 static void keep(struct table *table, const struct cell *cell) {
   const size_t most = table->column_count * SAMPLE_ROWS;
-  if (!table->kept) {
+  if (!table->kept)
     table->kept = calloc(most, sizeof *table->kept);
-    table->kept_text = calloc(most, sizeof *table->kept_text);
-  }
-  char *made = table->kept && table->kept_text ? copy(table, cell->shown) : NULL;
-  if (!made) {
+  char *made = table->kept ? copy(table, cell->shown) : NULL;
+  if (made)
+    table->kept[table->kept_count++] = (struct kept){made, cell->kind == CELL_TEXT};
+  else
     fail(table);
-    return;
-  }
-  table->kept_text[table->kept_count] = cell->kind == CELL_TEXT;
-  table->kept[table->kept_count++] = made;
 }
 
 static void print_csv(struct table *table, const struct cell *cell) {
@@ -344,13 +340,12 @@ void table_drop(struct table *table) {
   if (!table->out)
     return; /* the copy that could not be made */
   for (size_t i = 0; i < table->kept_count; i++)
-    free(table->kept[i]);
+    free(table->kept[i].text);
   for (size_t c = 0; c < table->column_count; c++) {
     free(table->columns[c].name);
     free(table->columns[c].unit);
   }
   free(table->kept);
-  free(table->kept_text);
   free(table->columns);
   free(table);
 }
@@ -397,46 +392,35 @@ status table_text_only(enum table_format format, const char *what, struct error 
 
 /* ---- the rows of a question, with the units of the store's columns ---- */
 
-enum {
-  ROWS_AXES = 64,
-  BLOB_SHOWN = 64
-}; /* bytes shown in the aligned table: an identity fits, a list of masses does not */
+/* Bytes of a blob shown in the aligned table: an identity fits, a list of masses does not. */
+enum { ROWS_AXES = 64, BLOB_SHOWN = 64 };
 
 struct rows {
   struct table *table;
   enum table_format format;
   struct ask_column written[ROWS_AXES]; /* varied inputs, in the campaign's units */
   size_t written_count;
-  int *place; /* per column: index of `written`, or -1; owned */
+  const struct ask_column **shown; /* per column: the varied input that it is; NULL: shown as stored; owned */
 };
-
-/* The varied input of this name, or -1. */
-static int written_place(const struct rows *rows, const char *name) {
-  for (size_t i = 0; i < rows->written_count; i++)
-    if (strcmp(rows->written[i].name, name) == 0)
-      return (int)i;
-  return -1;
-}
 
 /* The headings, with the units of the store's columns: people see varied inputs in the campaign's units (`written`). */
 static status name_columns(struct rows *rows, const struct answer *answer, bool written) {
   const bool people = rows->format == TABLE_TEXT;
   struct ask_column *units = NULL;
   size_t unit_count = 0;
-  const size_t count = answer_count(answer);
+  rows->shown = calloc(answer_count(answer) + 1, sizeof *rows->shown);
+  if (!rows->shown)
+    return status_fail(answer->error, STATUS_MEMORY, "no memory for a table");
   if (people) /* on an error headings have no units, and values stay in SI */
     (void)ask_columns_units(answer->store, &units, &unit_count, NULL);
   if (people && written)
     (void)ask_columns_axes(answer->store, true, ROWS_AXES, rows->written, &rows->written_count, NULL);
-  rows->place = calloc(count + 1, sizeof *rows->place);
-  if (!rows->place) {
-    free(units);
-    return status_fail(answer->error, STATUS_MEMORY, "no memory for a table");
-  }
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < answer_count(answer); i++) {
     const char *name = answer_name(answer, i);
-    rows->place[i] = written_place(rows, name);
-    const char *unit = rows->place[i] >= 0 ? rows->written[rows->place[i]].unit : NULL;
+    for (size_t k = 0; k < rows->written_count && !rows->shown[i]; k++)
+      if (strcmp(rows->written[k].name, name) == 0)
+        rows->shown[i] = &rows->written[k];
+    const char *unit = rows->shown[i] ? rows->shown[i]->unit : NULL;
     for (size_t k = 0; k < unit_count && !unit; k++)
       if (strcmp(units[k].name, name) == 0)
         unit = units[k].unit;
@@ -476,13 +460,13 @@ void table_value(struct table *table, const struct query_value *value) {
 
 static void print_row(struct rows *rows, const struct answer *answer) {
   for (size_t i = 0; i < answer_count(answer); i++) {
-    const struct query_value value = answer_value(answer, i);
-    const struct query_value shown = rows->place[i] >= 0 ? ask_columns_value(&rows->written[rows->place[i]], &value)
-                                                         : value;
-    if (shown.kind == QUERY_BLOB)
-      print_blob(rows, shown.blob, shown.size);
+    struct query_value value = answer_value(answer, i);
+    if (rows->shown[i])
+      value = ask_columns_value(rows->shown[i], &value);
+    if (value.kind == QUERY_BLOB)
+      print_blob(rows, value.blob, value.size);
     else
-      table_value(rows->table, &shown);
+      table_value(rows->table, &value);
   }
 }
 
@@ -494,7 +478,7 @@ status table_answer(struct answer answer, bool written, enum table_format format
   status code = name_columns(&rows, &answer, written);
   while (code == STATUS_OK && !table_broken(rows.table) && answer_next(&answer))
     print_row(&rows, &answer);
-  free(rows.place);
+  free(rows.shown);
   const status end = answer_end(&answer);
   code = code ? code : end;
   return table_finish(rows.table, code, answer.error);

@@ -169,10 +169,34 @@ static void test_help_is_whole(void **state) {
   }
 }
 
+/* Documents that the build embeds have the form that their readers expect, wherever a writer edited them. */
+static void test_documents(void **state) {
+  extern const char references_text[], glossary_text[], manual_text[];
+  size_t papers = 0, words = 0;
+  (void)state;
+  for (const char *entry = references_text; *entry; papers++) {
+    const char *end = strstr(entry, "\n}\n"), *year = strstr(entry, "\n  year = {");
+    if (!end || *entry != '@' || !year || year > end || strncmp(strchr(entry, '\n') + 1, "  cited = {", 11) != 0)
+      fail_msg("references.bib: no entry of the form of the others: %.40s", entry);
+    entry = end + 3;
+  }
+  assert_in_range(papers, 15, 64); /* cite.c has room for 64 */
+  for (const char *line = glossary_text; *line; line = strchr(line, '\n') + 1) {
+    const bool head = line == glossary_text || strncmp(line - 2, "\n\n", 2) == 0;
+    const size_t length = strcspn(line, "\n");
+    if (!line[length] || (head && (*line == ' ' || length == 0)) ||
+        (!head && length > 0 && strncmp(line, "    ", 4) != 0))
+      fail_msg("glossary.txt: a line at the wrong place: %.40s", line);
+    words += head;
+  }
+  assert_in_range(words, 20, 200);
+  assert_non_null(strstr(manual_text, "\n@TABLES@\n"));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_values),       cmocka_unit_test(test_refusals),      cmocka_unit_test(test_too_many),
-      cmocka_unit_test(test_nearest_name), cmocka_unit_test(test_help_is_whole),
+      cmocka_unit_test(test_nearest_name), cmocka_unit_test(test_help_is_whole), cmocka_unit_test(test_documents),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
