@@ -48,16 +48,16 @@ static status step(void *run, uint64_t max_steps, bool *finished, struct error *
   struct sph_run *r = run;
   const status code = frame_advance(&r->frame, max_steps);
   *finished = r->state.frame.finished;
-  return code ? status_fail(error, code, "%s", sph_system_failure(r->system)) : STATUS_OK;
+  return code ? status_fail(error, code, "%s", r->system->failure) : STATUS_OK;
 }
 
 static double time_of(const void *run) {
-  return sph_system_time(((const struct sph_run *)run)->system);
+  return ((const struct sph_run *)run)->system->now.time;
 }
 
 static double progress(const void *run) {
   const struct sph_run *r = run;
-  return r->state.frame.finished ? 1 : fmin(sph_system_time(r->system) / r->inputs.stop.end_time, 1);
+  return r->state.frame.finished ? 1 : fmin(r->system->now.time / r->inputs.stop.end_time, 1);
 }
 
 static status finish(void *run, struct outcome *outcome, void *result, struct fragment **fragments,
@@ -81,8 +81,8 @@ static status load_system(void *run, const void *bytes, size_t size, struct erro
   const struct sph_run *r = run;
   if (sph_system_state_load(r->system, bytes, size))
     return STATUS_OK;
-  status code = sph_system_fault(r->system) == SPH_FAULT_MEMORY ? STATUS_MEMORY : STATUS_CONTENT;
-  return status_fail(error, code, "%s", sph_system_failure(r->system));
+  status code = r->system->fault == SPH_FAULT_MEMORY ? STATUS_MEMORY : STATUS_CONTENT;
+  return status_fail(error, code, "%s", r->system->failure);
 }
 
 static void release(void *run) {
@@ -132,11 +132,9 @@ static const struct knob knobs[] = {
 const struct engine_kind sph_engine = {
     .name = "sph",
     .dimensions = 3,
-    .doc =
-        "Solids that crack, in space: smoothed particle hydrodynamics with strength, Tillotson's equation of state and "
-        "explicit Weibull flaws. Benz & Asphaug (1994, 1995), with the corrections and options that `clast explain` "
-        "names "
-        "at each input.",
+    .doc = "Solids that crack, in space: smoothed particle hydrodynamics with strength, Tillotson's equation of state "
+           "and explicit Weibull flaws. Benz & Asphaug (1994, 1995), with the corrections and options that `clast "
+           "explain` names at each input.",
     .results_version = 7,
     .inputs = &sph_inputs,
     .results = &sph_results,

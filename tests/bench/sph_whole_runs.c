@@ -98,7 +98,7 @@ static struct figures whole(const char *name, const char *particles, const char 
   printf("sph_particle_steps_per_s_%s %.4g particle-steps/s\n", name, f.speed);
   printf("sph_particles_%s %.0f 1\n", name, n);
   printf("sph_steps_%s %.0f 1\n", name, steps);
-  printf("sph_neighbours_%s %.1f 1\n", name, sph_system_neighbours(run->system));
+  printf("sph_neighbours_%s %.1f 1\n", name, run->system->now.neighbours);
   printf("sph_listings_per_step_%s %.3f 1\n", name, (double)run->system->now.listings / steps);
   const double one = spent / steps, pairs = sum.pairs / looks / one, stale = sum.stale / looks / one;
   const double listing = sum.listing / looks / one * (double)run->system->now.listings / steps;

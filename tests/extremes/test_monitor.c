@@ -93,10 +93,10 @@ static struct sph_run *sphere(const char *extra) {
 }
 
 static void sph_ends(struct sph_run *run, int state, const char *const *words) {
-  uint64_t before = sph_system_steps(run->system);
+  uint64_t before = run->system->now.steps;
   assert_int_equal(frame_advance(&run->frame, 10000), STATUS_OK);
   assert_true(run->state.frame.finished);
-  assert_true(sph_system_steps(run->system) - before <= LATE);
+  assert_true(run->system->now.steps - before <= LATE);
   assert_int_equal(run->state.frame.outcome_state, state);
   names(run->state.frame.message, words);
   sph_run_free(run);
@@ -322,10 +322,10 @@ static void the_monitor_is_cheap(void **state) {
 
   struct sph_run *solid = sphere("fidelity.precision=double");
   begin = clock_cpu_s();
-  const uint64_t from = sph_system_steps(solid->system);
+  const uint64_t from = solid->system->now.steps;
   assert_int_equal(frame_advance(&solid->frame, (uint64_t)steps), STATUS_OK);
   const double whole = clock_cpu_s() - begin;
-  const uint64_t looks = (sph_system_steps(solid->system) - from) / solid->frame.kind->looks;
+  const uint64_t looks = (solid->system->now.steps - from) / solid->frame.kind->looks;
   begin = clock_cpu_s();
   for (uint64_t k = 0; k < looks; k++)
     (void)sph_system_ledger(solid->system);

@@ -79,13 +79,13 @@ static CASE_UNUSED struct sph_system *case_system(const struct sph_particles *p,
 static CASE_UNUSED void case_steps(struct sph_system *s, int steps) {
   for (int k = 0; k < steps; k++)
     if (!sph_system_step(s, HUGE_VAL))
-      fail_msg("step %d: %s", k, sph_system_failure(s));
+      fail_msg("step %d: %s", k, s->failure);
 }
 
 static CASE_UNUSED void case_run(struct sph_system *s, double until) {
-  while (sph_system_time(s) < until)
+  while (s->now.time < until)
     if (!sph_system_step(s, until))
-      fail_msg("at %g s: %s", sph_system_time(s), sph_system_failure(s));
+      fail_msg("at %g s: %s", s->now.time, s->failure);
 }
 
 /* One loop of a module. */

@@ -132,11 +132,11 @@ UNUSED static void solid_start(struct solid_case *c) {
 
 UNUSED static void solid_step(struct solid_case *c, double until) {
   if (!sph_system_step(c->system, until))
-    fail_msg("step: %s", sph_system_failure(c->system));
+    fail_msg("step: %s", c->system->failure);
 }
 
 UNUSED static void solid_until(struct solid_case *c, double until) {
-  while (sph_system_time(c->system) < until)
+  while (c->system->now.time < until)
     solid_step(c, until);
 }
 

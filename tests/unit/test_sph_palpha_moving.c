@@ -281,7 +281,7 @@ static void beside_a_solid(void **state) {
   int limited = 0;
   for (int k = 0; k < 150; k++) {
     case_steps(m.s, 1);
-    limited += sph_system_limiter(m.s) == SPH_LIMIT_DISTENTION;
+    limited += m.s->now.limiter == SPH_LIMIT_DISTENTION;
     sph_system_read(m.s, m.p);
     for (size_t i = 0; i < 725; i++) {
       most = fmax(most, fabs(m.p->distention[i] - last[i]));

@@ -131,7 +131,7 @@ static void figures_by_hand(void **state) {
       assert_true(fabs(r->angular_momentum_error / (fabs(turning[1] - turning[0]) / largest) - 1) < 1e-9);
     } else if (c == 0) {
       assert_true(ledger.clamped > 0 && fabs(r->clamped_share / (ledger.clamped / input) - 1) < 1e-12);
-      const double looks = (double)(sph_system_steps(run->system) * run->start->n);
+      const double looks = (double)(run->system->now.steps * run->start->n);
       assert_true(ledger.density_held > 0 &&
                   fabs(r->density_held_share / ((double)ledger.density_held / looks) - 1) < 1e-12);
       assert_true(change > 0 && fabs(ran.outcome.momentum_error / (sqrt(change) / fmax(scale[0], scale[1])) - 1) <
@@ -157,10 +157,10 @@ static void a_share_above_one_is_shown(void **state) {
       frame_advance(&run->frame, UINT64_MAX);
       for (int k = 0; k < SPH_LIMITS; k++)
         run->state.limited[k] = 0;
-      run->state.limited[SPH_LIMIT_FORCE] = 3 * sph_system_steps(run->system);
+      run->state.limited[SPH_LIMIT_FORCE] = 3 * run->system->now.steps;
     }
     if (fault == 2)
-      run->state.limited[SPH_LIMIT_FORCE] = sph_system_steps(run->system); /* all of it */
+      run->state.limited[SPH_LIMIT_FORCE] = run->system->now.steps; /* all of it */
     assert_int_equal(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, NULL),
                      STATUS_OK);
     const double share = ran.results.sph.limited.force;

@@ -8,9 +8,8 @@ static void conserved(void **state) {
   const struct sph_ledger first = sph_system_ledger(s);
   case_run(s, 6e-6); /* several crossings of the large cube */
   const struct sph_ledger last = sph_system_ledger(s);
-  print_message("%llu steps, damage %.3f, energy %.3e of %.3e J (clamped %.1e)\n",
-                (unsigned long long)sph_system_steps(s), sph_system_damage(s, NULL),
-                case_total(last) - case_total(first), case_total(first), last.clamped);
+  print_message("%llu steps, damage %.3f, energy %.3e of %.3e J (clamped %.1e)\n", (unsigned long long)s->now.steps,
+                sph_system_damage(s, NULL), case_total(last) - case_total(first), case_total(first), last.clamped);
   assert_true(sph_system_damage(s, NULL) > 0.2); /* it does break: at the large one's end of the energy, most of it */
   for (int k = 0; k < 3; k++) /* pair forces are opposite to the last bit: what remains is rounding of the sums */
     assert_true(fabs(last.momentum[k] - first.momentum[k]) < 1e-12 * last.momentum_scale);
@@ -107,7 +106,7 @@ static void limits_by_hand(void **state) {
     share[2] = fmax(share[2], 1 - fluid / courant);
     const double longest = 1 / fmax(worst[SPH_LIMIT_COURANT], fmax(fmax(force, energy), fmax(density, damage)));
     case_steps(s, 1);
-    assert_true(fabs(sph_system_last_step(s) / longest - 1) < 1e-9);
+    assert_true(fabs(s->now.last_step / longest - 1) < 1e-9);
   }
   assert_true(share[0] > 0.03 && share[1] > 0.03 && share[2] > 0.03);
   assert_true(sph_system_damage(s, NULL) > 0);
@@ -131,9 +130,9 @@ static struct sph_particles *seen_in_flight(const double boost[3], double step[B
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
   for (int k = 0; k < BOOSTED_STEPS; k++) {
     case_steps(s, 1);
-    step[k] = sph_system_last_step(s);
+    step[k] = s->now.last_step;
   }
-  *time = sph_system_time(s);
+  *time = s->now.time;
   struct sph_particles *now = c.particles;
   sph_system_read(s, now);
   for (size_t i = 0; i < now->n; i++) {
@@ -203,7 +202,7 @@ static void fast_damping(void **state) {
   const struct sph_ledger first = sph_system_ledger(s);
   case_steps(s, 40);
   const struct sph_ledger last = sph_system_ledger(s);
-  assert_true(sph_system_last_step(s) < courant / 3);
+  assert_true(s->now.last_step < courant / 3);
   /* the larger root at 0.9 is -0.87: after 40 steps 1e-5 of the energy. So near the bound half as much again is booked
    * as damped; sides have that rate in their outermost layer alone */
   assert_true(last.kinetic < 1e-4 * first.kinetic && last.damped > 0.9 * first.kinetic &&
@@ -380,9 +379,9 @@ static void lists_stay_short_in_a_fast_body(void **state) {
       c.particles->vx[i] += speeds[k];
     struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
     case_steps(s, 10);
-    beyond[k] = sph_pairs_reached(s->pairs) - sph_system_neighbours(s);
+    beyond[k] = sph_pairs_reached(s->pairs) - s->now.neighbours;
     print_message("%g m/s: for %d steps, %.1f neighbours listed beyond the %.1f\n", speeds[k], (int)s->now.horizon,
-                  beyond[k], sph_system_neighbours(s));
+                  beyond[k], s->now.neighbours);
     assert_true(k ? s->now.horizon < 20 : s->now.horizon == 20);
     sph_system_free(s);
     let_go(&c);

@@ -125,7 +125,7 @@ static void damage_on_its_way(void **state) {
     if (sph_run_create(&inputs, seed, &run, &error))
       fail_msg("%s", error.message);
     for (int k = 0; k < 2; k++) {
-      while (!run->state.frame.finished && sph_system_time(run->system) < times[k])
+      while (!run->state.frame.finished && run->system->now.time < times[k])
         frame_advance(&run->frame, 1);
       const struct sph_particles *now = sph_run_read(run);
       for (size_t i = 0; i < run->targets; i++) {

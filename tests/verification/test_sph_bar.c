@@ -40,12 +40,12 @@ static struct ring ring(double particles, bool correction) {
   solid_start(&c);
   const struct sph_ledger start = sph_system_ledger(c.system);
   struct solid_swing swing = {0};
-  while (swing.crossings < 3 && sph_system_time(c.system) < 60e-6) {
+  while (swing.crossings < 3 && c.system->now.time < 60e-6) {
     double sum = 0;
     solid_read(&c);
     for (size_t i = 0; i < p->n; i++)
       sum += p->vz[i] * shape[i];
-    solid_swing_add(&swing, sph_system_time(c.system), sum);
+    solid_swing_add(&swing, c.system->now.time, sum);
     solid_step(&c, INFINITY);
   }
   struct ring r = {1 / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0],

@@ -100,7 +100,7 @@ static struct shock drive(const struct sph_material *m, double up, double spacin
     st += t, sx += front, stt += t * t, stx += t * front;
   }
   struct shock s = {.speed = (SAMPLES * stx - st * sx) / (SAMPLES * stt - st * st),
-                    .steps = sph_system_steps(c.system),
+                    .steps = c.system->now.steps,
                     .n = p->n};
   const double from = slab + 15 * h, to = front - 12 * h;
   double count = 0, squares = 0;
@@ -239,7 +239,7 @@ static void ramp(bool correction) {
   for (double strain = 0; strain < 2.5 * yield_strain;) {
     for (int k = 0; k < 10; k++)
       solid_step(&c, INFINITY);
-    strain = rate * sph_system_time(c.system);
+    strain = rate * c.system->now.time;
     solid_read(&c);
     double stress = 0, count = 0;
     for (size_t i = 0; i < p->n; i++)

@@ -94,7 +94,7 @@ static struct front run_crack(const struct form *form, double particles) {
   for (int a = 0; a < SHELLS; a++)
     for (int b = 0; b < SECTORS; b++)
       arrival[a][b] = INFINITY;
-  while (sph_system_time(c.system) < 5e-6) {
+  while (c.system->now.time < 5e-6) {
     solid_step(&c, INFINITY);
     solid_read(&c);
     for (size_t i = 0; i < p->n; i++)
@@ -102,7 +102,7 @@ static struct front run_crack(const struct form *form, double particles) {
         const int a = (int)(hypot(p->x[i], p->y[i]) / shell),
                   b = (int)((atan2(p->y[i], p->x[i]) / (2 * M_PI) + 0.5) * SECTORS);
         if (a < SHELLS)
-          arrival[a][b % SECTORS] = fmin(arrival[a][b % SECTORS], sph_system_time(c.system));
+          arrival[a][b % SECTORS] = fmin(arrival[a][b % SECTORS], c.system->now.time);
       }
   }
   /* The front reaches a shell when half of the sectors have been reached. */
@@ -246,7 +246,7 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
                      .grady_kipp = young * q * pow(q + 1, -(q + 1) / q) * pow(alpha, -1 / q) * pow(rate, 3 / q)};
   r.particles = particle_form(flaws, in, rate, young, cg / cbrt(3 * p->mass[0] / p->density[0] / (4 * M_PI)), tf);
   const double end = 4 * tf;
-  for (int step = 0; sph_system_time(c.system) < end; step++) {
+  for (int step = 0; c.system->now.time < end; step++) {
     solid_step(&c, end);
     if (step % 4)
       continue;

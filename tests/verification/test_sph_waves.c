@@ -52,12 +52,12 @@ static struct wave plane_wave(int lattice, enum polarisation kind, int along, do
   }
   solid_start(&c);
   struct solid_swing swing = {0};
-  while (swing.crossings < 3 && sph_system_time(c.system) < 2 * length / exact) {
+  while (swing.crossings < 3 && c.system->now.time < 2 * length / exact) {
     double sum = 0;
     solid_read(&c);
     for (size_t i = 0; i < p->n; i++)
       sum += solid_velocity(p, moves)[i] * shape[i];
-    solid_swing_add(&swing, sph_system_time(c.system), sum);
+    solid_swing_add(&swing, c.system->now.time, sum);
     solid_step(&c, INFINITY);
   }
   struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n,
@@ -180,12 +180,12 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
   }
   solid_start(&c);
   struct solid_swing swing = {0};
-  while (swing.crossings < 3 && sph_system_time(c.system) < ratio * radius / 2000) {
+  while (swing.crossings < 3 && c.system->now.time < ratio * radius / 2000) {
     double sum = 0;
     solid_read(&c);
     for (size_t i = 0; i < p->n; i++)
       sum += p->vz[i] * shape[i];
-    solid_swing_add(&swing, sph_system_time(c.system), sum);
+    solid_swing_add(&swing, c.system->now.time, sum);
     solid_step(&c, INFINITY);
   }
   struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n,

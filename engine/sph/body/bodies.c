@@ -25,9 +25,7 @@ static const char *name(size_t body, char text[32]) { /* names of bodies as in s
 }
 
 static status check_body(const struct sph_body *body, struct error *error) {
-  const status code = sph_shape_check(&body->shape, error);
-  if (code)
-    return code;
+  TRY(sph_shape_check(&body->shape, error));
   if (!(body->density > 0 && isfinite(body->density)))
     return status_fail(error, STATUS_CONTENT, "the density of a body is %g kg/m^3: give a positive one.",
                        body->density);
@@ -84,12 +82,11 @@ status sph_bodies_make(const struct sph_body *bodies, size_t count, int arrays, 
                        struct sph_range *ranges, struct error *error) {
   *out = NULL;
   struct sph_particles *p = NULL;
-  status code = check(bodies, count, error);
-  if (code)
-    return code;
+  TRY(check(bodies, count, error));
   struct sph_points *points = calloc(count, sizeof *points);
   if (!points)
     return status_fail(error, STATUS_MEMORY, "no memory for %zu bodies", count);
+  status code = STATUS_OK;
   size_t n = 0;
   for (size_t b = 0; b < count; b++) {
     code = sph_lattice_fill(&bodies[b].lattice, &bodies[b].shape, &points[b], error);

@@ -8,6 +8,7 @@
 #include "engine/grow.h"
 #include "engine/random.h"
 #include "engine/sph/body/kd_tree.h"
+#include "schemas/memory.h"
 
 /* Sorts the particles of a body into the cubes of a turned grid. */
 
@@ -40,12 +41,11 @@ static void find_cubes(const struct sph_particles *p, struct sph_range range, co
 status sph_flaws_cells(uint64_t seed, uint64_t body, double width, const struct sph_particles *p,
                        struct sph_range range, struct sph_cells **out, struct error *error) {
   double frame[3][3], shift[3];
-  struct sph_cells *cells = calloc(1, sizeof *cells);
+  struct sph_cells *cells = memory_small(1, sizeof *cells);
   struct place *place = malloc((range.n ? range.n : 1) * sizeof *place);
-  if (cells)
-    cells->of = malloc((range.n ? range.n : 1) * sizeof *cells->of);
+  cells->of = malloc((range.n ? range.n : 1) * sizeof *cells->of);
   *out = NULL;
-  if (!cells || !cells->of || !place) {
+  if (!cells->of || !place) {
     sph_flaws_cells_free(cells);
     free(place);
     return status_fail(error, STATUS_MEMORY, "no memory for the cells of %zu particles", range.n);
@@ -98,9 +98,7 @@ static bool push(struct drawn *d, size_t particle, double rank) {
 
 /* Counting sort by particle. It keeps the order of drawing, which is that of ascending strain. */
 static struct sph_flaws *sort_by_particle(const struct drawn *d) {
-  struct sph_flaws *flaws = calloc(1, sizeof *flaws);
-  if (!flaws)
-    return NULL;
+  struct sph_flaws *flaws = memory_small(1, sizeof *flaws);
   flaws->particles = d->n;
   flaws->count = d->count;
   flaws->first = calloc(d->n + 2, sizeof *flaws->first);
@@ -165,9 +163,7 @@ static status check_law(const struct sph_flaw_law *law, struct error *error) {
 static status draw_all(struct drawn *d, sph_flaws_owner owner, void *context, uint64_t most, struct error *error) {
   const struct sph_flaw_law *law = d->law;
   const size_t n = d->n;
-  status code = check_law(law, error);
-  if (code)
-    return code;
+  TRY(check_law(law, error));
   d->log_kv = log(law->weibull.k) + log(law->volume);
   for (size_t i = 0; law->exempt && i < n; i++) {
     d->has[i] = law->exempt[i] != 0;
@@ -181,9 +177,7 @@ static status draw_all(struct drawn *d, sph_flaws_owner owner, void *context, ui
 
   if (!most)
     most = 64 * (uint64_t)((double)n * (1 + log((double)n + 1)));
-  code = draw(d, owner, context, most, error);
-  if (code)
-    return code;
+  TRY(draw(d, owner, context, most, error));
   if (law->number)
     return draw_rest(d, error);
   if (d->without)
@@ -321,11 +315,8 @@ static bool find_marks(const struct sph_particles *p, struct sph_range range, co
 
 static status find_owners(const struct sph_flaw_law *law, const struct sph_particles *p, struct sph_range range,
                           const struct sph_middle *middle, struct owners *o, struct error *error) {
-  if (law->cell_width > 0) {
-    const status code = sph_flaws_cells(law->seed, law->body, law->cell_width, p, range, &o->cells, error);
-    if (code)
-      return code;
-  }
+  if (law->cell_width > 0)
+    TRY(sph_flaws_cells(law->seed, law->body, law->cell_width, p, range, &o->cells, error));
   if (!find_marks(p, range, middle, o->cells || is_graded(p, range), o))
     return status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", range.n);
   return sph_kd_tree_create(range.n, p->x + range.first, p->y + range.first, p->z + range.first, &o->nearest, error);
@@ -337,12 +328,10 @@ status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *s
   *out = NULL;
   struct owners owners = {0};
   struct sph_flaw_law full = *law;
-  status code = sph_shape_check(shape, error);
-  if (code)
-    return code;
+  TRY(sph_shape_check(shape, error));
   if (!range.n)
     return status_fail(error, STATUS_CONTENT, "a body of no particles has no flaws.");
-  code = find_owners(law, p, range, middle, &owners, error);
+  status code = find_owners(law, p, range, middle, &owners, error);
   if (code)
     goto cleanup;
   const size_t n = owners.cells ? owners.cells->count : range.n;
@@ -422,23 +411,19 @@ static bool fill_compact(struct sph_flaws_lists *w, const struct sph_flaws *flaw
   return true;
 }
 
-static bool fill_cells(struct sph_flaws_lists *w, const struct sph_flaws *flaws) {
-  if (!flaws->cells)
-    return true;
-  w->cell = malloc(w->particles * sizeof *w->cell);
-  if (w->cell)
-    memcpy(w->cell, flaws->cells->of, w->particles * sizeof *w->cell);
-  return w->cell != NULL;
-}
-
 status sph_flaws_lists_make(const struct sph_flaws *flaws, bool compact, void **out, struct error *error) {
-  struct sph_flaws_lists *w = calloc(1, sizeof *w);
-  if (w) {
-    w->particles = flaws->particles;
-    w->lists = flaws->cells ? flaws->cells->count : flaws->particles;
-    w->count = flaws->count;
+  struct sph_flaws_lists *w = memory_small(1, sizeof *w);
+  w->particles = flaws->particles;
+  w->lists = flaws->cells ? flaws->cells->count : flaws->particles;
+  w->count = flaws->count;
+  bool enough = (compact ? fill_compact : fill_exact)(w, flaws);
+  if (enough && flaws->cells) {
+    w->cell = malloc(w->particles * sizeof *w->cell);
+    enough = w->cell != NULL;
+    if (enough)
+      memcpy(w->cell, flaws->cells->of, w->particles * sizeof *w->cell);
   }
-  if (!w || !(compact ? fill_compact : fill_exact)(w, flaws) || !fill_cells(w, flaws)) {
+  if (!enough) {
     sph_flaws_lists_free(w);
     return status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", flaws->count);
   }

@@ -16,6 +16,7 @@
 #include "engine/random.h"
 #include "engine/sph/body/kd_tree.h"
 #include "engine/sph/body/particles.h"
+#include "schemas/memory.h"
 
 /* ---- pushing points apart ---- */
 
@@ -225,14 +226,6 @@ cleanup:
 
 static const uint64_t places = (uint64_t)1 << 32; /* number of this file's first draw; those of lattice.c are below */
 
-static status allocate(struct sph_points *points, size_t n, bool graded, struct error *error) {
-  status code = sph_lattice_allocate(points, n, error);
-  if (code || !graded)
-    return code;
-  points->share = malloc(n * sizeof *points->share);
-  return points->share ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the places of %zu particles", n);
-}
-
 /* Volumes divided by their mean: the cubes of the spacings of the grading. */
 static void fill_shares(const struct sph_grading *grading, size_t n, double (*at)[3], double *share) {
   double total = 0;
@@ -248,9 +241,7 @@ static void fill_shares(const struct sph_grading *grading, size_t n, double (*at
 /* Mean distance of nearest neighbours; 0 where there are none. */
 static status find_nearest(const struct sph_points *points, double (*at)[3], double *mean, struct error *error) {
   struct sph_kd_tree *tree;
-  const status code = sph_kd_tree_create(points->n, points->x, points->y, points->z, &tree, error);
-  if (code)
-    return code;
+  TRY(sph_kd_tree_create(points->n, points->x, points->y, points->z, &tree, error));
   double sum = 0;
   for (size_t i = 0; i < points->n; i++) {
     const size_t j = sph_kd_tree_other(tree, at[i], i);
@@ -265,19 +256,21 @@ static status find_nearest(const struct sph_points *points, double (*at)[3], dou
 /* Fills *points, and finds the mean distance of nearest neighbours. */
 static status store(const struct sph_shape *shape, const struct sph_grading *grading, size_t n, double (*at)[3],
                     struct sph_points *points, struct error *error) {
-  status code = allocate(points, n, grading->fine > 0, error);
-  if (code)
-    return code;
+  TRY(sph_lattice_allocate(points, n, error));
+  if (grading->fine > 0) {
+    points->share = malloc(n * sizeof *points->share);
+    if (!points->share)
+      return status_fail(error, STATUS_MEMORY, "no memory for the places of %zu particles", n);
+    fill_shares(grading, n, at, points->share);
+  }
   for (size_t i = 0; i < n; i++) {
     points->x[i] = at[i][0];
     points->y[i] = at[i][1];
     points->z[i] = at[i][2];
   }
-  if (points->share)
-    fill_shares(grading, n, at, points->share);
   points->spacing = cbrt(sph_shape_volume(shape) / (double)n);
   points->stretch = 1;
-  code = find_nearest(points, at, &points->nearest, error);
+  status code = find_nearest(points, at, &points->nearest, error);
   if (!code && n == 1)
     points->nearest = points->spacing;
   return code;
@@ -291,11 +284,9 @@ static status fill_uniform(const struct sph_lattice *lattice, const struct sph_s
   regular.kind = SPH_LATTICE_HEXAGONAL;
   regular.particles = wanted;
   struct sph_points start;
-  double(*at)[3] = NULL;
-  status code = sph_lattice_fill(&regular, shape, &start, error);
-  if (code)
-    return code;
-  at = malloc(start.n * sizeof *at);
+  status code = STATUS_OK;
+  TRY(sph_lattice_fill(&regular, shape, &start, error));
+  double(*at)[3] = malloc(start.n * sizeof *at);
   if (!at) {
     code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", start.n);
     goto cleanup;
@@ -308,9 +299,8 @@ static status fill_uniform(const struct sph_lattice *lattice, const struct sph_s
       at[i][k] = p[k] + 1.4 * start.spacing * (random_uniform(bits[k]) - 0.5);
   }
   code = relax_spread(lattice, shape, start.spacing, start.n, at, error);
-  if (code)
-    goto cleanup;
-  code = store(shape, &lattice->grading, start.n, at, points, error);
+  if (!code)
+    code = store(shape, &lattice->grading, start.n, at, points, error);
 cleanup:
   free(at);
   sph_lattice_empty(&start);
@@ -467,10 +457,8 @@ static status fill_graded(const struct sph_lattice *lattice, const struct sph_sh
                           struct error *error) {
   struct sph_lattice graded = *lattice;
   struct sph_grading *g = &graded.grading;
-  struct shells *shells = malloc(sizeof *shells);
+  struct shells *shells = memory_small(1, sizeof *shells);
   double(*at)[3] = NULL, number = 0;
-  if (!shells)
-    return status_fail(error, STATUS_MEMORY, "no memory for a graded body");
   cut_shells(g, shape, shells);
   status code = decide(lattice, g, shells, &number, error);
   if (code)

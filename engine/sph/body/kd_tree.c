@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "schemas/memory.h"
+
 enum { LEAF = 8, DEEPEST = 64 };
 
 /* Node k covers consecutive points. A plane across its widest direction halves them between the nodes 2k + 1 and 2k
@@ -88,14 +90,12 @@ status sph_kd_tree_create(size_t n, const double *x, const double *y, const doub
   size_t leaves = 1;
   while (leaves * LEAF < n)
     leaves *= 2;
-  struct sph_kd_tree *t = calloc(1, sizeof *t);
-  if (t) {
-    *t = (struct sph_kd_tree){.n = n, .inner = leaves - 1};
-    t->node = malloc(leaves * sizeof *t->node);
-    t->at = malloc((n ? n : 1) * sizeof *t->at);
-    t->id = malloc((n ? n : 1) * sizeof *t->id);
-  }
-  if (!t || !t->node || !t->at || !t->id) {
+  struct sph_kd_tree *t = memory_small(1, sizeof *t);
+  *t = (struct sph_kd_tree){.n = n, .inner = leaves - 1};
+  t->node = malloc(leaves * sizeof *t->node);
+  t->at = malloc((n ? n : 1) * sizeof *t->at);
+  t->id = malloc((n ? n : 1) * sizeof *t->id);
+  if (!t->node || !t->at || !t->id) {
     sph_kd_tree_free(t);
     return status_fail(error, STATUS_MEMORY, "no memory to search among %zu particles", n);
   }

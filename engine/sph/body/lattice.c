@@ -264,9 +264,7 @@ static status fill_cut(const struct sph_lattice *lattice, const struct sph_latti
   if (!n || (double)n < 0.5 * wanted || (double)n > 2 * wanted + 2)
     return sph_lattice_too_thin(wanted, spacing, error);
 
-  const status code = sph_lattice_allocate(points, n, error);
-  if (code)
-    return code;
+  TRY(sph_lattice_allocate(points, n, error));
   cut(&c, offset, points);
   points->spacing = cbrt(sph_shape_volume(shape) / (double)n);
   const double taller = c.layered ? shape->length / layers / (spacing * cell->side[2]) : 1;
@@ -356,9 +354,7 @@ static status fill_box(const struct sph_lattice *lattice, const struct sph_latti
   const double n = count[0] * count[1] * count[2];
   if (n > 2 * wanted + 2 || n < 0.5 * wanted)
     return sph_lattice_too_thin(wanted, cbrt(sph_shape_volume(box) / wanted), error);
-  status code = sph_lattice_allocate(points, (size_t)n, error);
-  if (code)
-    return code;
+  TRY(sph_lattice_allocate(points, (size_t)n, error));
   points->spacing = cbrt(sph_shape_volume(box) / (double)points->n);
   double step[3], corner[3];
   points->stretch = 1;
@@ -439,37 +435,26 @@ static status decide(const struct sph_lattice *lattice, double volume, double *w
   return STATUS_OK;
 }
 
-static status check_all_periodic(const struct sph_lattice *lattice, const struct sph_shape *shape,
-                                 struct error *error) {
-  for (int k = 0; k < 3; k++) {
-    const status code = lattice->periodic[k] ? check_periodic(lattice, shape, k, error) : STATUS_OK;
-    if (code)
-      return code;
-  }
-  return STATUS_OK;
-}
-
 static status fill(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
                    struct error *error) {
   const bool graded = lattice->grading.fine > 0;
   double wanted = 0;
-  status code = sph_shape_check(shape, error);
-  if (!code && !graded)
-    code = decide(lattice, sph_shape_volume(shape), &wanted, error);
-  if (!code)
-    code = check_all_periodic(lattice, shape, error);
-  if (code)
-    return code;
+  TRY(sph_shape_check(shape, error));
+  if (!graded)
+    TRY(decide(lattice, sph_shape_volume(shape), &wanted, error));
+  for (int k = 0; k < 3; k++)
+    if (lattice->periodic[k])
+      TRY(check_periodic(lattice, shape, k, error));
   if (lattice->kind == SPH_LATTICE_IRREGULAR || graded)
     return sph_irregular_fill(lattice, shape, wanted, points, error);
 
   const struct sph_lattice_cell *cell = &cells[lattice->kind];
   if (shape->kind == SPH_SHAPE_BOX && !lattice->turned)
-    code = fill_box(lattice, cell, shape, wanted, points, error);
+    TRY(fill_box(lattice, cell, shape, wanted, points, error));
   else
-    code = fill_cut(lattice, cell, shape, wanted, points, error);
+    TRY(fill_cut(lattice, cell, shape, wanted, points, error));
   points->nearest = points->spacing * (lattice->kind == SPH_LATTICE_HEXAGONAL ? hexagonal : 1);
-  return code;
+  return STATUS_OK;
 }
 
 status sph_lattice_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,

@@ -6,6 +6,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "schemas/memory.h"
+
 size_t sph_particles_memory(void) {
   const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
   size_t most = pages > 0 && page > 0 ? (size_t)pages * (size_t)page : SIZE_MAX;
@@ -55,22 +57,16 @@ static bool is_wanted(size_t k, int arrays) {
   return columns[k].array == 0 || arrays & columns[k].array;
 }
 
-/* NULL without memory. */
-static double *make_column(size_t n, double initial) {
-  double *column = calloc(n, sizeof *column);
-  for (size_t i = 0; column && initial != 0 && i < n; i++)
-    column[i] = initial;
-  return column;
-}
-
 static bool allocate(struct sph_particles *p, int arrays) {
   const size_t n = p->n ? p->n : 1;
   bool enough = true;
   for (size_t k = 0; k < COLUMNS && enough; k++) {
     if (!is_wanted(k, arrays))
       continue;
-    *column_of(p, k) = make_column(n, columns[k].initial);
-    enough = *column_of(p, k) != NULL;
+    double *column = *column_of(p, k) = calloc(n, sizeof *column);
+    enough = column != NULL;
+    for (size_t i = 0; enough && columns[k].initial != 0 && i < n; i++)
+      column[i] = columns[k].initial;
   }
   p->body = calloc(n, 1);
   if (!(arrays & SPH_WITH_HELD))
@@ -88,10 +84,9 @@ status sph_particles_make(size_t n, int arrays, struct sph_particles **out, stru
     return status_fail(error, STATUS_MEMORY, "%zu particles need %.3g GB; this machine, or the limit set, has %.3g GB.",
                        n, (double)n * (double)bytes / 1e9, (double)sph_particles_memory() / 1e9);
 
-  struct sph_particles *p = calloc(1, sizeof *p);
-  if (p)
-    p->n = n;
-  if (!p || !allocate(p, arrays)) {
+  struct sph_particles *p = memory_small(1, sizeof *p);
+  p->n = n;
+  if (!allocate(p, arrays)) {
     sph_particles_free(p);
     return status_fail(error, STATUS_MEMORY, "no memory for %zu particles", n);
   }

@@ -51,10 +51,6 @@ static double mesh_shape_distance(const struct sph_shape *s, const double point[
   return s->mesh ? s->unit * mesh_distance(s->mesh, p, normal) : (double)NAN;
 }
 
-static double mesh_shape_reach(const struct sph_shape *s, const double direction[3]) {
-  return s->mesh ? s->unit * mesh_reach(s->mesh, direction) : (double)NAN;
-}
-
 static bool mesh_shape_surface(const struct sph_shape *s, const double direction[3], double point[3],
                                double normal[3]) {
   double p[3] = {0, 0, 0};
@@ -152,12 +148,8 @@ static status positive(double value, const char *name, struct error *error) {
 
 static status check_cylinder(const struct sph_shape *s, struct error *error) {
   double ignored[3];
-  status code = positive(s->radius, "the radius of a cylinder", error);
-  if (code)
-    return code;
-  code = positive(s->length, "the length of a cylinder", error);
-  if (code)
-    return code;
+  TRY(positive(s->radius, "the radius of a cylinder", error));
+  TRY(positive(s->length, "the length of a cylinder", error));
   if (!(s->inner_radius >= 0 && s->inner_radius < s->radius))
     return status_fail(error, STATUS_CONTENT,
                        "the hole of a cylinder has radius %g m: give 0 to below its radius, %g m.", s->inner_radius,
@@ -169,11 +161,8 @@ static status check_cylinder(const struct sph_shape *s, struct error *error) {
 
 static status check_box(const struct sph_shape *s, struct error *error) {
   static const char *const name[3] = {"side x of a box", "side y of a box", "side z of a box"};
-  for (int k = 0; k < 3; k++) {
-    const status code = positive(s->side[k], name[k], error);
-    if (code)
-      return code;
-  }
+  for (int k = 0; k < 3; k++)
+    TRY(positive(s->side[k], name[k], error));
   return STATUS_OK;
 }
 
@@ -368,7 +357,7 @@ static double cylinder_reach(const struct sph_shape *s, const double direction[3
 double sph_shape_reach(const struct sph_shape *s, const double d[3]) {
   switch (s->kind) {
   case SPH_SHAPE_SPHERE: return s->radius;
-  case SPH_SHAPE_MESH: return mesh_shape_reach(s, d);
+  case SPH_SHAPE_MESH: return s->mesh ? s->unit * mesh_reach(s->mesh, d) : (double)NAN;
   case SPH_SHAPE_BOX: return 0.5 * (fabs(d[0]) * s->side[0] + fabs(d[1]) * s->side[1] + fabs(d[2]) * s->side[2]);
   default: return cylinder_reach(s, d);
   }
@@ -415,11 +404,6 @@ bool sph_shape_surface(const struct sph_shape *s, const double direction[3], dou
   return true;
 }
 
-static void place_in_box(const struct sph_shape *s, const double u[3], double p[3]) {
-  for (int k = 0; k < 3; k++)
-    p[k] = (u[k] - 0.5) * s->side[k];
-}
-
 static void place_in_sphere(const struct sph_shape *s, const double u[3], double p[3]) {
   const double r = s->radius * cbrt(u[0]), z = 2 * u[1] - 1, across = r * sqrt(fmax(0, 1 - z * z));
   p[0] = across * cos(2 * M_PI * u[2]);
@@ -441,7 +425,10 @@ bool sph_shape_place(const struct sph_shape *s, const double u[3], double point[
   double p[3];
   switch (s->kind) {
   case SPH_SHAPE_MESH: return mesh_shape_place(s, u, point);
-  case SPH_SHAPE_BOX: place_in_box(s, u, p); break;
+  case SPH_SHAPE_BOX:
+    for (int k = 0; k < 3; k++)
+      p[k] = (u[k] - 0.5) * s->side[k];
+    break;
   case SPH_SHAPE_SPHERE: place_in_sphere(s, u, p); break;
   default: place_in_ring(s, u, p);
   }

@@ -12,10 +12,10 @@
 static const struct field rows[] = {
     MATERIAL_REAL(density, density, "kg/m^3", NAN, 1e-3, 1e6, .flags = FIELD_REQUIRED,
                   .doc = "rho_0: density at rest."),
-    MATERIAL_REAL(melt_energy, melt_energy, "J/kg", NAN, 1, 1e15, .flags = FIELD_MAY_BE_OFF, .when = "../strength=true",
-                  .doc = "Energy at which the yield stress has fallen to zero, linearly. off: it does not depend on "
-                         "energy.",
-                  .source = "Benz & Asphaug 1995, section 2"),
+    MATERIAL_REAL(
+        melt_energy, melt_energy, "J/kg", NAN, 1, 1e15, .flags = FIELD_MAY_BE_OFF, .when = "../strength=true",
+        .doc = "Energy at which the yield stress has fallen to zero, linearly. off: it does not depend on energy.",
+        .source = "Benz & Asphaug 1995, section 2"),
 #define SPH_MODULE_MATERIAL_ROWS
 #include "engine/sph/modules/declarations.h"
 };
@@ -108,11 +108,9 @@ status sph_materials_parse(const char *name, const char *text, struct sph_materi
 status sph_materials_open(const char *path, struct sph_material *out, char **text, struct error *error) {
   struct document *document = NULL;
   *text = NULL;
-  status code = document_open(path, &document, error);
-  if (code)
-    return code;
+  TRY(document_open(path, &document, error));
   *text = strdup(document_text(document));
-  code = read_material(document, out, error);
+  status code = read_material(document, out, error);
   return code || *text ? code : status_fail(error, STATUS_MEMORY, "%s: no memory", path);
 }
 

@@ -210,14 +210,10 @@ static status prepare_quadratic(struct sph_palpha_law *law, double ratio, struct
 
 status sph_palpha_prepare(const struct sph_palpha_material *given, const struct sph_material *solid,
                           struct sph_palpha_law *out, struct error *error) {
-  status code = check_curve(given, error);
-  if (code)
-    return code;
+  TRY(check_curve(given, error));
   double ratio = 1;
   *out = (struct sph_palpha_law){.given = *given, .solid = solid->tillotson, .solid_density = solid->density};
-  code = find_ratio(out, &ratio, error);
-  if (code)
-    return code;
+  TRY(find_ratio(out, &ratio, error));
   return given->curve == SPH_CRUSH_TWO_POWER ? prepare_two_power(out, ratio, error)
                                              : prepare_quadratic(out, ratio, error);
 }

@@ -85,9 +85,8 @@ status sph_plane_shock(const struct sph_material *material, double piston, struc
   const bool porous = sph_material_solid_ratio(material) > 1;
   struct sph_palpha_law law;
   *out = (struct sph_plane_shock){.precursor = none, .shock = none};
-  status code = porous ? sph_palpha_prepare(&material->palpha, material, &law, error) : STATUS_OK;
-  if (code)
-    return code;
+  if (porous)
+    TRY(sph_palpha_prepare(&material->palpha, material, &law, error));
   const struct matter m = {.material = material, .law = porous ? &law : NULL};
   struct sph_front rest = {.distention = porous ? law.given.distention : 1};
   rest.density = out->first_density = material->density / rest.distention;

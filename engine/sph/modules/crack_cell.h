@@ -26,9 +26,9 @@ COLUMN(crack_pressure)  /* Pa, likewise */
 
 #ifdef SPH_MODULE_INPUT_ROWS
 INPUT_REAL(fracture.cell, crack_cell.width, "m", 0, 0, 1e9, .absent = "0", .when = "target.fracture=auto|on",
-           .doc = "Width of the cells that crack as one: their particles share flaws, mean stress and damage. "
-                  "Strength then depends on this width and not on the number of particles, where a cell holds "
-                  "several particles. 0: each particle cracks by itself, as printed.",
+           .doc = "Width of the cells that crack as one: their particles share flaws, mean stress and damage. Strength "
+                  "then depends on this width and not on the number of particles, where a cell holds several "
+                  "particles. 0: each particle cracks by itself, as printed.",
            .source = "our choice; BA95 for 0"),
 #endif
 
@@ -79,15 +79,13 @@ static status crack_cell_prepare(const struct sph_inputs *inputs, const struct s
   if (!given)
     return status_fail(error, STATUS_CONTENT, "fracture.cell is %g m, but the flaws are those of particles",
                        inputs->crack_cell.width);
-  struct crack_cells *c = calloc(1, sizeof *c);
-  if (c) {
-    c->count = given->count;
-    c->particles = given->particles;
-    c->first = calloc(c->count + 2, sizeof *c->first);
-    c->member = malloc(c->particles * sizeof *c->member);
-    c->index = malloc(c->particles * sizeof *c->index);
-  }
-  if (!c || !c->first || !c->member || !c->index) {
+  struct crack_cells *c = memory_small(1, sizeof *c);
+  c->count = given->count;
+  c->particles = given->particles;
+  c->first = calloc(c->count + 2, sizeof *c->first);
+  c->member = malloc(c->particles * sizeof *c->member);
+  c->index = malloc(c->particles * sizeof *c->index);
+  if (!c->first || !c->member || !c->index) {
     crack_cell_free_prepared(c);
     return status_fail(error, STATUS_MEMORY, "no memory for the crack cells of %zu particles", given->particles);
   }

@@ -195,10 +195,9 @@ static const sph_hook crack_front_hooks[SPH_STAGES] =
 INPUT_CHOICE(fracture.front, crack_front.front,
              FIELD_WORDS_HERE(SPH_CRACK_FRONTS, [SPH_CRACK_FRONT_NONE] = "none", [SPH_CRACK_FRONT_PLANE] = "plane"),
              .absent = "none", .when = "target.fracture=auto|on",
-             .choice_docs =
-                 "it ends at its particle, and each particle breaks by flaws of its own, as printed: strength "
-                 "grows with the number of particles\n"
-                 "it runs on in its plane at c_g",
+             .choice_docs = "it ends at its particle, and each particle breaks by flaws of its own, as printed: "
+                            "strength grows with the number of particles\n"
+                            "it runs on in its plane at c_g",
              .doc = "Length of a crack that starts at a flaw.", .source = "BA95 for `none`; `plane` is ours"),
     INPUT_REAL(fracture.front_arrest, crack_front.arrest, "1", 0.5, 0, 1, .when = "fracture.front=plane",
                .doc = "A crack continues where the tension across its plane is at least this share of the tension that "
@@ -230,30 +229,15 @@ static size_t crack_front_bytes_prepared(const void *prepared) {
          l->particles * (3 * sizeof *l->place + sizeof *l->first + sizeof *l->tip + sizeof *l->near);
 }
 
-/* Particles within 2h of particle q, itself included; written if there is room. */
-static size_t crack_front_within(const struct sph_crack_front_links *l, const struct sph_kd_tree *tree, double h,
-                                 size_t q, uint32_t *out, size_t room) {
-  return sph_kd_tree_within(tree, l->place + 3 * q, 2 * h, out, room);
-}
-
-/* The lists of neighbours. h: of each particle. False without memory. */
+/* The lists of the particles within 2h of each, itself included. h: of each particle. False without memory. */
 static bool crack_front_link_up(struct sph_crack_front_links *l, const struct sph_kd_tree *tree, const double *h) {
   l->first[0] = 0;
   for (size_t q = 0; q < l->particles; q++)
-    l->first[q + 1] = l->first[q] + crack_front_within(l, tree, h[q], q, NULL, 0);
+    l->first[q + 1] = l->first[q] + sph_kd_tree_within(tree, l->place + 3 * q, 2 * h[q], NULL, 0);
   l->other = malloc(l->first[l->particles] * sizeof *l->other);
   for (size_t q = 0; l->other && q < l->particles; q++)
-    crack_front_within(l, tree, h[q], q, l->other + l->first[q], l->first[q + 1] - l->first[q]);
+    sph_kd_tree_within(tree, l->place + 3 * q, 2 * h[q], l->other + l->first[q], l->first[q + 1] - l->first[q]);
   return l->other != NULL;
-}
-
-static bool crack_front_take(struct sph_crack_front_links *l, size_t n) {
-  l->particles = n;
-  l->place = malloc(3 * n * sizeof *l->place);
-  l->first = malloc((n + 1) * sizeof *l->first);
-  l->tip = malloc(n * sizeof *l->tip);
-  l->near = calloc(n, sizeof *l->near);
-  return l->place && l->first && l->tip && l->near;
 }
 
 static status crack_front_prepare(const struct sph_inputs *inputs, const struct sph_particles *p,
@@ -261,8 +245,13 @@ static status crack_front_prepare(const struct sph_inputs *inputs, const struct 
   (void)inputs;
   struct sph_kd_tree *tree = NULL;
   const size_t n = body->last - body->first, from = body->first;
-  struct sph_crack_front_links *links = calloc(1, sizeof *links);
-  if (!links || !crack_front_take(links, n)) {
+  struct sph_crack_front_links *links = memory_small(1, sizeof *links);
+  links->particles = n;
+  links->place = malloc(3 * n * sizeof *links->place);
+  links->first = malloc((n + 1) * sizeof *links->first);
+  links->tip = malloc(n * sizeof *links->tip);
+  links->near = calloc(n, sizeof *links->near);
+  if (!links->place || !links->first || !links->tip || !links->near) {
     crack_front_free_prepared(links);
     return status_fail(error, STATUS_MEMORY, "no memory for the crack fronts of %zu particles", n);
   }

@@ -167,8 +167,8 @@ INLINE void TYPED(gradient_correction_sum)(const struct pair_batch *p, const vec
 #ifdef SPH_MODULE_INPUT_ROWS
 INPUT_SWITCH(method.gradient_correction, gradient_correction.on, 0,
              .doc = "Velocity gradients exact for linear fields, and forces conjugate to them: a body turns without "
-                    "strain and keeps its angular momentum, and its free sides are as stiff as its inside. For "
-                    "ringing and spinning bodies; costs a quarter more time.",
+                    "strain and keeps its angular momentum, and its free sides are as stiff as its inside. For ringing "
+                    "and spinning bodies; costs a quarter more time.",
              .source = "Randles & Libersky 1996; Bonet & Lok 1999; off in BA95"),
 #endif
 
@@ -190,8 +190,7 @@ static const struct sph_column_need gradient_correction_columns[] = {{SPH_COLUMN
 static const struct sph_module gradient_correction_module = {
     .name = "gradient_correction",
     .doc = "Velocity gradients are exact for linear fields, also at surfaces, and forces are conjugate to them: a "
-           "rigid rotation "
-           "strains nothing, energy and angular momentum keep, free sides are as stiff as the inside.",
+           "rigid rotation strains nothing, energy and angular momentum keep, free sides are as stiff as the inside.",
     .source = "Randles & Libersky 1996; Bonet & Lok 1999 (Comput. Methods Appl. Mech. Eng. 180, 97)",
     .when = "gradient_correction: true",
     .on = gradient_correction_on,

@@ -7,6 +7,7 @@
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system.h"
+#include "schemas/memory.h"
 
 #define SPH_MODULE_DESCRIPTORS
 #include "engine/sph/modules/declarations.h"

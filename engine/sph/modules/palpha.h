@@ -282,18 +282,18 @@ INPUT_REAL(fidelity.distention_step, palpha.distention_step, "1", 0.01, 1e-6, 1,
 #define TWO_POWER(member, unit, low, high, flags_, ...)                                                                \
   MATERIAL_REAL(porosity.member, palpha.member, unit, NAN, low, high, .when = "porosity.curve=two-power",              \
                 .flags = FIELD_REQUIRED | (flags_), __VA_ARGS__)
-    MATERIAL_CHOICE(
-        porosity.curve, palpha.curve,
-        FIELD_WORDS_HERE(SPH_CRUSHES, [SPH_CRUSH_NONE] = "none", [SPH_CRUSH_QUADRATIC] = "quadratic",
-                         [SPH_CRUSH_TWO_POWER] = "two-power"),
-        .label = "crush curve",
-        .choice_docs = "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"
-                       "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",
-        .doc = "Crush curve: how pores far below the resolution close under pressure (P-alpha). The material's density "
-               "and yield_stress are then those of the solid between the pores, and the porous body yields at "
-               "Y_0/alpha. tension_limit is that of the porous body, as strengths are measured (our choice); of the "
-               "solid's value give that over alpha_0.",
-        .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"),
+    MATERIAL_CHOICE(porosity.curve, palpha.curve,
+                    FIELD_WORDS_HERE(SPH_CRUSHES, [SPH_CRUSH_NONE] = "none", [SPH_CRUSH_QUADRATIC] = "quadratic",
+                                     [SPH_CRUSH_TWO_POWER] = "two-power"),
+                    .label = "crush curve",
+                    .choice_docs =
+                        "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"
+                        "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",
+                    .doc = "Crush curve: how pores far below the resolution close under pressure (P-alpha). The "
+                           "material's density and yield_stress are then those of the solid between the pores, and the "
+                           "porous body yields at Y_0/alpha. tension_limit is that of the porous body, as strengths "
+                           "are measured (our choice); of the solid's value give that over alpha_0.",
+                    .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"),
     PORES(distention, "1", 1, 100, .flags = FIELD_REQUIRED,
           .doc = "alpha_0: density of the solid over that of the porous body. 1: no pores, the solid itself to the "
                  "bit. In a scene porosity.fraction may be given instead.",
@@ -328,15 +328,14 @@ INPUT_REAL(fidelity.distention_step, palpha.distention_step, "1", 0.01, 1e-6, 1,
                        "without pores.",
                 .source = "Jutzi, Benz & Michel 2008"),
     RESULT_SHARE(compaction.mass_fraction, palpha.compaction.mass_fraction,
-                 .doc =
-                     "Impact: mass share of the target that was compacted: its distention at zero pressure fell from "
-                     "1.01 or more to below 1.01. Off without pores.",
+                 .doc = "Impact: mass share of the target that was compacted: its distention at zero pressure fell "
+                        "from 1.01 or more to below 1.01. Off without pores.",
                  .source = "Jutzi & Benz, figure 2"),
     RESULT_REAL(compaction.volume, palpha.compaction.volume, "m^3", 0,
                 .doc = "Impact: volume that the retained matter lost as its pores closed; off without pores."),
-    RESULT_REAL(compaction.depth, palpha.compaction.depth, "m", 0,
-                .doc = "Impact: depth at the start of the deepest compacted particle near the axis; off without "
-                       "pores."),
+    RESULT_REAL(
+        compaction.depth, palpha.compaction.depth, "m", 0,
+        .doc = "Impact: depth at the start of the deepest compacted particle near the axis; off without pores."),
     RESULT_REAL(compaction.reach, palpha.compaction.reach, "m", 0,
                 .doc = "Impact: largest distance from the point of impact at which matter lost a hundredth of its "
                        "pores; off without pores."),
@@ -444,10 +443,8 @@ static void palpha_set_up(const struct sph_body_physics *body, struct sph_partic
 
 static status palpha_prepare(const struct sph_inputs *inputs, const struct sph_particles *particles,
                              struct sph_solid *body, struct error *error) {
-  struct sph_palpha_law *law = malloc(sizeof *law);
+  struct sph_palpha_law *law = memory_small(1, sizeof *law);
   (void)inputs, (void)particles;
-  if (!law)
-    return status_fail(error, STATUS_MEMORY, "no memory for a crush curve");
   body->prepared[SPH_MODULE_palpha] = law;
   return sph_palpha_prepare(&body->physics.material.palpha, &body->physics.material, law, error);
 }

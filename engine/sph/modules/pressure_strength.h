@@ -89,8 +89,8 @@ MATERIAL_CHOICE(
         SPH_PRESSURE_STRENGTHS, [SPH_PRESSURE_STRENGTH_NONE] = "none", [SPH_PRESSURE_STRENGTH_LUNDBORG] = "lundborg"),
     .absent = "none", .when = "../strength=true", .label = "yield law",
     .choice_docs = "yield_stress at any pressure, and (1 - D) of the deviator acts\n"
-                   "intact rock follows Lundborg, broken rock keeps friction, and damage acts on the deviator "
-                   "through the yield stress alone; yield_stress is not used, melt_energy is",
+                   "intact rock follows Lundborg, broken rock keeps friction, and damage acts on the deviator through "
+                   "the yield stress alone; yield_stress is not used, melt_energy is",
     .doc = "Yield stress under pressure.", .source = "Collins, Melosh & Ivanov 2004; Jutzi 2015"),
     OF_LAW(intact_cohesion, "Pa", 90e6, 0, 1e15, .doc = "Y_0: bound of sqrt(J2) of intact rock at P = 0.",
            .source = "Collins, Melosh & Ivanov 2004; 90 MPa: granite, Jutzi 2015"),
@@ -117,11 +117,10 @@ static status pressure_strength_check_material(const struct sph_material *m, str
   const struct sph_pressure_strength_material *p = &m->pressure_strength;
   if (p->law == SPH_PRESSURE_STRENGTH_NONE || p->intact_limit > p->intact_cohesion)
     return STATUS_OK;
-  return status_fail(
-      error, STATUS_CONTENT,
-      "pressure_strength.intact_limit is %.4g Pa, not above intact_cohesion %.4g Pa: raise it, as strength "
-      "grows with pressure",
-      p->intact_limit, p->intact_cohesion);
+  return status_fail(error, STATUS_CONTENT,
+                     "pressure_strength.intact_limit is %.4g Pa, not above intact_cohesion %.4g Pa: raise it, as "
+                     "strength grows with pressure",
+                     p->intact_limit, p->intact_cohesion);
 }
 
 static const struct sph_column_need pressure_strength_columns[] = {{SPH_COLUMNS_OF(shear_damage), 0, NULL}, {0}};

@@ -55,8 +55,8 @@ static const sph_hook tension_limit_hooks[SPH_STAGES] =
 #ifdef SPH_MODULE_MATERIAL_ROWS
 MATERIAL_REAL(tension_limit, tension_limit.pressure, "Pa", NAN, 0, 1e15, .flags = FIELD_MAY_BE_OFF,
               .doc = "Largest tension of a body without flaws (its lowest pressure is minus this). It falls with "
-                     "expansion, to none at 0.9 of the density, so that cold matter reaches 1/(1 + 10 "
-                     "tension_limit/A) of it. off: no limit, down to -A and beyond."),
+                     "expansion, to none at 0.9 of the density, so that cold matter reaches 1/(1 + 10 tension_limit/A) "
+                     "of it. off: no limit, down to -A and beyond."),
 #endif
 
 #ifdef SPH_MODULE_DESCRIPTORS
@@ -68,13 +68,10 @@ MATERIAL_REAL(tension_limit, tension_limit.pressure, "Pa", NAN, 0, 1e15, .flags 
 
 static const struct sph_module tension_limit_module = {
     .name = "tension_limit",
-    .doc =
-        "Pressure is not below -tension_limit: a spall strength for matter without flaws. It falls with expansion "
-        "and is gone at "
-        "0.9 of the density: torn matter does not pull (nor shear), or P/rho^2 of thin debris would grow without "
-        "bound. "
-        "It is that of the body as it is, whatever the density of its solid matter: so tensile and spall strengths are "
-        "measured.",
+    .doc = "Pressure is not below -tension_limit: a spall strength for matter without flaws. It falls with expansion "
+           "and is gone at 0.9 of the density: torn matter does not pull (nor shear), or P/rho^2 of thin debris would "
+           "grow without bound. It is that of the body as it is, whatever the density of its solid matter: so tensile "
+           "and spall strengths are measured.",
     .source = "Asphaug & Melosh 1993; the fall with expansion, and that it is the strength of the body as it is, are "
               "our choices",
     .when = "a material with a tension_limit in a body without flaws",

@@ -26,8 +26,7 @@ INPUT_CHOICE(fracture.draw, weibull.draw,
              FIELD_WORDS_HERE(SPH_FLAW_DRAWS, [SPH_FLAWS_RANKED] = "ranked", [SPH_FLAWS_POISSON] = "poisson"),
              .number = SPH_FLAWS_POISSON, .when = "target.fracture=auto|on",
              .choice_docs =
-                 "eps_j = (j/kV)^(1/m), as printed: a seed only moves the flaws about, and the scatter is too "
-                 "small\n"
+                 "eps_j = (j/kV)^(1/m), as printed: a seed only moves the flaws about, and the scatter is too small\n"
                  "the body's flaw strengths are a draw themselves: each seed is a specimen of its own",
              .doc = "The strengths of the flaws.", .source = "BA95 eq. 20 for `ranked`"),
     INPUT_CHOICE(fidelity.flaws, weibull.flaws,

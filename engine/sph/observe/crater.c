@@ -176,11 +176,9 @@ status sph_crater_measure(const struct sph_particles *start, const struct sph_pa
   measure_ejecta(start, now, o, results);
 
   struct map map;
-  status code = make_map(start, o, &map, error);
-  if (code)
-    return code;
+  TRY(make_map(start, o, &map, error));
   fill_map(start, now, o, &map);
-  code = measure_hole(&map, o, results, error);
+  status code = measure_hole(&map, o, results, error);
   free(map.before);
   return code;
 }

@@ -73,16 +73,12 @@ static double place_of(const struct sph_run *run, double level) {
 }
 
 /* A front is where density reaches the mean of the values ahead of it and behind it. */
-static double front_place(const struct sph_run *run, double ahead, double behind) {
-  return place_of(run, (ahead + behind) / 2);
-}
-
 void sph_plate_look(const struct sph_run *run, const struct sph_particles *p, double *shock, double *precursor) {
   const struct sph_plane_shock *exact = &run->exact;
   double between = exact->has_precursor ? exact->precursor.density : exact->first_density;
   fill_layers(run, p);
-  *precursor = exact->has_precursor ? front_place(run, exact->first_density, between) : (double)NAN;
-  *shock = exact->has_shock ? front_place(run, between, exact->shock.density) : (double)NAN;
+  *precursor = exact->has_precursor ? place_of(run, (exact->first_density + between) / 2) : (double)NAN;
+  *shock = exact->has_shock ? place_of(run, (between + exact->shock.density) / 2) : (double)NAN;
 }
 
 /* Slope of places against times by least squares over the second half of the run, when a front has its final form. */
@@ -135,7 +131,7 @@ static void find_flat(const struct sph_run *run, double from, double to, double 
 /* Shock: the middle half from the piston to the front, without the front's own rise, which is tens of spacings wide in
  * a weak shock; at least the second quarter. Precursor: where pressure is flat. */
 struct sph_plate_regions sph_plate_regions(const struct sph_run *run) {
-  double shock, precursor, piston = run->inputs.piston.speed * sph_system_time(run->system);
+  double shock, precursor, piston = run->inputs.piston.speed * run->system->now.time;
   sph_plate_look(run, run->now, &shock, &precursor);
   struct sph_plate_regions regions = {{NAN, NAN}, {NAN, NAN}};
   if (run->exact.has_shock) {
@@ -182,7 +178,7 @@ void sph_plate_report(const struct sph_run *run, struct sph_results *r) {
 }
 
 bool sph_plate_leaks(const struct sph_run *run) {
-  const double piston = run->inputs.piston.speed * sph_system_time(run->system);
+  const double piston = run->inputs.piston.speed * run->system->now.time;
   const double behind = piston - sph_derived_spacing(&run->inputs) / 2;
   for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++)
     if (run->now->x[i] < behind)

@@ -47,9 +47,7 @@ status sph_report_fragments(const struct sph_run *run, double static_strength, b
 static status find_gaps(const struct sph_run *run, bool *gaps, struct error *error) {
   const size_t bodies = (size_t)run->body_count - sph_derived_has_intruder(&run->inputs);
   struct sph_fragments found;
-  const status code = fragments_of(run, run->start, NAN, true, &found, error);
-  if (code)
-    return code;
+  TRY(fragments_of(run, run->start, NAN, true, &found, error));
   *gaps = found.count > bodies;
   sph_fragments_clear(&found);
   return STATUS_OK;
@@ -66,9 +64,7 @@ static double largest_share(const struct sph_fragments *found) {
 static status find_largest_share(const struct sph_run *run, double static_strength, double *share,
                                  struct error *error) {
   struct sph_fragments found;
-  status code = sph_report_fragments(run, static_strength, true, &found, error);
-  if (code)
-    return code;
+  TRY(sph_report_fragments(run, static_strength, true, &found, error));
   *share = largest_share(&found);
   sph_fragments_clear(&found);
   return STATUS_OK;
@@ -140,20 +136,9 @@ static void report_damage(const struct sph_run *run, struct sph_results *results
   results->undamaged_fraction = sph_results_share(undamaged, mass);
 }
 
-/* The time of the first damage, and whether and when fracture ceased. */
-static void report_fracture(const struct sph_run *run, struct sph_results *results) {
-  bool quiet = run->state.frame.stop == SPH_STOP_QUIET, broke = !isnan(run->state.first_damage);
-  results->fracture_ceased = quiet || (run->state.frame.stop == SPH_STOP_END_TIME && !broke);
-  results->first_damage = run->state.first_damage;
-  if (quiet)
-    results->cease_time = run->state.quiet_since;
-}
-
 static status report_stretch(const struct sph_run *run, struct sph_results *results, struct error *error) {
   struct sph_fragments found;
-  status code = sph_report_fragments(run, NAN, false, &found, error);
-  if (code)
-    return code;
+  TRY(sph_report_fragments(run, NAN, false, &found, error));
   size_t parts = 0;
   for (size_t k = 0; k < found.count; k++)
     parts += found.fragments[k].mass * ROD_PARTS > found.mass;
@@ -220,12 +205,6 @@ static double momentum_scale(const struct sph_run *run, const struct sph_ledger 
   return fmax(ledger->momentum_scale, run->state.momentum_scale_start);
 }
 
-/* Angular momentum about axis k is conserved where both other directions are open. */
-static double angular_change(const struct sph_run *run, const struct sph_ledger *ledger, int k) {
-  bool conserved = isnan(run->periodic[(k + 1) % 3]) && isnan(run->periodic[(k + 2) % 3]);
-  return conserved ? ledger->angular_momentum[k] - run->state.angular_start[k] : 0;
-}
-
 /* Energies, clamps and the error of angular momentum. `input`: energy put in, J. */
 static void report_ledger(const struct sph_run *run, const struct sph_ledger *ledger, double input,
                           struct sph_results *results) {
@@ -238,21 +217,23 @@ static void report_ledger(const struct sph_run *run, const struct sph_ledger *le
   results->clamped_share = sph_results_share(fabs(ledger->clamped), input);
 
   double change[3];
-  for (int k = 0; k < 3; k++)
-    change[k] = angular_change(run, ledger, k);
+  for (int k = 0; k < 3; k++) { /* it is conserved about axis k where both other directions are open */
+    const bool conserved = isnan(run->periodic[(k + 1) % 3]) && isnan(run->periodic[(k + 2) % 3]);
+    change[k] = conserved ? ledger->angular_momentum[k] - run->state.angular_start[k] : 0;
+  }
   double scale = fmax(norm(run->state.angular_start), momentum_scale(run, ledger) * sph_run_extent(run));
   if (closed(run))
     results->angular_momentum_error = sph_results_share(norm(change), scale);
 }
 
 static void report_steps(const struct sph_run *run, const struct sph_ledger *ledger, struct sph_results *results) {
-  double steps = (double)sph_system_steps(run->system);
+  double steps = (double)run->system->now.steps;
   const uint64_t *by = run->state.limited;
 #define TIME_STEP_LIMIT(NAME, member, doc)                                                                             \
   results->limited.member = sph_results_share((double)by[SPH_LIMIT_##NAME], steps);
 #include "engine/sph/modules/declarations.h"
   results->density_held_share = sph_results_share((double)ledger->density_held, steps * (double)run->start->n);
-  results->neighbours = sph_results_finite(sph_system_neighbours(run->system));
+  results->neighbours = sph_results_finite(run->system->now.neighbours);
 }
 
 #define SPH_MODULE_REPORT
@@ -282,15 +263,17 @@ static status fill_results(const struct sph_run *run, const struct sph_ledger *l
     results->projectile_mass = run->range[1].mass;
     results->specific_energy = sph_results_finite(0.5 * run->range[1].mass * speed * speed / run->range[0].mass);
   }
-  report_fracture(run, results);
+  const bool quiet = run->state.frame.stop == SPH_STOP_QUIET, broke = !isnan(run->state.first_damage);
+  results->fracture_ceased = quiet || (run->state.frame.stop == SPH_STOP_END_TIME && !broke);
+  results->first_damage = run->state.first_damage;
+  if (quiet)
+    results->cease_time = run->state.quiet_since;
   report_damage(run, results);
   report_second(run, found, results);
   report_ledger(run, ledger, input, results);
   report_steps(run, ledger, results);
-  status code = report_largest(run, found, results, error);
-  if (code)
-    return code;
-  code = report_protocol(run, results, error);
+  TRY(report_largest(run, found, results, error));
+  status code = report_protocol(run, results, error);
   if (!code)
     report_modules(run, results);
   return code;
@@ -298,8 +281,8 @@ static status fill_results(const struct sph_run *run, const struct sph_ledger *l
 
 static void fill_outcome(const struct sph_run *run, const struct sph_ledger *ledger, double input,
                          const struct sph_fragments *found, struct outcome *outcome) {
-  *outcome = frame_outcome(&run->frame, isfinite(run->state.smallest_step) ? run->state.smallest_step
-                                                                           : sph_system_last_step(run->system));
+  *outcome = frame_outcome(&run->frame,
+                           isfinite(run->state.smallest_step) ? run->state.smallest_step : run->system->now.last_step);
   const struct outcome_small small = {.dust = run->inputs.fragments.dust_mass,
                                       .complete = (SPH_FRAGMENTS_COMPLETE - 0.5) * found->mass / (double)run->targets};
   outcome_fragments(outcome, found->count, found->fragments, &small);
@@ -321,9 +304,7 @@ static status warn(const struct sph_run *run, const struct sph_results *results,
                    struct error *error) {
   unsigned set = sph_warn_inputs(&run->inputs, NULL) & ~(unsigned)(WARNINGS_PISTON | WARNINGS_LINKS);
   bool gaps;
-  const status code = find_gaps(run, &gaps, error);
-  if (code)
-    return code;
+  TRY(find_gaps(run, &gaps, error));
   if (gaps)
     set |= WARNINGS_LINKS;
   if (outcome->energy_error > WARNINGS_LARGEST_DRIFT)
@@ -345,13 +326,11 @@ status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sp
   sph_run_read(run);
   const struct sph_inputs *in = &run->inputs;
   struct sph_fragments found;
-  status code = sph_report_fragments(run, in->fragments.static_strength, in->fragments.veneer, &found, error);
-  if (code)
-    return code;
+  TRY(sph_report_fragments(run, in->fragments.static_strength, in->fragments.veneer, &found, error));
 
   struct sph_ledger ledger = sph_system_ledger(run->system);
   double input = run->state.frame.energy_input + fabs(ledger.work_of_held);
-  code = fill_results(run, &ledger, input, &found, results, error);
+  status code = fill_results(run, &ledger, input, &found, results, error);
   if (!code) {
     fill_outcome(run, &ledger, input, &found, outcome);
     code = warn(run, results, outcome, error);

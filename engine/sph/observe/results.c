@@ -30,26 +30,22 @@ static const struct field rows[] = {
            .doc = "Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time."),
     REAL(first_damage, "s", 0, .doc = "Time when damage of a body with flaws began; off without damage."),
     REAL(cease_time, "s", 0,
-         .doc =
-             "Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture has "
-             "not ceased."),
+         .doc = "Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture "
+                "has not ceased."),
     SHARE(mean_damage, .doc = "Mean damage D of the target at the end, weighted by mass.", .source = "BA95 eq. 14"),
-    SHARE(undamaged_fraction,
-          .doc =
-              "Mass share of the target's particles with damage below fragments.damage. Particles that only the static "
-              "strength breaks count as undamaged."),
+    SHARE(undamaged_fraction, .doc = "Mass share of the target's particles with damage below fragments.damage. "
+                                     "Particles that only the static strength breaks count as undamaged."),
     SHARE(largest.bare_fraction,
-          .doc = "M_1/M of the core: mass of the largest fragment without its damaged layer over "
-                 "the target's mass, with the static strength.",
+          .doc = "M_1/M of the core: mass of the largest fragment without its damaged layer over the target's mass, "
+                 "with the static strength.",
           .source = "BA95 section 4.4"),
     SHARE(largest.veneer_fraction,
-          .doc = "M_1/M: mass of the largest fragment with its damaged layer over the target's mass, with "
-                 "the static strength.",
+          .doc = "M_1/M: mass of the largest fragment with its damaged layer over the target's mass, with the static "
+                 "strength.",
           .source = "BA95 section 4.4"),
     SHARE(largest.dynamic_fraction, .doc = "M_1/M with the damaged layer and without the static strength."),
-    SHARE(largest.axis_middle,
-          .doc = "Middle over longest axis of the ellipsoid that has the moments of inertia of the "
-                 "largest fragment. Off when that has fewer than 100 particles."),
+    SHARE(largest.axis_middle, .doc = "Middle over longest axis of the ellipsoid that has the moments of inertia of "
+                                      "the largest fragment. Off when that has fewer than 100 particles."),
     SHARE(largest.axis_short, .doc = "Shortest over longest axis of the same ellipsoid. 1 is a sphere."),
     REAL(largest.speed, "m/s", 0,
          .doc = "Speed of the largest fragment's centre of mass. Off when that has fewer than 100 particles."),
@@ -63,19 +59,16 @@ static const struct field rows[] = {
           .source = "Jutzi & Benz, section 3"),
     REAL(ejecta.momentum, "kg m/s", 0, .doc = "Impact: momentum of the ejecta along the outward normal."),
     REAL(crater.depth, "m", 0,
-         .doc =
-             "Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing "
-             "of the particles."),
+         .doc = "Impact: largest depth of the crater below the surface at the start. 0 when it is less than the "
+                "spacing of the particles."),
     REAL(crater.radius, "m", 0, .doc = "Impact: radius of a circle whose area is that of the crater at the surface."),
     REAL(crater.volume, "m^3", 0,
          .doc =
              "Impact: volume of the crater, between the surface at the start and the surface of the retained matter."),
-    SHARE(
-        crater.compaction_share,
-        .doc =
-            "Impact: volume lost by compaction over the sum of that volume and the ejecta's volume at the start. 1 is "
-            "a crater made by compaction alone. Off when both volumes are 0.",
-        .source = "Jutzi & Benz, section 3.1"),
+    SHARE(crater.compaction_share,
+          .doc = "Impact: volume lost by compaction over the sum of that volume and the ejecta's volume at the start. "
+                 "1 is a crater made by compaction alone. Off when both volumes are 0.",
+          .source = "Jutzi & Benz, section 3.1"),
     REAL(energy.kinetic, "J", 0, .doc = "Kinetic energy at the end."),
     REAL(energy.internal, "J", 0, .doc = "Internal energy at the end, elastic energy included."),
     REAL(energy.damped, "J", -HUGE_VAL,
@@ -91,10 +84,9 @@ static const struct field rows[] = {
     SHARE(density_held_share,
           .doc = "Share of all particle steps that held the density at its lower limit. Such a step adds no energy."),
     REAL(angular_momentum_error, "1", 0,
-         .doc =
-             "Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the "
-             "larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times "
-             "the target's extent. Only axes count across which nothing is periodic."),
+         .doc = "Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the "
+                "larger of the angular momentum at the start and the sum of momenta (the larger of start and end) "
+                "times the target's extent. Only axes count across which nothing is periodic."),
 #define TIME_STEP_LIMIT(NAME, member, doc_) SHARE(limited.member, .doc = "Share of the steps limited by " doc_ "."),
 #include "engine/sph/modules/declarations.h"
     REAL(neighbours, "1", 0, .doc = "Mean number of neighbours within 2h at the end."),
@@ -102,18 +94,15 @@ static const struct field rows[] = {
     REAL(peak.strain, "1", 0, .doc = "Stretch: strain (strain rate times time) at the largest stress."),
     REAL(peak.time, "s", 0, .doc = "Stretch: time of the largest stress."),
     REAL(cracks, "1", 0,
-         .doc =
-             "Stretch: number of parts of more than 1 % of the rod's mass, minus one. Parts are found without static "
-             "strength and without damaged layers. Overlapping cracks joined by broken rock do not count, "
-             "even if the rod no longer carries load."),
+         .doc = "Stretch: number of parts of more than 1 % of the rod's mass, minus one. Parts are found without "
+                "static strength and without damaged layers. Overlapping cracks joined by broken rock do not count, "
+                "even if the rod no longer carries load."),
     REAL(frequency, "1/s", 0, .doc = "Vibration: frequency of the first mode, from its zero crossings."),
     REAL(rebound, "1", -HUGE_VAL, .doc = "Collision: speed of separation of the bodies over their speed of approach."),
     REAL(shock.speed, "m/s", -HUGE_VAL,
-         .doc =
-             "Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. "
-             "The "
-             "front is where density passes the mean of the values ahead and behind. Off when the piston is too slow "
-             "for a shock. Of no use, and maybe below 0, with the warning arrival.",
+         .doc = "Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the "
+                "run. The front is where density passes the mean of the values ahead and behind. Off when the piston "
+                "is too slow for a shock. Of no use, and maybe below 0, with the warning arrival.",
          .source = "Jutzi, Benz & Michel 2008"),
     REAL(shock.speed_exact, "m/s", 0, .doc = "Piston: speed of the shock by the jump conditions.",
          .source = "Rankine; Hugoniot"),
@@ -123,8 +112,8 @@ static const struct field rows[] = {
     REAL(shock.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure behind the shock, in the same region."),
     REAL(shock.pressure_exact, "Pa", 0, .doc = "Piston: pressure behind the shock by the jump conditions."),
     REAL(precursor.speed, "m/s", -HUGE_VAL,
-         .doc = "Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there "
-                "is none, and when the shock is faster. Of no use, and maybe below 0, with the warning arrival."),
+         .doc = "Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is "
+                "none, and when the shock is faster. Of no use, and maybe below 0, with the warning arrival."),
     REAL(precursor.speed_exact, "m/s", 0, .doc = "Piston: speed of the precursor by the jump conditions."),
     REAL(precursor.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure between precursor and shock."),
     REAL(precursor.pressure_exact, "Pa", 0,

@@ -161,14 +161,6 @@ static void add_profile(struct snapshot_file *file, const struct sph_run *run) {
   free(layers);
 }
 
-/* The spin of few particles is that of their lattice. */
-static void hide_small_spins(struct sph_fragments *found) {
-  for (size_t k = 0; k < found->count; k++)
-    if (found->fragments[k].count < SPH_FRAGMENTS_MEASURED)
-      for (int d = 0; d < 3; d++)
-        found->fragments[k].spin[d] = NAN;
-}
-
 status sph_snapshot_write(struct sph_run *run, const char *path, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   struct outcome outcome;
@@ -190,7 +182,10 @@ status sph_snapshot_write(struct sph_run *run, const char *path, struct error *e
   code = sph_report_fragments(run, in->fragments.static_strength, in->fragments.veneer, &found, error);
   if (code)
     goto cleanup;
-  hide_small_spins(&found);
+  for (size_t k = 0; k < found.count; k++) /* the spin of few particles is that of their lattice */
+    if (found.fragments[k].count < SPH_FRAGMENTS_MEASURED)
+      for (int d = 0; d < 3; d++)
+        found.fragments[k].spin[d] = NAN;
   code = snapshot_file_open(sph_engine.name, sph_engine.doc, sph_engine.results_version, run->seed, &sph_inputs, in,
                             &file, error);
   if (code)

@@ -407,10 +407,8 @@ static status link_members(struct search *s, struct error *error) {
   const struct sph_particles *p = s->p;
   const double width = s->options->layer_width;
   struct cell_grid *grid = NULL;
-  status code = cell_grid_create(p->n, p->x, p->y, p->z, s->options->h ? s->options->h : p->h, s->role,
-                                 s->options->link_length, s->options->periodic, &grid, error);
-  if (code)
-    return code;
+  TRY(cell_grid_create(p->n, p->x, p->y, p->z, s->options->h ? s->options->h : p->h, s->role, s->options->link_length,
+                       s->options->periodic, &grid, error));
   cell_grid_visit(grid, false, join, s);
   for (size_t i = 0; i < p->n; i++)
     if (s->role[i] == CELL_GRID_ACTIVE)
@@ -419,9 +417,7 @@ static status link_members(struct search *s, struct error *error) {
     cell_grid_visit(grid, true, choose_mate, s);
   cell_grid_free(grid);
   if (s->options->layer && width > 0)
-    code = choose_mates_within(s, width, error);
-  if (code)
-    return code;
+    TRY(choose_mates_within(s, width, error));
   for (size_t i = 0; i < p->n; i++)
     if (s->mate[i] != UINT32_MAX) {
       s->out->part[i] = SPH_FRAGMENTS_LAYER;
@@ -586,17 +582,11 @@ static status find(struct search *s, struct error *error) {
   if (!allocate(s, s->p->n + 1))
     return status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu particles", s->p->n);
   classify(s);
-  status code = link_members(s, error);
-  if (code)
-    return code;
+  TRY(link_members(s, error));
   unwrap(s);
-  code = fragments_find_space(s->members, s->member, s->links, (const uint32_t(*)[2])s->link, s->label,
-                              &s->out->fragments, &s->out->count, error);
-  if (code)
-    return code;
-  code = stop_endless_spins(s, error);
-  if (code)
-    return code;
+  TRY(fragments_find_space(s->members, s->member, s->links, (const uint32_t(*)[2])s->link, s->label, &s->out->fragments,
+                           &s->out->count, error));
+  TRY(stop_endless_spins(s, error));
   sum_up(s);
   measure_shape(s, s->out->axis_ratio);
   return STATUS_OK;

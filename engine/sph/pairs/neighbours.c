@@ -11,6 +11,7 @@
 #include "engine/sph/pairs/lists.h"
 
 #include "engine/sph/pairs/pairs.h"
+#include "schemas/memory.h"
 
 #include "engine/grow.h"
 
@@ -35,9 +36,7 @@ struct sph_neighbours {
 
 struct sph_neighbours *sph_neighbours_create(size_t n, size_t chunk, size_t per_list,
                                              const struct sph_pair_kernels *kernels) {
-  struct sph_neighbours *s = calloc(1, sizeof *s);
-  if (!s)
-    return NULL;
+  struct sph_neighbours *s = memory_small(1, sizeof *s);
   s->kernels = kernels;
   s->chunk = chunk;
   s->per_list = per_list;
@@ -211,9 +210,7 @@ status sph_neighbours_find(struct sph_neighbours *s, size_t n, const double *x, 
                            const double *reach, const double periodic[3], int threads, struct error *error) {
   s->particles = (struct sph_near_particles){.place = {x, y, z}, .reach = reach};
   s->chunks = (n + s->chunk - 1) / s->chunk;
-  const status code = check_periods(s, reach, n, periodic, error);
-  if (code)
-    return code;
+  TRY(check_periods(s, reach, n, periodic, error));
   (void)threads;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)

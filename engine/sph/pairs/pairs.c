@@ -27,6 +27,7 @@
 #include "engine/grow.h"
 #include "engine/sph/pairs/lists.h"
 #include "engine/sph/pairs/pairs.h"
+#include "schemas/memory.h"
 
 enum { PAD = 7 }; /* neighbours.c reads so many elements beyond the end */
 
@@ -83,14 +84,6 @@ const struct sph_pair_kernels *sph_pairs_kernels_choose(void) {
 
 /* ---- life ---- */
 
-/* The terms that the options turn on. */
-static struct sph_pair_shape shape_of(const struct sph_pair_options *o) {
-  return (struct sph_pair_shape){
-#define PAIR_TERM(name, on) .name = on,
-#include "engine/sph/modules/declarations.h"
-  };
-}
-
 /* Finds the combination of terms of a shape. */
 static status find_combination(const struct sph_pair_shape *shape, enum sph_pair_combination *out,
                                struct error *error) {
@@ -115,17 +108,6 @@ static status find_combination(const struct sph_pair_shape *shape, enum sph_pair
   );
 }
 
-static void choose_columns(struct sph_pairs *p, const struct sph_pair_options *options) {
-  p->options = *options;
-  p->threads = options->fidelity.threads > 1 ? (size_t)options->fidelity.threads : 1;
-  p->single = options->fidelity.precision == SPH_FLOAT;
-  p->kernels = sph_pairs_kernels_choose();
-  p->records = p->single ? p->kernels->in_float : p->kernels->in_double;
-  p->sums = sph_pair_shape_sums(p->shape, PAIR_TERMS);
-  p->in_columns = sph_pair_shape_stride(sph_pair_shape_columns(p->shape, PAIR_TERMS), p->records->bytes);
-  p->out_columns = sph_pair_shape_stride(p->sums, p->records->bytes);
-}
-
 static bool allocate(struct sph_pairs *p) {
   const size_t n = p->n;
   p->listed[0] = malloc(6 * (n + PAD) * sizeof(double));
@@ -147,20 +129,29 @@ static bool allocate(struct sph_pairs *p) {
 
 status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct sph_pairs **out, struct error *error) {
   *out = NULL;
-  const struct sph_pair_shape shape = shape_of(options);
+  const struct sph_pair_options *o = options;
+  const struct sph_pair_shape shape = {
+#define PAIR_TERM(name, on) .name = on,
+#include "engine/sph/modules/declarations.h"
+  };
   enum sph_pair_combination combination = 0;
   TRY(find_combination(&shape, &combination, error));
   if (options->fidelity.precision == SPH_FLOAT && n > SPH_NUMBER)
     return status_fail(error, STATUS_CONTENT, "float precision takes %d particles at most, not %zu: use double",
                        SPH_NUMBER, n);
-  struct sph_pairs *p = calloc(1, sizeof *p);
-  if (!p)
-    return status_fail(error, STATUS_MEMORY, "no memory for the pair loop of %zu particles", n);
+  struct sph_pairs *p = memory_small(1, sizeof *p);
   p->n = n;
   p->units = (struct sph_pair_units){1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
   p->shape = shape;
   p->combination = combination;
-  choose_columns(p, options);
+  p->options = *options;
+  p->threads = options->fidelity.threads > 1 ? (size_t)options->fidelity.threads : 1;
+  p->single = options->fidelity.precision == SPH_FLOAT;
+  p->kernels = sph_pairs_kernels_choose();
+  p->records = p->single ? p->kernels->in_float : p->kernels->in_double;
+  p->sums = sph_pair_shape_sums(p->shape, PAIR_TERMS);
+  p->in_columns = sph_pair_shape_stride(sph_pair_shape_columns(p->shape, PAIR_TERMS), p->records->bytes);
+  p->out_columns = sph_pair_shape_stride(p->sums, p->records->bytes);
   if (!allocate(p) ||
       sph_chunks_create(n, p->single ? PAIR_GROUP_FLOAT : PAIR_GROUP_DOUBLE, p->kernels, &p->lists, error)) {
     sph_pairs_free(p);
@@ -251,10 +242,7 @@ status sph_pairs_relist(struct sph_pairs *p, struct error *error) {
   for (int d = 0; d < 3; d++) /* a periodic axis has 2^32 units, so that integers wrap where it does */
     p->unit[d] = isnan(p->options.periodic[d]) ? p->h_unit : p->options.periodic[d] * 0x1p-32;
 
-  const status code = sph_chunks_list(&p->lists, p->n, at[0], at[1], at[2], p->reach, p->options.periodic,
-                                      (int)p->threads, error);
-  if (code)
-    return code;
+  TRY(sph_chunks_list(&p->lists, p->n, at[0], at[1], at[2], p->reach, p->options.periodic, (int)p->threads, error));
   const size_t in_size = p->in_columns * p->records->bytes, out_size = p->out_columns * p->records->bytes;
   if (!grow_aligned(&p->halo, &p->halo_capacity, p->lists.halos, out_size, 0) ||
       !grow_aligned(&p->out, &p->out_capacity, p->depth * p->lists.most_slots, out_size, 0) ||

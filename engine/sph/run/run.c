@@ -8,6 +8,7 @@
 #include "engine/outcome.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system.h"
+#include "schemas/memory.h"
 
 enum { LOOK_INTERVAL = 8 }; /* steps between two checks of the damage */
 
@@ -50,14 +51,10 @@ static status check_memory(const struct sph_inputs *in, struct error *error) {
 
 /* ---- advancing ---- */
 
-static bool can_crack(const struct sph_run *run) {
-  return run->flaw_count > 0;
-}
-
 /* Fracture is over when the mean damage grows by less than stop.quiet_growth during stop.quiet_time. */
 static void look_at_damage(struct sph_run *run) {
   struct sph_state *state = &run->state;
-  double damage = sph_system_damage(run->system, NULL), time = sph_system_time(run->system);
+  double damage = sph_system_damage(run->system, NULL), time = run->system->now.time;
   if (isnan(state->first_damage)) {
     if (!(damage > 0))
       return;
@@ -109,39 +106,28 @@ static struct frame_energy energy_of(void *of) {
                                .bound = run->inputs.fidelity.energy_bound};
 }
 
-static void look_at_end(struct sph_run *run) {
-  double time = sph_system_time(run->system);
-  if (time < run->inputs.stop.end_time)
-    return;
-  if (can_crack(run) && !isnan(run->state.first_damage))
-    frame_end(&run->state.frame, SPH_STOP_END_TIME, OUTCOME_END_TIME,
-              "damage still grew %.3g s before the hard end: raise stop.end_time", time - run->state.quiet_since);
-  else /* nothing has broken: there is no fracture that could go on */
-    frame_end(&run->state.frame, SPH_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
-}
-
 static double time_of(const void *run) {
-  return sph_system_time(((const struct sph_run *)run)->system);
+  return ((const struct sph_run *)run)->system->now.time;
 }
 
 static uint64_t steps_of(const void *run) {
-  return sph_system_steps(((const struct sph_run *)run)->system);
+  return ((const struct sph_run *)run)->system->now.steps;
 }
 
 static bool step(void *of) {
   struct sph_run *run = of;
   struct sph_state *state = &run->state;
   if (!sph_system_step(run->system, run->inputs.stop.end_time)) {
-    const int fault = sph_system_fault(run->system);
+    const int fault = run->system->fault;
     if (fault != SPH_FAULT_MEMORY)
       frame_end(&state->frame, SPH_STOP_FAULT, fault == SPH_FAULT_TIME_STEP ? OUTCOME_TIME_STEP : OUTCOME_NOT_FINITE,
-                "%s", sph_system_failure(run->system));
+                "%s", run->system->failure);
     return false;
   }
-  int limiter = sph_system_limiter(run->system);
+  const int64_t limiter = run->system->now.limiter;
   state->limited[limiter]++;
   if (limiter != SPH_LIMIT_END)
-    state->smallest_step = fmin(state->smallest_step, sph_system_last_step(run->system));
+    state->smallest_step = fmin(state->smallest_step, run->system->now.last_step);
   if (run->sample)
     sph_protocol_record(run);
   return true;
@@ -150,9 +136,17 @@ static bool step(void *of) {
 /* The rules of the end. */
 static void stop(void *of) {
   struct sph_run *run = of;
-  if (can_crack(run) && sph_system_steps(run->system) % LOOK_INTERVAL == 0)
+  const bool can_crack = run->flaw_count > 0;
+  const double time = run->system->now.time;
+  if (can_crack && run->system->now.steps % LOOK_INTERVAL == 0)
     look_at_damage(run);
-  look_at_end(run);
+  if (time < run->inputs.stop.end_time)
+    return;
+  if (can_crack && !isnan(run->state.first_damage))
+    frame_end(&run->state.frame, SPH_STOP_END_TIME, OUTCOME_END_TIME,
+              "damage still grew %.3g s before the hard end: raise stop.end_time", time - run->state.quiet_since);
+  else /* nothing has broken: there is no fracture that could go on */
+    frame_end(&run->state.frame, SPH_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
 }
 
 /* Every step checks that all values are finite. */
@@ -190,40 +184,30 @@ static void begin(struct sph_run *run) {
 
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error) {
   *out = NULL;
-  status code = sph_inputs_check(inputs, error);
-  if (code)
-    return code;
-  code = check_memory(inputs, error);
-  if (code)
-    return code;
+  TRY(sph_inputs_check(inputs, error));
+  TRY(check_memory(inputs, error));
 
-  struct sph_run *run = calloc(1, sizeof *run);
-  if (!run)
-    return status_fail(error, STATUS_MEMORY, "no memory for a run");
+  struct sph_run *run = memory_small(1, sizeof *run);
   run->inputs = *inputs;
   run->seed = seed;
-  code = sph_protocol_bodies(run, error);
-  if (code)
-    goto cleanup;
-  code = make_system(run, error);
-  if (code)
-    goto cleanup;
-  code = sph_particles_make(run->start->n, sph_system_columns_arrays(&run->system->columns), &run->now, error);
-  if (code)
-    goto cleanup;
-  code = sph_protocol_record_start(run, error);
-  if (code)
-    goto cleanup;
+  status code = sph_protocol_bodies(run, error);
+  if (!code)
+    code = make_system(run, error);
+  if (!code)
+    code = sph_particles_make(run->start->n, sph_system_columns_arrays(&run->system->columns), &run->now, error);
+  if (!code)
+    code = sph_protocol_record_start(run, error);
+  if (code) {
+    sph_run_free(run);
+    return code;
+  }
   for (int b = 0; b < SPH_RUN_BODIES; b++) { /* the system has its own copies */
     sph_flaws_free(run->flaws[b]);
     run->flaws[b] = NULL;
   }
   begin(run);
   *out = run;
-  run = NULL;
-cleanup:
-  sph_run_free(run);
-  return code;
+  return STATUS_OK;
 }
 
 void sph_run_free(struct sph_run *run) {

@@ -130,8 +130,7 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
   case SPH_STRETCH:
     fprintf(out,
             "stretch: a rod is pulled by its ends at %.4g /s, stretching evenly from the start (Benz & Asphaug 1995 "
-            "section "
-            "5.1)\n",
+            "section 5.1)\n",
             in->stretch.rate);
     break;
   case SPH_VIBRATION:
@@ -188,12 +187,11 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
     double E = sph_material_young_modulus(&target->material), m = target->material.weibull.m, n = flaws_expected(in);
     double log_kv = log(target->material.weibull.k) +
                     log(sph_derived_target_mass(in) / target->material.density); /* solid volume */
-    fprintf(
-        out,
-        "  flaws: about %.3g; the weakest opens at strain %.3g (%.3g Pa), the last at %.3g (%.3g Pa); cracks grow at "
-        "%.0f m/s\n",
-        n, exp(-log_kv / m), E * exp(-log_kv / m), exp((log(n) - log_kv) / m), E * exp((log(n) - log_kv) / m),
-        sph_material_crack_speed(&target->material));
+    fprintf(out,
+            "  flaws: about %.3g; the weakest opens at strain %.3g (%.3g Pa), the last at %.3g (%.3g Pa); cracks grow "
+            "at %.0f m/s\n",
+            n, exp(-log_kv / m), E * exp(-log_kv / m), exp((log(n) - log_kv) / m), E * exp((log(n) - log_kv) / m),
+            sph_material_crack_speed(&target->material));
   }
   if (sph_derived_has_projectile(in)) {
     struct sph_shape projectile = sph_derived_projectile(in);
@@ -208,13 +206,6 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
             sqrt(sph_material_young_modulus(&target->material) / target->material.density) / (2 * target->length));
 }
 
-static void plate(const struct sph_inputs *in, FILE *out) {
-  struct sph_plane_shock exact;
-  if (in->kind != SPH_PISTON || sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL))
-    return;
-  sph_plane_shock_describe(&exact, out);
-}
-
 char *sph_describe_scene(const struct sph_inputs *in) {
   char *text = NULL;
   size_t size = 0;
@@ -225,7 +216,9 @@ char *sph_describe_scene(const struct sph_inputs *in) {
   protocol(in, out);
   modules(in, out);
   numbers(in, out);
-  plate(in, out);
+  struct sph_plane_shock exact;
+  if (in->kind == SPH_PISTON && !sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL))
+    sph_plane_shock_describe(&exact, out);
   if (sph_inputs_check(in, &error))
     fprintf(out, "  cannot be run: %s\n", error.message);
   double particles = sph_derived_particles(in);

@@ -32,28 +32,26 @@ static FIELD_WORDS(precisions, SPH_PRECISIONS, [SPH_DOUBLE] = "double", [SPH_FLO
 
 static const struct field outline_rows[] =
     {CHOICE(shape, shapes,
-            .doc = "The target's outline, its centre at the origin. An impact takes all of them, a piston a box; "
-                   "the others are done to cylinders. A mesh comes from a shape file."),
+            .doc = "The target's outline, its centre at the origin. An impact takes all of them, a piston a box; the "
+                   "others are done to cylinders. A mesh comes from a shape file."),
      ROW(mesh.file, FIELD_TEXT, NULL, .text = "", .flags = FIELD_FILE | FIELD_DERIVED, .when = "shape=mesh",
          .doc = "Shape file, STL or OBJ: a closed surface of triangles; to be given. Its name is relative to the "
-                "scene's file. The "
-                "centre of mass comes to the origin, the axes are those of the file, and z is up. A resolved scene has "
-                "the SHA-256 of the file instead, and a store keeps the file."),
+                "scene's file. The centre of mass comes to the origin, the axes are those of the file, and z is up. A "
+                "resolved scene has the SHA-256 of the file instead, and a store keeps the file."),
      REAL(mesh.unit, "m", NAN, 1e-12, 1e9, .flags = FIELD_DERIVED, .when = "shape=mesh",
-          .doc = "Length that 1 in the shape file stands for, such as 1 km or 1 mm: to be given, as the file does "
-                 "not say it."),
+          .doc = "Length that 1 in the shape file stands for, such as 1 km or 1 mm: to be given, as the file does not "
+                 "say it."),
      REAL(radius, "m", 0.03, 1e-9, 1e9, .when = "shape=sphere|cylinder", .doc = "Radius of the sphere or cylinder."),
      REAL(inner_radius, "m", 0, 0, 1e9, .when = "shape=cylinder",
           .doc = "Radius of a hole along the cylinder's axis, which makes a ring. 0: a full cylinder."),
      REAL(length, "m", 0.04, 1e-9, 1e9, .when = "shape=cylinder",
-          .doc = "Length of the cylinder along its axis: z for a target, the direction of flight for a projectile. "
-                 "In a collision, "
-                 "where the slab repeats along z, the least length: whole periods of the lattice are made of it."),
+          .doc = "Length of the cylinder along its axis: z for a target, the direction of flight for a projectile. In "
+                 "a collision, where the slab repeats along z, the least length: whole periods of the lattice are made "
+                 "of it."),
      REAL(width, "m", 0.2, 1e-9, 1e9, .when = "shape=box", .doc = "Side of the box along x."),
      REAL(depth, "m", 0.2, 1e-9, 1e9, .when = "shape=box",
           .doc = "Side of the box along y. Of a plate (kind: piston), which repeats along y and z, the least one: "
-                 "whole periods "
-                 "of the lattice are made of it."),
+                 "whole periods of the lattice are made of it."),
      REAL(height, "m", 0.2, 1e-9, 1e9, .when = "shape=box",
           .doc = "Side of the box along z. A projectile comes down on the upper side. Of a plate (kind: piston) the "
                  "least one.")};
@@ -126,14 +124,12 @@ static const struct field rows[] = {
     REAL(target.spin, "rad/s", 0, -1e9, 1e9, .when = "kind=impact",
          .doc = "The target turns about z before it is hit."),
     CHOICE(sides.far, far_sides, .when = "target.shape=box",
-           .choice_docs =
-               "free surfaces: waves return\na layer inside all sides but the upper one damps motion: it stands for a "
-               "half-space",
+           .choice_docs = "free surfaces: waves return\na layer inside all sides but the upper one damps motion: it "
+                          "stands for a half-space",
            .doc = "The sides of a box, except the side of the impact."),
     REAL(sides.depth, "m", NAN, 1e-9, 1e9, .flags = FIELD_DERIVED, .when = "sides.far=damped",
          .doc = "Thickness of the damping layer; a tenth of the shortest side unless given. A wave that goes through "
-                "it and "
-                "back keeps about 3 %."),
+                "it and back keeps about 3 %."),
     BODY(target, .nest = &matter),
 
     CHOICE(impact.projectile, projectile_by, .when = "kind=impact",
@@ -155,8 +151,7 @@ static const struct field rows[] = {
          .source = "BA95 section 5.2"),
     REAL(impact.gap, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "kind=impact",
          .doc = "Distance of the projectile's surface from the target's at the start, along the normal; one particle "
-                "spacing of the "
-                "target there unless given."),
+                "spacing of the target there unless given."),
 
     BODY(projectile, .nest = &outline, .own = projectile_outline),
     BODY(projectile, .nest = &matter, .own = projectile_matter, .when = "kind=impact"),
@@ -169,8 +164,7 @@ static const struct field rows[] = {
                 "least."),
     REAL(stretch.flaw_free, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "kind=stretch",
          .doc = "Length of each end, grip included, that has no flaws; a tenth of the rod unless given, one support "
-                "beyond the grip "
-                "at least."),
+                "beyond the grip at least."),
     REAL(vibration.speed, "m/s", 1, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=vibration",
          .doc = "Speed of the ends at the start."),
     REAL(collision.speed, "m/s", 50, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=collision",
@@ -197,14 +191,11 @@ static const struct field rows[] = {
     REAL(fragments.damage, "1", 1, 0, 1, .flags = FIELD_ABOVE_MINIMUM,
          .doc = "Particles with this damage or more do not join fragments.",
          .source = "BA95 section 4.4 (fully damaged)"),
-    REAL(
-        fragments.link_length, "1", 1.2, 0.1, 4,
-        .doc =
-            "Undamaged particles nearer than this many smoothing lengths belong together. 1 is as printed, but nearest "
-            "neighbours of the default lattice stand 0.99 h apart and a strain of 1 % would part them; from 1.1 to 1.3 "
-            "h is "
-            "the same: all nearest neighbours and none farther.",
-        .source = "BA95 section 4.4 (1 h)"),
+    REAL(fragments.link_length, "1", 1.2, 0.1, 4,
+         .doc = "Undamaged particles nearer than this many smoothing lengths belong together. 1 is as printed, but "
+                "nearest neighbours of the default lattice stand 0.99 h apart and a strain of 1 % would part them; "
+                "from 1.1 to 1.3 h is the same: all nearest neighbours and none farther.",
+         .source = "BA95 section 4.4 (1 h)"),
     CHOICE(fragments.link_h, link_h,
            .choice_docs = "of the body at rest\nas it is at the end, where debris has expanded",
            .doc = "The smoothing length that fragments.link_length multiplies."),
@@ -212,12 +203,10 @@ static const struct field rows[] = {
            .doc = "The damaged matter next to a fragment belongs to it. Results tell the largest fragment with and "
                   "without it.",
            .source = "BA95 section 4.4"),
-    REAL(
-        fragments.layer_width, "m", 0, 0, 1e9, .absent = "0", .flags = FIELD_DERIVED,
-        .doc =
-            "Depth of the damaged layer of a fragment (fragments.veneer). With 0 it is fragments.link_length smoothing "
-            "lengths, and gets thinner with more particles. Unless given it is fracture.cell.",
-        .source = "our choice; BA95 section 4.4 for 0"),
+    REAL(fragments.layer_width, "m", 0, 0, 1e9, .absent = "0", .flags = FIELD_DERIVED,
+         .doc = "Depth of the damaged layer of a fragment (fragments.veneer). With 0 it is fragments.link_length "
+                "smoothing lengths, and gets thinner with more particles. Unless given it is fracture.cell.",
+         .source = "our choice; BA95 section 4.4 for 0"),
     REAL(fragments.dust_mass, "kg", NAN, 0, 1e60, .flags = FIELD_DERIVED,
          .doc = "Lighter fragments are dust, for any mass of the particles; a thousandth of the target's mass unless "
                 "given. Below complete_mass (10 particles) dust is not resolved: with that default take 10000 "
@@ -231,9 +220,8 @@ static const struct field rows[] = {
          .source = "Jutzi & Benz, section 3.2, for 0"),
     REAL(stop.end_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
          .doc = "End time of the run, also if fracture continues; unless given, ten times the time of a longitudinal "
-                "wave through the target, plus "
-                "the time until the bodies touch. Of a plate: when its first front, by the jump conditions, has gone "
-                "0.94 of its width."),
+                "wave through the target, plus the time until the bodies touch. Of a plate: when its first front, by "
+                "the jump conditions, has gone 0.94 of its width."),
     REAL(stop.quiet_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
          .when = "target.fracture=auto|on",
          .doc = "Fracture has ceased, and the run is complete, when the mean damage of the body has grown by less than "
@@ -257,15 +245,13 @@ static const struct field rows[] = {
          .doc = "Distance from the point of impact up to which fine_spacing holds; four fine spacings unless given."),
     REAL(fidelity.smoothing, "1", SPH_BODIES_H, 0.7, 3,
          .doc = "Smoothing length h over the particle spacing (V/n)^(1/3). The default has 56 neighbours within 2h on "
-                "lattices, and a "
-                "kernel sum within 1 % of what it stands for; others err by some per cent at any resolution. "
-                "Below 0.9 method.gradient_correction is necessary: else stresses and wave speeds are 5 to 39 % too "
-                "small."),
+                "lattices, and a kernel sum within 1 % of what it stands for; others err by some per cent at any "
+                "resolution. Below 0.9 method.gradient_correction is necessary: else stresses and wave speeds are 5 to "
+                "39 % too small."),
     REAL(fidelity.cfl, "1", 0.3, 1e-3, 1, .doc = "Courant number: the time step over h/(c + viscous term)."),
     REAL(fidelity.skin, "1", 0.05, 0, 1,
          .doc = "Least slack of the neighbour lists over h (fast particles have more): longer lists last for more "
-                "steps. It "
-                "changes the order of sums, not the physics."),
+                "steps. It changes the order of sums, not the physics."),
     CHOICE(fidelity.precision, precisions,
            .choice_docs = "double throughout\nstored relative positions and pair sums are float",
            .doc = "Arithmetic of the pair loop."),
@@ -273,8 +259,7 @@ static const struct field rows[] = {
           .doc = "Threads of one run, for a large run on a machine without other work. The bits do not depend on it."),
     REAL(fidelity.energy_bound, "1", 0.01, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_PERCENT,
          .doc = "The run ends with state `energy` when the ledger drifts by more than this share of the energy put in. "
-                "off: it "
-                "only reports the drift."),
+                "off: it only reports the drift."),
     {.nest = &modules, .only = "fidelity"},
 };
 

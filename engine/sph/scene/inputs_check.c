@@ -76,17 +76,12 @@ static status check_flaws(const char *body_name, const struct sph_body_inputs *b
 static status check_material(const struct sph_inputs *in, const char *body_name, const struct sph_body_inputs *body,
                              struct error *error) {
   const struct sph_material *m = &body->material;
-  status code = check_needed(in, body, error);
-  if (code)
-    return code;
+  TRY(check_needed(in, body, error));
   if (!(m->tillotson.E_cv > m->tillotson.E_iv))
-    REFUSE(
-        "%s.material.tillotson.E_cv is %.4g J/kg, not above tillotson.E_iv %.4g J/kg: raise E_cv, as vaporisation ends "
-        "after it begins",
-        body_name, m->tillotson.E_cv, m->tillotson.E_iv);
-  code = check_flaws(body_name, body, error);
-  if (code)
-    return code;
+    REFUSE("%s.material.tillotson.E_cv is %.4g J/kg, not above tillotson.E_iv %.4g J/kg: raise E_cv, as vaporisation "
+           "ends after it begins",
+           body_name, m->tillotson.E_cv, m->tillotson.E_iv);
+  TRY(check_flaws(body_name, body, error));
   for (size_t k = 0; k < SPH_MODULES; k++) {
     struct error why = {0};
     if (sph_modules_at(k)->check_material && sph_modules_at(k)->check_material(m, &why))
@@ -133,9 +128,8 @@ static status check_shape(const char *name, const struct sph_body_inputs *body, 
   if (cylinder && body->inner_radius >= body->radius)
     REFUSE("%s.inner_radius is %.4g m, the radius %.4g m: a ring needs a smaller hole", name, body->inner_radius,
            body->radius);
-  const status code = shape->kind == SPH_SHAPE_MESH ? check_mesh(name, body, shape, error) : STATUS_OK;
-  if (code)
-    return code;
+  if (shape->kind == SPH_SHAPE_MESH)
+    TRY(check_mesh(name, body, shape, error));
   const double volume = sph_shape_volume(shape);
   if (!(volume > 0) || !isfinite(volume))
     REFUSE("%s has a volume of %.4g m^3: give other sizes", name, volume);
@@ -164,11 +158,8 @@ static status check_projectile(const struct sph_inputs *in, struct error *error)
     REFUSE("impact.specific_energy at impact.speed 0 would need a projectile without end: give a speed, or "
            "impact.projectile: size");
   const struct sph_shape projectile = sph_derived_projectile(in);
-  if (in->impact.projectile == SPH_BY_SIZE) {
-    const status code = check_shape("projectile", &in->projectile, &projectile, error);
-    if (code)
-      return code;
-  }
+  if (in->impact.projectile == SPH_BY_SIZE)
+    TRY(check_shape("projectile", &in->projectile, &projectile, error));
   const bool extreme = !(projectile.radius > 1e-12 && projectile.radius < 1e9);
   if (projectile.kind == SPH_SHAPE_SPHERE && extreme)
     REFUSE("a projectile of radius %.4g m (from %s) is out of range", projectile.radius,
@@ -183,12 +174,8 @@ static status check_flight(const struct sph_inputs *in, struct error *error) {
   double flight[3];
   if (!(in->impact.speed > 0))
     return STATUS_OK;
-  status code = check_arrival(in, "the projectile needs", "impact.gap", in->impact.gap, error);
-  if (code)
-    return code;
-  code = sph_derived_aim(in, shape, flight, error);
-  if (code)
-    return code;
+  TRY(check_arrival(in, "the projectile needs", "impact.gap", in->impact.gap, error));
+  TRY(sph_derived_aim(in, shape, flight, error));
   const bool meshes = shape[0].kind == SPH_SHAPE_MESH || shape[1].kind == SPH_SHAPE_MESH; /* aimed at a face */
   if (!meshes && sph_shape_gap_ahead(&shape[0], &shape[1], flight, NULL) > 0)
     REFUSE("the projectile flies past the target: lower impact.angle (%.4g rad) or impact.gap (%.4g m)",
@@ -197,12 +184,8 @@ static status check_flight(const struct sph_inputs *in, struct error *error) {
 }
 
 static status check_impact(const struct sph_inputs *in, struct error *error) {
-  status code = check_projectile(in, error);
-  if (code)
-    return code;
-  code = check_flight(in, error);
-  if (code)
-    return code;
+  TRY(check_projectile(in, error));
+  TRY(check_flight(in, error));
   const double pieces = sph_derived_particles(in) - (double)in->fidelity.particles;
   if (pieces < 1 - 1e-9) /* one is enough, within rounding of its volume */
     REFUSE("the projectile would be %.2g particles: lower fidelity.projectile_spacing (now %.4g), raise "
@@ -218,12 +201,10 @@ static status check_impact(const struct sph_inputs *in, struct error *error) {
 /* ---- other protocols ---- */
 
 static status check_stretch(const struct sph_inputs *in, struct error *error) {
-  const status code = check_cylinder(in, "stretch", error);
-  if (code)
-    return code;
+  TRY(check_cylinder(in, "stretch", error));
   if (2 * in->stretch.grip >= 0.9 * in->target.length)
-    REFUSE("grips of %.4g m leave too little of a rod of %.4g m: give a shorter stretch.grip, more "
-           "fidelity.particles or a longer target.length",
+    REFUSE("grips of %.4g m leave too little of a rod of %.4g m: give a shorter stretch.grip, more fidelity.particles "
+           "or a longer target.length",
            in->stretch.grip, in->target.length);
   if (2 * in->stretch.flaw_free >= 0.95 * in->target.length)
     REFUSE("ends of %.4g m without flaws leave too little of a rod of %.4g m: give a shorter stretch.flaw_free",
@@ -233,14 +214,10 @@ static status check_stretch(const struct sph_inputs *in, struct error *error) {
 
 static status check_collision(const struct sph_inputs *in, struct error *error) {
   const double spacing = sph_derived_spacing(in);
-  status code = check_cylinder(in, "collision", error);
-  if (code)
-    return code;
+  TRY(check_cylinder(in, "collision", error));
   if (in->target.turned)
     REFUSE("a turned lattice cannot repeat along the axis: set target.turned: false");
-  code = check_arrival(in, "the bodies need", "collision.gap", in->collision.gap, error);
-  if (code)
-    return code;
+  TRY(check_arrival(in, "the bodies need", "collision.gap", in->collision.gap, error));
   if (in->collision.gap < spacing / 2)
     REFUSE("collision.gap is %.4g m, less than half a particle spacing (%.4g m): the bodies would overlap",
            in->collision.gap, spacing);
@@ -291,10 +268,8 @@ const char *sph_inputs_check_fewer(const struct sph_inputs *in) {
 
 static status check_bodies(const struct sph_inputs *in, struct error *error) {
   const struct sph_shape target = sph_derived_target(in);
-  status code = check_material(in, "target", &in->target, error);
-  if (code)
-    return code;
-  code = check_shape("target", &in->target, &target, error);
+  TRY(check_material(in, "target", &in->target, error));
+  status code = check_shape("target", &in->target, &target, error);
   if (code || !sph_derived_has_projectile(in))
     return code;
   return check_material(in, "projectile", &in->projectile, error);
@@ -344,10 +319,7 @@ status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
   static status (*const checks[])(const struct sph_inputs *, struct error *) = {check_bodies, check_protocol,
                                                                                 check_cracks, check_lengths,
                                                                                 check_cost};
-  for (size_t k = 0; k < sizeof checks / sizeof checks[0]; k++) {
-    const status code = checks[k](in, error);
-    if (code)
-      return code;
-  }
+  for (size_t k = 0; k < sizeof checks / sizeof checks[0]; k++)
+    TRY(checks[k](in, error));
   return STATUS_OK;
 }

@@ -8,6 +8,7 @@
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system.h"
+#include "schemas/memory.h"
 
 enum { Z = 2 };
 
@@ -130,8 +131,8 @@ static status grip(struct sph_run *run, struct error *error) {
       *(run->start->z[i] < 0 ? &below : &above) = true;
   return below && above ? STATUS_OK
                         : status_fail(error, STATUS_CONTENT,
-                                      "a grip of %.4g m holds no particle (they are %.4g m apart): raise "
-                                      "stretch.grip or fidelity.particles",
+                                      "a grip of %.4g m holds no particle (they are %.4g m apart): raise stretch.grip "
+                                      "or fidelity.particles",
                                       length, run->range[0].spacing);
 }
 
@@ -143,9 +144,7 @@ static status push(struct sph_run *run, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   struct sph_particles *p = run->start;
   struct sph_plane_shock exact;
-  const status code = sph_plane_shock(&in->target.material, in->piston.speed, &exact, error);
-  if (code)
-    return code;
+  TRY(sph_plane_shock(&in->target.material, in->piston.speed, &exact, error));
 
   const double behind = exact.has_shock ? exact.shock.density : exact.precursor.density;
   const double v[3] = {in->piston.speed, 0, 0};
@@ -201,11 +200,8 @@ static status make_flaws(struct sph_run *run, struct error *error) {
                                .cell_width = in->crack_cell.width,
                                .seed = run->seed,
                                .body = (uint64_t)b};
-    const status code = sph_flaws_place(&law, &run->shape[b], run->start, run->range[b],
-                                        in->kind == SPH_STRETCH && in->stretch.flaw_free > 0 ? &middle : NULL,
-                                        &run->flaws[b], error);
-    if (code)
-      return code;
+    TRY(sph_flaws_place(&law, &run->shape[b], run->start, run->range[b],
+                        in->kind == SPH_STRETCH && in->stretch.flaw_free > 0 ? &middle : NULL, &run->flaws[b], error));
     run->flaw_count += run->flaws[b]->count;
   }
   return STATUS_OK;
@@ -224,8 +220,8 @@ static status damp(struct sph_run *run, struct error *error) {
     if (run->start->damping[i] > 0)
       return STATUS_OK;
   return status_fail(error, STATUS_CONTENT,
-                     "a damping layer of %.4g m holds no particle (they are %.4g m apart): raise sides.depth "
-                     "or fidelity.particles, or set sides.far: free",
+                     "a damping layer of %.4g m holds no particle (they are %.4g m apart): raise sides.depth or "
+                     "fidelity.particles, or set sides.far: free",
                      in->sides.depth, run->range[0].spacing);
 }
 
@@ -247,21 +243,15 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error) {
     run->shape[0] = sph_derived_target(in);
   if (code)
     return code;
-  code = make_bodies(run, error);
-  if (code)
-    return code;
+  TRY(make_bodies(run, error));
 
   run->targets = in->kind == SPH_COLLISION ? run->start->n : run->range[0].n;
   for (int b = 0; b < run->body_count; b++) {
     const struct sph_body_physics physics = sph_derived_physics(inputs_of(run, b), NULL);
     sph_modules_set_up(&physics, in, run->start, run->range[b].first, run->range[b].first + run->range[b].n);
   }
-  code = set_in_motion(run, flight, error);
-  if (code)
-    return code;
-  code = damp(run, error);
-  if (code)
-    return code;
+  TRY(set_in_motion(run, flight, error));
+  TRY(damp(run, error));
   return make_flaws(run, error);
 }
 
@@ -272,13 +262,12 @@ enum { SAMPLES = 400 }; /* over the whole run: a sample costs about a tenth of a
 status sph_protocol_record_start(struct sph_run *run, struct error *error) {
   if (run->inputs.kind != SPH_STRETCH && run->inputs.kind != SPH_VIBRATION && run->inputs.kind != SPH_PISTON)
     return STATUS_OK;
-  status code = run->inputs.kind == SPH_PISTON ? sph_plate_start(run, error) : STATUS_OK;
-  if (code)
-    return code;
+  if (run->inputs.kind == SPH_PISTON)
+    TRY(sph_plate_start(run, error));
   run->sample_interval = run->inputs.stop.end_time / SAMPLES;
   run->sample_capacity = SAMPLES + 2;
-  run->sample = calloc(run->sample_capacity, sizeof *run->sample);
-  return run->sample ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for %zu samples", run->sample_capacity);
+  run->sample = memory_small(run->sample_capacity, sizeof *run->sample);
+  return STATUS_OK;
 }
 
 /* Mean axial stress that the damaged solid bears between the grips, weighted by volume. */
@@ -336,7 +325,7 @@ static bool is_at_peak(const struct sph_run *run, double time) {
 
 void sph_protocol_record(struct sph_run *run) {
   struct sph_state *state = &run->state;
-  const double time = sph_system_time(run->system);
+  const double time = run->system->now.time;
   if (!run->sample)
     return;
 

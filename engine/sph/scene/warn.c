@@ -57,35 +57,31 @@ static void tell(const struct sph_inputs *in, unsigned set, double compressed, d
             "viscosity\n",
             in->fidelity.cfl, most, in->viscosity.alpha, most == largest_cfl ? 0.3 : 0.15);
   if (set & WARNINGS_CONTRAST)
-    fprintf(
-        out,
-        "contrast: the densities of target and projectile differ by a factor of %.3g, above %g: energy may drift; set "
-        "method.volume_weights: true\n",
-        sph_warn_contrast(in), largest_contrast);
-  if (set & WARNINGS_PISTON)
-    fprintf(
-        out,
-        "piston: the shock compresses the plate %.3g-fold, and above %g-fold matter leaks through the piston: lower "
-        "piston.speed\n",
-        compressed, largest_compression);
-  if (set & WARNINGS_KERNEL)
-    fprintf(
-        out,
-        "kernel: fidelity.smoothing %g is below %g without method.gradient_correction: stresses and wave speeds are "
-        "too small; give 1.13, or set method.gradient_correction: true\n",
-        in->fidelity.smoothing, least_smoothing);
-  if (set & WARNINGS_ARRIVAL)
-    fprintf(
-        out,
-        "arrival: a wave reaches the far side of the plate at %.4g s, and speeds and plateaus are wrong after that: "
-        "give a stop.end_time below, or a larger target.width\n",
-        arrival);
-  if (set & WARNINGS_LINKS)
     fprintf(out,
-            "links: particles up to %.4g spacings apart belong together (fragments.link_length times "
-            "fidelity.smoothing), but nearest neighbours stand %.4g apart: a whole body counts as many fragments; give "
-            "a link_length of %.2g\n",
-            reach_spacings(in), nearest_spacings(in), 1.36 / in->fidelity.smoothing);
+            "contrast: the densities of target and projectile differ by a factor of %.3g, above %g: energy may drift; "
+            "set method.volume_weights: true\n",
+            sph_warn_contrast(in), largest_contrast);
+  if (set & WARNINGS_PISTON)
+    fprintf(out,
+            "piston: the shock compresses the plate %.3g-fold, and above %g-fold matter leaks through the piston: "
+            "lower piston.speed\n",
+            compressed, largest_compression);
+  if (set & WARNINGS_KERNEL)
+    fprintf(out,
+            "kernel: fidelity.smoothing %g is below %g without method.gradient_correction: stresses and wave speeds "
+            "are too small; give 1.13, or set method.gradient_correction: true\n",
+            in->fidelity.smoothing, least_smoothing);
+  if (set & WARNINGS_ARRIVAL)
+    fprintf(out,
+            "arrival: a wave reaches the far side of the plate at %.4g s, and speeds and plateaus are wrong after "
+            "that: give a stop.end_time below, or a larger target.width\n",
+            arrival);
+  if (set & WARNINGS_LINKS)
+    fprintf(
+        out,
+        "links: particles up to %.4g spacings apart belong together (fragments.link_length times fidelity.smoothing), "
+        "but nearest neighbours stand %.4g apart: a whole body counts as many fragments; give a link_length of %.2g\n",
+        reach_spacings(in), nearest_spacings(in), 1.36 / in->fidelity.smoothing);
 }
 
 unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {

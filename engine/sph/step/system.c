@@ -11,6 +11,7 @@
 #include "engine/restart.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/material/material.h"
+#include "schemas/memory.h"
 
 /* The columns of a system: which exist, their memory, and copying particles into them and back. The arrays of the
  * state, of a restart file and of the estimate of memory are all made from the set sph_system.columns. */
@@ -95,17 +96,11 @@ static bool has(const struct sph_system *s, size_t column) {
   return set_has(s->columns.word, column);
 }
 
-static void fill_column(struct sph_system *s, size_t column, double value) {
-  double *values = *slot_of(&s->c, column);
-  for (size_t i = 0; i < s->n; i++)
-    values[i] = value;
-}
-
 static void set_initial(struct sph_system *s, size_t module) {
   for (const struct sph_column_need *need = sph_modules_at(module)->columns; need && need->count; need++)
     for (size_t k = need->first; need->initial != 0 && k < need->first + need->count; k++)
-      if (has(s, k))
-        fill_column(s, k, need->initial);
+      for (size_t i = 0; has(s, k) && i < s->n; i++)
+        (*slot_of(&s->c, k))[i] = need->initial;
 }
 
 static status take_columns(struct sph_system *s, const struct sph_particles *p, struct error *error) {
@@ -160,14 +155,6 @@ double sph_system_columns_wrapped(double x, double length) {
   return x < length ? x : 0;
 }
 
-/* One column by particles' ids. */
-static void read_column(const struct sph_system *s, const double *column, double *out, double absent) {
-  if (!column && isnan(absent))
-    return;
-  for (size_t i = 0; i < s->n; i++)
-    out[s->id[i]] = column ? column[i] : absent;
-}
-
 /* The sixth component follows: the deviator has no trace. */
 static void read_stress(const struct sph_system *s, double *const out[6]) {
   for (size_t i = 0; i < s->n; i++) {
@@ -183,7 +170,9 @@ void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
     double *to = member_of(out, carried[k].member);
     if (!carried[k].read || !to)
       continue;
-    read_column(s, *slot_of(&columns, carried[k].column), to, carried[k].absent);
+    const double *from = *slot_of(&columns, carried[k].column), absent = carried[k].absent;
+    for (size_t i = 0; (from || !isnan(absent)) && i < s->n; i++)
+      to[s->id[i]] = from ? from[i] : absent;
     for (size_t i = 0; k < 3 && i < s->n; i++)
       to[i] = sph_system_columns_wrapped(to[i], s->domain.periodic[k]);
   }
@@ -237,9 +226,7 @@ static status check_inputs(const struct sph_inputs *inputs, struct error *error)
     if (!is_read(row) || row->flags & FIELD_DERIVED)
       continue;
     field_get(row, inputs, &value);
-    const status code = field_set_value(row, &value, &unused, error);
-    if (code)
-      return code;
+    TRY(field_set_value(row, &value, &unused, error));
   }
   return STATUS_OK;
 }
@@ -308,24 +295,16 @@ static status check_memory(const struct sph_particles *p, size_t body_count, con
 /* Everything that is refused: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */
 static status check_all(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,
                         const struct sph_inputs *inputs, const struct sph_domain *domain, struct error *error) {
-  status code = check_inputs(inputs, error);
-  if (code)
-    return code;
-  code = check_domain(domain, error);
-  if (code)
-    return code;
-  code = check_particles(particles, body_count, error);
-  if (code)
-    return code;
+  TRY(check_inputs(inputs, error));
+  TRY(check_domain(domain, error));
+  TRY(check_particles(particles, body_count, error));
 
   size_t first = 0;
   for (size_t b = 0; b < body_count; b++) {
     size_t last = first;
     while (last < particles->n && particles->body[last] == b)
       last++;
-    code = check_body(b, &bodies[b], particles, first, last, inputs, error);
-    if (code)
-      return code;
+    TRY(check_body(b, &bodies[b], particles, first, last, inputs, error));
     first = last;
   }
   return check_memory(particles, body_count, bodies, inputs, error);
@@ -333,67 +312,46 @@ static status check_all(const struct sph_particles *particles, size_t body_count
 
 /* ---- bodies ---- */
 
-static void add(sph_hook *hooks, size_t *count, sph_hook hook) {
-  hooks[(*count)++] = hook;
-}
-
 static void add_stage(const struct sph_system *s, const struct sph_solid *b, int stage, sph_hook *hooks,
                       size_t *count) {
   FOR_MODULES(m, b->modules) {
     const sph_hook *of_module = s->ranges->module[m];
     if (of_module && of_module[stage])
-      add(hooks, count, of_module[stage]);
+      hooks[(*count)++] = of_module[stage];
   }
-}
-
-static bool has_yield_law(const struct sph_solid *b) {
-  FOR_MODULES(m, b->modules)
-    if (sph_modules_at(m)->sets == SPH_SETS_YIELD_LIMIT)
-      return true;
-  return false;
-}
-
-/* Hooks before the sum over pairs. */
-static void choose_before(const struct sph_system *s, struct sph_solid *b, bool strength, bool damage) {
-  const bool yields = has_yield_law(b);
-  add(b->before, &b->before_count, s->ranges->predict);
-  for (int stage = SPH_PREDICT; stage < SPH_RATES; stage++) {
-    const bool of_yielding = stage >= SPH_YIELD && stage <= SPH_RETURN;
-    if (stage == SPH_CRACK)
-      b->first_count = b->before_count;
-    if (yields || !of_yielding)
-      add_stage(s, b, stage, b->before, &b->before_count);
-  }
-  const sph_hook output = strength ? s->ranges->output_whole : s->ranges->output_fluid;
-  add(b->before, &b->before_count, damage ? s->ranges->output_damaged : output);
-}
-
-/* Hooks after it. */
-static void choose_after(const struct sph_system *s, struct sph_solid *b, bool strength, bool damage) {
-  if (s->held || s->c.damping)
-    add(b->after, &b->after_count, s->ranges->hold);
-  if (!strength)
-    add(b->after, &b->after_count, s->ranges->fluid_rates);
-  add_stage(s, b, SPH_RATES, b->after, &b->after_count);
-  const sph_hook correct = strength ? s->ranges->correct_whole : s->ranges->correct_fluid;
-  add(b->after, &b->after_count, damage ? s->ranges->correct_damaged : correct);
 }
 
 static void choose_hooks(const struct sph_system *s, struct sph_solid *b) {
   const bool strength = sph_solid_has(b, SPH_COLUMN(stress)), damage = sph_solid_has(b, SPH_COLUMN(damage));
-  choose_before(s, b, strength, damage);
-  FOR_MODULES(m, b->modules)
+  const struct sph_ranges *r = s->ranges;
+  bool yields = false;
+  FOR_MODULES(m, b->modules) {
+    yields |= sph_modules_at(m)->sets == SPH_SETS_YIELD_LIMIT;
     if (sph_modules_at(m)->meet)
       b->meet = sph_modules_at(m)->meet;
-  choose_after(s, b, strength, damage);
+  }
+  b->before[b->before_count++] = r->predict;
+  for (int stage = SPH_PREDICT; stage < SPH_RATES; stage++) {
+    if (stage == SPH_CRACK)
+      b->first_count = b->before_count;
+    if (yields || stage < SPH_YIELD || stage > SPH_RETURN)
+      add_stage(s, b, stage, b->before, &b->before_count);
+  }
+  b->before[b->before_count++] = damage ? r->output_damaged : strength ? r->output_whole : r->output_fluid;
+
+  if (s->held || s->c.damping)
+    b->after[b->after_count++] = r->hold;
+  if (!strength)
+    b->after[b->after_count++] = r->fluid_rates;
+  add_stage(s, b, SPH_RATES, b->after, &b->after_count);
+  b->after[b->after_count++] = damage ? r->correct_damaged : strength ? r->correct_whole : r->correct_fluid;
 }
 
 static status make_body(struct sph_system *s, const struct sph_particles *p, struct sph_solid *b, struct error *error) {
   FOR_MODULES(m, b->modules) {
     const struct sph_module *module = sph_modules_at(m);
-    const status code = module->prepare ? module->prepare(&s->in, p, b, error) : STATUS_OK;
-    if (code)
-      return code;
+    if (module->prepare)
+      TRY(module->prepare(&s->in, p, b, error));
   }
   b->density = sph_material_bulk_density(&b->physics.material);
   b->lowest_density = s->domain.lowest_density * b->density;
@@ -474,20 +432,11 @@ static void find_bodies(struct sph_system *s, const struct sph_particles *p, con
 static status build(struct sph_system *s, const struct sph_particles *p, const struct sph_body_physics *bodies,
                     struct error *error) {
   find_bodies(s, p, bodies);
-  status code = take_columns(s, p, error);
-  if (code)
-    return code;
-  for (size_t b = 0; b < s->body_count; b++) {
-    code = make_body(s, p, &s->solid[b], error);
-    if (code)
-      return code;
-  }
-  code = make_blocks(s, error);
-  if (code)
-    return code;
-  code = make_pairs(s, error);
-  if (code)
-    return code;
+  TRY(take_columns(s, p, error));
+  for (size_t b = 0; b < s->body_count; b++)
+    TRY(make_body(s, p, &s->solid[b], error));
+  TRY(make_blocks(s, error));
+  TRY(make_pairs(s, error));
 
   bound_h(s, p);
   find_drift(s, p);
@@ -514,23 +463,18 @@ status sph_system_create(const struct sph_particles *particles, size_t body_coun
                          const struct sph_body_physics *bodies, const struct sph_inputs *inputs,
                          const struct sph_domain *domain, struct sph_system **out, struct error *error) {
   *out = NULL;
-  status code = check_all(particles, body_count, bodies, inputs, domain, error);
-  if (code)
-    return code;
-  struct sph_system *s = calloc(1, sizeof *s);
+  TRY(check_all(particles, body_count, bodies, inputs, domain, error));
   struct sph_solid *solid = calloc(body_count, sizeof *solid);
-  if (!s || !solid) {
-    free(s);
-    free(solid);
+  if (!solid)
     return status_fail(error, STATUS_MEMORY, "no memory for a system");
-  }
+  struct sph_system *s = memory_small(1, sizeof *s);
   s->in = *inputs;
   s->domain = *domain;
   s->n = particles->n;
   s->body_count = body_count;
   s->ranges = choose_ranges();
   s->solid = solid;
-  code = build(s, particles, bodies, error);
+  status code = build(s, particles, bodies, error);
   if (code) {
     sph_system_free(s);
     return code;
@@ -566,28 +510,6 @@ size_t sph_system_bytes(const struct sph_system *s) {
       if (s->solid[b].prepared[m])
         bytes += sph_modules_at(m)->bytes_prepared(s->solid[b].prepared[m]);
   return bytes;
-}
-
-int sph_system_fault(const struct sph_system *s) {
-  return s->fault;
-}
-const char *sph_system_failure(const struct sph_system *s) {
-  return s->failure;
-}
-double sph_system_time(const struct sph_system *s) {
-  return s->now.time;
-}
-double sph_system_last_step(const struct sph_system *s) {
-  return s->now.last_step;
-}
-int sph_system_limiter(const struct sph_system *s) {
-  return (int)s->now.limiter;
-}
-uint64_t sph_system_steps(const struct sph_system *s) {
-  return s->now.steps;
-}
-double sph_system_neighbours(const struct sph_system *s) {
-  return s->now.neighbours;
 }
 
 static const struct sph_flaws_lists *flaws_of(const struct sph_solid *body) {

@@ -46,7 +46,7 @@ struct sph_ledger {
   double momentum_scale; /* sum |p| */
 };
 
-struct sph_system; /* opaque */
+struct sph_system; /* below */
 
 /* All arguments are copied. Of the inputs a system reads viscosity, method, fracture and fidelity, and its modules what
  * they need. Periodic directions run from 0 to their length. STATUS_MEMORY, before anything is allocated when it would
@@ -67,13 +67,6 @@ enum sph_fault { /* why a step failed */
 
 /* One time step, not beyond `until` (s). False after a fault; later calls return false, too. */
 bool sph_system_step(struct sph_system *system, double until);
-int sph_system_fault(const struct sph_system *system); /* enum sph_fault */
-const char *
-sph_system_failure(const struct sph_system *system); /* what failed, where and when; empty without a fault */
-double sph_system_time(const struct sph_system *system);
-double sph_system_last_step(const struct sph_system *system); /* s */
-int sph_system_limiter(const struct sph_system *system);      /* enum sph_limiter, of the last step */
-uint64_t sph_system_steps(const struct sph_system *system);
 struct sph_ledger sph_system_ledger(const struct sph_system *system);
 /* Mass-weighted mean damage of bodies with flaws, and its present rate (1/s; NULL is fine). A rate above 0 means that
  * fracture goes on. */
@@ -84,7 +77,6 @@ void sph_system_read(const struct sph_system *system, struct sph_particles *out)
 /* Number of flaws of each particle, by id (0 in bodies without flaws). False, and nothing is filled, when no body has
  * flaws. */
 bool sph_system_flaws(const struct sph_system *system, uint32_t *count);
-double sph_system_neighbours(const struct sph_system *system); /* mean number of neighbours within 2h */
 
 size_t sph_system_state_size(const struct sph_system *system);
 void sph_system_state_save(const struct sph_system *system, void *bytes);

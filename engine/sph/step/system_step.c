@@ -147,7 +147,7 @@ static bool list_anew(struct sph_system *s) {
 bool sph_system_step_relist(struct sph_system *s) {
   struct error error = {0};
   for (size_t k = 0; k < s->block_count; k++)
-    s->block[k].slack = -1; /* unknown: look_up_slack computes it */
+    s->block[k].slack = -1; /* unknown: run_before computes it */
   if (sph_pairs_relist(s->pairs, &error) == STATUS_OK)
     return true;
   s->fault = error.status == STATUS_MEMORY ? SPH_FAULT_MEMORY : SPH_FAULT_NOT_FINITE;
@@ -209,12 +209,6 @@ static void run(struct sph_system *s, struct sph_block *block, const sph_hook *h
     hook[m](s, &s->solid[block->body], block);
 }
 
-/* Finds the slack of a block from the positions. Called when the summed distances of the fastest particle of each step
- * may have used up the slack. The factor allows for rounding of positions. */
-static void look_up_slack(struct sph_system *s, struct sph_block *block) {
-  block->slack = 0.99 * sph_pairs_slack(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
-}
-
 /* The loops before the pair loop of one block: those before `meet` of its body, those after it, or both. */
 static void run_before(struct sph_system *s, struct sph_block *block, bool first, bool last) {
   const struct sph_solid *body = &s->solid[block->body];
@@ -224,8 +218,9 @@ static void run_before(struct sph_system *s, struct sph_block *block, bool first
   block->terms = &terms;
   run(s, block, body->before + low, high - low);
   block->terms = NULL;
-  if (last && block->slack < 0)
-    look_up_slack(s, block);
+  if (last &&
+      block->slack < 0) /* the fastest particles of all steps may have used it up; the factor allows for rounding */
+    block->slack = 0.99 * sph_pairs_slack(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
 }
 
 static void before_pairs(struct sph_system *s) {
@@ -308,12 +303,6 @@ struct sph_pair_fields sph_system_step_fields(const struct sph_system *s) {
   return fields;
 }
 
-static void sum_pairs(struct sph_system *s) {
-  const struct sph_pair_fields fields = sph_system_step_fields(s);
-  sph_pairs_sum(s->pairs, s->n, &fields, after_pairs, s);
-  s->now.neighbours = sph_pairs_neighbours(s->pairs);
-}
-
 static bool gather(struct sph_system *s, double dt) {
   memset(s->now.worst, 0, sizeof s->now.worst);
   double damping = 0, holding = 0;
@@ -357,7 +346,9 @@ static bool advance(struct sph_system *s, double dt) {
   before_pairs(s);
   if (!renew_lists(s))
     return false;
-  sum_pairs(s);
+  const struct sph_pair_fields fields = sph_system_step_fields(s);
+  sph_pairs_sum(s->pairs, s->n, &fields, after_pairs, s);
+  s->now.neighbours = sph_pairs_neighbours(s->pairs);
   return gather(s, dt);
 }
 
