@@ -35,13 +35,6 @@ static bool is_option(const char *word, const char *name, const char *letter) {
   return strcmp(word, name) == 0 || strcmp(word, letter) == 0;
 }
 
-static status check_environment(struct error *error) {
-  const char *class = getenv("CLAST_CPU");
-  if (!class || !*class || cpu_class_known(class))
-    return STATUS_OK;
-  return status_fail(error, STATUS_USAGE, "CLAST_CPU=%.64s is in the environment: expected baseline, v3 or v4", class);
-}
-
 /* argv[0] is the command's name, which follows the program's name. */
 static status run_named(int argc, char **argv, struct error *error) {
   alignas(max_align_t) static char options[OPTION_STRUCT_MAXIMUM];
@@ -54,7 +47,10 @@ static status run_named(int argc, char **argv, struct error *error) {
     help_one(command, stdout);
     return STATUS_OK;
   }
-  TRY(check_environment(error));
+  const char *class = getenv("CLAST_CPU");
+  if (class && *class && !cpu_class_known(class))
+    return status_fail(error, STATUS_USAGE, "CLAST_CPU=%.64s is in the environment: expected baseline, v3 or v4",
+                       class);
   TRY(option_claim_outputs(command, options, error));
   return commands_run(command, &line, error);
 }

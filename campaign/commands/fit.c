@@ -1,5 +1,4 @@
 /* `clast fit MEASURED CAMPAIGN`: finds the inputs of a campaign that reproduce the measured values. */
-
 #include "campaign/fit/fit.h"
 #include "campaign/commands/commands.h"
 

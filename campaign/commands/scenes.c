@@ -28,20 +28,17 @@ static status add_row(struct table *table, const char *name, struct error *error
   return STATUS_OK;
 }
 
-static status print_list(enum table_format format, struct error *error) {
-  struct table *table = table_new(format, stdout);
+static status run(const struct command_line *line, struct error *error) {
+  if (line->count == 1) {
+    TRY(table_text_only(line->format, "a scene's document", error));
+    return print_document(line->arguments[0], error);
+  }
+  struct table *table = table_new(line->format, stdout);
   table_columns(table, (const char *const[]){"name", "engine", "what", NULL});
   status code = STATUS_OK;
   for (size_t i = 0; !code && i < scene_builtin_count(); i++)
     code = add_row(table, scene_builtin_name(i), error);
   return table_finish(table, code, error);
-}
-
-static status run(const struct command_line *line, struct error *error) {
-  if (line->count == 0)
-    return print_list(line->format, error);
-  TRY(table_text_only(line->format, "a scene's document", error));
-  return print_document(line->arguments[0], error);
 }
 
 COMMAND(scenes, "scenes and inputs", "[NAME]", .has_table = true, .run = run);

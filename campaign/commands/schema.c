@@ -24,20 +24,16 @@ static const char *write_until(const char *text, const char *mark) {
   return end + strlen(mark);
 }
 
-static void write_campaign_schema(void) {
-  const char *rest = write_until(campaign_text, "@REQUIRED@");
-  json_schema_required(&campaign_table, stdout);
-  rest = write_until(rest, "@DESIGN@");
-  json_schema_properties(&campaign_design_table, 4, stdout);
-  rest = write_until(rest, "@KEYS@");
-  json_schema_properties(&campaign_table, 2, stdout);
-  fputs(rest, stdout);
-}
-
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   if (strcmp(line->arguments[0], "campaign") == 0) {
-    write_campaign_schema();
+    const char *rest = write_until(campaign_text, "@REQUIRED@");
+    json_schema_required(&campaign_table, stdout);
+    rest = write_until(rest, "@DESIGN@");
+    json_schema_properties(&campaign_design_table, 4, stdout);
+    rest = write_until(rest, "@KEYS@");
+    json_schema_properties(&campaign_table, 2, stdout);
+    fputs(rest, stdout);
     return STATUS_OK;
   }
   if (strcmp(line->arguments[0], "scene") != 0)

@@ -8,22 +8,10 @@ struct options {
   bool json;
 };
 
-struct fact {
-  const char *name, *value;
-};
-
-static status print_json(size_t count, const struct fact *facts, struct error *error) {
-  json_t *object = json_object();
-  for (size_t i = 0; i < count; i++)
-    json_object_set_new(object, facts[i].name, json_string(facts[i].value));
-  const bool all = json_object_size(object) == count && json_dumpf(object, stdout, JSON_INDENT(1)) == 0;
-  putchar('\n');
-  json_decref(object);
-  return all ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the facts");
-}
-
 static status run(const struct command_line *line, struct error *error) {
-  const struct fact facts[] = {
+  const struct {
+    const char *name, *value;
+  } facts[] = {
       {"version", BUILD_VERSION},  {"commit", BUILD_DIRTY ? BUILD_COMMIT " with local changes" : BUILD_COMMIT},
       {"commit_date", BUILD_DATE}, {"compiler", BUILD_COMPILER},
       {"flags", BUILD_FLAGS},      {"MPI", BUILD_MPI},
@@ -31,9 +19,15 @@ static status run(const struct command_line *line, struct error *error) {
       {"GSL", BUILD_GSL},          {"cairo", BUILD_CAIRO},
       {"libfyaml", BUILD_FYAML},
   };
-  size_t facts_count = sizeof facts / sizeof facts[0];
+  const size_t facts_count = sizeof facts / sizeof facts[0];
   if (((const struct options *)line->options)->json) {
-    return print_json(facts_count, facts, error);
+    json_t *object = json_object();
+    for (size_t i = 0; i < facts_count; i++)
+      json_object_set_new(object, facts[i].name, json_string(facts[i].value));
+    const bool all = json_object_size(object) == facts_count && json_dumpf(object, stdout, JSON_INDENT(1)) == 0;
+    putchar('\n');
+    json_decref(object);
+    return all ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the facts");
   }
   printf("clast %s\n", facts[0].value);
   for (size_t i = 1; i < facts_count; i++)

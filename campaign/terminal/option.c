@@ -67,13 +67,6 @@ const char *option_nearest(const char *typed, size_t count, const char *const *n
   return guess.nearest;
 }
 
-static status take_item(const struct option_row *row, const char *text, struct option_list *list, struct error *error) {
-  if (list->count == sizeof list->items / sizeof list->items[0])
-    return status_fail(error, STATUS_USAGE, "--%s is given more than %zu times", row->name, list->count);
-  list->items[list->count++] = text;
-  return STATUS_OK;
-}
-
 static status take_integer(const struct command *command, const struct option_row *row, const char *text, int64_t *out,
                            struct error *error) {
   char *end = NULL, range[64];
@@ -110,7 +103,13 @@ static status take_value(struct parse *parse, size_t index, const char *text, st
   case OPTION_TEXT:
   case OPTION_OUTPUT:
   case OPTION_PICTURE: *(const char **)slot = text; return STATUS_OK;
-  case OPTION_LIST: return take_item(row, text, slot, error);
+  case OPTION_LIST: {
+    struct option_list *list = slot;
+    if (list->count == sizeof list->items / sizeof list->items[0])
+      return status_fail(error, STATUS_USAGE, "--%s is given more than %zu times", row->name, list->count);
+    list->items[list->count++] = text;
+    return STATUS_OK;
+  }
   case OPTION_INTEGER: return take_integer(parse->command, row, text, slot, error);
   }
   return status_fail(error, STATUS_INTERNAL, "option --%s has no kind", row->name);
