@@ -81,6 +81,24 @@ status sql_fail(sqlite3 *db, int code, const char *doing, struct error *error) {
                      system ? ")" : "", remedy(code, system));
 }
 
+void sql_finalize(sqlite3_stmt **statement) {
+  sqlite3_finalize(*statement);
+}
+
+const char *sql_skip(const char *text, const char *blanks) {
+  for (;;) {
+    text += strspn(text, blanks);
+    if (strncmp(text, "--", 2) == 0) {
+      text += strcspn(text, "\n");
+    } else if (strncmp(text, "/*", 2) == 0) {
+      const char *end = strstr(text + 2, "*/");
+      text = end ? end + 2 : text + strlen(text);
+    } else {
+      return text;
+    }
+  }
+}
+
 status sql_execute(sqlite3 *db, const char *sql, const char *doing, struct error *error) {
   int code = sqlite3_exec(db, sql, NULL, NULL, NULL);
   return code == SQLITE_OK ? STATUS_OK : sql_fail(db, code, doing, error);
@@ -143,17 +161,12 @@ const char *sql_text(sqlite3_stmt *statement, int column) {
 }
 
 status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out, struct error *error) {
-  sqlite3_stmt *statement = NULL;
-  status result = sql_prepare(db, sql, &statement, "reading", error);
-  if (result == STATUS_OK) {
-    int code = sqlite3_step(statement);
-    *out = otherwise;
-    if (code == SQLITE_ROW && sqlite3_column_type(statement, 0) != SQLITE_NULL)
-      *out = sqlite3_column_int64(statement, 0);
-    else if (code != SQLITE_ROW && code != SQLITE_DONE)
-      result = sql_fail(db, code, "reading", error);
-  }
-  sqlite3_finalize(statement);
+  STATEMENT statement = NULL;
+  status result = STATUS_OK;
+  TRY(sql_prepare(db, sql, &statement, "reading", error));
+  *out = otherwise;
+  if (sql_next(statement, &result, "reading", error) && sqlite3_column_type(statement, 0) != SQLITE_NULL)
+    *out = sqlite3_column_int64(statement, 0);
   return result;
 }
 
@@ -168,20 +181,18 @@ status sql_integerf(sqlite3 *db, int64_t *out, struct error *error, const char *
 }
 
 char *sql_name_list(sqlite3 *db, const char *sql, const char *first, const char *second) {
-  sqlite3_stmt *statement = NULL;
-  char *list = sqlite3_mprintf("");
-  if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) != SQLITE_OK)
-    return list;
-  sql_bind_text(statement, 1, first);
-  if (second)
-    sql_bind_text(statement, 2, second);
-  while (list && sqlite3_step(statement) == SQLITE_ROW) {
-    char *longer = sqlite3_mprintf("%s, \"%w\"", list, sqlite3_column_text(statement, 0));
-    sqlite3_free(list);
-    list = longer;
+  STATEMENT statement = NULL;
+  sqlite3_str *list = sqlite3_str_new(db);
+  if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) == SQLITE_OK) {
+    sql_bind_text(statement, 1, first);
+    if (second)
+      sql_bind_text(statement, 2, second);
+    while (sqlite3_step(statement) == SQLITE_ROW)
+      sqlite3_str_appendf(list, ", \"%w\"", sql_text(statement, 0));
   }
-  sqlite3_finalize(statement);
-  return list;
+  const bool whole = sqlite3_str_errcode(list) == SQLITE_OK;
+  char *text = sqlite3_str_finish(list); /* NULL for an empty one, too */
+  return text || !whole ? text : sqlite3_mprintf("");
 }
 
 void sql_write_name(const char *name, FILE *out) {
@@ -194,39 +205,57 @@ void sql_write_name(const char *name, FILE *out) {
   fputc('"', out);
 }
 
-void sql_bind_field(sqlite3_stmt *statement, int index, const struct field *row, const void *object, bool off_as_text) {
+struct sql_value sql_of_text(const char *text) {
+  return (struct sql_value){.type = SQLITE_TEXT, .bytes = text, .size = strlen(text)};
+}
+
+struct sql_value sql_of_field(const struct field *row, const void *object, bool off_as_text) {
   const char *place = (const char *)object + row->offset;
   switch (row->kind) {
   case FIELD_REAL: {
     double value;
     memcpy(&value, place, sizeof value);
-    if (!isnan(value))
-      sqlite3_bind_double(statement, index, value);
-    else if (off_as_text)
-      sqlite3_bind_text(statement, index, "off", 3, SQLITE_STATIC);
-    else
-      sqlite3_bind_null(statement, index);
-    break;
+    if (isnan(value))
+      return off_as_text ? sql_of_text("off") : (struct sql_value){.type = SQLITE_NULL};
+    return (struct sql_value){.type = SQLITE_FLOAT, .real = value};
   }
   case FIELD_INTEGER: {
     int64_t value;
     memcpy(&value, place, sizeof value);
-    sqlite3_bind_int64(statement, index, value);
-    break;
+    return sql_of_integer(value);
   }
-  case FIELD_BOOLEAN: {
-    bool value;
-    memcpy(&value, place, sizeof value);
-    sqlite3_bind_int(statement, index, value);
-    break;
-  }
+  case FIELD_BOOLEAN: return sql_of_integer(*(const bool *)place);
   case FIELD_CHOICE: {
     int value;
     memcpy(&value, place, sizeof value);
-    sqlite3_bind_text(statement, index, row->choices[value], -1, SQLITE_STATIC);
-    break;
+    return sql_of_text(row->choices[value]);
   }
-  case FIELD_TEXT: sqlite3_bind_text(statement, index, place, -1, SQLITE_STATIC); break;
+  case FIELD_TEXT: break;
+  }
+  return sql_of_text(place);
+}
+
+struct sql_value sql_of_column(sqlite3_stmt *statement, int column) {
+  struct sql_value value = {.type = sqlite3_column_type(statement, column)};
+  switch (value.type) {
+  case SQLITE_INTEGER: value.integer = sqlite3_column_int64(statement, column); break;
+  case SQLITE_FLOAT: value.real = sqlite3_column_double(statement, column); break;
+  case SQLITE_TEXT: value.bytes = sqlite3_column_text(statement, column); break;
+  case SQLITE_BLOB: value.bytes = sqlite3_column_blob(statement, column); break;
+  default: return value;
+  }
+  if (value.bytes)
+    value.size = (size_t)sqlite3_column_bytes(statement, column);
+  return value;
+}
+
+void sql_bind(sqlite3_stmt *statement, int index, struct sql_value value) {
+  switch (value.type) {
+  case SQLITE_INTEGER: sqlite3_bind_int64(statement, index, value.integer); break;
+  case SQLITE_FLOAT: sqlite3_bind_double(statement, index, value.real); break;
+  case SQLITE_TEXT: sqlite3_bind_text64(statement, index, value.bytes, value.size, SQLITE_STATIC, SQLITE_UTF8); break;
+  case SQLITE_BLOB: sqlite3_bind_blob64(statement, index, value.bytes, value.size, SQLITE_STATIC); break;
+  default: sqlite3_bind_null(statement, index);
   }
 }
 
@@ -307,7 +336,7 @@ void sql_insert_bind(const struct sql_insert *insert, size_t index, const void *
     if (row->when && !field_is_active(fields, row, described))
       sqlite3_bind_null(insert->statement, place);
     else
-      sql_bind_field(insert->statement, place, row, described, false);
+      sql_bind(insert->statement, place, sql_of_field(row, described, false));
   }
 }
 

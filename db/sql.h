@@ -18,6 +18,13 @@ status sql_fail(sqlite3 *db, int code, const char *doing, struct error *error);
  * values. */
 bool sql_values_are_wrong(sqlite3 *db, int code);
 
+/* A statement that is finalized where its block is left, so that TRY and return are allowed anywhere. */
+#define STATEMENT __attribute__((cleanup(sql_finalize))) sqlite3_stmt *
+void sql_finalize(sqlite3_stmt **statement); /* for STATEMENT */
+
+/* The first character of a text of SQL that is neither in `blanks` nor in a comment. */
+const char *sql_skip(const char *text, const char *blanks);
+
 /* Runs any number of statements. */
 status sql_execute(sqlite3 *db, const char *sql, const char *doing, struct error *error);
 /* The same, with the text made by sqlite3_mprintf: write names and literals that come from outside with %w and %Q. */
@@ -46,9 +53,28 @@ char *sql_name_list(sqlite3 *db, const char *sql, const char *first, const char 
 /* Writes a name within double quotes; double quotes inside the name are doubled. */
 void sql_write_name(const char *name, FILE *out);
 
-/* Binds the value that `row` describes in *object: NaN as NULL (as the text 'off' with off_as_text), choices by name.
- * Texts are bound by reference: *object must stay valid until the statement has run. */
-void sql_bind_field(sqlite3_stmt *statement, int index, const struct field *row, const void *object, bool off_as_text);
+/* A value of a row. */
+struct sql_value {
+  int type; /* SQLITE_NULL, SQLITE_INTEGER, SQLITE_FLOAT, SQLITE_TEXT or SQLITE_BLOB */
+  int64_t integer;
+  double real;
+  const void *bytes; /* of a text or blob; borrowed */
+  size_t size;
+};
+static inline struct sql_value sql_of_integer(int64_t value) {
+  return (struct sql_value){.type = SQLITE_INTEGER, .integer = value};
+}
+static inline struct sql_value sql_of_bytes(const void *bytes, size_t size) {
+  return (struct sql_value){.type = SQLITE_BLOB, .bytes = bytes, .size = size};
+}
+struct sql_value sql_of_text(const char *text);
+/* The value that `row` describes in *object: NaN as NULL (as the text 'off' with off_as_text), choices by name. Texts
+ * are those of *object. */
+struct sql_value sql_of_field(const struct field *row, const void *object, bool off_as_text);
+/* A column of the current row, valid until the next step. */
+struct sql_value sql_of_column(sqlite3_stmt *statement, int column);
+/* Binds it by reference: its bytes must stay valid until the statement has run. */
+void sql_bind(sqlite3_stmt *statement, int index, struct sql_value value);
 /* A text bound by reference; NULL binds NULL. */
 void sql_bind_text(sqlite3_stmt *statement, int index, const char *text);
 

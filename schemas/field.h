@@ -57,8 +57,8 @@ struct field {
   const char *source; /* paper and equation, or NULL */
   const char *label;  /* name on the axis of a chart, in lower case, without unit; NULL: field_label() makes one */
   int main_rank; /* results only: place among the main results, from 1; 0: not a main result. Old stores keep the CHECK
-                  * and the index of table run that they were made with: a step of db/store/migrate.c would renew them
-                  */
+                  * and the index of table run that they were made with: an upgrade in db/store/store.c could renew
+                  * them */
   /* A nest: the rows of another table in place of this row, until field_table_build() puts them there. Its path comes
    * before theirs (NULL: nothing does), its offset is added to theirs, and its flags to theirs. FIELD_DERIVED takes the
    * place of their FIELD_REQUIRED. `when` is for those of them that have none. `doc` follows their docs, `choice_docs`

@@ -1,5 +1,5 @@
 -- The store of clast: schema of version 3.
--- Made from the tables in db/store/schema_tables.c and the engines' field tables; do not edit: a test compares.
+-- Made from the tables in db/store/schema.c and the engines' field tables; do not edit: a test compares.
 -- Views have, besides, one column per input that some campaign varied (table axis).
 PRAGMA application_id = 1129075540;
 PRAGMA user_version = 3;

@@ -5,9 +5,7 @@
 #include <string.h>
 
 #include "campaign/terminal/uncertainty.h"
-#include "db/ask/columns.h"
-#include "db/ask/group.h"
-#include "db/ask/resolution.h"
+#include "db/ask/ask.h"
 #include "engine/engine.h"
 #include "engine/outcome.h"
 #include "schemas/text.h"

@@ -7,8 +7,7 @@
 #include "analysis/statistics/exponent.h"
 #include "analysis/statistics/measured.h"
 #include "campaign/terminal/option.h"
-#include "db/ask/group.h"
-#include "db/ask/pool.h"
+#include "db/ask/ask.h"
 #include "engine/outcome.h"
 
 struct chart_options {

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "analysis/pictures/picture.h"
-#include "db/ask/campaign.h"
+#include "db/ask/ask.h"
 
 enum { TILES = 10, MOST_ROWS = 400, NAME = 128 };
 

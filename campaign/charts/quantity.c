@@ -9,9 +9,7 @@
 #include "analysis/statistics/estimates.h"
 #include "campaign/charts/charts.h"
 #include "campaign/terminal/uncertainty.h"
-#include "db/ask/columns.h"
-#include "db/ask/point.h"
-#include "db/ask/points.h"
+#include "db/ask/ask.h"
 #include "engine/grow.h"
 
 /* Columns of ask_group after the axes. */

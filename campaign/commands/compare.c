@@ -2,7 +2,7 @@
 #include <stdio.h>
 
 #include "campaign/commands/commands.h"
-#include "db/ask/pairs.h"
+#include "db/ask/ask.h"
 
 struct options {
   const char *quantity;

@@ -2,8 +2,7 @@
 #include <stdio.h>
 
 #include "campaign/commands/commands.h"
-#include "db/ask/points.h"
-#include "db/ask/pool.h"
+#include "db/ask/ask.h"
 #include "engine/outcome.h"
 
 struct options {

@@ -1,7 +1,7 @@
 /* `clast extremes STORE`: which runs of a store are safe, warned or refused, and why. */
 #include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
-#include "db/ask/campaign.h"
+#include "db/ask/ask.h"
 
 enum { PICTURE_WIDTH = 1200 };
 

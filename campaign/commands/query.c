@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "db/ask/canned.h"
+#include "db/ask/ask.h"
 
 enum { PARAMETERS_MAXIMUM = 64 };
 

@@ -6,7 +6,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/one_run/replay.h"
 #include "campaign/scheduler/provenance.h"
-#include "db/ask/run.h"
+#include "db/ask/ask.h"
 
 struct options {
   const char *fields;

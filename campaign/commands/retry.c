@@ -6,7 +6,7 @@
 #include "campaign/converge/accuracy.h"
 #include "campaign/document/campaign_raise.h"
 #include "campaign/launch/launch_campaign.h"
-#include "db/ask/campaign.h"
+#include "db/ask/ask.h"
 
 struct options {
   struct launch_options launch;

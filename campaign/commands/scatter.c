@@ -4,7 +4,7 @@
 
 #include "campaign/commands/commands.h"
 #include "campaign/print/print.h"
-#include "db/ask/points.h"
+#include "db/ask/ask.h"
 #include "engine/outcome.h"
 
 struct options {

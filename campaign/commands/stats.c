@@ -5,7 +5,7 @@
 #include "analysis/statistics/estimates.h"
 #include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
-#include "db/ask/group.h"
+#include "db/ask/ask.h"
 #include "engine/outcome.h"
 
 struct options {

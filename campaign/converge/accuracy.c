@@ -9,7 +9,7 @@
 #include "campaign/converge/study.h"
 #include "campaign/document/campaign_walk.h"
 #include "campaign/terminal/table.h"
-#include "db/ask/convergence.h"
+#include "db/ask/ask.h"
 #include "engine/scene.h"
 #include "schemas/text.h"
 

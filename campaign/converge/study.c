@@ -7,7 +7,7 @@
 
 #include "analysis/statistics/sample.h"
 #include "analysis/statistics/scatter.h"
-#include "db/ask/point.h"
+#include "db/ask/ask.h"
 
 #define CONFIDENCE 0.95
 #define NOTHING    ((double)NAN)
@@ -290,7 +290,7 @@ static status store_found(const struct study_ladder *ladder, const struct study_
                                          .point_ids = ladder->point,
                                          .rows = found->rows,
                                          .limit = &found->limit};
-  return store_convergence_set(store, &rows, error);
+  return store_set_convergence(store, &rows, error);
 }
 
 status study_store(const struct study *study, struct store *store, struct error *error) {
@@ -308,43 +308,31 @@ status study_store(const struct study *study, struct store *store, struct error 
 
 /* ---- values from the store ---- */
 
-struct reading {
-  double *values; /* NULL: not wanted */
-  bool *ran;
-  int64_t first, count;
-  double cpu, wall;
-  size_t runs;
-};
-
-static void take_run(void *context, const struct store_point_run *run) {
-  struct reading *reading = context;
-  const int64_t s = (int64_t)(run->seed - (uint64_t)reading->first);
-  if (s < 0 || s >= reading->count)
-    return;
-  if (reading->values)
-    reading->values[s] = outcome_is_usable(run->state) ? run->value : NOTHING;
-  reading->ran[s] = true;
-  reading->cpu += run->cpu_s;
-  reading->wall += run->wall_s;
-  reading->runs++;
-}
-
 /* Reads the values of a result from the runs; for an exponent only the runs' cost. */
 static status read_runs(const struct study *study, struct study_ladder *ladder, size_t l, size_t q, struct store *store,
                         struct error *error) {
   bool of_outcome = study->quantity[q].of_outcome;
   const struct engine_kind *kind = ladder->base->kind;
   const struct field *row = study->quantity[q].row;
-  struct reading reading = {.values = row ? ladder->values[q][l] : NULL,
-                            .ran = ladder->ran[l],
-                            .first = study->limits.first_seed,
-                            .count = study->rule.most_seeds};
+  double *values = row ? ladder->values[q][l] : NULL, cpu = 0, wall = 0;
+  size_t runs = 0;
   if (!row)
     row = campaign_quantity(kind, OUTCOME_DEFAULT, &of_outcome, error);
-  const status code = store_point_runs(store, ladder->point[l], kind, row, of_outcome, take_run, &reading, error);
-  ladder->cpu[l] = reading.runs ? reading.cpu / (double)reading.runs : NOTHING;
-  ladder->wall[l] = reading.runs ? reading.wall / (double)reading.runs : NOTHING;
-  return code;
+  ANSWER answer = ask_run_of_point(store, ladder->point[l], kind, row, of_outcome, error);
+  for (struct ask_run_of_point run; ask_run_of_point_next(&answer, &run);) {
+    const int64_t s = (int64_t)(run.seed - (uint64_t)study->limits.first_seed);
+    if (s < 0 || s >= study->rule.most_seeds)
+      continue;
+    if (values)
+      values[s] = outcome_is_usable(run.state) ? run.value : NOTHING;
+    ladder->ran[l][s] = true;
+    cpu += run.cpu_s;
+    wall += run.wall_s;
+    runs++;
+  }
+  ladder->cpu[l] = runs ? cpu / (double)runs : NOTHING;
+  ladder->wall[l] = runs ? wall / (double)runs : NOTHING;
+  return answer_end(&answer);
 }
 
 /* Reads what each run adds to an exponent of the first seeds. All values depend on the number of seeds. */

@@ -8,7 +8,7 @@
 #include "campaign/document/campaign_points.h"
 #include "campaign/document/campaign_vary.h"
 #include "campaign/document/campaign_walk.h"
-#include "db/store/place.h"
+#include "db/store/store.h"
 #include "schemas/memory.h"
 
 static document_node *key_of(document_node *mapping, const char *key) {
@@ -246,8 +246,8 @@ static void check_store(document_node *root, struct campaign *campaign) {
     document_report(name, "name",
                     "\"%s\" has a slash, and the store would be in another folder; take it out, or give `store`",
                     campaign->name);
-  if (campaign->store[0] && place_refused(campaign->store))
-    document_report(store, "store", "%s", place_refused(campaign->store));
+  if (campaign->store[0] && store_name_refused(campaign->store))
+    document_report(store, "store", "%s", store_name_refused(campaign->store));
 }
 
 static bool read_scene(document_node *root, const char *folder, struct campaign *campaign) {

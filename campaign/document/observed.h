@@ -16,7 +16,7 @@
 #define CLAST_CAMPAIGN_DOCUMENT_OBSERVED_H
 
 #include "campaign/document/campaign.h"
-#include "db/ask/specimens.h"
+#include "db/ask/ask.h"
 
 enum { OBSERVED_DATA = 32, OBSERVED_SHOTS = 32 };
 

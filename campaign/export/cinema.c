@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "campaign/charts/charts.h"
-#include "db/ask/run.h"
+#include "db/ask/ask.h"
 #include "schemas/file.h"
 
 enum { PATH = 4096, WIDTH = 600 };

@@ -14,7 +14,7 @@
 #include <time.h>
 
 #include "campaign/build_facts.h"
-#include "db/ask/campaign.h"
+#include "db/ask/ask.h"
 #include "schemas/file.h"
 #include "schemas/text.h"
 

@@ -1,7 +1,7 @@
 /* Writes views and bits of a store as text. */
 #include "campaign/export/export.h"
 
-#include "db/ask/columns.h"
+#include "db/ask/ask.h"
 #include "schemas/file.h"
 
 static const char *const exported[] = {"runs", "points", "spectra", "estimates", "column_doc"};

@@ -78,21 +78,6 @@ static status next_round(void *context, const struct scheduler *scheduler, struc
 
 /* ---- the values of a round's runs ---- */
 
-/* Values of one point and one quantity by replicate. */
-struct taking {
-  const struct observed_datum *datum;
-  const uint64_t *seeds;
-  double *values;
-  size_t count;
-};
-
-static void take(void *context, uint64_t seed, double value) {
-  const struct taking *taking = context;
-  for (size_t r = 0; r < taking->count; r++)
-    if (taking->seeds[r] == seed)
-      taking->values[r] = fit_transform(taking->datum, value);
-}
-
 /* The scene of a member of the shot. NULL with *error. */
 static struct scene *scene_of(const struct fit *fit, const double *z, struct error *error) {
   const struct campaign *campaign = fit->campaign;
@@ -116,18 +101,24 @@ static struct scene *scene_of(const struct fit *fit, const double *z, struct err
 /* Reads the values of the shot's data at a point of the store; point 0: it has none. */
 static status read_data(const struct fit *fit, struct store *store, const struct scene *scene, int64_t point,
                         const uint64_t *seeds, size_t count, double *values, size_t stride, struct error *error) {
-  status code = STATUS_OK;
-  for (size_t k = 0; code == STATUS_OK && k < fit->observed->datum_count; k++) {
+  for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct observed_datum *datum = &fit->observed->data[k];
     if (datum->shot != fit->shot)
       continue;
-    const struct taking taking = {datum, seeds, values + k * stride, count};
+    double *of_datum = values + k * stride, value;
+    uint64_t seed;
     for (size_t r = 0; r < count; r++)
-      taking.values[r] = NAN;
-    if (point)
-      code = ask_specimens(store, point, scene->kind, &datum->ask, take, (void *)&taking, error);
+      of_datum[r] = NAN;
+    if (!point)
+      continue;
+    ANSWER runs = ask_specimens(store, point, scene->kind, &datum->ask, error);
+    while (ask_specimens_next(&runs, &datum->ask, &seed, &value))
+      for (size_t r = 0; r < count; r++)
+        if (seeds[r] == seed)
+          of_datum[r] = fit_transform(datum, value);
+    TRY(answer_end(&runs));
   }
-  return code;
+  return STATUS_OK;
 }
 
 /* Reads `count` replicates of the shot's data at z; the values of datum k begin at values + k * stride. A point that

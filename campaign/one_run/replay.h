@@ -4,7 +4,7 @@
 
 #include "campaign/scheduler/run.h"
 #include "campaign/terminal/table.h"
-#include "db/ask/run.h"
+#include "db/ask/ask.h"
 #include "engine/scene.h"
 
 struct replay_compare {

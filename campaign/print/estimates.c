@@ -4,9 +4,7 @@
 
 #include "campaign/print/print.h"
 #include "campaign/terminal/uncertainty.h"
-#include "db/ask/columns.h"
-#include "db/ask/point.h"
-#include "db/ask/points.h"
+#include "db/ask/ask.h"
 #include "schemas/text.h"
 
 struct printing {

@@ -8,7 +8,7 @@
 #include "analysis/statistics/sensitivity.h"
 #include "campaign/document/sensitivity_design.h"
 #include "campaign/print/print.h"
-#include "db/ask/columns.h"
+#include "db/ask/ask.h"
 #include "engine/grow.h"
 #include "schemas/text.h"
 

@@ -10,10 +10,7 @@
 #include "analysis/report/page.h"
 #include "campaign/build_facts.h"
 #include "campaign/charts/charts.h"
-#include "db/ask/columns.h"
-#include "db/ask/page.h"
-#include "db/ask/pairs.h"
-#include "db/ask/run.h"
+#include "db/ask/ask.h"
 #include "engine/outcome.h"
 #include "schemas/file.h"
 
@@ -41,8 +38,7 @@ static status add_facts(struct making *making, const char *name, struct error *e
   return STATUS_OK;
 }
 
-static status add_label(void *context, const char *column, struct error *error) {
-  struct making *making = context;
+static status add_label(struct making *making, const char *column, struct error *error) {
   struct ask_column written;
   char label[CHARTS_LABEL], unit[96];
   TRY(ask_columns_written(making->store, column, &written, error));
@@ -100,7 +96,10 @@ static status fill_page(struct making *making, const char *name, struct page_dat
   char not_drawn[32];
   making->not_drawn = 0;
   TRY(add_facts(making, name, error));
-  TRY(ask_page_columns(making->page, add_label, making, error));
+  ANSWER columns = ask_page_columns(making->page, error);
+  while (answer_next(&columns))
+    TRY(add_label(making, answer_text(&columns, 0), error));
+  TRY(answer_end(&columns));
   TRY(add_differences(making, name, error));
   ANSWER kept = ask_page_kept(making->store, PICTURES, error);
   while (answer_next(&kept))

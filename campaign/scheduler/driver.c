@@ -122,24 +122,14 @@ static bool remember(struct driver *driver, int64_t id) {
   return true;
 }
 
-struct resuming {
-  struct driver *driver;
-  struct point *point;
-  bool out_of_memory;
-};
-
 /* Takes over a stored run. */
-static void take_stored(void *context, const struct store_point_run *run) {
-  struct resuming *resuming = context;
-  struct point *point = resuming->point;
-  struct driver *driver = resuming->driver;
+static status take_stored(struct driver *driver, struct point *point, const struct ask_run_of_point *run,
+                          struct error *error) {
   const int64_t r = scheduler_replicate(driver->campaign, point->scene, run);
   if (r < 0 || r >= campaign_replicates_most(driver->campaign))
-    return;
-  if (!point_reserve(point, r)) {
-    resuming->out_of_memory = true;
-    return;
-  }
+    return STATUS_OK;
+  if (!point_reserve(point, r))
+    return status_fail(error, STATUS_MEMORY, "no memory for a point's runs");
   const bool usable = outcome_is_usable(run->state), kept = run->fields_path && !run->fields_missing;
   const double value = usable ? run->value : NOTHING;
   point_finish_replicate(point, r, POINT_DONE, value);
@@ -159,6 +149,7 @@ static void take_stored(void *context, const struct store_point_run *run) {
   driver->summary.runs_failed += !usable;
   driver->summary.runs_censored += run->state == OUTCOME_END_TIME;
   sample_add(&driver->moments, value);
+  return STATUS_OK;
 }
 
 /* Called after the prefix has grown: surplus runs inside it count from now on. A run that counts is never excluded
@@ -199,11 +190,11 @@ static status judge(struct driver *driver, struct point *point, struct error *er
 
 /* Takes the point's stored runs, then judges its prefixes. */
 static status resume(struct driver *driver, struct point *point, struct error *error) {
-  struct resuming resuming = {driver, point, false};
-  TRY(store_point_runs(driver->scheduler->store, point->id, point->scene->kind, driver->row, driver->row_of_outcome,
-                       take_stored, &resuming, error));
-  if (resuming.out_of_memory)
-    return status_fail(error, STATUS_MEMORY, "no memory for a point's runs");
+  ANSWER stored = ask_run_of_point(driver->scheduler->store, point->id, point->scene->kind, driver->row,
+                                   driver->row_of_outcome, error);
+  for (struct ask_run_of_point run; ask_run_of_point_next(&stored, &run);)
+    TRY(take_stored(driver, point, &run, error));
+  TRY(answer_end(&stored));
   TRY(judge(driver, point, error));
   return admit(driver, point, error); /* a fixed number of replicates may cover runs that an older rule left out */
 }

@@ -7,7 +7,7 @@
 
 #include "campaign/document/campaign_walk.h"
 #include "campaign/scheduler/pilot.h"
-#include "db/ask/run.h"
+#include "db/ask/ask.h"
 #include "db/store/store.h"
 #include "schemas/clock.h"
 

@@ -5,8 +5,7 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-#include "db/ask/point.h"
-#include "db/ask/points.h"
+#include "db/ask/ask.h"
 
 struct fit {
   const struct ask_points_version *which;

@@ -31,7 +31,7 @@ status scheduler_announce(struct scheduler *scheduler, const struct campaign *ca
 }
 
 int64_t scheduler_replicate(const struct campaign *campaign, const struct scene *scene,
-                            const struct store_point_run *run) {
+                            const struct ask_run_of_point *run) {
   const int64_t r = campaign->independent ? run->replicate : (int64_t)(run->seed - (uint64_t)campaign->first_seed);
   if (r < 0 || campaign_seed(campaign, scene, r) != run->seed)
     return -1;

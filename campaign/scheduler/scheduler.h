@@ -20,7 +20,7 @@
 #include "campaign/farm/farm.h"
 #include "campaign/scheduler/run.h"
 #include "campaign/terminal/progress.h"
-#include "db/store/store.h"
+#include "db/ask/ask.h"
 
 struct scheduler;
 
@@ -113,7 +113,7 @@ status scheduler_announce(struct scheduler *scheduler, const struct campaign *ca
 /* The replicate of the point with this scene that has the identity of a stored run. -1: none; the run has an older
  * results_version or another seed. */
 int64_t scheduler_replicate(const struct campaign *campaign, const struct scene *scene,
-                            const struct store_point_run *run);
+                            const struct ask_run_of_point *run);
 /* How often attempts at the run have failed, by these limits. */
 int scheduler_attempts(const struct scheduler *scheduler, const uint8_t identity[16]);
 

@@ -86,30 +86,22 @@ static status begin(void *context, struct scheduler *scheduler, struct error *er
 
 /* ---- what the store has of a job ---- */
 
-struct reading {
-  const struct serve *serve;
-  const struct job *job;
-  double *values; /* NaN: no usable run. May be NULL */
-  bool *there;    /* may be NULL */
-};
-
-static void take_stored(void *context, const struct store_point_run *run) {
-  const struct reading *reading = context;
-  const struct serve_config *config = &reading->job->request.config;
-  const int64_t r = scheduler_replicate(reading->serve->model->campaign, reading->job->scene, run);
-  if (r < config->first || r - config->first >= config->count)
-    return;
-  if (reading->values)
-    reading->values[r - config->first] = outcome_is_usable(run->state) ? run->value : (double)NAN;
-  if (reading->there)
-    reading->there[r - config->first] = true;
-}
-
+/* `values`: NaN where there is no usable run. Both arrays may be NULL. */
 static status read_store(struct serve *serve, const struct job *job, const struct serve_result *result, double *values,
                          bool *there, struct error *error) {
-  struct reading reading = {serve, job, values, there};
-  return store_point_runs(serve->scheduler->store, job->point_id, job->scene->kind, result->row, result->of_outcome,
-                          take_stored, &reading, error);
+  const struct serve_config *config = &job->request.config;
+  ANSWER answer = ask_run_of_point(serve->scheduler->store, job->point_id, job->scene->kind, result->row,
+                                   result->of_outcome, error);
+  for (struct ask_run_of_point run; ask_run_of_point_next(&answer, &run);) {
+    const int64_t r = scheduler_replicate(serve->model->campaign, job->scene, &run) - config->first;
+    if (r < 0 || r >= config->count)
+      continue;
+    if (values)
+      values[r] = outcome_is_usable(run.state) ? run.value : (double)NAN;
+    if (there)
+      there[r] = true;
+  }
+  return answer_end(&answer);
 }
 
 static struct serve_answer answer_of(struct serve *serve, const struct job *job) {

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "db/ask/resolution.h"
+#include "db/ask/ask.h"
 
 enum { UNCERTAINTY_TEXT = 256 };
 

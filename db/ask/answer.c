@@ -57,20 +57,7 @@ static int authorize(void *context, int action, const char *first, const char *s
   return SQLITE_DENY;
 }
 
-/* Skips blanks, semicolons and comments. */
-static const char *skip_space(const char *text) {
-  for (;;) {
-    text += strspn(text, " \t\n\v\f\r;");
-    if (strncmp(text, "--", 2) == 0) {
-      text += strcspn(text, "\n");
-    } else if (strncmp(text, "/*", 2) == 0) {
-      const char *end = strstr(text + 2, "*/");
-      text = end ? end + 2 : text + strlen(text);
-    } else {
-      return text;
-    }
-  }
-}
+static const char between_statements[] = " \t\n\v\f\r;";
 
 static status refuse_sql(sqlite3 *db, const char *sql, struct error *error) {
   const int offset = sqlite3_error_offset(db);
@@ -84,7 +71,7 @@ static status refuse_sql(sqlite3 *db, const char *sql, struct error *error) {
 static status prepare(struct store *store, const char *sql, sqlite3_stmt **statement, struct error *error) {
   const char *tail = "";
   bool refused = false;
-  if (!*skip_space(sql))
+  if (!*sql_skip(sql, between_statements))
     return status_fail(error, STATUS_USAGE, "The query is empty: give one SELECT.");
   sqlite3_set_authorizer(store->db, authorize, &refused);
   const int code = sqlite3_prepare_v2(store->db, sql, -1, statement, &tail);
@@ -96,7 +83,7 @@ static status prepare(struct store *store, const char *sql, sqlite3_stmt **state
     return refuse_sql(store->db, sql, error);
   if (code != SQLITE_OK)
     return sql_fail(store->db, code, "the query", error);
-  if (*skip_space(tail))
+  if (*sql_skip(tail, between_statements))
     return status_fail(error, STATUS_USAGE, "A query is one statement; a second one begins at: %.40s", tail);
   return STATUS_OK;
 }

@@ -1,10 +1,10 @@
 /* Canned queries. People also learn the tables from them: they are plain SQL without functions of our own, so that each
  * can be pasted into any tool. */
-#include "db/ask/canned.h"
+#include "db/ask/ask.h"
 
 #include <string.h>
 
-#include "db/store/views_statistics.h"
+#include "db/store/views.h"
 #include "engine/outcome.h"
 #include "schemas/text.h"
 

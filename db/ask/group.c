@@ -2,9 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/ask/group.h"
+#include "db/ask/ask.h"
 #include "db/store/internal.h"
-#include "db/store/views_statistics.h"
+#include "db/store/views.h"
 #include "engine/engine.h"
 #include "schemas/text.h"
 

@@ -1,5 +1,5 @@
 /* The small file of a page: tables that are copied from the store, statistics of points, facts, labels, pictures. */
-#include "db/ask/page.h"
+#include "db/ask/ask.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,14 +8,9 @@
 
 #include "analysis/statistics/sample.h"
 #include "analysis/statistics/scatter.h"
-#include "db/ask/canned.h"
-#include "db/ask/columns.h"
-#include "db/ask/group.h"
-#include "db/ask/pool.h"
-#include "db/ask/run.h"
 #include "db/sql.h"
 #include "db/store/internal.h"
-#include "db/store/views_statistics.h"
+#include "db/store/views.h"
 #include "engine/grow.h"
 #include "engine/outcome.h"
 #include "schemas/text.h"
@@ -36,7 +31,7 @@ enum {
 };
 
 struct ask_page {
-  sqlite3 *db; /* in memory */
+  struct store store; /* only a database in memory, for answers */
 };
 
 /* Tables that are copied, and the first column from which on numbers are rounded. */
@@ -54,44 +49,34 @@ static const struct {
                   "ORDER BY point_id, ordinal"},
 };
 
-static void bind_value(sqlite3_stmt *statement, int index, struct query_value value, bool rounded) {
-  switch (value.kind) {
-  case QUERY_NULL: sqlite3_bind_null(statement, index); break;
-  case QUERY_INTEGER: sqlite3_bind_int64(statement, index, value.integer); break;
-  case QUERY_REAL: sqlite3_bind_double(statement, index, rounded ? (double)(float)value.real : value.real); break;
-  case QUERY_TEXT: sqlite3_bind_text(statement, index, value.text, (int)value.size, SQLITE_TRANSIENT); break;
-  case QUERY_BLOB: sqlite3_bind_blob(statement, index, value.blob, (int)value.size, SQLITE_TRANSIENT); break;
-  }
-}
-
 /* Makes a table of the rows of an answer. Real numbers from column `rounded` (counted from 0) on are rounded to single
  * precision: 7 digits, and they compress well. */
 enum { EXACT = 1000 }; /* no column is rounded */
-static status copy(struct ask_page *page, struct answer answer, const char *table, size_t rounded) {
-  struct error *error = answer.error;
-  sqlite3_stmt *insert = NULL;
-  sqlite3_str *columns = sqlite3_str_new(NULL), *marks = sqlite3_str_new(NULL);
+static status copy(struct ask_page *page, struct answer asked, const char *table, size_t rounded) {
+  ANSWER answer = asked;
+  STATEMENT insert = NULL;
   const size_t count = answer_count(&answer);
-  for (size_t i = 0; i < count; i++) {
+  TRY(answer_status(&answer));
+  sqlite3_str *columns = sqlite3_str_new(NULL);
+  for (size_t i = 0; i < count; i++)
     sqlite3_str_appendf(columns, "%s\"%w\"", i ? ", " : "", answer_name(&answer, i));
+  TRY(sql_executef(page->store.db, doing, answer.error, "CREATE TABLE \"%w\" (%z)", table,
+                   sqlite3_str_finish(columns)));
+  sqlite3_str *marks = sqlite3_str_new(NULL);
+  for (size_t i = 0; i < count; i++)
     sqlite3_str_appendall(marks, i ? ", ?" : "?");
+  TRY(sql_preparef(page->store.db, &insert, doing, answer.error, "INSERT INTO \"%w\" VALUES (%z)", table,
+                   sqlite3_str_finish(marks)));
+  while (answer_next(&answer)) {
+    for (size_t i = 0; i < count; i++) {
+      struct sql_value value = sql_of_column(answer.statement, (int)i);
+      if (i >= rounded)
+        value.real = (double)(float)value.real;
+      sql_bind(insert, (int)i + 1, value);
+    }
+    TRY(sql_run(insert, doing, answer.error));
   }
-  char *names = sqlite3_str_finish(columns), *places = sqlite3_str_finish(marks);
-  status code = answer_status(&answer);
-  if (code == STATUS_OK)
-    code = sql_executef(page->db, doing, error, "CREATE TABLE \"%w\" (%s)", table, names);
-  if (code == STATUS_OK)
-    code = sql_preparef(page->db, &insert, doing, error, "INSERT INTO \"%w\" VALUES (%s)", table, places);
-  while (code == STATUS_OK && answer_next(&answer)) {
-    for (size_t i = 0; i < count; i++)
-      bind_value(insert, (int)i + 1, answer_value(&answer, i), i >= rounded);
-    code = sql_run(insert, doing, error);
-  }
-  sqlite3_free(names);
-  sqlite3_free(places);
-  sqlite3_finalize(insert);
-  const status end = answer_end(&answer);
-  return code ? code : end;
+  return answer_end(&answer);
 }
 
 static status set_fact(struct ask_page *page, const char *name, size_t value, struct error *error) {
@@ -269,24 +254,20 @@ static status read_results(struct reading *reading, struct store *store, struct 
 
 /* Removes results with the same value everywhere, and the last rows beyond the limit. */
 static status thin_means(struct reading *reading, struct error *error) {
-  status code = STATUS_OK;
-  for (size_t i = 0; code == STATUS_OK && i < reading->count; i++)
-    if (reading->column[i].number && !reading->column[i].varies)
-      code = sql_executef(reading->page->db, doing, error, "DELETE FROM means WHERE quantity = %Q",
-                          reading->column[i].name);
+  sqlite3 *db = reading->page->store.db;
   int64_t rows = 0, points = 0;
-  if (code == STATUS_OK)
-    code = sql_integer(reading->page->db, "SELECT count(*) FROM means", 0, &rows, error);
-  if (code == STATUS_OK)
-    code = sql_integer(reading->page->db, "SELECT count(DISTINCT point_id) FROM means", 0, &points, error);
-  for (size_t i = reading->count; code == STATUS_OK && rows > MEANS && i-- > 0;) {
+  for (size_t i = 0; i < reading->count; i++)
+    if (reading->column[i].number && !reading->column[i].varies)
+      TRY(sql_executef(db, doing, error, "DELETE FROM means WHERE quantity = %Q", reading->column[i].name));
+  TRY(sql_integer(db, "SELECT count(*) FROM means", 0, &rows, error));
+  TRY(sql_integer(db, "SELECT count(DISTINCT point_id) FROM means", 0, &points, error));
+  for (size_t i = reading->count; rows > MEANS && i-- > 0;) {
     if (reading->column[i].main || !reading->column[i].varies)
       continue;
-    code = sql_executef(reading->page->db, doing, error, "DELETE FROM means WHERE quantity = %Q",
-                        reading->column[i].name);
+    TRY(sql_executef(db, doing, error, "DELETE FROM means WHERE quantity = %Q", reading->column[i].name));
     rows -= points;
   }
-  return code;
+  return STATUS_OK;
 }
 
 /* Chooses the runs to keep within the limit: the first `replicates` of every point or, with more points than the limit,
@@ -354,7 +335,7 @@ static status copy_runs(struct reading *reading, struct store *store, struct err
 }
 
 static status fill_runs(struct reading *reading, struct store *store, struct error *error) {
-  sqlite3 *db = reading->page->db;
+  sqlite3 *db = reading->page->store.db;
   TRY(sql_execute(db,
                   "CREATE TABLE means (point_id, results_version, quantity, n, mean, sd, hw95);"
                   "CREATE TABLE modes (point_id, quantity, lower_mode, upper_mode, between_modes, "
@@ -409,13 +390,13 @@ static status add_scatter(sqlite3_stmt *insert, int64_t point, const struct scat
 }
 
 static status add_quantiles(struct ask_page *page, struct store *store, struct error *error) {
-  sqlite3_stmt *insert = NULL;
+  STATEMENT insert = NULL;
   double points = 0;
-  TRY(sql_execute(page->db, "CREATE TABLE quantile (point_id, quantity, share, value, low, high)", doing, error));
+  TRY(sql_execute(page->store.db, "CREATE TABLE quantile (point_id, quantity, share, value, low, high)", doing, error));
   TRY(answer_number(store, &points, error, "SELECT count(*) FROM point"));
   if (points > QUANTILES)
     return STATUS_OK;
-  TRY(sql_prepare(page->db, "INSERT INTO quantile VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &insert, doing, error));
+  TRY(sql_prepare(page->store.db, "INSERT INTO quantile VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &insert, doing, error));
   ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, OUTCOME_DEFAULT, error);
   const struct ask_pool *pool;
   status code = STATUS_OK;
@@ -426,7 +407,6 @@ static status add_quantiles(struct ask_page *page, struct store *store, struct e
       code = add_scatter(insert, pool->point[0], &scatter, error);
     scatter_release(&scatter);
   }
-  sqlite3_finalize(insert);
   return code ? code : ask_pools_end(&pools);
 }
 
@@ -456,43 +436,39 @@ static status add_fit(sqlite3_stmt *insert, const struct ask_pool *pool, int64_t
 }
 
 static status add_goodness(struct ask_page *page, struct store *store, struct error *error) {
-  sqlite3_stmt *insert = NULL;
+  STATEMENT insert = NULL;
   int64_t fragments = 0; /* tested so far */
   bool enough = false;
-  TRY(sql_execute(page->db, "CREATE TABLE goodness (point_id, n, p)", doing, error));
-  TRY(sql_prepare(page->db, "INSERT INTO goodness VALUES (?1, ?2, ?3)", &insert, doing, error));
+  TRY(sql_execute(page->store.db, "CREATE TABLE goodness (point_id, n, p)", doing, error));
+  TRY(sql_prepare(page->store.db, "INSERT INTO goodness VALUES (?1, ?2, ?3)", &insert, doing, error));
   ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, NULL, error);
   const struct ask_pool *pool;
   status code = STATUS_OK;
   while (code == STATUS_OK && !enough && (pool = ask_pools_next(&pools)))
     code = add_fit(insert, pool, &fragments, &enough, error);
-  sqlite3_finalize(insert);
   return code ? code : ask_pools_end(&pools);
 }
 
 /* The canned queries that the page's tables can answer. */
 static status add_questions(struct ask_page *page, struct error *error) {
-  sqlite3_stmt *insert = NULL;
-  status code = sql_prepare(page->db, "INSERT INTO question VALUES (?1, ?2, ?3, ?4)", &insert, doing, error);
-  for (size_t i = 0; code == STATUS_OK && i < ask_canned_count(); i++) {
+  STATEMENT insert = NULL;
+  TRY(sql_prepare(page->store.db, "INSERT INTO question VALUES (?1, ?2, ?3, ?4)", &insert, doing, error));
+  for (size_t i = 0; i < ask_canned_count(); i++) {
     const struct query_canned *query = ask_canned_at(i);
-    sqlite3_stmt *trial = NULL;
-    const int works = sqlite3_prepare_v2(page->db, query->sql, -1, &trial, NULL);
-    sqlite3_finalize(trial);
-    if (works != SQLITE_OK)
+    STATEMENT trial = NULL;
+    if (sqlite3_prepare_v2(page->store.db, query->sql, -1, &trial, NULL) != SQLITE_OK)
       continue;
     sql_bind_text(insert, 1, query->name);
     sql_bind_text(insert, 2, query->doc);
     sql_bind_text(insert, 3, query->sql);
     sql_bind_text(insert, 4, query->parameters);
-    code = sql_run(insert, doing, error);
+    TRY(sql_run(insert, doing, error));
   }
-  sqlite3_finalize(insert);
-  return code;
+  return STATUS_OK;
 }
 
 static status fill(struct ask_page *page, struct store *store, struct error *error) {
-  TRY(sql_execute(page->db,
+  TRY(sql_execute(page->store.db,
                   "PRAGMA page_size = 4096;"
                   "CREATE TABLE fact (name TEXT PRIMARY KEY, value) WITHOUT ROWID;"
                   "CREATE TABLE label (column_name TEXT PRIMARY KEY, label, unit, factor) WITHOUT ROWID;"
@@ -517,7 +493,7 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
   TRY(add_quantiles(page, store, error));
   TRY(add_goodness(page, store, error));
   /* canned queries also use the table's name in the store */
-  TRY(sql_execute(page->db, "CREATE VIEW run AS SELECT * FROM runs", doing, error));
+  TRY(sql_execute(page->store.db, "CREATE VIEW run AS SELECT * FROM runs", doing, error));
   return add_questions(page, error);
 }
 
@@ -525,7 +501,7 @@ status ask_page_make(struct store *store, struct ask_page **out, struct error *e
   struct ask_page *page = *out = calloc(1, sizeof *page);
   if (!page)
     return status_fail(error, STATUS_MEMORY, "no memory for the page");
-  status code = sqlite3_open(":memory:", &page->db) == SQLITE_OK
+  status code = sqlite3_open(":memory:", &page->store.db) == SQLITE_OK
                     ? sql_execute(store->db, "BEGIN", doing,
                                   error) /* one consistent state of a store that another process writes */
                     : status_fail(error, STATUS_MEMORY, "no memory for the page");
@@ -543,30 +519,24 @@ status ask_page_make(struct store *store, struct ask_page **out, struct error *e
 void ask_page_free(struct ask_page *page) {
   if (!page)
     return;
-  sqlite3_close(page->db);
+  sqlite3_close(page->store.db);
   free(page);
 }
 
 status ask_page_fact(struct ask_page *page, const char *name, const char *value, struct error *error) {
-  return sql_executef(page->db, doing, error, "INSERT OR REPLACE INTO fact VALUES (%Q, %Q)", name, value);
+  return sql_executef(page->store.db, doing, error, "INSERT OR REPLACE INTO fact VALUES (%Q, %Q)", name, value);
 }
 
 status ask_page_label(struct ask_page *page, const char *column, const char *label, const char *unit, double factor,
                       struct error *error) {
-  return sql_executef(page->db, doing, error, "INSERT OR REPLACE INTO label VALUES (%Q, %Q, %Q, %!.17g)", column, label,
-                      unit, factor);
+  return sql_executef(page->store.db, doing, error, "INSERT OR REPLACE INTO label VALUES (%Q, %Q, %Q, %!.17g)", column,
+                      label, unit, factor);
 }
 
-status ask_page_columns(struct ask_page *page, status (*each)(void *context, const char *column, struct error *error),
-                        void *context, struct error *error) {
-  static const char sql[] = "SELECT column_name FROM axis UNION SELECT quantity FROM means UNION SELECT name FROM "
-                            "pragma_table_info('runs') EXCEPT SELECT column_name FROM label";
-  sqlite3_stmt *statement = NULL;
-  status code = sql_prepare(page->db, sql, &statement, doing, error);
-  while (sql_next(statement, &code, doing, error))
-    code = each(context, sql_text(statement, 0), error);
-  sqlite3_finalize(statement);
-  return code;
+struct answer ask_page_columns(struct ask_page *page, struct error *error) {
+  return answer_to(&page->store, error,
+                   "SELECT column_name FROM axis UNION SELECT quantity FROM means UNION SELECT name FROM "
+                   "pragma_table_info('runs') EXCEPT SELECT column_name FROM label");
 }
 
 struct answer ask_page_kept(struct store *store, size_t most, struct error *error) {
@@ -583,43 +553,33 @@ struct answer ask_page_kept(struct store *store, size_t most, struct error *erro
 
 status ask_page_picture(struct ask_page *page, const struct answer *kept, const void *png, size_t size,
                         struct error *error) {
-  sqlite3_stmt *insert = NULL;
-  status code = sql_prepare(page->db, "INSERT INTO picture VALUES (?1, ?2, ?3, ?4)", &insert, doing, error);
-  if (code == STATUS_OK) {
-    sqlite3_bind_int64(insert, 1, answer_integer(kept, 0));
-    sqlite3_bind_int64(insert, 2, answer_integer(kept, 1));
-    sqlite3_bind_double(insert, 3, answer_real(kept, 2));
-    sqlite3_bind_blob64(insert, 4, png, size, SQLITE_STATIC);
-    code = sql_run(insert, doing, error);
-  }
-  sqlite3_finalize(insert);
-  return code;
+  STATEMENT insert = NULL;
+  TRY(sql_prepare(page->store.db, "INSERT INTO picture VALUES (?1, ?2, ?3, ?4)", &insert, doing, error));
+  sqlite3_bind_int64(insert, 1, answer_integer(kept, 0));
+  sqlite3_bind_int64(insert, 2, answer_integer(kept, 1));
+  sqlite3_bind_double(insert, 3, answer_real(kept, 2));
+  sqlite3_bind_blob64(insert, 4, png, size, SQLITE_STATIC);
+  return sql_run(insert, doing, error);
 }
 
 status ask_page_difference(struct ask_page *page, const char *quantity, int64_t first_point, int64_t point,
                            const struct difference *difference, struct error *error) {
-  sqlite3_stmt *insert = NULL;
-  status code = sql_prepare(page->db, "INSERT INTO difference VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &insert, doing, error);
-  if (code == STATUS_OK) {
-    sql_bind_text(insert, 1, quantity);
-    sqlite3_bind_int64(insert, 2, first_point);
-    sqlite3_bind_int64(insert, 3, point);
-    sqlite3_bind_int64(insert, 4, (int64_t)difference->pairs);
-    sqlite3_bind_double(insert, 5, difference->difference); /* NaN is NULL */
-    sqlite3_bind_double(insert, 6, difference->half_width);
-    code = sql_run(insert, doing, error);
-  }
-  sqlite3_finalize(insert);
-  return code;
+  STATEMENT insert = NULL;
+  TRY(sql_prepare(page->store.db, "INSERT INTO difference VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &insert, doing, error));
+  sql_bind_text(insert, 1, quantity);
+  sqlite3_bind_int64(insert, 2, first_point);
+  sqlite3_bind_int64(insert, 3, point);
+  sqlite3_bind_int64(insert, 4, (int64_t)difference->pairs);
+  sqlite3_bind_double(insert, 5, difference->difference); /* NaN is NULL */
+  sqlite3_bind_double(insert, 6, difference->half_width);
+  return sql_run(insert, doing, error);
 }
 
 status ask_page_file(struct ask_page *page, unsigned char **bytes, size_t *size, struct error *error) {
   sqlite3_int64 length = 0;
   *bytes = NULL;
-  status code = sql_execute(page->db, "COMMIT; VACUUM; BEGIN", doing, error);
-  if (code)
-    return code;
-  unsigned char *file = sqlite3_serialize(page->db, "main", &length, 0);
+  TRY(sql_execute(page->store.db, "COMMIT; VACUUM; BEGIN", doing, error));
+  unsigned char *file = sqlite3_serialize(page->store.db, "main", &length, 0);
   if (file)
     *bytes = malloc((size_t)length);
   if (*bytes)

@@ -1,5 +1,5 @@
 /* Reads both sides of a comparison and walks along them. */
-#include "db/ask/pairs.h"
+#include "db/ask/ask.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,8 +7,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "db/ask/group.h"
-#include "db/ask/points.h"
 #include "db/sql.h"
 #include "engine/grow.h"
 

@@ -1,12 +1,11 @@
 /* Reads the fragments of one point and estimates its exponents. */
-#include "db/ask/point.h"
+#include "db/ask/ask.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/ask/answer.h"
 #include "db/sql.h"
 #include "engine/engine.h"
 #include "engine/grow.h"
@@ -83,18 +82,6 @@ static status read_runs(struct store *store, const char *where, struct point_dat
   return answer_end(&answer);
 }
 
-/* The mean over the runs; NaN in a read-only store from before this column was added. */
-static status read_complete_mass(struct store *store, struct point_data *out, struct error *error) {
-  double there = 0;
-  TRY(answer_number(store, &there, error, "SELECT count(*) FROM pragma_table_info('run') WHERE name = %Q",
-                    OUTCOME_NAME(complete_mass)));
-  if (!(there > 0))
-    return STATUS_OK;
-  return answer_number(store, &out->complete_mass, error,
-                       "SELECT avg(%s) FROM run WHERE point_id = %lld AND results_version = %lld AND counts = 1",
-                       OUTCOME_NAME(complete_mass), (long long)out->point_id, (long long)out->results_version);
-}
-
 static status read_point(struct store *store, const char *where, struct point_data *out, struct error *error) {
   TRY(read_version(store, out, error));
   TRY(read_runs(store, where, out, error));
@@ -104,7 +91,9 @@ static status read_point(struct store *store, const char *where, struct point_da
                     "AND r.results_version = %lld AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_10'",
                     (long long)out->point_id, (long long)out->results_version));
   out->element_mass /= estimates_window_elements(ESTIMATES_FROM_10);
-  return read_complete_mass(store, out, error);
+  return answer_number(store, &out->complete_mass, error,
+                       "SELECT avg(%s) FROM run WHERE point_id = %lld AND results_version = %lld AND counts = 1",
+                       OUTCOME_NAME(complete_mass), (long long)out->point_id, (long long)out->results_version);
 }
 
 status point_read_where(struct store *store, int64_t point_id, int64_t results_version, const char *where,

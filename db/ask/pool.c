@@ -1,13 +1,11 @@
 /* Chooses the points of each pool and reads their runs. */
-#include "db/ask/pool.h"
+#include "db/ask/ask.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/ask/columns.h"
-#include "db/ask/points.h"
 #include "db/sql.h"
 #include "engine/engine.h"
 #include "engine/grow.h"

@@ -1,74 +1,148 @@
-/* Adding rows of campaigns, of axes, of points with their inputs, and of attempts. */
+/* Adding rows: campaigns, points with their inputs and shape files, axes, runs with everything that follows from them,
+ * and attempts. Statements are prepared once; adding a run needs no further SQL text or JSON. */
+#include <endian.h>
 #include <stdlib.h>
+#include <string.h>
+#include <time.h>
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
-#include "db/store/shapes.h"
 #include "db/store/views.h"
+#include "engine/grow.h"
+#include "engine/scene.h"
 
 static const char adding_point[] = "adding a point";
 static const char adding_campaign[] = "adding a campaign";
+static const char adding_run[] = "adding a run";
+
+/* ---- engines ---- */
+
+/* s since 1970-01-01 UTC */
+static double wall_clock(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_REALTIME, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static const struct sql_column run_id_column = {"run_id", SQL_COLUMN_INTEGER, 0};
+
+/* The column names for digest_run(), made once for a store and an engine. */
+static status name_columns(struct store *store, struct store_kind *kind, struct error *error) {
+  const struct schema_table results = schema_result_table(kind->kind);
+  store->name_of.identity = digest_name("run", "identity");
+  store->name_of.replicate = digest_name("run", "replicate");
+  store->name_of.seed = digest_name("run", "seed");
+  store->name_of.results_version = digest_name("run", "results_version");
+  store->name_of.masses = digest_name("fragment_mass", "masses");
+  TRY(digest_names_make(&store->outcome_names, "run", &outcome_table, error));
+  TRY(digest_names_make(&store->estimate_names, "estimate", &estimates_table, error));
+  return digest_names_make(&kind->names, results.name, kind->kind->results, error);
+}
+
+/* Prepares all tables that the store keeps for an engine: creates its result table, or adds missing columns. */
+static status open_kind(struct store *store, const struct engine_kind *kind, struct store_kind *entry, bool *grown,
+                        struct error *error) {
+  static const char version[] = "PRAGMA schema_version";
+  const struct schema_table table = schema_result_table(kind);
+  int64_t before = 0, after = 0, filled = 0;
+  entry->kind = kind;
+  TRY(sql_integer(store->db, version, 0, &before, error));
+  TRY(schema_complete(store->db, &table, error));
+  TRY(sql_integer(store->db, version, 0, &after, error));
+  *grown = *grown || before != after;
+  TRY(sql_insert_prepare(store->db, &entry->insert, table.name, 1, &run_id_column, kind->results, 1, adding_run,
+                         error));
+  TRY(sql_integerf(store->db, &filled, error, "SELECT EXISTS (SELECT 1 FROM \"%w\")", table.name));
+  entry->first = filled == 0;
+  return name_columns(store, entry, error);
+}
+
+/* Gives the store's entry for the engine in *found. *grown becomes true when the views need another column. */
+static status find_kind(struct store *store, const struct engine_kind *kind, struct store_kind **found, bool *grown,
+                        struct error *error) {
+  for (size_t i = 0; i < store->kind_count; i++)
+    if (store->kinds[i].kind == kind) {
+      *found = &store->kinds[i];
+      return STATUS_OK;
+    }
+  if (store->kind_count == STORE_KINDS)
+    return status_fail(error, STATUS_INTERNAL, "more than %d engines in one store", STORE_KINDS);
+  *found = &store->kinds[store->kind_count];
+  const status result = open_kind(store, kind, *found, grown, error);
+  store->kind_count += result == STATUS_OK;
+  return result;
+}
+
+/* ---- campaigns ---- */
 
 /* *campaign_id: 0 when the campaign is not stored yet. */
 static status find_campaign(struct store *store, const char *name, const char *document_text, int64_t *campaign_id,
                             struct error *error) {
-  sqlite3_stmt *statement = NULL;
-  status result = sql_prepare(store->db, "SELECT campaign_id FROM campaign WHERE name = ?1 AND document = ?2",
-                              &statement, adding_campaign, error);
-  if (result != STATUS_OK)
-    return result;
+  STATEMENT statement = NULL;
+  TRY(sql_prepare(store->db, "SELECT campaign_id FROM campaign WHERE name = ?1 AND document = ?2", &statement,
+                  adding_campaign, error));
   sql_bind_text(statement, 1, name);
   sql_bind_text(statement, 2, document_text);
   *campaign_id = sqlite3_step(statement) == SQLITE_ROW ? sqlite3_column_int64(statement, 0) : 0;
-  sqlite3_finalize(statement);
   return STATUS_OK;
 }
 
 static status find_or_add_campaign(struct store *store, const char *name, const char *document_text,
                                    const char *plan_json, int64_t *campaign_id, struct error *error) {
-  status result = find_campaign(store, name, document_text, campaign_id, error);
-  if (result != STATUS_OK || *campaign_id != 0)
-    return result;
-  sqlite3_stmt *statement = NULL;
-  result = sql_prepare(store->db,
-                       "INSERT INTO campaign (name, document, plan, added_at) VALUES (?1, ?2, ?3, "
-                       "strftime('%Y-%m-%dT%H:%M:%fZ', 'now'))",
-                       &statement, adding_campaign, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(find_campaign(store, name, document_text, campaign_id, error));
+  if (*campaign_id != 0)
+    return STATUS_OK;
+  STATEMENT statement = NULL;
+  TRY(sql_prepare(store->db,
+                  "INSERT INTO campaign (name, document, plan, added_at) VALUES (?1, ?2, ?3, "
+                  "strftime('%Y-%m-%dT%H:%M:%fZ', 'now'))",
+                  &statement, adding_campaign, error));
   sql_bind_text(statement, 1, name);
   sql_bind_text(statement, 2, document_text);
   sql_bind_text(statement, 3, plan_json);
-  result = sql_run(statement, adding_campaign, error);
+  const status result = sql_run(statement, adding_campaign, error);
   *campaign_id = sqlite3_last_insert_rowid(store->db);
-  sqlite3_finalize(statement);
   return result;
 }
 
 status store_add_campaign(struct store *store, const char *name, const char *document_text, const char *plan_json,
                           int64_t *campaign_id, struct error *error) {
-  status result = store_begin(store, error);
-  if (result != STATUS_OK)
-    return result;
-  result = find_or_add_campaign(store, name, document_text, plan_json, campaign_id, error);
-  return store_end(store, result, 1, error);
+  TRY(store_begin(store, error));
+  return store_end(store, find_or_add_campaign(store, name, document_text, plan_json, campaign_id, error), 1, error);
 }
+
+/* ---- points ---- */
 
 static status add_inputs(struct store *store, int64_t point_id, const struct scene *scene, struct error *error) {
   const struct field_table *inputs = scene->kind->inputs;
-  status result = sql_prepare_once(store->db, &store->point_input,
-                                   "INSERT INTO point_input (point_id, path, value) VALUES (?1, ?2, ?3)", adding_point,
-                                   error);
-  for (size_t i = 0; result == STATUS_OK && i < inputs->count; i++) {
+  TRY(sql_prepare_once(store->db, &store->point_input,
+                       "INSERT INTO point_input (point_id, path, value) VALUES (?1, ?2, ?3)", adding_point, error));
+  for (size_t i = 0; i < inputs->count; i++) {
     const struct field *row = &inputs->rows[i];
     if (!field_is_active(inputs, row, scene->inputs))
       continue;
     sqlite3_bind_int64(store->point_input, 1, point_id);
     sql_bind_text(store->point_input, 2, row->path);
-    sql_bind_field(store->point_input, 3, row, scene->inputs, true);
-    result = sql_run(store->point_input, adding_point, error);
+    sql_bind(store->point_input, 3, sql_of_field(row, scene->inputs, true));
+    TRY(sql_run(store->point_input, adding_point, error));
   }
-  return result;
+  return STATUS_OK;
+}
+
+/* Adds the files of a scene that the store lacks. */
+static status add_shapes(struct store *store, const struct scene *scene, struct error *error) {
+  static const char doing[] = "adding a shape file";
+  const struct mesh_file *files[SCENE_FILES_MOST];
+  const size_t count = scene_files_of(scene->kind->inputs, scene->inputs, files);
+  for (size_t i = 0; i < count; i++) {
+    STATEMENT statement = NULL;
+    TRY(sql_prepare(store->db, "INSERT OR IGNORE INTO shape_file (hash, bytes) VALUES (?1, ?2)", &statement, doing,
+                    error));
+    sql_bind_text(statement, 1, files[i]->hash);
+    sqlite3_bind_blob(statement, 2, files[i]->bytes, (int)files[i]->size, SQLITE_STATIC);
+    TRY(sql_run(statement, doing, error));
+  }
+  return STATUS_OK;
 }
 
 /* The digest of the rows of a point that is about to be stored. */
@@ -76,63 +150,60 @@ static void digest_point(const struct scene *scene, const uint8_t hash[16], cons
   const struct field_table *inputs = scene->kind->inputs;
   const struct digest value = digest_name("point_input", "value");
   struct digest sum = {0};
-  digest_add_bytes(&sum, digest_name("point", "hash"), hash, 16);
-  digest_add_text(&sum, digest_name("point", "engine"), scene->kind->name);
-  digest_add_text(&sum, digest_name("point", "scene_name"), scene->name);
-  digest_add_text(&sum, digest_name("point", "scene"), json);
+  digest_add(&sum, digest_name("point", "hash"), 0, sql_of_bytes(hash, 16));
+  digest_add(&sum, digest_name("point", "engine"), 0, sql_of_text(scene->kind->name));
+  digest_add(&sum, digest_name("point", "scene_name"), 0, sql_of_text(scene->name));
+  digest_add(&sum, digest_name("point", "scene"), 0, sql_of_text(json));
   for (size_t i = 0; i < inputs->count; i++)
     if (field_is_active(inputs, &inputs->rows[i], scene->inputs))
-      digest_add_field(&sum, value, digest_row(inputs->rows[i].path), &inputs->rows[i], scene->inputs, true);
+      digest_add(&sum, value, digest_row(inputs->rows[i].path), sql_of_field(&inputs->rows[i], scene->inputs, true));
   digest_write(sum, digest);
 }
 
-static status find_or_add_point(struct store *store, const struct scene *scene, int64_t *point_id,
-                                struct error *error) {
-  status result = store_point_find(store, scene, point_id, error);
-  if (result != STATUS_OK || *point_id != 0)
-    return result;
-  uint8_t hash[16];
+static status add_point_row(struct store *store, const struct scene *scene, const char *json, int64_t *point_id,
+                            struct error *error) {
+  uint8_t hash[16], digest[16];
+  TRY(sql_prepare_once(store->db, &store->point,
+                       "INSERT INTO point (hash, engine, scene_name, scene, digest) VALUES (?1, ?2, ?3, ?4, ?5)",
+                       adding_point, error));
   store_point_hash(scene, hash);
-  result = sql_prepare_once(store->db, &store->point,
-                            "INSERT INTO point (hash, engine, scene_name, scene, digest) VALUES (?1, ?2, ?3, ?4, ?5)",
-                            adding_point, error);
-  if (result != STATUS_OK)
-    return result;
-  char *json = scene_json(scene);
-  if (!json)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_point);
-  uint8_t digest[16];
   digest_point(scene, hash, json, digest);
-
-  sqlite3_bind_blob(store->point, 1, hash, 16, SQLITE_STATIC);
+  sqlite3_bind_blob(store->point, 1, hash, sizeof hash, SQLITE_STATIC);
   sql_bind_text(store->point, 2, scene->kind->name);
   sql_bind_text(store->point, 3, scene->name);
   sql_bind_text(store->point, 4, json);
   sqlite3_bind_blob(store->point, 5, digest, sizeof digest, SQLITE_STATIC);
-  result = sql_run(store->point, adding_point, error);
+  const status result = sql_run(store->point, adding_point, error);
   *point_id = sqlite3_last_insert_rowid(store->db);
+  return result;
+}
+
+static status find_or_add_point(struct store *store, const struct scene *scene, int64_t *point_id,
+                                struct error *error) {
+  TRY(store_point_find(store, scene, point_id, error));
+  if (*point_id != 0)
+    return STATUS_OK;
+  char *json = scene_json(scene);
+  if (!json)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_point);
+  const status result = add_point_row(store, scene, json, point_id, error);
   free(json);
-  if (result == STATUS_OK)
-    result = add_inputs(store, *point_id, scene, error);
-  return result == STATUS_OK ? shapes_add(store, scene, error) : result;
+  TRY(result);
+  TRY(add_inputs(store, *point_id, scene, error));
+  return add_shapes(store, scene, error);
 }
 
 /* *grown: the views need another column. */
 static status add_axis(struct store *store, const struct field *row, bool *grown, struct error *error) {
-  status result = sql_prepare_once(store->db, &store->axis_find, "SELECT 1 FROM axis WHERE path = ?1", adding_point,
-                                   error);
-  if (result != STATUS_OK)
-    return result;
+  char name[SCHEMA_NAME_SIZE];
+  TRY(sql_prepare_once(store->db, &store->axis_find, "SELECT 1 FROM axis WHERE path = ?1", adding_point, error));
   sql_bind_text(store->axis_find, 1, row->path);
-  bool known = sqlite3_step(store->axis_find) == SQLITE_ROW;
+  const bool known = sqlite3_step(store->axis_find) == SQLITE_ROW;
   sqlite3_reset(store->axis_find);
   if (known)
     return STATUS_OK;
-  char name[SCHEMA_NAME_SIZE];
-  result = views_axis_column(store->db, row->path, name, sizeof name, error);
-  if (result != STATUS_OK)
-    return result;
   *grown = true;
+  TRY(views_axis_column(store->db, row->path, name, sizeof name, error));
   return sql_executef(store->db, adding_point, error,
                       "INSERT INTO axis (path, column_name, unit, meaning) VALUES (%Q, %Q, %Q, %Q)", row->path, name,
                       row->unit, row->doc ? row->doc : "");
@@ -140,26 +211,21 @@ static status add_axis(struct store *store, const struct field *row, bool *grown
 
 static status add_axis_with_unit(struct store *store, const struct field *row, const char *unit, struct error *error) {
   bool grown = false;
-  status result = add_axis(store, row, &grown, error);
-  if (result == STATUS_OK)
-    result = sql_executef(store->db, adding_point, error,
-                          "UPDATE axis SET written_unit = nullif(%Q, '') WHERE path = %Q", unit, row->path);
-  return result == STATUS_OK && grown ? views_regenerate(store->db, error) : result;
+  TRY(add_axis(store, row, &grown, error));
+  TRY(sql_executef(store->db, adding_point, error, "UPDATE axis SET written_unit = nullif(%Q, '') WHERE path = %Q",
+                   unit, row->path));
+  return grown ? views_regenerate(store->db, error) : STATUS_OK;
 }
 
 status store_add_axis(struct store *store, const struct field *row, const char *unit, struct error *error) {
-  status result = store_begin(store, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(store_begin(store, error));
   return store_end(store, add_axis_with_unit(store, row, unit, error), 1, error);
 }
 
 static status add_to_campaign(struct store *store, int64_t campaign_id, int64_t point_id, struct error *error) {
-  status result = sql_prepare_once(store->db, &store->campaign_point,
-                                   "INSERT OR IGNORE INTO campaign_point (campaign_id, point_id) VALUES (?1, ?2)",
-                                   adding_point, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(sql_prepare_once(store->db, &store->campaign_point,
+                       "INSERT OR IGNORE INTO campaign_point (campaign_id, point_id) VALUES (?1, ?2)", adding_point,
+                       error));
   sqlite3_bind_int64(store->campaign_point, 1, campaign_id);
   sqlite3_bind_int64(store->campaign_point, 2, point_id);
   return sql_run(store->campaign_point, adding_point, error);
@@ -169,27 +235,255 @@ static status add_point(struct store *store, int64_t campaign_id, const struct s
                         const char *const *varied_paths, int64_t *point_id, struct error *error) {
   bool grown = false;
   struct store_kind *kind = NULL;
-  status result = store_add_run_kind(store, scene->kind, &kind, &grown, error);
-  if (result != STATUS_OK)
-    return result;
-  result = find_or_add_point(store, scene, point_id, error);
-  if (result == STATUS_OK && campaign_id > 0)
-    result = add_to_campaign(store, campaign_id, *point_id, error);
-  for (size_t i = 0; result == STATUS_OK && i < varied_count; i++) {
+  TRY(find_kind(store, scene->kind, &kind, &grown, error));
+  TRY(find_or_add_point(store, scene, point_id, error));
+  if (campaign_id > 0)
+    TRY(add_to_campaign(store, campaign_id, *point_id, error));
+  for (size_t i = 0; i < varied_count; i++) {
     const struct field *row = field_find(scene->kind->inputs, varied_paths[i], error);
-    result = row ? add_axis(store, row, &grown, error) : STATUS_CONTENT;
+    TRY(row ? add_axis(store, row, &grown, error) : STATUS_CONTENT);
   }
-  return result == STATUS_OK && grown ? views_regenerate(store->db, error) : result;
+  return grown ? views_regenerate(store->db, error) : STATUS_OK;
 }
 
 status store_add_point(struct store *store, int64_t campaign_id, const struct scene *scene, size_t varied_count,
                        const char *const *varied_paths, int64_t *point_id, struct error *error) {
-  status result = store_begin(store, error);
-  if (result != STATUS_OK)
-    return result;
-  result = add_point(store, campaign_id, scene, varied_count, varied_paths, point_id, error);
-  return store_end(store, result, 1, error);
+  TRY(store_begin(store, error));
+  return store_end(store, add_point(store, campaign_id, scene, varied_count, varied_paths, point_id, error), 1, error);
 }
+
+/* ---- what follows from a run's fragments: masses, spectrum, and their part of the point's running sums ---- */
+
+/* Fills store->blob with the masses of a run, little-endian float64. */
+static status encode_masses(struct store *store, const struct store_run *run, struct error *error) {
+  if (!grow_room(&store->blob, &store->blob_capacity, 8 * run->fragment_count + 8, sizeof *store->blob))
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+  for (size_t i = 0; i < run->fragment_count; i++) {
+    uint64_t bits;
+    memcpy(&bits, &run->fragments[i].mass, sizeof bits);
+    bits = htole64(bits);
+    memcpy(store->blob + 8 * i, &bits, sizeof bits);
+  }
+  return STATUS_OK;
+}
+
+static status add_masses(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
+  TRY(sql_prepare_once(store->db, &store->masses, "INSERT INTO fragment_mass (run_id, masses) VALUES (?1, ?2)",
+                       adding_run, error));
+  sqlite3_bind_int64(store->masses, 1, run_id);
+  sqlite3_bind_blob64(store->masses, 2, store->blob, 8 * run->fragment_count, SQLITE_STATIC);
+  return sql_run(store->masses, adding_run, error);
+}
+
+/* Fills store->bins with the bins of the run. */
+static status fill_bins(struct store *store, size_t *count, const struct store_run *run, struct error *error) {
+  double *masses = malloc((run->fragment_count + 1) * sizeof *masses);
+  if (!masses)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+  for (size_t i = 0; i < run->fragment_count; i++)
+    masses[i] = run->fragments[i].mass;
+  *count = spectrum_fill(run->fragment_count, masses, store->bins, store->bin_capacity);
+  if (*count > store->bin_capacity) {
+    free(store->bins);
+    store->bin_capacity = *count + 64;
+    store->bins = calloc(store->bin_capacity, sizeof *store->bins);
+    if (store->bins)
+      *count = spectrum_fill(run->fragment_count, masses, store->bins, store->bin_capacity);
+    else
+      store->bin_capacity = 0;
+  }
+  free(masses);
+  return store->bins || *count == 0 ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+}
+
+static status cover_bins(struct store *store, int64_t lowest, int64_t highest, struct error *error) {
+  bool none = store->lowest_bin > store->highest_bin;
+  if (!none && lowest >= store->lowest_bin && highest <= store->highest_bin)
+    return STATUS_OK;
+  if (!none && store->lowest_bin < lowest)
+    lowest = store->lowest_bin;
+  if (!none && store->highest_bin > highest)
+    highest = store->highest_bin;
+  status result = sums_cover_bins(store->db, lowest, highest, error);
+  store->lowest_bin = lowest;
+  store->highest_bin = highest;
+  return result;
+}
+
+enum { TOGETHER = 10 }; /* rows per INSERT: starting a statement costs as much as inserting three rows */
+
+static void bind_bin(sqlite3_stmt *statement, int index, int64_t run_id, const struct spectrum_bin_row *bin) {
+  sqlite3_bind_int64(statement, index, run_id);
+  sqlite3_bind_int(statement, index + 1, bin->bin);
+  sqlite3_bind_int64(statement, index + 2, bin->count);
+  sqlite3_bind_double(statement, index + 3, bin->mass);
+}
+
+static status insert_bins(struct store *store, int64_t run_id, size_t count, struct error *error) {
+#define INSERT_SPECTRUM "INSERT INTO spectrum (run_id, bin, count, mass) VALUES (?, ?, ?, ?)"
+#define TWO_MORE        ", (?, ?, ?, ?), (?, ?, ?, ?)"
+  TRY(sql_prepare_once(store->db, &store->spectrum, INSERT_SPECTRUM, adding_run, error));
+  TRY(sql_prepare_once(store->db, &store->spectrum_together,
+                       INSERT_SPECTRUM TWO_MORE TWO_MORE TWO_MORE TWO_MORE ", (?, ?, ?, ?)", adding_run, error));
+  for (size_t i = 0, together; i < count; i += together) {
+    together = i + TOGETHER <= count ? TOGETHER : 1;
+    sqlite3_stmt *statement = together > 1 ? store->spectrum_together : store->spectrum;
+    for (size_t k = 0; k < together; k++)
+      bind_bin(statement, 1 + 4 * (int)k, run_id, &store->bins[i + k]);
+    TRY(sql_run(statement, adding_run, error));
+  }
+  return STATUS_OK;
+}
+
+/* Adds the run to its point's running sums. */
+static status add_sums(struct store *store, const struct store_run *run, size_t count, struct error *error) {
+  bool counted = store_run_counts(run);
+  int version = run->kind->results_version;
+  int64_t fragments = 0;
+  double mass = 0;
+  for (size_t i = 0; counted && i < count; i++) {
+    const struct spectrum_bin_row *bin = &store->bins[i];
+    struct sums_row *row = sums_at(&store->sums, run->point_id, version, bin->bin);
+    if (!row)
+      return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+    row->runs++;
+    row->count += bin->count;
+    row->count_squared += bin->count * bin->count;
+    row->mass += bin->mass;
+    fragments += bin->count;
+    mass += bin->mass;
+  }
+  struct sums_row *total = sums_at(&store->sums, run->point_id, version, SPECTRUM_NO_BIN);
+  if (!total)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+  total->runs += counted;
+  total->censored += counted && run->outcome->state == OUTCOME_END_TIME;
+  total->surplus += run->surplus;
+  total->failed += !counted && !run->surplus;
+  total->count += fragments;
+  total->mass += mass;
+  return STATUS_OK;
+}
+
+static status add_spectrum(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
+  size_t count = 0;
+  TRY(fill_bins(store, &count, run, error));
+  if (count)
+    TRY(cover_bins(store, store->bins[0].bin, store->bins[count - 1].bin, error));
+  TRY(insert_bins(store, run_id, count, error));
+  return add_sums(store, run, count, error);
+}
+
+/* ---- runs ---- */
+
+/* The columns of table run that are not results. */
+struct run_row {
+  struct store_run run;
+  int results_version;
+  bool counts;
+  double finished_at;
+  uint8_t digest[16];
+};
+#define RUN(name_, kind_, member_)                                                                                     \
+  { name_, SQL_COLUMN_##kind_, offsetof(struct run_row, member_) }
+static const struct sql_column run_columns[] = {
+    RUN("point_id", INTEGER, run.point_id),
+    RUN("session_id", KEY, run.session_id),
+    RUN("identity", IDENTITY, run.identity),
+    RUN("replicate", INTEGER, run.replicate),
+    RUN("seed", INTEGER, run.seed),
+    RUN("results_version", INT, results_version),
+    RUN("surplus", BOOLEAN, run.surplus),
+    RUN("counts", BOOLEAN, counts),
+    RUN("attempt", INT, run.attempt),
+    RUN("wall_time", REAL, run.wall_s),
+    RUN("cpu_time", REAL, run.cpu_s),
+    RUN("peak_memory", INTEGER, run.peak_memory),
+    RUN("host", TEXT, run.host),
+    RUN("rank", INT, run.rank),
+    RUN("finished_at", REAL, finished_at),
+    RUN("fields_path", TEXT, run.fields_path),
+    RUN("digest", IDENTITY, digest),
+};
+
+/* The digest of the rows of a run that is about to be stored. digest_rows() computes the same from the
+ * rows. */
+static void digest_run(const struct store *store, const struct store_kind *kind, const struct store_run *run,
+                       uint8_t digest[16]) {
+  struct digest sum = {0};
+  digest_add(&sum, store->name_of.identity, 0, sql_of_bytes(run->identity, sizeof run->identity));
+  digest_add(&sum, store->name_of.replicate, 0, sql_of_integer(run->replicate));
+  digest_add(&sum, store->name_of.seed, 0, sql_of_integer((int64_t)run->seed));
+  digest_add(&sum, store->name_of.results_version, 0, sql_of_integer(run->kind->results_version));
+  digest_add_fields(&sum, &store->outcome_names, &outcome_table, 0, run->outcome);
+  if (run->result)
+    digest_add_fields(&sum, &kind->names, run->kind->results, 0, run->result);
+  digest_add(&sum, store->name_of.masses, 0, sql_of_bytes(store->blob, 8 * run->fragment_count));
+  for (size_t i = 0; i < run->estimate_count; i++)
+    digest_add_fields(&sum, &store->estimate_names, &estimates_table, i, &run->estimates[i]);
+  digest_write(sum, digest);
+}
+
+static status add_row(struct store *store, const struct store_kind *kind, const struct store_run *run, int64_t *run_id,
+                      struct error *error) {
+  struct run_row row = {.run = *run,
+                        .results_version = run->kind->results_version,
+                        .counts = store_run_counts(run),
+                        .finished_at = wall_clock()};
+  TRY(sql_insert_prepare(store->db, &store->run, "run", sizeof run_columns / sizeof run_columns[0], run_columns,
+                         &outcome_table, 1, adding_run, error));
+  digest_run(store, kind, run, row.digest);
+  sql_insert_bind(&store->run, 0, &row, run->outcome);
+  const status result = sql_run(store->run.statement, adding_run, error);
+  *run_id = sqlite3_last_insert_rowid(store->db);
+  return result;
+}
+
+/* Adds the engine's results of the run; NULL: none. With the first run of an engine, the views get columns for its
+ * results. */
+static status add_result(struct store *store, struct store_kind *kind, int64_t run_id, const void *values,
+                         struct error *error) {
+  if (!values)
+    return STATUS_OK;
+  sql_insert_bind(&kind->insert, 0, &run_id, values);
+  TRY(sql_run(kind->insert.statement, adding_run, error));
+  if (!kind->first)
+    return STATUS_OK;
+  kind->first = false;
+  return views_regenerate(store->db, error);
+}
+
+static status add_run(struct store *store, const struct store_run *run, struct error *error) {
+  bool grown = false;
+  int64_t run_id = 0;
+  struct store_kind *kind = NULL;
+  TRY(find_kind(store, run->kind, &kind, &grown, error));
+  if (grown)
+    TRY(views_regenerate(store->db, error));
+  TRY(encode_masses(store, run, error));
+  TRY(add_row(store, kind, run, &run_id, error));
+  TRY(add_result(store, kind, run_id, run->result, error));
+  TRY(add_masses(store, run_id, run, error));
+  TRY(add_spectrum(store, run_id, run, error));
+  if (run->estimate_count > 0)
+    TRY(store_set_estimates_rows(store, run_id, run->estimate_count, run->estimates, error));
+
+  struct identities_state *state = identities_add(&store->identities, run->identity);
+  if (!state)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+  state->stored = true;
+  memcpy(store->batch_identities[store->batch_identity_count++], run->identity, 16);
+  return STATUS_OK;
+}
+
+status store_add_run(struct store *store, const struct store_run *run, struct error *error) {
+  if (store_has_run(store, run->identity))
+    return STATUS_OK;
+  TRY(store_begin(store, error));
+  return store_end(store, add_run(store, run, error), 1, error);
+}
+
+/* ---- attempts ---- */
 
 struct attempt_row {
   struct store_attempt attempt;
@@ -218,30 +512,24 @@ static const struct sql_column attempt_columns[] = {
 
 static status add_attempt(struct store *store, const struct store_attempt *attempt, struct error *error) {
   static const char doing[] = "adding an attempt";
-  status result = sql_insert_prepare(store->db, &store->attempt, "attempt",
-                                     sizeof attempt_columns / sizeof attempt_columns[0], attempt_columns, NULL, 1,
-                                     doing, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(sql_insert_prepare(store->db, &store->attempt, "attempt", sizeof attempt_columns / sizeof attempt_columns[0],
+                         attempt_columns, NULL, 1, doing, error));
   struct identities_state *state = identities_add(&store->identities, attempt->identity);
   if (!state)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
 
-  struct attempt_row row = {.attempt = *attempt, .failed_at = store_wall_clock()};
+  struct attempt_row row = {.attempt = *attempt, .failed_at = wall_clock()};
   if (!attempt->reason)
     row.attempt.reason = "exit";
   if (!attempt->message)
     row.attempt.message = "";
   sql_insert_bind(&store->attempt, 0, &row, NULL);
-  result = sql_run(store->attempt.statement, doing, error);
-  if (result == STATUS_OK)
-    state->attempts++;
-  return result;
+  TRY(sql_run(store->attempt.statement, doing, error));
+  state->attempts++;
+  return STATUS_OK;
 }
 
 status store_add_attempt(struct store *store, const struct store_attempt *attempt, struct error *error) {
-  status result = store_begin(store, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(store_begin(store, error));
   return store_end(store, add_attempt(store, attempt, error), 1, error);
 }

@@ -8,9 +8,7 @@
 #include <unistd.h>
 
 #include "db/store/internal.h"
-#include "db/store/paths.h"
 #include "db/store/schema.h"
-#include "db/store/shapes.h"
 #include "engine/grow.h"
 #include "engine/scene.h"
 #include "schemas/text.h"
@@ -39,11 +37,10 @@ static void say(struct report *report, const char *format, ...) {
 
 /* Every row of `sql` is a problem; its first column is the sentence. */
 static status no_rows(struct report *report, const char *sql, struct error *error) {
-  sqlite3_stmt *statement = NULL;
+  STATEMENT statement = NULL;
   status result = sql_prepare(report->store->db, sql, &statement, checking, error);
   while (sql_next(statement, &result, checking, error))
     say(report, "%s", sql_text(statement, 0));
-  sqlite3_finalize(statement);
   return result;
 }
 
@@ -64,7 +61,7 @@ static const char *const questions[] = {
 /* SQLite checks how the pages hang together first, then the rows. It stops at the first problem here: if pages are
  * damaged, a table can have rows without end. */
 static status check_pages(struct report *report, struct error *error) {
-  sqlite3_stmt *first = NULL;
+  STATEMENT first = NULL;
   bool whole = true;
   status result = sql_prepare(report->store->db, "SELECT integrity_check FROM pragma_integrity_check(1)", &first,
                               checking, error);
@@ -75,7 +72,6 @@ static status check_pages(struct report *report, struct error *error) {
     if (report->pages_damaged)
       say(report, "database: %.700s. Nothing else was checked", text);
   }
-  sqlite3_finalize(first);
   if (result != STATUS_OK || whole || report->pages_damaged)
     return result;
   return no_rows(report, "SELECT 'database: ' || integrity_check FROM pragma_integrity_check", error);
@@ -96,7 +92,7 @@ static status check_fragment_counts(struct report *report, struct error *error) 
 
 /* Runs without a row in the table of their engine, for every engine in the store. */
 static status check_results(struct report *report, struct error *error) {
-  sqlite3_stmt *statement = NULL;
+  STATEMENT statement = NULL;
   status result =
       sql_prepare(report->store->db,
                   "SELECT format('SELECT ''run '' || run_id || '' has no row in %w'' FROM run JOIN point USING "
@@ -105,7 +101,6 @@ static status check_results(struct report *report, struct error *error) {
                   &statement, checking, error);
   while (sql_next(statement, &result, checking, error))
     result = no_rows(report, sql_text(statement, 0), error);
-  sqlite3_finalize(statement);
   return result;
 }
 
@@ -120,7 +115,7 @@ static bool range_columns(struct store *store, const char *table, const struct f
         (row->minimum == -HUGE_VAL && row->maximum == HUGE_VAL))
       continue;
     field_column_name(row->path, name, sizeof name);
-    if (sqlite3_table_column_metadata(store->db, NULL, table, name, NULL, NULL, NULL, NULL, NULL) != SQLITE_OK)
+    if (!schema_has_column(store->db, table, name))
       continue;
     /* A share is a quotient of two sums over particles, and rounding alone can put it above 1: by 5e-15 for 200
      * particles, at most by their number times 1e-16. 1e-9 is enough for 1e7 particles. */
@@ -163,7 +158,7 @@ static status check_ranges(struct report *report, struct error *error) {
 }
 
 static status check_files(struct report *report, struct error *error) {
-  sqlite3_stmt *statement = NULL;
+  STATEMENT statement = NULL;
   status result = sql_prepare(report->store->db, "SELECT run_id, fields_path FROM run WHERE fields_path IS NOT NULL",
                               &statement, checking, error);
   while (sql_next(statement, &result, checking, error)) {
@@ -175,7 +170,6 @@ static status check_files(struct report *report, struct error *error) {
           (long long)sqlite3_column_int64(statement, 0), path);
     free(path);
   }
-  sqlite3_finalize(statement);
   return result;
 }
 
@@ -236,9 +230,7 @@ static status check_run(struct report *report, sqlite3_stmt *run, struct mass_li
     say(report, "run %lld: its masses are not a list of float64", (long long)run_id);
     return STATUS_OK;
   }
-  status result = read_masses(list, run, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(read_masses(list, run, error));
   double total = 0, stored = sqlite3_column_double(run, 2);
   bool descending = true;
   for (size_t i = 0; i < list->count; i++) {
@@ -255,7 +247,8 @@ static status check_run(struct report *report, sqlite3_stmt *run, struct mass_li
 }
 
 static status check_masses(struct report *report, struct error *error) {
-  sqlite3_stmt *runs = NULL, *spectrum = NULL;
+  STATEMENT runs = NULL;
+  STATEMENT spectrum = NULL;
   struct mass_list list = {0};
   status result = sql_preparef(report->store->db, &runs, checking, error,
                                "SELECT run_id, masses, %s, counts FROM fragment_mass JOIN run USING (run_id)",
@@ -266,8 +259,6 @@ static status check_masses(struct report *report, struct error *error) {
   while (sql_next(runs, &result, checking, error))
     result = check_run(report, runs, &list, spectrum, error);
   free(list.masses);
-  sqlite3_finalize(runs);
-  sqlite3_finalize(spectrum);
   return result;
 }
 
@@ -286,9 +277,10 @@ static status check_point_identities(struct report *report, const struct scene *
 /* A run's identity must follow from its point's scene and its seed. Runs of another results_version, or of an engine
  * that this program lacks, cannot be checked. */
 static status check_identities(struct report *report, struct error *error) {
-  sqlite3_stmt *points = NULL, *runs = NULL;
+  STATEMENT points = NULL;
+  STATEMENT runs = NULL;
   struct error damaged = {0};
-  if (shapes_load(report->store, 0, &damaged) != STATUS_OK)
+  if (store_point_shapes(report->store, 0, &damaged) != STATUS_OK)
     say(report, "%.600s", damaged.message);
   status result = sql_prepare(report->store->db, "SELECT point_id, scene, scene_name, engine FROM point", &points,
                               checking, error);
@@ -312,8 +304,6 @@ static status check_identities(struct report *report, struct error *error) {
     sqlite3_reset(runs);
     scene_free(scene);
   }
-  sqlite3_finalize(points);
-  sqlite3_finalize(runs);
   return result;
 }
 
@@ -324,29 +314,24 @@ static status check_questions(struct report *report, struct error *error) {
   return result;
 }
 
-static void say_run(void *context, int64_t run_id) {
-  say(context, "run %lld: a bit of its results, masses, estimates or identity has changed since it was stored",
-      (long long)run_id);
-}
-
-static void say_point(void *context, int64_t point_id) {
-  say(context, "point %lld: a bit of its scene or inputs has changed since it was stored", (long long)point_id);
-}
-
 static status check_digests(struct report *report, struct error *error) {
-  status result = digest_rows_compare(report->store->db, DIGEST_RUNS, 0, say_run, report, error);
-  return result == STATUS_OK ? digest_rows_compare(report->store->db, DIGEST_POINTS, 0, say_point, report, error)
-                             : result;
-}
-
-static void mark_damaged(void *context, int64_t number) {
-  (void)number;
-  *(bool *)context = false;
+  DIGEST_ROWS runs = digest_rows(report->store->db, DIGEST_RUNS, 0, false, error);
+  while (digest_rows_next(&runs))
+    if (!runs.whole)
+      say(report, "run %lld: a bit of its results, masses, estimates or identity has changed since it was stored",
+          (long long)runs.number);
+  TRY(digest_rows_end(&runs));
+  DIGEST_ROWS points = digest_rows(report->store->db, DIGEST_POINTS, 0, false, error);
+  while (digest_rows_next(&points))
+    if (!points.whole)
+      say(report, "point %lld: a bit of its scene or inputs has changed since it was stored", (long long)points.number);
+  return digest_rows_end(&points);
 }
 
 status store_check_run(struct store *store, int64_t run_id, bool *whole, struct error *error) {
-  *whole = true;
-  return digest_rows_compare(store->db, DIGEST_RUNS, run_id, mark_damaged, whole, error);
+  DIGEST_ROWS runs = digest_rows(store->db, DIGEST_RUNS, run_id, false, error);
+  *whole = !digest_rows_next(&runs) || runs.whole;
+  return digest_rows_end(&runs);
 }
 
 static status check_sums(struct report *report, struct error *error) {

@@ -1,12 +1,11 @@
-/* Chains of words, and the digests of values before they are stored. */
-#include "db/store/digest.h"
-
+/* Digests of values before they are stored, and of stored rows. */
 #include <endian.h>
-#include <math.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum kind { INTEGER = 1, REAL, TEXT, BYTES };
+#include "db/store/internal.h"
+#include "schemas/text.h"
 
 /* Both lanes are one to one in the word and in the state: an odd factor has an inverse, and so has x ^= x >> k. The
  * factors are those of splitmix64. */
@@ -33,25 +32,6 @@ static struct digest step_bytes(struct digest state, const void *bytes, size_t s
   return size ? step(state, word_at(at, size)) : state;
 }
 
-static void add(struct digest *sum, struct digest value) {
-  sum->a += value.a;
-  sum->b += value.b;
-}
-
-static struct digest begin(struct digest name, enum kind kind, uint64_t row) {
-  return step(name, row << 8 | kind);
-}
-
-static void add_real(struct digest *sum, struct digest name, uint64_t row, double value) {
-  uint64_t bits;
-  memcpy(&bits, &value, sizeof bits);
-  add(sum, step(begin(name, REAL, row), bits));
-}
-
-static void add_text(struct digest *sum, struct digest name, uint64_t row, const char *text) {
-  add(sum, step_bytes(begin(name, TEXT, row), text, strlen(text)));
-}
-
 struct digest digest_name(const char *table, const char *column) {
   const struct digest start = {0x9e3779b97f4a7c15u, 0x6a09e667f3bcc909u};
   return step_bytes(step_bytes(start, table, strlen(table)), column, strlen(column));
@@ -59,6 +39,23 @@ struct digest digest_name(const char *table, const char *column) {
 
 uint64_t digest_row(const char *text) {
   return digest_name("", text).a;
+}
+
+void digest_add(struct digest *sum, struct digest name, uint64_t row, struct sql_value value) {
+  struct digest state = step(name, row << 8 | (unsigned)value.type);
+  if (value.type == SQLITE_NULL)
+    return;
+  if (value.type == SQLITE_FLOAT) {
+    uint64_t bits;
+    const double real = value.real == 0 ? 0 : value.real; /* SQLite does not keep the sign of -0 */
+    memcpy(&bits, &real, sizeof bits);
+    state = step(state, bits);
+  } else {
+    state = value.type == SQLITE_INTEGER ? step(state, (uint64_t)value.integer)
+                                         : step_bytes(state, value.bytes, value.size);
+  }
+  sum->a += state.a;
+  sum->b += state.b;
 }
 
 status digest_names_make(struct digest_names *names, const char *table, const struct field_table *fields,
@@ -81,73 +78,11 @@ void digest_names_clear(struct digest_names *names) {
   names->of = NULL;
 }
 
-void digest_add_field(struct digest *sum, struct digest name, uint64_t row, const struct field *field,
-                      const void *object, bool off_as_text) {
-  const char *place = (const char *)object + field->offset;
-  switch (field->kind) {
-  case FIELD_REAL: {
-    double value;
-    memcpy(&value, place, sizeof value);
-    if (!isnan(value))
-      add_real(sum, name, row, value == 0 ? 0 : value); /* SQLite does not keep the sign of -0 */
-    else if (off_as_text)
-      add_text(sum, name, row, "off");
-    break;
-  }
-  case FIELD_INTEGER: {
-    uint64_t value;
-    memcpy(&value, place, sizeof value);
-    add(sum, step(begin(name, INTEGER, row), value));
-    break;
-  }
-  case FIELD_BOOLEAN: add(sum, step(begin(name, INTEGER, row), *(const bool *)place)); break;
-  case FIELD_CHOICE: {
-    int value;
-    memcpy(&value, place, sizeof value);
-    add_text(sum, name, row, field->choices[value]);
-    break;
-  }
-  case FIELD_TEXT: add_text(sum, name, row, place); break;
-  }
-}
-
 void digest_add_fields(struct digest *sum, const struct digest_names *names, const struct field_table *fields,
                        uint64_t row, const void *object) {
   for (size_t i = 0; i < fields->count; i++)
     if (!fields->rows[i].when || field_is_active(fields, &fields->rows[i], object))
-      digest_add_field(sum, names->of[i], row, &fields->rows[i], object, false);
-}
-
-void digest_add_integer(struct digest *sum, struct digest name, int64_t value) {
-  add(sum, step(begin(name, INTEGER, 0), (uint64_t)value));
-}
-
-void digest_add_text(struct digest *sum, struct digest name, const char *text) {
-  add_text(sum, name, 0, text);
-}
-
-void digest_add_bytes(struct digest *sum, struct digest name, const void *bytes, size_t size) {
-  add(sum, step_bytes(begin(name, BYTES, 0), bytes, size));
-}
-
-void digest_add_stored(struct digest *sum, struct digest name, uint64_t row, sqlite3_stmt *statement, int column) {
-  switch (sqlite3_column_type(statement, column)) {
-  case SQLITE_INTEGER:
-    add(sum, step(begin(name, INTEGER, row), (uint64_t)sqlite3_column_int64(statement, column)));
-    break;
-  case SQLITE_FLOAT: add_real(sum, name, row, sqlite3_column_double(statement, column)); break;
-  case SQLITE_TEXT: {
-    const void *text = sqlite3_column_text(statement, column);
-    add(sum, step_bytes(begin(name, TEXT, row), text, (size_t)sqlite3_column_bytes(statement, column)));
-    break;
-  }
-  case SQLITE_BLOB: {
-    const void *bytes = sqlite3_column_blob(statement, column);
-    add(sum, step_bytes(begin(name, BYTES, row), bytes, (size_t)sqlite3_column_bytes(statement, column)));
-    break;
-  }
-  default: break;
-  }
+      digest_add(sum, names->of[i], row, sql_of_field(&fields->rows[i], object, false));
 }
 
 void digest_write(struct digest sum, uint8_t bytes[16]) {
@@ -155,4 +90,160 @@ void digest_write(struct digest sum, uint8_t bytes[16]) {
     bytes[i] = (uint8_t)(sum.a >> 8 * i);
     bytes[8 + i] = (uint8_t)(sum.b >> 8 * i);
   }
+}
+
+/* ---- stored rows ---- */
+
+static const char doing[] = "reading digests";
+
+enum { NAME = 160 };
+
+/* A table whose rows go into the digest. `row` distinguishes the rows of one run or point; `but`: columns left out. */
+struct source {
+  char table[NAME];
+  const char *row, *but;
+};
+
+/* All values that follow from inputs, seed and results_version. Left out: times, hosts and ids within the store, and
+ * the values that stopping rules change (surplus, counts). The spectrum follows from the masses, bit by bit. */
+static const struct source of_runs[] = {
+    {"run", "0",
+     "'run_id', 'point_id', 'session_id', 'surplus', 'counts', 'attempt', 'wall_time', 'cpu_time', 'peak_memory', "
+     "'host', 'rank', 'finished_at', 'fields_path', 'digest'"},
+    {"fragment_mass", "0", "'run_id'"},
+    {"estimate", "ordinal", "'run_id', 'ordinal'"},
+};
+static const struct source of_points[] = {
+    {"point", "0", "'point_id', 'digest'"},
+    {"point_input", "path", "'point_id', 'path'"},
+};
+
+static status open_table(struct digest_rows *rows, const struct source *source, struct error *error) {
+  if (rows->count == DIGEST_TABLES)
+    return status_fail(error, STATUS_CONTENT, "more than %d tables of results in one store", DIGEST_TABLES);
+  char *question = sqlite3_mprintf("SELECT name FROM pragma_table_info(?1, 'main') WHERE name NOT IN (%s)",
+                                   source->but);
+  char *columns = question ? sql_name_list(rows->db, question, source->table, NULL) : NULL;
+  sqlite3_free(question);
+  if (!columns)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  struct digest_table *table = &rows->tables[rows->count++];
+  const status result = sql_preparef(rows->db, &table->rows, doing, error, "SELECT %s%s FROM main.\"%w\" WHERE %s = ?1",
+                                     source->row, columns, source->table, rows->key);
+  sqlite3_free(columns);
+  if (result != STATUS_OK)
+    return result;
+  const int count = sqlite3_column_count(table->rows);
+  table->names = calloc((size_t)count, sizeof *table->names);
+  if (!table->names)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  for (int i = 1; i < count; i++)
+    table->names[i] = digest_name(source->table, sqlite3_column_name(table->rows, i));
+  return STATUS_OK;
+}
+
+/* Opens the result tables of all engines: each run has a row in the table of its engine. */
+static status open_results(struct digest_rows *rows, struct error *error) {
+  STATEMENT names = NULL;
+  status result = sql_prepare(rows->db,
+                              "SELECT name FROM main.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*'",
+                              &names, doing, error);
+  while (sql_next(names, &result, doing, error)) {
+    struct source source = {.row = "0", .but = "'run_id'"};
+    snprintf(source.table, sizeof source.table, "%s", sql_text(names, 0));
+    result = open_table(rows, &source, error);
+  }
+  return result;
+}
+
+static status open_rows(struct digest_rows *rows, enum digest_kind kind, int64_t only, bool to_print,
+                        struct error *error) {
+  const bool runs = kind == DIGEST_RUNS;
+  const char *hash = runs ? "identity" : "hash", *counted = runs ? " AND surplus = 0" : "";
+  rows->table = runs ? "run" : "point";
+  rows->key = runs ? "run_id" : "point_id";
+  const size_t count = runs ? sizeof of_runs / sizeof of_runs[0] : sizeof of_points / sizeof of_points[0];
+  for (size_t i = 0; i < count; i++)
+    TRY(open_table(rows, runs ? &of_runs[i] : &of_points[i], error));
+  if (runs)
+    TRY(open_results(rows, error));
+  return sql_preparef(rows->db, &rows->numbers, doing, error,
+                      "SELECT %s, digest, lower(hex(%s)) FROM main.%s WHERE %s BETWEEN %lld AND %lld%s%s%s", rows->key,
+                      hash, rows->table, rows->key, (long long)(only ? only : INT64_MIN),
+                      (long long)(only ? only : INT64_MAX), to_print ? counted : "", to_print ? " ORDER BY " : "",
+                      to_print ? hash : "");
+}
+
+struct digest_rows digest_rows(sqlite3 *db, enum digest_kind kind, int64_t only, bool to_print, struct error *error) {
+  struct digest_rows rows = {.db = db, .error = error};
+  rows.code = open_rows(&rows, kind, only, to_print, error);
+  return rows;
+}
+
+static status read_digest(struct digest_rows *rows, struct digest *sum) {
+  status result = STATUS_OK;
+  for (size_t i = 0; i < rows->count; i++) {
+    const struct digest_table *table = &rows->tables[i];
+    sqlite3_bind_int64(table->rows, 1, rows->number);
+    while (sql_next(table->rows, &result, doing, rows->error)) {
+      const uint64_t row = sqlite3_column_type(table->rows, 0) == SQLITE_TEXT
+                               ? digest_row(sql_text(table->rows, 0))
+                               : (uint64_t)sqlite3_column_int64(table->rows, 0);
+      for (int k = 1; k < sqlite3_column_count(table->rows); k++)
+        digest_add(sum, table->names[k], row, sql_of_column(table->rows, k));
+    }
+    sqlite3_reset(table->rows);
+  }
+  return result;
+}
+
+bool digest_rows_next(struct digest_rows *rows) {
+  struct digest sum = {0};
+  if (!sql_next(rows->numbers, &rows->code, doing, rows->error))
+    return false;
+  rows->number = sqlite3_column_int64(rows->numbers, 0);
+  rows->code = read_digest(rows, &sum);
+  digest_write(sum, rows->digest);
+  rows->whole = sqlite3_column_bytes(rows->numbers, 1) == sizeof rows->digest &&
+                memcmp(rows->digest, sqlite3_column_blob(rows->numbers, 1), sizeof rows->digest) == 0;
+  return rows->code == STATUS_OK;
+}
+
+status digest_rows_end(struct digest_rows *rows) {
+  for (size_t i = 0; i < rows->count; i++) {
+    sqlite3_finalize(rows->tables[i].rows);
+    free(rows->tables[i].names);
+  }
+  sqlite3_finalize(rows->numbers);
+  rows->numbers = NULL;
+  rows->count = 0;
+  return rows->code;
+}
+
+void digest_rows_drop(struct digest_rows *rows) {
+  (void)digest_rows_end(rows);
+}
+
+status digest_rows_fill(sqlite3 *db, int64_t run_id, struct error *error) {
+  STATEMENT update = NULL;
+  TRY(sql_prepare(db, "UPDATE main.run SET digest = ?2 WHERE run_id = ?1", &update, doing, error));
+  DIGEST_ROWS rows = digest_rows(db, DIGEST_RUNS, run_id, false, error);
+  if (digest_rows_next(&rows)) {
+    sqlite3_bind_int64(update, 1, run_id);
+    sqlite3_bind_blob(update, 2, rows.digest, sizeof rows.digest, SQLITE_STATIC);
+    TRY(sql_run(update, doing, error));
+  }
+  return digest_rows_end(&rows);
+}
+
+status digest_rows_print(sqlite3 *db, enum digest_kind kind, FILE *out, struct error *error) {
+  DIGEST_ROWS rows = digest_rows(db, kind, 0, true, error);
+  while (digest_rows_next(&rows)) {
+    char digest[2 * sizeof rows.digest + 1];
+    text_hex(rows.digest, sizeof rows.digest, digest);
+    fprintf(out, "%s %s %s\n", rows.table, sql_text(rows.numbers, 2), digest);
+  }
+  if (rows.code == STATUS_OK && ferror(out))
+    return status_fail(error, STATUS_IO, "writing the digests failed: %s", strerror(errno));
+  return digest_rows_end(&rows);
 }

@@ -1,6 +1,4 @@
 /* The identities of a store in a hash table. */
-#include "db/store/identities.h"
-
 #include <stdlib.h>
 #include <string.h>
 
@@ -75,26 +73,14 @@ static status take_identity(struct store *store, sqlite3_stmt *row, struct error
 
 status identities_load(struct store *store, struct error *error) {
   static const char doing[] = "reading the stored identities";
-  sqlite3_stmt *statement = NULL;
+  STATEMENT statement = NULL;
   status result = sql_prepare(store->db, "SELECT identity, 1 FROM run UNION ALL SELECT identity, 0 FROM attempt",
                               &statement, doing, error);
-  if (result != STATUS_OK)
-    return result;
-  int code = SQLITE_DONE;
-  while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW)
+  while (sql_next(statement, &result, doing, error))
     result = take_identity(store, statement, error);
-  if (result == STATUS_OK && code != SQLITE_DONE)
-    result = sql_fail(store->db, code, doing, error);
-  sqlite3_finalize(statement);
-  if (result != STATUS_OK)
-    return result;
-
-  int64_t lowest = 1, highest = 0;
-  result = sql_integer(store->db, "SELECT min(bin) FROM bin", 1, &lowest, error);
-  if (result == STATUS_OK)
-    result = sql_integer(store->db, "SELECT max(bin) FROM bin", 0, &highest, error);
-  store->lowest_bin = lowest;
-  store->highest_bin = highest;
-  store->identities_loaded = result == STATUS_OK;
-  return result;
+  TRY(result);
+  TRY(sql_integer(store->db, "SELECT min(bin) FROM bin", 1, &store->lowest_bin, error));
+  TRY(sql_integer(store->db, "SELECT max(bin) FROM bin", 0, &store->highest_bin, error));
+  store->identities_loaded = true;
+  return STATUS_OK;
 }

@@ -1,14 +1,181 @@
-/* The state of an open store. For db/ only. */
+/* What the files of db/store and db/ask share: digests, identities and running sums, the checks of foreign files, and
+ * the state of an open store. For db/ only. */
 #ifndef CLAST_DB_STORE_INTERNAL_H
 #define CLAST_DB_STORE_INTERNAL_H
 
-#include <time.h>
-
+#include "analysis/statistics/spectrum.h"
 #include "db/sql.h"
-#include "db/store/digest.h"
-#include "db/store/identities.h"
 #include "db/store/store.h"
-#include "db/store/sums.h"
+
+/* ---- digests ---- */
+
+/* Digests: 16 bytes that change when any bit of a run's results or of a point's inputs changes. `check`, `merge` and
+ * `replay` compare them with the rows.
+ *
+ * A value is a chain of 64-bit words that begins with the name of its table and column. The digest is the sum over all
+ * values, so it does not depend on the order of columns. With all other words fixed, the digest is a one-to-one
+ * function of each word. A change within one word is always found; any other change is missed with probability 2^-128.
+ * NULL adds nothing: a column that comes later leaves the digests of older rows as they are. Digests detect damage, not
+ * forgery: a person who can change a row can change its digest. (BLAKE2s over the same words costs 9 % of the time to
+ * add a run.) */
+struct digest { /* all zero: the digest of no values */
+  uint64_t a, b;
+};
+
+/* The start of the chain for values of this column. */
+struct digest digest_name(const char *table, const char *column);
+/* The chains of the names of a field table's columns. All zero: not made yet. */
+struct digest_names {
+  struct digest *of;
+};
+/* Makes the names, unless they exist. STATUS_MEMORY. */
+status digest_names_make(struct digest_names *names, const char *table, const struct field_table *fields,
+                         struct error *error);
+void digest_names_clear(struct digest_names *names);
+
+/* Adds a value to a digest; NULL adds nothing. `name`: the digest of its column's name. `row`: number that
+ * distinguishes several rows of one run. */
+void digest_add(struct digest *sum, struct digest name, uint64_t row, struct sql_value value);
+/* Adds what sql_insert_bind() stores of *object. */
+void digest_add_fields(struct digest *sum, const struct digest_names *names, const struct field_table *fields,
+                       uint64_t row, const void *object);
+/* The row number for a row whose key is a text. */
+uint64_t digest_row(const char *text);
+void digest_write(struct digest sum, uint8_t bytes[16]);
+
+/* Runs or points as they are stored, with the digest of what they contain now. A variable of type DIGEST_ROWS closes
+ * itself where its block is left. */
+enum digest_kind { DIGEST_RUNS, DIGEST_POINTS };
+enum { DIGEST_TABLES = 64 };
+struct digest_rows {
+  sqlite3 *db;
+  struct error *error;
+  status code;
+  const char *table, *key;
+  int64_t number;     /* run_id or point_id of the current row */
+  uint8_t digest[16]; /* of its contents */
+  bool whole;         /* the stored digest is the same */
+  sqlite3_stmt *numbers;
+  struct digest_table {
+    sqlite3_stmt *rows; /* parameter ?1: the number; first the column that distinguishes the rows, then the others */
+    struct digest *names;
+  } tables[DIGEST_TABLES];
+  size_t count;
+};
+#define DIGEST_ROWS __attribute__((cleanup(digest_rows_drop))) struct digest_rows
+/* only: the number of one row; 0: all. to_print: in the order of identities, without runs that are surplus. */
+struct digest_rows digest_rows(sqlite3 *db, enum digest_kind kind, int64_t only, bool to_print, struct error *error);
+/* False at the end and after an error. */
+bool digest_rows_next(struct digest_rows *rows);
+status digest_rows_end(struct digest_rows *rows);
+void digest_rows_drop(struct digest_rows *rows); /* for DIGEST_ROWS */
+
+/* Prints a line for each point, or each run that is not surplus, in the order of identities: "run", its identity, and
+ * the digest of its contents as they are now. STATUS_IO: `out` failed. */
+status digest_rows_print(sqlite3 *db, enum digest_kind kind, FILE *out, struct error *error);
+/* Writes the digest of one run. Within the caller's transaction. */
+status digest_rows_fill(sqlite3 *db, int64_t run_id, struct error *error);
+
+/* ---- identities ---- */
+
+/* The identities in a store, held in memory: a resumed campaign looks up every run, and adding a run looks it up
+ * again. */
+struct identities { /* all zero: empty */
+  struct identities_entry *table;
+};
+
+/* The stored facts about an identity. */
+struct identities_state {
+  uint32_t attempts; /* failed attempts */
+  bool stored;
+};
+
+/* The state of an identity, added when absent. NULL when memory ran out. Valid until identities_clear(). */
+struct identities_state *identities_add(struct identities *set, const uint8_t identity[16]);
+/* NULL when absent. */
+struct identities_state *identities_find(const struct identities *set, const uint8_t identity[16]);
+void identities_clear(struct identities *set);
+
+/* ---- running sums ---- */
+
+/* Running sums of points: tables point_total and point_spectrum. A point whose sums change loses its pooled estimates.
+ * A batch gathers the sums in memory and writes each changed row once, in the transaction that adds the runs.
+ * Rebuilding them from the rows gives the same. */
+enum { SUMS_BINS_LIMIT = 4000 }; /* ten bins per decade: no float64 lies further out */
+
+struct sums_key { /* no padding: the hash table compares its bytes */
+  int64_t point_id;
+  int results_version, bin; /* SPECTRUM_NO_BIN: the point's totals */
+};
+
+struct sums_row {
+  struct sums_key key;
+  int64_t runs, count, count_squared; /* totals: count = fragments */
+  int64_t censored, failed, surplus;  /* totals only */
+  double mass;
+};
+
+struct sums { /* all zero: empty */
+  struct sums_entry *table;
+  struct sums_block *blocks; /* blocks of the entries, the one in use first */
+  size_t used;               /* entries of the first block */
+  bool sorted;
+  sqlite3_stmt *total, *bin; /* upserts, prepared at first use */
+  sqlite3_stmt *stale;       /* deletes the pooled estimates of a point with new runs */
+};
+
+/* The row to add to, zeros when new. NULL when memory ran out. Valid until the sums are written or forgotten. */
+struct sums_row *sums_at(struct sums *sums, int64_t point_id, int results_version, int bin);
+/* Writes everything gathered, in ascending order of its key, and sets it to zero. */
+status sums_write(struct sums *sums, sqlite3 *db, struct error *error);
+void sums_forget(struct sums *sums); /* what was gathered, after a rollback */
+void sums_clear(struct sums *sums);  /* everything, statements too */
+
+/* For a merge, within its transaction. The runs first..last and their masses are already copied; table temp.merge_run
+ * maps their numbers (ours) to those in the attached store `other` (theirs). Copies their spectra, adds them to the
+ * sums and covers their bins, with a bounded number of sums in memory. STATUS_CONTENT: a spectrum does not match the
+ * masses. */
+status sums_copy(struct sums *sums, sqlite3 *db, int64_t first, int64_t last, struct error *error);
+/* Rebuilds the sums of one point from the rows of run and spectrum. Within the caller's transaction. */
+status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error);
+/* *count: rows whose running sums differ from the sums of their rows (doubles: by more than rounding). */
+status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error);
+
+/* Adds to table bin the edges of the bins lowest..highest that it lacks, so that spectra can be read without the
+ * program. Within the caller's transaction. STATUS_CONTENT: no mass lies in such bins. */
+status sums_cover_bins(sqlite3 *db, int64_t lowest, int64_t highest, struct error *error);
+
+/* ---- foreign files (db/store/guard.c says what a store may contain) ---- */
+
+/* Call on every new connection, before the first read. It turns off the file's views and triggers. Expressions in the
+ * file may call harmless functions only. No statement can change the schema's text, attach a file or load an
+ * extension. */
+void guard_connection(sqlite3 *db);
+
+/* Attaches another store as `other`, for reading only. */
+status guard_attach(sqlite3 *db, const char *source, const char *doing, struct error *error);
+/* Writes a compact copy of a store whose schema guard_schema() has passed. */
+status guard_vacuum_into(sqlite3 *db, const char *path, const char *doing, struct error *error);
+
+/* Compares the schema with ours. `version`: the store's; older ones may lack columns. STATUS_CONTENT: the message names
+ * every object that no version of clast creates. */
+status guard_schema(sqlite3 *db, const char *path, int version, struct error *error);
+
+/* ---- fields files ---- */
+
+/* Locations of fields files. Table run keeps their paths relative to the store's folder, so that both can move
+ * together. This is the path of one as this process can open it; the caller frees it. NULL: memory ran out. */
+char *paths_of_fields(const char *store_path, const char *fields_path);
+
+/* Can this file be read? */
+bool paths_readable(const char *store_path, const char *fields_path);
+
+/* The prefix that turns a path relative to the folder of the store `source` into one relative to the folder of
+ * `target`: "" when the folders are the same, else "../" and names, with a slash at the end. The caller frees it. NULL:
+ * a folder does not exist, or memory ran out. */
+char *paths_between(const char *target, const char *source);
+
+/* ---- the open store ---- */
 
 enum { STORE_BATCH_ROWS = 500, STORE_KINDS = 16 };
 #define STORE_BATCH_SECONDS 1.0
@@ -26,7 +193,7 @@ struct store {
   char *path;
   int lock;        /* descriptor, -1 for readers */
   double deadline; /* s, monotonic: end of the time limit of a user's query (db/ask/answer.c) */
-  bool lacks_wal;  /* in WAL mode without its -wal file when it was opened (db/store/place.h) */
+  bool lacks_wal;  /* in WAL mode without its -wal file when it was opened (db/store/store.c) */
 
   struct identities identities; /* a writer reads them when it opens, a reader at first use */
   bool identities_loaded;
@@ -55,40 +222,26 @@ struct store {
   size_t bin_capacity;
 };
 
-/* s since 1970-01-01 UTC */
-static inline double store_wall_clock(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_REALTIME, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* Call before the first row of a batch: begins the transaction. Refuses readers and stores after a failed write. */
 status store_begin(struct store *store, struct error *error);
 /* Call after `rows` more rows: commits when the batch is large or old enough. When `result` is not OK, the whole batch
  * is rolled back and the store refuses further writing. Returns `result`, or the status of the commit. */
 status store_end(struct store *store, status result, int rows, struct error *error);
 
-/* Gives the store's entry for the engine in *found. Creates the engine's result table when the store has none; *grown
- * becomes true when the views need another column. */
-status store_add_run_kind(struct store *store, const struct engine_kind *kind, struct store_kind **found, bool *grown,
-                          struct error *error);
-
 /* Is the run part of the statistics? schema_write_counts() writes the same condition in SQL. */
 static inline bool store_run_counts(const struct store_run *run) {
   return !run->surplus && outcome_counts(run->outcome);
 }
 
-/* Fills store->blob with the masses of a run, little-endian float64. */
-status store_fragments_encode(struct store *store, const struct store_run *run, struct error *error);
-/* Call after store_fragments_encode(), within the open batch. Adds the masses, the spectrum and the running sums of a
- * run whose row is already written. */
-status store_fragments_add(struct store *store, int64_t run_id, const struct store_run *run, struct error *error);
-
 /* The hash that identifies a point. */
 void store_point_hash(const struct scene *scene, uint8_t hash[16]);
-
+/* Reads the identities of the store, and its range of bins. error may be NULL. */
+status identities_load(struct store *store, struct error *error);
 /* Inserts the estimates of a run that has none yet, within the open batch. */
 status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
                                 struct error *error);
+/* Makes the shape files of a run's scene known (engine/mesh/mesh.h), so that its scene can be read; run_id 0: all
+ * files of the store. STATUS_CONTENT: a file is damaged. */
+status store_point_shapes(struct store *store, int64_t run_id, struct error *error);
 
 #endif

@@ -1,17 +1,96 @@
 /* Merging the stores of several machines. Points are the same when their hashes are, runs when their identities are. */
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "db/store/guard.h"
-#include "db/store/inspect.h"
 #include "db/store/internal.h"
-#include "db/store/paths.h"
-#include "db/store/schema.h"
-#include "db/store/shapes.h"
 #include "db/store/views.h"
-#include "schemas/text.h"
 
 static const char doing[] = "merging";
+
+/* ---- inspecting the source: all pages, then the digests of all rows. A thread does this with a connection of its own
+ * while the caller copies the rows. It takes about a third of the time of a merge ---- */
+
+struct inspection {
+  const char *source; /* borrowed */
+  struct store *store;
+  pthread_t thread;
+  bool has_thread;    /* false: no thread could be started, and the check is already done */
+  atomic_bool failed; /* set by the thread while the caller copies */
+  status result;
+  struct error error;
+};
+
+/* Checks all pages and the types of all rows. Rows of table spectrum, the longest table, are checked one by one when
+ * they are copied. */
+static status check_pages(struct store *other, const char *source, struct error *error) {
+  STATEMENT rows = NULL;
+  status result = sql_prepare(other->db,
+                              "SELECT c.quick_check FROM main.sqlite_schema s JOIN pragma_quick_check(s.name) c WHERE "
+                              "s.type = 'table' AND s.name <> 'spectrum' AND c.quick_check <> 'ok' LIMIT 1",
+                              &rows, doing, error);
+  if (sql_next(rows, &result, doing, error))
+    result = status_fail(error, STATUS_CONTENT,
+                         "%s is damaged: %.500s. Nothing was taken from it; `clast check` tells more. Restore a copy.",
+                         source, sql_text(rows, 0));
+  return result;
+}
+
+static status compare(const struct inspection *inspection, enum digest_kind kind, struct error *error) {
+  int64_t first = 0, count = 0;
+  DIGEST_ROWS rows = digest_rows(inspection->store->db, kind, 0, false, error);
+  while (digest_rows_next(&rows))
+    if (!rows.whole && count++ == 0)
+      first = rows.number;
+  TRY(digest_rows_end(&rows));
+  if (count == 0)
+    return STATUS_OK;
+  return status_fail(error, STATUS_CONTENT,
+                     "%s: %s %lld is damaged: a bit has changed since it was stored; %lld in all. Nothing was "
+                     "taken from it; `clast check` lists them. Restore a copy.",
+                     inspection->source, rows.table, (long long)first, (long long)count);
+}
+
+static status inspect(struct inspection *inspection, struct error *error) {
+  TRY(check_pages(inspection->store, inspection->source, error));
+  TRY(compare(inspection, DIGEST_RUNS, error));
+  return compare(inspection, DIGEST_POINTS, error);
+}
+
+static void *inspect_all(void *context) {
+  struct inspection *inspection = context;
+  inspection->result = inspect(inspection, &inspection->error);
+  inspection->failed = inspection->result != STATUS_OK;
+  return NULL;
+}
+
+/* A progress handler of SQLite: it ends a statement once the thread has found damage. Damaged pages can make a
+ * statement endless. */
+static int has_failed(void *inspection) {
+  return ((struct inspection *)inspection)->failed;
+}
+
+/* Opens the source, which refuses a missing, foreign, newer or older file and one with unexpected objects, and starts
+ * the thread. Call end_inspection() in any case. */
+static status begin_inspection(struct inspection *inspection, struct error *error) {
+  TRY(store_open_reader(inspection->source, &inspection->store, error));
+  inspection->has_thread = pthread_create(&inspection->thread, NULL, inspect_all, inspection) == 0;
+  if (!inspection->has_thread)
+    inspect_all(inspection);
+  return STATUS_OK;
+}
+
+/* Waits for the end of the thread. STATUS_CONTENT: the source is damaged, so nothing that was copied may be kept. */
+static status end_inspection(struct inspection *inspection, struct error *error) {
+  if (inspection->has_thread)
+    pthread_join(inspection->thread, NULL);
+  if (inspection->result != STATUS_OK && error)
+    *error = inspection->error;
+  const status closed = store_close(inspection->store, inspection->result == STATUS_OK ? error : NULL);
+  return inspection->result == STATUS_OK ? closed : inspection->result;
+}
+
+/* ---- copying ---- */
 
 struct merged {
   int64_t last;   /* last run_id before the merge */
@@ -19,13 +98,15 @@ struct merged {
   int64_t common; /* number of runs that both stores have */
 };
 
-/* The columns of a table that both stores have, without the column `but`, each with a comma before it. Free with
- * sqlite3_free(). */
+/* The columns of a table that both stores have, but the listed ones ("'a', 'b'"), each with a comma before it. Free
+ * with sqlite3_free(). NULL: memory ran out. */
 static char *common_columns(sqlite3 *db, const char *table, const char *but) {
-  return sql_name_list(db,
-                       "SELECT a.name FROM pragma_table_info(?1, 'main') a JOIN pragma_table_info(?1, 'other') b "
-                       "USING (name) WHERE name <> ?2",
-                       table, but);
+  char *question = sqlite3_mprintf("SELECT a.name FROM pragma_table_info(?1, 'main') a JOIN pragma_table_info(?1, "
+                                   "'other') b USING (name) WHERE name NOT IN (%s)",
+                                   but);
+  char *columns = question ? sql_name_list(db, question, table, NULL) : NULL;
+  sqlite3_free(question);
+  return columns;
 }
 
 /* Adds the points, inputs, axes, campaigns and sessions that are missing. The temporary tables merge_point and
@@ -36,8 +117,8 @@ static status map_parents(sqlite3 *db, struct error *error) {
       db,
       "CREATE TEMP TABLE merge_point AS SELECT b.point_id AS theirs, a.point_id AS ours FROM other.point b LEFT JOIN "
       "main.point a USING (hash);"
-      "INSERT INTO main.point (hash, engine, scene_name, scene) SELECT hash, engine, scene_name, scene FROM "
-      "other.point WHERE point_id IN (SELECT theirs FROM merge_point WHERE ours IS NULL);"
+      "INSERT INTO main.point (hash, digest, engine, scene_name, scene) SELECT hash, digest, engine, scene_name, "
+      "scene FROM other.point WHERE point_id IN (SELECT theirs FROM merge_point WHERE ours IS NULL);"
       "DROP TABLE merge_point; CREATE TEMP TABLE merge_point (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
       "INSERT INTO merge_point SELECT b.point_id, a.point_id FROM other.point b JOIN main.point a USING (hash);"
       "INSERT OR IGNORE INTO main.point_input (point_id, path, value) SELECT m.ours, i.path, i.value FROM "
@@ -83,11 +164,7 @@ static status find_runs(sqlite3 *db, struct merged *merged, struct error *error)
 }
 
 static status copy_runs(sqlite3 *db, struct error *error) {
-  char
-      *columns = sql_name_list(db,
-                               "SELECT a.name FROM pragma_table_info(?1, 'main') a JOIN pragma_table_info(?1, 'other') "
-                               "b USING (name) WHERE name NOT IN ('run_id', 'point_id', 'session_id')",
-                               "run", NULL);
+  char *columns = common_columns(db, "run", "'run_id', 'point_id', 'session_id'");
   if (!columns)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   status result = sql_executef(
@@ -102,7 +179,7 @@ static status copy_runs(sqlite3 *db, struct error *error) {
 
 /* Rows of a table that belong to the runs that were copied. */
 static status copy_of_runs(sqlite3 *db, const char *table, struct error *error) {
-  char *columns = common_columns(db, table, "run_id");
+  char *columns = common_columns(db, table, "'run_id'");
   if (!columns)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   status result = sql_executef(db, doing, error,
@@ -129,7 +206,7 @@ static status copy_attempts(sqlite3 *db, struct error *error) {
 /* Creates result tables of engines that this program lacks from the list of their columns. No SQL text of the other
  * store is run: its names are quoted, and its types are compared with those that a store allows. */
 static status make_tables(sqlite3 *db, struct error *error) {
-  sqlite3_stmt *tables = NULL;
+  STATEMENT tables = NULL;
   status result = sql_prepare(
       db,
       "SELECT format('CREATE TABLE main.\"%w\" (run_id INTEGER PRIMARY KEY REFERENCES run (run_id)', t.name) || "
@@ -143,7 +220,6 @@ static status make_tables(sqlite3 *db, struct error *error) {
   FILE *out = text_open(&sql, &size);
   while (out && sql_next(tables, &result, doing, error))
     fprintf(out, "%s;\n", sql_text(tables, 0));
-  sqlite3_finalize(tables);
   if (!out || !text_close(out, &sql))
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   if (result == STATUS_OK)
@@ -159,82 +235,39 @@ static status make_tables(sqlite3 *db, struct error *error) {
 }
 
 static status copy_results(sqlite3 *db, struct error *error) {
-  static const char *const tables[] = {"fragment_mass", "estimate"};
-  sqlite3_stmt *statement = NULL;
-  status result = STATUS_OK;
-  for (size_t i = 0; result == STATUS_OK && i < sizeof tables / sizeof tables[0]; i++)
-    result = copy_of_runs(db, tables[i], error);
-  if (result == STATUS_OK)
-    result = sql_prepare(db, "SELECT name FROM other.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*'",
-                         &statement, doing, error);
-  while (sql_next(statement, &result, doing, error))
-    result = copy_of_runs(db, sql_text(statement, 0), error);
-  sqlite3_finalize(statement);
+  STATEMENT tables = NULL;
+  status result = sql_prepare(db,
+                              "SELECT 'fragment_mass' UNION ALL SELECT 'estimate' UNION ALL SELECT name FROM "
+                              "other.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*'",
+                              &tables, doing, error);
+  while (sql_next(tables, &result, doing, error))
+    result = copy_of_runs(db, sql_text(tables, 0), error);
   return result;
 }
 
-/* The campaigns of the sessions that were copied. A source of an older version does not name them; their runs identify
- * them. */
-static status copy_campaigns_of_sessions(sqlite3 *db, struct error *error) {
-  int64_t named = 0;
-  status result = sql_integer(db,
-                              "SELECT count(*) FROM pragma_table_info('session', 'other') WHERE name = 'campaign_id'",
-                              0, &named, error);
-  if (result == STATUS_OK && named)
-    result = sql_execute(db,
-                         "UPDATE main.session SET campaign_id = of.campaign_id FROM (SELECT m.ours, a.campaign_id FROM "
-                         "merge_session m JOIN other.session b ON b.session_id = m.theirs JOIN other.campaign c USING "
-                         "(campaign_id) JOIN main.campaign a ON a.name = c.name AND a.document = c.document) AS of "
-                         "WHERE of.ours = session.session_id AND session.campaign_id IS NULL",
-                         doing, error);
-  return result == STATUS_OK ? sql_execute(db, schema_sessions_sql, doing, error) : result;
-}
+/* The campaigns of the sessions that were copied, shape files that are missing here, and units that only the other
+ * store knows. */
+static const char copy_rest[] =
+    "UPDATE main.session SET campaign_id = of.campaign_id FROM (SELECT m.ours, a.campaign_id FROM merge_session m JOIN "
+    "other.session b ON b.session_id = m.theirs JOIN other.campaign c USING (campaign_id) JOIN main.campaign a ON "
+    "a.name = c.name AND a.document = c.document) AS of WHERE of.ours = session.session_id AND session.campaign_id IS "
+    "NULL;"
+    "INSERT OR IGNORE INTO main.shape_file (hash, bytes) SELECT hash, bytes FROM other.shape_file;"
+    "UPDATE main.axis SET written_unit = b.written_unit FROM other.axis b WHERE b.path = axis.path AND "
+    "axis.written_unit IS NULL";
 
-/* Units that only the other store knows. */
-static status copy_written_units(sqlite3 *db, struct error *error) {
-  int64_t named = 0;
-  status result = sql_integer(db, "SELECT count(*) FROM pragma_table_info('axis', 'other') WHERE name = 'written_unit'",
-                              0, &named, error);
-  if (result != STATUS_OK || !named)
-    return result;
-  return sql_execute(db,
-                     "UPDATE main.axis SET written_unit = b.written_unit FROM other.axis b WHERE b.path = axis.path "
-                     "AND axis.written_unit IS NULL",
-                     doing, error);
-}
-
-/* Copies tables, then rows in the order of their references. */
+/* Copies tables, then rows in the order of their references. The pooled estimates of the points with new runs are stale
+ * and go with the old sums. */
 static status copy_all(struct store *store, struct merged *merged, struct error *error) {
   sqlite3 *db = store->db;
-  status result = make_tables(db, error);
-  if (result != STATUS_OK)
-    return result;
-  result = map_parents(db, error);
-  if (result != STATUS_OK)
-    return result;
-  result = copy_runs(db, error);
-  if (result != STATUS_OK)
-    return result;
-  result = copy_results(db, error);
-  if (result == STATUS_OK) /* the pooled estimates of these points are stale: delete them */
-    result = sums_runs_copy(&store->sums, db, merged->last + 1, merged->last + merged->added, error);
-  if (result == STATUS_OK)
-    result = copy_attempts(db, error);
-  if (result == STATUS_OK)
-    result = copy_campaigns_of_sessions(db, error);
-  if (result == STATUS_OK)
-    result = shapes_merge(db, error);
-  return result == STATUS_OK ? copy_written_units(db, error) : result;
-}
-
-static status merge(struct store *store, struct merged *merged, struct error *error) {
-  sqlite3 *db = store->db;
-  status result = copy_all(store, merged, error);
-  if (result == STATUS_OK)
-    result = digest_rows_fill_missing(db, DIGEST_POINTS, 0, error);
-  if (result == STATUS_OK)
-    result = digest_rows_fill_missing(db, DIGEST_RUNS, merged->last + 1, error); /* for a source without digests */
-  return result == STATUS_OK ? views_regenerate(db, error) : result;
+  TRY(make_tables(db, error));
+  TRY(map_parents(db, error));
+  TRY(copy_runs(db, error));
+  TRY(copy_results(db, error));
+  TRY(sums_copy(&store->sums, db, merged->last + 1, merged->last + merged->added, error));
+  TRY(copy_attempts(db, error));
+  TRY(sql_execute(db, copy_rest, doing, error));
+  return views_regenerate(db, error);
 }
 
 /* Runs of the same identity must have the same bits. A difference comes from another machine or a bug. */
@@ -257,7 +290,8 @@ static status keep_paths(struct store *store, const char *way, struct error *err
 
 /* For a run in both stores, only the other store may name a fields file, or only the other store's file may exist. */
 static status take_paths(struct store *store, const char *way, struct error *error) {
-  sqlite3_stmt *pairs = NULL, *update = NULL;
+  STATEMENT pairs = NULL;
+  STATEMENT update = NULL;
   status result =
       sql_prepare(store->db,
                   "SELECT a.run_id, a.fields_path, iif(b.fields_path LIKE '/%', '', ?1) || b.fields_path "
@@ -277,8 +311,6 @@ static status take_paths(struct store *store, const char *way, struct error *err
     sql_bind_text(update, 2, theirs);
     result = sql_run(update, doing, error);
   }
-  sqlite3_finalize(pairs);
-  sqlite3_finalize(update);
   return result;
 }
 
@@ -296,12 +328,11 @@ static status merge_paths(struct store *store, const char *source, const struct 
 /* Copies what is missing, within a transaction that the caller ends. */
 static status copy_missing(struct store *store, const char *source, struct merged *merged, int64_t *differing,
                            struct error *error) {
-  status result = find_runs(store->db, merged, error);
-  if (result == STATUS_OK && merged->common)
-    result = count_differing(store->db, differing, error);
-  if (result == STATUS_OK)
-    result = merge(store, merged, error);
-  return result == STATUS_OK ? merge_paths(store, source, merged, error) : result;
+  TRY(find_runs(store->db, merged, error));
+  if (merged->common)
+    TRY(count_differing(store->db, differing, error));
+  TRY(copy_all(store, merged, error));
+  return merge_paths(store, source, merged, error);
 }
 
 /* Copies while the inspection runs. If the source is damaged, that is the error, whatever the copying met. */
@@ -309,7 +340,7 @@ static status merge_inspected(struct store *store, const char *source, struct in
                               struct merged *merged, int64_t *differing, struct error *error) {
   enum { STEPS_BETWEEN = 100000 }; /* of SQLite's virtual machine: about a millisecond */
   struct error damage = {0};
-  sqlite3_progress_handler(store->db, STEPS_BETWEEN, inspect_failed, inspection);
+  sqlite3_progress_handler(store->db, STEPS_BETWEEN, has_failed, inspection);
   /* The sums of a million runs are sorted in files, not in memory. */
   status result = guard_attach(store->db, source, doing, error);
   if (result == STATUS_OK)
@@ -317,7 +348,7 @@ static status merge_inspected(struct store *store, const char *source, struct in
   if (result == STATUS_OK)
     result = copy_missing(store, source, merged, differing, error);
   sqlite3_progress_handler(store->db, 0, NULL, NULL);
-  const status inspected = inspect_end(inspection, &damage);
+  const status inspected = end_inspection(inspection, &damage);
   if (inspected != STATUS_OK && error)
     *error = damage;
   if (inspected != STATUS_OK)
@@ -329,19 +360,22 @@ static status merge_inspected(struct store *store, const char *source, struct in
   return result;
 }
 
-status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
-  struct inspection *inspection = NULL;
+/* Nothing is kept unless everything was copied and the source is whole. */
+static status merge(struct store *store, const char *source, struct inspection *inspection, int64_t *added,
+                    int64_t *differing, struct error *error) {
   struct merged merged = {0};
+  TRY(store_flush(store, error));
+  TRY(begin_inspection(inspection, error));
+  TRY(merge_inspected(store, source, inspection, &merged, differing, error));
+  *added = merged.added;
+  return STATUS_OK;
+}
+
+status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
+  struct inspection inspection = {.source = source};
   *added = 0;
   *differing = 0;
-  status result = store_flush(store, error);
-  if (result == STATUS_OK)
-    result = inspect_begin(source, &inspection, error);
-  if (result != STATUS_OK)
-    return result;
-  result = merge_inspected(store, source, inspection, &merged, differing, error);
-  if (result == STATUS_OK)
-    *added = merged.added;
+  const status result = merge(store, source, &inspection, added, differing, error);
   sqlite3_exec(store->db,
                "DROP TABLE IF EXISTS temp.merge_point; DROP TABLE IF EXISTS temp.merge_session; DROP TABLE IF EXISTS "
                "temp.merge_run; DETACH other; PRAGMA temp_store = MEMORY",

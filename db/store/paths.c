@@ -1,12 +1,11 @@
 /* Folders of stores, and the relative path from one to another. */
-#include "db/store/paths.h"
-
 #include <libgen.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "db/store/internal.h"
 #include "schemas/text.h"
 
 enum { PATHS_LONGEST = 8192 };

@@ -1,11 +1,8 @@
-/* Finds a point by its scene, and reads its runs, for a driver that resumes and for stopping rules. */
-#include <math.h>
-#include <stdlib.h>
+/* Finds a point by its scene, and its shape files. */
 #include <string.h>
 
 #include "db/store/internal.h"
-#include "db/store/paths.h"
-#include "db/store/schema.h"
+#include "engine/scene.h"
 
 /* A point's hash is a run's identity without seed and results_version: a point stays the same when results_version
  * changes. */
@@ -32,55 +29,31 @@ status store_point_find(struct store *store, const struct scene *scene, int64_t 
   return code == SQLITE_ROW || code == SQLITE_DONE ? STATUS_OK : sql_fail(store->db, code, doing, error);
 }
 
-static int state_of(const struct field *states, const char *name) {
-  for (int k = 0; name && states->choices[k]; k++)
-    if (strcmp(states->choices[k], name) == 0)
-      return k;
-  return OUTCOME_INVALID;
+static status load(const char *hash, const void *bytes, size_t size, struct error *error) {
+  const struct mesh_file *file = NULL;
+  char name[128];
+  snprintf(name, sizeof name, "shape file %.12s of the store", hash);
+  const status code = mesh_files_add(name, bytes, size, &file, error);
+  if (code)
+    return code;
+  return strcmp(file->hash, hash) == 0
+             ? STATUS_OK
+             : status_fail(error, STATUS_CONTENT, "%s: its bytes have changed since it was stored; restore a copy",
+                           name);
 }
 
-/* The row of a run as the query of store_point_runs() gives it. */
-static struct store_point_run read_run(const struct store *store, const struct field *states, sqlite3_stmt *statement) {
-  struct store_point_run run = {
-      .replicate = sqlite3_column_int64(statement, 0),
-      .seed = (uint64_t)sqlite3_column_int64(statement, 9),
-      .surplus = sqlite3_column_int(statement, 2) != 0,
-      .state = state_of(states, (const char *)sqlite3_column_text(statement, 3)),
-      .value = sqlite3_column_type(statement, 4) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(statement, 4),
-      .wall_s = sqlite3_column_double(statement, 5),
-      .cpu_s = sqlite3_column_double(statement, 6),
-      .peak_memory = sqlite3_column_int64(statement, 7),
-      .fields_path = (const char *)sqlite3_column_text(statement, 8),
-  };
-  run.fields_missing = run.fields_path && !paths_readable(store->path, run.fields_path);
-  if (sqlite3_column_bytes(statement, 1) == 16)
-    memcpy(run.identity, sqlite3_column_blob(statement, 1), 16);
-  return run;
-}
-
-status store_point_runs(struct store *store, int64_t point_id, const struct engine_kind *kind, const struct field *row,
-                        bool of_outcome, void (*each)(void *context, const struct store_point_run *run), void *context,
-                        struct error *error) {
-  static const char doing[] = "reading a point's runs";
-  char column[SCHEMA_NAME_SIZE];
-  sqlite3_stmt *statement = NULL;
-  field_column_name(row->path, column, sizeof column);
-  status result =
-      sql_preparef(store->db, &statement, doing, error,
-                   "SELECT r.replicate, r.identity, r.surplus, r.state, %s.\"%w\", r.wall_time, r.cpu_time, "
-                   "r.peak_memory, r.fields_path, r.seed FROM run r %s%w%s WHERE r.point_id = ?1 AND r.results_version "
-                   "= ?2 ORDER BY r.replicate, r.seed",
-                   of_outcome ? "r" : "e", column, of_outcome ? "" : "LEFT JOIN result_", of_outcome ? "" : kind->name,
-                   of_outcome ? "" : " e ON e.run_id = r.run_id");
-  if (result != STATUS_OK)
-    return result;
-  sqlite3_bind_int64(statement, 1, point_id);
-  sqlite3_bind_int(statement, 2, kind->results_version);
-  const struct field *states = field_find(&outcome_table, "state", NULL);
-  while (sql_next(statement, &result, doing, error)) {
-    const struct store_point_run run = read_run(store, states, statement);
-    each(context, &run);
+status store_point_shapes(struct store *store, int64_t run_id, struct error *error) {
+  static const char doing[] = "reading shape files";
+  STATEMENT files = NULL;
+  TRY(sql_prepare(store->db,
+                  "SELECT hash, bytes FROM shape_file WHERE ?1 = 0 OR hash IN (SELECT value FROM point_input JOIN "
+                  "run USING (point_id) WHERE run_id = ?1)",
+                  &files, doing, error));
+  status result = STATUS_OK;
+  sqlite3_bind_int64(files, 1, run_id);
+  while (sql_next(files, &result, doing, error)) {
+    const void *bytes = sqlite3_column_blob(files, 1);
+    result = load(sql_text(files, 0), bytes ? bytes : "", (size_t)sqlite3_column_bytes(files, 1), error);
   }
-  sqlite3_finalize(statement);
   return result;
 }

@@ -12,7 +12,7 @@
 enum {
   SCHEMA_APPLICATION_ID = 0x434c5354, /* "CLST" */
   SCHEMA_VERSION = 3,
-  SCHEMA_READABLE = 1, /* the oldest version that can be read without an upgrade */
+  SCHEMA_OLDEST = 2, /* the oldest version that is brought forward; only the current one is read */
   SCHEMA_NAME_SIZE = 128,
 };
 
@@ -38,8 +38,8 @@ struct schema_index {
 /* The tables that are not results of one engine, in the order of their creation, and the indexes. */
 extern const struct schema_table schema_tables[];
 extern const size_t schema_tables_count;
-extern const struct schema_index schema_tables_indexes[];
-extern const size_t schema_tables_indexes_count;
+extern const struct schema_index schema_indexes[];
+extern const size_t schema_indexes_count;
 
 struct schema_table schema_result_table(const struct engine_kind *kind); /* result_<engine> */
 /* All tables in the order of their creation: the engines' results come last. */
@@ -48,6 +48,8 @@ struct schema_table schema_table_at(size_t index);
 /* Their CREATE statements, with a semicolon and a line break at the end. */
 void schema_write_table(const struct schema_table *table, FILE *out);
 void schema_write_index(const struct schema_index *index, FILE *out);
+/* Writes the declaration of a column, without comment. False: the table has none of this name. */
+bool schema_write_column(const struct schema_table *table, const char *name, FILE *out);
 
 /* Writes the SQL condition that a row of table run is part of the statistics: not surplus, a usable state, every main
  * result a number. `not_surplus`: "surplus = 0", or another expression for it. It matches store_run_counts(). */
@@ -57,16 +59,14 @@ void schema_write_counts(const char *not_surplus, FILE *out);
  * (schemas/field.h), so largest.speed and largest_speed are the same column. STATUS_INTERNAL. */
 status schema_check_names(const struct schema_table *table, struct error *error);
 
-/* *has: does this table have this column? With the column name "": does the table have any column? */
-status schema_has_column(sqlite3 *db, const char *table, const char *column, bool *has, struct error *error);
+/* Does this table have this column (NULL: does the table exist)? */
+bool schema_has_column(sqlite3 *db, const char *table, const char *column);
+/* Has the database all tables and columns but those that only one engine reports? An older program's may lack some. */
+bool schema_is_complete(sqlite3 *db);
 /* Creates missing parts in the database: the table, or columns that its field table has gained (NULL in old rows), and
  * their rows of column_doc. */
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error);
 /* schema_complete of every table. Within the caller's transaction. */
 status schema_complete_all(sqlite3 *db, struct error *error);
-
-/* Fills in the campaign of sessions that lack it: among the campaigns of the runs' points, the last one that existed
- * when the session ended. */
-extern const char schema_sessions_sql[];
 
 #endif

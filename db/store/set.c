@@ -1,4 +1,4 @@
-/* Changes after a run is stored: its estimates, its part in the statistics, its fields file. */
+/* Changes after runs are stored: estimates, the part in the statistics, fields files, studies of convergence. */
 #include <stdlib.h>
 
 #include "db/store/internal.h"
@@ -22,95 +22,134 @@ static const struct sql_column of_point[] = {KEY("point_id", INTEGER, owner),
 /* One statement inserts all rows of a run: every run has the same number of them. */
 status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
                                 struct error *error) {
-  status result = sql_insert_prepare(store->db, &store->estimate, "estimate", 2, of_run, &estimates_table, count,
-                                     writing, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(sql_insert_prepare(store->db, &store->estimate, "estimate", 2, of_run, &estimates_table, count, writing, error));
   for (size_t i = 0; i < count; i++)
     sql_insert_bind(&store->estimate, i, &(struct estimate_key){.owner = run_id, .ordinal = (int64_t)i}, &rows[i]);
   return sql_run(store->estimate.statement, writing, error);
 }
 
-static status add_point_estimates(struct store *store, int64_t point_id, int results_version, size_t count,
-                                  const struct estimate *rows, struct error *error) {
+static status set_of_run(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
+                         struct error *error) {
+  TRY(sql_executef(store->db, writing, error, "DELETE FROM estimate WHERE run_id = %lld", (long long)run_id));
+  if (count)
+    TRY(store_set_estimates_rows(store, run_id, count, rows, error));
+  return digest_rows_fill(store->db, run_id, error);
+}
+
+static status set_of_point(struct store *store, int64_t point_id, int results_version, size_t count,
+                           const struct estimate *rows, struct error *error) {
   struct sql_insert insert = {0};
-  status result = sql_insert_prepare(store->db, &insert, "point_estimate", 3, of_point, &estimates_table, 1, writing,
-                                     error);
-  for (size_t i = 0; result == STATUS_OK && i < count; i++) {
+  TRY(sql_executef(store->db, writing, error,
+                   "DELETE FROM point_estimate WHERE point_id = %lld AND results_version = %d", (long long)point_id,
+                   results_version));
+  TRY(sql_insert_prepare(store->db, &insert, "point_estimate", 3, of_point, &estimates_table, 1, writing, error));
+  STATEMENT statement = insert.statement;
+  for (size_t i = 0; i < count; i++) {
     const struct estimate_key key = {point_id, (int64_t)i, results_version};
     sql_insert_bind(&insert, 0, &key, &rows[i]);
-    result = sql_run(insert.statement, writing, error);
+    TRY(sql_run(statement, writing, error));
   }
-  sqlite3_finalize(insert.statement);
-  return result;
+  return STATUS_OK;
 }
 
 status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
                            const struct estimate *rows, struct error *error) {
-  status result = store_begin(store, error);
-  if (result != STATUS_OK)
-    return result;
-  if (run_id > 0) {
-    result = sql_executef(store->db, writing, error, "DELETE FROM estimate WHERE run_id = %lld", (long long)run_id);
-    if (result == STATUS_OK && count)
-      result = store_set_estimates_rows(store, run_id, count, rows, error);
-    if (result == STATUS_OK)
-      result = digest_rows_fill(store->db, DIGEST_RUNS, run_id, error);
-  } else {
-    result = sql_executef(store->db, writing, error,
-                          "DELETE FROM point_estimate WHERE point_id = %lld AND results_version = %d",
-                          (long long)point_id, results_version);
-    if (result == STATUS_OK)
-      result = add_point_estimates(store, point_id, results_version, count, rows, error);
-  }
-  return store_end(store, result, 1, error);
+  TRY(store_begin(store, error));
+  return store_end(store,
+                   run_id > 0 ? set_of_run(store, run_id, count, rows, error)
+                              : set_of_point(store, point_id, results_version, count, rows, error),
+                   1, error);
 }
 
-/* UPDATE that makes replicates from `prefix` on surplus. The caller frees it; NULL when memory ran out. */
-static char *prefix_sql(int64_t point_id, int64_t prefix) {
-  char *sql = NULL, inside[64];
+/* Replicates from `prefix` on become surplus. */
+static status set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error) {
+  static const char doing[] = "moving a stopping prefix";
+  char *counts = NULL, inside[64];
   size_t size = 0;
-  FILE *out = text_open(&sql, &size);
-  if (!out)
-    return NULL;
+  FILE *out = text_open(&counts, &size);
+  TRY(sums_write(&store->sums, store->db, error));
   snprintf(inside, sizeof inside, "replicate < %lld", (long long)prefix);
-  fprintf(out, "UPDATE run SET surplus = replicate >= %lld, counts = ", (long long)prefix);
-  schema_write_counts(inside, out);
-  fprintf(out, " WHERE point_id = %lld AND surplus <> (replicate >= %lld)", (long long)point_id, (long long)prefix);
-  return text_close(out, &sql);
+  if (out)
+    schema_write_counts(inside, out);
+  if (!out || !text_close(out, &counts))
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  const status
+      result = sql_executef(store->db, doing, error,
+                            "UPDATE run SET surplus = replicate >= %lld, counts = %s WHERE point_id = %lld AND "
+                            "surplus <> (replicate >= %lld)",
+                            (long long)prefix, counts, (long long)point_id, (long long)prefix);
+  free(counts);
+  TRY(result);
+  return sqlite3_changes64(store->db) > 0 ? sums_rebuild(store->db, point_id, error) : STATUS_OK;
 }
 
 status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error) {
-  static const char doing[] = "moving a stopping prefix";
-  status result = store_begin(store, error);
-  if (result != STATUS_OK)
-    return result;
-  char *sql = prefix_sql(point_id, prefix);
-  result = sql ? sums_write(&store->sums, store->db, error)
-               : status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  if (result == STATUS_OK)
-    result = sql_execute(store->db, sql, doing, error);
-  if (result == STATUS_OK && sqlite3_changes64(store->db) > 0)
-    result = sums_rebuild(store->db, point_id, error);
-  free(sql);
-  return store_end(store, result, 1, error);
+  TRY(store_begin(store, error));
+  return store_end(store, set_prefix(store, point_id, prefix, error), 1, error);
+}
+
+static status set_fields(struct store *store, const uint8_t identity[16], const char *fields_path,
+                         struct error *error) {
+  static const char doing[] = "noting a fields file";
+  STATEMENT statement = NULL;
+  TRY(sql_prepare(store->db, "UPDATE run SET fields_path = ?2 WHERE identity = ?1", &statement, doing, error));
+  sqlite3_bind_blob(statement, 1, identity, 16, SQLITE_STATIC);
+  sql_bind_text(statement, 2, fields_path);
+  TRY(sql_run(statement, doing, error));
+  return sqlite3_changes(store->db) > 0 ? STATUS_OK
+                                        : status_fail(error, STATUS_INTERNAL, "%s: no such run is stored", doing);
 }
 
 status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path, struct error *error) {
-  static const char doing[] = "noting a fields file";
-  sqlite3_stmt *statement = NULL;
-  status result = store_begin(store, error);
-  if (result != STATUS_OK)
-    return result;
-  result = sql_prepare(store->db, "UPDATE run SET fields_path = ?2 WHERE identity = ?1", &statement, doing, error);
-  if (result == STATUS_OK) {
-    sqlite3_bind_blob(statement, 1, identity, 16, SQLITE_STATIC);
-    if (fields_path)
-      sqlite3_bind_text(statement, 2, fields_path, -1, SQLITE_STATIC);
-    result = sql_run(statement, doing, error);
-    if (result == STATUS_OK && sqlite3_changes(store->db) == 0)
-      result = status_fail(error, STATUS_INTERNAL, "%s: no such run is stored", doing);
+  TRY(store_begin(store, error));
+  return store_end(store, set_fields(store, identity, fields_path, error), 1, error);
+}
+
+/* ---- studies of convergence ---- */
+
+static const char writing_study[] = "writing a study of convergence";
+
+struct level_key {
+  int64_t base_point_id, level, point_id;
+  int results_version;
+};
+#define LEVEL(name_, kind_, member_)                                                                                   \
+  { name_, SQL_COLUMN_##kind_, offsetof(struct level_key, member_) }
+static const struct sql_column of_level[] = {LEVEL("base_point_id", INTEGER, base_point_id),
+                                             LEVEL("results_version", INT, results_version),
+                                             LEVEL("level", INTEGER, level), LEVEL("point_id", INTEGER, point_id)};
+enum { LEVEL_COLUMNS = 4, LIMIT_COLUMNS = 2 }; /* of a limit: the first two */
+
+/* Replaces the rows of the knob and quantity of this scene in a table: `count` rows of `size` bytes that `fields`
+ * describes. */
+static status replace_rows(struct store *store, const struct store_convergence *study, const char *table,
+                           size_t columns, const struct field_table *fields, size_t count, size_t size,
+                           const void *rows, struct error *error) {
+  struct sql_insert insert = {0};
+  TRY(sql_executef(store->db, writing_study, error,
+                   "DELETE FROM \"%w\" WHERE base_point_id = %lld AND results_version = %d AND knob = %Q AND "
+                   "quantity = %Q",
+                   table, (long long)study->base_point_id, study->results_version, study->limit->knob,
+                   study->limit->quantity));
+  TRY(sql_insert_prepare(store->db, &insert, table, columns, of_level, fields, 1, writing_study, error));
+  STATEMENT statement = insert.statement;
+  for (size_t i = 0; i < count; i++) {
+    const struct level_key key = {study->base_point_id, (int64_t)i, study->count ? study->point_ids[i] : 0,
+                                  study->results_version};
+    sql_insert_bind(&insert, 0, &key, (const char *)rows + i * size);
+    TRY(sql_run(statement, writing_study, error));
   }
-  sqlite3_finalize(statement);
-  return store_end(store, result, 1, error);
+  return STATUS_OK;
+}
+
+static status replace_study(struct store *store, const struct store_convergence *study, struct error *error) {
+  TRY(replace_rows(store, study, "convergence", LEVEL_COLUMNS, &convergence_table, study->count, sizeof *study->rows,
+                   study->rows, error));
+  return replace_rows(store, study, "convergence_limit", LIMIT_COLUMNS, &convergence_limit_table, 1, 0, study->limit,
+                      error);
+}
+
+status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error) {
+  TRY(store_begin(store, error));
+  return store_end(store, replace_study(store, study, error), (int)study->count + 1, error);
 }

@@ -1,21 +1,301 @@
-/* Opening, closing, batches and sessions of a store. */
+/* A store as a file: its place and lock, opening and closing, upgrades, copies, batches and sessions. */
 #include "db/store/store.h"
 
 #include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
-#include "db/store/guard.h"
 #include "db/store/internal.h"
-#include "db/store/lock.h"
-#include "db/store/migrate.h"
-#include "db/store/place.h"
 #include "db/store/schema.h"
 #include "db/store/views.h"
 #include "schemas/clock.h"
 #include "schemas/file.h"
+
+/* ---- the place: names that are no files, a file that is moved while it is written, a copy without its -wal file ----
+ */
+
+const char *store_name_refused(const char *path) {
+  if (!*path)
+    return "a store needs a file name";
+  if (strcmp(path, ":memory:") == 0 || strncmp(path, "file:", 5) == 0)
+    return "SQLite takes this name for memory or a URI, and the results would be lost: name a plain file "
+           "(./ before the name makes it one)";
+  if (file_is_companion(path))
+    return "SQLite keeps its journals under names with this ending: give the store another name";
+  return NULL;
+}
+
+/* Does the journal name a super-journal? It ends with the sum and length of that name and these 8 bytes (SQLite's file
+ * format, 3.0). clast writes none. SQLite deletes the file of that name when it rolls the journal back. */
+static bool names_another_file(const char *journal) {
+  static const unsigned char magic[8] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
+  unsigned char tail[sizeof magic] = {0};
+  const int file = open(journal, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0)
+    return false;
+  const bool whole = lseek(file, -(off_t)sizeof tail, SEEK_END) > 0 &&
+                     read(file, tail, sizeof tail) == (ssize_t)sizeof tail;
+  close(file);
+  return whole && memcmp(tail, magic, sizeof magic) == 0;
+}
+
+static status check_beside(const char *name, struct error *error) {
+  struct stat file;
+  if (lstat(name, &file) != 0)
+    return STATUS_OK;
+  if (!S_ISREG(file.st_mode))
+    return status_fail(error, STATUS_IO, "%s is a folder, link, pipe, socket or device: remove it.", name);
+  if (!names_another_file(name))
+    return STATUS_OK;
+  return status_fail(error, STATUS_CONTENT,
+                     "%s is no journal of clast: it names a file, which SQLite would delete. Remove it, and do not "
+                     "trust the store beside it.",
+                     name);
+}
+
+/* Checks the files that SQLite opens beside the store. */
+static status check_companions(const char *path, struct error *error) {
+  char *real = realpath(path, NULL), *name = NULL; /* SQLite follows links to the store */
+  status result = STATUS_OK;
+  for (size_t i = 0; result == STATUS_OK && file_companions[i]; i++) {
+    if (asprintf(&name, "%s%s", real ? real : path, file_companions[i]) < 0)
+      break;
+    result = check_beside(name, error);
+    free(name);
+  }
+  free(real);
+  return result;
+}
+
+/* A file or a free path? Opening a pipe would block. */
+static status check_file(const char *path, struct error *error) {
+  struct stat file;
+  if (stat(path, &file) != 0 || S_ISREG(file.st_mode))
+    return check_companions(path, error);
+  return status_fail(error, STATUS_IO, "%s is a %s: name the store's file.", path,
+                     S_ISDIR(file.st_mode) ? "folder" : "pipe, socket or device");
+}
+
+/* Is the open file still at its path? Data written elsewhere would be lost. */
+static status check_place(sqlite3 *db, const char *path, struct error *error) {
+  int moved = 0;
+  if (sqlite3_file_control(db, "main", SQLITE_FCNTL_HAS_MOVED, &moved) != SQLITE_OK || !moved)
+    return STATUS_OK;
+  return status_fail(error, STATUS_IO,
+                     "%s was moved, removed or replaced while clast wrote it: clast stores nothing more. The original "
+                     "file has all committed runs. Put it back, and give the same command again.",
+                     path);
+}
+
+/* Bytes 18 and 19 of a database are its write and read version: 2 is WAL mode (SQLite's file format, 1.3.3). */
+static bool in_wal_mode(const char *path) {
+  unsigned char head[20] = {0};
+  const int file = open(path, O_RDONLY | O_CLOEXEC);
+  if (file < 0)
+    return false;
+  const bool whole = read(file, head, sizeof head) == (ssize_t)sizeof head;
+  close(file);
+  return whole && memcmp(head, "SQLite format 3", 16) == 0 && head[18] == 2 && head[19] == 2;
+}
+
+/* Is the file in WAL mode, with no or an empty FILE-wal beside it? Asked before SQLite opens the file, which may create
+ * one. This is the state of a store that was copied without its FILE-wal while it was being written. */
+static bool lacks_wal(const char *path) {
+  struct stat wal;
+  char *name = NULL;
+  if (!in_wal_mode(path) || asprintf(&name, "%s-wal", path) < 0)
+    return false;
+  const bool lacks = stat(name, &wal) != 0 || wal.st_size == 0;
+  free(name);
+  return lacks;
+}
+
+/* ---- the writer's lock: an open-file-description lock (fcntl(2), F_OFD_SETLK) on a byte of the store far beyond those
+ * that SQLite locks. It ends with the process, leaves no file, and does not affect readers. A traditional record lock
+ * would not work: when SQLite unlocks the file, all record locks of the process on it are dropped ---- */
+
+/* SQLite locks bytes 0x40000000 to 0x400001ff, for any size of the file. */
+static const off_t LOCK_BYTE = (off_t)1 << 62;
+
+static const char *remedy_of(int code) {
+  switch (code) {
+  case ENOENT: return "Make its folder first.";
+  case EISDIR: return "It is a folder: name a file.";
+  case ENOTDIR: return "Part of the path is a file, not a folder.";
+  case ENOSPC: return "Free some space.";
+  case EROFS: return "The file system is read-only: copy the store elsewhere, or name another file.";
+  default: return "Give yourself write permission on the file and its folder, or name another file.";
+  }
+}
+
+/* Opens the file (created when absent) and locks it. Close *descriptor after SQLite has closed the file: closing any
+ * descriptor of a file drops SQLite's record locks on it. *held: another process holds the lock. */
+static status take_lock(const char *path, int *descriptor, bool *held, struct error *error) {
+  *held = false;
+  *descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (*descriptor < 0)
+    return status_fail(error, STATUS_IO, "%s: cannot open the store for writing: %s. %s", path, strerror(errno),
+                       remedy_of(errno));
+  struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCK_BYTE, .l_len = 1};
+  if (fcntl(*descriptor, F_OFD_SETLK, &lock) == 0)
+    return STATUS_OK;
+  *held = errno == EACCES || errno == EAGAIN;
+  status result = *held ? status_fail(error, STATUS_IO, "%s: another process is writing this store.", path)
+                        : status_fail(error, STATUS_IO, "%s: cannot lock the store: %s. Put it on a local disk.", path,
+                                      strerror(errno));
+  close(*descriptor);
+  *descriptor = -1;
+  return result;
+}
+
+bool store_is_being_written(const char *path) {
+  const int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+  if (descriptor < 0)
+    return false;
+  struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCK_BYTE, .l_len = 1};
+  const bool held = fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  close(descriptor);
+  return held;
+}
+
+/* The name of the file's network file system, on which locks and shared memory are not reliable; NULL: none. */
+static const char *network_file_system(int descriptor) {
+  struct statfs file_system;
+  if (fstatfs(descriptor, &file_system) != 0)
+    return NULL;
+  switch ((unsigned long)file_system.f_type & 0xffffffff) { /* man 2 statfs */
+  case 0x6969: return "NFS";
+  case 0x517b:
+  case 0xff534d42:
+  case 0xfe534d42: return "SMB/CIFS";
+  case 0x0bd00bd0: return "Lustre";
+  case 0x47504653: return "GPFS";
+  case 0x00c36400: return "CephFS";
+  case 0x65735546: return "FUSE";
+  case 0x5346414f: return "AFS";
+  case 0x01021997: return "9p";
+  case 0x19830326: return "BeeGFS";
+  default: return NULL;
+  }
+}
+
+/* ---- is this file a store of clast, and of which version? ---- */
+
+/* The file's application id, version, how many tables, indexes and views it has, and whether its texts are UTF-8. */
+struct header {
+  int64_t application, version, things, utf8;
+};
+
+static status read_header(sqlite3 *db, struct header *header, struct error *error) {
+  TRY(sql_integer(db, "PRAGMA application_id", 0, &header->application, error));
+  TRY(sql_integer(db, "PRAGMA user_version", 0, &header->version, error));
+  TRY(sql_integer(db, "SELECT encoding = 'UTF-8' FROM pragma_encoding", 0, &header->utf8, error));
+  return sql_integer(db, "SELECT count(*) FROM sqlite_schema", 0, &header->things, error);
+}
+
+/* version: the store's user_version, -1 when the file is new (empty). STATUS_CONTENT: not SQLite, not a store, newer or
+ * too old for this program, damaged, or with unexpected objects. */
+static status inspect(sqlite3 *db, const char *path, int *version, struct error *error) {
+  struct header header;
+  const status result = read_header(db, &header, error);
+  if (result == STATUS_CONTENT && (sqlite3_errcode(db) & 0xff) == SQLITE_NOTADB)
+    return status_fail(
+        error, STATUS_CONTENT,
+        "%s is no SQLite database, so it is no store of clast. Name another file; this file did not change.", path);
+  if (result == STATUS_CONTENT) /* SQLite compares the file's length with the length in its header */
+    return status_fail(error, STATUS_CONTENT,
+                       "%s is damaged, perhaps cut short: %s. Restore a copy, or recover a part with `sqlite3 FILE "
+                       ".recover`.",
+                       path, sqlite3_errmsg(db));
+  TRY(result);
+  if (header.application == 0 && header.version == 0 && header.things == 0) {
+    *version = -1;
+    return STATUS_OK;
+  }
+  if (header.application != SCHEMA_APPLICATION_ID)
+    return status_fail(error, STATUS_CONTENT,
+                       "%s is a database of another program (application id 0x%08llx), not a store of clast. Name "
+                       "another file; this file did not change.",
+                       path, (unsigned long long)header.application);
+  if (header.version > SCHEMA_VERSION)
+    return status_fail(error, STATUS_CONTENT,
+                       "%s was written by a newer clast (store version %lld; this program knows up to %d). Use that "
+                       "newer program; the file did not change.",
+                       path, (long long)header.version, SCHEMA_VERSION);
+  if (header.version < SCHEMA_OLDEST)
+    return status_fail(error, STATUS_CONTENT,
+                       "%s was written by an older clast (store version %lld), from before the first release; this "
+                       "program reads version %d and brings version %d forward. Run its campaign in a new store: "
+                       "`sqlite3 FILE 'SELECT document FROM campaign'` prints the document. The file did not change.",
+                       path, (long long)header.version, SCHEMA_VERSION, SCHEMA_OLDEST);
+  if (!header.utf8)
+    return status_fail(
+        error, STATUS_CONTENT,
+        "%s keeps its texts in UTF-16, but stores of clast are in UTF-8: another program made or changed "
+        "this file. It did not change now.",
+        path);
+  *version = (int)header.version;
+  return guard_schema(db, path, *version, error);
+}
+
+/* ---- upgrades ---- */
+
+static status back_up(sqlite3 *db, const char *path, int version, struct error *error) {
+  static const char doing[] = "keeping a copy before bringing the store forward";
+  struct file_output file;
+  char *copy = NULL;
+  for (int i = 0; i < 100; i++) { /* an earlier attempt may have left a copy */
+    sqlite3_free(copy);
+    copy = i ? sqlite3_mprintf("%s.version%d.%d", path, version, i) : sqlite3_mprintf("%s.version%d", path, version);
+    if (!copy)
+      return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
+    if (access(copy, F_OK) != 0)
+      break;
+  }
+  status result = file_begin(&file, copy, "copy of the store", error);
+  if (result == STATUS_OK)
+    result = file_end(&file, guard_vacuum_into(db, file.temporary, doing, error), error);
+  sqlite3_free(copy);
+  return result;
+}
+
+/* Version 2 did not say which campaign a session computed: among the campaigns of the points of its runs, it is the
+ * last one that existed when the session ended. */
+static const char name_campaigns[] =
+    "UPDATE session SET campaign_id = of.campaign_id FROM (SELECT s.session_id, max(c.campaign_id) AS campaign_id FROM "
+    "(SELECT DISTINCT session_id, point_id FROM run) r JOIN session s USING (session_id) JOIN campaign_point p USING "
+    "(point_id) JOIN campaign c ON c.campaign_id = p.campaign_id WHERE s.ended_at IS NULL OR substr(c.added_at, 1, 19) "
+    "<= substr(s.ended_at, 1, 19) GROUP BY s.session_id) AS of WHERE of.session_id = session.session_id AND "
+    "session.campaign_id IS NULL";
+
+/* Within a transaction. version: -1 for a new file. */
+static status bring_forward(sqlite3 *db, int version, struct error *error) {
+  TRY(schema_complete_all(db, error));
+  if (version == 2)
+    TRY(sql_execute(db, name_campaigns, "bringing the store forward", error));
+  TRY(views_regenerate(db, error));
+  return sql_executef(db, "opening for writing", error, "PRAGMA application_id = %d; PRAGMA user_version = %d; COMMIT",
+                      SCHEMA_APPLICATION_ID, SCHEMA_VERSION);
+}
+
+/* Creates everything in an empty file; else adds tables and columns that the store lacks, and makes the views again.
+ * Keeps a copy of an older version as FILE.version<N>. */
+static status upgrade(sqlite3 *db, const char *path, int version, struct error *error) {
+  if (version >= 0 && version < SCHEMA_VERSION)
+    TRY(back_up(db, path, version, error));
+  TRY(sql_execute(db, "BEGIN IMMEDIATE", "opening for writing", error));
+  const status result = bring_forward(db, version, error);
+  if (result != STATUS_OK)
+    sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL);
+  return result;
+}
+
+/* ---- opening and closing ---- */
 
 static const char lacks_wal_text[] =
     "has no -wal file, or an empty one. If it is a copy, it was copied while it was being written, and its last runs "
@@ -56,7 +336,7 @@ static void release(struct store *store) {
   assert(!store->db || !sqlite3_next_stmt(store->db, NULL)); /* every statement and answer was ended */
   sqlite3_close(store->db);
   if (store->lock >= 0)
-    close(store->lock); /* after SQLite has closed the file (db/store/lock.h) */
+    close(store->lock); /* after SQLite has closed the file (take_lock) */
   free(store->blob);
   free(store->bins);
   free(store->path);
@@ -76,23 +356,19 @@ static status open_database(struct store *store, int flags, struct error *error)
 /* Refuses the store. The message names the lock's holder if its row is already written. */
 static status refuse_held(const char *path, struct error *error) {
   struct store *store = NULL;
-  sqlite3_stmt *statement = NULL;
   char holder[512] = "";
-  if (store_open_reader(path, &store, NULL) == STATUS_OK &&
-      sqlite3_prepare_v2(store->db, "SELECT host, pid, since FROM holder", -1, &statement, NULL) == SQLITE_OK &&
-      sqlite3_step(statement) == SQLITE_ROW)
-    snprintf(holder, sizeof holder, " on host %s, process %lld, since %s", sqlite3_column_text(statement, 0),
-             (long long)sqlite3_column_int64(statement, 1), sqlite3_column_text(statement, 2));
-  sqlite3_finalize(statement);
+  if (store_open_reader(path, &store, NULL) == STATUS_OK) {
+    STATEMENT row = NULL;
+    if (sqlite3_prepare_v2(store->db, "SELECT host, pid, since FROM holder", -1, &row, NULL) == SQLITE_OK &&
+        sqlite3_step(row) == SQLITE_ROW)
+      snprintf(holder, sizeof holder, " on host %s, process %lld, since %s", sql_text(row, 0),
+               (long long)sqlite3_column_int64(row, 1), sql_text(row, 2));
+  }
   store_close(store, NULL);
   return status_fail(
       error, STATUS_IO,
       "%s: the store is being written by another clast%s. Wait until it ends, or stop it; or name another store.", path,
       holder);
-}
-
-bool store_is_being_written(const char *path) {
-  return lock_is_held(path);
 }
 
 static status write_holder(struct store *store, struct error *error) {
@@ -115,34 +391,23 @@ static bool is_partial_copy(const struct store *store, int version) {
          holders > 0;
 }
 
-/* The tables and the holder are written before WAL mode: until then, the file of a killed program does not look like a
- * copy without its -wal file, and afterwards every copy shows its holder. */
-static status prepare_file(struct store *store, int version, struct error *error) {
-  status result = migrate_bring_forward(store->db, store->path, version, error);
-  return result == STATUS_OK ? write_holder(store, error) : result;
-}
-
-/* With the file locked: opens it, upgrades it and reads the data that a writer needs. */
+/* With the file locked: opens it, upgrades it and reads the data that a writer needs. The tables and the holder are
+ * written before WAL mode: until then, the file of a killed program does not look like a copy without its -wal file,
+ * and afterwards every copy shows its holder. */
 static status open_locked(struct store *store, struct error *error) {
   int version = -1;
-  status result = open_database(store, SQLITE_OPEN_READWRITE, error);
-  if (result != STATUS_OK)
-    return result;
-  result = migrate_inspect(store->db, store->path, &version, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(open_database(store, SQLITE_OPEN_READWRITE, error));
+  TRY(inspect(store->db, store->path, &version, error));
   store->lacks_wal = is_partial_copy(store, version);
-  result = sql_execute(store->db,
-                       "PRAGMA synchronous = FULL; PRAGMA foreign_keys = OFF; PRAGMA temp_store = MEMORY; "
-                       "PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
-                       "opening for writing", error);
-  if (result == STATUS_OK)
-    result = prepare_file(store, version, error);
-  if (result == STATUS_OK)
-    result = sql_execute(store->db, "PRAGMA journal_mode = WAL", "opening for writing", error);
-  if (result == STATUS_OK)
-    result = write_holder(store, error); /* the first page of the -wal file */
-  return result == STATUS_OK ? identities_load(store, error) : result;
+  TRY(sql_execute(store->db,
+                  "PRAGMA synchronous = FULL; PRAGMA foreign_keys = OFF; PRAGMA temp_store = MEMORY; "
+                  "PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
+                  "opening for writing", error));
+  TRY(upgrade(store->db, store->path, version, error));
+  TRY(write_holder(store, error));
+  TRY(sql_execute(store->db, "PRAGMA journal_mode = WAL", "opening for writing", error));
+  TRY(write_holder(store, error)); /* the first page of the -wal file */
+  return identities_load(store, error);
 }
 
 /* Undoes a failed call that made no table: leaves no file or an empty one, as before. `before`: bytes of the
@@ -157,7 +422,7 @@ static void leave_empty(const char *path, off_t before) {
 
 /* Writes a warning about a store that could be opened; "" if there is none. */
 static void write_warning(const struct store *store, char *warning, size_t size) {
-  const char *network = lock_network_file_system(store->lock);
+  const char *network = network_file_system(store->lock);
   if (size == 0)
     return;
   if (store->lacks_wal)
@@ -177,18 +442,18 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   *out = NULL;
   if (warning_size)
     warning[0] = '\0';
-  if (place_refused(path))
-    return status_fail(error, STATUS_USAGE, "%s: %s", path, place_refused(path));
+  if (store_name_refused(path))
+    return status_fail(error, STATUS_USAGE, "%s: %s", path, store_name_refused(path));
   TRY(file_input(path, error));
-  TRY(place_is_file(path, error));
+  TRY(check_file(path, error));
   struct store *store = allocate(path);
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   store->writer = true;
   struct stat file;
   const off_t before = stat(path, &file) == 0 ? file.st_size : -1;
-  store->lacks_wal = place_lacks_wal(path);
-  status result = lock_take(path, &store->lock, &held, error);
+  store->lacks_wal = lacks_wal(path);
+  status result = take_lock(path, &store->lock, &held, error);
   if (result != STATUS_OK) {
     release(store);
     return held ? refuse_held(path, error) : result;
@@ -205,38 +470,30 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   return STATUS_OK;
 }
 
-static status make_readable(struct store *store, struct error *error) {
-  status result = sql_execute(store->db, "PRAGMA temp_store = MEMORY", "opening", error);
-  if (result == STATUS_OK)
-    result = views_make_temporary(store->db, error);
-  return result == STATUS_OK ? sql_execute(store->db, "PRAGMA query_only = ON", "opening", error) : result;
-}
-
 /* Is it a store that this program can read? */
 static status check_version(const struct store *store, int version, struct error *error) {
   if (store->lacks_wal)
     return status_fail(error, STATUS_CONTENT, "%s %s", store->path, lacks_wal_text);
-  if (version >= SCHEMA_READABLE)
+  if (version < 0)
+    return status_fail(error, STATUS_CONTENT, "%s is empty: no campaign was stored in it yet.", store->path);
+  if (version == SCHEMA_VERSION && schema_is_complete(store->db))
     return STATUS_OK;
-  if (version >= 0)
-    return status_fail(
-        error, STATUS_CONTENT,
-        "%s was written by an older clast (store version %d, now %d). Run its campaign once more, or merge it into a "
-        "new store (`clast merge NEW.db FILE`): opening for writing upgrades it and keeps a copy.",
-        store->path, version, SCHEMA_VERSION);
-  return status_fail(error, STATUS_CONTENT, "%s is empty: no campaign was stored in it yet.", store->path);
+  return status_fail(error, STATUS_CONTENT,
+                     "%s was written by an older clast (store version %d, now %d) and lacks columns. Run its campaign "
+                     "once more, or merge another store into it (`clast merge FILE OTHER`): opening for writing adds "
+                     "them; it keeps a copy if the version changes.",
+                     store->path, version, SCHEMA_VERSION);
 }
 
 static status open_readable(struct store *store, struct error *error) {
   int version = -1;
-  status result = open_database(store, SQLITE_OPEN_READONLY, error);
-  if (result == STATUS_OK)
-    result = migrate_inspect(store->db, store->path, &version, error);
-  if (result != STATUS_OK)
-    return result;
+  TRY(open_database(store, SQLITE_OPEN_READONLY, error));
+  TRY(inspect(store->db, store->path, &version, error));
   store->lacks_wal = is_partial_copy(store, version);
-  result = check_version(store, version, error);
-  return result == STATUS_OK ? make_readable(store, error) : result;
+  TRY(check_version(store, version, error));
+  TRY(sql_execute(store->db, "PRAGMA temp_store = MEMORY", "opening", error));
+  TRY(views_make_temporary(store->db, error));
+  return sql_execute(store->db, "PRAGMA query_only = ON", "opening", error);
 }
 
 status store_open_reader(const char *path, struct store **out, struct error *error) {
@@ -245,11 +502,11 @@ status store_open_reader(const char *path, struct store **out, struct error *err
     return status_fail(error, STATUS_MISSING, "%s: there is no such store. Check the name and the current folder.",
                        path);
   TRY(file_input(path, error));
-  TRY(place_is_file(path, error));
+  TRY(check_file(path, error));
   struct store *store = allocate(path);
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
-  store->lacks_wal = place_lacks_wal(path);
+  store->lacks_wal = lacks_wal(path);
   const status result = open_readable(store, error);
   if (result == STATUS_OK)
     *out = store;
@@ -273,6 +530,8 @@ status store_close(struct store *store, struct error *error) {
   release(store);
   return result;
 }
+
+/* ---- batches and sessions ---- */
 
 /* Undoes the open batch. */
 static void roll_back(struct store *store) {
@@ -323,7 +582,7 @@ status store_end(struct store *store, status result, int rows, struct error *err
 status store_flush(struct store *store, struct error *error) {
   if (!store->in_batch)
     return STATUS_OK;
-  status result = place_check(store->db, store->path, error);
+  status result = check_place(store->db, store->path, error);
   if (result == STATUS_OK)
     result = sums_write(&store->sums, store->db, error);
   if (result == STATUS_OK)
@@ -339,46 +598,41 @@ status store_flush(struct store *store, struct error *error) {
 
 status store_tick(struct store *store, struct error *error) {
   if (!store->in_batch)
-    return place_check(store->db, store->path, error);
+    return check_place(store->db, store->path, error);
   return clock_s() - store->batch_started >= STORE_BATCH_SECONDS ? store_flush(store, error) : STATUS_OK;
 }
 
 status store_begin_session(struct store *store, const char *facts_json, int64_t *session_id, struct error *error) {
   char host[256] = "unknown";
   gethostname(host, sizeof host - 1);
-  status result = store_begin(store, error);
-  if (result != STATUS_OK)
-    return result;
-  result =
+  TRY(store_begin(store, error));
+  const status result =
       sql_executef(store->db, "beginning a session", error,
                    "INSERT INTO session (started_at, host, pid, facts) VALUES (strftime('%%Y-%%m-%%dT%%H:%%M:%%fZ', "
                    "'now'), %Q, %lld, %Q)",
                    host, (long long)getpid(), facts_json ? facts_json : "{}");
   *session_id = sqlite3_last_insert_rowid(store->db);
-  result = store_end(store, result, 1, error);
-  return result == STATUS_OK ? store_flush(store, error) : result;
+  TRY(store_end(store, result, 1, error));
+  return store_flush(store, error);
 }
 
 status store_set_session(struct store *store, int64_t session_id, int64_t campaign_id, struct error *error) {
-  status result = store_begin(store, error);
-  if (result != STATUS_OK)
-    return result;
-  result = sql_executef(store->db, "beginning a session", error,
-                        "UPDATE session SET campaign_id = %lld WHERE session_id = %lld", (long long)campaign_id,
-                        (long long)session_id);
+  TRY(store_begin(store, error));
+  const status result = sql_executef(store->db, "beginning a session", error,
+                                     "UPDATE session SET campaign_id = %lld WHERE session_id = %lld",
+                                     (long long)campaign_id, (long long)session_id);
   return store_end(store, result, 1, error);
 }
 
 status store_end_session(struct store *store, int64_t session_id, const char *outcome, struct error *error) {
-  status result = store_begin(store, error);
-  if (result != STATUS_OK)
-    return result;
-  result = sql_executef(store->db, "ending a session", error,
-                        "UPDATE session SET ended_at = strftime('%%Y-%%m-%%dT%%H:%%M:%%fZ', 'now'), outcome = %Q WHERE "
-                        "session_id = %lld",
-                        outcome, (long long)session_id);
-  result = store_end(store, result, 1, error);
-  return result == STATUS_OK ? store_flush(store, error) : result;
+  TRY(store_begin(store, error));
+  const status result =
+      sql_executef(store->db, "ending a session", error,
+                   "UPDATE session SET ended_at = strftime('%%Y-%%m-%%dT%%H:%%M:%%fZ', 'now'), outcome = %Q WHERE "
+                   "session_id = %lld",
+                   outcome, (long long)session_id);
+  TRY(store_end(store, result, 1, error));
+  return store_flush(store, error);
 }
 
 bool store_has_run(struct store *store, const uint8_t identity[16]) {
@@ -394,7 +648,7 @@ int store_attempts(struct store *store, const uint8_t identity[16], double time_
   const struct identities_state *entry = identities_find(&store->identities, identity);
   if (!entry || entry->attempts == 0)
     return 0; /* the usual case needs no query */
-  sqlite3_stmt *statement = NULL;
+  STATEMENT statement = NULL;
   int count = (int)entry->attempts;
   if (sql_prepare(store->db,
                   "SELECT count(*) FROM attempt WHERE identity = ?1 AND reason <> 'lost' AND NOT (reason = "
@@ -407,6 +661,50 @@ int store_attempts(struct store *store, const uint8_t identity[16], double time_
     if (sqlite3_step(statement) == SQLITE_ROW)
       count = sqlite3_column_int(statement, 0);
   }
-  sqlite3_finalize(statement);
   return count;
+}
+
+/* ---- copies ---- */
+
+/* Fields files are not moved: the paths in the copy are made relative to the copy's folder. */
+static status keep_paths(const struct store *store, const char *copy, struct error *error) {
+  sqlite3 *db = NULL;
+  char *way = paths_between(copy, store->path);
+  if (!way)
+    return status_fail(error, STATUS_IO, "%s: the path of its folder cannot be resolved", copy);
+  status result = STATUS_OK;
+  int code = *way ? sqlite3_open_v2(copy, &db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_EXRESCODE, NULL) : SQLITE_OK;
+  if (code != SQLITE_OK)
+    result = sql_fail(db, code, "writing the hand-over file", error);
+  else if (db) {
+    guard_connection(db);
+    result = sql_executef(db, "writing the hand-over file", error,
+                          "UPDATE run SET fields_path = %Q || fields_path WHERE fields_path NOT LIKE '/%%'", way);
+  }
+  sqlite3_close(db);
+  free(way);
+  return result;
+}
+
+status store_export(struct store *store, const char *path, struct error *error) {
+  struct file_output file;
+  if (store_name_refused(path))
+    return status_fail(error, STATUS_USAGE, "%s: %s", path, store_name_refused(path));
+  if (access(path, F_OK) == 0)
+    return status_fail(error, STATUS_IO, "%s exists already: name another file, or remove it first.", path);
+  TRY(store_flush(store, error));
+  TRY(file_begin(&file, path, "copy of the store", error));
+  /* query_only refuses VACUUM INTO, although VACUUM INTO writes another file. */
+  sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
+  status result = guard_vacuum_into(store->db, file.temporary, "writing the hand-over file", error);
+  if (!store->writer)
+    sqlite3_exec(store->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
+  if (result == STATUS_OK)
+    result = keep_paths(store, file.temporary, error);
+  return file_end(&file, result, error);
+}
+
+status store_export_digests(struct store *store, FILE *out, struct error *error) {
+  TRY(digest_rows_print(store->db, DIGEST_POINTS, out, error));
+  return digest_rows_print(store->db, DIGEST_RUNS, out, error);
 }

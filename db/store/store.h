@@ -1,7 +1,7 @@
 /* The store: every result of a campaign in one SQLite file that any tool can read. db/README.md describes it for users.
  *
  * One process writes, under an OS lock that ends with the process. Readers, in any number, never block it (WAL mode
- * while writing; a clean end leaves journal_mode=DELETE). The tables follow from db/store/schema_tables.c and the field
+ * while writing; a clean end leaves journal_mode=DELETE). The tables follow from db/store/schema.c and the field
  * tables; schemas/results.sql is a copy of the schema. `point.scene` (resolved JSON) and `point_input` define a point.
  * The views runs, points, spectra and estimates are made again when campaigns vary more inputs. */
 #ifndef CLAST_DB_STORE_STORE_H
@@ -17,13 +17,17 @@
 
 struct store;
 
+/* Returns the reason why a name is refused as a store's; NULL: it is accepted. SQLite takes ":memory:", "file:..." and
+ * "" for no file, or for a database in memory, so results would be lost at the end. It deletes and overwrites files
+ * whose names end in -journal, -wal or -shm. */
+const char *store_name_refused(const char *path);
 /* Opens for writing: creates the file when absent, upgrades an older one (and keeps a copy of it), refuses a newer or
  * foreign one. STATUS_IO: read-only, disk full, locked (the message names the holder's host and process).
  * STATUS_CONTENT: not a clast store, damaged, newer. STATUS_USAGE: the name is no file's (":memory:"). *warning (may be
  * NULL) receives a sentence to print (network file system, copied without its -wal file), or "". The lock ends with the
  * process; a child forked while the store is open shares it until the child ends or executes another program. */
 status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size, struct error *error);
-/* Opens for reading only; never blocks the writer. STATUS_MISSING when absent. The functions of db/ask/query.h read
+/* Opens for reading only; never blocks the writer. STATUS_MISSING when absent. The functions of db/ask read
  * from a store. They also accept a writer and then see its open batch. */
 status store_open_reader(const char *path, struct store **out, struct error *error);
 /* Is a process writing this store? Call it before the store is opened: closing a descriptor of the file drops SQLite's
@@ -111,7 +115,7 @@ struct store_convergence {
   const struct convergence_limit_row *limit;
 };
 /* Replaces the stored study of this scene, knob and quantity. Joins the open batch. */
-status store_convergence_set(struct store *store, const struct store_convergence *study, struct error *error);
+status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error);
 
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */
 /* Commits when the batch is older than 1 s. STATUS_IO when the file was moved, removed or replaced. */
@@ -124,24 +128,6 @@ bool store_has_run(struct store *store, const uint8_t identity[16]);
  * say nothing about the run. */
 int store_attempts(struct store *store, const uint8_t identity[16], double time_limit, double memory_limit);
 
-/* A stored run of a point, for a driver that resumes and for stopping rules. */
-struct store_point_run {
-  int64_t replicate;
-  uint64_t seed;
-  uint8_t identity[16];
-  bool surplus;
-  int state;    /* enum outcome_state */
-  double value; /* of the quantity; NaN when the store has none */
-  double wall_s, cpu_s;
-  int64_t peak_memory;
-  const char *fields_path; /* NULL when none was kept */
-  bool fields_missing;     /* a path is stored, but the file cannot be read */
-};
-/* Gives the runs of a point and of the engine's results_version, in order of replicate, each borrowed for the call.
- * `row` gives the quantity: a row of outcome_table (of_outcome), or else of the engine's results. */
-status store_point_runs(struct store *store, int64_t point_id, const struct engine_kind *kind, const struct field *row,
-                        bool of_outcome, void (*each)(void *context, const struct store_point_run *run), void *context,
-                        struct error *error);
 /* Stores the path of a run's HDF5 file: a replay may write the file after the run. */
 status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path, struct error *error);
 
@@ -150,7 +136,7 @@ status store_set_fields(struct store *store, const uint8_t identity[16], const c
  * problem is one call of `line`. STATUS_CONTENT when there are any. For a reader or a writer. */
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error);
-/* *whole: the run's digest matches its rows. Also true when the store has no such run, or no digests yet. */
+/* *whole: the run's digest matches its rows. Also true when the store has no such run. */
 status store_check_run(struct store *store, int64_t run_id, bool *whole, struct error *error);
 /* Adds the runs of the store `source` that `store` (a writer) lacks, in one transaction. *added: how many. *differing:
  * runs present in both stores with different masses or states. The version of `store` is kept; the caller must report

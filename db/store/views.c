@@ -1,12 +1,281 @@
-/* Makes the views, in the file and for one connection, and their rows of column_doc. */
+/* Makes the views from the columns that a database has, in the file and for one connection, and their rows of
+ * column_doc. Plain SQL of the statistics of points, for the views and for questions. */
 #include "db/store/views.h"
 
 #include <stdlib.h>
 
-#include "schemas/field.h"
+#include "db/store/schema.h"
+#include "engine/outcome.h"
 #include "schemas/text.h"
 
+static const char doing[] = "making the views";
+
 const char *const views_names[VIEWS_COUNT] = {"runs", "points", "spectra", "estimates", "resolution"};
+
+/* ---- statistics ---- */
+
+size_t views_statistics_main(const char *names[VIEWS_STATISTICS_MAIN]) {
+  size_t count = 0;
+  for (const struct field *row; count < VIEWS_STATISTICS_MAIN && (row = outcome_main(count)); count++)
+    names[count] = row->path;
+  return count;
+}
+
+/* Exact for few degrees of freedom, then Cornish & Fisher's expansion (Abramowitz & Stegun 26.7.5), within 5e-6. */
+void views_statistics_student(const char *degrees, FILE *out) {
+  static const char *const exact[] = {"12.706204736174", "4.302652729749", "3.182446305284", "2.776445105198",
+                                      "2.570581835636",  "2.446911851145", "2.364624251593", "2.306004135204",
+                                      "2.262157162798",  "2.228138851986"};
+  fprintf(out, "CASE");
+  for (size_t i = 0; i < sizeof exact / sizeof exact[0]; i++)
+    fprintf(out, " WHEN %s = %zu THEN %s", degrees, i + 1, exact[i]);
+  fprintf(out,
+          "\n      WHEN %1$s > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 "
+          "+ 1.589534053394 / %1$s) / %1$s) / %1$s) / %1$s END",
+          degrees);
+}
+
+/* One pass over the index run_statistics. Deviations are from the value of the point's first run (kN), so that nothing
+ * cancels; they are summed in the order of replicates, so that the bits do not depend on which run finished first. No
+ * main result of a run that counts is NULL (a CHECK of table run). */
+void views_statistics_write(size_t count, const char *const *names, FILE *out) {
+  fprintf(out, "WITH first AS (\n  SELECT ");
+  for (size_t i = 0; i < count; i++)
+    fprintf(out, "k.%s AS k%zu, ", names[i], i);
+  fprintf(
+      out,
+      "t.point_id, t.results_version\n  FROM point_total t JOIN run k ON k.run_id = (SELECT f.run_id FROM run f WHERE "
+      "f.point_id =\n    t.point_id AND f.results_version = t.results_version AND f.counts = 1 ORDER BY f.replicate, "
+      "f.seed LIMIT 1)\n"
+      "), moment AS (\n  SELECT f.point_id, f.results_version, count(*) AS n");
+  for (size_t i = 0; i < count; i++)
+    fprintf(out,
+            ",\n    k%2$zu, total(r.%1$s - k%2$zu) AS s%2$zu, total((r.%1$s - k%2$zu) * (r.%1$s - k%2$zu)) AS q%2$zu",
+            names[i], i);
+  fprintf(out,
+          "\n  FROM first f CROSS JOIN run r ON r.point_id = f.point_id AND r.results_version = f.results_version AND\n"
+          "    r.counts = 1\n  GROUP BY f.point_id, f.results_version\n"
+          "), scatter AS (\n  SELECT point_id, results_version, n,\n    ");
+  views_statistics_student("(n - 1)", out);
+  fprintf(out, " AS t");
+  for (size_t i = 0; i < count; i++)
+    fprintf(out,
+            ",\n    k%1$zu + s%1$zu / n AS m%1$zu, sqrt(max(0, (q%1$zu - s%1$zu * s%1$zu / n) / (n - 1))) AS d%1$zu",
+            i);
+  fprintf(out, "\n  FROM moment\n)\n");
+}
+
+/* A study names a quantity without its engine; the view runs may have the engine's table as a prefix. */
+static void write_is_quantity(const char *name, FILE *out) {
+  char *sql = sqlite3_mprintf("%Q IN (quantity, 'result_' || engine || '_' || quantity)", name);
+  fputs(sql ? sql : "NULL", out); /* without memory the next query fails too */
+  sqlite3_free(sql);
+}
+
+void views_statistics_resolution(size_t count, const char *const *names, FILE *out) {
+  fprintf(out, "(SELECT point_id, results_version");
+  for (size_t i = 0; i < count; i++) {
+    fputs(",\n    max(iif(", out);
+    write_is_quantity(names[i], out);
+    fprintf(out, ", half_width, NULL)) AS e%zu, max(iif(", i);
+    write_is_quantity(names[i], out);
+    fprintf(out, ", verdict, NULL)) AS v%zu", i);
+  }
+  fprintf(out, "\n  FROM resolution JOIN point USING (point_id) GROUP BY point_id, results_version)");
+}
+
+/* ---- the text of the views ---- */
+
+/* The view that is being written. After the first error the database is not queried again, and the text is not
+ * valid. */
+struct view {
+  sqlite3 *db;
+  FILE *out;
+  status result;
+  struct error *error;
+};
+
+/* Runs SQL that returns one text per row, and writes these texts. */
+static void write_rows(struct view *view, const char *sql) {
+  STATEMENT statement = NULL;
+  if (view->result == STATUS_OK)
+    view->result = sql_prepare(view->db, sql, &statement, doing, view->error);
+  while (view->result == STATUS_OK && sql_next(statement, &view->result, doing, view->error))
+    fputs(sql_text(statement, 0), view->out);
+}
+
+/* The same for SQL that sqlite3_mprintf made; frees it. */
+static void write_rows_of(struct view *view, char *sql) {
+  if (sql)
+    write_rows(view, sql);
+  else if (view->result == STATUS_OK)
+    view->result = status_fail(view->error, STATUS_MEMORY, "%s: memory ran out", doing);
+  sqlite3_free(sql);
+}
+
+static void write_axes(struct view *view) {
+  write_rows(view,
+             "SELECT format('  (SELECT value FROM point_input i WHERE i.point_id = p.point_id AND i.path = %Q) AS "
+             "\"%w\",' || char(10), path, column_name) FROM axis ORDER BY path");
+}
+
+/* Does the result table of an engine hold a row? */
+static bool is_filled(sqlite3 *db, const char *table) {
+  int64_t filled = 0;
+  return sql_integerf(db, &filled, NULL, "SELECT EXISTS (SELECT 1 FROM main.\"%w\")", table) == STATUS_OK && filled;
+}
+
+/* The names of the result tables, or of those that hold a row, as the inside of IN (...). NULL: there is none. Free
+ * with sqlite3_free(). */
+static char *list_tables(struct view *view, bool filled_only) {
+  STATEMENT names = NULL;
+  char *list = NULL;
+  view->result = sql_prepare(
+      view->db, "SELECT name FROM main.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*' ORDER BY 1", &names,
+      doing, view->error);
+  while (view->result == STATUS_OK && sql_next(names, &view->result, doing, view->error))
+    if (!filled_only || is_filled(view->db, sql_text(names, 0)))
+      list = sqlite3_mprintf("%z%s%Q", list, list ? ", " : "", sql_text(names, 0));
+  return list;
+}
+
+/* The result tables of the engines that have runs; of all engines while there are no runs. */
+static char *result_tables(struct view *view) {
+  char *list = list_tables(view, true);
+  if (!list && view->result == STATUS_OK)
+    list = list_tables(view, false);
+  return list ? list : sqlite3_mprintf("''");
+}
+
+/* Writes the columns of run, then of the engines' result tables. An engine's column with the name of another column
+ * gets its table's name as a prefix; this happens in a store with runs of two engines. */
+static void write_result_columns(struct view *view, const char *tables) {
+  write_rows(view, "SELECT format('  r.\"%w\",' || char(10), name) FROM pragma_table_xinfo('run') WHERE name NOT "
+                   "IN ('run_id', 'point_id', 'replicate', 'seed', 'identity', 'digest')");
+  write_rows_of(
+      view,
+      sqlite3_mprintf(
+          "WITH mine AS MATERIALIZED (SELECT t.name AS place, c.name AS name, c.cid AS cid FROM main.sqlite_schema t, "
+          "pragma_table_xinfo(t.name, 'main') c WHERE t.type = 'table' AND t.name IN (%s) AND c.name <> 'run_id'), "
+          "shared AS MATERIALIZED (SELECT name FROM pragma_table_xinfo('run', 'main') UNION ALL SELECT name FROM mine "
+          "GROUP BY name HAVING count(*) > 1) SELECT format('  \"%%w\".\"%%w\"%%s,' || char(10), place, name, iif(name "
+          "IN shared, format(' AS \"%%w_%%w\"', place, name), '')) FROM mine ORDER BY place, cid",
+          tables));
+}
+
+static void write_runs(struct view *view) {
+  char *tables = result_tables(view);
+  fputs("runs AS -- every run with its varied inputs and all results of its engine\n"
+        "SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.seed,\n",
+        view->out);
+  write_axes(view);
+  write_result_columns(view, tables);
+  fputs("  lower(hex(r.identity)) AS identity\nFROM run r JOIN point p ON p.point_id = r.point_id", view->out);
+  write_rows_of(
+      view, sqlite3_mprintf("SELECT format(char(10) || '  LEFT JOIN \"%%w\" ON \"%%w\".run_id = r.run_id', name, name) "
+                            "FROM main.sqlite_schema WHERE type = 'table' AND name IN (%s) ORDER BY name",
+                            tables));
+  fputs(";\n", view->out);
+  sqlite3_free(tables);
+}
+
+/* For every point and quantity with a study: the sum over the knobs of the error that each knob leaves, taken at the
+ * point or, when the point is no level of the knob, at the scene's own setting. Among several studies, the one with the
+ * largest error counts. */
+static const char resolution_sql[] =
+    "WITH level AS (SELECT * FROM convergence WHERE resolution IS NOT NULL),\n"
+    "of_knob AS (SELECT base_point_id, results_version, quantity, knob,\n"
+    "    max(iif(base, resolution, NULL)) AS at_base, max(open) AS open, max(verdict = 'no-order') AS diverges\n"
+    "  FROM level LEFT JOIN convergence_limit USING (base_point_id, results_version, knob, quantity)\n"
+    "  GROUP BY base_point_id, results_version, quantity, knob),\n"
+    "studied AS (SELECT DISTINCT base_point_id, results_version, quantity, point_id FROM level),\n"
+    "of_study AS (SELECT s.point_id, s.results_version, s.quantity,\n"
+    "    sum(coalesce(l.resolution, k.at_base)) AS half_width, max(k.diverges) AS diverges,\n"
+    "    max(k.open OR coalesce(l.resolution, k.at_base) IS NULL) AS open\n"
+    "  FROM studied s JOIN of_knob k USING (base_point_id, results_version, quantity)\n"
+    "    LEFT JOIN level l ON l.base_point_id = s.base_point_id AND l.results_version = s.results_version\n"
+    "    AND l.quantity = s.quantity AND l.knob = k.knob AND l.point_id = s.point_id\n"
+    "  GROUP BY s.base_point_id, s.point_id, s.results_version, s.quantity\n"
+    "  UNION ALL SELECT s.point_id, s.results_version, s.quantity, s.error, (SELECT max(k.diverges) FROM of_knob "
+    "k\n"
+    "    WHERE k.base_point_id = s.base_point_id AND k.results_version = s.results_version AND\n"
+    "    k.quantity = s.quantity), s.open\n"
+    "  FROM convergence s WHERE s.knob = 'settings' AND NOT s.base AND s.error IS NOT NULL)\n"
+    "SELECT point_id, results_version, quantity, max(half_width) AS half_width,\n"
+    "  CASE WHEN max(diverges) THEN 'diverges' WHEN max(open) THEN 'at-least' ELSE 'known' END AS verdict\n"
+    "FROM of_study GROUP BY point_id, results_version, quantity;\n";
+
+static void write_resolution(struct view *view) {
+  fputs("resolution AS -- what finer settings may change in a result, for every point that was studied\n", view->out);
+  fputs(resolution_sql, view->out);
+}
+
+static void write_points(struct view *view) {
+  const char *names[VIEWS_STATISTICS_MAIN] = {NULL};
+  const size_t count = views_statistics_main(names);
+  FILE *out = view->out;
+  fputs("points AS -- statistics of every point, one row per results_version\n", out);
+  views_statistics_write(count, names, out);
+  fputs(", unresolved AS MATERIALIZED ", out);
+  views_statistics_resolution(count, names, out);
+  fputs("\nSELECT p.point_id, p.engine, p.scene_name AS scene,\n", out);
+  write_axes(view);
+  fputs("  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS "
+        "failed,\n  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS "
+        "failed_attempts",
+        out);
+  for (size_t i = 0; i < count; i++)
+    fprintf(out,
+            ",\n  m%2$zu AS %1$s_mean, d%2$zu AS %1$s_sd, d%2$zu / sqrt(n) AS %1$s_se, s.t * d%2$zu / sqrt(n) AS "
+            "%1$s_hw95,\n  e%2$zu AS %1$s_resolution, ifnull(v%2$zu, 'not-studied') AS %1$s_resolution_verdict",
+            names[i], i);
+  fputs("\nFROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id\n"
+        "  LEFT JOIN scatter s ON s.point_id = t.point_id AND s.results_version = t.results_version\n"
+        "  LEFT JOIN unresolved u ON u.point_id = t.point_id AND u.results_version = t.results_version;\n",
+        out);
+}
+
+static void write_spectra(struct view *view) {
+  FILE *out = view->out;
+  fputs("spectra AS -- pooled fragment mass spectrum of every point\n"
+        "SELECT p.point_id, p.engine, p.scene_name AS scene,\n",
+        out);
+  write_axes(view);
+  fputs("  s.results_version, t.runs AS n, s.bin, b.lower, b.upper, s.runs, s.count, s.mass,\n"
+        "  1.0 * s.count / t.runs AS count_mean,\n"
+        "  sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1))) AS count_sd,\n  (",
+        out);
+  views_statistics_student("(t.runs - 1)", out);
+  fputs(") * sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1) / t.runs)) AS "
+        "count_hw95,\n"
+        "  s.count / (t.fragments * (b.upper - b.lower)) AS density\n"
+        "FROM point p JOIN point_total t ON t.point_id = p.point_id\n"
+        "  JOIN point_spectrum s ON s.point_id = t.point_id AND s.results_version = t.results_version\n"
+        "  JOIN bin b ON b.bin = s.bin;\n",
+        out);
+}
+
+static void write_estimate_columns(struct view *view) {
+  write_rows(view, "SELECT format('\"%w\", ', name) FROM pragma_table_xinfo('estimate') WHERE name <> 'run_id'");
+}
+
+static void write_estimates(struct view *view) {
+  fputs("estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)\n"
+        "SELECT e.point_id, e.run_id, e.replicate, e.seed, e.counts, p.engine, p.scene_name AS scene,\n",
+        view->out);
+  write_axes(view);
+  fputs("  ", view->out);
+  write_estimate_columns(view);
+  fputs("e.results_version\nFROM (\n  SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, ", view->out);
+  write_estimate_columns(view);
+  fputs("r.results_version\n  FROM estimate JOIN run r USING (run_id)\n  UNION ALL\n"
+        "  SELECT point_id, NULL, NULL, NULL, NULL, ",
+        view->out);
+  write_estimate_columns(view);
+  fputs("results_version FROM point_estimate\n) e JOIN point p ON p.point_id = e.point_id;\n", view->out);
+}
+
+/* ---- making them ---- */
 
 /* Documents axis columns, statistics and the views' own columns first; the others inherit from their table. */
 static status document(sqlite3 *db, struct error *error) {
@@ -55,49 +324,36 @@ static status document(sqlite3 *db, struct error *error) {
   return sql_execute(db, sql, "documenting the views", error);
 }
 
-/* The text of the views after their CREATE VIEW and schema. free() each. */
-struct views_text {
-  char *of[VIEWS_COUNT];
-};
-
-static status write_all(sqlite3 *db, struct views_text *text, struct error *error) {
-  status result = STATUS_OK;
-  *text = (struct views_text){{NULL}};
-  for (size_t i = 0; result == STATUS_OK && i < VIEWS_COUNT; i++) {
-    size_t size = 0;
-    FILE *out = text_open(&text->of[i], &size);
-    if (!out)
-      return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
-    result = views_text_write(db, i, out, error);
-    if (!text_close(out, &text->of[i]))
-      return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
-  }
-  return result;
-}
-
 /* Drops and creates the views in the schema `place`: main or temp. */
-static status make(sqlite3 *db, const char *place, const struct views_text *text, struct error *error) {
-  status result = STATUS_OK;
-  for (size_t i = 0; result == STATUS_OK && i < VIEWS_COUNT; i++)
-    result = sql_executef(db, "making the views", error, "DROP VIEW IF EXISTS %s.%s; CREATE VIEW %s.%s", place,
-                          views_names[i], place, text->of[i]);
-  return result;
+static status make(sqlite3 *db, const char *place, char *const text[VIEWS_COUNT], struct error *error) {
+  for (size_t i = 0; i < VIEWS_COUNT; i++)
+    TRY(sql_executef(db, doing, error, "DROP VIEW IF EXISTS %s.%s; CREATE VIEW %s.%s", place, views_names[i], place,
+                     text[i]));
+  return STATUS_OK;
 }
 
-static void free_text(struct views_text *text) {
-  for (size_t i = 0; i < VIEWS_COUNT; i++)
-    free(text->of[i]);
+static status write_and_make(sqlite3 *db, bool stored, char *text[VIEWS_COUNT], struct error *error) {
+  static void (*const writers[VIEWS_COUNT])(struct view *) = {write_runs, write_points, write_spectra, write_estimates,
+                                                              write_resolution};
+  for (size_t i = 0; i < VIEWS_COUNT; i++) {
+    size_t size = 0;
+    struct view view = {.db = db, .out = text_open(&text[i], &size), .error = error};
+    if (view.out)
+      writers[i](&view);
+    if (!view.out || !text_close(view.out, &text[i]))
+      return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+    TRY(view.result);
+  }
+  TRY(make(db, "temp", text, error));
+  return stored ? make(db, "main", text, error) : STATUS_OK;
 }
 
 /* Makes the views of the connection and, with `stored`, those of the file. */
 static status make_all(sqlite3 *db, bool stored, struct error *error) {
-  struct views_text text;
-  status result = write_all(db, &text, error);
-  if (result == STATUS_OK)
-    result = make(db, "temp", &text, error);
-  if (result == STATUS_OK && stored)
-    result = make(db, "main", &text, error);
-  free_text(&text);
+  char *text[VIEWS_COUNT] = {NULL}; /* after their CREATE VIEW and schema: "runs AS SELECT ...;" */
+  const status result = write_and_make(db, stored, text, error);
+  for (size_t i = 0; i < VIEWS_COUNT; i++)
+    free(text[i]);
   return result;
 }
 
@@ -112,7 +368,7 @@ status views_regenerate(sqlite3 *db, struct error *error) {
 
 status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size, struct error *error) {
   char plain[256];
-  sqlite3_stmt *statement = NULL;
+  STATEMENT statement = NULL;
   field_column_name(path, plain, sizeof plain);
   status result =
       sql_prepare(db,
@@ -121,12 +377,11 @@ status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size,
                   "column_name = ?1 COLLATE NOCASE UNION ALL SELECT 1 FROM main.sqlite_schema t, "
                   "pragma_table_xinfo(t.name, 'main') c WHERE t.type = 'table' AND t.name GLOB 'result_*' "
                   "AND c.name = ?1 COLLATE NOCASE",
-                  &statement, "making the views", error);
+                  &statement, doing, error);
   if (result != STATUS_OK)
     return result;
   sqlite3_bind_text(statement, 1, plain, -1, SQLITE_STATIC);
   bool taken = sqlite3_step(statement) == SQLITE_ROW;
   snprintf(name, size, "%s%s", taken ? "input_" : "", plain);
-  sqlite3_finalize(statement);
   return STATUS_OK;
 }

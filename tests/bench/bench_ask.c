@@ -7,8 +7,7 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/sample.h"
 #include "analysis/statistics/scatter.h"
-#include "db/ask/pairs.h"
-#include "db/ask/pool.h"
+#include "db/ask/ask.h"
 #include "schemas/clock.h"
 #include "tests/support/store_fixture.h"
 

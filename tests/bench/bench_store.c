@@ -3,7 +3,7 @@
 #include <time.h>
 
 #include "analysis/statistics/estimates.h"
-#include "db/ask/page.h"
+#include "db/ask/ask.h"
 #include "schemas/clock.h"
 #include "tests/support/store_fixture.h"
 

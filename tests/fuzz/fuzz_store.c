@@ -1,6 +1,6 @@
 /* Fuzz target: a store with some bytes changed is read, checked, written and merged. Every failed call gives a message;
  * nothing crashes, and rows merged from a damaged store are complete. */
-#include "db/ask/points.h"
+#include "db/ask/ask.h"
 #include "tests/fuzz/edits.h"
 #include "tests/support/store_fixture.h"
 

@@ -9,8 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "db/ask/canned.h"
-#include "db/ask/group.h"
+#include "db/ask/ask.h"
 #include "db/store/store.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

@@ -69,7 +69,7 @@ static void add_study(struct store *store, int64_t point, const char *knob, size
   }
   const struct store_convergence study = {point, engine_find("dem", &error)->results_version, count, points, rows,
                                           &limit};
-  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
 }
 
 /* Own setting: 10 s, error 0.03. Twice the time step: 5 s, error 0.04. A quarter: 40 s, error 0.01. A cheaper model is

@@ -14,7 +14,7 @@
 #include "analysis/analysis.h"
 #include "campaign/converge/ladder.h"
 #include "campaign/converge/study.h"
-#include "db/ask/resolution.h"
+#include "db/ask/ask.h"
 #include "tests/support/store_fixture.h"
 
 static struct error error;
@@ -205,16 +205,16 @@ static void findings_replace_earlier_ones(void **state) {
   limit.verdict = CONVERGENCE_NO_ORDER;
   const int64_t points[2] = {point, point};
   struct store_convergence study = {point, 3, 2, points, rows, &limit};
-  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
-  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
+  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 2);
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence_limit WHERE verdict = 'no-order'"), 1);
   study.count = 1;
-  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 1);
   strcpy(rows[0].quantity, "dust_fraction"); /* another quantity is kept beside it */
   strcpy(limit.quantity, "dust_fraction");
-  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 2);
   assert_int_equal(store_close(store, &error), STATUS_OK);
 
@@ -225,7 +225,7 @@ static void findings_replace_earlier_ones(void **state) {
                    SQLITE_OK);
   sqlite3_close(db);
   assert_int_equal(store_open_writer(path, &store, NULL, 0, &error), STATUS_OK);
-  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 1);
   assert_int_equal(store_close(store, &error), STATUS_OK);
   scene_free(scene);
@@ -247,7 +247,7 @@ static void level_of(struct store *store, int64_t base, int64_t point, const cha
   row.base = base == 0;
   limit.verdict = verdict;
   const struct store_convergence study = {base ? base : point, fixture_kind.results_version, 1, &point, &row, &limit};
-  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
 }
 
 static void studied(struct store *store, int64_t point, const char *knob, double resolution, bool open,

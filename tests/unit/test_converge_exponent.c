@@ -8,8 +8,7 @@
 
 #include "analysis/analysis.h"
 #include "campaign/converge/study.h"
-#include "db/ask/point.h"
-#include "db/ask/resolution.h"
+#include "db/ask/ask.h"
 #include "tests/support/store_fixture.h"
 
 enum { SEEDS = 8, FRAGMENTS = 60, LEVELS = 2 };

@@ -11,7 +11,7 @@
 
 #include "analysis/report/page.h"
 #include "analysis/statistics/sample.h"
-#include "db/ask/page.h"
+#include "db/ask/ask.h"
 #include "tests/support/store_checks.h"
 
 enum { M = 2, K = 2 };

@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "analysis/analysis.h"
-#include "db/ask/pool.h"
+#include "db/ask/ask.h"
 #include "tests/support/store_checks.h"
 
 enum { RUNS = 3 };

@@ -11,7 +11,7 @@
 
 #include "analysis/statistics/sample.h"
 #include "db/store/internal.h"
-#include "db/store/views_statistics.h"
+#include "db/store/views.h"
 #include "tests/support/store_checks.h"
 
 enum { M = 3, K = 2, RUNS = 25 };

@@ -11,7 +11,7 @@
 #include <sqlite3.h>
 
 #include "db/store/schema.h"
-#include "db/store/views_statistics.h"
+#include "db/store/views.h"
 #include "tests/support/store_fixture.h"
 
 #define REMEDY "if that is on purpose: cmake --build --preset release --target schemas, and commit the file"
@@ -58,7 +58,7 @@ static char *schema_text(void) {
   assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
   fprintf(out,
           "-- The store of clast: schema of version %d.\n"
-          "-- Made from the tables in db/store/schema_tables.c and the engines' field tables; do not edit: a test "
+          "-- Made from the tables in db/store/schema.c and the engines' field tables; do not edit: a test "
           "compares.\n"
           "-- Views have, besides, one column per input that some campaign varied (table axis).\n"
           "PRAGMA application_id = %d;\nPRAGMA user_version = %d;\n",

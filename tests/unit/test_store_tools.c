@@ -123,7 +123,7 @@ static void merge_takes_what_is_missing(void **state) {
       SQLITE_OK);
   sqlite3_close(other);
   store = writer(b);
-  OK(digest_rows_fill(store->db, DIGEST_RUNS, 3, &error)); /* as if another machine had computed it with this result */
+  OK(digest_rows_fill(store->db, 3, &error)); /* as if another machine had computed it with this result */
   OK(store_close(store, &error));
   store = writer(a);
   OK(store_merge(store, b, &added, &differing, &error));

@@ -197,12 +197,18 @@ static void failed_and_censored_are_counted_apart(void **state) {
   OK(store_close(store, &error));
 }
 
-static void each_run(void *context, const struct store_point_run *run) {
-  double *sum = context;
-  assert_true(run->replicate == (int64_t)sum[0]);
-  assert_int_equal(run->state, OUTCOME_COMPLETED);
-  sum[0] += 1;
-  sum[1] += run->value;
+/* Adds up the values of a point's runs; returns the number of runs. */
+static int sum_runs(struct store *store, int64_t point, const struct field *row, bool of_outcome, double *sum) {
+  int count = 0;
+  *sum = 0;
+  ANSWER runs = ask_run_of_point(store, point, &fixture_kind, row, of_outcome, &error);
+  for (struct ask_run_of_point run; ask_run_of_point_next(&runs, &run); count++) {
+    assert_true(run.replicate == count);
+    assert_int_equal(run.state, OUTCOME_COMPLETED);
+    *sum += run.value;
+  }
+  OK(answer_end(&runs));
+  return count;
 }
 
 static void runs_of_a_point_in_order(void **state) {
@@ -210,14 +216,12 @@ static void runs_of_a_point_in_order(void **state) {
   char path[64];
   struct store *store = writer(fixture_path(path, "point"));
   OK(fixture_populate(store, 1, 2, 10, true, &error));
-  double sum[2] = {0, 0};
-  OK(store_point_runs(store, 2, &fixture_kind, &fixture_result_rows[0], false, each_run, sum, &error));
-  assert_near(sum[0], 10, 0);
-  assert_near(sum[1], 3 * 45, 0);
-  sum[0] = sum[1] = 0;
+  double sum;
+  assert_int_equal(sum_runs(store, 2, &fixture_result_rows[0], false, &sum), 10);
+  assert_near(sum, 3 * 45, 0);
   const struct field *steps = field_find(&outcome_table, "steps", &error);
-  OK(store_point_runs(store, 1, &fixture_kind, steps, true, each_run, sum, &error));
-  assert_near(sum[1], 10 * 1000 + 45, 0);
+  assert_int_equal(sum_runs(store, 1, steps, true, &sum), 10);
+  assert_near(sum, 10 * 1000 + 45, 0);
   struct fixture_inputs inputs;
   struct scene scene = fixture_scene(&inputs, 6, 1e30);
   uint8_t identity[16];

@@ -18,7 +18,7 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/estimates.h"
 #include "analysis/statistics/pooled.h"
-#include "db/ask/point.h"
+#include "db/ask/ask.h"
 #include "engine/random.h"
 #include "tests/support/run_case.h"
 

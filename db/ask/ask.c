@@ -1,0 +1,628 @@
+/* Questions to a store: campaigns and sessions, columns, resolution, lists of points, single runs. */
+#include "db/ask/ask.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "db/store/internal.h"
+#include "db/store/views.h"
+#include "engine/grow.h"
+#include "engine/outcome.h"
+#include "schemas/text.h"
+#include "schemas/unit.h"
+
+/* ---- campaigns and sessions ---- */
+
+struct answer ask_campaign_progress(struct store *store, bool writing, struct error *error) {
+  return answer_to(
+      store, error,
+      "WITH done AS (SELECT campaign_id, count(*) AS runs, sum(counts) AS counted,"
+      "   sum(counts AND state = 'end-time') AS censored,"
+      "   sum(state NOT IN ('completed', 'end-time')) AS failed, sum(surplus) AS surplus, sum(cpu_time) AS cpu_time"
+      "   FROM campaign_point JOIN run USING (point_id) GROUP BY campaign_id),"
+      " tried AS (SELECT campaign_id, count(*) AS failed_attempts"
+      "   FROM campaign_point JOIN attempt USING (point_id) GROUP BY campaign_id),"
+      " given_up AS (SELECT campaign_id, count(DISTINCT attempt.identity) AS without_result"
+      "   FROM campaign_point JOIN attempt USING (point_id)"
+      "   WHERE NOT EXISTS (SELECT 1 FROM run WHERE run.identity = attempt.identity) GROUP BY campaign_id),"
+      " last AS (SELECT campaign_id, max(session_id) AS session_id, started_at, ended_at, outcome FROM session"
+      "   GROUP BY campaign_id),"
+      " planned AS (SELECT campaign_id, plan ->> '$.points' AS points, plan ->> '$.replicates_least' AS least,"
+      "   plan ->> '$.replicates_most' AS most FROM campaign WHERE json_valid(plan)),"
+      " filled AS (SELECT campaign_id, count(*) AS points FROM (SELECT campaign_id, point_id, count(DISTINCT seed) AS n"
+      "   FROM campaign_point JOIN run USING (point_id) GROUP BY campaign_id, point_id) JOIN planned"
+      "   USING (campaign_id) WHERE n >= least AND least = most GROUP BY campaign_id)"
+      " SELECT campaign_id AS campaign, name,"
+      "   CASE WHEN %d AND last.ended_at IS NULL AND last.session_id = (SELECT max(session_id) FROM session)"
+      "     THEN 'running'"
+      "   WHEN last.outcome = 'finished' OR filled.points = planned.points THEN 'finished'"
+      "   WHEN last.outcome IS NOT NULL THEN last.outcome WHEN last.started_at IS NULL THEN 'not known'"
+      "   ELSE 'killed' END AS state,"
+      "   (SELECT count(*) FROM campaign_point AS p WHERE p.campaign_id = campaign.campaign_id) AS points,"
+      "   coalesce(runs, 0) AS runs, coalesce(counted, 0) AS counted, coalesce(censored, 0) AS censored,"
+      "   coalesce(failed, 0) AS failed, coalesce(surplus, 0) AS surplus,"
+      "   coalesce(failed_attempts, 0) AS failed_attempts, coalesce(without_result, 0) AS without_result,"
+      "   coalesce(cpu_time, 0.0) AS cpu_time, last.started_at AS last_started, last.ended_at AS last_ended"
+      " FROM campaign LEFT JOIN done USING (campaign_id) LEFT JOIN tried USING (campaign_id)"
+      " LEFT JOIN given_up USING (campaign_id) LEFT JOIN last USING (campaign_id) LEFT JOIN planned"
+      " USING (campaign_id) LEFT JOIN filled USING (campaign_id) ORDER BY campaign_id",
+      writing);
+}
+
+status ask_campaign_document(struct store *store, int64_t campaign, char **name, char **document, struct error *error) {
+  ANSWER
+  answer = answer_to(store, error,
+                     "SELECT name, document FROM campaign WHERE %lld IN (0, campaign_id) ORDER BY campaign_id DESC "
+                     "LIMIT 1",
+                     (long long)campaign);
+  *name = *document = NULL;
+  if (!answer_next(&answer))
+    return answer_end(&answer);
+  if (answer_value(&answer, 0).kind != QUERY_TEXT || answer_value(&answer, 1).kind != QUERY_TEXT)
+    return status_fail(error, STATUS_CONTENT, "the store keeps no campaign document");
+  *name = strdup(answer_text(&answer, 0));
+  *document = strdup(answer_text(&answer, 1));
+  return *name && *document ? STATUS_OK : status_fail(error, STATUS_MEMORY, "out of memory");
+}
+
+status ask_campaign_attempts(struct store *store, int64_t *attempts, struct error *error) {
+  double most = NAN;
+  const status code = answer_number(store, &most, error,
+                                    "SELECT max(n) FROM (SELECT count(*) AS n FROM attempt WHERE NOT EXISTS"
+                                    " (SELECT 1 FROM run WHERE run.identity = attempt.identity) GROUP BY identity)");
+  *attempts = isnan(most) ? 0 : (int64_t)most;
+  return code;
+}
+
+struct answer ask_campaign_sessions(struct store *store, struct error *error) {
+  return answer_to(
+      store, error,
+      "SELECT session_id, campaign_id, started_at, ended_at, outcome, facts ->> '$.version', facts ->> '$.commit',"
+      " (SELECT group_concat(value, ' ') FROM json_each(facts, '$.command')) FROM session ORDER BY session_id");
+}
+
+struct answer ask_campaign_documents(struct store *store, struct error *error) {
+  return answer_to(store, error, "SELECT campaign_id, name, document FROM campaign ORDER BY campaign_id");
+}
+
+/* The runs of each campaign with their class: safe (usable, no warnings), warned (usable, with warnings), refused
+ * (another state). `question` has no format. */
+static struct answer ask_judged(struct store *store, const char *question, struct error *error) {
+  return answer_to(
+      store, error,
+      "WITH judged AS (SELECT campaign_id, point_id, identity, state, message, %s AS drift, %g AS "
+      "drift_allowed, coalesce(warnings, '') AS warnings, CASE WHEN state NOT IN ('completed', 'end-time') "
+      "THEN 'refused' WHEN coalesce(warnings, '') <> '' THEN 'warned' ELSE 'safe' END AS class FROM "
+      "campaign_point JOIN run USING (point_id)) %s",
+      OUTCOME_NAME(energy_error), WARNINGS_LARGEST_DRIFT, question);
+}
+
+struct answer ask_campaign_extremes(struct store *store, struct error *error) {
+  return ask_judged(
+      store,
+      "SELECT name AS campaign, count(*) AS runs, sum(class = 'safe') AS safe, sum(class = 'warned') AS warned,"
+      " sum(class = 'refused') AS refused, (SELECT count(DISTINCT attempt.identity) FROM campaign_point"
+      "   JOIN attempt USING (point_id) WHERE campaign_point.campaign_id = judged.campaign_id AND NOT EXISTS"
+      "   (SELECT 1 FROM run WHERE run.identity = attempt.identity)) AS given_up,"
+      " max(CASE WHEN class <> 'refused' THEN drift END) AS largest_drift,"
+      " sum(class = 'safe' AND coalesce(drift, 0) > drift_allowed) AS silent_drift"
+      " FROM judged JOIN campaign USING (campaign_id) GROUP BY campaign_id ORDER BY campaign_id",
+      error);
+}
+
+struct answer ask_campaign_reasons(struct store *store, struct error *error) {
+  return ask_judged(store,
+                    "SELECT name AS campaign, class, CASE class WHEN 'refused' THEN state ELSE warnings END AS why,"
+                    " count(*) AS runs, min(message) AS example FROM judged JOIN campaign USING (campaign_id)"
+                    " WHERE class <> 'safe' GROUP BY campaign_id, class, why ORDER BY campaign_id, runs DESC, why",
+                    error);
+}
+
+struct answer ask_campaign_values(struct store *store, struct error *error) {
+  return ask_judged(
+      store,
+      ", input AS (SELECT campaign_id, path, value, class FROM judged JOIN point_input USING (point_id)"
+      " WHERE path IN (SELECT path FROM axis)),"
+      " varied AS (SELECT campaign_id, path FROM input GROUP BY campaign_id, path"
+      "   HAVING count(DISTINCT value) > 1)"
+      " SELECT name AS campaign, path, value, sum(class = 'safe') AS safe, sum(class = 'warned') AS warned,"
+      " sum(class = 'refused') AS refused FROM input JOIN varied USING (campaign_id, path)"
+      " JOIN campaign USING (campaign_id) GROUP BY campaign_id, path, value ORDER BY campaign_id, path, value",
+      error);
+}
+
+/* ---- columns ---- */
+
+/* Reads a column from a row of name, SI unit and written unit, of which the last two may be missing. */
+static void read_column(const struct answer *answer, struct ask_column *column) {
+  *column = (struct ask_column){.factor = 1};
+  snprintf(column->name, sizeof column->name, "%s", answer_text(answer, 0));
+  snprintf(column->unit, sizeof column->unit, "%s", answer_text(answer, 1));
+  if (answer_value(answer, 2).kind == QUERY_TEXT)
+    ask_columns_write_in(column, answer_text(answer, 2));
+}
+
+/* A written unit comes from the file. It is used only if it is a valid unit of the input's dimension. */
+void ask_columns_write_in(struct ask_column *column, const char *written) {
+  struct unit own, other;
+  if (unit_parse(*column->unit ? column->unit : "1", &own, NULL) || unit_parse(written, &other, NULL) ||
+      !unit_same_dimension(&own, &other) || strlen(written) >= sizeof column->unit)
+    return;
+  snprintf(column->unit, sizeof column->unit, "%s", written);
+  column->factor = other.factor / own.factor;
+}
+
+status ask_columns_axes(struct store *store, bool written, size_t most, struct ask_column *axes, size_t *count,
+                        struct error *error) {
+  ANSWER answer = answer_to(store, error, "SELECT column_name, unit, %s FROM axis ORDER BY path",
+                            written ? "written_unit" : "NULL");
+  for (*count = 0; *count < most && answer_next(&answer);)
+    read_column(&answer, &axes[(*count)++]);
+  return answer_end(&answer);
+}
+
+status ask_columns_written(struct store *store, const char *column, struct ask_column *out, struct error *error) {
+  ANSWER answer = answer_to(store, error, "SELECT column_name, unit, written_unit FROM axis WHERE column_name = %Q",
+                            column);
+  *out = (struct ask_column){.factor = 1};
+  snprintf(out->name, sizeof out->name, "%s", column);
+  if (!answer_next(&answer) && answer_status(&answer) == STATUS_OK)
+    return ask_columns_unit(store, column, out->unit, sizeof out->unit, error);
+  if (answer_status(&answer) == STATUS_OK)
+    read_column(&answer, out);
+  return answer_end(&answer);
+}
+
+struct query_value ask_columns_value(const struct ask_column *column, const struct query_value *value) {
+  struct query_value shown = *value;
+  if (column->factor == 1 || (value->kind != QUERY_REAL && value->kind != QUERY_INTEGER))
+    return shown;
+  shown.kind = QUERY_REAL;
+  shown.real = value->real / column->factor;
+  return shown;
+}
+
+status ask_columns_unit(struct store *store, const char *column, char *unit, size_t size, struct error *error) {
+  ANSWER answer = answer_to(store, error, "SELECT min(unit) FROM column_doc WHERE column_name = %Q AND unit <> '1'",
+                            column);
+  snprintf(unit, size, "%s", answer_next(&answer) ? answer_text(&answer, 0) : "");
+  return answer_end(&answer);
+}
+
+status ask_columns_units(struct store *store, struct ask_column **columns, size_t *count, struct error *error) {
+  size_t room = 0;
+  ANSWER
+  answer = answer_to(store, error,
+                     "SELECT column_name, min(unit), NULL FROM column_doc WHERE unit <> '1' GROUP BY column_name "
+                     "HAVING count(DISTINCT unit) = 1");
+  *columns = NULL;
+  for (*count = 0; answer_next(&answer);) {
+    if (!grow_room(columns, &room, *count + 1, sizeof **columns))
+      return status_fail(error, STATUS_MEMORY, "no memory for the units of the columns");
+    read_column(&answer, &(*columns)[(*count)++]);
+  }
+  return answer_end(&answer);
+}
+
+struct answer ask_columns_view(struct store *store, const char *view, struct error *error) {
+  return answer_to(store, error, "SELECT * FROM \"%w\"", view);
+}
+
+/* ---- resolution ---- */
+
+const char *const ask_resolution_names[] = {[ASK_RESOLUTION_NOT_STUDIED] = "not-studied",
+                                            [ASK_RESOLUTION_KNOWN] = "known",
+                                            [ASK_RESOLUTION_AT_LEAST] = "at-least",
+                                            [ASK_RESOLUTION_DIVERGES] = "diverges"};
+
+enum ask_resolution_verdict ask_resolution_verdict(const char *verdict) {
+  for (int i = ASK_RESOLUTION_KNOWN; i <= ASK_RESOLUTION_DIVERGES; i++)
+    if (verdict && strcmp(verdict, ask_resolution_names[i]) == 0)
+      return (enum ask_resolution_verdict)i;
+  return ASK_RESOLUTION_NOT_STUDIED;
+}
+
+status ask_resolution(struct store *store, int64_t point_id, const char *quantity, struct ask_resolution *out,
+                      struct error *error) {
+  *out = (struct ask_resolution){.verdict = ASK_RESOLUTION_NOT_STUDIED, .half_width = NAN, .scene = "SCENE"};
+  if (!store)
+    return STATUS_OK;
+  const long long id = point_id;
+  quantity = estimates_short_name(quantity);
+
+  ANSWER scenes = answer_to(store, error,
+                            "SELECT count(DISTINCT scene_name), min(scene_name) FROM point WHERE %lld IN (0, "
+                            "point_id)",
+                            id);
+  if (answer_next(&scenes) && answer_integer(&scenes, 0) == 1 && answer_value(&scenes, 1).kind == QUERY_TEXT)
+    snprintf(out->scene, sizeof out->scene, "%s", answer_text(&scenes, 1));
+  text_make_plain(out->scene, "");
+  TRY(answer_end(&scenes));
+
+  ANSWER found = answer_to(
+      store, error,
+      "SELECT count(*), count(half_width), max(half_width), max(verdict = 'diverges'), max(verdict = 'at-least')"
+      " FROM (SELECT point_id, max(results_version) AS results_version FROM point_total"
+      "   WHERE runs > 0 AND %lld IN (0, point_id) GROUP BY point_id)"
+      " LEFT JOIN (SELECT * FROM resolution WHERE quantity = %Q) USING (point_id, results_version)",
+      id, quantity);
+  if (answer_next(&found)) {
+    out->points = answer_integer(&found, 0);
+    out->studied = answer_integer(&found, 1);
+    out->half_width = answer_real(&found, 2);
+    if (out->studied > 0)
+      out->verdict = answer_integer(&found, 3)   ? ASK_RESOLUTION_DIVERGES
+                     : answer_integer(&found, 4) ? ASK_RESOLUTION_AT_LEAST
+                                                 : ASK_RESOLUTION_KNOWN;
+  }
+  TRY(answer_end(&found));
+  if (out->studied == 0)
+    return STATUS_OK;
+
+  ANSWER knobs = answer_to(
+      store, error,
+      "SELECT group_concat(knob, ', ') FROM (SELECT DISTINCT knob FROM convergence"
+      "   WHERE quantity = %Q AND (resolution IS NOT NULL OR knob = 'settings')"
+      "   AND base_point_id IN (SELECT base_point_id FROM convergence WHERE %lld IN (0, point_id)) ORDER BY knob)",
+      quantity, id);
+  if (answer_next(&knobs))
+    snprintf(out->knobs, sizeof out->knobs, "%s", answer_text(&knobs, 0));
+  text_make_plain(out->knobs, "");
+  return answer_end(&knobs);
+}
+
+status ask_resolution_of_exponents(struct store *store, bool *studied, struct error *error) {
+  double count = 0;
+  const status code = answer_number(store, &count, error,
+                                    "SELECT count(*) FROM resolution WHERE quantity GLOB 'beta*'");
+  *studied = count > 0;
+  return code;
+}
+
+struct answer ask_convergence_levels(struct store *store, int64_t base_point, int results_version, const char *quantity,
+                                     struct error *error) {
+  sqlite3_str *columns = sqlite3_str_new(NULL);
+  for (size_t i = 0; i < convergence_table.count; i++) {
+    char name[FIELD_TEXT_SIZE];
+    field_column_name(convergence_table.rows[i].path, name, sizeof name);
+    sqlite3_str_appendf(columns, "%s\"%w\"", i ? ", " : "", name);
+  }
+  char *list = sqlite3_str_finish(columns); /* NULL, no memory, is an empty list: the question then fails */
+  return answer_to(store, error,
+                   "SELECT %z FROM convergence WHERE base_point_id = %lld AND results_version = %d AND quantity = %Q "
+                   "ORDER BY knob, level",
+                   list, (long long)base_point, results_version, quantity);
+}
+
+bool ask_convergence_next(struct answer *answer, struct convergence_row *row) {
+  if (!answer_next(answer))
+    return false;
+  field_defaults(&convergence_table, row);
+  for (size_t i = 0; i < convergence_table.count; i++) {
+    const struct field *field = &convergence_table.rows[i];
+    const struct query_value stored = answer_value(answer, i);
+    struct field_value value = {.kind = field->kind, .number = stored.real, .integer = stored.integer};
+    if (field->kind == FIELD_TEXT)
+      field_copy_text(value.text, stored.kind == QUERY_TEXT ? stored.text : "");
+    field_set_unchecked(field, row, &value);
+  }
+  return true;
+}
+
+/* ---- lists of points ---- */
+
+enum { FIRST_INPUT = 8 }; /* column of the first input in the query of ask_points_rows */
+
+/* Condition that selects the chosen points, for any table with a column point_id. */
+static void write_choice(sqlite3_str *sql, const struct ask_points_choice *choice) {
+  sqlite3_str_appendall(sql, " WHERE true");
+  if (choice->campaign)
+    sqlite3_str_appendf(sql, " AND point_id IN (SELECT point_id FROM campaign_point WHERE campaign_id = %lld)",
+                        (long long)choice->campaign);
+  if (choice->point)
+    sqlite3_str_appendf(sql, " AND point_id = %lld", (long long)choice->point);
+}
+
+status ask_points_count(struct store *store, const struct ask_points_choice *choice, int64_t *points,
+                        struct error *error) {
+  sqlite3_str *where = sqlite3_str_new(NULL);
+  write_choice(where, choice);
+  ANSWER answer = answer_to(store, error, "SELECT count(*) FROM point%z", sqlite3_str_finish(where));
+  *points = answer_next(&answer) ? answer_integer(&answer, 0) : 0;
+  return answer_end(&answer);
+}
+
+status ask_points_known(struct store *store, int64_t point, struct error *error) {
+  if (point == 0)
+    return STATUS_OK;
+  ANSWER answer =
+      answer_to(store, error,
+                "SELECT count(*) FILTER (WHERE point_id = %lld), ifnull(min(point_id), 0), ifnull(max(point_id), "
+                "0) FROM point",
+                (long long)point);
+  if (!answer_next(&answer) || answer_integer(&answer, 0) > 0)
+    return answer_end(&answer);
+  if (answer_integer(&answer, 2) == 0)
+    return status_fail(error, STATUS_USAGE, "there is no point %lld: the store has no points yet", (long long)point);
+  return status_fail(error, STATUS_USAGE, "there is no point %lld: the store has the points %lld to %lld",
+                     (long long)point, (long long)answer_integer(&answer, 1), (long long)answer_integer(&answer, 2));
+}
+
+struct answer ask_points_rows(struct store *store, const struct ask_points_choice *choice, bool newest,
+                              size_t input_count, const char *const *inputs, struct error *error) {
+  sqlite3_str *sql = sqlite3_str_new(NULL);
+  sqlite3_str_appendall(sql, "SELECT point_id, results_version, n, failed, largest_fraction_mean, "
+                             "largest_fraction_hw95, largest_fraction_resolution, largest_fraction_resolution_verdict");
+  for (size_t i = 0; i < input_count && i < ASK_POINTS_INPUTS; i++)
+    sqlite3_str_appendf(sql, ", \"%w\"", inputs[i]);
+  sqlite3_str_appendall(sql, " FROM points AS p");
+  write_choice(sql, choice);
+  if (newest)
+    sqlite3_str_appendall(sql, " AND (results_version IS NULL OR results_version ="
+                               " (SELECT max(results_version) FROM point_total AS t WHERE t.point_id = p.point_id))");
+  return answer_to(store, error, "%z ORDER BY point_id, results_version", sqlite3_str_finish(sql));
+}
+
+bool ask_points_next(struct answer *answer, struct ask_points_row *row) {
+  if (!answer_next(answer))
+    return false;
+  *row = (struct ask_points_row){.point_id = answer_integer(answer, 0),
+                                 .results_version = answer_integer(answer, 1),
+                                 .n = answer_integer(answer, 2),
+                                 .failed = answer_integer(answer, 3),
+                                 .mean = answer_real(answer, 4),
+                                 .half_width = answer_real(answer, 5),
+                                 .resolution = answer_real(answer, 6),
+                                 .resolution_verdict = ask_resolution_verdict(answer_text(answer, 7)),
+                                 .input_count = answer_count(answer) - FIRST_INPUT};
+  for (size_t i = 0; i < row->input_count; i++)
+    row->inputs[i] = answer_value(answer, FIRST_INPUT + i);
+  return true;
+}
+
+status ask_points_label(struct store *store, int64_t point_id, char *text, size_t size, struct error *error) {
+  snprintf(text, size, "point %lld", (long long)point_id);
+  ANSWER
+  answer =
+      answer_to(store, error,
+                "SELECT path, value, unit, written_unit FROM point_input JOIN axis USING (path) WHERE point_id = %lld "
+                "ORDER BY path DESC",
+                (long long)point_id);
+  for (size_t used = 0; answer_next(&answer);) {
+    const char *path = answer_text(&answer, 0), *word = strrchr(path, '.');
+    struct ask_column column = {.factor = 1};
+    snprintf(column.unit, sizeof column.unit, "%s", answer_text(&answer, 2));
+    if (answer_value(&answer, 3).kind == QUERY_TEXT)
+      ask_columns_write_in(&column, answer_text(&answer, 3));
+    const struct query_value value = answer_value(&answer, 1), shown = ask_columns_value(&column, &value);
+    const char *unit = strcmp(column.unit, "1") != 0 ? column.unit : "";
+    char number[64], item[256];
+    snprintf(number, sizeof number, "%.3g", shown.real);
+    const int length = snprintf(item, sizeof item, "%s%s %.63s%s%s", used ? ", " : "", word ? word + 1 : path,
+                                shown.kind == QUERY_TEXT ? shown.text : number, *unit ? " " : "", unit);
+    if (length <= 0 || (size_t)length >= sizeof item || used + (size_t)length >= size)
+      continue; /* inputs that do not fit are left out */
+    memcpy(text + used, item, (size_t)length + 1);
+    used += (size_t)length;
+  }
+  return answer_end(&answer);
+}
+
+status ask_points_without_estimates(struct store *store, int64_t campaign, struct ask_points_version **list,
+                                    size_t *count, struct error *error) {
+  size_t room = 0;
+  *list = NULL;
+  *count = 0;
+  ANSWER
+  answer =
+      answer_to(store, error,
+                "SELECT point_id, results_version FROM point_total AS t WHERE runs > 0 AND (%lld = 0 OR point_id IN"
+                " (SELECT point_id FROM campaign_point WHERE campaign_id = %lld)) AND NOT EXISTS (SELECT 1 FROM"
+                " point_estimate AS e WHERE e.point_id = t.point_id AND e.results_version = t.results_version)"
+                " ORDER BY point_id, results_version",
+                (long long)campaign, (long long)campaign);
+  while (answer_next(&answer)) {
+    if (!grow_room(list, &room, *count + 1, sizeof **list))
+      return status_fail(error, STATUS_MEMORY, "no memory for the list of points");
+    (*list)[(*count)++] = (struct ask_points_version){answer_integer(&answer, 0), (int)answer_integer(&answer, 1)};
+  }
+  return answer_end(&answer);
+}
+
+/* ---- single runs ---- */
+
+status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, struct error *error) {
+  *run = (struct ask_run){0};
+  ANSWER answer = answer_to(
+      store, error,
+      "SELECT scene, seed, results_version, json_extract(facts, '$.cpu_class'), json_extract(facts, '$.version'), "
+      "json_extract(facts, '$.commit') || iif(json_extract(facts, '$.dirty'), ' with local changes', ''), "
+      "json_extract(facts, '$.compiler') FROM run JOIN point USING (point_id) LEFT JOIN session USING "
+      "(session_id) WHERE run_id = %lld",
+      (long long)run_id);
+  if (answer_next(&answer)) {
+    if (answer_value(&answer, 0).kind != QUERY_TEXT)
+      return status_fail(error, STATUS_CONTENT, "the store has no scene for this run");
+    run->scene = strdup(answer_text(&answer, 0));
+    if (!run->scene)
+      return status_fail(error, STATUS_MEMORY, "out of memory");
+    run->seed = (uint64_t)answer_integer(&answer, 1);
+    run->results_version = answer_integer(&answer, 2);
+    snprintf(run->cpu_class, sizeof run->cpu_class, "%s", answer_text(&answer, 3));
+    snprintf(run->version, sizeof run->version, "%s", answer_text(&answer, 4));
+    snprintf(run->commit, sizeof run->commit, "%s", answer_text(&answer, 5));
+    snprintf(run->compiler, sizeof run->compiler, "%s", answer_text(&answer, 6));
+  }
+  TRY(answer_end(&answer));
+  return store_point_shapes(store, run_id, error);
+}
+
+void ask_run_release(struct ask_run *run) {
+  free(run->scene);
+  run->scene = NULL;
+}
+
+struct answer ask_run_results(struct store *store, int64_t run_id, const char *engine, struct error *error) {
+  return answer_to(store, error, "SELECT * FROM run JOIN \"result_%w\" USING (run_id) WHERE run_id = %lld", engine,
+                   (long long)run_id);
+}
+
+status ask_run_column_used(struct store *store, int64_t run_id, const char *engine, const char *column, bool *used,
+                           struct error *error) {
+  double count = 0;
+  const status code = answer_number(
+      store, &count, error,
+      "SELECT count(\"%w\") FROM run JOIN \"result_%w\" USING (run_id) WHERE session_id IS (SELECT session_id "
+      "FROM run WHERE run_id = %lld)",
+      column, engine, (long long)run_id);
+  *used = count > 0;
+  return code;
+}
+
+status ask_run_masses(struct store *store, int64_t run_id, double **masses, size_t *count, struct error *error) {
+  const void *stored;
+  *masses = NULL;
+  *count = 0;
+  ANSWER answer = answer_to(store, error, "SELECT masses FROM fragment_mass WHERE run_id = %lld", (long long)run_id);
+  if (!answer_next(&answer) || !answer_masses(&answer, 0, "this run", &stored, count))
+    return answer_end(&answer);
+  *masses = malloc((*count + 1) * sizeof **masses);
+  if (!*masses)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  if (*count > 0)
+    memcpy(*masses, stored, *count * sizeof **masses);
+  return STATUS_OK;
+}
+
+status ask_run_wall_times(struct store *store, double *mean, double *longest, struct error *error) {
+  *longest = NAN;
+  TRY(answer_number(store, mean, error, "SELECT avg(wall_time) FROM run"));
+  return answer_number(store, longest, error, "SELECT max(wall_time) FROM run");
+}
+
+struct answer ask_run_kept(struct store *store, struct error *error) {
+  enum { AXES = 64 };
+  struct ask_column axes[AXES];
+  const char *results[VIEWS_STATISTICS_MAIN];
+  const size_t result_count = views_statistics_main(results);
+  size_t axis_count = 0;
+  const status code = ask_columns_axes(store, false, AXES, axes, &axis_count, error);
+  if (code)
+    return answer_failed(code, error);
+  sqlite3_str *columns = sqlite3_str_new(NULL);
+  for (size_t i = 0; i < axis_count + result_count; i++)
+    sqlite3_str_appendf(columns, ", \"%w\"", i < axis_count ? axes[i].name : results[i - axis_count]);
+  return answer_to(
+      store, error,
+      "SELECT run_id, point_id, seed%z, fields_path AS fields FROM runs WHERE counts AND typeof(fields_path) = "
+      "'text' AND results_version = (SELECT max(results_version) FROM run AS newest WHERE newest.point_id = "
+      "runs.point_id) ORDER BY point_id, replicate",
+      sqlite3_str_finish(columns));
+}
+
+char *ask_run_fields(const struct answer *answer, size_t column) {
+  return paths_of_fields(answer->store->path, answer_text(answer, column));
+}
+
+static int state_of(const char *name) {
+  const struct field *states = field_find(&outcome_table, "state", NULL);
+  for (int k = 0; states->choices[k]; k++)
+    if (strcmp(states->choices[k], name) == 0)
+      return k;
+  return OUTCOME_INVALID;
+}
+
+struct answer ask_run_of_point(struct store *store, int64_t point_id, const struct engine_kind *kind,
+                               const struct field *row, bool of_outcome, struct error *error) {
+  char column[FIELD_TEXT_SIZE], table[FIELD_TEXT_SIZE] = "run";
+  field_column_name(row->path, column, sizeof column);
+  if (!of_outcome)
+    snprintf(table, sizeof table, "result_%s", kind->name);
+  return answer_to(store, error,
+                   "SELECT replicate, seed, identity, surplus, state, \"%w\".\"%w\", wall_time, cpu_time, peak_memory, "
+                   "fields_path FROM run%s%w%s WHERE point_id = %lld AND results_version = %d ORDER BY replicate, seed",
+                   table, column, of_outcome ? "" : " LEFT JOIN \"", of_outcome ? "" : table,
+                   of_outcome ? "" : "\" USING (run_id)", (long long)point_id, kind->results_version);
+}
+
+bool ask_run_of_point_next(struct answer *answer, struct ask_run_of_point *run) {
+  if (!answer_next(answer))
+    return false;
+  const struct query_value identity = answer_value(answer, 2);
+  *run = (struct ask_run_of_point){
+      .replicate = answer_integer(answer, 0),
+      .seed = (uint64_t)answer_integer(answer, 1),
+      .surplus = answer_integer(answer, 3) != 0,
+      .state = state_of(answer_text(answer, 4)),
+      .value = answer_real(answer, 5),
+      .wall_s = answer_real(answer, 6),
+      .cpu_s = answer_real(answer, 7),
+      .peak_memory = answer_integer(answer, 8),
+      .fields_path = answer_value(answer, 9).text,
+  };
+  run->fields_missing = run->fields_path && !paths_readable(answer->store->path, run->fields_path);
+  if (identity.kind == QUERY_BLOB && identity.size == sizeof run->identity)
+    memcpy(run->identity, identity.blob, sizeof run->identity);
+  return true;
+}
+
+/* The number, or the share of the mass, of fragments heavier than a share of the body. */
+static double heavier(const struct ask_specimens_quantity *quantity, size_t n, const void *masses) {
+  double total = 0, number = 0, heavy = 0, mass;
+  for (size_t i = 0; i < n; i++) {
+    memcpy(&mass, (const char *)masses + i * sizeof mass, sizeof mass);
+    total += mass;
+  }
+  for (size_t i = 0; i < n; i++) {
+    memcpy(&mass, (const char *)masses + i * sizeof mass, sizeof mass);
+    if (mass > quantity->share * total) {
+      number++;
+      heavy += mass;
+    }
+  }
+  return quantity->kind == ASK_SPECIMENS_COUNT ? number : heavy / total;
+}
+
+struct answer ask_specimens(struct store *store, int64_t point_id, const struct engine_kind *kind,
+                            const struct ask_specimens_quantity *quantity, struct error *error) {
+  if (quantity->kind == ASK_SPECIMENS_RESULT)
+    return ask_run_of_point(store, point_id, kind, quantity->row, quantity->of_outcome, error);
+  if (quantity->kind == ASK_SPECIMENS_EXPONENT)
+    return answer_to(store, error,
+                     "SELECT seed, beta FROM run JOIN estimate USING (run_id) WHERE point_id = %lld AND "
+                     "results_version = %d AND counts = 1 AND method = %Q AND \"window\" = %Q ORDER BY replicate",
+                     (long long)point_id, kind->results_version, exponent_method_names[quantity->method],
+                     estimates_window_names[quantity->window]);
+  return answer_to(store, error,
+                   "SELECT seed, masses FROM run JOIN fragment_mass USING (run_id) WHERE point_id = %lld AND "
+                   "results_version = %d AND counts = 1 ORDER BY replicate",
+                   (long long)point_id, kind->results_version);
+}
+
+bool ask_specimens_next(struct answer *answer, const struct ask_specimens_quantity *quantity, uint64_t *seed,
+                        double *value) {
+  const void *masses;
+  size_t count;
+  if (quantity->kind == ASK_SPECIMENS_RESULT) {
+    struct ask_run_of_point run;
+    while (ask_run_of_point_next(answer, &run)) {
+      *seed = run.seed;
+      *value = run.value;
+      if (!run.surplus && outcome_is_usable(run.state))
+        return true;
+    }
+    return false;
+  }
+  if (!answer_next(answer))
+    return false;
+  *seed = (uint64_t)answer_integer(answer, 0);
+  if (quantity->kind == ASK_SPECIMENS_EXPONENT)
+    *value = answer_real(answer, 1);
+  else if (!answer_masses(answer, 1, "a run", &masses, &count))
+    return false;
+  else
+    *value = heavier(quantity, count, masses);
+  return true;
+}

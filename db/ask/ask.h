@@ -1,0 +1,474 @@
+/* The questions to a store, with typed results. The basis of all is answer.h: rows that the caller pulls. */
+#ifndef CLAST_DB_ASK_ASK_H
+#define CLAST_DB_ASK_ASK_H
+
+#include "analysis/statistics/convergence.h"
+#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/pooled.h"
+#include "analysis/statistics/sample.h"
+#include "db/ask/answer.h"
+#include "engine/outcome.h"
+
+/* ---- The campaigns and sessions of a store: their progress, their documents, and which of their runs are safe
+ * (usable, `warnings` is empty), warned (usable, with warnings) or refused (another state, which gives the reason).
+ * ---- */
+
+/* One row per campaign: campaign, name, state, points, runs, counted, censored, failed, surplus, failed_attempts,
+ * without_result, cpu_time (s), and start and end of its last session. `writing`: a process is writing the store
+ * (store_is_being_written). */
+struct answer ask_campaign_progress(struct store *store, bool writing, struct error *error);
+
+/* Name and YAML text of a campaign (0: the last one); the caller frees both. Both NULL: the store has no campaign. */
+status ask_campaign_document(struct store *store, int64_t campaign, char **name, char **document, struct error *error);
+
+/* Attempts of the run that failed most often among those that have no result. 0: every run has a result. */
+status ask_campaign_attempts(struct store *store, int64_t *attempts, struct error *error);
+
+/* One row per session (invocation that wrote to the store): session, campaign (number; may be NULL), started, ended
+ * (may be NULL), outcome (may be NULL), version, commit, command (words with spaces between them). */
+struct answer ask_campaign_sessions(struct store *store, struct error *error);
+/* One row per campaign: campaign, name, document. */
+struct answer ask_campaign_documents(struct store *store, struct error *error);
+
+/* A row per campaign: runs, safe, warned, refused, runs given up without a result, the largest energy_error of usable
+ * runs, and the number of usable runs with an error above 1 % and no warning. */
+struct answer ask_campaign_extremes(struct store *store, struct error *error);
+/* A row per campaign and reason, the most frequent first: state or warnings, runs, one message. */
+struct answer ask_campaign_reasons(struct store *store, struct error *error);
+/* A row per value of each varied input, in ascending order within campaign and input: campaign, path, value, and the
+ * numbers of safe, warned and refused runs. Inputs with only one value are left out. */
+struct answer ask_campaign_values(struct store *store, struct error *error);
+
+/* ---- Ready queries, by name. ---- */
+
+/* Canned queries: a name, its question in a sentence, its SQL, the names of its parameters. */
+struct query_canned {
+  const char *name, *doc, *sql;
+  const char *parameters; /* comma-separated, "" for none */
+};
+size_t ask_canned_count(void);
+const struct query_canned *ask_canned_at(size_t index);
+/* Finds a canned query by name. NULL: *error lists the known names. */
+const struct query_canned *ask_canned_find(const char *name, struct error *error);
+
+/* ---- The columns of a store: the inputs that campaigns varied, their units, and whole views. ---- */
+
+/* A column of the views and its unit. */
+struct ask_column {
+  char name[128];
+  char unit[64]; /* "" when the store does not give it; "1" for a pure number */
+  double factor; /* SI value of one of this unit; values of the store are SI */
+};
+
+/* The columns of the varied inputs, in the order of their paths; at most `most` of them. `written`: in the units that
+ * the campaign uses; else in SI units. */
+status ask_columns_axes(struct store *store, bool written, size_t most, struct ask_column *axes, size_t *count,
+                        struct error *error);
+/* One column by name, with the campaign's unit if it is a varied input, else with its unit in the store. */
+status ask_columns_written(struct store *store, const char *column, struct ask_column *out, struct error *error);
+/* Replaces the column's SI unit by `unit` if both have the same dimension. */
+void ask_columns_write_in(struct ask_column *column, const char *unit);
+/* A value of the store in the unit of the column: numbers are divided by its factor; other kinds do not change. */
+struct query_value ask_columns_value(const struct ask_column *column, const struct query_value *value);
+
+/* Unit of one column in `unit`; "" for a pure number or an unknown column. */
+status ask_columns_unit(struct store *store, const char *column, char *unit, size_t size, struct error *error);
+
+/* All columns with a unit, in *columns (the caller frees it). A column that has different units in different tables is
+ * left out. STATUS_MEMORY. */
+status ask_columns_units(struct store *store, struct ask_column **columns, size_t *count, struct error *error);
+
+/* All rows of a view: runs, points, spectra, estimates, or of the table column_doc. */
+struct answer ask_columns_view(struct store *store, const char *view, struct error *error);
+
+/* ---- The error of a point's result that comes from its resolution: its number of particles or grains, its time step,
+ * its precision. More seeds do not reduce it, and the interval over seeds does not include it. ---- */
+
+enum ask_resolution_verdict {
+  ASK_RESOLUTION_NOT_STUDIED, /* the store has no study of the point's scene */
+  ASK_RESOLUTION_KNOWN,       /* half_width is a bound */
+  ASK_RESOLUTION_AT_LEAST,    /* half_width is the known part; the error may be larger, because no limit is known yet */
+  ASK_RESOLUTION_DIVERGES,    /* studied: the quantity does not converge. half_width is the known part */
+};
+
+struct ask_resolution {
+  enum ask_resolution_verdict verdict;
+  double half_width; /* 95 % bound on the change of the quantity with finer resolution, in its unit: the largest of the
+                        points; NaN: not known */
+  int64_t points, studied; /* requested points with runs, and how many of them were studied */
+  char knobs[128];         /* settings studied: "particles, time_step"; other settings may also change the quantity */
+  char scene[128];         /* the scene that was studied, or needs a study; "SCENE" when the store has several scenes */
+};
+
+/* "not-studied", "known", "at-least", "diverges": as in the views. */
+extern const char *const ask_resolution_names[];
+/* The verdict named in a column of the views or of ask_group; any other text, or NULL: not studied. */
+enum ask_resolution_verdict ask_resolution_verdict(const char *verdict);
+
+/* The row of the view resolution for the point's newest results_version: the result of `clast converge`, whether the
+ * point is the scene studied or one of its levels. `quantity`: a result column of the view runs, beta, or
+ * beta_METHOD_WINDOW. point_id 0: all points of the store, with the worst verdict of those studied. `store` NULL: a run
+ * without a store, never studied. */
+status ask_resolution(struct store *store, int64_t point_id, const char *quantity, struct ask_resolution *out,
+                      struct error *error);
+
+/* Does any point have a study of an exponent? */
+status ask_resolution_of_exponents(struct store *store, bool *studied, struct error *error);
+
+/* ---- Results of convergence studies: the rows of table convergence. ---- */
+
+/* The levels of all knobs of the scene that was studied as `base_point`, for one quantity (a column of the view runs),
+ * knob by knob, coarse to fine. No rows for a scene without a study. */
+struct answer ask_convergence_levels(struct store *store, int64_t base_point, int results_version, const char *quantity,
+                                     struct error *error);
+/* The next level. False at the end and after an error; then answer_end(). */
+bool ask_convergence_next(struct answer *answer, struct convergence_row *row);
+
+/* ---- Lists of points: which of them have runs, their inputs and the statistics of their runs. point_read() reads the
+ * fragments of one point. ---- */
+
+enum { ASK_POINTS_INPUTS = 16 };
+
+/* A point's runs of one results_version. */
+struct ask_points_row {
+  int64_t point_id;
+  int64_t results_version; /* 0: the point has no runs */
+  int64_t n, failed;       /* runs that count; runs that failed */
+  double mean, half_width; /* of the largest fraction, with the half width of the 95 % interval of its mean. NaN: too
+                              few runs */
+  double resolution;       /* error that the resolution leaves in it; NaN: not known */
+  enum ask_resolution_verdict resolution_verdict;
+  size_t input_count;
+  struct query_value inputs[ASK_POINTS_INPUTS]; /* values of the requested inputs, in their order; texts are borrowed
+                                                   until the next row */
+};
+
+/* Selects points; 0 means all. */
+struct ask_points_choice {
+  int64_t campaign, point;
+};
+
+/* The number of these points, with and without runs. */
+status ask_points_count(struct store *store, const struct ask_points_choice *choice, int64_t *points,
+                        struct error *error);
+
+/* STATUS_USAGE, with the known numbers, when the store has no point of this number. 0 means every point. */
+status ask_points_known(struct store *store, int64_t point, struct error *error);
+
+/* These points with the named input columns (ask_columns_axes; at most ASK_POINTS_INPUTS), in the order of their
+ * numbers. Each point comes with its newest results_version only (`newest`), or once for every results_version. */
+struct answer ask_points_rows(struct store *store, const struct ask_points_choice *choice, bool newest,
+                              size_t input_count, const char *const *inputs, struct error *error);
+/* The next row. False at the end and after an error; then answer_end(). */
+bool ask_points_next(struct answer *answer, struct ask_points_row *row);
+
+/* The varied inputs of a point by the last words of their paths, last path first: "strain 3 %, angle 4 deg".
+ * Inputs that do not fit are left out. "point 7" when nothing was varied. */
+status ask_points_label(struct store *store, int64_t point_id, char *label, size_t size, struct error *error);
+
+struct ask_points_version {
+  int64_t point_id;
+  int results_version;
+};
+/* The points of a campaign (0: of all) whose runs have no pooled estimates yet, in *list (the caller frees it). */
+status ask_points_without_estimates(struct store *store, int64_t campaign, struct ask_points_version **list,
+                                    size_t *count, struct error *error);
+
+/* ---- One stored run: its inputs and seed, its results and its fragment masses. Also the wall time of all runs, and
+ * the runs whose fields are kept as files. ---- */
+
+struct ask_run {
+  char *scene; /* resolved scene as JSON; owned. NULL: the store has no such run */
+  uint64_t seed;
+  int64_t results_version;
+  /* The program and machine that computed the run. "" where the session does not tell. */
+  char cpu_class[16];              /* baseline, v3 or v4 */
+  char version[64], compiler[128]; /* of the program */
+  char commit[96];                 /* followed by " with local changes" if the program had any */
+};
+status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, struct error *error);
+void ask_run_release(struct ask_run *run); /* a zeroed one is fine */
+
+/* One row: all columns of the tables run and result_<engine>. */
+struct answer ask_run_results(struct store *store, int64_t run_id, const char *engine, struct error *error);
+
+/* Did the program that computed this run store a value in a column of run or result_<engine>, for this run or another
+ * one of the same session? If not, it may not have had that result. */
+status ask_run_column_used(struct store *store, int64_t run_id, const char *engine, const char *column, bool *used,
+                           struct error *error);
+
+/* A stored run of a point, for a driver that resumes and for stopping rules. */
+struct ask_run_of_point {
+  int64_t replicate;
+  uint64_t seed;
+  uint8_t identity[16];
+  bool surplus;
+  int state;    /* enum outcome_state */
+  double value; /* of the quantity; NaN when the store has none */
+  double wall_s, cpu_s;
+  int64_t peak_memory;
+  const char *fields_path; /* NULL when none was kept; borrowed until the next row */
+  bool fields_missing;     /* a path is stored, but the file cannot be read */
+};
+/* The runs of a point and of the engine's results_version, in order of replicate. `row` gives the quantity: a row of
+ * outcome_table (of_outcome), or else of the engine's results. */
+struct answer ask_run_of_point(struct store *store, int64_t point_id, const struct engine_kind *kind,
+                               const struct field *row, bool of_outcome, struct error *error);
+/* The next run. False at the end and after an error; then answer_end(). */
+bool ask_run_of_point_next(struct answer *answer, struct ask_run_of_point *run);
+
+/* Fragment masses in kg, largest first; the caller frees them. NULL: the store has none. */
+status ask_run_masses(struct store *store, int64_t run_id, double **masses, size_t *count, struct error *error);
+
+/* Wall time of all stored runs in s: mean and longest. NaN: there are none. */
+status ask_run_wall_times(struct store *store, double *mean, double *longest, struct error *error);
+
+/* One row per run that counts and has its fields kept, of each point's newest results_version: run_id, point_id, seed,
+ * the varied inputs, the main results, and last `fields`. */
+struct answer ask_run_kept(struct store *store, struct error *error);
+/* The path of the file that a row names in this column, as this process can open it: the store holds it relative to its
+ * own folder. The caller frees it; NULL: no memory. */
+char *ask_run_fields(const struct answer *answer, size_t column);
+
+/* ---- One number for every run of a point: a result, an exponent, or the number of fragments heavier than a share of
+ * the body. ---- */
+
+enum ask_specimens_kind {
+  ASK_SPECIMENS_RESULT,
+  ASK_SPECIMENS_EXPONENT,
+  ASK_SPECIMENS_COUNT, /* fragments heavier than a share of the body */
+  ASK_SPECIMENS_SHARE, /* the share of the mass in such fragments: the part that a sieve retains */
+};
+
+struct ask_specimens_quantity {
+  enum ask_specimens_kind kind;
+  const struct field *row;     /* of a result */
+  bool of_outcome;             /* a row of outcome_table, else of the engine's results */
+  enum exponent_method method; /* of an exponent */
+  enum estimates_window window;
+  double share; /* threshold: share of the mass of all fragments together */
+};
+
+/* A row per run that counts, of the results_version of this program's engine. */
+struct answer ask_specimens(struct store *store, int64_t point_id, const struct engine_kind *kind,
+                            const struct ask_specimens_quantity *quantity, struct error *error);
+/* The next run. *value is NaN if it has no such value. False at the end and after an error; then answer_end(). */
+bool ask_specimens_next(struct answer *answer, const struct ask_specimens_quantity *quantity, uint64_t *seed,
+                        double *value);
+
+/* ---- Statistics of runs grouped by varied inputs, and the names of inputs and results that users abbreviate. ---- */
+
+/* points, n, failed, censored, and of each quantity mean, standard deviation, standard error, 95 % half width,
+ * resolution error and its verdict (the worst of all points), of all runs that share the named
+ * axes. A group of one point is a sample of runs (seeds). A group of several points pools over other inputs: its points
+ * are the units, each with the mean of its runs, and the interval is that of a mean over such points; the scatter
+ * between points includes that of the seeds. `pooled` names these inputs ("threshold.angle, material.m"; "": every
+ * group has one point).
+ *
+ * `by`: comma-separated paths of varied inputs or unique suffixes of one ("m,k"); "" pools everything. `quantities`:
+ * comma-separated result columns or unique suffixes; NULL = the main ones. Results of different results_version are
+ * different rows. Registers the functions of answer.h. STATUS_USAGE names the known axes and quantities. */
+enum { ASK_GROUP_POOLED = 512 };
+struct answer ask_group(struct store *store, const char *by, const char *quantities, char pooled[ASK_GROUP_POOLED],
+                        struct error *error);
+
+/* The full name of one result column of the view runs from a unique ending of it. STATUS_USAGE names the known ones. */
+enum { ASK_GROUP_NAME = 128 };
+status ask_group_quantity(struct store *store, const char *quantity, char name[ASK_GROUP_NAME], struct error *error);
+
+/* The columns of comma-separated varied inputs (paths or unique endings), at most `most`. "" names no input. */
+status ask_group_columns(struct store *store, const char *by, size_t most, char (*columns)[ASK_GROUP_NAME],
+                         size_t *count, struct error *error);
+
+/* The names of all result columns of the view runs, one row each. */
+struct answer ask_group_quantities(struct store *store, struct error *error);
+
+/* Pairs of points that share seeds and have no input with different values; each point may have inputs that the other
+ * lacks. Such a pair appears when a campaign is computed again by a program with a new input. ask_group counts the runs
+ * of both. */
+struct ask_group_twins {
+  int64_t pairs;    /* number of such pairs; 0: the other members are not set */
+  int64_t point[2]; /* one pair */
+  char input[256];  /* an input that only one of the two points has */
+};
+status ask_group_twins(struct store *store, struct ask_group_twins *twins, struct error *error);
+
+/* ---- The pairs of points that `clast compare` compares, and their differences. ---- */
+
+struct ask_pairs; /* opaque */
+
+struct ask_pairs_row {
+  int64_t point[2];   /* number of each point in its store */
+  const char *inputs; /* varied inputs that both have; "" when two points were named */
+  struct difference difference;
+};
+
+/* Reads the values of both sides: STORE, STORE:POINT or STORE:CAMPAIGN. STATUS_USAGE: unknown name; STATUS_MISSING: no
+ * such store. */
+status ask_pairs_read(const char *first, const char *second, const char *quantity, struct ask_pairs **out,
+                      struct error *error);
+/* The next pair; its texts are borrowed from `pairs`. False at the end. */
+bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row);
+/* After the last pair. STATUS_USAGE: the sides have no point in common. */
+status ask_pairs_end(const struct ask_pairs *pairs, struct error *error);
+void ask_pairs_free(struct ask_pairs *pairs); /* NULL is fine */
+
+/* ---- One point of a store: the fragment masses of all its runs that count, and the standard estimates made from them.
+ * ---- */
+
+struct point_data {
+  int64_t point_id, results_version;
+  int dimensions;          /* of the engine: 2 or 3 */
+  struct pooled_runs runs; /* in order of replicate; all fragments, single elements included */
+  double element_mass;     /* mean over the runs, kg; NaN when the store holds no estimates of them */
+  double complete_mass;    /* mean over the runs, kg: no window begins below this mass; NaN: not known */
+  size_t *first;           /* memory that `runs` points to; owned */
+  double *masses;
+  int64_t *run_id; /* of every run; owned */
+  uint64_t *seed;  /* of every run; owned */
+};
+
+/* Only runs that count (completed or ended at their time, not surplus), of one results_version (0: the newest with such
+ * runs). runs.count is 0 when the point has no such run. STATUS_CONTENT: the store is damaged. */
+status point_read(struct store *store, int64_t point_id, int64_t results_version, struct point_data *out,
+                  struct error *error);
+/* The same, for runs that meet an SQL condition on the view runs. NULL: all. STATUS_USAGE: the condition is no valid
+ * SQL. */
+status point_read_where(struct store *store, int64_t point_id, int64_t results_version, const char *where,
+                        struct point_data *out, struct error *error);
+void point_release(struct point_data *point); /* a zeroed one is fine */
+
+/* Lower end of a standard window for this point, kg. */
+double point_window(const struct point_data *point, enum estimates_window window);
+
+struct point_estimate {
+  enum estimates_window window;
+  struct pooled_exponent exponent;
+};
+enum { POINT_ESTIMATES = 2 * ESTIMATES_WINDOWS }; /* least_squares and masses in each window, in that order */
+/* Pooled estimates with their intervals over runs. The same store gives the same numbers. */
+status point_estimates(const struct point_data *point, double level, struct point_estimate rows[POINT_ESTIMATES],
+                       struct error *error);
+
+/* pooled_exponent_of_runs() in a standard window. `values` has space for point->runs.count numbers. */
+status point_exponent_of_runs(const struct point_data *point, enum exponent_method method, enum estimates_window window,
+                              double *values, struct error *error);
+
+/* Reads the point and returns one estimate. beta is NaN without runs or with too few fragments. */
+status point_exponent(struct store *store, int64_t point_id, int64_t results_version, enum exponent_method method,
+                      enum estimates_window window, double level, struct pooled_exponent *out, struct error *error);
+
+/* ---- Runs that are pooled: those of one point, of all points that share some varied inputs, or single ones; with
+ * their fragments, or with one of their results. Spectra and scatters are made from pools, so that a choice of runs
+ * means the same in a table, a text plot and a picture. ---- */
+
+struct ask_pool_choice {
+  int64_t point;     /* only this point; 0: all */
+  const char *where; /* only runs that meet this SQL condition on the view runs; NULL: all */
+  const char *by;    /* comma-separated varied inputs (see ask_group): points that share them are one pool; NULL: a pool
+                        per point */
+};
+
+enum { ASK_POOL_AXES = 16, ASK_POOL_TEXT = 64, ASK_POOL_LABEL = 256 };
+/* Holds only runs that count, of the newest results_version among the points of the pool. */
+struct ask_pool {
+  char label[ASK_POOL_LABEL]; /* "strain 0.03, angle 0.0698 rad", or "point 7" */
+  size_t points;
+  const int64_t *point;    /* numbers of the points */
+  const size_t *first_run; /* points + 1: the runs of point p are first_run[p] .. first_run[p + 1] - 1 */
+  size_t axes;             /* of `by` */
+  char column[ASK_POOL_AXES][ASK_GROUP_NAME];
+  struct query_value input[ASK_POOL_AXES];
+  /* without a quantity: fragments of all runs, point after point; complete_mass and element_mass are those of the point
+   * where they are largest; point_id is 0 if there are several. With a quantity: only the run ids, no fragments. */
+  struct point_data data;
+  const double *value; /* with a quantity: of each run, NaN: off; else NULL */
+  const int64_t *seed; /* with a quantity: of each run */
+};
+/* Pools under way. A variable of type ASK_POOLS frees itself where its block is left. */
+struct ask_pools {
+  struct store *store;
+  struct error *error;
+  struct ask_pool_choice choice;
+  bool of_values;
+  char quantity[ASK_GROUP_NAME]; /* column of the values */
+  size_t axes;
+  char column[ASK_POOL_AXES][ASK_GROUP_NAME];
+  struct ask_pool_member *list;
+  size_t count, room, next;
+  status code;
+  /* memory of the current pool */
+  struct ask_pool pool;
+  int64_t *point;
+  size_t *first_run;
+  double *value;
+  int64_t *seed;
+};
+#define ASK_POOLS __attribute__((cleanup(ask_pools_drop))) struct ask_pools
+
+/* Asks for every pool that has a run, in the order of the inputs of `by` or of the points; one pool at a time is in
+ * memory. `quantity` NULL: with the fragments of the runs; else with the values of a result column of the view runs
+ * (its name or a unique ending of it), without fragments. STATUS_USAGE, at ask_pools_end(): an input or quantity is
+ * unknown, or the condition is no valid SQL. */
+struct ask_pools ask_pools(struct store *store, const struct ask_pool_choice *choice, const char *quantity,
+                           struct error *error);
+/* The next pool, borrowed until the next call. NULL at the end and after an error. */
+const struct ask_pool *ask_pools_next(struct ask_pools *pools);
+/* The last call: frees the pools and returns their status. */
+status ask_pools_end(struct ask_pools *pools);
+void ask_pools_drop(struct ask_pools *pools); /* for ASK_POOLS */
+
+/* Dimensions of the engine of the store's first point, 2 or 3: masses in the plane are kg per metre. */
+status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error);
+
+/* The pool in the form that the pooled spectrum needs. Mean and interval are over the runs of a point, or over the
+ * points. */
+struct pooled_form ask_pool_form(const struct ask_pool *pool, bool cumulative, double density);
+
+/* ---- The data of a page of `clast report`: a small SQLite file, made in memory, with tables that have the names and
+ * columns of the store's views. Queries of the page and of its readers work on both.
+ *
+ *   runs, points, spectra   of the store's views; `runs` and `spectra` thinned, results rounded to 7 digits
+ *   estimates               those of points
+ *   means                   n, mean, sd and hw95 of the results that are not in `points`, a row for each point
+ *   quantile                of the first main result: value and 95 % interval, of up to 200 points
+ *   modes                   of all results, at the points whose runs have two modes
+ *   goodness                p of the power law at each point, of the first points until it would take too long
+ *   resolution              of the store's view: what finer settings may change, where `clast converge` was used
+ *   campaign, session, attempt, axis, column_doc   of the store's tables
+ *   question                the canned queries that work here
+ *   label, fact, picture, difference   filled in by the caller ---- */
+
+enum { ASK_PAGE_RUNS = 10000 }; /* most single runs of a page */
+
+struct ask_page; /* opaque */
+
+/* Statistics are of all runs. Single runs are limited in number (the first replicates of every point are kept), and so
+ * are the results of single runs. Facts record what was left out. */
+status ask_page_make(struct store *store, struct ask_page **out, struct error *error);
+void ask_page_free(struct ask_page *page); /* NULL is fine */
+
+/* A sentence or a number about the page. */
+status ask_page_fact(struct ask_page *page, const char *name, const char *value, struct error *error);
+/* The readable name of a column, the unit in which it is shown, and the SI value `factor` of one such unit. */
+status ask_page_label(struct ask_page *page, const char *column, const char *label, const char *unit, double factor,
+                      struct error *error);
+/* All columns of the page that have no label yet, one row each: inputs that were varied, and results. */
+struct answer ask_page_columns(struct ask_page *page, struct error *error);
+
+/* The runs nearest to the quantiles 0, 0.5 and 1 of every point by the main quantity (0: the smallest value), if their
+ * fields are kept; at most `most` runs, the medians of all points first. A row: run, point, quantile, and the file
+ * (ask_run_fields). */
+struct answer ask_page_kept(struct store *store, size_t most, struct error *error);
+/* Adds the picture of the current row of ask_page_kept. */
+status ask_page_picture(struct ask_page *page, const struct answer *kept, const void *png, size_t size,
+                        struct error *error);
+
+/* The difference of a result: a point of this store minus a point of the page's first store. */
+status ask_page_difference(struct ask_page *page, const char *quantity, int64_t first_point, int64_t point,
+                           const struct difference *difference, struct error *error);
+
+/* The file's contents; the caller frees *bytes. */
+status ask_page_file(struct ask_page *page, unsigned char **bytes, size_t *size, struct error *error);
+
+#endif
