@@ -82,27 +82,18 @@ static bool others_open(const struct finding *finding, const struct knob *knob) 
   return false;
 }
 
-/* A level is a choice unless it belongs to a model or a part of one (these are not chosen by cost) or has no runs. */
-static bool is_choice(const struct knob *knob, const struct convergence_row *row) {
-  return knob && knob->group != KNOB_MODEL && knob->group != KNOB_PART && isfinite(row->error) &&
-         isfinite(row->deviation);
-}
-
-static bool has_own(const struct accuracy *accuracy) {
-  for (size_t i = 0; i < accuracy->count; i++)
-    if (accuracy->options[i].own)
-      return true;
-  return false;
-}
-
 /* Second pass: a level as an option. */
 static status take_option(struct finding *finding, const struct convergence_row *row, struct error *error) {
   struct accuracy *accuracy = finding->accuracy;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
-  if (!is_choice(knob, row))
+  /* Models and parts of one are not chosen by cost. */
+  if (!knob || knob->group == KNOB_MODEL || knob->group == KNOB_PART || !isfinite(row->error) ||
+      !isfinite(row->deviation))
     return STATUS_OK;
-  /* every knob has the scene's own settings as a level */
-  if (row->base ? has_own(accuracy) : is_varied(finding->campaign, knob, row->setting))
+  for (size_t i = 0; row->base && i < accuracy->count; i++)
+    if (accuracy->options[i].own) /* every knob has the scene's own settings as a level */
+      return STATUS_OK;
+  if (!row->base && is_varied(finding->campaign, knob, row->setting))
     return STATUS_OK;
 
   struct accuracy_option *grown = realloc(accuracy->options, (accuracy->count + 1) * sizeof *grown);

@@ -111,21 +111,8 @@ static status add_text(struct making *making, const char *text, struct error *er
   return add_level(making, &value, error);
 }
 
-static status add_settings(struct making *making, const char *settings, struct error *error) {
-  status code = STATUS_OK;
-  for (const char *from = settings; code == STATUS_OK && *from;) {
-    char text[64];
-    const size_t length = strcspn(from, ",");
-    snprintf(text, sizeof text, "%.*s", (int)(length < sizeof text ? length : sizeof text - 1), from);
-    code = add_text(making, text, error);
-    from += length + (from[length] == ',');
-  }
-  return code;
-}
-
 static status add_factors(struct making *making, struct error *error) {
-  status code = STATUS_OK;
-  for (size_t i = 0; code == STATUS_OK && i < KNOB_LEVELS && making->knob->factors[i] > 0; i++) {
+  for (size_t i = 0; i < KNOB_LEVELS && making->knob->factors[i] > 0; i++) {
     struct field_value value = making->own[0];
     if (making->knob->factors[i] != 1) {
       char digits[32];
@@ -133,16 +120,9 @@ static status add_factors(struct making *making, struct error *error) {
       value.number = strtod(digits, NULL);
       value.integer = llround((double)value.integer * making->knob->factors[i]);
     }
-    code = add_level(making, &value, error);
+    TRY(add_level(making, &value, error));
   }
-  return code;
-}
-
-static status add_choices(struct making *making, struct error *error) {
-  status code = STATUS_OK;
-  for (size_t i = 0; code == STATUS_OK && i < KNOB_LEVELS && making->knob->choices[i]; i++)
-    code = add_text(making, making->knob->choices[i], error);
-  return code == STATUS_OK ? add_level(making, &making->own[0], error) : code;
+  return STATUS_OK;
 }
 
 /* ---- named settings ---- */
@@ -184,16 +164,14 @@ static status add_named(struct making *making, const char *name, struct error *e
 static status add_all_named(struct making *making, const char *settings, struct error *error) {
   const struct scene *base = making->base;
   struct ladder *ladder = making->ladder;
-  status code = is_wanted(settings, SCENE_SETTINGS_STANDARD) ? add_named(making, SCENE_SETTINGS_STANDARD, error)
-                                                             : STATUS_OK;
-  for (size_t i = 0; code == STATUS_OK && i < base->settings_count; i++)
+  if (is_wanted(settings, SCENE_SETTINGS_STANDARD))
+    TRY(add_named(making, SCENE_SETTINGS_STANDARD, error));
+  for (size_t i = 0; i < base->settings_count; i++)
     if (is_wanted(settings, base->settings[i].name))
-      code = add_named(making, base->settings[i].name, error);
-  if (code != STATUS_OK || ladder->count < 2)
-    return code == STATUS_OK
-               ? status_fail(error, STATUS_CONTENT, "%s has fewer than two named settings (`settings` in its document)",
-                             base->name)
-               : code;
+      TRY(add_named(making, base->settings[i].name, error));
+  if (ladder->count < 2)
+    return status_fail(error, STATUS_CONTENT, "%s has fewer than two named settings (`settings` in its document)",
+                       base->name);
   qsort(ladder->level, ladder->count, sizeof *ladder->level, by_work);
   size_t reference = ladder->count - 1;
   for (size_t i = 0; i < ladder->count; i++)
@@ -220,40 +198,34 @@ static int by_value(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static void sort_levels(const struct making *making) {
+/* Makes all levels of a knob that sets inputs, in order, and marks the reference: the finest level, but for models the
+ * scene's own, which may be missing among the user's settings. */
+static status add_all_levels(struct making *making, const char *settings, struct error *error) {
+  const struct knob *knob = making->knob;
   struct ladder *ladder = making->ladder;
-  if (making->knob->step_power != 0)
+  TRY(find_inputs(making, error));
+  if (settings) {
+    char text[64];
+    while (ladder_next_word(&settings, text, sizeof text))
+      TRY(add_text(making, text, error));
+  } else if (knob->factors[0] > 0) {
+    TRY(add_factors(making, error));
+  } else {
+    for (size_t i = 0; i < KNOB_LEVELS && knob->choices[i]; i++)
+      TRY(add_text(making, knob->choices[i], error));
+    TRY(add_level(making, &making->own[0], error));
+  }
+  if (ladder->count < 2)
+    return status_fail(error, STATUS_CONTENT, "%s has fewer than two levels in this scene", knob->name);
+  if (knob->step_power != 0)
     qsort(ladder->level, ladder->count, sizeof *ladder->level, by_step);
-  else if (making->knob->factors[0] > 0)
+  else if (knob->factors[0] > 0)
     qsort(ladder->level, ladder->count, sizeof *ladder->level, by_value);
-}
-
-/* The reference is the finest level. For models it is the scene's own, which may be missing among the user's
- * settings. */
-static void choose_reference(const struct making *making) {
-  struct ladder *ladder = making->ladder;
   size_t reference = ladder->count - 1;
-  for (size_t i = 0; making->knob->group == KNOB_MODEL && i < ladder->count; i++)
+  for (size_t i = 0; knob->group == KNOB_MODEL && i < ladder->count; i++)
     if (ladder->level[i].base)
       reference = i;
   ladder->level[reference].reference = true;
-}
-
-/* Makes all levels of a knob that sets inputs, in order, and marks the reference. */
-static status add_all_levels(struct making *making, const char *settings, struct error *error) {
-  status code = find_inputs(making, error);
-  if (code != STATUS_OK)
-    return code;
-  if (settings)
-    code = add_settings(making, settings, error);
-  else
-    code = making->knob->factors[0] > 0 ? add_factors(making, error) : add_choices(making, error);
-  if (code != STATUS_OK)
-    return code;
-  if (making->ladder->count < 2)
-    return status_fail(error, STATUS_CONTENT, "%s has fewer than two levels in this scene", making->knob->name);
-  sort_levels(making);
-  choose_reference(making);
   return STATUS_OK;
 }
 
@@ -303,4 +275,13 @@ void ladder_clear(struct ladder *ladder) {
   for (size_t i = 0; i < ladder->count; i++)
     scene_free(ladder->level[i].scene);
   ladder->count = 0;
+}
+
+bool ladder_next_word(const char **list, char *word, size_t size) {
+  if (**list == '\0')
+    return false;
+  const size_t length = strcspn(*list, ",");
+  snprintf(word, size, "%.*s", (int)(length < size ? length : size - 1), *list);
+  *list += length + ((*list)[length] == ',');
+  return true;
 }

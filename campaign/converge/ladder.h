@@ -34,4 +34,7 @@ void ladder_setting(const struct knob *knob, const struct scene *scene, char *te
 
 void ladder_clear(struct ladder *ladder);
 
+/* Takes the next word from a comma-separated list. A longer one is cut. False: there is none. */
+bool ladder_next_word(const char **list, char *word, size_t size);
+
 #endif

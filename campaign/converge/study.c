@@ -85,18 +85,13 @@ size_t study_reference(const struct study_ladder *ladder) {
   return finest;
 }
 
-/* The next finer level that was run; count: there is none. */
-static size_t next_finer(const struct study_ladder *ladder, size_t level) {
-  for (size_t l = level + 1; l < ladder->levels.count; l++)
-    if (!ladder->left_out[l])
-      return l;
-  return ladder->levels.count;
-}
-
 static void find_level(const struct study_ladder *ladder, size_t quantity, size_t l, size_t n,
                        struct convergence_row *row) {
   const struct ladder_level *level = &ladder->levels.level[l];
-  const size_t reference = study_reference(ladder), finer = next_finer(ladder, l);
+  const size_t reference = study_reference(ladder);
+  size_t finer = l + 1; /* the next finer level that was run */
+  while (finer < ladder->levels.count && ladder->left_out[finer])
+    finer++;
   double *const *values = ladder->values[quantity];
   const struct sample_summary summary = sample_summarise(n, values[l], CONFIDENCE);
   row->base = level->base;
@@ -237,13 +232,6 @@ static void add_reference_error(const struct study_ladder *ladders, size_t count
   }
 }
 
-/* Adds the errors of the other knobs. own: error of each knob at the scene's own setting. */
-static void add_other_errors(size_t count, const double *own, size_t of, struct study_found *found) {
-  for (size_t other = 0; other < count; other++)
-    for (size_t l = 0; other != of && l < found->count; l++)
-      found->rows[l].error += own[other];
-}
-
 /* Gives each level the errors of all knobs: for the other knobs, their errors at the scene's own setting. */
 static void combine(const struct study_ladder *ladders, size_t count, struct study_found *found) {
   double own[STUDY_KNOBS] = {0};
@@ -253,8 +241,9 @@ static void combine(const struct study_ladder *ladders, size_t count, struct stu
   for (size_t i = 0; i < count; i++)
     own[i] = found[i].adds ? error_at_base(&found[i]) : 0;
   for (size_t i = 0; i < count; i++)
-    if (ladders[i].levels.knob->group != KNOB_SETTINGS)
-      add_other_errors(count, own, i, &found[i]);
+    for (size_t other = 0; other < count; other++)
+      for (size_t l = 0; ladders[i].levels.knob->group != KNOB_SETTINGS && other != i && l < found[i].count; l++)
+        found[i].rows[l].error += own[other];
   mark_frontier(count, found);
 }
 
@@ -282,25 +271,22 @@ size_t study_of_scene(const struct study *study, size_t from, size_t quantity, s
   return count;
 }
 
-static status store_found(const struct study_ladder *ladder, const struct study_found *found, struct store *store,
-                          struct error *error) {
-  const struct store_convergence rows = {.base_point_id = ladder->base_point,
-                                         .results_version = ladder->base->kind->results_version,
-                                         .count = found->count,
-                                         .point_ids = ladder->point,
-                                         .rows = found->rows,
-                                         .limit = &found->limit};
-  return store_set_convergence(store, &rows, error);
-}
-
 status study_store(const struct study *study, struct store *store, struct error *error) {
   struct study_found *found = malloc(STUDY_KNOBS * sizeof *found);
   status code = found ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the rows of a study");
   for (size_t from = 0, count = 0; code == STATUS_OK && from < study->ladder_count; from += count)
     for (size_t q = 0; code == STATUS_OK && q < study->quantity_count; q++) {
       count = study_of_scene(study, from, q, found);
-      for (size_t i = 0; code == STATUS_OK && i < count; i++)
-        code = store_found(&study->ladder[from + i], &found[i], store, error);
+      for (size_t i = 0; code == STATUS_OK && i < count; i++) {
+        const struct study_ladder *ladder = &study->ladder[from + i];
+        const struct store_convergence rows = {.base_point_id = ladder->base_point,
+                                               .results_version = ladder->base->kind->results_version,
+                                               .count = found[i].count,
+                                               .point_ids = ladder->point,
+                                               .rows = found[i].rows,
+                                               .limit = &found[i].limit};
+        code = store_set_convergence(store, &rows, error);
+      }
     }
   free(found);
   return code;
@@ -358,20 +344,15 @@ static status read_exponent(const struct study *study, struct study_ladder *ladd
   return code;
 }
 
-static status read_level(const struct study *study, struct study_ladder *ladder, size_t l, struct store *store,
-                         struct error *error) {
-  status code = store_add_point(store, 0, ladder->levels.level[l].scene, 0, NULL, &ladder->point[l], error);
-  for (size_t q = 0; code == STATUS_OK && q < study->quantity_count; q++) {
-    code = read_runs(study, ladder, l, q, store, error);
-    if (code == STATUS_OK && !study->quantity[q].row)
-      code = read_exponent(study, ladder, l, q, store, error);
-  }
-  return code;
-}
-
 status study_read(const struct study *study, struct study_ladder *ladder, struct store *store, struct error *error) {
-  status code = store_add_point(store, 0, ladder->base, 0, NULL, &ladder->base_point, error);
-  for (size_t l = 0; code == STATUS_OK && l < ladder->levels.count; l++)
-    code = read_level(study, ladder, l, store, error);
-  return code;
+  TRY(store_add_point(store, 0, ladder->base, 0, NULL, &ladder->base_point, error));
+  for (size_t l = 0; l < ladder->levels.count; l++) {
+    TRY(store_add_point(store, 0, ladder->levels.level[l].scene, 0, NULL, &ladder->point[l], error));
+    for (size_t q = 0; q < study->quantity_count; q++) {
+      TRY(read_runs(study, ladder, l, q, store, error));
+      if (!study->quantity[q].row)
+        TRY(read_exponent(study, ladder, l, q, store, error));
+    }
+  }
+  return STATUS_OK;
 }

@@ -119,9 +119,7 @@ static status print_quantity(const struct study *study, size_t from, size_t quan
   return code;
 }
 
-static status print_rows(const struct study *study, size_t count, const struct study_found *found,
-                         struct table *table) {
-  (void)study;
+static void print_rows(size_t count, const struct study_found *found, struct table *table) {
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++)
       for (size_t c = 0; c < convergence_table.count; c++) {
@@ -137,7 +135,6 @@ static status print_rows(const struct study *study, size_t count, const struct s
         else
           table_real(table, value.number);
       }
-  return STATUS_OK;
 }
 
 static const char legend[] =
@@ -158,7 +155,10 @@ status study_print(const struct study *study, enum table_format format, bool qui
   for (size_t from = 0, count = 0; code == STATUS_OK && from < study->ladder_count; from += count)
     for (size_t q = 0; code == STATUS_OK && q < study->quantity_count; q++) {
       count = study_of_scene(study, from, q, found);
-      code = table ? print_rows(study, count, found, table) : print_quantity(study, from, q, count, found, error);
+      if (table)
+        print_rows(count, found, table);
+      else
+        code = print_quantity(study, from, q, count, found, error);
     }
   if (table)
     code = table_end(table, error);
@@ -176,24 +176,18 @@ enum { CURVES = PICTURE_SERIES, MARKS = STUDY_KNOBS * KNOB_LEVELS };
 
 struct drawing {
   struct study_found found[STUDY_KNOBS];
-  size_t knobs;
   struct picture_mean means[CURVES][MARKS];
   struct picture_curve curves[CURVES];
   size_t count;
 };
 
-static struct picture_mean mean_of(const struct convergence_row *row) {
-  return (struct picture_mean){row->cpu, row->mean, row->mean - row->half_width, row->mean + row->half_width, NAN};
-}
-
-static struct picture_mean error_of(const struct convergence_row *row) {
-  return (struct picture_mean){row->cpu, row->error, NAN, NAN, NAN};
-}
-
-/* Adds a mark to the current curve, in order of cost. */
-static void add_mark(struct drawing *drawing, struct picture_mean mark) {
+/* Adds a mark of the level to the last curve, in order of cost. */
+static void add_mark(struct drawing *drawing, const struct convergence_row *row, bool of_errors) {
   struct picture_mean *means = drawing->means[drawing->count];
   struct picture_curve *curve = &drawing->curves[drawing->count];
+  const struct picture_mean mark = of_errors ? (struct picture_mean){row->cpu, row->error, NAN, NAN, NAN}
+                                             : (struct picture_mean){row->cpu, row->mean, row->mean - row->half_width,
+                                                                     row->mean + row->half_width, NAN};
   if (!isfinite(mark.x) || !isfinite(mark.y) || curve->count == MARKS)
     return;
   size_t place = curve->count++;
@@ -202,42 +196,26 @@ static void add_mark(struct drawing *drawing, struct picture_mean mark) {
   means[place] = mark;
 }
 
-static void begin_curve(struct drawing *drawing, const char *label) {
+/* A curve of the levels of some knobs; with `frontier` only of those on it. */
+static void add_curve(struct drawing *drawing, const char *label, const struct study_found *found, size_t knobs,
+                      bool of_errors, bool frontier) {
   drawing->curves[drawing->count] = (struct picture_curve){.label = label, .mean = drawing->means[drawing->count]};
-}
-
-static void end_curve(struct drawing *drawing) {
+  for (size_t i = 0; i < knobs; i++)
+    for (size_t l = 0; l < found[i].count; l++)
+      if (!frontier || found[i].rows[l].frontier)
+        add_mark(drawing, &found[i].rows[l], of_errors);
   drawing->count += drawing->curves[drawing->count].count > 0;
-}
-
-/* A curve for each knob, up to the number of line styles. */
-static void add_knobs(struct drawing *drawing, size_t most,
-                      struct picture_mean (*mark_of)(const struct convergence_row *row)) {
-  for (size_t i = 0; i < drawing->knobs && drawing->count < most; i++) {
-    begin_curve(drawing, drawing->found[i].limit.knob);
-    for (size_t l = 0; l < drawing->found[i].count; l++)
-      add_mark(drawing, mark_of(&drawing->found[i].rows[l]));
-    end_curve(drawing);
-  }
-}
-
-static void add_frontier(struct drawing *drawing) {
-  begin_curve(drawing, "frontier: no level is both cheaper and nearer");
-  for (size_t i = 0; i < drawing->knobs; i++)
-    for (size_t l = 0; l < drawing->found[i].count; l++)
-      if (drawing->found[i].rows[l].frontier)
-        add_mark(drawing, error_of(&drawing->found[i].rows[l]));
-  end_curve(drawing);
 }
 
 status study_print_picture(const struct study *study, bool of_errors, const char *path, struct error *error) {
   struct drawing *drawing = calloc(1, sizeof *drawing);
   if (!drawing)
     return status_fail(error, STATUS_MEMORY, "out of memory");
-  drawing->knobs = study_of_scene(study, 0, 0, drawing->found);
+  const size_t knobs = study_of_scene(study, 0, 0, drawing->found);
   if (of_errors)
-    add_frontier(drawing);
-  add_knobs(drawing, CURVES, of_errors ? error_of : mean_of);
+    add_curve(drawing, "frontier: no level is both cheaper and nearer", drawing->found, knobs, true, true);
+  for (size_t i = 0; i < knobs && drawing->count < CURVES; i++)
+    add_curve(drawing, drawing->found[i].limit.knob, &drawing->found[i], 1, of_errors, false);
 
   char title[800], quantity[CHARTS_LABEL], y[CHARTS_LABEL + 16];
   charts_label(study->quantity[0].name, quantity);

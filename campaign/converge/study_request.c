@@ -40,12 +40,8 @@ static status add_points(struct study_subject *subject, const struct option_list
 static status load_campaign(struct study_subject *subject, const char *path, const struct option_list *set,
                             struct error *error) {
   TRY(campaign_load(path, &subject->campaign, error));
-  const struct campaign *campaign = subject->campaign;
-  const char *slash = strrchr(path, '/'), *scene = campaign->scene_reference;
-  const bool is_file = strchr(scene, '/') || strchr(scene, '.');
-  snprintf(subject->reference, sizeof subject->reference, "%.*s%s",
-           slash && is_file && scene[0] != '/' ? (int)(slash + 1 - path) : 0, path, scene);
-  subject->study.limits = *campaign;
+  driver_list_reference(subject->campaign, path, subject->reference, sizeof subject->reference);
+  subject->study.limits = *subject->campaign;
   return add_points(subject, set, error);
 }
 
@@ -94,28 +90,14 @@ static status load(struct study_subject *subject, const char *path, const struct
 
 static status read_quantities(struct study *study, const char *names, const struct engine_kind *kind,
                               struct error *error) {
-  for (const char *from = names; *from;) {
-    char name[FIELD_TEXT_SIZE];
-    const size_t length = strcspn(from, ",");
-    snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), from);
+  char name[FIELD_TEXT_SIZE];
+  while (ladder_next_word(&names, name, sizeof name)) {
     if (study->quantity_count == STUDY_QUANTITIES)
       return status_fail(error, STATUS_USAGE, "at most %d quantities in one study", STUDY_QUANTITIES);
-    struct study_quantity *quantity = &study->quantity[study->quantity_count++];
-    if (study_quantity_find(kind, name, quantity, error) != STATUS_OK)
+    if (study_quantity_find(kind, name, &study->quantity[study->quantity_count++], error) != STATUS_OK)
       return STATUS_USAGE;
-    from += length + (from[length] == ',');
   }
   return study->quantity_count ? STATUS_OK : status_fail(error, STATUS_USAGE, "--quantity names none");
-}
-
-static status read_seconds(struct study_rule *rule, const char *text, struct error *error) {
-  char *end = NULL;
-  if (!text)
-    return STATUS_OK;
-  rule->seconds = strtod(text, &end);
-  if (*end || !(rule->seconds > 0))
-    return status_fail(error, STATUS_USAGE, "--seconds %s: expected a number of seconds above 0", text);
-  return STATUS_OK;
 }
 
 /* Reads a half width, or a share in percent. */
@@ -140,20 +122,21 @@ static status read_within(struct study_rule *rule, const char *text, bool severa
 
 static status read_rule(struct study *study, const struct study_request *request, struct error *error) {
   struct study_rule *rule = &study->rule;
+  const int64_t first = request->first_seeds, most = request->most_seeds;
   *rule = (struct study_rule){.within = NAN,
                               .seconds = HUGE_VAL,
-                              .first_seeds = request->first_seeds,
-                              .most_seeds = request->most_seeds};
-  if (rule->most_seeds < rule->first_seeds)
-    rule->most_seeds = rule->first_seeds;
-  const status code = read_seconds(rule, request->seconds, error);
-  return code ? code : read_within(rule, request->within, study->quantity_count > 1, error);
+                              .first_seeds = first,
+                              .most_seeds = most < first ? first : most};
+  if (request->seconds) {
+    char *end = NULL;
+    rule->seconds = strtod(request->seconds, &end);
+    if (*end || !(rule->seconds > 0))
+      return status_fail(error, STATUS_USAGE, "--seconds %s: expected a number of seconds above 0", request->seconds);
+  }
+  return read_within(rule, request->within, study->quantity_count > 1, error);
 }
 
-static void note_lines(const char *text, bool quiet) {
-  for (const char *line = text; line && *line && !quiet; line += strcspn(line, "\n") + 1)
-    fprintf(stderr, "clast: %.*s\n", (int)strcspn(line, "\n"), line);
-}
+/* ---- knobs ---- */
 
 /* A knob that does not apply is left out with a remark if it comes from a group, and refused if it was named. */
 static status add_knob(struct study_subject *subject, const struct study_request *request, const struct scene *scene,
@@ -161,8 +144,8 @@ static status add_knob(struct study_subject *subject, const struct study_request
   struct ladder levels;
   char *notes = NULL;
   status code = ladder_make(knob, scene, settings, &levels, &notes, error);
-  if (code == STATUS_OK)
-    note_lines(notes, request->quiet);
+  for (const char *line = code || request->quiet ? NULL : notes; line && *line; line += strcspn(line, "\n") + 1)
+    fprintf(stderr, "clast: %.*s\n", (int)strcspn(line, "\n"), line);
   free(notes);
   if (code == STATUS_CONTENT && !named) {
     *error = (struct error){0};
@@ -171,56 +154,34 @@ static status add_knob(struct study_subject *subject, const struct study_request
   return code == STATUS_OK ? study_add(&subject->study, scene, &levels, error) : code;
 }
 
-static int group_of(const char *name) {
-  for (int group = 0; group < KNOB_GROUPS; group++)
-    if (strcmp(name, engine_knob_groups[group]) == 0)
-      return group;
-  return -1;
-}
-
+/* `name`: a knob, or a group of knobs. */
 static status add_named(struct study_subject *subject, const struct study_request *request, const struct scene *scene,
                         const char *name, const char *settings, struct error *error) {
-  const int group = group_of(name);
-  if (group < 0) {
+  int group = 0;
+  while (group < KNOB_GROUPS && strcmp(name, engine_knob_groups[group]) != 0)
+    group++;
+  if (group == KNOB_GROUPS) {
     const struct knob *knob = engine_knob(scene->kind, name, error);
     return knob ? add_knob(subject, request, scene, knob, settings, true, error) : STATUS_USAGE;
   }
-  status code = STATUS_OK;
-  for (const struct knob *knob = scene->kind->knobs; code == STATUS_OK && knob && knob->name; knob++)
+  for (const struct knob *knob = scene->kind->knobs; knob && knob->name; knob++)
     if ((int)knob->group == group)
-      code = add_knob(subject, request, scene, knob, NULL, false, error);
-  return code;
+      TRY(add_knob(subject, request, scene, knob, NULL, false, error));
+  return STATUS_OK;
 }
 
 /* "particles,time_step" or "particles=1000,3000". */
 static status add_item(struct study_subject *subject, const struct study_request *request, const struct scene *scene,
                        const char *item, struct error *error) {
+  char name[64];
   const char *equals = strchr(item, '=');
-  status code = STATUS_OK;
-  for (const char *from = item; code == STATUS_OK && *from;) {
-    char name[64];
-    const size_t length = equals ? (size_t)(equals - item) : strcspn(from, ",");
-    snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), from);
-    code = add_named(subject, request, scene, name, equals ? equals + 1 : NULL, error);
-    if (equals)
-      break;
-    from += length + (from[length] == ',');
+  if (equals) {
+    snprintf(name, sizeof name, "%.*s", (int)(equals - item), item);
+    return add_named(subject, request, scene, name, equals + 1, error);
   }
-  return code;
-}
-
-static status add_knobs(struct study_subject *subject, const struct study_request *request, struct error *error) {
-  status code = STATUS_OK;
-  for (size_t s = 0; code == STATUS_OK && s < subject->scene_count; s++) {
-    const struct scene *scene = subject->scenes[s];
-    if (request->knobs.count == 0)
-      code = add_item(subject, request, scene, "resolution,settings", error);
-    for (size_t i = 0; code == STATUS_OK && i < request->knobs.count; i++)
-      code = add_item(subject, request, scene, request->knobs.items[i], error);
-  }
-  if (code == STATUS_OK && subject->study.ladder_count == 0)
-    code = status_fail(error, STATUS_CONTENT, "no knob applies to this scene (`clast converge --list`)");
-  return code;
+  while (ladder_next_word(&item, name, sizeof name))
+    TRY(add_named(subject, request, scene, name, NULL, error));
+  return STATUS_OK;
 }
 
 status study_request_read(const struct study_request *request, const char *path, struct study_subject *subject,
@@ -231,11 +192,18 @@ status study_request_read(const struct study_request *request, const char *path,
     study->limits.first_seed = request->first_seed;
   if (request->store)
     snprintf(study->limits.store, sizeof study->limits.store, "%s", request->store);
-  status code = read_quantities(study, request->quantity ? request->quantity : study->limits.quantity,
-                                subject->scenes[0]->kind, error);
-  if (code == STATUS_OK)
-    code = read_rule(study, request, error);
-  return code == STATUS_OK ? add_knobs(subject, request, error) : code;
+  TRY(read_quantities(study, request->quantity ? request->quantity : study->limits.quantity, subject->scenes[0]->kind,
+                      error));
+  TRY(read_rule(study, request, error));
+  for (size_t s = 0; s < subject->scene_count; s++) {
+    if (request->knobs.count == 0)
+      TRY(add_item(subject, request, subject->scenes[s], "resolution,settings", error));
+    for (size_t i = 0; i < request->knobs.count; i++)
+      TRY(add_item(subject, request, subject->scenes[s], request->knobs.items[i], error));
+  }
+  return study->ladder_count
+             ? STATUS_OK
+             : status_fail(error, STATUS_CONTENT, "no knob applies to this scene (`clast converge --list`)");
 }
 
 void study_request_clear(struct study_subject *subject) {

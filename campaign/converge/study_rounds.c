@@ -145,14 +145,6 @@ static struct study_ladder *choose_ladder(struct rounds *rounds) {
 
 /* ---- a round as a campaign ---- */
 
-static size_t cheapest_level(const struct study_ladder *ladder) {
-  size_t best = 0;
-  for (size_t l = 1; l < ladder->levels.count; l++)
-    if (work_of(ladder->levels.level[l].scene) < work_of(ladder->levels.level[best].scene))
-      best = l;
-  return best;
-}
-
 /* True when some level gives the input another value than the base scene. False for an input without effect. */
 static bool is_turned(const struct study_ladder *ladder, size_t input) {
   const struct scene *base = ladder->base;
@@ -176,9 +168,11 @@ static status make_campaign(const struct rounds *rounds, struct campaign **out, 
   const struct ladder *levels = &rounds->ladder->levels;
   const struct scene *base = rounds->ladder->base;
   const struct field_table *inputs = base->kind->inputs;
-  const size_t cheapest = cheapest_level(rounds->ladder);
   const struct ladder_level *level[KNOB_LEVELS];
-  size_t axes = 0, points = 0;
+  size_t axes = 0, points = 0, cheapest = 0;
+  for (size_t l = 1; l < levels->count; l++)
+    if (work_of(levels->level[l].scene) < work_of(levels->level[cheapest].scene))
+      cheapest = l;
   for (size_t l = 0; l < levels->count; l++)
     if (rounds->probe ? l == cheapest : !rounds->ladder->left_out[l])
       level[points++] = &levels->level[l];

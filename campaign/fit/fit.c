@@ -15,10 +15,6 @@ double fit_back(const struct observed_datum *datum, double transformed) {
   return datum->ask.kind == ASK_SPECIMENS_COUNT ? expm1(transformed) : transformed;
 }
 
-static double number_of(const struct field_value *value) {
-  return value->kind == FIELD_INTEGER ? (double)value->integer : value->number;
-}
-
 /* Six digits: the document of a round stays readable, and its values read back as the same bits. */
 void fit_value(const struct fit *fit, size_t input, double z, struct field_value *value) {
   const struct design_axis *axis = &fit->campaign->axes[fit->axis[input]];
@@ -39,7 +35,7 @@ void fit_value(const struct fit *fit, size_t input, double z, struct field_value
 double fit_number(const struct fit *fit, size_t input, double z) {
   struct field_value value;
   design_axis_quantile(&fit->campaign->axes[fit->axis[input]], posterior_share(z), &value);
-  return number_of(&value);
+  return value.kind == FIELD_INTEGER ? (double)value.integer : value.number;
 }
 
 /* ---- from the documents ---- */
@@ -206,8 +202,7 @@ status fit_solve(struct fit *fit, struct error *error) {
 }
 
 status fit_find(struct fit *fit, struct error *error) {
-  const status code = fit_solve(fit, error);
-  if (code == STATUS_OK)
-    identify_find(&fit->surfaces.model, &fit->posterior, &fit->found);
-  return code;
+  TRY(fit_solve(fit, error));
+  identify_find(&fit->surfaces.model, &fit->posterior, &fit->found);
+  return STATUS_OK;
 }

@@ -310,19 +310,16 @@ static void tell(const struct fit *fit, FILE *out) {
 status fit_print(const struct fit *fit, enum table_format format, struct error *error) {
   if (format != TABLE_TEXT)
     return print_rows(fit, format, error);
-  status code = print_inputs(fit, false, error);
+  TRY(print_inputs(fit, false, error));
   putchar('\n');
-  if (code == STATUS_OK)
-    code = print_data(fit, error);
+  TRY(print_data(fit, error));
   putchar('\n');
-  if (code == STATUS_OK)
-    tell(fit, stdout);
-  if (code == STATUS_OK && fit->check.kept) {
-    printf("\nCheck without a formula for the likelihood (ABC, %zu runs nearest to the data, distance up to %.3g):\n",
-           fit->check.kept, fit->check.tolerance);
-    code = print_inputs(fit, true, error);
-  }
-  return code;
+  tell(fit, stdout);
+  if (!fit->check.kept)
+    return STATUS_OK;
+  printf("\nCheck without a formula for the likelihood (ABC, %zu runs nearest to the data, distance up to %.3g):\n",
+         fit->check.kept, fit->check.tolerance);
+  return print_inputs(fit, true, error);
 }
 
 /* "shot 1: mass share of the largest fragment M1/M = 0.31". */

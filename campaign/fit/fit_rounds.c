@@ -49,21 +49,20 @@ static status make_campaign(const struct fit *fit, struct campaign **out, struct
 
 /* Reads the error of the resolution from a study in the store, for data without `resolution`. */
 static status find_resolution(struct fit *fit, struct store *store, struct error *error) {
-  status code = STATUS_OK;
-  for (size_t k = 0; code == STATUS_OK && k < fit->observed->datum_count; k++) {
+  for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct observed_datum *datum = &fit->observed->data[k];
     char column[FIELD_TEXT_SIZE];
     int64_t point = 0;
     if (!isnan(datum->resolution))
       continue;
     field_column_name(datum->ask.row ? datum->ask.row->path : datum->quantity, column, sizeof column);
-    code = store_point_find(store, fit->observed->shots[datum->shot].scene, &point, error);
-    if (code == STATUS_OK && point)
-      code = ask_resolution(store, point, column, &fit->resolution[k], error);
-    if (code == STATUS_OK && isfinite(fit->resolution[k].half_width))
+    TRY(store_point_find(store, fit->observed->shots[datum->shot].scene, &point, error));
+    if (point)
+      TRY(ask_resolution(store, point, column, &fit->resolution[k], error));
+    if (isfinite(fit->resolution[k].half_width))
       fit->data[k].resolution = fit->resolution[k].half_width / 1.96;
   }
-  return code;
+  return STATUS_OK;
 }
 
 static status next_round(void *context, const struct scheduler *scheduler, struct campaign **campaign,
@@ -146,11 +145,10 @@ static status read_point(const struct fit *fit, struct store *store, const doubl
 /* Reads the values of the shot under way for the members at z into fit->values, after the existing points. */
 static status read_members(struct fit *fit, struct store *store, const double *z, struct error *error) {
   const size_t d = fit->observed->datum_count, r = fit->replicates;
-  status code = STATUS_OK;
-  for (size_t j = 0; code == STATUS_OK && j < fit->members; j++)
-    code = read_point(fit, store, z + j * fit->inputs, fit->campaign->independent, r,
-                      fit->values + (fit->points + j) * d * r, r, error);
-  return code;
+  for (size_t j = 0; j < fit->members; j++)
+    TRY(read_point(fit, store, z + j * fit->inputs, fit->campaign->independent, r,
+                   fit->values + (fit->points + j) * d * r, r, error));
+  return STATUS_OK;
 }
 
 /* Reads the values of the particles at z into fit->specimens: means over the shot's specimens. */
@@ -205,14 +203,14 @@ static status move_ensemble(struct fit *fit, struct error *error) {
 
 /* Draws the members of the next round from the posterior, evenly by weight. */
 static status draw_from_posterior(struct fit *fit, struct error *error) {
-  const status code = fit_solve(fit, error);
-  for (size_t j = 0; code == STATUS_OK && j < fit->members; j++) {
+  TRY(fit_solve(fit, error));
+  for (size_t j = 0; j < fit->members; j++) {
     const double p = random_draw(fit->rule.seed, RANDOM_INFERENCE, UINT64_C(1) << 60, j);
     const size_t node = posterior_node(&fit->posterior, ((double)j + p) / (double)fit->members);
     for (size_t i = 0; i < fit->inputs; i++)
       fit->place[j * fit->inputs + i] = fmin(fmax(fit->posterior.z[node * fit->inputs + i], -3.5), 3.5);
   }
-  return code;
+  return STATUS_OK;
 }
 
 static void tell(const struct fit *fit) {
@@ -229,29 +227,26 @@ static void tell(const struct fit *fit) {
 }
 
 static status after_ensemble(struct fit *fit, struct error *error) {
-  status code = STATUS_OK;
   fit->rounds++;
   switch (fit->phase) {
   case FIT_ENSEMBLE:
-    code = move_ensemble(fit, error);
+    TRY(move_ensemble(fit, error));
     if (fit->ensemble.tempered > 1 - 1e-9)
       fit->phase = FIT_ARRIVED;
     break;
   case FIT_ARRIVED:
-    code = draw_from_posterior(fit, error);
+    TRY(draw_from_posterior(fit, error));
     fit->phase = FIT_REFINED;
     break;
   default: fit->phase = FIT_DONE; break;
   }
-  if (code == STATUS_OK)
-    tell(fit);
-  if (fit->phase == FIT_DONE && fit->rule.check)
+  tell(fit);
+  if (fit->phase == FIT_DONE && fit->rule.check) {
     fit->phase = FIT_CHECKED;
-  if (code == STATUS_OK && fit->phase == FIT_CHECKED) {
-    code = fit_solve(fit, error); /* its errors scale the distances */
+    TRY(fit_solve(fit, error)); /* its errors scale the distances */
     fit->proposed = approximate_propose(&fit->check);
   }
-  return code;
+  return STATUS_OK;
 }
 
 /* Distance of each particle from the data, in units of the scatter and errors at the middle of the posterior. The
@@ -319,14 +314,11 @@ struct subject {
 
 static status load(struct subject *subject, const struct command_line *line, const struct fit_launch *options,
                    struct launch_notes *notes, struct error *error) {
-  const char *path = line->arguments[1], *slash = strrchr(path, '/');
+  const char *path = line->arguments[1];
   TRY(campaign_load(path, &subject->campaign, error));
   TRY(observed_load(line->arguments[0], subject->campaign, &subject->observed, error));
   struct campaign *campaign = subject->campaign;
-  const char *scene = campaign->scene_reference;
-  const bool is_file = strchr(scene, '/') || strchr(scene, '.');
-  snprintf(subject->reference, sizeof subject->reference, "%.*s%s",
-           slash && is_file && scene[0] != '/' ? (int)(slash + 1 - path) : 0, path, scene);
+  driver_list_reference(campaign, path, subject->reference, sizeof subject->reference);
   if (options->store)
     snprintf(campaign->store, sizeof campaign->store, "%s", options->store);
   const struct fit_rule rule = {.rounds = options->rounds,

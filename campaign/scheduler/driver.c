@@ -674,3 +674,9 @@ status driver_list_end(struct campaign *campaign, const char *scene_reference, c
   campaign->text = campaign_write_list(campaign, scene_reference, comment);
   return campaign->text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");
 }
+
+void driver_list_reference(const struct campaign *campaign, const char *path, char *reference, size_t size) {
+  const char *slash = strrchr(path, '/'), *scene = campaign->scene_reference;
+  const bool is_file = strchr(scene, '/') || strchr(scene, '.');
+  snprintf(reference, size, "%.*s%s", slash && is_file && scene[0] != '/' ? (int)(slash + 1 - path) : 0, path, scene);
+}

@@ -63,6 +63,8 @@ status driver_list_begin(const struct campaign *like, const struct scene *scene,
                          struct campaign **out, struct error *error);
 status driver_list_end(struct campaign *campaign, const char *scene_reference, const char *comment,
                        struct error *error);
+/* Writes the scene of the campaign at `path` as it is called from the current folder. */
+void driver_list_reference(const struct campaign *campaign, const char *path, char *reference, size_t size);
 
 /* The parts of driver_run, for tests that take the farm's place. */
 struct driver;

@@ -1,15 +1,161 @@
-/* Walks the design and times trial runs. */
+/* Predicts a campaign: times trial runs, walks the design, and prints what it found. */
 #include "campaign/scheduler/plan.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "campaign/converge/ladder.h"
 #include "campaign/document/campaign_walk.h"
-#include "campaign/scheduler/pilot.h"
+#include "campaign/document/campaign_warn.h"
+#include "campaign/terminal/progress.h"
 #include "db/ask/ask.h"
 #include "db/store/store.h"
 #include "schemas/clock.h"
+#include "schemas/text.h"
+
+/* ---- trials ---- */
+
+enum { HALVINGS = 20 };
+
+static void mark(struct plan_trial *run) {
+  if (run->marks == PLAN_MARKS) { /* keep every other one */
+    for (size_t i = 0; i < PLAN_MARKS / 2; i++) {
+      run->mark_steps[i] = run->mark_steps[2 * i + 1];
+      run->mark_progress[i] = run->mark_progress[2 * i + 1];
+    }
+    run->marks = PLAN_MARKS / 2;
+  }
+  run->mark_steps[run->marks] = run->steps;
+  run->mark_progress[run->marks++] = run->progress;
+}
+
+static status step(const struct engine_kind *kind, void *state, double until, struct plan_trial *run,
+                   struct error *error) {
+  uint64_t block = 1;
+  status code = STATUS_OK;
+  while (code == STATUS_OK && !run->finished && clock_cpu_s() < until) {
+    const double from = clock_cpu_s();
+    code = kind->step(state, block, &run->finished, error);
+    const double took = clock_cpu_s() - from;
+    run->step_s += took;
+    run->steps += (double)block;
+    run->progress = kind->progress ? kind->progress(state) : (double)NAN;
+    mark(run);
+    if (took < 0.002 && block < UINT64_C(1) << 40)
+      block *= 2;
+  }
+  return code;
+}
+
+status plan_try(const struct scene *scene, uint64_t seed, double seconds, struct plan_trial *run, struct error *error) {
+  const struct engine_kind *kind = scene->kind;
+  void *state = NULL, *result = NULL;
+  struct fragment *list = NULL;
+  struct outcome outcome;
+  const double begin = clock_cpu_s();
+  *run = (struct plan_trial){0};
+  struct scene *alone = scene_copy(scene); /* one thread: the processor time of several includes their waiting */
+  if (!alone)
+    return status_fail(error, STATUS_MEMORY, "no memory for the trial's scene");
+  if (kind->threads)
+    *kind->threads(alone->inputs) = 1;
+  status code = kind->prepare(alone->inputs, seed, &state, error);
+  scene_free(alone);
+  if (code != STATUS_OK)
+    return code;
+  run->prepare_s = clock_cpu_s() - begin;
+  code = step(kind, state, begin + seconds, run, error);
+  if (code != STATUS_OK)
+    goto cleanup;
+  result = calloc(1, kind->results->size);
+  if (!result) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for the trial's result");
+    goto cleanup;
+  }
+  const double stepped = clock_cpu_s();
+  code = kind->finish(state, &outcome, result, &list, &run->fragments, error);
+  run->finish_s = clock_cpu_s() - stepped;
+cleanup:
+  free(list);
+  free(result);
+  kind->free(state);
+  return code;
+}
+
+/* Number of steps that the run had made at this progress. NaN: the run did not reach it. */
+static double steps_at(const struct plan_trial *run, double progress) {
+  double steps = 0, before = 0;
+  for (size_t i = 0; i < run->marks; i++) {
+    if (run->mark_progress[i] >= progress)
+      return steps + (run->mark_steps[i] - steps) * (progress - before) / (run->mark_progress[i] - before);
+    steps = run->mark_steps[i];
+    before = run->mark_progress[i];
+  }
+  return NAN;
+}
+
+double plan_whole(const struct plan_trial *piece, const struct plan_trial *coarse) {
+  const double steps = steps_at(coarse, piece->progress);
+  if (!coarse->finished || !(steps > 0))
+    return NAN;
+  return piece->prepare_s + piece->step_s * coarse->steps / steps + piece->finish_s;
+}
+
+double plan_to_hard_end(const struct plan_trial *piece) {
+  return piece->prepare_s + piece->step_s / piece->progress + piece->finish_s;
+}
+
+/* The first knob of the engine with a step that applies to the scene: its number of particles or grains. */
+static const struct knob *size_knob(const struct scene *scene, double *own) {
+  for (const struct knob *knob = scene->kind->knobs; knob && knob->name; knob++) {
+    if (knob->step_power == 0)
+      continue;
+    struct field_value value;
+    const struct field *row = field_find(scene->kind->inputs, knob->inputs[0].path, NULL);
+    if (!row || !field_is_active(scene->kind->inputs, row, scene->inputs))
+      return NULL;
+    field_get(row, scene->inputs, &value);
+    *own = row->kind == FIELD_INTEGER ? (double)value.integer : value.number;
+    return knob;
+  }
+  return NULL;
+}
+
+void plan_coarsen(const struct scene *scene, double rate, double seconds, struct scene **coarse, char setting[64]) {
+  double own = NAN;
+  const struct knob *knob = scene->kind->work ? size_knob(scene, &own) : NULL;
+  *coarse = NULL;
+  setting[0] = '\0';
+  for (int i = 1; knob && i < HALVINGS; i++) {
+    char text[64];
+    const double value = knob->step_power < 0 ? own / pow(2, i) : own * pow(2, 0.5 * i);
+    snprintf(text, sizeof text, "%.4g", value >= 100 ? round(value) : value);
+    struct scene *next = plan_coarsen_like(scene, text);
+    if (!next)
+      return;
+    scene_free(*coarse);
+    *coarse = next;
+    snprintf(setting, 64, "%s", text);
+    if (next->kind->work(next->inputs) * rate <= seconds)
+      return;
+  }
+}
+
+struct scene *plan_coarsen_like(const struct scene *scene, const char *setting) {
+  double own;
+  struct error ignored;
+  const struct knob *knob = size_knob(scene, &own);
+  struct scene *copy = knob ? scene_copy(scene) : NULL;
+  if (copy && ladder_turn(knob, copy, setting, &ignored) != STATUS_OK) {
+    scene_free(copy);
+    return NULL;
+  }
+  return copy;
+}
+
+/* ---- the plan ---- */
 
 enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000, SAMPLED = 8 };
 #define NOTHING ((double)NAN)
@@ -88,7 +234,7 @@ cleanup:
   return code;
 }
 
-static double whole_s(const struct pilot_run *run) {
+static double whole_s(const struct plan_trial *run) {
   return run->prepare_s + run->step_s + run->finish_s;
 }
 
@@ -100,13 +246,13 @@ static double time_points(const struct campaign *campaign, const struct looking 
   size_t count = 0;
   for (size_t i = 0; i < looking->sampled && clock_cpu_s() < until; i++) {
     struct error ignored;
-    struct pilot_run run = {0};
+    struct plan_trial run = {0};
     const struct scene *point = looking->sample[i];
-    struct scene *coarse = setting ? pilot_coarsen_like(point, setting) : NULL;
+    struct scene *coarse = setting ? plan_coarsen_like(point, setting) : NULL;
     if (setting && !coarse)
       continue;
     const uint64_t seed = campaign_seed(campaign, point, 0);
-    const status code = pilot_try(coarse ? coarse : point, seed, until - clock_cpu_s(), &run, &ignored);
+    const status code = plan_try(coarse ? coarse : point, seed, until - clock_cpu_s(), &run, &ignored);
     scene_free(coarse);
     if (code != STATUS_OK || !run.finished)
       continue;
@@ -118,16 +264,16 @@ static double time_points(const struct campaign *campaign, const struct looking 
 
 /* For a trial that did not end: estimates the time of the whole run, and gives the setting and time of a coarse run
  * that ended. */
-static void extrapolate(const struct looking *looking, uint64_t seed, double seconds, const struct pilot_run *run,
+static void extrapolate(const struct looking *looking, uint64_t seed, double seconds, const struct plan_trial *run,
                         struct plan *plan, char setting[64], double *one) {
   struct error ignored;
   struct scene *coarse = NULL;
-  struct pilot_run *coarse_run = calloc(1, sizeof *coarse_run);
-  plan->run_s_most = pilot_to_hard_end(run);
+  struct plan_trial *coarse_run = calloc(1, sizeof *coarse_run);
+  plan->run_s_most = plan_to_hard_end(run);
   if (coarse_run && looking->work_most > 0)
-    pilot_coarsen(looking->costliest, plan->run_s_most / looking->work_most, seconds / 4, &coarse, setting);
-  if (coarse && pilot_try(coarse, seed, seconds / 2, coarse_run, &ignored) == STATUS_OK) {
-    const double whole = pilot_whole(run, coarse_run);
+    plan_coarsen(looking->costliest, plan->run_s_most / looking->work_most, seconds / 4, &coarse, setting);
+  if (coarse && plan_try(coarse, seed, seconds / 2, coarse_run, &ignored) == STATUS_OK) {
+    const double whole = plan_whole(run, coarse_run);
     plan->trial_whole = !isnan(whole);
     plan->run_s_most = plan->trial_whole ? whole : plan->run_s_most;
     *one = whole_s(coarse_run);
@@ -144,10 +290,10 @@ static status try_run(const struct campaign *campaign, const struct looking *loo
   const uint64_t seed = campaign_seed(campaign, looking->costliest, 0);
   const double begin = clock_cpu_s();
   char setting[64] = "";
-  struct pilot_run *run = calloc(1, sizeof *run);
+  struct plan_trial *run = calloc(1, sizeof *run);
   if (!run)
     return status_fail(error, STATUS_MEMORY, "no memory for the trial");
-  const status code = pilot_try(looking->costliest, seed, seconds / 2, run, error);
+  const status code = plan_try(looking->costliest, seed, seconds / 2, run, error);
   if (code != STATUS_OK)
     goto cleanup;
   plan->trial_made = true;
@@ -255,4 +401,157 @@ void plan_clear(struct plan *plan) {
   free(plan->model);
   free(plan->alternatives);
   plan->model = plan->alternatives = NULL;
+}
+
+/* ---- as text and as JSON ---- */
+
+static const char *bytes(double count, char *buffer, size_t size) {
+  static const char *const units[] = {"B", "kB", "MB", "GB", "TB", "PB"};
+  int unit = 0;
+  if (isnan(count))
+    return "?";
+  for (; count >= 999.5 && unit < 5; unit++)
+    count /= 1000;
+  snprintf(buffer, size, unit ? "%.3g %s" : "%.0f %s", count, units[unit]);
+  return buffer;
+}
+
+/* Where the times of a run come from. */
+static const char *how_timed(const struct plan *plan) {
+  if (!plan->trial_made)
+    return isnan(plan->run_s_mean) ? " (no trial run)" : " (from runs in the store)";
+  if (plan->trial_finished)
+    return " (whole runs timed)";
+  if (plan->trial_whole)
+    return " (the first steps timed; a coarse run tells when it ends)";
+  return " (extrapolated to the hard end; runs stop earlier when fracture has ceased)";
+}
+
+static void print_design(const struct campaign *campaign, const struct plan *plan, FILE *out) {
+  static FIELD_WORDS(designs,
+                     CAMPAIGN_DESIGNS, [CAMPAIGN_GRID] = "grid", [CAMPAIGN_LIST] = "list", [CAMPAIGN_RANDOM] = "random",
+                     [CAMPAIGN_LATIN_HYPERCUBE] = "latin hypercube", [CAMPAIGN_SOBOL] = "Sobol");
+  fprintf(out, "campaign  %s, scene %s\n", campaign->name, campaign->scene_reference);
+  fprintf(out, "design    %s, %llu point%s", designs[campaign->design.kind], (unsigned long long)plan->points,
+          plan->points == 1 ? "" : "s");
+  for (size_t i = 0; i < campaign->axis_count; i++) {
+    fprintf(out, "\n%-8s  %s: ", i ? "" : "over", campaign->axes[i].row->path);
+    design_axis_describe(campaign->axes, i, out);
+  }
+  fputc('\n', out);
+}
+
+static void print_runs(const struct campaign *campaign, const struct plan *plan, FILE *out) {
+  fprintf(out, "runs      %llu", (unsigned long long)plan->runs_least);
+  if (plan->runs_most != plan->runs_least)
+    fprintf(out, " to %llu (%s to ±%g)", (unsigned long long)plan->runs_most, campaign->until_quantity,
+            campaign->until_half_width);
+  fprintf(out, ", %llu of them in the store%s\n", (unsigned long long)plan->runs_there,
+          plan->store_exists ? "" : " (there is none yet)");
+}
+
+static void print_times(const struct plan *plan, int slots, FILE *out) {
+  char a[64], b[64];
+  progress_duration(plan->run_s_mean, a, sizeof a);
+  progress_duration(plan->run_s_most, b, sizeof b);
+  fprintf(out, "a run     %s%s on average, %s for the most expensive%s\n",
+          plan->trial_made && !plan->trial_whole ? "at most " : "", a, b, how_timed(plan));
+  progress_duration(plan->wall_s_least, a, sizeof a);
+  progress_duration(plan->wall_s_most, b, sizeof b);
+  fprintf(out, "time      %s", a);
+  if (plan->runs_most != plan->runs_least)
+    fprintf(out, " to %s", b);
+  progress_duration(plan->cpu_s_most, a, sizeof a);
+  fprintf(out, " on %d slot%s", slots, slots == 1 ? "" : "s");
+  if (plan->threads > 1)
+    fprintf(out, " of %.0f threads", plan->threads);
+  fprintf(out, " (%s of processor time)\n", a);
+}
+
+static void print_bytes(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
+  char a[64], b[64];
+  fprintf(out, "memory    %s per run, %s on all slots\n", bytes(plan->memory_most, a, sizeof a),
+          bytes(plan->memory_most * slots, b, sizeof b));
+  fprintf(out, "disk      %s for the store %s", bytes(plan->disk_bytes, a, sizeof a), campaign->store);
+  if (campaign->keep != CAMPAIGN_KEEP_NONE)
+    fprintf(out, ", at most %s for fields", bytes(plan->fields_bytes, b, sizeof b));
+  fputc('\n', out);
+}
+
+void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
+  print_design(campaign, plan, out);
+  campaign_warn(campaign, "warning   ", out);
+  print_runs(campaign, plan, out);
+  print_times(plan, slots, out);
+  print_bytes(campaign, plan, slots, out);
+  if (plan->points_looked_at < plan->points)
+    fprintf(out, "          (averages over %llu of the points)\n", (unsigned long long)plan->points_looked_at);
+  if (plan->model)
+    fprintf(out, "\n%s%s", plan->model, plan->model[0] && plan->model[strlen(plan->model) - 1] == '\n' ? "" : "\n");
+}
+
+static void number(FILE *out, const char *name, double value) {
+  if (isfinite(value))
+    fprintf(out, ", \"%s\": %.17g", name, value);
+  else
+    fprintf(out, ", \"%s\": null", name);
+}
+
+static void axis_json(const struct campaign *campaign, size_t index, FILE *out) {
+  char *values = NULL;
+  size_t size = 0;
+  FILE *text = text_open(&values, &size);
+  if (!text)
+    return;
+  design_axis_describe(campaign->axes, index, text);
+  const struct field *row = campaign->axes[index].row;
+  fputs(index ? ", {\"path\": " : "{\"path\": ", out);
+  text_json_string(row->path, out);
+  fputs(", \"unit\": ", out);
+  text_json_string(row->unit ? row->unit : "", out);
+  fputs(", \"values\": ", out);
+  text_json_string(text_close(text, &values) ? values : "", out);
+  fputc('}', out);
+  free(values);
+}
+
+char *plan_print_json(const struct campaign *campaign, const struct plan *plan, int slots) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = text_open(&text, &size);
+  if (!out)
+    return NULL;
+  fputs("{\"campaign\": ", out);
+  text_json_string(campaign->name, out);
+  fputs(", \"scene\": ", out);
+  text_json_string(campaign->scene_reference, out);
+  fputs(", \"store\": ", out);
+  text_json_string(campaign->store, out);
+  fputs(", \"axes\": [", out);
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    axis_json(campaign, i, out);
+  fprintf(out,
+          "], \"points\": %llu, \"points_looked_at\": %llu, \"runs_least\": %llu, \"runs_most\": %llu, \"runs_there\": "
+          "%llu",
+          (unsigned long long)plan->points, (unsigned long long)plan->points_looked_at,
+          (unsigned long long)plan->runs_least, (unsigned long long)plan->runs_most,
+          (unsigned long long)plan->runs_there);
+  fprintf(out, ", \"store_exists\": %s, \"trial_made\": %s, \"trial_finished\": %s, \"slots\": %d",
+          plan->store_exists ? "true" : "false", plan->trial_made ? "true" : "false",
+          plan->trial_finished ? "true" : "false", slots);
+  number(out, "run_s_mean", plan->run_s_mean);
+  number(out, "run_s_most", plan->run_s_most);
+  number(out, "cpu_s_least", plan->cpu_s_least);
+  number(out, "cpu_s_most", plan->cpu_s_most);
+  number(out, "wall_s_least", plan->wall_s_least);
+  number(out, "wall_s_most", plan->wall_s_most);
+  number(out, "memory_most_bytes", plan->memory_most);
+  number(out, "disk_bytes", plan->disk_bytes);
+  number(out, "fields_bytes", plan->fields_bytes);
+  if (plan->alternatives)
+    fprintf(out, ", \"alternatives\": %s", plan->alternatives);
+  fputs(", \"model\": ", out);
+  text_json_string(plan->model ? plan->model : "", out);
+  fputs("}\n", out);
+  return text_close(out, &text);
 }

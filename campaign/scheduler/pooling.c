@@ -85,11 +85,8 @@ static status pool_all(struct store *store, const struct ask_points_version *poi
 status pooling_store(struct store *store, int64_t campaign_id, struct error *error) {
   struct ask_points_version *points = NULL;
   size_t count = 0;
-  status code = store_flush(store, error); /* the sums of the open batch */
-  if (code)
-    return code;
-
-  code = ask_points_without_estimates(store, campaign_id, &points, &count, error);
+  TRY(store_flush(store, error)); /* the sums of the open batch */
+  status code = ask_points_without_estimates(store, campaign_id, &points, &count, error);
   if (code == STATUS_OK)
     code = pool_all(store, points, count, error);
   free(points);

@@ -82,9 +82,9 @@ static status finish(const struct engine_kind *kind, void *run, struct run_resul
   result->result = calloc(1, kind->results->size);
   if (!result->result)
     return status_fail(error, STATUS_MEMORY, "no memory for the result");
-  status code = kind->finish(run, &result->outcome, result->result, &result->fragments, &result->fragment_count, error);
-  if (code != STATUS_OK || result->fragment_count == 0)
-    return code;
+  TRY(kind->finish(run, &result->outcome, result->result, &result->fragments, &result->fragment_count, error));
+  if (result->fragment_count == 0)
+    return STATUS_OK;
   result->estimate_count = ESTIMATES_COUNT;
   return estimates_make(result->fragment_count, result->fragments, result->outcome.complete_mass, result->estimates,
                         error);
@@ -96,9 +96,8 @@ status run_simulate(const struct run_request *request, run_watch watch, void *co
   struct error why = {0};
   void *run = NULL;
   *result = (struct run_result){0};
-  status code = resume(request, &run, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(resume(request, &run, error));
+  status code = STATUS_OK;
   if (!run) {
     code = kind->prepare(request->inputs, request->seed, &run, &why);
     if (code == STATUS_CONTENT)
@@ -300,9 +299,8 @@ static status take_files(struct reader *reader, struct error *error) {
     const uint64_t size = take_count(reader);
     const uint8_t *bytes = take(reader, size);
     const struct mesh_file *file;
-    const status code = bytes ? mesh_files_add("a task's shape file", bytes, (size_t)size, &file, error) : STATUS_OK;
-    if (code)
-      return code;
+    if (bytes)
+      TRY(mesh_files_add("a task's shape file", bytes, (size_t)size, &file, error));
   }
   return STATUS_OK;
 }
@@ -324,9 +322,7 @@ static status decode_task(const uint8_t *task, size_t size, struct run_request *
     if (!*inputs)
       return status_fail(error, STATUS_MEMORY, "no memory for the inputs");
     take_object(&reader, request->kind->inputs, *inputs);
-    const status code = take_files(&reader, error);
-    if (code)
-      return code;
+    TRY(take_files(&reader, error));
   }
   if (!reader.good || reader.left)
     return status_fail(error, STATUS_INTERNAL, "the task cannot be read: it comes from another version of clast");

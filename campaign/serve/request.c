@@ -203,13 +203,6 @@ static const struct route {
     {"/ApplyHessian", false, CALL_UNSUPPORTED},
 };
 
-static struct serve_answer output_sizes(const struct serve_config *config) {
-  json_t *sizes = json_array();
-  for (size_t i = 0; i < (config->single ? 1 : config->statistic_count); i++)
-    json_array_append_new(sizes, json_integer((json_int_t)config->result_count));
-  return answer_json(200, json_pack("{s:o}", "outputSizes", sizes));
-}
-
 /* A request with a body that is a JSON object and names the model. */
 static bool read_call(const struct serve_model *model, const struct route *route, json_t *root,
                       struct serve_request *request, struct serve_answer *answer) {
@@ -233,37 +226,32 @@ static bool read_call(const struct serve_model *model, const struct route *route
   }
   if (!read_config(model, root, &request->config, answer))
     return false;
-  if (route->call == CALL_INPUT_SIZES)
-    *answer = answer_json(200, json_pack("{s:[I]}", "inputSizes", (json_int_t)model->input_count));
-  else if (route->call == CALL_OUTPUT_SIZES)
-    *answer = output_sizes(&request->config);
-  else
+  if (route->call == CALL_EVALUATE)
     return read_inputs(model, root, request, answer);
+  if (route->call == CALL_INPUT_SIZES) {
+    *answer = answer_json(200, json_pack("{s:[I]}", "inputSizes", (json_int_t)model->input_count));
+    return false;
+  }
+  json_t *sizes = json_array();
+  for (size_t i = 0; i < (request->config.single ? 1 : request->config.statistic_count); i++)
+    json_array_append_new(sizes, json_integer((json_int_t)request->config.result_count));
+  *answer = answer_json(200, json_pack("{s:o}", "outputSizes", sizes));
   return false;
-}
-
-static const struct route *find_route(const char *path) {
-  for (size_t i = 0; i < sizeof routes / sizeof routes[0]; i++)
-    if (strcmp(path, routes[i].path) == 0)
-      return &routes[i];
-  return NULL;
-}
-
-static bool is_method_of(const struct route *route, const char *method) {
-  if (route->get)
-    return strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
-  return strcmp(method, "POST") == 0;
 }
 
 bool serve_request_read(const struct serve_model *model, const char *method, const char *path, const char *body,
                         size_t size, struct serve_request *request, struct serve_answer *answer) {
-  const struct route *route = find_route(path);
+  const struct route *route = NULL;
+  for (size_t i = 0; !route && i < sizeof routes / sizeof routes[0]; i++)
+    route = strcmp(path, routes[i].path) == 0 ? &routes[i] : NULL;
   *request = (struct serve_request){0};
   if (!route) {
     *answer = serve_request_error(404, "UnsupportedFeature", "there is no %.100s; see GET /", path);
     return false;
   }
-  if (!is_method_of(route, method)) {
+  const bool right = route->get ? strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0
+                                : strcmp(method, "POST") == 0;
+  if (!right) {
     *answer = serve_request_error(405, "InvalidInput", "%s: expected the method %s", path, route->get ? "GET" : "POST");
     return false;
   }

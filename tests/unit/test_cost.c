@@ -10,7 +10,6 @@
 #include <string.h>
 
 #include "analysis/analysis.h"
-#include "campaign/scheduler/pilot.h"
 #include "campaign/scheduler/plan.h"
 #include "campaign/scheduler/point.h"
 
@@ -57,22 +56,22 @@ static void prediction(void **state) {
  * after 20 steps at 0.6: the whole run takes 40 steps. */
 static void whole_runs(void **state) {
   (void)state;
-  struct pilot_run *piece = calloc(2, sizeof *piece), *coarse = piece + 1;
+  struct plan_trial *piece = calloc(2, sizeof *piece), *coarse = piece + 1;
   assert_non_null(piece);
-  *piece = (struct pilot_run){.prepare_s = 1, .step_s = 2, .finish_s = 0.5, .steps = 10, .progress = 0.25};
-  *coarse = (struct pilot_run){.steps = 20, .progress = 0.6, .finished = true, .marks = 3};
+  *piece = (struct plan_trial){.prepare_s = 1, .step_s = 2, .finish_s = 0.5, .steps = 10, .progress = 0.25};
+  *coarse = (struct plan_trial){.steps = 20, .progress = 0.6, .finished = true, .marks = 3};
   const double steps[3] = {4, 6, 20}, progress[3] = {0.2, 0.3, 0.6};
   for (int i = 0; i < 3; i++) {
     coarse->mark_steps[i] = steps[i];
     coarse->mark_progress[i] = progress[i];
   }
-  NEAR(pilot_whole(piece, coarse), 1 + 2 * 20.0 / 5 + 0.5, 1e-12);
-  NEAR(pilot_to_hard_end(piece), 1 + 2 * 4 + 0.5, 1e-12); /* without a coarse run: four times the steps */
+  NEAR(plan_whole(piece, coarse), 1 + 2 * 20.0 / 5 + 0.5, 1e-12);
+  NEAR(plan_to_hard_end(piece), 1 + 2 * 4 + 0.5, 1e-12); /* without a coarse run: four times the steps */
   piece->progress = 0.7;
-  assert_true(isnan(pilot_whole(piece, coarse)));
+  assert_true(isnan(plan_whole(piece, coarse)));
   piece->progress = 0.25;
   coarse->finished = false;
-  assert_true(isnan(pilot_whole(piece, coarse)));
+  assert_true(isnan(plan_whole(piece, coarse)));
   free(piece);
 }
 
@@ -83,27 +82,27 @@ static void a_run_told_by_its_beginning(void **state) {
   struct scene *scene = NULL, *coarse = NULL;
   struct error error = {0};
   char setting[64];
-  struct pilot_run *run = calloc(2, sizeof *run);
+  struct plan_trial *run = calloc(2, sizeof *run);
   assert_non_null(run);
   assert_int_equal(scene_load("disc-explosion", NULL, &scene, &error), STATUS_OK);
   assert_int_equal(scene_set_text(scene, "body.diameter", "0.2 m", &error), STATUS_OK);
   assert_int_equal(scene_set_text(scene, "charge.energy", "1e4 J/m", &error), STATUS_OK);
-  assert_int_equal(pilot_try(scene, 1, 1000, &run[0], &error), STATUS_OK);
+  assert_int_equal(plan_try(scene, 1, 1000, &run[0], &error), STATUS_OK);
   assert_true(run[0].finished);
   const double work = scene->kind->work(scene->inputs);
-  pilot_coarsen(scene, 1 / work, 1.0 / 3, &coarse, setting);
+  plan_coarsen(scene, 1 / work, 1.0 / 3, &coarse, setting);
   assert_non_null(coarse);
   assert_true(coarse->kind->work(coarse->inputs) < work / 2);
-  assert_int_equal(pilot_try(coarse, 1, 1000, &run[1], &error), STATUS_OK);
+  assert_int_equal(plan_try(coarse, 1, 1000, &run[1], &error), STATUS_OK);
 
   const double whole = run[0].steps;
   size_t place = 0;
   while (run[0].mark_steps[place] < whole / 3)
     place++;
-  const struct pilot_run piece = {.step_s = run[0].mark_steps[place],
-                                  .steps = run[0].mark_steps[place],
-                                  .progress = run[0].mark_progress[place]};
-  const double told = pilot_whole(&piece, &run[1]);
+  const struct plan_trial piece = {.step_s = run[0].mark_steps[place],
+                                   .steps = run[0].mark_steps[place],
+                                   .progress = run[0].mark_progress[place]};
+  const double told = plan_whole(&piece, &run[1]);
   assert_true(told < 1.5 * whole && told > whole / 1.5);
   free(run);
   scene_free(coarse);
