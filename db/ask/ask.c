@@ -15,40 +15,11 @@
 
 /* ---- campaigns and sessions ---- */
 
+extern const char progress_sql[]; /* db/ask/progress.sql, which the build embeds */
+
 struct answer ask_campaign_progress(struct store *store, bool writing, struct error *error) {
-  return answer_to(
-      store, error,
-      "WITH done AS (SELECT campaign_id, count(*) AS runs, sum(counts) AS counted,"
-      "   sum(counts AND state = 'end-time') AS censored,"
-      "   sum(state NOT IN ('completed', 'end-time')) AS failed, sum(surplus) AS surplus, sum(cpu_time) AS cpu_time"
-      "   FROM campaign_point JOIN run USING (point_id) GROUP BY campaign_id),"
-      " tried AS (SELECT campaign_id, count(*) AS failed_attempts"
-      "   FROM campaign_point JOIN attempt USING (point_id) GROUP BY campaign_id),"
-      " given_up AS (SELECT campaign_id, count(DISTINCT attempt.identity) AS without_result"
-      "   FROM campaign_point JOIN attempt USING (point_id)"
-      "   WHERE NOT EXISTS (SELECT 1 FROM run WHERE run.identity = attempt.identity) GROUP BY campaign_id),"
-      " last AS (SELECT campaign_id, max(session_id) AS session_id, started_at, ended_at, outcome FROM session"
-      "   GROUP BY campaign_id),"
-      " planned AS (SELECT campaign_id, plan ->> '$.points' AS points, plan ->> '$.replicates_least' AS least,"
-      "   plan ->> '$.replicates_most' AS most FROM campaign WHERE json_valid(plan)),"
-      " filled AS (SELECT campaign_id, count(*) AS points FROM (SELECT campaign_id, point_id, count(DISTINCT seed) AS n"
-      "   FROM campaign_point JOIN run USING (point_id) GROUP BY campaign_id, point_id) JOIN planned"
-      "   USING (campaign_id) WHERE n >= least AND least = most GROUP BY campaign_id)"
-      " SELECT campaign_id AS campaign, name,"
-      "   CASE WHEN %d AND last.ended_at IS NULL AND last.session_id = (SELECT max(session_id) FROM session)"
-      "     THEN 'running'"
-      "   WHEN last.outcome = 'finished' OR filled.points = planned.points THEN 'finished'"
-      "   WHEN last.outcome IS NOT NULL THEN last.outcome WHEN last.started_at IS NULL THEN 'not known'"
-      "   ELSE 'killed' END AS state,"
-      "   (SELECT count(*) FROM campaign_point AS p WHERE p.campaign_id = campaign.campaign_id) AS points,"
-      "   coalesce(runs, 0) AS runs, coalesce(counted, 0) AS counted, coalesce(censored, 0) AS censored,"
-      "   coalesce(failed, 0) AS failed, coalesce(surplus, 0) AS surplus,"
-      "   coalesce(failed_attempts, 0) AS failed_attempts, coalesce(without_result, 0) AS without_result,"
-      "   coalesce(cpu_time, 0.0) AS cpu_time, last.started_at AS last_started, last.ended_at AS last_ended"
-      " FROM campaign LEFT JOIN done USING (campaign_id) LEFT JOIN tried USING (campaign_id)"
-      " LEFT JOIN given_up USING (campaign_id) LEFT JOIN last USING (campaign_id) LEFT JOIN planned"
-      " USING (campaign_id) LEFT JOIN filled USING (campaign_id) ORDER BY campaign_id",
-      writing);
+  const struct query_parameter parameter = {"writing", writing ? "1" : "0"};
+  return answer_to_user(store, progress_sql, 1, &parameter, 0, error);
 }
 
 status ask_campaign_document(struct store *store, int64_t campaign, char **name, char **document, struct error *error) {

@@ -10,6 +10,9 @@
 
 static const char doing[] = "making the views";
 
+/* Documents that the build embeds: db/store/views_columns.sql, db/store/views_resolution.sql. */
+extern const char views_columns_sql[], views_resolution_sql[];
+
 const char *const views_names[VIEWS_COUNT] = {"runs", "points", "spectra", "estimates", "resolution"};
 
 /* ---- statistics ---- */
@@ -182,32 +185,9 @@ static void write_runs(struct view *view) {
 /* For every point and quantity with a study: the sum over the knobs of the error that each knob leaves, taken at the
  * point or, when the point is no level of the knob, at the scene's own setting. Among several studies, the one with the
  * largest error counts. */
-static const char resolution_sql[] =
-    "WITH level AS (SELECT * FROM convergence WHERE resolution IS NOT NULL),\n"
-    "of_knob AS (SELECT base_point_id, results_version, quantity, knob,\n"
-    "    max(iif(base, resolution, NULL)) AS at_base, max(open) AS open, max(verdict = 'no-order') AS diverges\n"
-    "  FROM level LEFT JOIN convergence_limit USING (base_point_id, results_version, knob, quantity)\n"
-    "  GROUP BY base_point_id, results_version, quantity, knob),\n"
-    "studied AS (SELECT DISTINCT base_point_id, results_version, quantity, point_id FROM level),\n"
-    "of_study AS (SELECT s.point_id, s.results_version, s.quantity,\n"
-    "    sum(coalesce(l.resolution, k.at_base)) AS half_width, max(k.diverges) AS diverges,\n"
-    "    max(k.open OR coalesce(l.resolution, k.at_base) IS NULL) AS open\n"
-    "  FROM studied s JOIN of_knob k USING (base_point_id, results_version, quantity)\n"
-    "    LEFT JOIN level l ON l.base_point_id = s.base_point_id AND l.results_version = s.results_version\n"
-    "    AND l.quantity = s.quantity AND l.knob = k.knob AND l.point_id = s.point_id\n"
-    "  GROUP BY s.base_point_id, s.point_id, s.results_version, s.quantity\n"
-    "  UNION ALL SELECT s.point_id, s.results_version, s.quantity, s.error, (SELECT max(k.diverges) FROM of_knob "
-    "k\n"
-    "    WHERE k.base_point_id = s.base_point_id AND k.results_version = s.results_version AND\n"
-    "    k.quantity = s.quantity), s.open\n"
-    "  FROM convergence s WHERE s.knob = 'settings' AND NOT s.base AND s.error IS NOT NULL)\n"
-    "SELECT point_id, results_version, quantity, max(half_width) AS half_width,\n"
-    "  CASE WHEN max(diverges) THEN 'diverges' WHEN max(open) THEN 'at-least' ELSE 'known' END AS verdict\n"
-    "FROM of_study GROUP BY point_id, results_version, quantity;\n";
-
 static void write_resolution(struct view *view) {
   fputs("resolution AS -- what finer settings may change in a result, for every point that was studied\n", view->out);
-  fputs(resolution_sql, view->out);
+  fprintf(view->out, "%s\n", views_resolution_sql);
 }
 
 static void write_points(struct view *view) {
@@ -277,51 +257,8 @@ static void write_estimates(struct view *view) {
 
 /* ---- making them ---- */
 
-/* Documents axis columns, statistics and the views' own columns first; the others inherit from their table. */
 static status document(sqlite3 *db, struct error *error) {
-  static const char sql[] =
-      "DELETE FROM column_doc WHERE table_name IN ('runs', 'points', 'spectra', 'estimates', 'resolution');"
-      "INSERT INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, column_name, unit, meaning || "
-      "' (input ' || path || ')' FROM axis, "
-      "(VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v;"
-      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, w.column1, NULL, "
-      "w.column2 FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, (VALUES ('scene', 'name of the "
-      "scene the inputs "
-      "started from')) w;INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES"
-      "('points', 'n', '1', 'runs that count: completed, or ended at their time, and not surplus'),"
-      "('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers'),"
-      "('spectra', 'n', '1', 'runs of the point that count'),"
-      "('spectra', 'count', '1', 'fragments in the bin, of all runs'),"
-      "('spectra', 'mass', 'kg', 'their mass'),"
-      "('spectra', 'count_mean', '1', 'fragments in the bin per run'),"
-      "('spectra', 'count_sd', '1', 'standard deviation of the count between runs'),"
-      "('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student)'),"
-      "('spectra', 'density', '1/kg', 'fragment number density F(m): share of all fragments per unit mass; its "
-      "integral over mass is 1'),"
-      "('resolution', 'point_id', NULL, 'the point: the scene of a study, or one of its levels'),"
-      "('resolution', 'results_version', NULL, 'version of the engine''s results that was studied'),"
-      "('resolution', 'quantity', NULL, 'the result, as a column of the view runs; beta or beta_METHOD_WINDOW: an "
-      "exponent of all runs of a point'),"
-      "('resolution', 'half_width', NULL, 'how far finer settings may move the result, in its unit: all "
-      "knobs that were studied'),"
-      "('resolution', 'verdict', NULL, 'known; at least: no limit is known yet, so that half_width may be too small; "
-      "diverges: the result does not converge');"
-      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT 'points', d.column_name || "
-      "s.column1, d.unit, s.column2 || d.meaning "
-      "FROM column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '), "
-      "('_se', 'standard error of the mean: '), ('_hw95', 'half width of the 95 % confidence interval of the mean "
-      "(Student): '), ('_resolution', 'how far finer settings may move the mean (view resolution): '), "
-      "('_resolution_verdict', 'known, at least, diverges, or not studied: ')) s WHERE d.table_name = 'run' AND EXISTS "
-      "(SELECT 1 FROM pragma_table_info('points') c WHERE "
-      "c.name = d.column_name || s.column1);"
-      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, c.name, d.unit, "
-      "d.meaning FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, pragma_table_info(v.column1) c, "
-      "column_doc d "
-      "WHERE (d.column_name = c.name OR d.table_name || '_' || d.column_name = c.name) AND (d.table_name IN ('run', "
-      "'point', 'point_total', 'point_spectrum', 'bin', 'estimate') OR d.table_name GLOB 'result_*') "
-      "ORDER BY CASE WHEN d.table_name IN ('estimate', 'point_total', 'point_spectrum', 'bin') THEN v.column1 IN "
-      "('runs') ELSE v.column1 NOT IN ('runs') END;";
-  return sql_execute(db, sql, "documenting the views", error);
+  return sql_execute(db, views_columns_sql, "documenting the views", error);
 }
 
 /* Drops and creates the views in the schema `place`: main or temp. */

@@ -1,0 +1,40 @@
+-- The rows of column_doc for the views: first axis columns, statistics and the views' own columns; the others inherit from
+-- their table.
+DELETE FROM column_doc WHERE table_name IN ('runs', 'points', 'spectra', 'estimates', 'resolution');
+INSERT INTO column_doc (table_name, column_name, unit, meaning)
+  SELECT v.column1, column_name, unit, meaning || ' (input ' || path || ')'
+  FROM axis, (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v;
+INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
+  SELECT v.column1, w.column1, NULL, w.column2
+  FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v,
+    (VALUES ('scene', 'name of the scene the inputs started from')) w;
+INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
+  ('points', 'n', '1', 'runs that count: completed, or ended at their time, and not surplus'),
+  ('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers'),
+  ('spectra', 'n', '1', 'runs of the point that count'),
+  ('spectra', 'count', '1', 'fragments in the bin, of all runs'),
+  ('spectra', 'mass', 'kg', 'their mass'),
+  ('spectra', 'count_mean', '1', 'fragments in the bin per run'),
+  ('spectra', 'count_sd', '1', 'standard deviation of the count between runs'),
+  ('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student)'),
+  ('spectra', 'density', '1/kg', 'fragment number density F(m): share of all fragments per unit mass; its integral over mass is 1'),
+  ('resolution', 'point_id', NULL, 'the point: the scene of a study, or one of its levels'),
+  ('resolution', 'results_version', NULL, 'version of the engine''s results that was studied'),
+  ('resolution', 'quantity', NULL, 'the result, as a column of the view runs; beta or beta_METHOD_WINDOW: an exponent of all runs of a point'),
+  ('resolution', 'half_width', NULL, 'how far finer settings may move the result, in its unit: all knobs that were studied'),
+  ('resolution', 'verdict', NULL, 'known; at least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge');
+INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
+  SELECT 'points', d.column_name || s.column1, d.unit, s.column2 || d.meaning
+  FROM column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '),
+    ('_se', 'standard error of the mean: '),
+    ('_hw95', 'half width of the 95 % confidence interval of the mean (Student): '),
+    ('_resolution', 'how far finer settings may move the mean (view resolution): '),
+    ('_resolution_verdict', 'known, at least, diverges, or not studied: ')) s
+  WHERE d.table_name = 'run' AND EXISTS (SELECT 1 FROM pragma_table_info('points') c WHERE c.name = d.column_name || s.column1);
+INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
+  SELECT v.column1, c.name, d.unit, d.meaning
+  FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, pragma_table_info(v.column1) c, column_doc d
+  WHERE (d.column_name = c.name OR d.table_name || '_' || d.column_name = c.name) AND
+    (d.table_name IN ('run', 'point', 'point_total', 'point_spectrum', 'bin', 'estimate') OR d.table_name GLOB 'result_*')
+  ORDER BY CASE WHEN d.table_name IN ('estimate', 'point_total', 'point_spectrum', 'bin') THEN v.column1 IN ('runs')
+    ELSE v.column1 NOT IN ('runs') END;
