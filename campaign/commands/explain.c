@@ -5,7 +5,7 @@
 
 #include "analysis/statistics/estimates.h"
 #include "campaign/commands/commands.h"
-#include "campaign/document/campaign_keys.h"
+#include "campaign/document/campaign.h"
 #include "campaign/print/print.h"
 #include "db/store/schema.h"
 #include "engine/scene.h"

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/one_run/replay.h"
+#include "campaign/one_run/one_run.h"
 #include "campaign/scheduler/provenance.h"
 #include "db/ask/ask.h"
 

@@ -4,8 +4,8 @@
 
 #include "campaign/commands/commands.h"
 #include "campaign/converge/accuracy.h"
-#include "campaign/document/campaign_raise.h"
-#include "campaign/launch/launch_campaign.h"
+#include "campaign/document/campaign.h"
+#include "campaign/launch/launch.h"
 #include "db/ask/ask.h"
 
 struct options {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/document/sensitivity_design.h"
+#include "campaign/document/campaign.h"
 #include "campaign/print/print.h"
 #include "engine/outcome.h"
 

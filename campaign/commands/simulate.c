@@ -1,8 +1,7 @@
 /* `clast simulate SCENE`: one run, without a store. */
 #include "campaign/commands/commands.h"
-#include "campaign/document/campaign_warn.h"
+#include "campaign/document/campaign.h"
 #include "campaign/one_run/one_run.h"
-#include "campaign/one_run/resume.h"
 #include "campaign/print/print.h"
 
 struct options {
@@ -24,7 +23,7 @@ static status simulate(const struct scene *scene, const struct one_run_options *
   if (code)
     goto cleanup;
   if (options->restart)
-    resume_end(options->restart);
+    remove(options->restart); /* the run has ended */
   if (!campaign_usable(&result.outcome))
     code = status_fail(error, STATUS_FAILED_RUNS, "the run ended without a usable result: %s", result.outcome.message);
   else if (*result.outcome.message && !options->quiet)

@@ -7,7 +7,7 @@
 
 #include "analysis/statistics/sample.h"
 #include "campaign/converge/study.h"
-#include "campaign/document/campaign_walk.h"
+#include "campaign/document/campaign.h"
 #include "campaign/terminal/table.h"
 #include "db/ask/ask.h"
 #include "engine/scene.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/document/campaign_walk.h"
+#include "campaign/document/campaign.h"
 
 /* ---- the subject ---- */
 

@@ -1,8 +1,11 @@
-/* Walks the points of every kind of design. */
+/* Walks the points of every kind of design, and judges when a point is finished. */
 #include "campaign/design/design.h"
 
+#include <gsl/gsl_qrng.h>
+#include <math.h>
 #include <stdlib.h>
 
+#include "analysis/statistics/sample.h"
 #include "engine/random.h"
 
 struct design {
@@ -170,4 +173,119 @@ bool design_next(struct design *design, struct field_value *values) {
       design_axis_follow(axis, &values[axis->linked], design->levels[axis->linked], &values[a]);
   }
   return true;
+}
+
+/* Latin hypercube (McKay, Beckman & Conover 1979): each dimension is cut into as many strata as there are points, and
+ * each stratum holds one point. The strata's order is a pseudo-random permutation per dimension that needs no table: a
+ * Feistel network over the next power of four, walked along its cycle until it lands inside (Black & Rogaway 2002), so
+ * that a design of a million points needs no memory and point i is computed directly. */
+
+enum {
+  ROUNDS = 8
+}; /* Luby & Rackoff 1988 prove that 4 give a strong permutation; doubled for the small domains here */
+#define PERMUTATION_MARK (UINT64_C(1) << 63) /* differs from the draws within strata, which count items from 0 */
+
+uint64_t design_latin_permute(uint64_t seed, size_t dimension, uint64_t points, uint64_t i) {
+  if (points < 2)
+    return 0;
+  unsigned half = 1;
+  while (half < 31 && (UINT64_C(1) << (2 * half)) < points)
+    half++;
+  uint64_t mask = (UINT64_C(1) << half) - 1;
+  do {
+    uint64_t left = i >> half, right = i & mask;
+    for (uint64_t round = 0; round < ROUNDS; round++) {
+      uint64_t bits[4];
+      random_bits(seed, RANDOM_DESIGN, PERMUTATION_MARK | round << 32 | dimension, right, bits);
+      uint64_t next = left ^ (bits[0] & mask);
+      left = right;
+      right = next;
+    }
+    i = left << half | right;
+  } while (i >= points);
+  return i;
+}
+
+double design_latin_coordinate(uint64_t seed, uint64_t points, uint64_t i, size_t dimension) {
+  double within = random_draw(seed, RANDOM_DESIGN, i, dimension);
+  double stratum = (double)design_latin_permute(seed, dimension, points, i);
+  /* Rounding must not carry the point over its stratum's upper edge. */
+  double upper = nextafter((stratum + 1) / (double)points, 0);
+  return fmin((stratum + within) / (double)points, upper);
+}
+
+/* Sobol numbers from GSL with two corrections. The origin, which GSL leaves out, is put back: the first 2^k points are
+ * a net only with it (Owen 2020, "On dropping the first Sobol' point"). And a digital shift by seed (Cranley &
+ * Patterson 1976 for nets; L'Ecuyer & Lemieux 2002) makes the estimate unbiased and lets replicates of the design give
+ * an error; half of the last bit is added, so that no coordinate is 0, where an unbounded law has no quantile. */
+
+#define SHIFT_MARK (UINT64_C(1) << 62)
+enum { MOST_DIMENSIONS = 64 };
+
+struct design_sobol {
+  gsl_qrng *generator;
+  size_t dimensions;
+  bool begun;
+  uint32_t shift[MOST_DIMENSIONS];
+};
+
+uint32_t design_sobol_shift(uint64_t seed, size_t dimension) {
+  uint64_t bits[4];
+  random_bits(seed, RANDOM_DESIGN, SHIFT_MARK | dimension, 0, bits);
+  return (uint32_t)(bits[0] >> (64 - DESIGN_SOBOL_BITS));
+}
+
+status design_sobol_create(size_t dimensions, uint64_t seed, struct design_sobol **out, struct error *error) {
+  *out = NULL;
+  size_t most = gsl_qrng_sobol->max_dimension;
+  if (most > MOST_DIMENSIONS)
+    most = MOST_DIMENSIONS;
+  if (dimensions < 1 || dimensions > most)
+    return status_fail(error, STATUS_CONTENT,
+                       "design sobol: %zu varied inputs, but Sobol numbers are known for 1 to %zu; use "
+                       "latin_hypercube or random, or link some inputs",
+                       dimensions, most);
+  struct design_sobol *sobol = calloc(1, sizeof *sobol);
+  gsl_qrng *generator = sobol ? gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)dimensions) : NULL;
+  if (!generator) {
+    free(sobol);
+    return status_fail(error, STATUS_MEMORY, "design sobol: no memory");
+  }
+  *sobol = (struct design_sobol){.generator = generator, .dimensions = dimensions};
+  for (size_t d = 0; d < dimensions; d++)
+    sobol->shift[d] = design_sobol_shift(seed, d);
+  *out = sobol;
+  return STATUS_OK;
+}
+
+void design_sobol_next(struct design_sobol *sobol, double *coordinates) {
+  double x[MOST_DIMENSIONS] = {0};
+  if (sobol->begun)
+    gsl_qrng_get(sobol->generator, x);
+  sobol->begun = true;
+  for (size_t d = 0; d < sobol->dimensions; d++) {
+    uint32_t digits = (uint32_t)ldexp(x[d], DESIGN_SOBOL_BITS) ^ sobol->shift[d];
+    coordinates[d] = ldexp(digits + 0.5, -DESIGN_SOBOL_BITS);
+  }
+}
+
+void design_sobol_free(struct design_sobol *sobol) {
+  if (!sobol)
+    return;
+  gsl_qrng_free(sobol->generator);
+  free(sobol);
+}
+
+/* ---- The stopping rule: batches of replicates until the interval is narrow enough ---- */
+
+enum design_verdict design_stopping_judge(const struct design_stopping *rule, const double *values, int64_t *prefix) {
+  if (rule->fixed)
+    return DESIGN_FIXED;
+  if (sample_may_stop((size_t)*prefix, values, rule->half_width, rule->level, (size_t)rule->minimum))
+    return DESIGN_INTERVAL_MET;
+  if (*prefix >= rule->maximum)
+    return DESIGN_CAP_REACHED;
+  int64_t room = rule->maximum - *prefix;
+  *prefix += rule->batch < room ? rule->batch : room;
+  return DESIGN_GROW;
 }

@@ -1,9 +1,62 @@
-/* The points of a campaign, one after the other. A design is a counter, not a table, so that the first run of a million
- * points starts immediately. Point i of a design depends only on kind, seed, i and the number of points. */
+/* The points of a campaign: axes, which are paths into the scene with values or laws; designs, which make points of
+ * axes; and the stopping rule, which says when a point has enough replicates. */
 #ifndef CLAST_CAMPAIGN_DESIGN_DESIGN_H
 #define CLAST_CAMPAIGN_DESIGN_DESIGN_H
 
-#include "campaign/design/axis.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "schemas/field.h"
+#include "schemas/status.h"
+
+/* One axis of a campaign: the path of an input in the scene and its values. No code depends on the name of the path.
+ * Every kind of axis is one function of u in [0, 1): its quantile. Grids use the levels of the kinds that have
+ * levels. */
+
+enum design_axis_kind {
+  DESIGN_AXIS_LEVELS,      /* a list, {from, to, n}, {log: [a, b], n}: `levels` */
+  DESIGN_AXIS_UNIFORM,     /* {uniform: [a, b]} */
+  DESIGN_AXIS_LOG_UNIFORM, /* {log_uniform: [a, b]} */
+  DESIGN_AXIS_NORMAL,      /* {normal: {mean, sd}} */
+  DESIGN_AXIS_LOGNORMAL,   /* {lognormal: {median, sigma}}: sigma = standard deviation of the natural logarithm */
+  DESIGN_AXIS_LINKED,      /* {linked: path, factor, offset}, or {linked: path, values: [...]} by level of the other */
+};
+
+struct design_axis {
+  const struct field *row;    /* row of the engine's inputs */
+  char unit[32];              /* unit of the values in the campaign; "": SI */
+  int kind;                   /* enum design_axis_kind */
+  struct field_value *levels; /* owned */
+  size_t level_count;
+  double a, b;         /* bounds (uniform kinds); mean and sd; median and sigma; factor and offset (linked) */
+  double lower, upper; /* truncation, -HUGE_VAL / HUGE_VAL for none */
+  size_t linked;       /* index of the axis it follows, which is not itself linked */
+};
+
+void design_axis_free_all(struct design_axis *axes, size_t count); /* frees the array too */
+
+/* Value at quantile u in [0, 1), of every kind but linked. Integers are rounded to the nearest whole number within the
+ * bounds. */
+void design_axis_quantile(const struct design_axis *axis, double u, struct field_value *value);
+/* The inverse: the share of the law below a value, in [0, 1]; for an integer the middle of its step. NaN: the axis has
+ * no law. */
+double design_axis_share(const struct design_axis *axis, const struct field_value *value);
+/* Value of a linked axis when the axis it follows has `value` at `level` (its level for LEVELS, else 0). */
+void design_axis_follow(const struct design_axis *axis, const struct field_value *followed, size_t level,
+                        struct field_value *value);
+/* axes[index] for people, every number with its unit: "1 %, 3 %", "uniform from 1 GPa to 2 GPa". */
+void design_axis_describe(const struct design_axis *axes, size_t index, FILE *out);
+/* Level of a LEVELS axis at quantile u. */
+size_t design_axis_level(const struct design_axis *axis, double u);
+
+/* Level i of n >= 2 evenly spaced ones between two quantities such as "1 %" and "6 %", linear or (both positive)
+ * logarithmic, in the SI unit `si`. The ends are exact. A level between them is the number of 15 digits that a person
+ * would write in the unit of the ends, so ranges that share levels share them to the last bit. */
+double design_axis_spaced(const char *from, const char *to, const char *si, size_t n, bool logarithmic, size_t i);
+
+/* The points of a campaign, one after the other. A design is a counter, not a table, so that the first run of a million
+ * points starts immediately. Point i of a design depends only on kind, seed, i and the number of points. */
 
 struct design; /* opaque */
 
@@ -33,5 +86,40 @@ void design_sobol_free(struct design_sobol *sobol);
 enum { DESIGN_SOBOL_BITS = 30 }; /* GSL's resolution */
 uint32_t design_sobol_shift(uint64_t seed,
                             size_t dimension); /* DESIGN_SOBOL_BITS bits, XORed into the integer coordinate */
+
+/* Designs for sensitivity indices: blocks of points in the form that analysis/statistics/sensitivity.h needs. */
+
+enum design_sensitivity_kind {
+  DESIGN_SENSITIVITY_SALTELLI, /* A, B, and A with one input of B for each input; A and B are Sobol numbers */
+  DESIGN_SENSITIVITY_MORRIS,   /* trajectories from a random place on four levels, two levels a step */
+};
+struct design_sensitivity; /* opaque */
+
+/* blocks: best a power of two for Saltelli. STATUS_CONTENT: no input, more inputs than Sobol numbers allow (20), or no
+ * block. */
+status design_sensitivity_create(enum design_sensitivity_kind kind, size_t inputs, size_t blocks, uint64_t seed,
+                                 struct design_sensitivity **out, struct error *error);
+void design_sensitivity_free(struct design_sensitivity *design); /* NULL is fine */
+size_t design_sensitivity_rows(const struct design_sensitivity *design);
+/* Coordinates of a row in (0, 1), one for each input: the arguments of the quantiles. */
+void design_sensitivity_row(const struct design_sensitivity *design, size_t row, double *coordinates);
+/* Morris: the input that each step of each trajectory changes, and the change of its coordinate. Both arrays: inputs x
+ * blocks. */
+void design_sensitivity_steps(const struct design_sensitivity *design, size_t *order, double *step);
+
+/* When a point has enough replicates. The rule judges complete prefixes 0..n-1 of the replicate numbers only: "the
+ * first n that finished" would favour quick runs (measured bias: 2.8 standard errors with 32 workers). */
+
+struct design_stopping {
+  bool fixed; /* `minimum` replicates, the rule is not applied */
+  int64_t minimum, batch, maximum;
+  double half_width, level; /* half width of the mean's confidence interval, in the quantity's SI unit */
+};
+
+enum design_verdict { DESIGN_GROW, DESIGN_INTERVAL_MET, DESIGN_CAP_REACHED, DESIGN_FIXED };
+
+/* All replicates below *prefix have ended; values[r] is NaN for a failed run. DESIGN_GROW: *prefix is set to the next
+ * prefix to complete. Otherwise the point is finished at this prefix. */
+enum design_verdict design_stopping_judge(const struct design_stopping *rule, const double *values, int64_t *prefix);
 
 #endif

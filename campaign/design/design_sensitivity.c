@@ -1,9 +1,8 @@
 /* The designs of Saltelli (2002) and Morris (1991). */
-#include "campaign/design/design_sensitivity.h"
+#include "campaign/design/design.h"
 
 #include <stdlib.h>
 
-#include "campaign/design/design.h"
 #include "engine/random.h"
 
 enum { LEVELS = 4 };

@@ -1,6 +1,7 @@
-/* The keys of a campaign as field tables, and a campaign from a document. */
+/* The keys of a campaign, and a campaign from a document and changes of it. */
 #include "campaign/document/campaign.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -154,9 +155,44 @@ static char *text_for_store(const char *document, const struct campaign *campaig
   return text_close(out, &text);
 }
 
+/* ---- Puts the changes into the document before it is read: they are checked like the file's own values ---- */
+
+static const char origin[] = "command line";
+
+status campaign_change_split(const char *text, char path[FIELD_TEXT_SIZE], const char **value, struct error *error) {
+  const char *equals = strchr(text, '=');
+  if (!equals || equals == text || equals - text >= FIELD_TEXT_SIZE)
+    return status_fail(error, STATUS_USAGE, "--set expects PATH=VALUE (--set contact.friction=0.3), got \"%.128s\"",
+                       text);
+  snprintf(path, FIELD_TEXT_SIZE, "%.*s", (int)(equals - text), text);
+  *value = equals + 1;
+  return STATUS_OK;
+}
+
+static status change_input(struct document *document, const char *text, struct error *error) {
+  char path[FIELD_TEXT_SIZE];
+  const char *value = NULL;
+  const status code = campaign_change_split(text, path, &value, error);
+  return code ? code : document_change_put(document, (const char *const[]){"set", path}, value, origin, error);
+}
+
+/* STATUS_USAGE: no PATH=VALUE. */
+static status change(struct document *document, const struct campaign_changes *changes, struct error *error) {
+  status code = STATUS_OK;
+  for (size_t i = 0; code == STATUS_OK && i < changes->input_count; i++)
+    code = change_input(document, changes->inputs[i], error);
+  if (code || changes->seeds == 0)
+    return code;
+  char number[32];
+  snprintf(number, sizeof number, "%" PRId64, changes->seeds);
+  return document_change_put(document, (const char *const[]){"seeds", "per_point"}, number, origin, error);
+}
+
+/* ---- a campaign from a document ---- */
+
 static status from_document(struct document *document, const struct campaign_changes *changes, const char *folder,
                             bool stored, struct campaign **out, struct error *error) {
-  status code = changes ? campaign_change(document, changes, error) : STATUS_OK;
+  status code = changes ? change(document, changes, error) : STATUS_OK;
   if (code != STATUS_OK)
     return code;
   struct campaign *campaign = calloc(1, sizeof *campaign);
@@ -280,4 +316,90 @@ uint64_t campaign_seed(const struct campaign *campaign, const struct scene *poin
     item = item << 8 | identity[i];
   random_bits((uint64_t)campaign->first_seed, RANDOM_SEED, item, (uint64_t)replicate, bits);
   return bits[0] >> 1;
+}
+
+/* ---- Raises the limits for runs that reached them ---- */
+
+/* A limit given on the command line, or twice the campaign's. */
+static status raise_limit(const char *path, const char *text, double *limit, struct error *error) {
+  if (!text) {
+    *limit *= 2;
+    return STATUS_OK;
+  }
+  const struct field *row = field_find(&campaign_table, path, error);
+  struct field_value value;
+  if (!row)
+    return STATUS_INTERNAL;
+  status code = field_parse(row, text, &value, error);
+  if (code)
+    return STATUS_USAGE;
+  *limit = value.number;
+  return STATUS_OK;
+}
+
+status campaign_raise(struct campaign *campaign, const char *time, const char *memory, int64_t attempts,
+                      struct error *error) {
+  status code = raise_limit("limits.time", time, &campaign->time_limit, error);
+  if (code == STATUS_OK)
+    code = raise_limit("limits.memory", memory, &campaign->memory_limit, error);
+  if (code)
+    return code;
+  campaign->attempts += attempts;
+  campaign->failures = 0; /* the user was told of these failures before */
+  return STATUS_OK;
+}
+
+/* ---- What the keys of a campaign with several forms mean. campaign_read.c and campaign_vary.c read them ---- */
+
+const struct campaign_key campaign_keys[] = {
+    {.name = "vary",
+     .words = "from to n log uniform log_uniform normal mean sd truncated lognormal median sigma linked factor offset "
+              "values",
+     .doc = "Inputs of the scene that vary: the path of each, or a unique ending of it, and its values.",
+     .forms = "    [1 %, 3 %, 6 %]                                    these values\n"
+              "    {from: 1 %, to: 6 %, n: 6}                         even steps, both ends included\n"
+              "    {log: [1 %, 6 %], n: 6}                            even steps of the logarithm\n"
+              "    {uniform: [1 %, 6 %]}                              a law: uniform between two values\n"
+              "    {log_uniform: [1 %, 6 %]}                          uniform in the logarithm\n"
+              "    {normal: {mean: 4 deg, sd: 1 deg}}                 may be cut: truncated: [1 deg, 7 deg]\n"
+              "    {lognormal: {median: 1 GPa, sigma: 0.05}}          sigma of the natural logarithm; truncated, too\n"
+              "    {linked: threshold.strain, factor: 2}               factor (default 1) times another varied input,\n"
+              "                                                       plus offset (SI, default 0)\n"
+              "    {linked: threshold.strain, values: [2 deg, 6 deg]} i-th value with the i-th one of that input\n"
+              "    Laws need a sampling design: clast explain design\n"},
+    {.name = "set",
+     .words = "",
+     .doc = "Inputs of the scene with another value for the whole campaign.",
+     .forms = "    {contact.friction: 0.2, body.diameter: 8 cm}       path of each, or a unique ending of it\n"},
+    {.name = "design",
+     .words = "grid list random latin_hypercube sobol kind points seed file",
+     .doc = "How points are made from the varied inputs. Default: grid.",
+     .forms =
+         "    grid, or list                                      of values that are given\n"
+         "    {kind: sobol, points: 64, seed: 1}                 of laws; or kind random, latin_hypercube\n"
+         "    {file: points.csv}                                 from another program: a header of input paths, a\n"
+         "                                                       line for each point. A column \"threshold.angle\n"
+         "                                                       [deg]\" is in degrees, \"[1]\" in fractions\n",
+     .table = &campaign_design_table},
+    {.name = "keep",
+     .words = "fields none all extremes first",
+     .doc = "Runs that keep their fields as HDF5 files. Default: none.",
+     .forms = "    {fields: none}, {fields: all}\n"
+              "    {fields: first 3}                                  the first replicates of each point\n"
+              "    {fields: extremes}                                 of each point the runs with the least and the\n"
+              "                                                       greatest main quantity (key quantity)\n"},
+};
+const size_t campaign_keys_count = sizeof campaign_keys / sizeof campaign_keys[0];
+
+const struct campaign_key *campaign_keys_find(const char *path) {
+  const size_t head = strcspn(path, ".");
+  for (size_t i = 0; i < campaign_keys_count; i++) {
+    const struct campaign_key *key = &campaign_keys[i];
+    const bool named = strlen(key->name) == head && strncmp(key->name, path, head) == 0;
+    if (named && (path[head] == '\0' || text_has_word(key->words, path + head + 1)))
+      return key;
+    if (!named && text_has_word(key->words, path))
+      return key;
+  }
+  return NULL;
 }

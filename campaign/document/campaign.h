@@ -18,9 +18,11 @@
 #ifndef CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_H
 #define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_H
 
-#include "campaign/design/axis.h"
-#include "campaign/document/campaign_change.h"
+#include <stddef.h>
+
+#include "campaign/design/design.h"
 #include "engine/scene.h"
+#include "schemas/document.h"
 #include "schemas/field.h"
 
 enum campaign_design {
@@ -37,7 +39,7 @@ struct campaign_design_keys { /* the mapping form of `design`, table campaign_de
   int kind;                   /* enum campaign_design; CAMPAIGN_LIST with a file */
   int64_t points; /* number of points of a sampling design or a file; 0 for grid and list, whose axes give it */
   int64_t seed;   /* seed of a sampling design: for shift, permutations and draws */
-  char file[FIELD_TEXT_SIZE]; /* CSV file of the points, "" for none; campaign_points.h */
+  char file[FIELD_TEXT_SIZE]; /* CSV file of the points, "" for none */
 };
 
 struct campaign {
@@ -72,6 +74,18 @@ struct campaign {
   char *text; /* owned: the document as read, for the store; its last line has the checksum of design.file */
 };
 enum { CAMPAIGN_FIRST_RUNS = 50 };
+
+/* Changes of a campaign from the command line. They become part of its document, so that the store keeps them and
+ * `clast retry` runs the same campaign. */
+
+struct campaign_changes {
+  size_t input_count;
+  const char *const *inputs; /* "PATH=VALUE": as if under `set` */
+  int64_t seeds;             /* seeds.per_point; 0: as written */
+};
+
+/* Splits PATH=VALUE of --set. *value points into the text. STATUS_USAGE: the text has another form. */
+status campaign_change_split(const char *text, char path[FIELD_TEXT_SIZE], const char **value, struct error *error);
 
 extern const struct field_table campaign_table;        /* the plain keys */
 extern const struct field_table campaign_design_table; /* the keys of `design` as a mapping */
@@ -116,5 +130,75 @@ const struct field *campaign_quantity(const struct engine_kind *kind, const char
 double campaign_value(const struct field *row, bool of_outcome, const struct outcome *outcome, const void *result);
 /* True when a finished run is a usable result. */
 bool campaign_usable(const struct outcome *outcome);
+
+/* The keys of a campaign that have several forms (vary, set, design, keep), for `clast explain`. The plain keys are
+ * rows of campaign_table. */
+
+struct campaign_key {
+  const char *name;
+  const char *words;               /* words that may occur in its value, separated by spaces */
+  const char *doc;                 /* one sentence */
+  const char *forms;               /* lines of examples and their meaning */
+  const struct field_table *table; /* the rows of its mapping; NULL: none */
+};
+
+extern const struct campaign_key campaign_keys[];
+extern const size_t campaign_keys_count;
+
+/* Finds the key that is named `path`, contains it ("keep.fields"), or has it among its words. NULL: none. */
+const struct campaign_key *campaign_keys_find(const char *path);
+
+/* ---- A walk over the points of a campaign, in the order of its design ---- */
+
+struct campaign_walk {
+  const struct campaign *campaign;
+  struct design *design;
+  struct field_value *values; /* values of the current point, one for each axis */
+};
+
+/* Begins a walk before the first point. STATUS_MEMORY; STATUS_CONTENT: no such design. End the walk also after an
+ * error. */
+status campaign_walk_begin(struct campaign_walk *walk, const struct campaign *campaign, struct error *error);
+void campaign_walk_end(struct campaign_walk *walk);
+/* Goes to the next point. False after the last one. */
+bool campaign_walk_next(struct campaign_walk *walk);
+/* The scene of the current point, owned by the caller. NULL with *error when its values cannot be run together. */
+struct scene *campaign_walk_scene(const struct campaign_walk *walk, struct error *error);
+
+/* ---- Warnings about the inputs of a campaign before it runs, from its engine ---- */
+
+/* Writes a line per kind of warning (engine/outcome.h): `before`, the number of points that have it, and the engine's
+ * text for the first of them. Looks at the first 1000 points. */
+void campaign_warn(const struct campaign *campaign, const char *before, FILE *out);
+/* The same for one scene, without a number of points. */
+void campaign_warn_scene(const struct scene *scene, const char *before, FILE *out);
+
+/* Writes a list of points as a campaign's document, which `clast run` could compute: for the store of a study or a
+ * fit. */
+
+/* The overridden inputs of campaign->scene become `set`, the levels of its axes `vary` with the design `list`. comment:
+ * one line. scene_reference: value of `scene`. malloc'd; NULL when memory is out. */
+char *campaign_write_list(const struct campaign *campaign, const char *scene_reference, const char *comment);
+
+/* ---- A campaign whose failed runs are tried again (`clast retry`) ---- */
+
+/* Limits as a user types them ("30 min", off); NULL: twice the campaign's. Adds this many attempts and removes the
+ * limit of failures. STATUS_USAGE. */
+status campaign_raise(struct campaign *campaign, const char *time, const char *memory, int64_t attempts,
+                      struct error *error);
+
+/* Designs for sensitivity indices, written as a campaign with a file of points, and found again in such a campaign. */
+
+/* Writes NEW.yaml, the campaign of `path` with another design, and NEW.csv, its points. Neither may exist. */
+status sensitivity_design_write(const char *path, const char *output, enum design_sensitivity_kind kind, size_t blocks,
+                                uint64_t seed, struct error *error);
+
+/* Finds the kind of design that the points of a campaign form, and its number of blocks. STATUS_USAGE: it is neither
+ * design. */
+status sensitivity_design_find(const struct campaign *campaign, enum design_sensitivity_kind *kind, size_t *blocks,
+                               struct error *error);
+/* For a Morris design: the input that each step changes, and the signed change of its quantile. Both arrays: inputs x
+ * blocks. */
+void sensitivity_design_steps(const struct campaign *campaign, size_t blocks, size_t *order, double *step);
 
 #endif

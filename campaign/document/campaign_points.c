@@ -1,5 +1,5 @@
 /* Reads a design from a CSV file into axes of equal length. */
-#include "campaign/document/campaign_points.h"
+#include "campaign/document/campaign_read.h"
 
 #include <errno.h>
 #include <math.h>

@@ -5,9 +5,6 @@
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
-#include "campaign/document/campaign_points.h"
-#include "campaign/document/campaign_vary.h"
-#include "campaign/document/campaign_walk.h"
 #include "db/store/store.h"
 #include "schemas/memory.h"
 

@@ -1,4 +1,4 @@
-/* The reader of a campaign's document. For campaign/document/campaign.c. */
+/* The readers of a campaign's document. For campaign/document only. */
 #ifndef CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_READ_H
 #define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_READ_H
 
@@ -9,5 +9,19 @@
  * and design.file are relative to `folder` (NULL: the current one). `stored`: the document is
  * that of a store, which may set an input twice. */
 void campaign_read(document_node *root, const char *folder, bool stored, struct campaign *campaign);
+
+/* `design: {file: points.csv}`: the points of a campaign from another program. For campaign.c only.
+ *
+ * CSV (RFC 4180) with a header of input paths, or unique endings of one. "threshold.angle [deg]" gives the unit of the
+ * column's bare numbers, "[1]" fractions. A cell may carry its own unit ("3 deg"). Line i makes point i. */
+
+/* Reads the file that campaign->design.file names (relative to `folder`; NULL: the current one) into campaign->axes and
+ * campaign->points. False when anything was reported, at `node`, with the file's name and line. */
+bool campaign_points_read(document_node *node, const char *folder, struct campaign *campaign);
+
+/* ---- The key `vary` of a campaign: paths into the scene and what values they take. For campaign.c only ---- */
+
+/* Fills campaign->axes from the mapping (NULL: nothing varied). False when anything was reported. */
+bool campaign_vary_read(document_node *vary, struct campaign *campaign);
 
 #endif

@@ -1,5 +1,5 @@
 /* Reads every form of the key `vary` and links the axes. */
-#include "campaign/document/campaign_vary.h"
+#include "campaign/document/campaign_read.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,12 @@
-/* The points of a campaign, one after the other. */
-#include "campaign/document/campaign_walk.h"
+/* The points of a campaign, one after the other; warnings about them; a list of them as a document. */
+#include "campaign/document/campaign.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "engine/outcome.h"
+#include "schemas/text.h"
 
 status campaign_walk_begin(struct campaign_walk *walk, const struct campaign *campaign, struct error *error) {
   *walk = (struct campaign_walk){.campaign = campaign};
@@ -25,4 +30,126 @@ bool campaign_walk_next(struct campaign_walk *walk) {
 
 struct scene *campaign_walk_scene(const struct campaign_walk *walk, struct error *error) {
   return campaign_point_scene(walk->campaign, walk->values, error);
+}
+
+/* ---- Collects the engine's warnings about the first points of a campaign ---- */
+
+enum { LOOKED_AT = 1000, LINE = 400 };
+
+struct doubts {
+  size_t points, count[WARNINGS_COUNT];
+  char first[WARNINGS_COUNT][LINE]; /* the engine's text for the first point with this warning */
+};
+
+/* The engine writes its lines in the order of the bits. */
+static void add(struct doubts *doubts, const struct scene *scene) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = scene->kind->warn ? text_open(&text, &size) : NULL;
+  doubts->points++;
+  if (!out)
+    return;
+  const unsigned set = scene->kind->warn(scene->inputs, out);
+  const char *line = text_close(out, &text) ? text : "";
+  for (size_t k = 0; k < WARNINGS_COUNT; k++) {
+    if (!(set >> k & 1))
+      continue;
+    const size_t length = strcspn(line, "\n");
+    if (doubts->count[k]++ == 0)
+      snprintf(doubts->first[k], sizeof doubts->first[k], "%.*s", (int)length, line);
+    line += length + (line[length] != 0);
+  }
+  free(text);
+}
+
+static void print(const struct doubts *doubts, const char *before, bool counted, FILE *out) {
+  for (size_t k = 0; k < WARNINGS_COUNT; k++) {
+    if (doubts->count[k] == 0)
+      continue;
+    fputs(before, out);
+    if (counted)
+      fprintf(out, "%zu of %zu points: ", doubts->count[k], doubts->points);
+    fprintf(out, "%s\n", doubts->first[k]);
+  }
+}
+
+void campaign_warn_scene(const struct scene *scene, const char *before, FILE *out) {
+  struct doubts doubts = {0};
+  add(&doubts, scene);
+  print(&doubts, before, false, out);
+}
+
+void campaign_warn(const struct campaign *campaign, const char *before, FILE *out) {
+  struct doubts doubts = {0};
+  struct campaign_walk walk;
+  struct error error;
+  if (campaign_walk_begin(&walk, campaign, &error) == STATUS_OK)
+    for (size_t i = 0; i < LOOKED_AT && campaign_walk_next(&walk); i++) {
+      struct scene *scene = campaign_walk_scene(&walk, &error);
+      if (scene)
+        add(&doubts, scene);
+      scene_free(scene);
+    }
+  campaign_walk_end(&walk);
+  print(&doubts, before, doubts.points > 1, out);
+}
+
+/* ---- Writes campaigns of lists. JSON values are YAML ---- */
+
+static void write_value(const struct field *row, const struct field_value *value, FILE *out) {
+  fputc(' ', out);
+  if (!field_needs_unit(row)) {
+    field_json_value(row, value, out);
+    return;
+  }
+  char text[FIELD_TEXT_SIZE];
+  field_print(row, value, text, sizeof text);
+  text_json_string(text, out);
+}
+
+static void write_set(const struct scene *scene, FILE *out) {
+  const char *before = "\nset:";
+  for (size_t i = 0; i < scene->kind->inputs->count; i++) {
+    const struct field *row = &scene->kind->inputs->rows[i];
+    struct field_value value;
+    if (!scene->overridden[i])
+      continue;
+    field_get(row, scene->inputs, &value);
+    fprintf(out, "%s\n  %s:", before, row->path);
+    write_value(row, &value, out);
+    before = "";
+  }
+}
+
+static void write_axes(const struct campaign *campaign, FILE *out) {
+  fputs("\ndesign: list\nvary:", out);
+  for (size_t i = 0; i < campaign->axis_count; i++) {
+    const struct design_axis *axis = &campaign->axes[i];
+    fprintf(out, "\n  %s: [", axis->row->path);
+    for (size_t l = 0; l < axis->level_count; l++) {
+      fputs(l ? "," : "", out);
+      write_value(axis->row, &axis->levels[l], out);
+    }
+    fputs("]", out);
+  }
+}
+
+char *campaign_write_list(const struct campaign *campaign, const char *scene_reference, const char *comment) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = text_open(&text, &size);
+  if (!out)
+    return NULL;
+  fprintf(out, "# %s\nname: ", comment);
+  text_json_string(campaign->name, out);
+  fputs("\nscene: ", out);
+  text_json_string(scene_reference, out);
+  write_set(campaign->scene, out);
+  write_axes(campaign, out);
+  fprintf(out, "\nquantity: %s\nseeds: {first: %lld, per_point: %lld%s}\nstore: ", campaign->quantity,
+          (long long)campaign->first_seed, (long long)campaign->per_point,
+          campaign->independent ? ", independent: true" : "");
+  text_json_string(campaign->store, out);
+  fputs("\n", out);
+  return text_close(out, &text);
 }

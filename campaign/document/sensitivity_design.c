@@ -1,5 +1,5 @@
 /* Writes designs for sensitivity indices, and finds them again. */
-#include "campaign/document/sensitivity_design.h"
+#include "campaign/document/campaign.h"
 
 #include <stdio.h>
 #include <stdlib.h>

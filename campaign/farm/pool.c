@@ -1,13 +1,62 @@
-/* Sends jobs to slots, and takes back jobs that they have not begun. pool_listen.c reads the slots' messages. */
-#include "campaign/farm/pool_private.h"
+/* The slots of a rank: sends jobs to them, takes back jobs that they have not begun, reads their messages, replaces
+ * slots that end. */
+#include "campaign/farm/farm_private.h"
 
 #include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/types.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "schemas/clock.h"
+
+struct slot {
+  int channel; /* -1: none at present */
+  pid_t pid;
+  bool given_up;
+  int idle_ends;
+  uint64_t killed;   /* handle of the task at whose deadline the slot was killed */
+  uint64_t forgiven; /* handle of the task whose deadline was moved by forgiven_ns */
+  int64_t forgiven_ns;
+  struct farm_job_queue jobs; /* jobs sent to the slot, in order */
+  struct farm_bytes in, out;
+};
+
+struct farm_pool {
+  struct farm_slot_setup setup;
+  size_t records_size;
+  pid_t server;
+  int control;
+  struct slot *slots;
+  struct pollfd *fds;
+  struct farm_job_queue queue;
+  struct farm_pool_sink sink;
+  size_t count;
+  double mean_wall_s; /* mean wall time of recent tasks */
+  int64_t looked_ns;
+};
+
+/* Writes the bytes that wait for the slot, as far as its channel accepts them. */
+static void flush(struct slot *slot) {
+  while (slot->channel >= 0 && slot->out.begin < slot->out.end) {
+    const ssize_t n = send(slot->channel, slot->out.data + slot->out.begin, slot->out.end - slot->out.begin,
+                           MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n <= 0)
+      return; /* either the channel is full, and poll reports when it has space again; or the slot has ended, and the
+                 server reports that */
+    slot->out.begin += (size_t)n;
+  }
+  if (slot->out.begin == slot->out.end)
+    farm_frame_trim(&slot->out);
+}
 
 /* Several tasks shorter than this are sent ahead to a slot, so that it never waits while the manager handles a batch.
  */
@@ -72,21 +121,6 @@ static size_t depth(const struct farm_pool *pool) {
 
 size_t farm_pool_capacity(const struct farm_pool *pool) {
   return (size_t)farm_pool_slots(pool) * depth(pool);
-}
-
-void farm_pool_flush(struct slot *slot) {
-  while (slot->channel >= 0 && slot->out.begin < slot->out.end) {
-    const ssize_t n = send(slot->channel, slot->out.data + slot->out.begin, slot->out.end - slot->out.begin,
-                           MSG_NOSIGNAL | MSG_DONTWAIT);
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n <= 0)
-      return; /* either the channel is full, and poll reports when it has space again; or the slot has ended, and the
-                 server reports that */
-    slot->out.begin += (size_t)n;
-  }
-  if (slot->out.begin == slot->out.end)
-    farm_frame_trim(&slot->out);
 }
 
 static bool give(struct farm_pool *pool, int index, struct farm_job *job) {
@@ -172,7 +206,7 @@ void farm_pool_dispatch(struct farm_pool *pool) {
   send_waiting(pool);
   relieve_slots(pool);
   for (int i = 0; i < pool->setup.options.slots; i++)
-    farm_pool_flush(&pool->slots[i]);
+    flush(&pool->slots[i]);
 }
 
 void farm_pool_withdraw(struct farm_pool *pool, size_t most, struct farm_job_queue *into) {
@@ -209,4 +243,279 @@ void farm_pool_end(struct farm_pool *pool) {
   free(pool->slots);
   free(pool->fds);
   free(pool);
+}
+
+/* ---- Reads results, replaces slots that end, enforces deadlines of runs in process ---- */
+
+enum { IDLE_ENDS = 5 }; /* a slot that ends this many times in a row without a task is not replaced */
+
+static void ended(struct farm_pool *pool, struct farm_job *job, const struct farm_result *result, const uint8_t *bytes,
+                  const char *message, size_t message_size) {
+  pool->count--;
+  pool->sink.ended(pool->sink.context, job, result, bytes, message, message_size);
+}
+
+/* Reads the bytes that the slot has written so far. False: its channel is closed. */
+static bool read_slot(struct slot *slot) {
+  for (;;) {
+    if (!farm_frame_reserve(&slot->in, farm_frame_missing(&slot->in, 16384)))
+      return false;
+    const size_t space = slot->in.capacity - slot->in.end;
+    const ssize_t n = recv(slot->channel, slot->in.data + slot->in.end, space, MSG_DONTWAIT);
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n < 0 && errno == EAGAIN)
+      return true;
+    if (n <= 0)
+      return false;
+    slot->in.end += (size_t)n;
+    if ((size_t)n < space)
+      return true;
+  }
+}
+
+/* Takes one result from the slot's buffer. 1: taken; 0: none is complete; -1: invalid data. */
+static int take_result(struct farm_pool *pool, struct slot *slot) {
+  struct farm_frame frame;
+  struct farm_result result;
+  const uint8_t *payload;
+  const int got = farm_frame_next(&slot->in, &frame, &payload);
+  if (got <= 0)
+    return got;
+  if (frame.kind != FARM_FRAME_RESULT || frame.size < sizeof result)
+    return -1;
+  memcpy(&result, payload, sizeof result);
+  if (result.size > frame.size - sizeof result)
+    return -1;
+
+  struct farm_job *job = farm_job_take(&slot->jobs, frame.handle);
+  if (!job)
+    return 1; /* unreachable: a job that the slot ran is in its queue */
+  slot->idle_ends = 0;
+  pool->mean_wall_s += 0.1 * (result.wall_s - pool->mean_wall_s);
+  ended(pool, job, &result, payload + sizeof result, (const char *)payload + sizeof result + result.size,
+        frame.size - sizeof result - result.size);
+  return 1;
+}
+
+/* Takes the results that the slot has written. False: its channel is closed, or it wrote invalid data. */
+static bool listen_to(struct farm_pool *pool, struct slot *slot) {
+  const bool open = read_slot(slot);
+  int got;
+  while ((got = take_result(pool, slot)) > 0) {
+  }
+  if (got < 0)
+    return false;
+  if (slot->in.begin == slot->in.end)
+    farm_frame_trim(&slot->in);
+  return open;
+}
+
+/* The job that the slot was computing when it ended, taken out of its queue. NULL: it had not begun one. */
+static struct farm_job *take_running(struct slot *slot, struct farm_slot_record *record) {
+  const uint64_t running = atomic_load(&record->running);
+  struct farm_job *job = running ? farm_job_take(&slot->jobs, running) : NULL;
+  if (!job || atomic_load(&record->ticket[job->ticket]) != running)
+    return job;
+  farm_job_push_front(&slot->jobs, job); /* the ticket was not yet taken: the slot had not begun the job */
+  return NULL;
+}
+
+/* Puts all jobs of the slot at the head of the pool's queue, in their order. */
+static void queue_again(struct farm_pool *pool, struct slot *slot) {
+  struct farm_job_queue back = {0};
+  for (struct farm_job *job; (job = farm_job_pop(&slot->jobs));)
+    farm_job_push_front(&back, job);
+  for (struct farm_job *job; (job = farm_job_pop(&back));)
+    farm_job_push_front(&pool->queue, job);
+}
+
+/* The slot's process has ended: its running job gets the verdict, the others are queued again. */
+static void slot_ended(struct farm_pool *pool, int index, const struct farm_result *verdict, const char *text) {
+  struct slot *const slot = &pool->slots[index];
+  struct farm_slot_record *const record = &pool->setup.records[index];
+  if (slot->channel >= 0) {
+    listen_to(pool, slot);
+    close(slot->channel);
+    slot->channel = -1;
+  }
+  farm_frame_free(&slot->in);
+  farm_frame_free(&slot->out);
+
+  const uint64_t running = atomic_load(&record->running);
+  const int64_t started = atomic_load(&record->started_ns);
+  const bool timed_out = running && slot->killed == running;
+  struct farm_job *job = take_running(slot, record);
+  queue_again(pool, slot);
+  slot->idle_ends = job ? 0 : slot->idle_ends + 1;
+  slot->killed = slot->forgiven = 0;
+  for (int i = 0; i < FARM_SLOT_TICKETS; i++)
+    atomic_store(&record->ticket[i], 0);
+  atomic_store(&record->running, 0);
+  if (!job)
+    return;
+
+  struct farm_result result = *verdict;
+  char limit[96];
+  if (timed_out) {
+    result.ending = FARM_TIME_LIMIT;
+    snprintf(limit, sizeof limit, "ended at its time limit of %g s", pool->setup.options.time_limit_s);
+    text = limit;
+  }
+  result.wall_s = 1e-9 * (double)(clock_ns() - started);
+  result.slot = index;
+  ended(pool, job, &result, NULL, text, strlen(text));
+}
+
+/* The fork server reports that a slot's process has ended, or could not be made. Requests a new one. */
+static void hear_slot_ended(struct farm_pool *pool, const struct farm_server_message *message) {
+  struct slot *const slot = &pool->slots[message->slot];
+  const int value = message->value;
+  char text[160];
+  const bool in_process = pool->setup.options.in_process;
+  struct farm_result verdict = {.ending = FARM_LOST};
+  if (message->pid == 0) {
+    snprintf(text, sizeof text, "the system refused a process for a slot: %s", strerror(value));
+  } else if (WIFSIGNALED(value)) {
+    verdict.signal = WTERMSIG(value);
+    if (in_process)
+      verdict.ending = farm_slot_ending_by(verdict.signal);
+    snprintf(text, sizeof text, "%s killed by signal %d (%s)%s",
+             in_process ? "the run's process was" : "the slot (not the run) was", verdict.signal,
+             strsignal(verdict.signal),
+             verdict.signal == SIGKILL ? "; if nobody did it, the machine was out of memory" : "");
+  } else {
+    verdict.exit_code = WEXITSTATUS(value);
+    if (in_process && verdict.exit_code != STATUS_MEMORY)
+      verdict.ending = FARM_CRASHED;
+    snprintf(text, sizeof text, "the run's process exited with code %d and no result", verdict.exit_code);
+  }
+  slot_ended(pool, message->slot, &verdict, text);
+  slot->pid = 0;
+  if (slot->idle_ends >= IDLE_ENDS || !farm_server_ask(pool->control, FARM_SERVER_SPAWN, message->slot, 0))
+    slot->given_up = true;
+}
+
+static void server_ended(struct farm_pool *pool) {
+  const struct farm_result verdict = {.ending = FARM_LOST};
+  for (int i = 0; i < pool->setup.options.slots; i++) {
+    slot_ended(pool, i, &verdict, "the fork server of this rank is gone, and its slots with it");
+    pool->slots[i].given_up = true;
+  }
+  farm_server_end(pool->server, pool->control);
+  pool->control = -1;
+  pool->server = 0;
+}
+
+static void hear_server(struct farm_pool *pool) {
+  for (;;) {
+    struct farm_server_message message;
+    int channel;
+    const int got = farm_server_hear(pool->control, &message, &channel);
+    if (got == 0)
+      return;
+    if (got < 0 || message.slot < 0 || message.slot >= pool->setup.options.slots) {
+      if (channel >= 0)
+        close(channel);
+      server_ended(pool);
+      return;
+    }
+    if (message.verb == FARM_SERVER_SPAWNED) {
+      pool->slots[message.slot].channel = channel;
+      pool->slots[message.slot].pid = message.pid;
+    } else if (message.verb == FARM_SERVER_DIED) {
+      hear_slot_ended(pool, &message);
+    }
+  }
+}
+
+/* Returns the deadline of the slot's running job, and kills the slot if the deadline has passed. `late`: time since the
+ * last check, ns. INT64_MAX: no deadline to wait for. */
+static int64_t keep_deadline(struct farm_pool *pool, int index, int64_t now, int64_t late) {
+  struct slot *const slot = &pool->slots[index];
+  const uint64_t running = atomic_load(&pool->setup.records[index].running);
+  const int64_t started = atomic_load(&pool->setup.records[index].started_ns);
+  const int64_t limit = clock_from_s(pool->setup.options.time_limit_s);
+  if (slot->channel < 0 || slot->jobs.count == 0 || !running || slot->killed == running)
+    return INT64_MAX;
+
+  /* The main process checks at least once a second. A longer gap means that all processes were stopped (Ctrl-Z); this
+   * time does not count for the run. */
+  if (late > 2 * CLOCK_S) {
+    slot->forgiven_ns = (slot->forgiven == running ? slot->forgiven_ns : 0) + late;
+    slot->forgiven = running;
+  }
+  const int64_t until = started + (slot->forgiven == running ? slot->forgiven_ns : 0) + limit;
+  if (now < until)
+    return until;
+  slot->killed = running;
+  farm_server_ask(pool->control, FARM_SERVER_KILL, index, slot->pid);
+  return INT64_MAX;
+}
+
+/* Returns the time of the next check. The main process enforces the deadline of a run in the slot's own process,
+ * because the slot is busy; a slot with isolated runs enforces their deadlines itself. */
+static int64_t keep_deadlines(struct farm_pool *pool) {
+  const int64_t now = clock_ns(), late = now - pool->looked_ns;
+  pool->looked_ns = now;
+  int64_t next = INT64_MAX;
+  if (!pool->setup.options.in_process || !(pool->setup.options.time_limit_s > 0))
+    return next;
+  for (int i = 0; i < pool->setup.options.slots; i++) {
+    const int64_t until = keep_deadline(pool, i, now, late);
+    if (until < next)
+      next = until;
+  }
+  return next;
+}
+
+/* Lists the files to wait for: the channel of each slot, the server, and the signals. */
+static void watch_files(struct farm_pool *pool, int signals) {
+  const int slots = pool->setup.options.slots;
+  for (int i = 0; i < slots; i++) {
+    const struct slot *slot = &pool->slots[i];
+    pool->fds[i] = (struct pollfd){.fd = slot->channel, .events = POLLIN};
+    if (slot->out.begin < slot->out.end)
+      pool->fds[i].events |= POLLOUT;
+  }
+  pool->fds[slots] = (struct pollfd){.fd = pool->control, .events = POLLIN};
+  pool->fds[slots + 1] = (struct pollfd){.fd = signals, .events = POLLIN};
+}
+
+/* Time to sleep: at most a second, and at most until the next deadline. */
+static struct timespec sleep_time(struct farm_pool *pool, int64_t timeout_ns) {
+  const int64_t deadline = pool->control >= 0 ? keep_deadlines(pool) : INT64_MAX, now = clock_ns();
+  if (timeout_ns > CLOCK_S)
+    timeout_ns = CLOCK_S;
+  if (deadline - now < timeout_ns)
+    timeout_ns = deadline > now ? deadline - now : 0;
+  return (struct timespec){timeout_ns / CLOCK_S, (long)(timeout_ns % CLOCK_S)};
+}
+
+/* Closed channel: the slot has ended, and the server reports why. Invalid data: the slot is killed, and the server
+ * reports that. */
+static void close_slot(struct farm_pool *pool, int index) {
+  struct slot *const slot = &pool->slots[index];
+  if (pool->control >= 0)
+    farm_server_ask(pool->control, FARM_SERVER_KILL, index, slot->pid);
+  close(slot->channel);
+  slot->channel = -1;
+}
+
+bool farm_pool_listen(struct farm_pool *pool, int signals, int64_t timeout_ns) {
+  const int slots = pool->setup.options.slots;
+  const struct timespec timeout = sleep_time(pool, timeout_ns);
+  watch_files(pool, signals);
+  if (ppoll(pool->fds, (nfds_t)slots + 2, &timeout, NULL) <= 0)
+    return false;
+  for (int i = 0; i < slots; i++) {
+    const short events = pool->fds[i].revents;
+    if (events & POLLOUT)
+      flush(&pool->slots[i]);
+    if ((events & (POLLIN | POLLHUP | POLLERR)) && !listen_to(pool, &pool->slots[i]))
+      close_slot(pool, i);
+  }
+  if (pool->control >= 0 && pool->fds[slots].revents)
+    hear_server(pool);
+  return true;
 }

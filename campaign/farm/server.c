@@ -1,5 +1,5 @@
 /* The fork server: makes slots on request, and reports those that end. */
-#include "campaign/farm/server.h"
+#include "campaign/farm/farm_private.h"
 
 #include <errno.h>
 #include <fcntl.h>

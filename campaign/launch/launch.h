@@ -62,4 +62,10 @@ bool launch_other_rank(void);
  * moment longer, because mpirun ends all ranks when the first one leaves with an error. Returns `code`. */
 status launch_quiet_ranks(status code, struct error *error);
 
+/* ---- From a campaign to its finished store: shared by `clast run` and `clast retry` ---- */
+
+/* Runs the campaign with a farm, and prints the table of estimates from the store at the end, on rank 0. */
+status launch_campaign(const struct campaign *campaign, const char *store, const struct launch_options *options,
+                       enum table_format format, const struct command_line *line, struct error *error);
+
 #endif

@@ -2,18 +2,174 @@
 #include "campaign/one_run/one_run.h"
 
 #include <math.h>
+#include <signal.h>
+#include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
 #include <unistd.h>
 
+#include "analysis/pictures/snapshot_read.h"
 #include "campaign/charts/charts.h"
-#include "campaign/one_run/resume.h"
-#include "campaign/one_run/snapshots.h"
+#include "engine/engine.h"
+#include "engine/restart.h"
+#include "schemas/clock.h"
+#include "schemas/field.h"
+#include "schemas/file.h"
+#include "schemas/text.h"
+
+/* ---- a restart file: a run that can be stopped and goes on later ----
+ * SIGINT, SIGTERM and SIGHUP write it and end the command with exit code 75. It is also written every few minutes, for
+ * ends without a signal. */
+
+struct resume {
+  const char *path; /* path of the restart file */
+  double saved;     /* s, monotonic: when it was last written */
+};
+
+enum { EVERY_S = 300 };
+
+static volatile sig_atomic_t stopped; /* a signal handler can use only a global variable */
+
+static void note(int number) {
+  stopped = number;
+}
+
+/* From now on the first signal is only noted. A second one ends the process at once. */
+static void resume_begin(struct resume *resume, const char *path) {
+  const int wanted[] = {SIGINT, SIGTERM, SIGHUP};
+  struct sigaction action = {.sa_handler = note, .sa_flags = (int)SA_RESETHAND};
+  for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++)
+    sigaction(wanted[k], &action, NULL);
+  *resume = (struct resume){path, clock_s()};
+}
+
+/* Between blocks of steps. STATUS_STOPPED after a signal, when the file is written; or the status of restart_save. */
+static status resume_look(struct resume *resume, const struct engine_kind *kind, void *run, struct error *error) {
+  if (!stopped && clock_s() - resume->saved < EVERY_S)
+    return STATUS_OK;
+  status code = restart_save(kind, run, resume->path, error);
+  resume->saved = clock_s();
+  if (code || !stopped)
+    return code;
+  return status_fail(error, STATUS_STOPPED,
+                     "stopped at %.4g s of simulated time, saved in %s: the same command goes on from there",
+                     kind->time(run), resume->path);
+}
+
+/* ---- fields files during the run, and the list of them with their times that ParaView reads (NAME.hdf.series) ---- */
+
+struct snapshots {
+  char name[FIELD_TEXT_SIZE];
+  int64_t count, next; /* next: number of the next snapshot */
+  bool resumed;        /* the run was restored, and snapshots_look() was not called yet */
+  double *time;        /* s, by number; NaN: there is no such file */
+};
+
+enum { PATH = FIELD_TEXT_SIZE + 64 };
+
+static void path_of(const struct snapshots *s, int64_t number, char path[PATH]) {
+  snprintf(path, PATH, "%s_%06lld.hdf", s->name, (long long)number);
+}
+
+static void path_of_list(const struct snapshots *s, char path[PATH]) {
+  snprintf(path, PATH, "%s.hdf.series", s->name);
+}
+
+/* `count` files NAME_000000.hdf, ... evenly over the longest time that a run may take, the first one near its
+ * beginning. `resumed`: the run goes on from a restart file; earlier snapshots are on the disk and stay in the list.
+ * STATUS_MEMORY, and the statuses of file_claim(). The caller frees s->time, also after an error. */
+static status snapshots_open(struct snapshots *s, const char *name, int64_t count, bool resumed, struct error *error) {
+  char path[PATH];
+  *s = (struct snapshots){.count = count, .resumed = resumed, .time = malloc((size_t)count * sizeof *s->time)};
+  if (!s->time)
+    return status_fail(error, STATUS_MEMORY, "no memory for %lld snapshots", (long long)count);
+  snprintf(s->name, sizeof s->name, "%s", name);
+  path_of_list(s, path);
+  TRY(file_claim(path, "list of snapshots", error));
+  for (int64_t k = 0; k < count; k++) {
+    s->time[k] = NAN;
+    path_of(s, k, path);
+    TRY(file_may_replace(path, "snapshot", error));
+  }
+  return STATUS_OK;
+}
+
+/* Reads the times of the earlier snapshots of a restored run, which are on the disk. */
+static void find_earlier(struct snapshots *s, double progress) {
+  s->resumed = false;
+  s->next = (int64_t)ceil(progress * (double)s->count);
+  for (int64_t k = 0; k < s->next && k < s->count; k++) {
+    char path[PATH];
+    struct snapshot_read *file;
+    path_of(s, k, path);
+    if (snapshot_read_open(path, &file, NULL))
+      continue;
+    if (!snapshot_read_real(file, "run", "time", &s->time[k]))
+      s->time[k] = NAN;
+    snapshot_read_close(file);
+  }
+}
+
+/* ParaView's list of files with their times (style: JSON, version 1.0). Names are relative to it. */
+static status write_series(const struct snapshots *s, struct error *error) {
+  char *text = NULL, path[PATH];
+  size_t size = 0;
+  FILE *out = text_open(&text, &size);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "no memory for the list of snapshots");
+  const char *base = strrchr(s->name, '/');
+  fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [", out);
+  const char *between = "\n";
+  for (int64_t k = 0; k < s->count; k++) {
+    if (isnan(s->time[k]))
+      continue;
+    char number[32];
+    snprintf(path, sizeof path, "%s_%06lld.hdf", base ? base + 1 : s->name, (long long)k);
+    field_print_number(s->time[k], number);
+    fprintf(out, "%s    {\"name\": ", between);
+    text_json_string(path, out);
+    fprintf(out, ", \"time\": %s}", number);
+    between = ",\n";
+  }
+  fputs("\n  ]\n}\n", out);
+  if (!text_close(out, &text))
+    return status_fail(error, STATUS_MEMORY, "no memory for the list of snapshots");
+  path_of_list(s, path);
+  status code = file_write(path, "list of snapshots", text, size, error);
+  free(text);
+  return code;
+}
+
+/* Between blocks of steps. Writes the snapshot that is due, if there is one, and NAME.hdf.series again. Both files are
+ * complete at any time. A step longer than the time between snapshots skips numbers. */
+static status snapshots_look(struct snapshots *s, const struct engine_kind *kind, void *run, struct error *error) {
+  double progress = kind->progress(run);
+  if (s->resumed)
+    find_earlier(s, progress);
+  if (s->next >= s->count || progress * (double)s->count < (double)s->next)
+    return STATUS_OK;
+  char path[PATH];
+  int64_t number = s->next;
+  path_of(s, number, path);
+  TRY(kind->write_snapshot(run, path, error));
+  s->time[number] = kind->time(run);
+  s->next = number + 1;
+  while (s->next < s->count && progress < 1 && progress * (double)s->count >= (double)s->next)
+    s->next++; /* a step longer than the interval: the missed snapshots are left out */
+  if (progress >= 1)
+    s->next = s->count; /* the run has ended, perhaps before its longest time: this was the last snapshot */
+  return write_series(s, error);
+}
+
+/* ---- the run ---- */
 
 enum { BLOCK = 8 }; /* steps between two calls of look(): less than a second, even with a million particles */
 
 struct watch {
-  struct snapshots *snapshots; /* NULL: none wanted */
-  struct resume *resume;       /* NULL: a signal ends the run without a restart file */
+  struct snapshots snapshots; /* count 0: none wanted */
+  struct resume resume;       /* path NULL: a signal ends the run without a restart file */
   bool terminal;
   int percent;
 };
@@ -21,13 +177,9 @@ struct watch {
 /* Between blocks of steps: the snapshot that is due, the restart file, a percentage on a terminal. */
 static status look(void *context, const struct engine_kind *kind, void *run, struct error *error) {
   struct watch *watch = context;
-  status code = STATUS_OK;
-  if (watch->snapshots)
-    code = snapshots_look(watch->snapshots, kind, run, error);
-  if (code)
-    return code;
-  if (watch->resume)
-    code = resume_look(watch->resume, kind, run, error);
+  if (watch->snapshots.count)
+    TRY(snapshots_look(&watch->snapshots, kind, run, error));
+  const status code = watch->resume.path ? resume_look(&watch->resume, kind, run, error) : STATUS_OK;
 
   const int percent = (int)floor(100 * kind->progress(run));
   if (watch->terminal && percent != watch->percent)
@@ -40,25 +192,22 @@ static status look(void *context, const struct engine_kind *kind, void *run, str
 static status compute(const struct scene *scene, const struct one_run_options *options, const char *fields,
                       struct run_result *result, struct error *error) {
   struct watch watch = {.percent = -1, .terminal = !options->quiet && isatty(STDERR_FILENO)};
-  struct resume resume;
-  if (options->restart) {
-    resume_begin(&resume, options->restart);
-    watch.resume = &resume;
-  }
-  if (options->snapshots) {
-    const bool resumed = options->restart && access(options->restart, F_OK) == 0;
-    TRY(snapshots_open(scene->name, options->snapshots, resumed, &watch.snapshots, error));
-  }
-
+  status code = STATUS_OK;
+  if (options->restart)
+    resume_begin(&watch.resume, options->restart);
+  if (options->snapshots)
+    code = snapshots_open(&watch.snapshots, scene->name, options->snapshots,
+                          options->restart && access(options->restart, F_OK) == 0, error);
   const struct run_request request = {.kind = scene->kind,
                                       .inputs = scene->inputs,
                                       .seed = (uint64_t)options->seed,
                                       .fields_path = fields,
                                       .restart_path = options->restart};
-  status code = run_simulate(&request, look, &watch, BLOCK, result, error);
+  if (code == STATUS_OK)
+    code = run_simulate(&request, look, &watch, BLOCK, result, error);
   if (watch.terminal)
     fputs("\r\033[K", stderr);
-  snapshots_close(watch.snapshots);
+  free(watch.snapshots.time);
   return code;
 }
 

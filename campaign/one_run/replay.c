@@ -1,5 +1,5 @@
 /* Computes a stored run again and compares values by their bits, column by column. */
-#include "campaign/one_run/replay.h"
+#include "campaign/one_run/one_run.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "analysis/statistics/sensitivity.h"
-#include "campaign/document/sensitivity_design.h"
+#include "campaign/document/campaign.h"
 #include "campaign/print/print.h"
 #include "db/ask/ask.h"
 #include "engine/grow.h"

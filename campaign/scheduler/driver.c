@@ -11,8 +11,7 @@
 #include <uthash.h>
 
 #include "analysis/statistics/sample.h"
-#include "campaign/document/campaign_walk.h"
-#include "campaign/document/campaign_write.h"
+#include "campaign/document/campaign.h"
 #include "campaign/scheduler/point.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"

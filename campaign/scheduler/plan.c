@@ -7,8 +7,7 @@
 #include <string.h>
 
 #include "campaign/converge/ladder.h"
-#include "campaign/document/campaign_walk.h"
-#include "campaign/document/campaign_warn.h"
+#include "campaign/document/campaign.h"
 #include "campaign/terminal/progress.h"
 #include "db/ask/ask.h"
 #include "db/store/store.h"

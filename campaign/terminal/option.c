@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "analysis/pictures/picture_canvas.h"
-#include "campaign/document/campaign_change.h"
+#include "campaign/document/campaign.h"
 #include "schemas/file.h"
 #include "schemas/text.h"
 

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "campaign/design/stopping.h"
+#include "campaign/design/design.h"
 #include "campaign/scheduler/point.h"
 #include "engine/random.h"
 

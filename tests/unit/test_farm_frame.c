@@ -10,8 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/farm/frame.h"
-#include "campaign/farm/job.h"
+#include "campaign/farm/farm_private.h"
 
 static void append(struct farm_bytes *bytes, uint64_t handle, size_t size) {
   uint8_t *payload = malloc(size + 1);

@@ -11,7 +11,7 @@
 
 #include "analysis/analysis.h"
 #include "analysis/statistics/sensitivity.h"
-#include "campaign/design/design_sensitivity.h"
+#include "campaign/design/design.h"
 #include "engine/random.h"
 
 enum { MOST = 8 };
