@@ -12,28 +12,26 @@ static document_node *key_of(document_node *mapping, const char *key) {
   return mapping && document_kind(mapping) == DOCUMENT_MAPPING ? document_key(mapping, key) : NULL;
 }
 
-/* Reads one entry of `set`. `path` is its path in the document. Returns the input; NULL: reported. */
+/* Reads one entry of `set`. Returns the input; NULL: reported. */
 static const struct field *read_set_value(document_node *node, const char *key, const char *path,
-                                          struct campaign *campaign) {
+                                          const struct campaign *campaign, struct scene *scene, const char *varied) {
   struct error error = {0};
   struct field_value value;
   if (!key || document_kind(node) != DOCUMENT_SCALAR) {
     document_report(node, path, "expected one value; several values belong in `vary`");
     return NULL;
   }
-  const struct field *row = field_find(campaign->scene->kind->inputs, key, &error);
+  const struct field *row = field_find(scene->kind->inputs, key, &error);
   if (row && campaign_axis(campaign, row))
-    document_report(node, path, "set here and varied in `vary`; leave one of them out");
-  else if (!row ||
-           (document_value(node, row, &value) && scene_set(campaign->scene, row->path, &value, &error) != STATUS_OK))
+    document_report(node, path, "%s", varied);
+  else if (!row || (document_value(node, row, &value) && scene_set(scene, row->path, &value, &error) != STATUS_OK))
     document_report_error(node, path, &error);
   return row;
 }
 
-/* One input under two of its names is a slip, which a document of a store may still have. A value of the command line
- * replaces that of the document. */
-static void read_set(document_node *set, bool stored, struct campaign *campaign) {
-  const struct field_table *inputs = campaign->scene->kind->inputs;
+void campaign_read_set(document_node *set, const struct campaign *campaign, struct scene *scene, bool stored,
+                       const char *varied) {
+  const struct field_table *inputs = scene->kind->inputs;
   if (!set)
     return;
   if (document_kind(set) != DOCUMENT_MAPPING) {
@@ -46,7 +44,7 @@ static void read_set(document_node *set, bool stored, struct campaign *campaign)
     char path[320];
     document_node *node = document_item(set, i, &key);
     snprintf(path, sizeof path, "set.%.300s", key ? key : "");
-    const struct field *row = read_set_value(node, key, path, campaign);
+    const struct field *row = read_set_value(node, key, path, campaign, scene, varied);
     if (!row)
       continue;
     const char **name = &names[row - inputs->rows];
@@ -271,7 +269,7 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
   if (!read_scene(root, folder, campaign))
     return; /* the other keys cannot be read without a scene */
   const bool varied = read_axes(root, folder, campaign);
-  read_set(set, stored, campaign);
+  campaign_read_set(set, campaign, campaign->scene, stored, "set here and varied in `vary`; leave one of them out");
   check_quantities(root, campaign);
   if (plain && varied)
     check_points(root, campaign);

@@ -10,6 +10,12 @@
  * that of a store, which may set an input twice. */
 void campaign_read(document_node *root, const char *folder, bool stored, struct campaign *campaign);
 
+/* Reads `set` (NULL: none) into `scene`. An input that is an axis of the campaign is refused with the words `varied`.
+ * One input under two of its names is a slip, which the document of a store may still have. A value of the command line
+ * replaces that of the document. */
+void campaign_read_set(document_node *set, const struct campaign *campaign, struct scene *scene, bool stored,
+                       const char *varied);
+
 /* `design: {file: points.csv}`: the points of a campaign from another program. For campaign.c only.
  *
  * CSV (RFC 4180) with a header of input paths, or unique endings of one. "threshold.angle [deg]" gives the unit of the

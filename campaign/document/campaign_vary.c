@@ -35,10 +35,6 @@ static struct field number_row(const struct reading *r, const char *unit, double
   return row;
 }
 
-static unsigned own_percent(const struct reading *r) {
-  return r->axis->row->flags & FIELD_PERCENT;
-}
-
 /* Tables use the unit of the first value that has one. `unit`: SI unit of the row that read the value; it differs from
  * the input's for a law's sigma or factor. */
 static void note_unit(struct reading *r, document_node *node, const char *unit) {
@@ -118,33 +114,43 @@ static bool read_values(struct reading *r, document_node *node) {
   return good;
 }
 
-static bool read_spaced(struct reading *r, document_node *from, document_node *to, double range, bool logarithmic) {
-  const char *const unit = r->axis->row->unit ? r->axis->row->unit : "1";
-  document_node *node = document_key(r->node, "n");
+/* Evenly spaced levels: {from: a, to: b, n: 3}, {log: [a, b], n: 3}. */
+static bool read_spaced(struct reading *r, document_node *first, bool logarithmic) {
+  struct design_axis *axis = r->axis;
+  const char *const unit = axis->row->unit ? axis->row->unit : "1";
+  document_node *from = first, *to = document_key(r->node, "to"), *count = document_key(r->node, "n");
+  double a = 0, b = 0;
+  if (!logarithmic && !to)
+    return wrong(r, NULL, "'to' is missing");
+  if (logarithmic ? !read_pair(r, first, true, &a, &b) : !read_own(r, from, &a) || !read_own(r, to, &b))
+    return false;
+  if (logarithmic) {
+    from = document_item(first, 0, NULL);
+    to = document_item(first, 1, NULL);
+  }
   struct field row = number_row(r, "1", 2, MOST_LEVELS, 0);
-  row.kind = FIELD_INTEGER;
   struct field_value n;
-  if (!node)
+  row.kind = FIELD_INTEGER;
+  if (!count)
     return wrong(r, NULL, "'n', the number of values, is missing");
-  if (!document_value(node, &row, &n))
+  if (!document_value(count, &row, &n) || !make_levels(r, (size_t)n.integer))
     return false;
-  if (!make_levels(r, (size_t)n.integer))
-    return false;
-  for (size_t i = 0; i < r->axis->level_count; i++) {
-    const double x = design_axis_spaced(document_scalar(from), document_scalar(to), unit, r->axis->level_count,
+  for (size_t i = 0; i < axis->level_count; i++) {
+    const double x = design_axis_spaced(document_scalar(from), document_scalar(to), unit, axis->level_count,
                                         logarithmic, i);
-    struct field_value *value = &r->axis->levels[i];
-    value->kind = r->axis->row->kind;
+    struct field_value *value = &axis->levels[i];
+    value->kind = axis->row->kind;
     if (value->kind == FIELD_INTEGER)
       value->integer = (int64_t)llround(x);
     else
       value->number = x;
   }
-  if (r->axis->row->kind == FIELD_INTEGER && range < (double)(r->axis->level_count - 1))
-    return wrong(r, node, "more values than whole numbers in the range");
+  if (axis->row->kind == FIELD_INTEGER && fabs(b - a) < (double)(axis->level_count - 1))
+    return wrong(r, count, "more values than whole numbers in the range");
   return true;
 }
 
+/* Reads where a law is cut. */
 static bool read_truncation(struct reading *r, bool positive) {
   document_node *node = document_key(r->node, "truncated");
   if (node && !read_pair(r, node, positive, &r->axis->lower, &r->axis->upper))
@@ -172,136 +178,98 @@ static bool read_truncation(struct reading *r, bool positive) {
   return true;
 }
 
-static bool read_normal(struct reading *r, document_node *node) {
-  struct field any = number_row(r, r->axis->row->unit, -HUGE_VAL, HUGE_VAL, own_percent(r));
-  struct field positive = number_row(r, r->axis->row->unit, 0, HUGE_VAL, FIELD_ABOVE_MINIMUM | own_percent(r));
-  r->axis->kind = DESIGN_AXIS_NORMAL;
+/* {normal: {mean: m, sd: s}}, {lognormal: {median: m, sigma: s}} */
+static bool read_law(struct reading *r, document_node *node, bool logarithmic) {
+  const char *const keys[] = {logarithmic ? "median" : "mean", logarithmic ? "sigma" : "sd", NULL};
+  const char *const unit = r->axis->row->unit;
+  const unsigned above = FIELD_ABOVE_MINIMUM, percent = r->axis->row->flags & FIELD_PERCENT;
+  const struct field positive = number_row(r, unit, 0, HUGE_VAL, above | percent);
+  const struct field any = number_row(r, unit, -HUGE_VAL, HUGE_VAL, percent), sigma = number_row(r, "1", 0, 100, above);
   if (document_kind(node) != DOCUMENT_MAPPING)
-    return wrong(r, node, "expected {mean: m, sd: s}");
-  bool good = read_number(r, document_key(node, "mean"), "mean", &any, &r->axis->a);
-  good &= read_number(r, document_key(node, "sd"), "sd", &positive, &r->axis->b);
-  document_unknown_keys(node, r->path, (const char *const[]){"mean", "sd", NULL});
-  return good && read_truncation(r, false);
+    return wrong(r, node,
+                 logarithmic
+                     ? "expected {median: m, sigma: s}; sigma is the standard deviation of the natural logarithm"
+                     : "expected {mean: m, sd: s}");
+  bool good = read_number(r, document_key(node, keys[0]), keys[0], logarithmic ? &positive : &any, &r->axis->a);
+  good &= read_number(r, document_key(node, keys[1]), keys[1], logarithmic ? &sigma : &positive, &r->axis->b);
+  document_unknown_keys(node, r->path, keys);
+  return good && read_truncation(r, logarithmic);
 }
 
-static bool read_lognormal(struct reading *r, document_node *node) {
-  struct field positive = number_row(r, r->axis->row->unit, 0, HUGE_VAL, FIELD_ABOVE_MINIMUM | own_percent(r));
-  struct field sigma = number_row(r, "1", 0, 100, FIELD_ABOVE_MINIMUM);
-  r->axis->kind = DESIGN_AXIS_LOGNORMAL;
-  if (document_kind(node) != DOCUMENT_MAPPING)
-    return wrong(r, node, "expected {median: m, sigma: s}; sigma is the standard deviation of the natural logarithm");
-  bool good = read_number(r, document_key(node, "median"), "median", &positive, &r->axis->a);
-  good &= read_number(r, document_key(node, "sigma"), "sigma", &sigma, &r->axis->b);
-  document_unknown_keys(node, r->path, (const char *const[]){"median", "sigma", NULL});
-  return good && read_truncation(r, true);
-}
-
-/* Reads the values that correspond one to one to those of the other input. */
-static bool read_linked_values(struct reading *r, document_node *values) {
-  if (document_kind(values) != DOCUMENT_SEQUENCE)
-    return wrong(r, values, "expected a list of values, one for each value of the input it follows");
-  const bool good = read_values(r, values);
-  r->axis->kind = DESIGN_AXIS_LINKED;
-  return good;
-}
-
-/* Reads factor and offset: the value is factor times the other input, plus offset. */
-static bool read_line(struct reading *r) {
-  const struct field factor = number_row(r, "1", -HUGE_VAL, HUGE_VAL, 0);
-  const struct field offset = number_row(r, r->axis->row->unit, -HUGE_VAL, HUGE_VAL, own_percent(r));
-  document_node *factor_node = document_key(r->node, "factor"), *offset_node = document_key(r->node, "offset");
-  bool good = true;
-  r->axis->a = 1;
-  if (factor_node)
-    good &= read_number(r, factor_node, "factor", &factor, &r->axis->a);
-  if (offset_node)
-    good &= read_number(r, offset_node, "offset", &offset, &r->axis->b);
-  return good;
-}
-
+/* {linked: path, values: [...]}, or a line: {linked: path, factor: f, offset: o} */
 static bool read_linked(struct reading *r, document_node *node) {
   struct error error;
+  struct design_axis *axis = r->axis;
   const struct campaign *campaign = r->campaign;
   const char *name = document_scalar(node);
   const struct field *row = name ? field_find(campaign->scene->kind->inputs, name, &error) : NULL;
-  r->axis->kind = DESIGN_AXIS_LINKED;
   if (!row)
     return wrong(r, node, name ? error.message : "expected the path of the varied input that this one follows");
   const struct design_axis *other = campaign_axis(campaign, row);
-  if (!other || other == r->axis)
+  if (!other || other == axis)
     return wrong(r, node, "follows an input that is not varied; name one of the other keys of `vary`");
-  r->axis->linked = (size_t)(other - campaign->axes);
+  axis->linked = (size_t)(other - campaign->axes);
   document_node *values = document_key(r->node, "values");
-  if (values)
-    return read_linked_values(r, values);
-  if (!is_number(row) || !is_number(r->axis->row))
+  if (values && document_kind(values) != DOCUMENT_SEQUENCE)
+    return wrong(r, values, "expected a list of values, one for each value of the input it follows");
+  if (values) {
+    const bool good = read_values(r, values);
+    axis->kind = DESIGN_AXIS_LINKED;
+    return good;
+  }
+  if (!is_number(row) || !is_number(axis->row))
     return wrong(r, node, "only numbers follow by factor and offset; give `values`");
-  return read_line(r);
-}
-
-static bool read_spaced_form(struct reading *r, document_node *from) {
-  double a = 0, b = 0;
-  document_node *to = document_key(r->node, "to");
-  if (!to)
-    return wrong(r, NULL, "'to' is missing");
-  return read_own(r, from, &a) && read_own(r, to, &b) && read_spaced(r, from, to, fabs(b - a), false);
-}
-
-static bool read_logarithmic_form(struct reading *r, document_node *pair) {
-  double a = 0, b = 0;
-  return read_pair(r, pair, true, &a, &b) &&
-         read_spaced(r, document_item(pair, 0, NULL), document_item(pair, 1, NULL), b - a, true);
-}
-
-static bool read_uniform(struct reading *r, document_node *pair) {
-  r->axis->kind = DESIGN_AXIS_UNIFORM;
-  return read_pair(r, pair, false, &r->axis->a, &r->axis->b);
-}
-
-static bool read_log_uniform(struct reading *r, document_node *pair) {
-  r->axis->kind = DESIGN_AXIS_LOG_UNIFORM;
-  return read_pair(r, pair, true, &r->axis->a, &r->axis->b);
+  const struct field any = number_row(r, "1", -HUGE_VAL, HUGE_VAL, 0);
+  const struct field offset = number_row(r, axis->row->unit, -HUGE_VAL, HUGE_VAL, axis->row->flags & FIELD_PERCENT);
+  document_node *factor_node = document_key(r->node, "factor"), *offset_node = document_key(r->node, "offset");
+  axis->a = 1;
+  const bool good = !factor_node || read_number(r, factor_node, "factor", &any, &axis->a);
+  return (!offset_node || read_number(r, offset_node, "offset", &offset, &axis->b)) && good;
 }
 
 /* The forms that are mappings: the first key tells which form it is. */
 static const struct form {
   const char *keys[5];
-  bool (*read)(struct reading *r, document_node *first);
+  enum design_axis_kind kind;
+  bool logarithmic;
 } forms[] = {
-    {{"from", "to", "n"}, read_spaced_form},
-    {{"log", "n"}, read_logarithmic_form},
-    {{"uniform"}, read_uniform},
-    {{"log_uniform"}, read_log_uniform},
-    {{"normal", "truncated"}, read_normal},
-    {{"lognormal", "truncated"}, read_lognormal},
-    {{"linked", "factor", "offset", "values"}, read_linked},
+    {{"from", "to", "n"}, DESIGN_AXIS_LEVELS, false},
+    {{"log", "n"}, DESIGN_AXIS_LEVELS, true},
+    {{"uniform"}, DESIGN_AXIS_UNIFORM, false},
+    {{"log_uniform"}, DESIGN_AXIS_LOG_UNIFORM, true},
+    {{"normal", "truncated"}, DESIGN_AXIS_NORMAL, false},
+    {{"lognormal", "truncated"}, DESIGN_AXIS_LOGNORMAL, true},
+    {{"linked", "factor", "offset", "values"}, DESIGN_AXIS_LINKED, false},
 };
 
-/* NULL: the mapping has no first key of a form, or several. */
-static const struct form *find_form(const struct reading *r) {
-  const struct form *found = NULL;
-  for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
-    if (!document_key(r->node, forms[i].keys[0]))
-      continue;
-    if (found)
-      return NULL;
-    found = &forms[i];
-  }
-  return found;
-}
-
 static bool read_form(struct reading *r) {
-  const struct form *form = find_form(r);
-  if (!form)
+  const struct form *form = NULL;
+  size_t found = 0;
+  for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++)
+    if (document_key(r->node, forms[i].keys[0])) {
+      form = &forms[i];
+      found++;
+    }
+  if (found != 1)
     return wrong(r, NULL,
                  "expected one of {from, to, n}, {log: [a, b], n}, {uniform: [a, b]}, {log_uniform: [a, b]}, {normal: "
                  "{mean, sd}}, {lognormal: {median, sigma}}, {linked: path}");
   for (int k = 0; form->keys[k]; k++)
     document_key(r->node, form->keys[k]); /* marks the keys as known before any error below can end the reading */
   document_unknown_keys(r->node, r->path, form->keys);
-  if (form->read != read_linked && !is_number(r->axis->row))
+  if (form->kind != DESIGN_AXIS_LINKED && !is_number(r->axis->row))
     return wrong(r, NULL, "this input is no number: give a list of its values");
-  return form->read(r, document_key(r->node, form->keys[0]));
+  document_node *first = document_key(r->node, form->keys[0]);
+  r->axis->kind = form->kind;
+  switch (form->kind) {
+  case DESIGN_AXIS_LEVELS: return read_spaced(r, first, form->logarithmic);
+  case DESIGN_AXIS_UNIFORM:
+  case DESIGN_AXIS_LOG_UNIFORM: return read_pair(r, first, form->logarithmic, &r->axis->a, &r->axis->b);
+  case DESIGN_AXIS_NORMAL:
+  case DESIGN_AXIS_LOGNORMAL: return read_law(r, first, form->logarithmic);
+  case DESIGN_AXIS_LINKED: break;
+  }
+  return read_linked(r, first);
 }
 
 static bool read_axis(struct reading *r) {

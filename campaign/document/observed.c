@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "schemas/document.h"
-#include "schemas/memory.h"
+#include "campaign/document/campaign_read.h"
 #include "schemas/rows.h"
 
 #define COUNT_ABOVE "count_above"
@@ -28,24 +27,32 @@ static const struct field shot_rows[] = {
 static const struct field_table shot_table = FIELD_TABLE(shot_rows, struct observed_shot, "shot",
                                                          "One experiment, or the mean of several equal ones.");
 
-/* value, error and resolution have the quantity's unit, which read_datum() fills in. */
+/* value, error and resolution have the quantity's unit, and value its range; read_datum() fills them in. */
 static const struct field datum_rows[] = {
-    {.path = "value",
-     .kind = FIELD_REAL,
-     .unit = "1",
-     .minimum = -HUGE_VAL,
-     .maximum = HUGE_VAL,
-     .flags = FIELD_REQUIRED},
-    {.path = "error", .kind = FIELD_REAL, .unit = "1", .minimum = 0, .maximum = HUGE_VAL},
-    {.path = "resolution", .kind = FIELD_REAL, .unit = "1", .minimum = 0, .maximum = HUGE_VAL},
-    {.path = "share",
-     .kind = FIELD_REAL,
-     .unit = "1",
-     .minimum = 0,
-     .maximum = 1,
-     .flags = FIELD_ABOVE_MINIMUM | FIELD_BELOW_MAXIMUM},
+    ROW_OF(observed_datum, quantity, quantity, FIELD_TEXT, NULL, .flags = FIELD_REQUIRED,
+           .doc = "The measured result of a run."),
+    REAL_OF(observed_datum, value, value, "1", 0, -HUGE_VAL, HUGE_VAL, .flags = FIELD_REQUIRED,
+            .doc = "The measured value."),
+    REAL_OF(observed_datum, error, error, "1", 0, 0, HUGE_VAL, .doc = "Standard deviation of the measurement."),
+    REAL_OF(observed_datum, resolution, resolution, "1", NAN, 0, HUGE_VAL,
+            .doc = "Standard deviation of the change by a finer resolution."),
+    REAL_OF(observed_datum, share, share, "1", 0, 0, 1, .flags = FIELD_ABOVE_MINIMUM | FIELD_BELOW_MAXIMUM,
+            .doc = "Share of the body that counted fragments are heavier than."),
 };
-enum { VALUE, ERROR, RESOLUTION, SHARE };
+enum { QUANTITY, VALUE, ERROR, RESOLUTION, SHARE, DATUM_ROWS };
+
+struct fragments {
+  double total, complete; /* kg */
+};
+
+static const struct field fragments_rows[] = {
+    REAL_OF(fragments, total, total, "kg", 0, 0, HUGE_VAL, .flags = FIELD_REQUIRED | FIELD_ABOVE_MINIMUM,
+            .doc = "Mass of the body."),
+    REAL_OF(fragments, complete, complete, "kg", 0, 0, HUGE_VAL, .flags = FIELD_REQUIRED | FIELD_ABOVE_MINIMUM,
+            .doc = "The list has every fragment from this mass on."),
+};
+static const struct field_table fragments_table = FIELD_TABLE(fragments_rows, struct fragments, "fragments",
+                                                              "Masses of the fragments of a shot.");
 
 struct reading {
   const struct campaign *campaign;
@@ -85,53 +92,37 @@ static bool find_quantity(struct reading *r, document_node *node, struct observe
   return false;
 }
 
-/* One number of the mapping, in the quantity's unit. False: it is missing or was reported. */
-static bool read_number(document_node *mapping, int which, const struct observed_datum *datum, double *number) {
-  struct field row = datum_rows[which];
-  struct field_value value;
-  document_node *node = document_key(mapping, row.path);
-  if (which != SHARE && datum->ask.row && datum->ask.row->unit)
-    row.unit = datum->ask.row->unit;
-  if (!node || !document_value(node, &row, &value))
-    return false;
-  *number = value.number;
-  return true;
-}
-
-/* `share` belongs to the quantities that count fragments above a mass. */
-static void read_share(document_node *node, struct observed_datum *datum) {
-  document_node *share = document_key(node, "share");
-  const bool above = datum->ask.kind == ASK_SPECIMENS_COUNT || datum->ask.kind == ASK_SPECIMENS_SHARE;
-  if (above && !read_number(node, SHARE, datum, &datum->share) && !share)
-    document_report(node, "measured", "%s needs 'share': fragments heavier than this share of the body",
-                    datum->quantity);
-  if (!above && share)
-    document_report(share, "share", "only " COUNT_ABOVE " and " SHARE_ABOVE " have a share");
-  datum->ask.share = datum->share;
-}
-
 static void read_datum(struct reading *r, document_node *node) {
-  static const char *const known[] = {"quantity", "value", "error", "resolution", "share", NULL};
   if (document_kind(node) != DOCUMENT_MAPPING) {
     document_report(node, "measured", "expected {quantity: NAME, value: NUMBER, error: NUMBER}");
     return;
   }
   struct observed_datum *datum = add_datum(r, node);
-  document_node *quantity = document_key(node, "quantity");
+  document_node *quantity = document_key(node, "quantity"), *share = document_key(node, "share");
   const char *name = quantity ? document_scalar(quantity) : NULL;
-  document_unknown_keys(node, "measured", known);
-  if (!name)
-    document_report(node, "measured", "'quantity' is missing: name the measured result of a run");
-  if (!datum || !name)
+  if (!datum)
     return;
-  snprintf(datum->quantity, sizeof datum->quantity, "%.200s", name);
-  if (!find_quantity(r, quantity, datum))
+  struct field rows[DATUM_ROWS];
+  memcpy(rows, datum_rows, sizeof rows);
+  snprintf(datum->quantity, sizeof datum->quantity, "%.200s", name ? name : "");
+  if (name && !find_quantity(r, quantity, datum))
     return;
-  if (!read_number(node, VALUE, datum, &datum->value) && !document_key(node, "value"))
-    document_report(node, "measured", "'value' is missing: give the measured value");
-  read_number(node, ERROR, datum, &datum->error);
-  read_number(node, RESOLUTION, datum, &datum->resolution);
-  read_share(node, datum);
+  const bool above = datum->ask.kind == ASK_SPECIMENS_COUNT || datum->ask.kind == ASK_SPECIMENS_SHARE;
+  const struct field *row = datum->ask.row;
+  for (int k = VALUE; row && row->unit && k <= RESOLUTION; k++)
+    rows[k].unit = row->unit;
+  if (row || above)
+    rows[VALUE].minimum = row ? row->minimum : 0;
+  if (row || datum->ask.kind == ASK_SPECIMENS_SHARE)
+    rows[VALUE].maximum = row ? row->maximum : 1;
+  const struct field_table table = FIELD_TABLE(rows, struct observed_datum, "measured", "One number of one shot.");
+  document_read(node, &table, NULL, datum);
+  datum->ask.share = datum->share;
+  if (name && above && !share)
+    document_report(node, "measured", "%s needs 'share': fragments heavier than this share of the body",
+                    datum->quantity);
+  if (name && !above && share)
+    document_report(share, "share", "only " COUNT_ABOVE " and " SHARE_ABOVE " have a share");
 }
 
 static void read_data(struct reading *r, document_node *list) {
@@ -177,95 +168,39 @@ static void take_masses(struct reading *r, document_node *node, size_t count, do
   }
 }
 
-/* All masses of the list and their sum. False: one was reported. */
-static bool read_masses(document_node *list, const struct field *row, double *masses, double *sum) {
-  struct field_value mass;
-  *sum = 0;
-  for (size_t i = 0; i < document_count(list); i++) {
-    if (!document_value(document_item(list, i, NULL), row, &mass))
-      return false;
-    *sum += masses[i] = mass.number;
-  }
-  return true;
-}
-
-/* The keys of `fragments`. */
-struct fragments {
-  document_node *masses, *total, *complete;
-};
-
-static void read_fragment_list(struct reading *r, const struct fragments *from, double *masses) {
-  const struct field row = {.path = "masses",
-                            .kind = FIELD_REAL,
-                            .unit = "kg",
-                            .maximum = HUGE_VAL,
-                            .flags = FIELD_ABOVE_MINIMUM};
-  struct field_value total, complete;
-  double sum;
-  if (!document_value(from->total, &row, &total) || !document_value(from->complete, &row, &complete) ||
-      !read_masses(from->masses, &row, masses, &sum))
-    return;
-  if (sum > 1.02 * total.number)
-    document_report(from->masses, "masses", "the fragments weigh %.4g kg together, the body %.4g kg", sum,
-                    total.number);
-  else
-    take_masses(r, from->masses, document_count(from->masses), masses, total.number, complete.number);
-}
-
 static void read_fragments(struct reading *r, document_node *node) {
-  static const char *const known[] = {"total", "complete", "masses", NULL};
-  if (!node)
-    return;
-  struct fragments from = {NULL, NULL, NULL};
-  if (document_kind(node) == DOCUMENT_MAPPING)
-    from = (struct fragments){document_key(node, "masses"), document_key(node, "total"),
-                              document_key(node, "complete")};
-  if (!from.masses || !from.total || !from.complete || document_kind(from.masses) != DOCUMENT_SEQUENCE ||
-      document_count(from.masses) == 0) {
+  static const char *const also[] = {"masses", NULL};
+  static const struct field row = {.path = "masses",
+                                   .kind = FIELD_REAL,
+                                   .unit = "kg",
+                                   .maximum = HUGE_VAL,
+                                   .flags = FIELD_ABOVE_MINIMUM};
+  struct fragments from = {0};
+  document_node *list = document_kind(node) == DOCUMENT_MAPPING ? document_key(node, "masses") : NULL;
+  if (!list || document_kind(list) != DOCUMENT_SEQUENCE || document_count(list) == 0) {
     document_report(
         node, "fragments",
         "expected {total: mass of the body, complete: the list has every fragment from this mass on, masses: [...]}");
     return;
   }
-  document_unknown_keys(node, "fragments", known);
-  double *masses = calloc(document_count(from.masses), sizeof *masses);
-  if (masses)
-    read_fragment_list(r, &from, masses);
+  const size_t count = document_count(list);
+  double *masses = calloc(count, sizeof *masses), sum = 0;
+  bool good = document_read(node, &fragments_table, also, &from);
+  if (!masses)
+    document_report_memory(node, "fragments");
+  for (size_t i = 0; masses && i < count; i++) {
+    struct field_value mass = {0};
+    good &= document_value(document_item(list, i, NULL), &row, &mass);
+    sum += masses[i] = mass.number;
+  }
+  if (masses && good && sum > 1.02 * from.total)
+    document_report(list, "masses", "the fragments weigh %.4g kg together, the body %.4g kg", sum, from.total);
+  else if (masses && good)
+    take_masses(r, list, count, masses, from.total, from.complete);
   free(masses);
 }
 
 /* ---- shots ---- */
-
-static void read_set(struct reading *r, document_node *set, struct scene *scene) {
-  if (!set)
-    return;
-  if (document_kind(set) != DOCUMENT_MAPPING) {
-    document_report(set, "set", "expected a mapping of paths to values, e.g. impact.speed: 3.2 km/s");
-    return;
-  }
-  const char **names = memory_small(scene->kind->inputs->count, sizeof *names); /* the key that has set an input */
-  for (size_t i = 0; i < document_count(set); i++) {
-    const char *key = NULL;
-    struct error error = {0};
-    document_node *node = document_item(set, i, &key);
-    const char *text = document_scalar(node);
-    char path[320];
-    snprintf(path, sizeof path, "set.%.300s", key ? key : "");
-    const struct field *row = key ? field_find(scene->kind->inputs, key, &error) : NULL;
-    if (!key || !text)
-      document_report(node, path, "expected one value");
-    else if (row && campaign_axis(r->campaign, row))
-      document_report(node, path, "known here and unknown in the campaign (`vary`); leave one of them out");
-    else if (row && names[row - scene->kind->inputs->rows])
-      document_report(node, path, "the same input as set.%.200s; leave one of them out",
-                      names[row - scene->kind->inputs->rows]);
-    else if (!row || scene_set_text(scene, key, text, &error) != STATUS_OK)
-      document_report_error(node, path, &error);
-    if (row)
-      names[row - scene->kind->inputs->rows] = key;
-  }
-  free(names);
-}
 
 static void read_shot(struct reading *r, document_node *node) {
   static const char *const also[] = {"set", "measured", "fragments", NULL};
@@ -285,9 +220,11 @@ static void read_shot(struct reading *r, document_node *node) {
   if (!shot->name[0])
     snprintf(shot->name, sizeof shot->name, "shot %zu", m->shot_count);
   document_node *data = document_key(node, "measured"), *fragments = document_key(node, "fragments");
-  read_set(r, document_key(node, "set"), shot->scene);
+  campaign_read_set(document_key(node, "set"), r->campaign, shot->scene, false,
+                    "known here and unknown in the campaign (`vary`); leave one of them out");
   read_data(r, data);
-  read_fragments(r, fragments);
+  if (fragments)
+    read_fragments(r, fragments);
   if (!data && !fragments)
     document_report(node, "shots", "no measurement: give `measured` or `fragments`");
 }

@@ -93,8 +93,8 @@ static void errors_have_a_place(void **state) {
   bad(SHOT "name: s\n", "m.yaml:4|no measurement");
   bad(SHOT "measured: [{quantity: largest_fractoin, value: 1}]\n", "m.yaml:4|largest_fraction");
   bad(SHOT "measured: [{quantity: beta_best, value: 2}]\n", "beta");
-  bad(SHOT "measured: [{quantity: largest_fraction}]\n", "'value' is missing");
-  bad(SHOT "measured: [{value: 2}]\n", "'quantity' is missing");
+  bad(SHOT "measured: [{quantity: largest_fraction}]\n", "value: is missing");
+  bad(SHOT "measured: [{value: 2}]\n", "quantity: is missing");
   bad(SHOT "measured: [{quantity: time, value: 3 kg}]\n", "m.yaml:4|kg");
   bad(SHOT "measured: [{quantity: largest_fraction, value: 0.3, error: -1}]\n", "error|at least 0");
   bad(SHOT "measured: [{quantity: largest_fraction, value: 0.3, sigma: 1}]\n", "sigma");
@@ -104,6 +104,14 @@ static void errors_have_a_place(void **state) {
   bad(SHOT "measured: [{quantity: share_above, value: 3}]\n", "share_above needs 'share'");
   bad(SHOT "measured: [{quantity: count_above, value: 3, share: 2}]\n", "share|below 1");
   bad(SHOT "measured: {quantity: time}\n", "expected a list");
+  /* 31 was meant as 31 % */
+  bad(SHOT "measured: [{quantity: largest_fraction, value: 31}]\n",
+      "m.yaml:4|value: expected at least 0 and at most 1");
+  bad(SHOT "measured: [{quantity: time, value: -1 ms}]\n", "value: expected at least 0");
+  bad(SHOT "measured: [{quantity: count_above, share: 0.1, value: -1}]\n", "value: expected at least 0");
+  bad(SHOT "measured: [{quantity: share_above, share: 0.1, value: 1.1}]\n", "value: expected at least 0 and at most 1");
+  bad(SHOT "set: {body.diameter: 8 cm, diameter: 9 cm}\n    measured: [{quantity: time, value: 1}]\n",
+      "the same input");
   bad(SHOT "set: {strain: 3 %}\n    measured: [{quantity: time, value: 1}]\n", "unknown in the campaign");
   bad(SHOT "set: {strian: 3 %}\n    measured: [{quantity: time, value: 1}]\n", "threshold.strain");
   bad(SHOT "specimens: 0\n    measured: [{quantity: time, value: 1}]\n", "specimens|at least 1");
