@@ -7,6 +7,7 @@
 
 #include "analysis/statistics/sample.h"
 #include "engine/random.h"
+#include "schemas/memory.h"
 
 struct design {
   enum design_kind kind;
@@ -73,18 +74,14 @@ static status count_sample(struct design *design, uint64_t points, struct error 
 status design_create(enum design_kind kind, const struct design_axis *axes, size_t axis_count, uint64_t points,
                      uint64_t seed, struct design **out, struct error *error) {
   *out = NULL;
-  struct design *design = calloc(1, sizeof *design);
-  if (!design)
-    return status_fail(error, STATUS_MEMORY, "design: no memory");
+  struct design *design = memory_small(1, sizeof *design);
   *design = (struct design){.kind = kind, .axes = axes, .axis_count = axis_count, .seed = seed};
   for (size_t i = 0; i < axis_count; i++)
     design->free_count += axes[i].kind != DESIGN_AXIS_LINKED;
-  design->levels = calloc(axis_count + 1, sizeof *design->levels);
-  design->coordinates = calloc(axis_count + 1, sizeof *design->coordinates);
+  design->levels = memory_small(axis_count + 1, sizeof *design->levels);
+  design->coordinates = memory_small(axis_count + 1, sizeof *design->coordinates);
   status code = STATUS_OK;
-  if (!design->levels || !design->coordinates)
-    code = status_fail(error, STATUS_MEMORY, "design: no memory");
-  else if (kind == DESIGN_GRID)
+  if (kind == DESIGN_GRID)
     code = count_grid(design, error);
   else if (kind == DESIGN_LIST)
     code = count_list(design, error);
@@ -245,12 +242,10 @@ status design_sobol_create(size_t dimensions, uint64_t seed, struct design_sobol
                        "design sobol: %zu varied inputs, but Sobol numbers are known for 1 to %zu; use "
                        "latin_hypercube or random, or link some inputs",
                        dimensions, most);
-  struct design_sobol *sobol = calloc(1, sizeof *sobol);
-  gsl_qrng *generator = sobol ? gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)dimensions) : NULL;
-  if (!generator) {
-    free(sobol);
-    return status_fail(error, STATUS_MEMORY, "design sobol: no memory");
-  }
+  struct design_sobol *sobol = memory_small(1, sizeof *sobol);
+  gsl_qrng *generator = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)dimensions);
+  if (!generator)
+    memory_refused();
   *sobol = (struct design_sobol){.generator = generator, .dimensions = dimensions};
   for (size_t d = 0; d < dimensions; d++)
     sobol->shift[d] = design_sobol_shift(seed, d);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "engine/random.h"
+#include "schemas/memory.h"
 
 enum { LEVELS = 4 };
 #define MORRIS_MARK (UINT64_C(1) << 61) /* keeps the random numbers of these designs apart from those of others */
@@ -35,9 +36,7 @@ status design_sensitivity_create(enum design_sensitivity_kind kind, size_t input
   if (inputs < 1 || inputs > MOST_INPUTS || blocks < 1 || blocks > MOST_BLOCKS)
     return status_fail(error, STATUS_CONTENT, "%zu inputs and %zu blocks: expected 1 to %d inputs, 1 to %d blocks",
                        inputs, blocks, MOST_INPUTS, MOST_BLOCKS);
-  struct design_sensitivity *design = calloc(1, sizeof *design);
-  if (!design)
-    return status_fail(error, STATUS_MEMORY, "no memory for a design");
+  struct design_sensitivity *design = memory_small(1, sizeof *design);
   *design = (struct design_sensitivity){.kind = kind, .inputs = inputs, .blocks = blocks, .seed = seed};
   const status code = kind == DESIGN_SENSITIVITY_SALTELLI ? fill_pairs(design, error) : STATUS_OK;
   if (code) {

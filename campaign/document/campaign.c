@@ -9,6 +9,7 @@
 #include "campaign/document/campaign_read.h"
 #include "engine/random.h"
 #include "schemas/document.h"
+#include "schemas/memory.h"
 #include "schemas/rows.h"
 #include "schemas/text.h"
 
@@ -192,12 +193,9 @@ static status change(struct document *document, const struct campaign_changes *c
 
 static status from_document(struct document *document, const struct campaign_changes *changes, const char *folder,
                             bool stored, struct campaign **out, struct error *error) {
-  status code = changes ? change(document, changes, error) : STATUS_OK;
-  if (code != STATUS_OK)
-    return code;
-  struct campaign *campaign = calloc(1, sizeof *campaign);
-  if (!campaign)
-    return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
+  if (changes)
+    TRY(change(document, changes, error));
+  struct campaign *campaign = memory_small(1, sizeof *campaign);
   campaign_read(document_root(document), folder, stored, campaign); /* its defaults clear the whole struct */
   char *changed = document_change_text(document);
   campaign->text = changed ? text_for_store(changed, campaign) : NULL;
@@ -207,7 +205,7 @@ static status from_document(struct document *document, const struct campaign_cha
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
   }
   const char *report = NULL;
-  code = document_finish(document, &report);
+  const status code = document_finish(document, &report);
   if (code != STATUS_OK) {
     status_fail(error, code, "%s", report);
     campaign_free(campaign);
@@ -248,15 +246,12 @@ status campaign_load_changed(const char *path, const struct campaign_changes *ch
                              struct error *error) {
   struct document *document = NULL;
   *out = NULL;
-  status code = document_open(path, &document, error);
-  if (code != STATUS_OK)
-    return code;
+  TRY(document_open(path, &document, error));
   const char *slash = strrchr(path, '/');
-  char *folder = slash ? strndup(path, (size_t)(slash - path) + (slash == path)) : NULL;
-  if (slash && !folder)
-    code = status_fail(error, STATUS_MEMORY, "no memory for the campaign");
-  else
-    code = from_document(document, changes, folder, false, out, error);
+  char *folder = slash ? memory_small_text(path) : NULL;
+  if (folder)
+    folder[slash - path + (slash == path)] = '\0';
+  const status code = from_document(document, changes, folder, false, out, error);
   free(folder);
   document_free(document);
   return code;
@@ -339,11 +334,8 @@ static status raise_limit(const char *path, const char *text, double *limit, str
 
 status campaign_raise(struct campaign *campaign, const char *time, const char *memory, int64_t attempts,
                       struct error *error) {
-  status code = raise_limit("limits.time", time, &campaign->time_limit, error);
-  if (code == STATUS_OK)
-    code = raise_limit("limits.memory", memory, &campaign->memory_limit, error);
-  if (code)
-    return code;
+  TRY(raise_limit("limits.time", time, &campaign->time_limit, error));
+  TRY(raise_limit("limits.memory", memory, &campaign->memory_limit, error));
   campaign->attempts += attempts;
   campaign->failures = 0; /* the user was told of these failures before */
   return STATUS_OK;

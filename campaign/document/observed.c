@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "campaign/document/campaign_read.h"
+#include "schemas/memory.h"
 #include "schemas/rows.h"
 
 #define COUNT_ABOVE "count_above"
@@ -244,10 +245,8 @@ static void read_all(struct reading *r, document_node *root) {
 
 static status from_document(struct document *document, const struct campaign *campaign, struct observed **out,
                             struct error *error) {
-  struct reading r = {.campaign = campaign, .observed = calloc(1, sizeof *r.observed)};
+  struct reading r = {.campaign = campaign, .observed = memory_small(1, sizeof *r.observed)};
   const char *report = NULL;
-  if (!r.observed)
-    return status_fail(error, STATUS_MEMORY, "no memory for the measurements");
   read_all(&r, document_root(document));
   const status code = document_finish(document, &report);
   if (code != STATUS_OK) {

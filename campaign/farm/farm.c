@@ -11,6 +11,7 @@
 
 #include "campaign/farm/farm.h"
 #include "schemas/clock.h"
+#include "schemas/memory.h"
 
 #define HELLO_NS    (60 * CLOCK_S)
 #define FINALIZE_NS (60 * CLOCK_S)
@@ -137,9 +138,7 @@ static status complete_options(struct farm_options *o, struct error *error) {
 
 status farm_start(const struct farm_options *options, farm_work work, struct farm **out, struct error *error) {
   const int64_t start = clock_ns();
-  struct farm *farm = calloc(1, sizeof *farm);
-  if (!farm)
-    return status_fail(error, STATUS_MEMORY, "no memory for the farm");
+  struct farm *farm = memory_small(1, sizeof *farm);
   *farm = (struct farm){.options = *options, .ranks = 1, .signals = -1};
   struct farm_options *const o = &farm->options;
   status result = complete_options(o, error);
@@ -153,11 +152,9 @@ status farm_start(const struct farm_options *options, farm_work work, struct far
   if (o->use_mpi) {
     farm->launcher = getppid();
     farm_leftovers_remove();
-    result = farm_link_open(&farm->link, error);
+    result = farm_link_open(&farm->link, &farm->rank, &farm->ranks, error);
     if (result != STATUS_OK)
       goto cleanup;
-    farm->rank = farm_link_rank(farm->link);
-    farm->ranks = farm_link_ranks(farm->link);
   }
   result = refuse_singletons(farm, error);
   if (result != STATUS_OK)

@@ -220,9 +220,7 @@ struct farm_link;
  * Debian's Open MPI cannot, and its MPI_Init would end the process with a long message. */
 bool farm_link_knows_pmi(void);
 /* MPI_Init. Signals must be blocked before, as MPI starts threads. */
-status farm_link_open(struct farm_link **out, struct error *error);
-int farm_link_rank(const struct farm_link *link);
-int farm_link_ranks(const struct farm_link *link);
+status farm_link_open(struct farm_link **out, int *rank, int *ranks, struct error *error);
 /* Queues a frame for a rank. STATUS_MEMORY when memory is refused. */
 status farm_link_send(struct farm_link *link, int rank, enum farm_frame_kind kind, uint64_t handle, int parts,
                       const struct iovec *part, struct error *error);

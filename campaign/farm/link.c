@@ -1,5 +1,6 @@
 /* Non-blocking messages between ranks: collects frames, sends, receives, finalizes MPI. */
 #include "campaign/farm/farm_private.h"
+#include "schemas/memory.h"
 
 #include <dirent.h>
 #include <dlfcn.h>
@@ -66,15 +67,13 @@ bool farm_link_knows_pmi(void) {
 }
 #endif
 
-status farm_link_open(struct farm_link **out, struct error *error) {
+status farm_link_open(struct farm_link **out, int *rank, int *ranks, struct error *error) {
   int provided, initialised = 0;
   MPI_Initialized(&initialised);
   if (!initialised && MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS)
     return status_fail(error, STATUS_MEMORY, "MPI_Init failed: start with mpirun or srun --mpi=pmix");
   MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
-  struct farm_link *link = calloc(1, sizeof *link);
-  if (!link)
-    return status_fail(error, STATUS_MEMORY, "no memory for the farm");
+  struct farm_link *link = memory_small(1, sizeof *link);
   MPI_Comm_rank(MPI_COMM_WORLD, &link->rank);
   MPI_Comm_size(MPI_COMM_WORLD, &link->ranks);
   link->arriving_last = &link->arriving;
@@ -83,15 +82,10 @@ status farm_link_open(struct farm_link **out, struct error *error) {
     free(link);
     return status_fail(error, STATUS_MEMORY, "no memory for the farm");
   }
+  *rank = link->rank;
+  *ranks = link->ranks;
   *out = link;
   return STATUS_OK;
-}
-
-int farm_link_rank(const struct farm_link *link) {
-  return link->rank;
-}
-int farm_link_ranks(const struct farm_link *link) {
-  return link->ranks;
 }
 
 static status post(struct farm_link *link, int rank, struct error *error) {

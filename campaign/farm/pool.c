@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "schemas/clock.h"
+#include "schemas/memory.h"
 
 struct slot {
   int channel; /* -1: none at present */
@@ -66,9 +67,7 @@ status farm_pool_start(const struct farm_options *options, farm_work work, struc
                        struct error *error) {
   const size_t slots = (size_t)options->slots;
   status result = STATUS_MEMORY;
-  struct farm_pool *pool = calloc(1, sizeof *pool);
-  if (!pool)
-    return status_fail(error, STATUS_MEMORY, "no memory for the farm");
+  struct farm_pool *pool = memory_small(1, sizeof *pool);
   *pool = (struct farm_pool){.setup = {.options = *options, .work = work}, .control = -1, .mean_wall_s = 1};
   pool->looked_ns = clock_ns();
   pool->slots = calloc(slots, sizeof *pool->slots);
