@@ -16,7 +16,7 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
 void campaign_read_set(document_node *set, const struct campaign *campaign, struct scene *scene, bool stored,
                        const char *varied);
 
-/* `design: {file: points.csv}`: the points of a campaign from another program. For campaign.c only.
+/* `design: {file: points.csv}`: the points of a campaign from another program. For campaign_read.c only.
  *
  * CSV (RFC 4180) with a header of input paths, or unique endings of one. "threshold.angle [deg]" gives the unit of the
  * column's bare numbers, "[1]" fractions. A cell may carry its own unit ("3 deg"). Line i makes point i. */
@@ -25,7 +25,7 @@ void campaign_read_set(document_node *set, const struct campaign *campaign, stru
  * campaign->points. False when anything was reported, at `node`, with the file's name and line. */
 bool campaign_points_read(document_node *node, const char *folder, struct campaign *campaign);
 
-/* ---- The key `vary` of a campaign: paths into the scene and what values they take. For campaign.c only ---- */
+/* ---- The key `vary` of a campaign: paths into the scene and what values they take. For campaign_read.c only ---- */
 
 /* Fills campaign->axes from the mapping (NULL: nothing varied). False when anything was reported. */
 bool campaign_vary_read(document_node *vary, struct campaign *campaign);

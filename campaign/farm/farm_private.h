@@ -239,7 +239,7 @@ void farm_link_close(struct farm_link *link, bool together, int exit_code);
 /* Removes the files of this user and this host that no process has mapped and that are older than a minute. */
 void farm_leftovers_remove(void);
 
-/* ---- struct farm, shared by farm.c (start, the other ranks, end) and manage.c (rank 0) ---- */
+/* ---- struct farm, shared by rank.c (start, the other ranks, end) and manage.c (rank 0) ---- */
 
 #define FARM_HOST_SIZE 64
 

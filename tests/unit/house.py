@@ -267,10 +267,6 @@ CIRCLES = (
     "engine/mesh/build engine/mesh/mesh",
     "analysis/pictures/snapshot_hdf5 analysis/pictures/snapshot_read",
     "db/store/internal db/store/store",
-    "campaign/document/campaign campaign/document/campaign_points campaign/document/campaign_read "
-    "campaign/document/campaign_vary campaign/document/campaign_walk",
-    "campaign/farm/farm campaign/farm/isolate campaign/farm/pool campaign/farm/pool_private campaign/farm/private "
-    "campaign/farm/server campaign/farm/slot",
 )
 
 
