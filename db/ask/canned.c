@@ -4,15 +4,18 @@
 
 #include <string.h>
 
-#include "db/store/views.h"
 #include "engine/outcome.h"
 #include "schemas/text.h"
 
-static struct query_canned queries[] = {
+/* Documents that the build embeds: db/ask/canned_point_stats.sql, db/ask/canned_scatter.sql. */
+extern const char canned_point_stats_sql[], canned_scatter_sql[];
+
+static const struct query_canned queries[] = {
     {"points", "Statistics of every point: n, failed, censored, mean, scatter and interval of the main results.",
      "SELECT * FROM points", ""},
     {"point-stats",
-     "Mean, standard deviation and standard error of the largest fragment's mass share M_1/M, per point.", NULL, ""},
+     "Mean, standard deviation and standard error of the largest fragment's mass share M_1/M, per point.",
+     canned_point_stats_sql, ""},
     {"runs", "Every run of a point, with its inputs and results (:point).",
      "SELECT * FROM runs WHERE point_id = :point ORDER BY replicate, seed", "point"},
     {"spectrum",
@@ -35,7 +38,7 @@ static struct query_canned queries[] = {
      "FROM estimates WHERE counts = 1 GROUP BY point_id, results_version, method, \"window\" ORDER BY point_id, "
      "min(ordinal)",
      ""},
-    {"scatter", "How much the seed matters: relative scatter of the main results per point.", NULL, ""},
+    {"scatter", "How much the seed matters: relative scatter of the main results per point.", canned_scatter_sql, ""},
     {"failures", "Runs without a usable result, and attempts that failed, with what they said.",
      "SELECT point_id, replicate, seed, state AS reason, attempt, wall_time, host, message FROM run WHERE counts = 0 "
      "AND surplus = 0\nUNION ALL\n"
@@ -69,54 +72,12 @@ static struct query_canned queries[] = {
      "SELECT session_id, started_at, host, key, value FROM session, json_each(facts) ORDER BY session_id, id", ""},
 };
 
-static void write_point_stats(FILE *out) {
-  const char *const first = outcome_main(0)->path;
-  views_statistics_write(1, &first, out);
-  fputs("SELECT point_id, results_version, n, m0 AS mean, d0 AS sd, d0 / sqrt(n) AS se FROM scatter", out);
-}
-
-static void write_scatter(FILE *out) {
-  const char *names[VIEWS_STATISTICS_MAIN];
-  size_t count = views_statistics_main(names);
-  fputs("SELECT point_id, n", out);
-  for (size_t i = 0; i < count; i++)
-    fprintf(out, ",\n  %1$s_sd / %1$s_mean AS %1$s_scatter", names[i]);
-  fputs("\nFROM points WHERE n > 1 ORDER BY point_id", out);
-}
-
-/* The queries whose text follows from the main results; the text is written at first use. */
-static const struct {
-  const char *name;
-  void (*write)(FILE *out);
-} written[] = {{"point-stats", write_point_stats}, {"scatter", write_scatter}};
-enum { WRITTEN = sizeof written / sizeof written[0], TEXT_SIZE = 4096 };
-
-static const char *text_of(const char *name) {
-  static char texts[WRITTEN][TEXT_SIZE];
-  for (size_t i = 0; i < WRITTEN; i++) {
-    if (strcmp(written[i].name, name) != 0)
-      continue;
-    FILE *out = texts[i][0] ? NULL : fmemopen(texts[i], TEXT_SIZE, "w");
-    if (out) {
-      written[i].write(out);
-      fclose(out);
-    }
-    return texts[i];
-  }
-  return "";
-}
-
 size_t ask_canned_count(void) {
   return sizeof queries / sizeof queries[0];
 }
 
 const struct query_canned *ask_canned_at(size_t index) {
-  if (index >= ask_canned_count())
-    return NULL;
-  struct query_canned *query = &queries[index];
-  if (!query->sql)
-    query->sql = text_of(query->name);
-  return query;
+  return index < ask_canned_count() ? &queries[index] : NULL;
 }
 
 const struct query_canned *ask_canned_find(const char *name, struct error *error) {

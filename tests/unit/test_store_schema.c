@@ -165,6 +165,8 @@ static void names_are_those_of_the_tables(void **state) {
   assert_non_null(outcome_main(0));
   for (size_t i = 0; (row = outcome_main(i)); i++) {
     assert_true(i < VIEWS_STATISTICS_MAIN);
+    if (!strstr(ask_canned_find("scatter", &error)->sql, row->path))
+      fail_msg("db/ask/canned_scatter.sql lacks the main result %s", row->path);
     assert_true(row->kind == FIELD_INTEGER || (row->kind == FIELD_REAL && !(row->flags & FIELD_MAY_BE_OFF)));
   }
   const struct field *states = field_find(&outcome_table, "state", &error);
