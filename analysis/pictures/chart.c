@@ -1,48 +1,35 @@
-/* Writes the script and the data of a chart. */
+/* Writes the script and the data of a chart, and runs gnuplot on them in a folder of their own beside the picture. */
 #include "analysis/pictures/chart.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <math.h>
+#include <spawn.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include "analysis/pictures/chart_run.h"
 #include "analysis/pictures/picture_canvas.h"
 #include "schemas/file.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
+extern char **environ;
+
 enum { LETTER = 8, LINE = 19, LINES = 4 }; /* pixels: width of a letter, height of a line; maximum lines of a text */
+enum { PATH = 4096, STEM = 256 };
 
 struct chart {
   const char *template;
+  const struct picture_page *page;
   char *variables_text, *data_text;
   size_t variables_size, data_size;
   FILE *variables, *data;
+  char folder[PATH], stem[STEM]; /* where gnuplot runs; the picture's name without folder and ending */
 };
-
-static void release(struct chart *chart) {
-  if (!chart)
-    return;
-  if (chart->variables)
-    fclose(chart->variables);
-  if (chart->data)
-    fclose(chart->data);
-  free(chart->variables_text);
-  free(chart->data_text);
-  free(chart);
-}
-
-struct chart *chart_new(const char *template) {
-  struct chart *chart = calloc(1, sizeof *chart);
-  if (!chart)
-    return NULL;
-  chart->template = template;
-  chart->variables = text_open(&chart->variables_text, &chart->variables_size);
-  chart->data = text_open(&chart->data_text, &chart->data_size);
-  if (chart->variables && chart->data)
-    return chart;
-  release(chart);
-  return NULL;
-}
 
 /* In single quotes gnuplot interprets no escapes and no `commands`, but it does expand a macro such as @x, so the text
  * is split after each @. A single quote and a line end cannot be inside single quotes: they are added in double quotes
@@ -99,11 +86,15 @@ void chart_numbers(struct chart *chart, const char *name, size_t count, const do
     fprintf(chart->variables, "%s[%zu] = %.17g\n", name, i + 1, isfinite(values[i]) ? values[i] : 0);
 }
 
-size_t chart_letters(const char *text) {
+static size_t letters(const char *text, size_t bytes) {
   size_t count = 0;
-  for (; text && *text; text++)
-    count += (*text & 0xC0) != 0x80;
+  for (size_t i = 0; i < bytes; i++)
+    count += (text[i] & 0xC0) != 0x80;
   return count;
+}
+
+size_t chart_letters(const char *text) {
+  return text ? letters(text, strlen(text)) : 0;
 }
 
 /* Breaks a text at blanks into lines of at most `most` letters. Text beyond LINES lines is cut and ends in "...".
@@ -115,9 +106,7 @@ static size_t fold(const char *text, size_t most, char *folded, size_t size) {
     return 0;
   while (*text && used + 8 < size) {
     const size_t bytes = strcspn(text, " \n");
-    size_t wide = 0;
-    for (size_t i = 0; i < bytes; i++)
-      wide += (text[i] & 0xC0) != 0x80;
+    const size_t wide = letters(text, bytes);
     if (column > 0 && column + 1 + wide > most) {
       if (lines == LINES) {
         text_append(folded, size, " ...");
@@ -140,31 +129,40 @@ static size_t fold(const char *text, size_t most, char *folded, size_t size) {
   return lines;
 }
 
-void chart_words(struct chart *chart, const struct picture_page *page, const struct picture_words *words) {
+/* Sets a text cut into lines of at most `most` letters; returns the number of lines. */
+static double folded_text(struct chart *chart, const char *name, const char *text, double most) {
   char folded[2000];
-  const double room = page->width - 40;
-  chart_number(chart, "title_lines",
-               (double)fold(words->title, (size_t)(room / (1.2 * LETTER)), folded, sizeof folded));
-  chart_text(chart, "title_text", folded);
-  chart_number(chart, "caption_lines",
-               (double)fold(words->caption, (size_t)(room / (0.88 * LETTER)), folded, sizeof folded));
-  chart_text(chart, "caption_text", folded);
-  fold(words->x, (size_t)(0.85 * room / LETTER), folded, sizeof folded);
-  chart_text(chart, "x_label", folded);
-  fold(words->y, (size_t)(0.5 * room / LETTER), folded,
-       sizeof folded); /* the y label runs upwards: its length is limited by the height of the frame */
-  chart_text(chart, "y_label", folded);
+  const size_t lines = fold(text, (size_t)most, folded, sizeof folded);
+  chart_text(chart, name, folded);
+  return (double)lines;
 }
 
-double chart_legend(struct chart *chart, const struct picture_page *page, size_t count, const char *const *labels) {
+struct chart *chart_new(const char *template, const struct picture_page *page, const struct picture_words *words) {
+  struct chart *chart = memory_small(1, sizeof *chart);
+  chart->template = template;
+  chart->page = page;
+  chart->variables = text_open(&chart->variables_text, &chart->variables_size);
+  chart->data = text_open(&chart->data_text, &chart->data_size);
+  if (!chart->variables || !chart->data)
+    memory_refused();
+  const double room = page->width - 40;
+  chart_number(chart, "title_lines", folded_text(chart, "title_text", words->title, room / (1.2 * LETTER)));
+  chart_number(chart, "caption_lines", folded_text(chart, "caption_text", words->caption, room / (0.88 * LETTER)));
+  folded_text(chart, "x_label", words->x, 0.85 * room / LETTER);
+  folded_text(chart, "y_label", words->y, 0.5 * room / LETTER); /* runs upwards: the height of the frame limits it */
+  return chart;
+}
+
+double chart_legend(struct chart *chart, size_t count, const char *const *labels) {
   size_t longest = 0, shown = 0;
   for (size_t i = 0; i < count; i++) {
     const size_t wide = chart_letters(labels[i]);
     longest = wide > longest ? wide : longest;
     shown += wide > 0;
   }
-  size_t columns = (size_t)((page->width - 60) / (LETTER * ((double)longest + 6)));
+  size_t columns = (size_t)((chart->page->width - 60) / (LETTER * ((double)longest + 6)));
   columns = columns < 1 ? 1 : columns > 4 ? 4 : columns;
+  chart_texts(chart, "label", count, labels);
   chart_number(chart, "legend_columns", (double)columns);
   return (double)(LINE * ((shown + columns - 1) / columns));
 }
@@ -187,6 +185,8 @@ void chart_block_end(struct chart *chart) {
   fputs("\n\n", chart->data);
 }
 
+/* ---- the script ---- */
+
 /* The text of a template, from page->templates if given, else the compiled-in one. The caller frees it. */
 static status read_template(const struct picture_page *page, const char *name, char **text, struct error *error) {
   *text = NULL;
@@ -196,7 +196,7 @@ static status read_template(const struct picture_page *page, const char *name, c
         *text = strdup(t->text);
     return *text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the template %s", name);
   }
-  char path[4096];
+  char path[PATH];
   enum { MOST = 1 << 20 };
   snprintf(path, sizeof path, "%s/%s.gp", page->templates, name);
   TRY(file_input(path, error));
@@ -214,55 +214,166 @@ static status read_template(const struct picture_page *page, const char *name, c
 }
 
 /* Writes variables, frame.gp and the template. */
-static status write_script(struct chart *chart, const struct picture_page *page, double height, char **script,
-                           size_t *size, struct error *error) {
-  char *frame = NULL, *template = NULL, stem[256];
+static status write_script(struct chart *chart, double height, char **script, size_t *size, struct error *error) {
+  const struct picture_page *page = chart->page;
+  char *frame = NULL, *template = NULL, file[STEM + 40];
   status code = read_template(page, "frame", &frame, error);
   if (code == STATUS_OK)
     code = read_template(page, chart->template, &template, error);
   FILE *out = code == STATUS_OK ? text_open(script, size) : NULL;
-  if (code == STATUS_OK && !out)
-    code = status_fail(error, STATUS_MEMORY, "%s: no memory for the chart", page->path);
   if (out) {
-    chart_run_stem(page->path, stem, sizeof stem);
     const char *ending = strrchr(page->path, '.') + 1;
-    char file[300];
-    snprintf(file, sizeof file, "./%s.%s", stem, ending);
+    snprintf(file, sizeof file, "./%s.%s", chart->stem, ending);
     chart_text(chart, "output_file", file);
     chart_text(chart, "ending", ending);
-    snprintf(file, sizeof file, "./%s.dat", stem);
+    snprintf(file, sizeof file, "./%s.dat", chart->stem);
     chart_text(chart, "data", file);
     chart_number(chart, "page_width", page->width);
     chart_number(chart, "page_height", height);
-    const bool whole = fflush(chart->variables) == 0;
+    fflush(chart->variables);
     fputs("# A chart of clast for gnuplot 5.4. Change what you like, then run gnuplot on this file in its folder.\n\n"
           "# What this chart shows. The numbers are in the data file.\n",
           out);
     fwrite(chart->variables_text, 1, chart->variables_size, out);
     fprintf(out, "\n%s\n%s", frame, template);
-    if (!text_close(out, script) || !whole)
-      code = status_fail(error, STATUS_MEMORY, "%s: no memory for the chart", page->path);
   }
   free(frame);
   free(template);
+  fflush(chart->data);
+  const bool whole = out && text_close(out, script) && !ferror(chart->data) && !ferror(chart->variables);
+  if (code == STATUS_OK && !whole)
+    code = status_fail(error, STATUS_MEMORY, "%s: no memory for the chart", page->path);
   return code;
 }
 
-status chart_draw(struct chart *chart, const struct picture_page *page, double height, struct error *error) {
+/* ---- gnuplot as a child process ---- */
+
+struct in_folder {
+  char path[PATH + STEM + 32];
+};
+
+/* The file of the chart with this ending in its folder. */
+static struct in_folder in_folder(const struct chart *chart, const char *ending) {
+  struct in_folder file;
+  snprintf(file.path, sizeof file.path, "%s/%s.%s", chart->folder, chart->stem, ending);
+  return file;
+}
+
+/* *end: gnuplot's exit code; -1: it was killed. STATUS_MISSING: gnuplot is not installed. */
+static status run_gnuplot(const struct chart *chart, int *end, struct error *error) {
+  posix_spawn_file_actions_t actions;
+  char script[STEM + 8], messages[STEM + 16]; /* a name may begin with a dash */
+  snprintf(script, sizeof script, "./%s.gp", chart->stem);
+  snprintf(messages, sizeof messages, "./%s.messages", chart->stem);
+  char *arguments[] = {"gnuplot", "-d", script, NULL}; /* -d: without start-up files */
+  pid_t child;
+  int state;
+  if (posix_spawn_file_actions_init(&actions))
+    return status_fail(error, STATUS_MEMORY, "no memory to start gnuplot");
+  posix_spawn_file_actions_addchdir_np(&actions, chart->folder);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 2, messages, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  const int code = posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (code == ENOENT)
+    return status_fail(error, STATUS_MISSING,
+                       "gnuplot draws the charts of clast, and this machine has none: `apt-get install gnuplot-nox`. "
+                       "Tables and --plot do not need it");
+  if (code)
+    return status_fail(error, STATUS_MEMORY, "gnuplot does not start: %s", strerror(code));
+  while (waitpid(child, &state, 0) < 0)
+    if (errno != EINTR)
+      return status_fail(error, STATUS_INTERNAL, "gnuplot was lost: %s", strerror(errno));
+  *end = WIFEXITED(state) ? WEXITSTATUS(state) : -1;
+  return STATUS_OK;
+}
+
+/* gnuplot drew nothing: says why in its own words, joined on one line. */
+static status refuse(const struct chart *chart, int end, struct error *error) {
+  char text[2000];
+  FILE *in = fopen(in_folder(chart, "messages").path, "r");
+  const size_t count = in ? fread(text, 1, sizeof text - 1, in) : 0;
+  if (in)
+    fclose(in);
+  text[count] = '\0';
+  for (size_t i = 0; i < count; i++)
+    if ((unsigned char)text[i] < ' ')
+      text[i] = ' ';
+  return status_fail(error, chart->page->templates ? STATUS_CONTENT : STATUS_IO,
+                     "%s: gnuplot drew nothing (exit %d): %s", chart->page->path, end,
+                     *text ? text : "it does not say why; is the disk full?");
+}
+
+/* Puts the picture in place, and with page->keep_script NAME.gp and NAME.dat beside it. */
+static status keep(const struct chart *chart, const char *script, size_t size, const char *drawn, struct error *error) {
+  const struct picture_page *page = chart->page;
+  const int stem = (int)(strrchr(page->path, '.') - page->path);
+  char beside[2][PATH + 8];
+  unsigned char *bytes = NULL;
+  snprintf(beside[0], sizeof beside[0], "%.*s.gp", stem, page->path);
+  snprintf(beside[1], sizeof beside[1], "%.*s.dat", stem, page->path);
+  if (page->keep_script) {
+    TRY(file_may_replace(beside[0], "script", error));
+    TRY(file_may_replace(beside[1], "data of the chart", error));
+    TRY(file_write(beside[0], "script", script, size, error));
+    TRY(file_write(beside[1], "data of the chart", chart->data_text, chart->data_size, error));
+  }
+  TRY(file_read(drawn, "picture", &bytes, &size, error));
+  const status code = file_write(page->path, "picture", bytes, size, error);
+  free(bytes);
+  return code;
+}
+
+/* Writes script and data into the folder, runs gnuplot there and takes the picture out of it. */
+static status draw(const struct chart *chart, const char *script, size_t size, struct error *error) {
+  struct stat about;
+  int end = 0;
+  const struct in_folder picture = in_folder(chart, strrchr(chart->page->path, '.') + 1);
+  TRY(file_write(in_folder(chart, "gp").path, "chart", script, size, error));
+  TRY(file_write(in_folder(chart, "dat").path, "chart", chart->data_text, chart->data_size, error));
+  TRY(run_gnuplot(chart, &end, error));
+  if (end == 0 && stat(picture.path, &about) == 0 && about.st_size > 0)
+    return keep(chart, script, size, picture.path, error);
+  return refuse(chart, end, error);
+}
+
+static status draw_in_folder(struct chart *chart, double height, struct error *error) {
+  const struct picture_page *page = chart->page;
+  TRY(picture_canvas_named(page->path, error));
+  if (!(page->width >= 200 && page->width <= 8000 && height >= 50 && height <= 16000))
+    return status_fail(error, STATUS_USAGE, "%s: a picture is 200 to 8000 wide, not %g x %g", page->path, page->width,
+                       height);
+  const char *ending = strrchr(page->path, '.') + 1, *slash = strrchr(page->path, '/'),
+             *base = slash ? slash + 1 : page->path;
+  if (strlen(page->path) + 16 > PATH)
+    return status_fail(error, STATUS_USAGE, "the name of the picture is too long");
+  snprintf(chart->stem, sizeof chart->stem, "%.*s", (int)(ending - 1 - base), base);
   char *script = NULL;
   size_t size = 0;
-  status code = picture_canvas_named(page->path, error);
-  if (code == STATUS_OK && !(page->width >= 200 && page->width <= 8000 && height >= 50 && height <= 16000))
-    code = status_fail(error, STATUS_USAGE, "%s: a picture is 200 to 8000 wide, not %g x %g", page->path, page->width,
-                       height);
+  status code = write_script(chart, height, &script, &size, error);
   if (code == STATUS_OK)
-    code = write_script(chart, page, height, &script, &size, error);
-  fflush(chart->data);
-  if (code == STATUS_OK && (ferror(chart->data) || ferror(chart->variables)))
-    code = status_fail(error, STATUS_MEMORY, "%s: no memory for the chart", page->path);
-  if (code == STATUS_OK)
-    code = chart_run(page, &(struct chart_run_files){script, chart->data_text, size, chart->data_size}, error);
+    code = file_may_replace(page->path, "picture", error);
+  snprintf(chart->folder, sizeof chart->folder, "%s.XXXXXX", page->path);
+  if (code == STATUS_OK && !mkdtemp(chart->folder))
+    code = status_fail(error, STATUS_IO, "cannot write the picture '%s': %s", page->path, strerror(errno));
+  if (code == STATUS_OK) {
+    code = draw(chart, script, size, error);
+    const char *const endings[] = {"gp", "dat", "messages", ending};
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+      unlink(in_folder(chart, endings[i]).path);
+    rmdir(chart->folder);
+  }
   free(script);
-  release(chart);
+  return code;
+}
+
+status chart_draw(struct chart *chart, double height, struct error *error) {
+  const status code = draw_in_folder(chart, height, error);
+  fclose(chart->variables);
+  fclose(chart->data);
+  free(chart->variables_text);
+  free(chart->data_text);
+  free(chart);
   return code;
 }

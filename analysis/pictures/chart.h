@@ -1,4 +1,4 @@
-/* Charts by gnuplot: a template, its words and numbers, and the data. For the picture_*.c files only.
+/* Charts by gnuplot: a template, its words and numbers, and the data. The functions are for picture.c only.
  *
  * The templates are analysis/pictures/templates/NAME.gp. They are compiled in; a folder with files of the same names
  * replaces them. A chart becomes a script (its variables, then frame.gp, then the template) and a file of numbers in a
@@ -7,15 +7,29 @@
 #ifndef CLAST_ANALYSIS_PICTURES_CHART_H
 #define CLAST_ANALYSIS_PICTURES_CHART_H
 
+#include <stdbool.h>
 #include <stddef.h>
-#include <stdio.h>
 
-#include "analysis/pictures/picture.h"
+#include "schemas/status.h"
+
+/* Output of a chart. */
+struct picture_page {
+  const char *path;
+  double width;
+  bool keep_script;      /* keep NAME.gp and NAME.dat beside NAME.png, so that gnuplot can draw it again */
+  const char *templates; /* folder with changed templates; NULL: the compiled-in ones */
+};
+/* The words of a chart; NULL: none. Long ones are cut into lines. */
+struct picture_words {
+  const char *title, *caption; /* caption: a line under the title, in small letters */
+  const char *x, *y;           /* names of the axes with their units */
+};
 
 struct chart; /* opaque */
 
-/* NULL: no memory. `template` is borrowed: "lines" for templates/lines.gp. */
-struct chart *chart_new(const char *template);
+/* `template`: "lines" for templates/lines.gp. Sets the title, the line under it and the names of both
+ * axes, cut into lines that fit the page. Template and page are borrowed until the chart is drawn. */
+struct chart *chart_new(const char *template, const struct picture_page *page, const struct picture_words *words);
 /* Sets a variable of the script. Text: line ends stay, other control characters become blanks, bytes that are no UTF-8
  * become '?'. NULL is "". */
 void chart_text(struct chart *chart, const char *name, const char *text);
@@ -24,10 +38,9 @@ void chart_number(struct chart *chart, const char *name, double value);
 void chart_texts(struct chart *chart, const char *name, size_t count, const char *const *texts);
 /* Sets an array of `count` numbers. */
 void chart_numbers(struct chart *chart, const char *name, size_t count, const double *values);
-/* Sets the title, the line under it and the names of both axes, cut into lines that fit the page. */
-void chart_words(struct chart *chart, const struct picture_page *page, const struct picture_words *words);
-/* Sets the legend of `count` labels below the frame, with its number of columns. Returns its height in pixels. */
-double chart_legend(struct chart *chart, const struct picture_page *page, size_t count, const char *const *labels);
+/* Sets the legend of `count` labels below the frame (array `label`), with its number of columns. Returns its height in
+ * pixels. */
+double chart_legend(struct chart *chart, size_t count, const char *const *labels);
 
 /* The number of characters of a UTF-8 text, not of bytes. */
 size_t chart_letters(const char *text);
@@ -38,10 +51,10 @@ void chart_columns(struct chart *chart, const char *names);
 void chart_row(struct chart *chart, size_t count, const double *values);
 void chart_block_end(struct chart *chart);
 
-/* Draws and frees the chart. The file appears under its name only when it is complete. height: pixels for page->width.
- * STATUS_MISSING: no gnuplot on this machine, or no such template in page->templates. STATUS_USAGE: the file name's
- * ending is not known. STATUS_CONTENT: gnuplot refuses a template of page->templates. STATUS_IO. */
-status chart_draw(struct chart *chart, const struct picture_page *page, double height, struct error *error);
+/* Draws and frees the chart. The file appears under its name only when it is complete. height: pixels for the width of
+ * the page. STATUS_MISSING: no gnuplot on this machine, or no such template in its folder of templates. STATUS_USAGE:
+ * the file name's ending is not known. STATUS_CONTENT: gnuplot refuses a template of that folder. STATUS_IO. */
+status chart_draw(struct chart *chart, double height, struct error *error);
 
 /* The compiled-in templates (generated at build time); an entry with NULL ends the list. */
 struct chart_template {

@@ -12,22 +12,10 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "analysis/pictures/picture_cloud.h"
+#include "analysis/pictures/chart.h"
 #include "analysis/statistics/pooled.h"
 #include "analysis/statistics/scatter.h"
 
-/* Output of a chart. */
-struct picture_page {
-  const char *path;
-  double width;
-  bool keep_script;      /* keep NAME.gp and NAME.dat beside NAME.png, so that gnuplot can draw it again */
-  const char *templates; /* folder with changed templates; NULL: the compiled-in ones */
-};
-/* The words of a chart; NULL: none. Long ones are cut into lines. */
-struct picture_words {
-  const char *title, *caption; /* caption: a line under the title, in small letters */
-  const char *x, *y;           /* names of the axes with their units */
-};
 enum { PICTURE_SERIES = 8 }; /* more series in one chart are hard to tell apart */
 
 /* A broken body of convex polygons (DEM's grains), and the fragment of each polygon. */
@@ -41,11 +29,11 @@ struct picture_body {
 };
 
 /* Reads the body of a fields file of any engine whose cells are polygons. The file may come from an untrusted source:
- * every size and index is checked. *body owns its arrays; free them with picture_body_clear(). STATUS_MISSING: there is
- * no such file. STATUS_CONTENT: the file is no fields file, or it is damaged. STATUS_MEMORY. After an error *body is
- * all zero. */
-status picture_body_read(const char *path, struct picture_body *body, struct error *error);
-void picture_body_clear(struct picture_body *body);
+ * every size and index is checked. *body owns its arrays; free them with picture_fragments_clear(). STATUS_MISSING:
+ * there is no such file. STATUS_CONTENT: the file is no fields file, or it is damaged. STATUS_MEMORY. After an error
+ * *body is all zero. */
+status picture_fragments_read(const char *path, struct picture_body *body, struct error *error);
+void picture_fragments_clear(struct picture_body *body);
 
 struct picture_panel {
   struct picture_body body;
@@ -59,6 +47,46 @@ status picture_fragments(const char *path, double width, const char *title, cons
 /* A line of numbers for a body's subtitle: "1100 grains in 259 fragments, 180 of them single; largest 12.1 % of the
  * area". cells: what the cells are ("grains"). Empty without cells or with wrong fragment numbers. */
 void picture_fragments_numbers(const struct picture_body *body, const char *cells, char *text, size_t size);
+
+/* ---- particles in space ----
+ *
+ * A fields file may come from an untrusted source, so the reader checks every size, number and index. */
+
+/* A particle's role: unbroken, in the damaged layer at its fragment's surface, a single broken particle, or in a body
+ * that has no fragments (a projectile). The numbers are those of the file. */
+enum picture_part { PICTURE_CORE, PICTURE_LAYER, PICTURE_DUST, PICTURE_LEFT_OUT, PICTURE_PARTS };
+
+struct picture_cloud {
+  size_t n;
+  double (*position)[3]; /* m, finite */
+  double *size;          /* m, cube root of a particle's volume: above 0 */
+  double *mass;          /* kg, above 0 */
+  int64_t *fragment;     /* number of its fragment by descending mass, below n; negative: none */
+  int64_t *part;         /* enum picture_part */
+  double *value;         /* values that colour the particles; NULL: coloured by fragment */
+  char engine[32];       /* name of the engine that wrote the file */
+  long long seed;
+  double time; /* s; NaN: the file does not say */
+};
+
+/* True for a file of particles. False also for a file that cannot be read. */
+bool picture_cloud_in_file(const char *path);
+
+/* Reads all members except `value`. *cloud owns its arrays; free them with picture_cloud_clear(). STATUS_MISSING: there
+ * is no such file. STATUS_CONTENT: the file is no fields file of particles, or it is damaged. STATUS_MEMORY. After an
+ * error *cloud is empty. */
+status picture_cloud_read(const char *path, struct picture_cloud *cloud, struct error *error);
+
+/* Reads one more column ("damage", "pressure", ...): n values in *values (malloc'd), and the unit as the file gives it,
+ * cut to its size. STATUS_CONTENT when the file has no such column: the message lists the columns that it has. */
+status picture_cloud_read_column(const char *path, const struct picture_cloud *cloud, const char *name, double **values,
+                                 char unit[32], struct error *error);
+
+/* Reads one column of the profile along the axis ("depth", "distention", "damage", "pressure", "velocity"): *rows
+ * values in *values (malloc'd), and their unit. STATUS_CONTENT when the file has no such column. */
+status picture_cloud_read_axis(const char *path, const char *name, double **values, size_t *rows, char unit[32],
+                               struct error *error);
+void picture_cloud_clear(struct picture_cloud *cloud);
 
 enum picture_view {
   PICTURE_CUT,     /* a cut: every particle that the plane meets, drawn as the disc of its section */
@@ -160,7 +188,7 @@ struct picture_sample {
 status picture_scatter(const struct picture_page *page, const struct picture_words *words, size_t count,
                        const struct picture_sample *sample, struct error *error);
 /* A histogram as text: edge, count, a bar. columns: width of the terminal. */
-void text_histogram_print(FILE *out, int columns, bool unicode, const struct scatter_histogram *histogram);
+void text_plot_histogram(FILE *out, int columns, bool unicode, const struct scatter_histogram *histogram);
 
 /* Safe, warned and refused runs at a value of an input, or in a range of values. */
 struct picture_margin_tile {

@@ -1,5 +1,5 @@
 /* Reading particles from a fields file. */
-#include "analysis/pictures/picture_cloud.h"
+#include "analysis/pictures/picture.h"
 
 #include <math.h>
 #include <stdio.h>

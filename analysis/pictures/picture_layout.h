@@ -2,7 +2,7 @@
 #ifndef CLAST_ANALYSIS_PICTURES_PICTURE_LAYOUT_H
 #define CLAST_ANALYSIS_PICTURES_PICTURE_LAYOUT_H
 
-#include "analysis/pictures/picture_cloud.h"
+#include "analysis/pictures/picture.h"
 
 struct picture_layout_disc {
   double x, y, radius, depth; /* m; discs are drawn by ascending depth */

@@ -2,6 +2,7 @@
 #include "analysis/pictures/snapshot_read.h"
 
 #include <errno.h>
+#include <hdf5.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +11,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "analysis/pictures/snapshot_hdf5.h"
 #include "schemas/file.h"
 #include "schemas/text.h"
 
@@ -40,7 +40,7 @@ struct snapshot_read {
   bool lost;
 };
 
-/* ---- both sides */
+/* ---- both sides ---- */
 
 static bool put(int line, const void *bytes, size_t size) {
   for (size_t done = 0; done < size;) {
@@ -66,20 +66,178 @@ static size_t size_of_rows(size_t rows, size_t width) {
   return rows * (width ? width : 1) * 8; /* double, int64_t */
 }
 
-/* ---- the child */
+/* ---- the child: HDF5. A file stays open until the process ends ---- */
 
-static bool reply(int line, struct snapshot_hdf5 *file, const struct question *q) {
+enum { MOST_COMPRESSED = 1100 }; /* deflate's limit is 1032 : 1 */
+
+struct file {
+  hid_t file;
+  double bytes; /* largest size of the file's data if it is compressed */
+};
+
+static struct file *open_file(const char *path) {
+  hsize_t size = 0;
+  struct file *f = calloc(1, sizeof *f);
+  if (!f)
+    return NULL;
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 prints nothing: the return values report errors */
+  H5PLset_loading_state(0);              /* a file must not choose libraries to load: its unknown filters are errors */
+  f->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (f->file >= 0 && H5Fget_filesize(f->file, &size) >= 0) {
+    f->bytes = (double)size * MOST_COMPRESSED;
+    return f;
+  }
+  free(f);
+  return NULL;
+}
+
+/* Each part of the path must be a hard link: external links lead to other files, and clast writes no soft links. */
+static bool has_object(struct file *f, const char *name) {
+  enum { LONGEST = 256 };
+  char way[LONGEST];
+  H5L_info_t link;
+  size_t length = strlen(name);
+  if (length >= LONGEST)
+    return false;
+  for (size_t end = 1; end <= length; end++) {
+    if (name[end] != '/' && name[end] != 0)
+      continue;
+    memcpy(way, name, end);
+    way[end] = 0;
+    if (H5Lget_info(f->file, way, &link, H5P_DEFAULT) < 0 || link.type != H5L_TYPE_HARD)
+      return false;
+  }
+  return length > 0;
+}
+
+/* Are the numbers stored in this file, without external or virtual storage? */
+static bool plain(hid_t set) {
+  hid_t type = H5Dget_type(set), layout = H5Dget_create_plist(set);
+  H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+  bool good = (class == H5T_INTEGER || class == H5T_FLOAT) && H5Tget_size(type) <= 8 && layout >= 0 &&
+              H5Pget_external_count(layout) == 0 && H5Pget_layout(layout) != H5D_VIRTUAL;
+  if (layout >= 0)
+    H5Pclose(layout);
+  if (type >= 0)
+    H5Tclose(type);
+  return good;
+}
+
+/* Number of rows of a data set of plain numbers with the wanted shape; -1: another kind of data set, or too many
+ * rows. */
+static int64_t count_rows(hid_t set, size_t width) {
+  hsize_t size[2] = {0, 0};
+  if (!plain(set)) /* first: the shape of virtual storage can lie in other files */
+    return -1;
+  hid_t space = H5Dget_space(set);
+  if (space < 0)
+    return -1;
+  int rank = width ? 2 : 1;
+  bool good = H5Sget_simple_extent_ndims(space) == rank && H5Sget_simple_extent_dims(space, size, NULL) == rank &&
+              size[0] <= SNAPSHOT_READ_LARGEST && (!width || size[1] == width);
+  H5Sclose(space);
+  return good ? (int64_t)size[0] : -1;
+}
+
+static void *read_rows(const struct file *f, hid_t set, enum snapshot_read_kind kind, size_t count) {
+  if ((double)count > f->bytes)
+    return NULL;
+  void *values = malloc((count ? count : 1) * 8);
+  if (!values || count == 0)
+    return values;
+  hid_t type = kind == SNAPSHOT_READ_REAL ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
+  if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0)
+    return values;
+  free(values);
+  return NULL;
+}
+
+static void *rows_of(struct file *f, const char *name, size_t width, enum snapshot_read_kind kind, size_t *rows) {
+  *rows = 0;
+  if (!has_object(f, name))
+    return NULL;
+  hid_t set = H5Dopen2(f->file, name, H5P_DEFAULT);
+  if (set < 0)
+    return NULL;
+  int64_t count = count_rows(set, width);
+  void *values = count < 0 ? NULL : read_rows(f, set, kind, (size_t)count * (width ? width : 1));
+  if (values)
+    *rows = (size_t)count;
+  H5Dclose(set);
+  return values;
+}
+
+/* Opens the attribute if it is a scalar of this class and has at most `most` bytes; else -1. */
+static hid_t open_attribute(struct file *f, const char *at, const char *name, H5T_class_t class, size_t most) {
+  if (!has_object(f, at))
+    return -1;
+  hid_t id = H5Aopen_by_name(f->file, at, name, H5P_DEFAULT, H5P_DEFAULT);
+  if (id < 0)
+    return -1;
+  hid_t type = H5Aget_type(id), space = H5Aget_space(id);
+  bool good = type >= 0 && space >= 0 && H5Tget_class(type) == class && H5Tget_size(type) <= most &&
+              H5Sget_simple_extent_npoints(space) == 1 && (class != H5T_STRING || H5Tis_variable_str(type) == 0);
+  if (space >= 0)
+    H5Sclose(space);
+  if (type >= 0)
+    H5Tclose(type);
+  if (good)
+    return id;
+  H5Aclose(id);
+  return -1;
+}
+
+static bool text_of(struct file *f, const char *at, const char *name, char *text, size_t size) {
+  enum { LONGEST = 65536 };
+  text[0] = 0;
+  hid_t id = open_attribute(f, at, name, H5T_STRING, LONGEST);
+  if (id < 0)
+    return false;
+  hid_t type = H5Aget_type(id);
+  size_t length = H5Tget_size(type);
+  char *whole = calloc(length + 1, 1);
+  bool good = whole && H5Aread(id, type, whole) >= 0;
+  if (good) {
+    size_t kept = strlen(whole) < size ? strlen(whole) : size - 1;
+    memcpy(text, whole, kept);
+    text[kept] = 0;
+  }
+  free(whole);
+  H5Tclose(type);
+  H5Aclose(id);
+  return good;
+}
+
+static bool number(struct file *f, const char *at, const char *name, H5T_class_t class, hid_t type, void *value) {
+  hid_t id = open_attribute(f, at, name, class, 8);
+  bool good = id >= 0 && H5Aread(id, type, value) >= 0;
+  if (id >= 0)
+    H5Aclose(id);
+  return good;
+}
+
+static bool real_of(struct file *f, const char *at, const char *name, double *value) {
+  return number(f, at, name, H5T_FLOAT, H5T_NATIVE_DOUBLE, value);
+}
+
+static bool integer_of(struct file *f, const char *at, const char *name, long long *value) {
+  return number(f, at, name, H5T_INTEGER, H5T_NATIVE_LLONG, value);
+}
+
+/* ---- the child: answers ---- */
+
+static bool reply(int line, struct file *file, const struct question *q) {
   struct answer a = {0};
   void *values = NULL;
   switch (q->what) {
-  case HAS: a.good = snapshot_hdf5_has(file, q->at); break;
+  case HAS: a.good = has_object(file, q->at); break;
   case ROWS:
-    values = snapshot_hdf5_rows(file, q->at, q->width, q->kind, &a.rows);
+    values = rows_of(file, q->at, q->width, q->kind, &a.rows);
     a.good = values;
     break;
-  case TEXT: a.good = snapshot_hdf5_text(file, q->at, q->name, a.text, sizeof a.text); break;
-  case REAL: a.good = snapshot_hdf5_real(file, q->at, q->name, &a.real); break;
-  case INTEGER: a.good = snapshot_hdf5_integer(file, q->at, q->name, &a.integer); break;
+  case TEXT: a.good = text_of(file, q->at, q->name, a.text, sizeof a.text); break;
+  case REAL: a.good = real_of(file, q->at, q->name, &a.real); break;
+  case INTEGER: a.good = integer_of(file, q->at, q->name, &a.integer); break;
   }
   bool sent = put(line, &a, sizeof a) && (!values || put(line, values, size_of_rows(a.rows, q->width)));
   free(values);
@@ -92,7 +250,7 @@ static _Noreturn void serve(int line, const char *path) {
   const int crashes[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL};
   for (size_t k = 0; k < sizeof crashes / sizeof *crashes; k++)
     signal(crashes[k], SIG_DFL);
-  struct snapshot_hdf5 *file = snapshot_hdf5_open(path);
+  struct file *file = open_file(path);
   struct question question;
   const struct answer opened = {.good = file};
   bool going = put(line, &opened, sizeof opened) && file;
@@ -101,7 +259,7 @@ static _Noreturn void serve(int line, const char *path) {
   _exit(0);
 }
 
-/* ---- the parent */
+/* ---- the parent ---- */
 
 /* False: the child has ended. Then all later requests fail, too. */
 static bool listen_to(struct snapshot_read *f, void *bytes, size_t size) {

@@ -1,6 +1,6 @@
 /* Reading fields files (engine/snapshot_file.h). A file may come from an untrusted source. Before it allocates memory,
  * the reader checks the sizes that a file claims against the size of the file. It opens no other file. HDF5 itself can
- * crash on a damaged file, so each file is read in a separate process (snapshot_hdf5.h). */
+ * crash on a damaged file, so each file is read in a separate process. */
 #ifndef CLAST_ANALYSIS_PICTURES_SNAPSHOT_READ_H
 #define CLAST_ANALYSIS_PICTURES_SNAPSHOT_READ_H
 

@@ -1,4 +1,4 @@
-/* Spectra as text. */
+/* Spectra and histograms as text. */
 #include <math.h>
 #include <string.h>
 
@@ -152,4 +152,22 @@ void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *unit, 
   fprintf(out, "%s ", glyph(FIT, unicode));
   write_label(out, series->fit[0].label, unicode);
   fputc('\n', out);
+}
+
+void text_plot_histogram(FILE *out, int columns, bool unicode, const struct scatter_histogram *histogram) {
+  enum { BEFORE = 20, LEAST = 40 }; /* columns: before the bar; least width */
+  size_t most = 1;
+  for (size_t b = 0; b < histogram->bins; b++)
+    if (histogram->count[b] > most)
+      most = histogram->count[b];
+  const size_t room = (size_t)(columns > LEAST ? columns : LEAST) - BEFORE;
+  if (histogram->bins)
+    fprintf(out, "%10s %8s\n", "from", "runs");
+  for (size_t b = 0; b < histogram->bins; b++) {
+    const size_t bar = histogram->count[b] ? 1 + (room - 1) * histogram->count[b] / most : 0;
+    fprintf(out, "%10.4g %8zu%s", histogram->from + (double)b * histogram->width, histogram->count[b], bar ? " " : "");
+    for (size_t i = 0; i < bar; i++)
+      fputs(unicode ? "\xe2\x96\x88" : "#", out);
+    fputc('\n', out);
+  }
 }

@@ -21,7 +21,7 @@ static status draw_grains(const char *fields, const char *picture, const struct 
   struct picture_panel panel = {0};
   char numbers[160];
   status code = STATUS_OK;
-  TRY(picture_body_read(fields, &panel.body, error));
+  TRY(picture_fragments_read(fields, &panel.body, error));
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
   if (options->what || options->view || options->axis || options->at)
     code = status_fail(error, STATUS_USAGE,
@@ -30,7 +30,7 @@ static status draw_grains(const char *fields, const char *picture, const struct 
                        fields);
   else
     code = picture_fragments(picture, width_of(options), options->caption, numbers, 1, &panel, error);
-  picture_body_clear(&panel.body);
+  picture_fragments_clear(&panel.body);
   return code;
 }
 

@@ -87,7 +87,7 @@ static status plot_pool(bool ascii, const struct ask_pool *pool, struct error *e
   TRY(scatter_make(pool->data.runs.count, pool->value, &scatter, error));
   const struct scatter_histogram histogram = scatter_histogram_of(&scatter);
   printf("%s, %zu runs\n", pool->label, scatter.n);
-  text_histogram_print(stdout, COLUMNS, !ascii, &histogram);
+  text_plot_histogram(stdout, COLUMNS, !ascii, &histogram);
   if (isfinite(scatter.between))
     printf("two modes: %.4g and %.4g, apart at %.4g; %.0f %% of the runs are in the upper one (%.0f to %.0f %%)\n",
            scatter.lower_mode, scatter.upper_mode, scatter.between, 100 * scatter.upper_share, 100 * scatter.upper_low,

@@ -265,7 +265,6 @@ CIRCLES = (
     "schemas/document schemas/document_tree",
     "schemas/unit schemas/unit_names",
     "engine/mesh/build engine/mesh/mesh",
-    "analysis/pictures/snapshot_hdf5 analysis/pictures/snapshot_read",
     "db/store/internal db/store/store",
 )
 

@@ -204,7 +204,7 @@ static void what_is_written_is_what_is_read(void **state) {
     assert_null(column);
   }
   struct picture_body body; /* its cells are no polygons */
-  assert_int_equal(picture_body_read(at("a.hdf"), &body, &error), STATUS_CONTENT);
+  assert_int_equal(picture_fragments_read(at("a.hdf"), &body, &error), STATUS_CONTENT);
   picture_cloud_clear(&cloud);
   sph_fragments_clear(&pieces);
   sph_particles_free(p);

@@ -3,7 +3,7 @@
 
 #include <unistd.h>
 
-#include "analysis/pictures/picture_cloud.h"
+#include "analysis/pictures/picture.h"
 #include "engine/sph/run/run.h"
 #include "tests/support/fields_file.h"
 #include "tests/support/folder.h"

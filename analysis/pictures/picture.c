@@ -1,0 +1,554 @@
+/* Charts: each gathers its numbers, sets the variables of its template (templates/NAME.gp) and has gnuplot draw it. The
+ * tiles of margins alone are drawn with cairo. */
+#include "analysis/pictures/picture.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "analysis/pictures/picture_canvas.h"
+#include "analysis/statistics/sample.h"
+
+static const double none[2] = {HUGE_VAL, -HUGE_VAL}; /* a range without a value */
+
+static void extend(double range[2], double value) {
+  if (!isfinite(value))
+    return;
+  range[0] = fmin(range[0], value);
+  range[1] = fmax(range[1], value);
+}
+
+static status nothing_to_draw(const struct picture_page *page, struct error *error) {
+  return status_fail(error, STATUS_USAGE, "%s: there is nothing to draw", page->path);
+}
+
+/* ---- means over an input, with their intervals: one line for each value of a second input ---- */
+
+static const double LOG_FROM = 20; /* x is logarithmic if its ends differ by at least this factor */
+
+static void write_curve(struct chart *chart, const struct picture_curve *curve) {
+  chart_columns(chart, "x mean low high thin_low thin_high");
+  for (size_t i = 0; i < curve->count; i++) {
+    const struct picture_mean *m = &curve->mean[i];
+    const bool bar = isfinite(m->low) && isfinite(m->high) && m->low < m->high;
+    const double low = bar ? m->low : m->y, high = bar ? m->high : m->y;
+    double row[6] = {m->x, m->y, NAN, NAN, NAN, NAN};
+    if (bar) {
+      row[2] = low;
+      row[3] = high;
+    }
+    if (m->resolution > 0) {
+      row[4] = low - m->resolution;
+      row[5] = high + m->resolution;
+    }
+    chart_row(chart, 6, row);
+  }
+  if (curve->count == 0)
+    chart_row(chart, 6, (double[]){NAN, NAN, NAN, NAN, NAN, NAN});
+  chart_block_end(chart);
+}
+
+/* Writes the range of the axis, with some space at both ends. */
+static void write_range(struct chart *chart, const double range[2]) {
+  const bool logarithmic = range[0] > 0 && range[1] >= LOG_FROM * range[0];
+  double margin = 0.05 * (range[1] - range[0]);
+  if (!(margin > 0))
+    margin = range[1] != 0 ? 0.05 * fabs(range[1]) : 1;
+  const double factor = pow(range[1] / range[0], 0.05);
+  chart_number(chart, "log_x", logarithmic);
+  chart_number(chart, "x_low", logarithmic ? range[0] / factor : range[0] - margin);
+  chart_number(chart, "x_high", logarithmic ? range[1] * factor : range[1] + margin);
+}
+
+status picture_curves(const struct picture_page *page, const struct picture_words *words, size_t count,
+                      const struct picture_curve *curve, struct error *error) {
+  double range[2] = {none[0], none[1]};
+  const char *labels[PICTURE_SERIES];
+  if (count > PICTURE_SERIES)
+    return status_fail(error, STATUS_USAGE, "%s: %zu curves are too many for one chart; at most %d", page->path, count,
+                       PICTURE_SERIES);
+  for (size_t c = 0; c < count; c++)
+    for (size_t i = 0; i < curve[c].count; i++)
+      if (isfinite(curve[c].mean[i].y))
+        extend(range, curve[c].mean[i].x);
+  if (!(range[1] >= range[0]))
+    return nothing_to_draw(page, error);
+  struct chart *chart = chart_new("lines", page, words);
+  chart_number(chart, "series", (double)count);
+  write_range(chart, range);
+  for (size_t c = 0; c < count; c++) {
+    labels[c] = curve[c].label;
+    write_curve(chart, &curve[c]);
+  }
+  const double legend = chart_legend(chart, count, labels);
+  return chart_draw(chart, 0.62 * page->width + legend, error);
+}
+
+/* ---- scatter of runs: histograms and distribution functions, one above the other ---- */
+
+enum { MOST_STEPS = 2000 }; /* steps of a distribution function; finer ones cannot be seen */
+
+static void write_histogram(struct chart *chart, const struct picture_sample *s) {
+  const struct scatter_histogram *h = &s->histogram;
+  chart_columns(chart, "from share-of-runs");
+  chart_row(chart, 2, (double[]){h->from, 0});
+  for (size_t b = 0; b < h->bins; b++)
+    for (int end = 0; end < 2; end++)
+      chart_row(chart, 2,
+                (double[]){h->from + (double)(b + (size_t)end) * h->width, (double)h->count[b] / (double)s->count});
+  chart_row(chart, 2, (double[]){h->from + (double)h->bins * h->width, 0});
+  chart_block_end(chart);
+}
+
+static void write_distribution(struct chart *chart, const struct picture_sample *s) {
+  const size_t each = s->count / MOST_STEPS + 1;
+  chart_columns(chart, "value share-at-most");
+  chart_row(chart, 2, (double[]){s->value[0], 0});
+  for (size_t i = 0; i < s->count; i++)
+    if (i % each == each - 1 || i + 1 == s->count)
+      chart_row(chart, 2, (double[]){s->value[i], (double)(i + 1) / (double)s->count});
+  chart_block_end(chart);
+}
+
+status picture_scatter(const struct picture_page *page, const struct picture_words *words, size_t count,
+                       const struct picture_sample *sample, struct error *error) {
+  const char *labels[PICTURE_SERIES];
+  double range[2] = {none[0], none[1]};
+  if (count < 1 || count > PICTURE_SERIES)
+    return status_fail(error, STATUS_USAGE, "%s: one to %d samples in a picture, not %zu", page->path, PICTURE_SERIES,
+                       count);
+  for (size_t s = 0; s < count; s++) {
+    if (sample[s].count == 0)
+      return status_fail(error, STATUS_USAGE, "%s: there is no value to draw", page->path);
+    const struct scatter_histogram *h = &sample[s].histogram;
+    extend(range, h->from);
+    extend(range, h->from + (double)h->bins * h->width);
+    labels[s] = sample[s].label;
+  }
+  struct chart *chart = chart_new("scatter", page, words);
+  chart_number(chart, "series", (double)count);
+  chart_number(chart, "x_low", range[0] - 0.02 * (range[1] - range[0]));
+  chart_number(chart, "x_high", range[1] + 0.02 * (range[1] - range[0]));
+  for (size_t s = 0; s < count; s++)
+    write_histogram(chart, &sample[s]);
+  for (size_t s = 0; s < count; s++)
+    write_distribution(chart, &sample[s]);
+  const double legend = chart_legend(chart, count, labels);
+  chart_number(chart, "legend_height", legend);
+  return chart_draw(chart, 0.9 * page->width + legend, error);
+}
+
+/* ---- quantities along a line: one panel each, one above the other over the same axis ---- */
+
+enum { MOST_PANELS = 3 };
+
+/* The range of a panel, with some space above and below. A panel without a finite value shows 0 to 1. */
+static void range_of_panel(size_t count, const struct picture_profile *panel, double range[2]) {
+  range[0] = panel->at_least[0];
+  range[1] = panel->at_least[1];
+  for (size_t i = 0; i < count; i++)
+    extend(range, panel->y[i]);
+  if (!(range[1] >= range[0])) {
+    range[0] = 0;
+    range[1] = 1;
+  }
+  const double margin = range[1] > range[0] ? 0.06 * (range[1] - range[0]) : fmax(0.05 * fabs(range[1]), 1e-300);
+  range[0] -= margin > 1e-300 ? margin : 1;
+  range[1] += margin > 1e-300 ? margin : 1;
+}
+
+status picture_profile(const struct picture_page *page, const struct picture_words *words, size_t count,
+                       const double *x, size_t panels, const struct picture_profile *panel, struct error *error) {
+  double along[2] = {none[0], none[1]};
+  const char *labels[MOST_PANELS];
+  double low[MOST_PANELS], high[MOST_PANELS];
+  for (size_t i = 0; i < count; i++)
+    extend(along, x[i]);
+  if (panels < 1 || panels > MOST_PANELS || !(along[1] > along[0]))
+    return nothing_to_draw(page, error);
+  struct chart *chart = chart_new("profile", page, words);
+  chart_number(chart, "panels", (double)panels);
+  chart_number(chart, "x_low", along[0] - 0.02 * (along[1] - along[0]));
+  chart_number(chart, "x_high", along[1] + 0.02 * (along[1] - along[0]));
+  chart_number(chart, "points", (double)count);
+  for (size_t k = 0; k < panels; k++) {
+    double range[2];
+    range_of_panel(count, &panel[k], range);
+    low[k] = range[0];
+    high[k] = range[1];
+    labels[k] = panel[k].label;
+  }
+  chart_numbers(chart, "low", panels, low);
+  chart_numbers(chart, "high", panels, high);
+  chart_texts(chart, "label", panels, labels);
+  chart_columns(chart, "x and the value of each panel");
+  for (size_t i = 0; i < count; i++) {
+    double row[1 + MOST_PANELS] = {x[i]};
+    for (size_t k = 0; k < panels; k++)
+      row[k + 1] = panel[k].y[i];
+    chart_row(chart, panels + 1, row);
+  }
+  chart_block_end(chart);
+  return chart_draw(chart, (panels > 1 ? 0.32 * (double)panels : 0.5) * page->width + 90, error);
+}
+
+/* ---- measured numbers beside the intervals predicted by a fit, both divided by the measured value ---- */
+
+/* A row is divided by its measured value. */
+static bool can_be_drawn(const struct picture_prediction *row) {
+  return row->measured != 0 && isfinite(row->quantile[0]);
+}
+
+status picture_predicted(const struct picture_page *page, const struct picture_words *words, size_t count,
+                         const struct picture_prediction *row, struct error *error) {
+  const char *legend[] = {"90 % of predicted experiments", "50 %", "measured, with its standard deviation", "median"};
+  const char *labels[PICTURE_PREDICTIONS];
+  double range[2] = {1, 1};
+  size_t rows = 0, letters = 0;
+  for (size_t k = 0; k < count; k++) {
+    if (!can_be_drawn(&row[k]) || rows == PICTURE_PREDICTIONS)
+      continue;
+    const size_t own = chart_letters(row[k].label);
+    letters = own > letters ? own : letters;
+    labels[rows++] = row[k].label;
+    for (int q = 0; q < PICTURE_QUANTILES; q++)
+      extend(range, row[k].quantile[q] / row[k].measured);
+    extend(range, 1 - row[k].error / fabs(row[k].measured));
+    extend(range, 1 + row[k].error / fabs(row[k].measured));
+  }
+  if (rows == 0)
+    return nothing_to_draw(page, error);
+  struct chart *chart = chart_new("predicted", page, words);
+  chart_number(chart, "rows", (double)rows);
+  chart_number(chart, "left_margin", fmin(40 + 8.3 * (double)letters, 0.6 * page->width));
+  const double margin = 0.05 * (range[1] - range[0] + 0.1);
+  chart_number(chart, "x_low", range[0] - margin);
+  chart_number(chart, "x_high", range[1] + margin);
+  chart_texts(chart, "row_label", rows, labels);
+  const double below = chart_legend(chart, 4, legend);
+  chart_columns(chart, "row, measured, error, quantiles 5 25 50 75 95 %, over the measured value");
+  for (size_t k = 0, at = rows; k < count && at > 0; k++) {
+    const double m = row[k].measured, *q = row[k].quantile;
+    if (!can_be_drawn(&row[k]))
+      continue;
+    at--;
+    chart_row(chart, 8,
+              (double[]){(double)at, 1, row[k].error / fabs(m), q[0] / m, q[1] / m, q[2] / m, q[3] / m, q[4] / m});
+  }
+  chart_block_end(chart);
+  return chart_draw(chart, 46 * (double)rows + 150 + below, error);
+}
+
+/* ---- a quantity over two axes: one tile for each pair of values, with the value as text where it fits ---- */
+
+enum { MOST_TILES = 10000 };
+
+struct axis {
+  size_t count;
+  double *values; /* ascending, distinct */
+};
+
+static void distinct(size_t count, const double (*points)[3], int coordinate, struct axis *axis) {
+  axis->count = 0;
+  for (size_t i = 0; i < count; i++)
+    axis->values[i] = points[i][coordinate];
+  qsort(axis->values, count, sizeof *axis->values, sample_ascending);
+  for (size_t i = 0; i < count; i++)
+    if (i == 0 || axis->values[i] != axis->values[axis->count - 1])
+      axis->values[axis->count++] = axis->values[i];
+}
+
+static size_t place(const struct axis *axis, double value) {
+  const double *found = bsearch(&value, axis->values, axis->count, sizeof value, sample_ascending);
+  return (size_t)(found - axis->values); /* always found: the axis was made from these values */
+}
+
+/* Blocks: the tiles (number of column and row from 0, value), the columns' values, the rows' values. */
+static void write_tiles(struct chart *chart, const struct axis *x, const struct axis *y, const double *value) {
+  chart_columns(chart, "column row value");
+  for (size_t j = 0; j < y->count; j++)
+    for (size_t i = 0; i < x->count; i++)
+      chart_row(chart, 3, (double[]){(double)i, (double)j, value[j * x->count + i]});
+  chart_block_end(chart);
+  const struct axis *axes[2] = {x, y};
+  for (int a = 0; a < 2; a++) {
+    chart_columns(chart, a ? "row its-value" : "column its-value");
+    for (size_t i = 0; i < axes[a]->count; i++)
+      chart_row(chart, 2, (double[]){(double)i, axes[a]->values[i]});
+    chart_block_end(chart);
+  }
+}
+
+/* Draws x->count times y->count values, a row for each value of y. */
+static status draw_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
+                       const struct axis *x, const struct axis *y, const double *value, struct error *error) {
+  double range[2] = {none[0], none[1]};
+  for (size_t i = 0; i < x->count * y->count; i++)
+    extend(range, value[i]);
+  if (!(range[1] >= range[0]))
+    return status_fail(error, STATUS_USAGE, "%s: there is no value to draw", page->path);
+  struct chart *chart = chart_new("map", page, words);
+  chart_text(chart, "quantity", quantity);
+  chart_number(chart, "columns", (double)x->count);
+  chart_number(chart, "rows", (double)y->count);
+  chart_number(chart, "low", range[0]);
+  chart_number(chart, "high", range[1] > range[0] ? range[1] : range[0] + fmax(fabs(range[0]), 1) * 1e-6);
+  write_tiles(chart, x, y, value);
+  return chart_draw(chart, 0.72 * page->width, error);
+}
+
+status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
+                   size_t count, const double (*points)[3], struct error *error) {
+  if (count == 0)
+    return status_fail(error, STATUS_USAGE, "%s: an axis of the map is empty or not finite", page->path);
+  for (size_t i = 0; i < count; i++)
+    if (!isfinite(points[i][0]) || !isfinite(points[i][1]))
+      return status_fail(error, STATUS_USAGE, "%s: a point of the map is not on its axes", page->path);
+  struct axis x = {.values = malloc(count * sizeof *x.values)}, y = {.values = malloc(count * sizeof *y.values)};
+  double *value = malloc(MOST_TILES * sizeof *value);
+  status code = STATUS_OK;
+  if (!x.values || !y.values || !value) {
+    code = status_fail(error, STATUS_MEMORY, "%s: no memory for the map", page->path);
+    goto cleanup;
+  }
+  distinct(count, points, 0, &x);
+  distinct(count, points, 1, &y);
+  if (x.count * y.count > MOST_TILES) {
+    code = status_fail(error, STATUS_USAGE, "%s: %zu x %zu tiles are too many for a map; choose axes with fewer values",
+                       page->path, x.count, y.count);
+    goto cleanup;
+  }
+  for (size_t i = 0; i < x.count * y.count; i++)
+    value[i] = NAN;
+  for (size_t i = 0; i < count; i++)
+    value[place(&y, points[i][1]) * x.count + place(&x, points[i][0])] = points[i][2];
+  code = draw_map(page, words, quantity, &x, &y, value, error);
+cleanup:
+  free(x.values);
+  free(y.values);
+  free(value);
+  return code;
+}
+
+/* ---- log-log spectra with error bars or bands, and fitted lines ---- */
+
+enum { MOST_FITS = 3, LABELS = PICTURE_SERIES * (1 + MOST_FITS), LINE_POINTS = 40 };
+
+double picture_spectrum_fit(const struct picture_fit *fit, const struct pooled_form *form, double place) {
+  const double mass = spectrum_size_mass(&form->size, place);
+  if (!isfinite(fit->beta) || !(mass >= fit->lower) || !(mass < fit->upper) || !(fit->fragments_per_run > 0))
+    return NAN;
+  /* The integral of u^-beta from 1 to u = m/lower. Without an upper end a rising or flat law has none: 700 is about
+   * the logarithm of the largest double. */
+  const double k = fit->beta - 1, span = isinf(fit->upper) ? 700 : log(fit->upper / fit->lower);
+  const double whole = fabs(k * span) < 1e-9 ? span : -expm1(-k * span) / k, u = log(mass / fit->lower);
+  if (form->cumulative) {
+    const double below = fabs(k * span) < 1e-9 ? u : -expm1(-k * u) / k;
+    return fit->larger_per_run + fit->fragments_per_run * (whole - below) / whole;
+  }
+  const double density = fit->fragments_per_run / (fit->lower * whole) * exp(-fit->beta * u);
+  /* m ~ L^d: dm/dL = d m/L */
+  return form->size.density > 0 ? density * (form->size.dimensions == 2 ? 2 : 3) * mass / place : density;
+}
+
+static double middle(const struct pooled_form *form, const struct pooled_bin *bin) {
+  return form->cumulative ? bin->lower : sqrt(bin->lower) * sqrt(bin->upper);
+}
+
+/* Writes a block: the bins of one series. A bar that ends at or below zero has no lower end on a logarithmic axis. */
+static void write_bins(struct chart *chart, const struct pooled_form *form, size_t count, const struct pooled_bin *bins,
+                       double complete) {
+  chart_columns(chart, form->cumulative ? "place N low high complete(1)" : "place density low high complete(1)");
+  for (size_t b = 0; b < count; b++) {
+    const struct pooled_bin *bin = &bins[b];
+    if (!(bin->value > 0) || !(bin->lower > 0))
+      continue;
+    double low = bin->value - bin->half_width; /* NaN: one run */
+    if (low <= 0)
+      low = bin->value / 1e3; /* a bar down to the frame's lower edge or beyond */
+    chart_row(chart, 5,
+              (double[]){middle(form, bin), bin->value, low, bin->value + bin->half_width, !(bin->lower < complete)});
+  }
+  chart_row(chart, 5, (double[]){NAN, NAN, NAN, NAN, NAN}); /* a block is never empty */
+  chart_block_end(chart);
+}
+
+/* Writes a block: the line of a fit. most: the largest place of the chart. */
+static void write_fit(struct chart *chart, const struct pooled_form *form, const struct picture_fit *fit, double most) {
+  const double from = spectrum_size_of(&form->size, fit->lower);
+  const double to = isinf(fit->upper) ? most : spectrum_size_of(&form->size, fit->upper);
+  chart_columns(chart, "place value");
+  if (from > 0 && to > from)
+    for (int i = 0; i < LINE_POINTS; i++) {
+      const double place = from * pow(to / from, 0.002 + 0.996 * i / (LINE_POINTS - 1)); /* just inside the window */
+      chart_row(chart, 2, (double[]){place, picture_spectrum_fit(fit, form, place)});
+    }
+  chart_row(chart, 2, (double[]){NAN, NAN});
+  chart_block_end(chart);
+}
+
+struct ranges {
+  double x[2], y[2];
+};
+
+static void cover(struct ranges *ranges, size_t count, const struct pooled_bin *bins) {
+  for (size_t b = 0; b < count; b++) {
+    if (!(bins[b].value > 0) || !(bins[b].lower > 0))
+      continue;
+    extend(ranges->x, bins[b].lower);
+    extend(ranges->x, bins[b].upper);
+    extend(ranges->y, bins[b].value);
+  }
+}
+
+static void write_ranges(struct chart *chart, const struct ranges *r) {
+  const double wide = pow(r->x[1] / r->x[0], 0.04), tall = 1.3 * pow(r->y[1] / r->y[0], 0.08);
+  chart_number(chart, "x_low", r->x[0] / wide);
+  chart_number(chart, "x_high", r->x[1] * wide);
+  chart_number(chart, "y_low", r->y[0] / tall);
+  chart_number(chart, "y_high", r->y[1] * tall);
+}
+
+/* Writes the series, then the thin lines, then the fits. */
+static void write_blocks(struct chart *chart, const struct pooled_form *form, size_t count,
+                         const struct picture_series *series, double most) {
+  enum { MOST_THIN = 1000 };
+  double of[LABELS], dashes[LABELS], thin_of[MOST_THIN], measured[PICTURE_SERIES];
+  size_t fits = 0, thin = 0;
+  for (size_t s = 0; s < count; s++) {
+    write_bins(chart, form, series[s].count, series[s].bins, spectrum_size_of(&form->size, series[s].complete_mass));
+    measured[s] = series[s].measured;
+  }
+  for (size_t s = 0; s < count; s++)
+    for (size_t i = 0; i < series[s].thin_count && thin < MOST_THIN; i++) {
+      thin_of[thin++] = (double)s + 1;
+      write_bins(chart, form, series[s].thin[i].count, series[s].thin[i].bins, 0);
+    }
+  for (size_t s = 0; s < count; s++)
+    for (size_t i = 0; i < series[s].fits && i < MOST_FITS; i++) {
+      of[fits] = (double)s + 1;
+      dashes[fits++] = (double)i + 1;
+      write_fit(chart, form, &series[s].fit[i], most);
+    }
+  chart_number(chart, "series", (double)count);
+  chart_number(chart, "thin", (double)thin);
+  chart_number(chart, "fits", (double)fits);
+  chart_number(chart, "cumulative", form->cumulative);
+  chart_numbers(chart, "measured", count, measured);
+  chart_numbers(chart, "thin_of", thin, thin_of);
+  chart_numbers(chart, "fit_of", fits, of);
+  chart_numbers(chart, "fit_dash", fits, dashes);
+}
+
+status picture_spectrum(const struct picture_page *page, const struct picture_words *words,
+                        const struct pooled_form *form, size_t count, const struct picture_series *series,
+                        struct error *error) {
+  struct ranges ranges = {{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
+  const char *labels[LABELS];
+  size_t lines = 0;
+  if (count < 1 || count > PICTURE_SERIES)
+    return status_fail(error, STATUS_USAGE, "%s: one to %d spectra in a picture, not %zu", page->path, PICTURE_SERIES,
+                       count);
+  for (size_t s = 0; s < count; s++)
+    cover(&ranges, series[s].count, series[s].bins);
+  if (!(ranges.x[1] > ranges.x[0]))
+    return status_fail(error, STATUS_USAGE, "%s: there is no fragment to draw", page->path);
+  for (size_t s = 0; s < count; s++) { /* thin lines often have lower densities than the mean of many runs */
+    for (size_t i = 0; i < series[s].thin_count; i++)
+      cover(&ranges, series[s].thin[i].count, series[s].thin[i].bins);
+  }
+  struct chart *chart = chart_new("spectrum", page, words);
+  write_ranges(chart, &ranges);
+  write_blocks(chart, form, count, series, ranges.x[1]);
+  for (size_t s = 0; s < count; s++)
+    labels[lines++] = series[s].label;
+  for (size_t s = 0; s < count; s++)
+    for (size_t i = 0; i < series[s].fits && i < MOST_FITS; i++)
+      labels[lines++] = series[s].fit[i].label;
+  const double legend = chart_legend(chart, lines, labels);
+  return chart_draw(chart, 0.68 * page->width + legend, error);
+}
+
+/* ---- which values of inputs are safe: a row of tiles per input, each tile divided by the shares of safe, warned and
+ * refused runs ---- */
+
+static const double font = 11, row_height = 19, head_height = 26, margin = 14, indent = 12;
+
+enum { SAFE, WARNED, REFUSED, CLASSES };
+static const char *const names[CLASSES] = {"safe", "warned", "refused"};
+
+/* The colours also differ in lightness, for colour-blind readers and in grey. */
+static void set_colour(cairo_t *cairo, int class) {
+  static const double lightness[CLASSES] = {0.94, 0.82, 0.64}, chroma[CLASSES] = {0.05, 0.14, 0.17},
+                      hue[CLASSES] = {160, 80, 25};
+  picture_canvas_colour(cairo, lightness[class], chroma[class], hue[class], 1);
+}
+
+static void draw_tile(cairo_t *cairo, double x, double y, double width, const struct picture_margin_tile *tile) {
+  double sum = 0, from = x;
+  for (int c = 0; c < CLASSES; c++)
+    sum += tile->runs[c];
+  for (int c = 0; c < CLASSES && sum > 0; c++) {
+    const double part = width * tile->runs[c] / sum;
+    set_colour(cairo, c);
+    cairo_rectangle(cairo, from, y, part, row_height - 3);
+    cairo_fill(cairo);
+    from += part;
+  }
+  cairo_set_source_rgb(cairo, 0, 0, 0);
+  picture_canvas_text(cairo, x + width / 2, y + row_height - 7, 0.85 * font, PICTURE_CENTRE, false, tile->text);
+}
+
+static void draw_legend(cairo_t *cairo, double width, double y) {
+  double x = width - margin;
+  for (int c = CLASSES; c-- > 0;) {
+    const double text = picture_canvas_text_width(cairo, font, false, names[c]);
+    cairo_set_source_rgb(cairo, 0, 0, 0);
+    picture_canvas_text(cairo, x, y, font, PICTURE_RIGHT, false, names[c]);
+    set_colour(cairo, c);
+    cairo_rectangle(cairo, x - text - 18, y - 10, 13, 12);
+    cairo_fill(cairo);
+    x -= text + 32;
+  }
+}
+
+/* Where the tiles begin: right of the widest label. */
+static double left_of_tiles(cairo_t *cairo, size_t count, const struct picture_margin *row) {
+  double widest = 0;
+  for (size_t k = 0; k < count; k++)
+    widest = fmax(widest, picture_canvas_text_width(cairo, font, false, row[k].label));
+  return margin + indent + widest + font;
+}
+
+static void draw_row(cairo_t *cairo, double left, double width, double y, const struct picture_margin *row) {
+  cairo_set_source_rgb(cairo, 0, 0, 0);
+  picture_canvas_text(cairo, margin + indent, y + row_height - 7, font, PICTURE_LEFT, false, row->label);
+  const double each = (width - left - margin) / (double)row->count;
+  for (size_t t = 0; t < row->count; t++)
+    draw_tile(cairo, left + each * (double)t, y, each - 2, &row->tile[t]);
+}
+
+status picture_margins(const char *path, double width, const char *title, size_t count,
+                       const struct picture_margin *row, struct error *error) {
+  double height = 2 * margin + 2 * font;
+  if (count == 0)
+    return status_fail(error, STATUS_USAGE, "there is nothing to draw: no input was varied");
+  for (size_t k = 0; k < count; k++)
+    height += row_height + (row[k].heading ? head_height : 0);
+  struct picture_canvas canvas;
+  TRY(picture_canvas_open(&canvas, path, width, height, error));
+  cairo_set_source_rgb(canvas.cairo, 0, 0, 0);
+  picture_canvas_text(canvas.cairo, margin, margin + font, 1.2 * font, PICTURE_LEFT, true, title);
+  draw_legend(canvas.cairo, width, margin + font);
+  const double left = left_of_tiles(canvas.cairo, count, row);
+  double y = margin + 2 * font;
+  for (size_t k = 0; k < count; k++) {
+    if (row[k].heading) {
+      cairo_set_source_rgb(canvas.cairo, 0, 0, 0);
+      picture_canvas_text(canvas.cairo, margin, y + head_height - 8, font, PICTURE_LEFT, true, row[k].heading);
+      y += head_height;
+    }
+    draw_row(canvas.cairo, left, width, y, &row[k]);
+    y += row_height;
+  }
+  return picture_canvas_close(&canvas, STATUS_OK, error);
+}
