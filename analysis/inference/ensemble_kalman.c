@@ -44,16 +44,6 @@ static double normal(const struct ensemble_kalman *e, uint64_t member, uint64_t 
   return gsl_cdf_ugaussian_Pinv(fmin(fmax(u, 0x1p-54), 1 - 0x1p-53));
 }
 
-static void find_good(const struct ensemble_kalman *e, struct work *w) {
-  for (size_t j = 0; j < e->members; j++) {
-    bool good = true;
-    for (size_t k = 0; k < e->outputs; k++)
-      good = good && isfinite(e->g[j * e->outputs + k]);
-    if (good)
-      w->member[w->good++] = j;
-  }
-}
-
 static void find_covariances(const struct ensemble_kalman *e, struct work *w) {
   const size_t p = e->inputs, d = e->outputs;
   const double n = (double)w->good;
@@ -75,19 +65,14 @@ static void find_covariances(const struct ensemble_kalman *e, struct work *w) {
   }
 }
 
-/* Half the squared distance of a member's results from the data, in units of the errors. */
-static double misfit_of(const struct ensemble_kalman *e, struct work *w, size_t member) {
-  for (size_t k = 0; k < e->outputs; k++)
-    w->innovation[k] = e->y[k] - e->g[member * e->outputs + k];
-  return covariance_distance(e->outputs, w->root, w->innovation, w->weighted) / 2;
-}
-
 /* The part of the data that a step uses: max(d / 2 mean, sqrt(d / 2 variance)) of the misfits, but at least `least` and
  * at most the remaining part. */
 static double part_of(const struct ensemble_kalman *e, struct work *w) {
   double mean = 0, variance = 0;
-  for (size_t i = 0; i < w->good; i++) {
-    w->misfit[i] = misfit_of(e, w, w->member[i]);
+  for (size_t i = 0; i < w->good; i++) { /* half the squared distance from the data, in units of the errors */
+    for (size_t k = 0; k < e->outputs; k++)
+      w->innovation[k] = e->y[k] - e->g[w->member[i] * e->outputs + k];
+    w->misfit[i] = covariance_distance(e->outputs, w->root, w->innovation, w->weighted) / 2;
     mean += w->misfit[i] / (double)w->good;
   }
   for (size_t i = 0; i < w->good; i++)
@@ -126,7 +111,13 @@ static void replace(const struct ensemble_kalman *e, const struct work *w, size_
 
 static status step(struct ensemble_kalman *e, struct work *w, struct error *error) {
   const size_t d = e->outputs;
-  find_good(e, w);
+  for (size_t j = 0; j < e->members; j++) {
+    bool good = true;
+    for (size_t k = 0; k < d; k++)
+      good = good && isfinite(e->g[j * d + k]);
+    if (good)
+      w->member[w->good++] = j;
+  }
   if (w->good < 3)
     return status_fail(error, STATUS_CONTENT,
                        "only %zu of %zu members of the ensemble have results, and a fit needs three: see `clast query "

@@ -105,21 +105,6 @@ static double shrink(const struct posterior_model *model, const struct posterior
   return factor;
 }
 
-static void normalise(struct posterior *p, double most) {
-  double sum = 0;
-  for (size_t n = 0; n < p->count; n++)
-    sum += p->weight[n] = exp(p->weight[n] - most);
-  for (size_t n = 0; n < p->count; n++)
-    p->weight[n] /= sum;
-}
-
-static double effective_nodes(const struct posterior *p) {
-  double squares = 0;
-  for (size_t n = 0; n < p->count; n++)
-    squares += p->weight[n] * p->weight[n];
-  return 1 / squares;
-}
-
 static status allocate(struct posterior *out, size_t count, size_t inputs, struct error *error) {
   *out = (struct posterior){.count = count, .inputs = inputs};
   out->z = calloc(count * inputs, sizeof(double));
@@ -127,7 +112,9 @@ static status allocate(struct posterior *out, size_t count, size_t inputs, struc
   return out->z && out->weight ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the posterior");
 }
 
-static status make_grid(const struct posterior_model *model, struct posterior *out, struct error *error) {
+/* *effective: the number of nodes that have most of the weight. */
+static status make_grid(const struct posterior_model *model, struct posterior *out, double *effective,
+                        struct error *error) {
   const size_t side = nodes_of[model->inputs];
   size_t count = 1;
   struct box box;
@@ -144,7 +131,14 @@ static status make_grid(const struct posterior_model *model, struct posterior *o
     return status_fail(
         error, STATUS_CONTENT,
         "no inputs within the priors give the measured values: widen the priors (`vary`), or check the measurements");
-  normalise(out, most);
+  double sum = 0, squares = 0;
+  for (size_t n = 0; n < out->count; n++)
+    sum += out->weight[n] = exp(out->weight[n] - most);
+  for (size_t n = 0; n < out->count; n++) {
+    out->weight[n] /= sum;
+    squares += out->weight[n] * out->weight[n];
+  }
+  *effective = 1 / squares;
   return STATUS_OK;
 }
 
@@ -216,16 +210,6 @@ static void fill_sample(const struct posterior_model *model, uint64_t seed, doub
   }
 }
 
-static status make_sample(const struct posterior_model *model, uint64_t seed, struct posterior *out,
-                          struct error *error) {
-  TRY(allocate(out, SAMPLE_NODES, model->inputs, error));
-  out->sampled = true;
-  fill_sample(model, seed, out->z);
-  for (size_t n = 0; n < out->count; n++)
-    out->weight[n] = 1 / (double)out->count;
-  return STATUS_OK;
-}
-
 status posterior_make(const struct posterior_model *model, uint64_t seed, struct posterior *out, struct error *error) {
   *out = (struct posterior){0};
   if (model->inputs == 0 || model->inputs > INFERENCE_INPUTS || model->outputs == 0 ||
@@ -233,12 +217,18 @@ status posterior_make(const struct posterior_model *model, uint64_t seed, struct
     return status_fail(error, STATUS_CONTENT, "a fit has 1 to %d inputs and 1 to %d measured numbers, not %zu and %zu",
                        INFERENCE_INPUTS, INFERENCE_OUTPUTS, model->inputs, model->outputs);
   if (model->inputs <= GRID_INPUTS) {
-    const status code = make_grid(model, out, error);
-    if (code != STATUS_OK || effective_nodes(out) >= FEWEST_NODES)
-      return code;
+    double effective = 0;
+    TRY(make_grid(model, out, &effective, error));
+    if (effective >= FEWEST_NODES)
+      return STATUS_OK;
     posterior_clear(out);
   }
-  return make_sample(model, seed, out, error);
+  TRY(allocate(out, SAMPLE_NODES, model->inputs, error));
+  out->sampled = true;
+  fill_sample(model, seed, out->z);
+  for (size_t n = 0; n < out->count; n++)
+    out->weight[n] = 1 / (double)out->count;
+  return STATUS_OK;
 }
 
 void posterior_clear(struct posterior *posterior) {

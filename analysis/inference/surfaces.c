@@ -150,22 +150,16 @@ void surfaces_clear(struct surfaces *surfaces) {
   }
 }
 
-/* Mean position of the last points. */
-static void middle_of(const struct surfaces_runs *runs, const bool *bounded, size_t members, double *x) {
-  struct posterior_model place = {.inputs = runs->inputs};
-  double z[INFERENCE_INPUTS] = {0};
-  memcpy(place.bounded, bounded, runs->inputs * sizeof *bounded);
-  for (size_t i = runs->points - members; i < runs->points; i++)
-    for (size_t a = 0; a < runs->inputs; a++)
-      z[a] += runs->z[i * runs->inputs + a] / (double)members;
-  posterior_place(&place, z, x);
-}
-
 status surfaces_errors(const struct surfaces_runs *runs, const struct posterior_datum *data, const bool *bounded,
                        size_t members, double *gamma, struct error *error) {
   const size_t d = runs->outputs;
-  double x[INFERENCE_INPUTS], deviation[INFERENCE_OUTPUTS];
-  middle_of(runs, bounded, members, x);
+  double z[INFERENCE_INPUTS] = {0}, x[INFERENCE_INPUTS], deviation[INFERENCE_OUTPUTS];
+  struct posterior_model place = {.inputs = runs->inputs};
+  memcpy(place.bounded, bounded, runs->inputs * sizeof *bounded);
+  for (size_t i = runs->points - members; i < runs->points; i++) /* the mean position of the last points */
+    for (size_t a = 0; a < runs->inputs; a++)
+      z[a] += runs->z[i * runs->inputs + a] / (double)members;
+  posterior_place(&place, z, x);
   find_correlations(runs, gamma);
   for (size_t k = 0; k < d; k++) {
     struct part part = {0};

@@ -72,38 +72,20 @@ status picture_canvas_close(struct picture_canvas *canvas, status code, struct e
   return file_end(&canvas->file, code, error);
 }
 
-static void choose_font(cairo_t *cairo, double size, bool bold) {
+double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const char *text) {
+  cairo_text_extents_t extents;
   cairo_select_font_face(cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
                          bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(cairo, size);
-}
-
-double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const char *text) {
-  cairo_text_extents_t extents;
-  choose_font(cairo, size, bold);
   cairo_text_extents(cairo, text, &extents);
   return extents.x_advance;
 }
 
-/* Distance from the given position to the start of a text of this width. */
-static double offset(enum picture_align align, double width) {
-  const double share[] = {[PICTURE_LEFT] = 0, [PICTURE_CENTRE] = 0.5, [PICTURE_RIGHT] = 1};
-  return share[align] * width;
-}
-
 void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum picture_align align, bool bold,
                          const char *text) {
-  cairo_move_to(cairo, x - offset(align, picture_canvas_text_width(cairo, size, bold, text)), y);
+  static const double share[] = {[PICTURE_LEFT] = 0, [PICTURE_CENTRE] = 0.5, [PICTURE_RIGHT] = 1};
+  cairo_move_to(cairo, x - share[align] * picture_canvas_text_width(cairo, size, bold, text), y);
   cairo_show_text(cairo, text);
-}
-
-/* Draws text that runs upwards, centred at (x, y). */
-static void text_upright(cairo_t *cairo, double x, double y, double size, const char *text) {
-  cairo_save(cairo);
-  cairo_translate(cairo, x, y);
-  cairo_rotate(cairo, -M_PI / 2);
-  picture_canvas_text(cairo, 0, 0, size, PICTURE_CENTRE, false, text);
-  cairo_restore(cairo);
 }
 
 /* The font size, at most `size`, with which a text fits into the picture's width. */
@@ -206,7 +188,11 @@ void picture_canvas_colour_bar(cairo_t *cairo, enum picture_ramp ramp, double x,
     cairo_stroke(cairo);
     picture_canvas_text(cairo, x + width + 0.6 * font, place + 0.35 * font, 0.9 * font, PICTURE_LEFT, false, text);
   }
-  text_upright(cairo, x + width + 5 * font, y + height / 2, 1.05 * font, quantity);
+  cairo_save(cairo);
+  cairo_translate(cairo, x + width + 5 * font, y + height / 2);
+  cairo_rotate(cairo, -M_PI / 2); /* the text runs upwards */
+  picture_canvas_text(cairo, 0, 0, 1.05 * font, PICTURE_CENTRE, false, quantity);
+  cairo_restore(cairo);
 }
 
 void picture_canvas_scale_bar(cairo_t *cairo, double x, double y, double points_per_metre, double available,

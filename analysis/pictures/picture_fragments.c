@@ -208,13 +208,6 @@ static double area_of(const struct picture_body *body, size_t cell) {
   return fabs(area);
 }
 
-static double typical_cell(const struct picture_body *body) {
-  double area = 0;
-  for (size_t i = 0; i < body->cells; i++)
-    area += area_of(body, i);
-  return sqrt(area / (double)body->cells);
-}
-
 void picture_fragments_numbers(const struct picture_body *body, const char *cells, char *text, size_t size) {
   struct grouping grouping;
   size_t single = 0, fragments = 0;
@@ -245,9 +238,14 @@ static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, cons
                       panel->view[0]; /* a chosen part of the body: its fragments may extend beyond the panel */
   struct grouping grouping;
   status code = group(body, &grouping);
-  if (code)
-    goto cleanup;
-  double scale = fmin(width / (view[2] - view[0]), height / (view[3] - view[1])), cell = typical_cell(body);
+  if (code) {
+    grouping_free(&grouping);
+    return code;
+  }
+  double scale = fmin(width / (view[2] - view[0]), height / (view[3] - view[1])), area = 0;
+  for (size_t i = 0; i < body->cells; i++)
+    area += area_of(body, i);
+  const double cell = sqrt(area / (double)body->cells); /* a typical size */
   cairo_save(cairo);
   cairo_rectangle(cairo, left, top, width, height);
   cairo_clip(cairo);
@@ -272,9 +270,8 @@ static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, cons
   if (panel->caption)
     picture_canvas_text(cairo, left + width * 0.98, top + height + 1.75 * font, font, PICTURE_RIGHT, false,
                         panel->caption);
-cleanup:
   grouping_free(&grouping);
-  return code;
+  return STATUS_OK;
 }
 
 static status fail(const char *path, status code, struct error *error) {
@@ -352,39 +349,6 @@ static void free_columns(struct columns *c) {
 }
 
 /* The offsets must rise from 0 to the number of vertices. */
-static bool take_first_vertices(const struct columns *c, struct picture_body *body) {
-  if (c->offset[0] != 0 || c->offset[body->cells] != (int64_t)c->ids)
-    return false;
-
-  for (size_t i = 0; i <= body->cells; i++) {
-    if (i && c->offset[i] < c->offset[i - 1])
-      return false;
-    body->first_vertex[i] = (uint32_t)c->offset[i];
-  }
-  return true;
-}
-
-static bool take_vertices(const struct columns *c, struct picture_body *body) {
-  for (size_t i = 0; i < c->ids; i++) {
-    if (c->id[i] < 0 || c->id[i] >= (int64_t)c->points)
-      return false;
-    const double *point = &c->point[3 * (size_t)c->id[i]];
-    if (!isfinite(point[0]) || !isfinite(point[1]))
-      return false;
-    memcpy(body->vertex[i], point, sizeof body->vertex[i]);
-  }
-  return true;
-}
-
-static bool take_fragments(const struct columns *c, struct picture_body *body) {
-  for (size_t i = 0; i < body->cells; i++) {
-    if (c->fragment[i] < 0 || c->fragment[i] > SNAPSHOT_READ_LARGEST)
-      return false;
-    body->fragment[i] = (uint32_t)c->fragment[i];
-  }
-  return true;
-}
-
 static bool take_cells(const struct columns *c, struct picture_body *body) {
   const bool there = c->point && c->offset && c->id && c->fragment;
   if (!there || c->fragments == 0 || c->offsets != c->fragments + 1)
@@ -397,12 +361,51 @@ static bool take_cells(const struct columns *c, struct picture_body *body) {
   if (!body->first_vertex || !body->vertex || !body->fragment)
     return false;
 
-  return take_first_vertices(c, body) && take_vertices(c, body) && take_fragments(c, body);
+  if (c->offset[0] != 0 || c->offset[body->cells] != (int64_t)c->ids)
+    return false;
+  for (size_t i = 0; i <= body->cells; i++) {
+    if (i && c->offset[i] < c->offset[i - 1])
+      return false;
+    body->first_vertex[i] = (uint32_t)c->offset[i];
+  }
+  for (size_t i = 0; i < c->ids; i++) {
+    if (c->id[i] < 0 || c->id[i] >= (int64_t)c->points)
+      return false;
+    const double *point = &c->point[3 * (size_t)c->id[i]];
+    if (!isfinite(point[0]) || !isfinite(point[1]))
+      return false;
+    memcpy(body->vertex[i], point, sizeof body->vertex[i]);
+  }
+  for (size_t i = 0; i < body->cells; i++) {
+    if (c->fragment[i] < 0 || c->fragment[i] > SNAPSHOT_READ_LARGEST)
+      return false;
+    body->fragment[i] = (uint32_t)c->fragment[i];
+  }
+  return true;
 }
 
-/* Collects broken beams between two grains of the same fragment. */
-static void take_broken_beams(const struct columns *c, const uint32_t *cell, size_t grains, struct picture_body *body) {
-  for (size_t i = 0; i < c->beams; i++) {
+/* Collects broken beams between two grains of the same fragment. Beams refer to grains, and each cell names the grain
+ * that it outlines. A file without beams has no cracks. */
+static bool take_cracks(const struct columns *c, struct picture_body *body) {
+  const bool there = c->beam && c->alive && c->grain;
+  if (!there || c->beams != c->alives || c->grains != body->cells)
+    return true;
+  int64_t last = -1;
+  for (size_t i = 0; i < c->grains; i++)
+    last = c->grain[i] > last ? c->grain[i] : last;
+  if (last < 0 || last > SNAPSHOT_READ_LARGEST)
+    return false;
+
+  const size_t grains = (size_t)last + 1;
+  uint32_t *cell = malloc(grains * sizeof *cell); /* of each grain; UINT32_MAX: none */
+  body->crack = malloc((c->beams + 1) * sizeof *body->crack);
+  const bool good = cell && body->crack;
+  for (size_t i = 0; good && i < grains; i++)
+    cell[i] = UINT32_MAX;
+  for (size_t i = 0; good && i < c->grains; i++)
+    if (c->grain[i] >= 0)
+      cell[c->grain[i]] = (uint32_t)i;
+  for (size_t i = 0; good && i < c->beams; i++) {
     const double a = c->beam[2 * i], b = c->beam[2 * i + 1], end = (double)grains;
     const bool known = a >= 0 && a < end && b >= 0 && b < end;
     if (c->alive[i] != 0 || !known)
@@ -413,42 +416,6 @@ static void take_broken_beams(const struct columns *c, const uint32_t *cell, siz
     body->crack[body->cracks][0] = first;
     body->crack[body->cracks++][1] = second;
   }
-}
-
-static int64_t last_grain(const struct columns *c) {
-  int64_t last = -1;
-  for (size_t i = 0; i < c->grains; i++)
-    last = c->grain[i] > last ? c->grain[i] : last;
-  return last;
-}
-
-/* The cell of each grain, UINT32_MAX for none. The caller frees it. */
-static uint32_t *cells_by_grain(const struct columns *c, size_t grains) {
-  uint32_t *cell = malloc(grains * sizeof *cell);
-  if (!cell)
-    return NULL;
-  memset(cell, 0xFF, grains * sizeof *cell);
-  for (size_t i = 0; i < c->grains; i++)
-    if (c->grain[i] >= 0)
-      cell[c->grain[i]] = (uint32_t)i;
-  return cell;
-}
-
-/* Beams refer to grains, and each cell names the grain that it outlines. A file without beams has no cracks. */
-static bool take_cracks(const struct columns *c, struct picture_body *body) {
-  const bool there = c->beam && c->alive && c->grain;
-  if (!there || c->beams != c->alives || c->grains != body->cells)
-    return true;
-
-  const int64_t last = last_grain(c);
-  if (last < 0 || last > SNAPSHOT_READ_LARGEST)
-    return false;
-  const size_t grains = (size_t)last + 1;
-  uint32_t *cell = cells_by_grain(c, grains);
-  body->crack = malloc((c->beams + 1) * sizeof *body->crack);
-  const bool good = cell && body->crack;
-  if (good)
-    take_broken_beams(c, cell, grains, body);
   free(cell);
   return good;
 }

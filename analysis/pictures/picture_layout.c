@@ -22,12 +22,6 @@ struct layout {
   double cell, x, y;    /* side of a cell; the middle of the grid, m */
 };
 
-static void free_layout(struct layout *l) {
-  free(l->order);
-  free(l->piece);
-  free(l->taken);
-}
-
 /* Sorts the discs by fragment, by counting. */
 static status gather(const struct picture_cloud *cloud, size_t count, struct layout *l) {
   for (size_t k = 0; k < count; k++)
@@ -90,18 +84,14 @@ static void take(struct layout *l, const struct piece *piece) {
   }
 }
 
-/* The direction of a piece from the middle. A piece in the middle gets a direction from its number, by golden
- * angles. */
-static void direction_of(const struct layout *l, size_t p, double *x, double *y) {
-  const double dx = l->piece[p].x - l->x, dy = l->piece[p].y - l->y, far = hypot(dx, dy);
-  *x = far > 1e-6 * l->cell ? dx / far : cos(2.399963 * (double)p);
-  *y = far > 1e-6 * l->cell ? dy / far : sin(2.399963 * (double)p);
-}
-
+/* Moves a piece away from the middle until it is free. A piece in the middle gets a direction from its number, by
+ * golden angles. */
 static void place(struct layout *l, size_t p) {
   struct piece *piece = &l->piece[p];
-  double x, y, step = 0;
-  direction_of(l, p, &x, &y);
+  const double dx = piece->x - l->x, dy = piece->y - l->y, far = hypot(dx, dy);
+  const double x = far > 1e-6 * l->cell ? dx / far : cos(2.399963 * (double)p);
+  const double y = far > 1e-6 * l->cell ? dy / far : sin(2.399963 * (double)p);
+  double step = 0;
   while (!is_free(l, piece, step * x, step * y))
     step += l->cell;
   for (size_t k = 0; k < piece->count; k++) {
@@ -130,7 +120,9 @@ status picture_layout_apart(const struct picture_cloud *cloud, size_t count, str
       if (l.piece[p].count)
         place(&l, p);
   }
-  free_layout(&l);
+  free(l.order);
+  free(l.piece);
+  free(l.taken);
   return code;
 }
 

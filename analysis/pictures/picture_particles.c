@@ -237,11 +237,6 @@ static status leave_out(struct scene *s) {
   return STATUS_OK;
 }
 
-static status choose_frame(struct scene *s) {
-  const status code = choose_view(s);
-  return code ? code : leave_out(s);
-}
-
 /* Chooses a prefix of the unit by the largest value shown, such as GPa. Shares, lengths and masses get none. */
 static void choose_unit(struct scene *s, double largest) {
   static const struct {
@@ -273,13 +268,8 @@ static size_t collect_values(const struct scene *s, bool searched, double *value
   return count;
 }
 
-/* Is it a quantity without a unit whose values are within 0 and 1? */
-static bool is_share(const struct scene *s, double least, double most) {
-  return s->look->unit && strcmp(s->look->unit, "1") == 0 && least >= 0 && most <= 1;
-}
-
-/* Chooses range and ramp for ascending values: without the outermost percent at both ends; shares always from 0 to 1;
- * symmetric about 0 where there are both signs. */
+/* Chooses range and ramp for ascending values: without the outermost percent at both ends; shares (without a unit, and
+ * within 0 and 1) always from 0 to 1; symmetric about 0 where there are both signs. */
 static void choose_range(struct scene *s, const double *sorted, size_t count) {
   static const double nothing[2] = {0, 1};
   if (count == 0) {
@@ -289,7 +279,7 @@ static void choose_range(struct scene *s, const double *sorted, size_t count) {
   s->low = sorted[count / 100];
   s->high = sorted[count - 1 - count / 100];
   s->ramp = PICTURE_RAMP_RISING;
-  if (is_share(s, sorted[0], sorted[count - 1])) {
+  if (s->look->unit && strcmp(s->look->unit, "1") == 0 && sorted[0] >= 0 && sorted[count - 1] <= 1) {
     s->low = 0;
     s->high = 1;
     if (s->look->quantity && strcmp(s->look->quantity, "damage") == 0)
@@ -368,21 +358,17 @@ static void value_colour(cairo_t *cairo, const struct scene *s, double value) {
   picture_canvas_ramp(cairo, s->ramp, fmin(fmax(share, 0), 1));
 }
 
-/* Draws a dark rim that separates a disc from those behind it. */
-static void draw_rim(cairo_t *cairo, const struct picture_layout_disc *d) {
-  cairo_arc(cairo, d->x, d->y, 1.1 * d->radius, 0, 2 * M_PI);
-  cairo_set_source_rgba(cairo, 0.1, 0.1, 0.12, 0.22);
-  cairo_fill(cairo);
-}
-
 static void draw_discs(cairo_t *cairo, const struct scene *s) {
   const bool cut = s->look->view == PICTURE_CUT;
   const double near = s->disc[s->discs - 1].depth, far = s->disc[s->discs / 50].depth;
   for (size_t k = 0; k < s->discs; k++) {
     const struct picture_layout_disc *d = &s->disc[k];
     const double light = cut || !(near > far) ? 0 : fmin(fmax(2 * (d->depth - far) / (near - far) - 1, -1), 1);
-    if (!cut)
-      draw_rim(cairo, d);
+    if (!cut) { /* a dark rim separates the disc from those behind it */
+      cairo_arc(cairo, d->x, d->y, 1.1 * d->radius, 0, 2 * M_PI);
+      cairo_set_source_rgba(cairo, 0.1, 0.1, 0.12, 0.22);
+      cairo_fill(cairo);
+    }
     if (s->cloud->value)
       value_colour(cairo, s, s->cloud->value[d->id]);
     else
@@ -420,14 +406,6 @@ static void legend_line(cairo_t *cairo, double x, double y, double font, const c
   picture_canvas_text(cairo, x + 1.5 * font, y + 0.85 * font, 0.95 * font, PICTURE_LEFT, false, text);
 }
 
-/* Index of a particle in a fragment's core; n if there is none. */
-static size_t core_particle(const struct picture_cloud *cloud, size_t fragment) {
-  size_t i = 0;
-  while (i < cloud->n && !(cloud->fragment[i] == (int64_t)fragment && cloud->part[i] == PICTURE_CORE))
-    i++;
-  return i;
-}
-
 /* Lists the heaviest fragments and the single particles with their shares of the mass. */
 static void legend(cairo_t *cairo, const struct scene *s, double x, double y, double font) {
   enum { MOST = 8 };
@@ -435,7 +413,10 @@ static void legend(cairo_t *cairo, const struct scene *s, double x, double y, do
   double total, single;
   weigh(s->cloud, &total, &single);
   for (size_t f = 0; f < MOST && f < s->fragments && s->count[f] >= RESOLVED; f++, y += 1.6 * font) {
-    size_t sample = core_particle(s->cloud, f);
+    size_t sample = 0; /* a particle of its core */
+    while (sample < s->cloud->n &&
+           !(s->cloud->fragment[sample] == (int64_t)f && s->cloud->part[sample] == PICTURE_CORE))
+      sample++;
     if (sample == s->cloud->n)
       continue;
     fragment_colour(cairo, s, sample, 0);
@@ -501,30 +482,18 @@ static status draw(const char *path, double width, struct scene *s, struct error
 
 /* Chooses the discs, frame and colours. STATUS_MEMORY. */
 static status choose(struct scene *s) {
-  status code = gather(s);
-  if (code)
-    return code;
+  TRY(gather(s));
   s->axis = s->look->axis < 0 ? 1 : s->look->axis;
   choose_discs(s);
   if (s->look->view == PICTURE_OUTSIDE)
-    code = turn_body(s);
+    TRY(turn_body(s));
   if (s->look->view == PICTURE_APART && s->discs > 0)
-    code = picture_layout_apart(s->cloud, s->discs, s->disc);
-  if (code || s->discs == 0)
-    return code;
-  code = choose_frame(s);
-  return code ? code : choose_colours(s);
-}
-
-/* Chooses and draws. Sets *error itself unless the code is STATUS_MEMORY. */
-static status compose(const char *path, double width, struct scene *s, struct error *error) {
-  TRY(s->cloud->n ? choose(s) : STATUS_OK);
-  if (s->discs > 0)
-    return draw(path, width, s, error);
-  if (s->look->view == PICTURE_CUT)
-    return status_fail(error, STATUS_USAGE, "%s: the plane of the cut meets no particle: choose another --at or --axis",
-                       path);
-  return status_fail(error, STATUS_USAGE, "%s: there is no particle to draw", path);
+    TRY(picture_layout_apart(s->cloud, s->discs, s->disc));
+  if (s->discs == 0)
+    return STATUS_OK;
+  TRY(choose_view(s));
+  TRY(leave_out(s));
+  return choose_colours(s);
 }
 
 status picture_particles(const char *path, double width, const struct picture_cloud *cloud,
@@ -536,7 +505,15 @@ status picture_particles(const char *path, double width, const struct picture_cl
       return status_fail(error, STATUS_USAGE, "%s: fragment numbers beyond the number of particles", path);
 
   struct scene s = {.cloud = cloud, .look = look};
-  status code = compose(path, width, &s, error);
+  status code = cloud->n ? choose(&s) : STATUS_OK;
+  if (code == STATUS_OK && s.discs > 0)
+    code = draw(path, width, &s, error);
+  else if (code == STATUS_OK)
+    code = status_fail(error, STATUS_USAGE,
+                       look->view == PICTURE_CUT
+                           ? "%s: the plane of the cut meets no particle: choose another --at or --axis"
+                           : "%s: there is no particle to draw",
+                       path);
   if (code == STATUS_MEMORY)
     status_fail(error, code, "%s: no memory for the picture", path);
   clear(&s);

@@ -208,20 +208,12 @@ static bool text_of(struct file *f, const char *at, const char *name, char *text
   return good;
 }
 
-static bool number(struct file *f, const char *at, const char *name, H5T_class_t class, hid_t type, void *value) {
-  hid_t id = open_attribute(f, at, name, class, 8);
+static bool number_of(struct file *f, const struct question *q, H5T_class_t class, hid_t type, void *value) {
+  hid_t id = open_attribute(f, q->at, q->name, class, 8);
   bool good = id >= 0 && H5Aread(id, type, value) >= 0;
   if (id >= 0)
     H5Aclose(id);
   return good;
-}
-
-static bool real_of(struct file *f, const char *at, const char *name, double *value) {
-  return number(f, at, name, H5T_FLOAT, H5T_NATIVE_DOUBLE, value);
-}
-
-static bool integer_of(struct file *f, const char *at, const char *name, long long *value) {
-  return number(f, at, name, H5T_INTEGER, H5T_NATIVE_LLONG, value);
 }
 
 /* ---- the child: answers ---- */
@@ -236,8 +228,8 @@ static bool reply(int line, struct file *file, const struct question *q) {
     a.good = values;
     break;
   case TEXT: a.good = text_of(file, q->at, q->name, a.text, sizeof a.text); break;
-  case REAL: a.good = real_of(file, q->at, q->name, &a.real); break;
-  case INTEGER: a.good = integer_of(file, q->at, q->name, &a.integer); break;
+  case REAL: a.good = number_of(file, q, H5T_FLOAT, H5T_NATIVE_DOUBLE, &a.real); break;
+  case INTEGER: a.good = number_of(file, q, H5T_INTEGER, H5T_NATIVE_LLONG, &a.integer); break;
   }
   bool sent = put(line, &a, sizeof a) && (!values || put(line, values, size_of_rows(a.rows, q->width)));
   free(values);

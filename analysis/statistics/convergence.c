@@ -18,19 +18,15 @@ enum { RESAMPLES = 1000, FEWEST_SEEDS = 3, FEWEST_PAIRS = 4 };
 /* Share of the resamples that must agree before an order is reported, or denied. */
 #define SURE 0.95
 
-static struct convergence_difference paired_bias(size_t n, const double *level, const double *reference,
-                                                 double confidence) {
-  struct sample_moments moments = {0};
-  for (size_t i = 0; i < n; i++)
-    sample_add(&moments, level[i] - reference[i]); /* NaN when either value is missing */
-  const struct sample_summary summary = sample_summarise_moments(&moments, confidence);
-  return (struct convergence_difference){summary.n, summary.mean, summary.half_width};
-}
-
 struct convergence_difference convergence_bias(size_t n, const double *level, const double *reference, bool paired,
                                                double confidence) {
-  if (paired)
-    return paired_bias(n, level, reference, confidence);
+  if (paired) {
+    struct sample_moments moments = {0};
+    for (size_t i = 0; i < n; i++)
+      sample_add(&moments, level[i] - reference[i]); /* NaN when either value is missing */
+    const struct sample_summary summary = sample_summarise_moments(&moments, confidence);
+    return (struct convergence_difference){summary.n, summary.mean, summary.half_width};
+  }
   const struct sample_summary a = sample_summarise(n, level, confidence);
   const struct sample_summary b = sample_summarise(n, reference, confidence);
   struct convergence_difference difference = {a.n < b.n ? a.n : b.n, a.mean - b.mean, NOTHING};
@@ -166,18 +162,6 @@ static void middle(size_t n, double *values, double confidence, double *low, dou
   *high = gsl_stats_quantile_from_sorted_data(values, 1, n, 0.5 + confidence / 2);
 }
 
-/* Solves for order and limit of many draws. Returns the number of draws that have both. */
-static size_t resample(const double h[3], size_t n, const double *const values[3], const struct sample_summary mean[3],
-                       bool paired, double *orders, double *limits) {
-  size_t count = 0;
-  for (uint64_t draw = 0; draw < RESAMPLES; draw++) {
-    double f[3];
-    draw_means(draw, n, values, mean, paired, f);
-    count += convergence_solve(h, f, &orders[count], &limits[count]);
-  }
-  return count;
-}
-
 /* Paired levels use only the seeds that all three levels have. */
 static size_t complete_seeds(size_t n, const double *const values[3], double *kept[3]) {
   size_t m = 0;
@@ -204,10 +188,10 @@ static enum convergence_verdict judge(const struct convergence_limit *found, siz
 struct convergence_limit convergence_extrapolate(const double h[3], size_t n, const double *const values[3],
                                                  bool paired, double confidence) {
   struct convergence_limit found = {CONVERGENCE_TOO_FEW, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING};
-  double *kept[3] = {0}, *orders = malloc(2 * RESAMPLES * sizeof *orders), f[3];
+  double *kept[3] = {0}, orders[RESAMPLES], limits[RESAMPLES], f[3], drawn[3];
   double *room = malloc(3 * (n ? n : 1) * sizeof *room);
-  if (!orders || !room)
-    goto cleanup;
+  if (!room)
+    return found;
   for (int level = 0; level < 3; level++) {
     kept[level] = room + (size_t)level * n;
     memcpy(kept[level], values[level], n * sizeof **kept);
@@ -223,8 +207,11 @@ struct convergence_limit convergence_extrapolate(const double h[3], size_t n, co
       goto cleanup;
   }
 
-  double *limits = orders + RESAMPLES;
-  const size_t count = resample(h, n, sample, mean, paired, orders, limits);
+  size_t count = 0; /* draws that have both order and limit */
+  for (uint64_t draw = 0; draw < RESAMPLES; draw++) {
+    draw_means(draw, n, sample, mean, paired, drawn);
+    count += convergence_solve(h, drawn, &orders[count], &limits[count]);
+  }
   found.shrinking = (double)count / RESAMPLES;
   found.verdict = judge(&found, n, sample, paired, confidence);
   if (found.verdict == CONVERGENCE_ORDER && convergence_solve(h, f, &found.order, &found.limit)) {
@@ -233,7 +220,6 @@ struct convergence_limit convergence_extrapolate(const double h[3], size_t n, co
   }
 cleanup:
   free(room);
-  free(orders);
   return found;
 }
 

@@ -27,21 +27,15 @@ static double cut_variance(double y) {
   return 1 / (y * y) - 1 / (s * s);
 }
 
-/* Mean and variance of a group's statistic at y. Without an upper bound, S G(S y) -> 1/y and S^2 V(S y) -> 1/y^2. */
-static void expected(double y, double span, double *mean, double *variance) {
-  bool open = isinf(span);
-  *mean = open ? 1 / y : span * cut_mean(span * y);
-  *variance = open ? 1 / (y * y) : span * span * cut_variance(span * y);
-}
-
 static double slope_of_likelihood(size_t count, const struct power_law_group *groups, double y, double *information) {
   double slope = 0;
   *information = 0;
   for (size_t g = 0; g < count; g++) {
     if (!(groups[g].weight > 0))
       continue;
-    double mean, variance;
-    expected(y, groups[g].span, &mean, &variance);
+    /* Mean and variance of u at y. Without an upper bound, L G(L y) -> 1/y and L^2 V(L y) -> 1/y^2. */
+    const double span = groups[g].span, mean = isinf(span) ? 1 / y : span * cut_mean(span * y);
+    const double variance = isinf(span) ? 1 / (y * y) : span * span * cut_variance(span * y);
     slope += groups[g].weight * (mean - groups[g].mean);
     *information += groups[g].weight * variance;
   }
@@ -137,13 +131,6 @@ struct power_law power_law_fit(size_t count, const struct power_law_group *group
 
 /* ---- Without a part of the groups ---- */
 
-static double fit_without(size_t count, const struct power_law_group *groups, size_t begin, size_t end,
-                          struct power_law_group *rest) {
-  memcpy(rest, groups, begin * sizeof *rest);
-  memcpy(rest + begin, groups + end, (count - end) * sizeof *rest);
-  return power_law_fit(count - (end - begin), rest).beta;
-}
-
 enum { NODES = 8 };
 
 /* The y at which x falls through 0, from NODES pairs, by inverse interpolation with Neville's scheme. NaN when x does
@@ -206,8 +193,12 @@ bool power_law_leave_out(size_t count, const struct power_law_group *groups, siz
     for (int i = 0; i < NODES; i++)
       x[i] = all[i] - slopes[p][i];
     betas[p] = 1 + zero_between(x, nodes);
-    if (isnan(betas[p]))
-      betas[p] = fit_without(count, groups, p * each, p + 1 < parts ? (p + 1) * each : count, rest);
+    if (isnan(betas[p])) {
+      const size_t begin = p * each, end = p + 1 < parts ? begin + each : count;
+      memcpy(rest, groups, begin * sizeof *rest);
+      memcpy(rest + begin, groups + end, (count - end) * sizeof *rest);
+      betas[p] = power_law_fit(count - (end - begin), rest).beta;
+    }
   }
   free(rest);
   free(slopes);

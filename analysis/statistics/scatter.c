@@ -268,41 +268,9 @@ static size_t count_levels(const struct scatter_table *t, size_t axis) {
   return levels;
 }
 
-/* Does every combination of the values of the axes occur exactly once? Only then the means over the others isolate one
- * axis. */
-static bool is_grid(const struct scatter_table *t) {
-  double points = 1;
-  for (size_t a = 0; a < t->axes; a++)
-    points *= (double)count_levels(t, a);
-  return points == (double)t->points;
-}
-
 static struct scatter_part part_of(struct split *s, const uint32_t *all) {
   const struct sample_interval share = sample_jackknife(s->table->runs, 0.95, share_of, s);
   return (struct scatter_part){variance_of(s, s->table->runs, all), share.estimate, share.half_width};
-}
-
-/* Sets the part of each axis alone. */
-static void fill_axes(struct split *s, const uint32_t *all, struct scatter_part *parts) {
-  const bool grid = is_grid(s->table);
-  s->part = SCATTER_INPUTS;
-  for (size_t a = 0; a < s->table->axes; a++) {
-    parts[a] = (struct scatter_part){NAN, NAN, NAN};
-    s->axis = a;
-    s->levels = count_levels(s->table, a);
-    if (grid)
-      parts[a] = part_of(s, all);
-  }
-}
-
-/* Sets the parts of all inputs and of the seeds; the whole is their sum. */
-static void fill_parts(struct split *s, const uint32_t *all, struct scatter_part parts[SCATTER_PARTS]) {
-  s->axis = s->table->axes;
-  s->levels = s->table->points;
-  for (s->part = 0; s->part < SCATTER_PARTS; s->part++)
-    if (s->part != SCATTER_WHOLE)
-      parts[s->part] = part_of(s, all);
-  parts[SCATTER_WHOLE] = (struct scatter_part){parts[SCATTER_INPUTS].variance + parts[SCATTER_SEEDS].variance, 1, NAN};
 }
 
 status scatter_split(const struct scatter_table *t, struct scatter_part *parts, struct error *error) {
@@ -320,8 +288,22 @@ status scatter_split(const struct scatter_table *t, struct scatter_part *parts, 
   for (size_t r = 0; r < t->runs; r++)
     all[r] = (uint32_t)r;
   struct split s = {.table = t, .sum = room, .product = room + 2 * t->points, .weight = room + 3 * t->points};
-  fill_axes(&s, all, parts);
-  fill_parts(&s, all, parts + t->axes);
+  double combinations = 1;
+  for (size_t a = 0; a < t->axes; a++)
+    combinations *= (double)count_levels(t, a);
+  s.part = SCATTER_INPUTS;
+  for (; s.axis < t->axes; s.axis++) { /* each axis alone, if every combination of their values occurs exactly once */
+    s.levels = count_levels(t, s.axis);
+    parts[s.axis] = (struct scatter_part){NAN, NAN, NAN};
+    if (combinations == (double)t->points)
+      parts[s.axis] = part_of(&s, all);
+  }
+  parts += t->axes; /* all inputs, and the seeds; the whole is their sum */
+  s.levels = t->points;
+  for (s.part = 0; s.part < SCATTER_PARTS; s.part++)
+    if (s.part != SCATTER_WHOLE)
+      parts[s.part] = part_of(&s, all);
+  parts[SCATTER_WHOLE] = (struct scatter_part){parts[SCATTER_INPUTS].variance + parts[SCATTER_SEEDS].variance, 1, NAN};
   free(room);
   free(all);
   return STATUS_OK;
@@ -410,18 +392,17 @@ static double search(struct hull *h, size_t n) {
 double scatter_dip(size_t n, const double *values) {
   if (n == 0)
     return NAN;
-  struct hull h = {values,
-                   malloc(n * sizeof *h.knot),
-                   malloc(n * sizeof *h.low),
-                   malloc(n * sizeof *h.high),
-                   calloc(n, sizeof *h.below),
-                   calloc(n, sizeof *h.above)};
-  const double dip = h.knot && h.low && h.high && h.below && h.above ? search(&h, n) / (2 * (double)n) : (double)NAN;
-  free(h.knot);
-  free(h.low);
-  free(h.high);
-  free(h.below);
-  free(h.above);
+  size_t *knots = calloc(3 * n, sizeof *knots);
+  double *lines = malloc(2 * n * sizeof *lines), dip = NAN;
+  struct hull h = {.x = values, .knot = knots, .low = lines};
+  if (knots && lines) {
+    h.below = knots + n;
+    h.above = knots + 2 * n;
+    h.high = lines + n;
+    dip = search(&h, n) / (2 * (double)n);
+  }
+  free(knots);
+  free(lines);
   return dip;
 }
 
