@@ -122,8 +122,6 @@ void posterior_place(const struct posterior_model *model, const double *z, doubl
 /* Computes the means of the outputs (outputs) and their covariance about the data (outputs x outputs). The covariance
  * is a sum: scatter of the specimens, error of the measurement, error of the resolution, error of the surface. */
 void posterior_expect(const struct posterior_model *model, const double *z, double *mean, double *covariance);
-/* Logarithm of the normal density of the data. */
-double posterior_likelihood(const struct posterior_model *model, const double *z);
 
 /* STATUS_CONTENT: too many inputs or outputs. STATUS_MEMORY. */
 status posterior_make(const struct posterior_model *model, uint64_t seed, struct posterior *out, struct error *error);

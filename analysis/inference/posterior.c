@@ -49,7 +49,8 @@ void posterior_expect(const struct posterior_model *model, const double *z, doub
     }
 }
 
-double posterior_likelihood(const struct posterior_model *model, const double *z) {
+/* Logarithm of the normal density of the data. */
+static double likelihood(const struct posterior_model *model, const double *z) {
   const size_t d = model->outputs;
   double mean[INFERENCE_OUTPUTS], half[INFERENCE_OUTPUTS], c[INFERENCE_OUTPUTS * INFERENCE_OUTPUTS];
   posterior_expect(model, z, mean, c);
@@ -76,7 +77,7 @@ static double fill_grid(const struct posterior_model *model, const struct box *b
       const double share = ((double)(rest % side) + 0.5) / (double)side;
       out->z[n * model->inputs + i] = gsl_cdf_ugaussian_Pinv(box->low[i] + share * (box->high[i] - box->low[i]));
     }
-    out->weight[n] = posterior_likelihood(model, out->z + n * model->inputs);
+    out->weight[n] = likelihood(model, out->z + n * model->inputs);
     most = fmax(most, out->weight[n]);
   }
   return most;
@@ -149,7 +150,7 @@ enum { SAMPLE_NODES = 4000, WALKERS = 80, SWEEPS = 200, KEPT = SAMPLE_NODES / WA
 static const double STRETCH = 2; /* a, as in the paper */
 
 static double density(const struct posterior_model *model, const double *z) {
-  double sum = posterior_likelihood(model, z);
+  double sum = likelihood(model, z);
   for (size_t i = 0; i < model->inputs; i++)
     sum -= z[i] * z[i] / 2;
   return sum;

@@ -6,39 +6,15 @@
 #include <string.h>
 
 #include "analysis/inference/covariance.h"
+#include "analysis/statistics/sample.h"
 
-/* Number, mean and sum of squared deviations of a point's runs. */
-struct moments {
-  size_t n;
-  double mean, squares;
-};
-
-static struct moments moments_of(const struct seed_scatter_runs *runs, size_t point) {
+static struct sample_moments moments_of(const struct seed_scatter_runs *runs, size_t point) {
   const double *v = runs->values + point * runs->replicates;
-  struct moments m = {0};
-  for (size_t r = 0; r < runs->replicates; r++) {
-    if (!isfinite(v[r]))
-      continue;
-    const double step = v[r] - m.mean;
-    m.n++;
-    m.mean += step / (double)m.n;
-    m.squares += step * (v[r] - m.mean);
-  }
+  struct sample_moments m = {0};
+  for (size_t r = 0; r < runs->replicates; r++)
+    if (isfinite(v[r]))
+      sample_add(&m, v[r]);
   return m;
-}
-
-/* Mean variance over all points, and its degrees of freedom. */
-static double pooled_variance(const struct seed_scatter_runs *runs, size_t *freedom) {
-  double squares = 0;
-  *freedom = 0;
-  for (size_t i = 0; i < runs->points; i++) {
-    const struct moments m = moments_of(runs, i);
-    if (m.n < 2)
-      continue;
-    squares += m.squares;
-    *freedom += m.n - 1;
-  }
-  return *freedom ? squares / (double)*freedom : 0;
 }
 
 /* Weighted least squares of ln(s^2) - its bias on 1 and x, with a prior on the slopes. */
@@ -47,7 +23,7 @@ static void fit_line(const struct seed_scatter_runs *runs, double pooled, struct
   const size_t n = runs->inputs + 1;
   double normal[MOST * MOST] = {0}, right[MOST] = {0}, row[MOST];
   for (size_t i = 0; i < runs->points; i++) {
-    const struct moments m = moments_of(runs, i);
+    const struct sample_moments m = moments_of(runs, i);
     if (m.n < 2)
       continue;
     const double half = (double)(m.n - 1) / 2;
@@ -99,7 +75,7 @@ static double shared_correlation(const struct seed_scatter_runs *runs, const str
 static void find_shape(const struct seed_scatter_runs *runs, struct seed_scatter *out) {
   double second = 0, third = 0, fourth = 0, count = 0;
   for (size_t i = 0; i < runs->points; i++) {
-    const struct moments m = moments_of(runs, i);
+    const struct sample_moments m = moments_of(runs, i);
     const double *v = runs->values + i * runs->replicates;
     for (size_t r = 0; m.n > 1 && r < runs->replicates; r++) {
       const double e = isfinite(v[r]) ? (v[r] - m.mean) / sqrt(seed_scatter_variance(out, runs->x + i * runs->inputs))
@@ -120,11 +96,19 @@ status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, 
   if (runs->inputs > INFERENCE_INPUTS)
     return status_fail(error, STATUS_CONTENT, "%zu inputs are too many for a fit: at most %d", runs->inputs,
                        INFERENCE_INPUTS);
-  const double pooled = pooled_variance(runs, &out->freedom);
+  double pooled = 0; /* mean variance over all points */
+  for (size_t i = 0; i < runs->points; i++) {
+    const struct sample_moments m = moments_of(runs, i);
+    if (m.n < 2)
+      continue;
+    pooled += m.squares;
+    out->freedom += m.n - 1;
+  }
   if (out->freedom == 0)
     return status_fail(error, STATUS_CONTENT,
                        "no point has two runs with a value of this output, so its scatter over seeds is not known: "
                        "give more seeds (seeds.per_point), or another quantity");
+  pooled /= (double)out->freedom;
   out->constant = pooled > 0 ? log(pooled) : -700; /* no seed changes this output */
   if (pooled > 0)
     fit_line(runs, pooled, out);
@@ -165,7 +149,7 @@ void seed_scatter_of_means(const struct seed_scatter_runs *runs, const struct se
 double seed_scatter_correlation(const struct seed_scatter_runs *a, const struct seed_scatter_runs *b) {
   double cross = 0, first = 0, second = 0;
   for (size_t i = 0; i < a->points; i++) {
-    const struct moments m = moments_of(a, i), n = moments_of(b, i);
+    const struct sample_moments m = moments_of(a, i), n = moments_of(b, i);
     for (size_t r = 0; r < a->replicates && m.n > 1 && n.n > 1; r++) {
       const double u = a->values[i * a->replicates + r] - m.mean, v = b->values[i * b->replicates + r] - n.mean;
       if (!isfinite(u) || !isfinite(v))
