@@ -350,10 +350,6 @@ double picture_spectrum_fit(const struct picture_fit *fit, const struct pooled_f
   return form->size.density > 0 ? density * (form->size.dimensions == 2 ? 2 : 3) * mass / place : density;
 }
 
-static double middle(const struct pooled_form *form, const struct pooled_bin *bin) {
-  return form->cumulative ? bin->lower : sqrt(bin->lower) * sqrt(bin->upper);
-}
-
 /* Writes a block: the bins of one series. A bar that ends at or below zero has no lower end on a logarithmic axis. */
 static void write_bins(struct chart *chart, const struct pooled_form *form, size_t count, const struct pooled_bin *bins,
                        double complete) {
@@ -365,8 +361,8 @@ static void write_bins(struct chart *chart, const struct pooled_form *form, size
     double low = bin->value - bin->half_width; /* NaN: one run */
     if (low <= 0)
       low = bin->value / 1e3; /* a bar down to the frame's lower edge or beyond */
-    chart_row(chart, 5,
-              (double[]){middle(form, bin), bin->value, low, bin->value + bin->half_width, !(bin->lower < complete)});
+    const double middle = form->cumulative ? bin->lower : sqrt(bin->lower) * sqrt(bin->upper);
+    chart_row(chart, 5, (double[]){middle, bin->value, low, bin->value + bin->half_width, !(bin->lower < complete)});
   }
   chart_row(chart, 5, (double[]){NAN, NAN, NAN, NAN, NAN}); /* a block is never empty */
   chart_block_end(chart);
@@ -386,26 +382,15 @@ static void write_fit(struct chart *chart, const struct pooled_form *form, const
   chart_block_end(chart);
 }
 
-struct ranges {
-  double x[2], y[2];
-};
-
-static void cover(struct ranges *ranges, size_t count, const struct pooled_bin *bins) {
+/* Extends the ranges of both axes to the bins. */
+static void cover(double x[2], double y[2], size_t count, const struct pooled_bin *bins) {
   for (size_t b = 0; b < count; b++) {
     if (!(bins[b].value > 0) || !(bins[b].lower > 0))
       continue;
-    extend(ranges->x, bins[b].lower);
-    extend(ranges->x, bins[b].upper);
-    extend(ranges->y, bins[b].value);
+    extend(x, bins[b].lower);
+    extend(x, bins[b].upper);
+    extend(y, bins[b].value);
   }
-}
-
-static void write_ranges(struct chart *chart, const struct ranges *r) {
-  const double wide = pow(r->x[1] / r->x[0], 0.04), tall = 1.3 * pow(r->y[1] / r->y[0], 0.08);
-  chart_number(chart, "x_low", r->x[0] / wide);
-  chart_number(chart, "x_high", r->x[1] * wide);
-  chart_number(chart, "y_low", r->y[0] / tall);
-  chart_number(chart, "y_high", r->y[1] * tall);
 }
 
 /* Writes the series, then the thin lines, then the fits. */
@@ -442,23 +427,27 @@ static void write_blocks(struct chart *chart, const struct pooled_form *form, si
 status picture_spectrum(const struct picture_page *page, const struct picture_words *words,
                         const struct pooled_form *form, size_t count, const struct picture_series *series,
                         struct error *error) {
-  struct ranges ranges = {{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
+  double x[2] = {none[0], none[1]}, y[2] = {none[0], none[1]};
   const char *labels[LABELS];
   size_t lines = 0;
   if (count < 1 || count > PICTURE_SERIES)
     return status_fail(error, STATUS_USAGE, "%s: one to %d spectra in a picture, not %zu", page->path, PICTURE_SERIES,
                        count);
   for (size_t s = 0; s < count; s++)
-    cover(&ranges, series[s].count, series[s].bins);
-  if (!(ranges.x[1] > ranges.x[0]))
+    cover(x, y, series[s].count, series[s].bins);
+  if (!(x[1] > x[0]))
     return status_fail(error, STATUS_USAGE, "%s: there is no fragment to draw", page->path);
   for (size_t s = 0; s < count; s++) { /* thin lines often have lower densities than the mean of many runs */
     for (size_t i = 0; i < series[s].thin_count; i++)
-      cover(&ranges, series[s].thin[i].count, series[s].thin[i].bins);
+      cover(x, y, series[s].thin[i].count, series[s].thin[i].bins);
   }
   struct chart *chart = chart_new("spectrum", page, words);
-  write_ranges(chart, &ranges);
-  write_blocks(chart, form, count, series, ranges.x[1]);
+  const double wide = pow(x[1] / x[0], 0.04), tall = 1.3 * pow(y[1] / y[0], 0.08);
+  chart_number(chart, "x_low", x[0] / wide);
+  chart_number(chart, "x_high", x[1] * wide);
+  chart_number(chart, "y_low", y[0] / tall);
+  chart_number(chart, "y_high", y[1] * tall);
+  write_blocks(chart, form, count, series, x[1]);
   for (size_t s = 0; s < count; s++)
     labels[lines++] = series[s].label;
   for (size_t s = 0; s < count; s++)
@@ -511,25 +500,9 @@ static void draw_legend(cairo_t *cairo, double width, double y) {
   }
 }
 
-/* Where the tiles begin: right of the widest label. */
-static double left_of_tiles(cairo_t *cairo, size_t count, const struct picture_margin *row) {
-  double widest = 0;
-  for (size_t k = 0; k < count; k++)
-    widest = fmax(widest, picture_canvas_text_width(cairo, font, false, row[k].label));
-  return margin + indent + widest + font;
-}
-
-static void draw_row(cairo_t *cairo, double left, double width, double y, const struct picture_margin *row) {
-  cairo_set_source_rgb(cairo, 0, 0, 0);
-  picture_canvas_text(cairo, margin + indent, y + row_height - 7, font, PICTURE_LEFT, false, row->label);
-  const double each = (width - left - margin) / (double)row->count;
-  for (size_t t = 0; t < row->count; t++)
-    draw_tile(cairo, left + each * (double)t, y, each - 2, &row->tile[t]);
-}
-
 status picture_margins(const char *path, double width, const char *title, size_t count,
                        const struct picture_margin *row, struct error *error) {
-  double height = 2 * margin + 2 * font;
+  double height = 2 * margin + 2 * font, widest = 0, y = margin + 2 * font;
   if (count == 0)
     return status_fail(error, STATUS_USAGE, "there is nothing to draw: no input was varied");
   for (size_t k = 0; k < count; k++)
@@ -539,15 +512,20 @@ status picture_margins(const char *path, double width, const char *title, size_t
   cairo_set_source_rgb(canvas.cairo, 0, 0, 0);
   picture_canvas_text(canvas.cairo, margin, margin + font, 1.2 * font, PICTURE_LEFT, true, title);
   draw_legend(canvas.cairo, width, margin + font);
-  const double left = left_of_tiles(canvas.cairo, count, row);
-  double y = margin + 2 * font;
+  for (size_t k = 0; k < count; k++)
+    widest = fmax(widest, picture_canvas_text_width(canvas.cairo, font, false, row[k].label));
+  const double left = margin + indent + widest + font; /* the tiles begin right of the widest label */
   for (size_t k = 0; k < count; k++) {
+    const double each = (width - left - margin) / (double)row[k].count;
     if (row[k].heading) {
       cairo_set_source_rgb(canvas.cairo, 0, 0, 0);
       picture_canvas_text(canvas.cairo, margin, y + head_height - 8, font, PICTURE_LEFT, true, row[k].heading);
       y += head_height;
     }
-    draw_row(canvas.cairo, left, width, y, &row[k]);
+    cairo_set_source_rgb(canvas.cairo, 0, 0, 0);
+    picture_canvas_text(canvas.cairo, margin + indent, y + row_height - 7, font, PICTURE_LEFT, false, row[k].label);
+    for (size_t t = 0; t < row[k].count; t++)
+      draw_tile(canvas.cairo, left + each * (double)t, y, each - 2, &row[k].tile[t]);
     y += row_height;
   }
   return picture_canvas_close(&canvas, STATUS_OK, error);

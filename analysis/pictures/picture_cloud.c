@@ -114,10 +114,8 @@ status picture_cloud_read_column(const char *path, const struct picture_cloud *c
                                  char unit[32], struct error *error) {
   *values = NULL;
   struct snapshot_read *file;
-  status code = snapshot_read_open(path, &file, error);
-  if (code)
-    return code;
-
+  TRY(snapshot_read_open(path, &file, error));
+  status code = STATUS_OK;
   char at[96];
   size_t rows = 0;
   snprintf(at, sizeof at, COLUMN "%.40s", name);
@@ -137,10 +135,8 @@ status picture_cloud_read_axis(const char *path, const char *name, double **valu
   *values = NULL;
   *rows = 0;
   struct snapshot_read *file;
-  status code = snapshot_read_open(path, &file, error);
-  if (code)
-    return code;
-
+  TRY(snapshot_read_open(path, &file, error));
+  status code = STATUS_OK;
   char at[96];
   snprintf(at, sizeof at, "axis/%.40s", name);
   bool kept = snapshot_read_has(file, "axis");
