@@ -1,4 +1,4 @@
-/* Exponents of a point from all its runs, with the jackknife over runs. */
+/* Exponents of a point from all its runs, with the jackknife over runs; pooled spectra; the test of a power law. */
 #include "analysis/statistics/pooled.h"
 
 #include <math.h>

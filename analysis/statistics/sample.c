@@ -1,4 +1,4 @@
-/* Means, scatters, intervals, the jackknife and the stopping rule. */
+/* Means, scatters, intervals, the jackknife, the stopping rule, and differences of means. */
 #include "analysis/statistics/sample.h"
 
 #include <gsl/gsl_cdf.h>

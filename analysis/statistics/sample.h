@@ -62,9 +62,8 @@ struct difference_value {
 };
 
 struct difference {
-  size_t n[2]; /* values of each side */
-  size_t
-      pairs; /* pairs of runs with one seed that the interval is computed from; 0: the samples count as independent */
+  size_t n[2];  /* values of each side */
+  size_t pairs; /* pairs of runs with one seed that the interval is of; 0: the samples count as independent */
   double mean[2], difference; /* of the pairs, or of all values; second minus first */
   double half_width;          /* of the interval of the difference; NaN: too few values */
 };

@@ -1,4 +1,4 @@
-/* Moments, quantiles, modes and a histogram of a sample. */
+/* Moments, quantiles, modes and a histogram of a sample; the split of a variance; the dip. */
 #include "analysis/statistics/scatter.h"
 
 #include <gsl/gsl_cdf.h>
@@ -315,11 +315,11 @@ status scatter_split(const struct scatter_table *t, struct scatter_part *parts, 
  * through points (value j, j), its least concave majorant through points (value j, j + 1). */
 struct hull {
   const double *x;
-  size_t *knot; /* work space of n */
-  double *low;  /* for each value: the convex minorant on the current interval */
-  double *high; /* the concave majorant */
-  size_t *below,
-      *above; /* for each value: the minorant's knot at it or to its left, the majorant's knot at it or to its right */
+  size_t *knot;  /* work space of n */
+  double *low;   /* for each value: the convex minorant on the current interval */
+  double *high;  /* the concave majorant */
+  size_t *below; /* for each value: the minorant's knot at it or to its left */
+  size_t *above; /* the majorant's knot at it or to its right */
 };
 
 /* Finds the knots of the minorant (sign 1) or the majorant (sign -1) between the values `from` and `to`; returns their

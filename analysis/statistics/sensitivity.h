@@ -32,9 +32,9 @@ status sensitivity_sobol(const struct sensitivity_table *table, struct sensitivi
 
 struct sensitivity_effect {             /* in units of y for the whole range of an input, as quantile 0 to 1 */
   struct sample_interval mean_absolute; /* mu* (Campolongo et al. 2007); its interval over trajectories */
-  double mean,
-      deviation; /* mu, and sigma: large compared with mu* if the input is nonlinear or interacts with others */
-  double noise;  /* mu* caused by seeds alone; NaN for one seed */
+  double mean;                          /* mu */
+  double deviation; /* sigma: large compared with mu* if the input is nonlinear or interacts with others */
+  double noise;     /* mu* caused by seeds alone; NaN for one seed */
 };
 /* step: signed change of the quantile at each step, step[block * inputs + i]; order as above. */
 status sensitivity_morris(const struct sensitivity_table *table, const size_t *order, const double *step,
