@@ -191,15 +191,9 @@ INLINE vec TYPED(artificial_stress_stress_added)(const struct sph_pair_constants
 
 #endif
 
-#ifdef SPH_MODULE_INPUT_ROWS
-INPUT_REAL(method.artificial_stress, artificial_stress.epsilon, "1", 0, 0, 1,
-           .doc = "Monaghan's epsilon against clumping in tension, for bodies that do not crack. 0: it is absent.",
-           .source = "Monaghan 2000; Gray, Monaghan & Swift 2001"),
-#endif
-
 #ifdef SPH_MODULE_DESCRIPTORS
 
-    static bool artificial_stress_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+static bool artificial_stress_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)body, (void)inputs;
   return inputs->artificial_stress.epsilon > 0;
 }
@@ -214,4 +208,10 @@ static const struct sph_module artificial_stress_module = {
     .cost = 70,
 };
 
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_REAL(method.artificial_stress, artificial_stress.epsilon, "1", 0, 0, 1,
+           .doc = "Monaghan's epsilon against clumping in tension, for bodies that do not crack. 0: it is absent.",
+           .source = "Monaghan 2000; Gray, Monaghan & Swift 2001"),
 #endif

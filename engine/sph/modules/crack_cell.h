@@ -24,18 +24,10 @@ struct sph_crack_cell_inputs {
 COLUMN(crack_stress[5]) /* Pa, what opens the flaws: means over the cell of the particle */
 COLUMN(crack_pressure)  /* Pa, likewise */
 
-#ifdef SPH_MODULE_INPUT_ROWS
-INPUT_REAL(fracture.cell, crack_cell.width, "m", 0, 0, 1e9, .absent = "0", .when = "target.fracture=auto|on",
-           .doc = "Width of the cells that crack as one: their particles share flaws, mean stress and damage. Strength "
-                  "then depends on this width and not on the number of particles, where a cell holds several "
-                  "particles. 0: each particle cracks by itself, as printed.",
-           .source = "our choice; BA95 for 0"),
-#endif
-
 #ifdef SPH_MODULE_DESCRIPTORS
 
-    /* Particles are named by their number within their body, which sorting does not change. */
-    struct crack_cells {
+/* Particles are named by their number within their body, which sorting does not change. */
+struct crack_cells {
   size_t count, particles;
   size_t *first;    /* cell k has the particles member[first[k]] ... member[first[k + 1] - 1] */
   uint32_t *member; /* by ascending number */
@@ -158,4 +150,12 @@ static const struct sph_module crack_cell_module = {
     .fill = crack_cell_fill,
 };
 
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_REAL(fracture.cell, crack_cell.width, "m", 0, 0, 1e9, .absent = "0", .when = "target.fracture=auto|on",
+           .doc = "Width of the cells that crack as one: their particles share flaws, mean stress and damage. Strength "
+                  "then depends on this width and not on the number of particles, where a cell holds several "
+                  "particles. 0: each particle cracks by itself, as printed.",
+           .source = "our choice; BA95 for 0"),
 #endif

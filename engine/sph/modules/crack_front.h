@@ -191,23 +191,9 @@ static const sph_hook crack_front_hooks[SPH_STAGES] =
 
 #endif
 
-#ifdef SPH_MODULE_INPUT_ROWS
-INPUT_CHOICE(fracture.front, crack_front.front,
-             FIELD_WORDS_HERE(SPH_CRACK_FRONTS, [SPH_CRACK_FRONT_NONE] = "none", [SPH_CRACK_FRONT_PLANE] = "plane"),
-             .absent = "none", .when = "target.fracture=auto|on",
-             .choice_docs = "it ends at its particle, and each particle breaks by flaws of its own, as printed: "
-                            "strength grows with the number of particles\n"
-                            "it runs on in its plane at c_g",
-             .doc = "Length of a crack that starts at a flaw.", .source = "BA95 for `none`; `plane` is ours"),
-    INPUT_REAL(fracture.front_arrest, crack_front.arrest, "1", 0.5, 0, 1, .when = "fracture.front=plane",
-               .doc = "A crack continues where the tension across its plane is at least this share of the tension that "
-                      "opens its flaw. 0: any tension will do.",
-               .source = "our choice"),
-#endif
-
 #ifdef SPH_MODULE_DESCRIPTORS
 
-    static bool crack_front_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+static bool crack_front_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   return body->flaws != NULL && inputs->crack_front.front == SPH_CRACK_FRONT_PLANE;
 }
 
@@ -302,4 +288,18 @@ static const struct sph_module crack_front_module = {
     .restored = crack_front_restored,
 };
 
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_CHOICE(fracture.front, crack_front.front,
+             FIELD_WORDS_HERE(SPH_CRACK_FRONTS, [SPH_CRACK_FRONT_NONE] = "none", [SPH_CRACK_FRONT_PLANE] = "plane"),
+             .absent = "none", .when = "target.fracture=auto|on",
+             .choice_docs = "it ends at its particle, and each particle breaks by flaws of its own, as printed: "
+                            "strength grows with the number of particles\n"
+                            "it runs on in its plane at c_g",
+             .doc = "Length of a crack that starts at a flaw.", .source = "BA95 for `none`; `plane` is ours"),
+    INPUT_REAL(fracture.front_arrest, crack_front.arrest, "1", 0.5, 0, 1, .when = "fracture.front=plane",
+               .doc = "A crack continues where the tension across its plane is at least this share of the tension that "
+                      "opens its flaw. 0: any tension will do.",
+               .source = "our choice"),
 #endif

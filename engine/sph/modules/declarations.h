@@ -34,7 +34,8 @@
  * Sections, each behind `#ifdef`:
  *   SPH_MODULE_STRUCTS         structs of inputs, values of a material and results (structs.h)
  *   SPH_MODULE_INPUT_ROWS, SPH_MODULE_MATERIAL_ROWS, SPH_MODULE_RESULT_ROWS
- *                              the rows of their members (scene/inputs.c, material/material.c, observe/results.c)
+ *                              the rows of their members (scene/inputs.c, material/material.c, observe/results.c; they
+ *                              come last in the file: clang-format takes what follows for a part of them
  *   SPH_MODULE_LOOPS           loops over particles, and NAME_hooks, the table of them (ranges.h)
  *   SPH_PAIR_TERM              functions of a term (pairs/pairs_kernels_body.h)
  *   SPH_MODULE_DESCRIPTORS     checks, preparation and NAME_module, the descriptor (modules.c)

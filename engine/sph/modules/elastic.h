@@ -117,18 +117,9 @@ static const sph_hook elastic_hooks[SPH_STAGES] =
 
 #endif
 
-#ifdef SPH_MODULE_MATERIAL_ROWS
-MATERIAL_REAL(bulk_modulus, elastic.bulk_modulus, "Pa", NAN, 1, 1e15, .flags = FIELD_MAY_BE_OFF,
-              .when = "../strength=true",
-              .doc = "K where Young's modulus and the speed of cracks are made from it. off: tillotson.A.",
-              .source = "Benz & Asphaug 1995, eq. 21"),
-    MATERIAL_REAL(shear_modulus, elastic.shear_modulus, "Pa", NAN, 1, 1e15, .flags = FIELD_MAY_BE_OFF,
-                  .when = "../strength=true", .doc = "mu: shear modulus.", .source = "Benz & Asphaug 1995, eq. 6"),
-#endif
-
 #ifdef SPH_MODULE_DESCRIPTORS
 
-    static bool elastic_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+static bool elastic_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;
   return body->strength;
 }
@@ -172,4 +163,13 @@ static const struct sph_module elastic_module = {
     .fill = elastic_fill,
 };
 
+#endif
+
+#ifdef SPH_MODULE_MATERIAL_ROWS
+MATERIAL_REAL(bulk_modulus, elastic.bulk_modulus, "Pa", NAN, 1, 1e15, .flags = FIELD_MAY_BE_OFF,
+              .when = "../strength=true",
+              .doc = "K where Young's modulus and the speed of cracks are made from it. off: tillotson.A.",
+              .source = "Benz & Asphaug 1995, eq. 21"),
+    MATERIAL_REAL(shear_modulus, elastic.shear_modulus, "Pa", NAN, 1, 1e15, .flags = FIELD_MAY_BE_OFF,
+                  .when = "../strength=true", .doc = "mu: shear modulus.", .source = "Benz & Asphaug 1995, eq. 6"),
 #endif

@@ -169,32 +169,9 @@ static const sph_hook fracture_hooks[SPH_STAGES] = {[SPH_CRACK] = fracture_range
 
 #endif
 
-#ifdef SPH_MODULE_INPUT_ROWS
-INPUT_CHOICE(fracture.growth, fracture.growth,
-             FIELD_WORDS_HERE(SPH_GROWTHS, [SPH_GROWTH_CUBE_ROOT] = "cube-root", [SPH_GROWTH_LINEAR] = "linear"),
-             .when = "target.fracture=auto|on",
-             .choice_docs = "n^(1/3) c_g/R_s, which gives Grady and Kipp's rate law\nn c_g/R_s, as printed",
-             .doc = "Rate of D^(1/3) of a particle with n open flaws.", .source = "BA95 section 4.3 for `linear`"),
-    INPUT_CHOICE(
-        fracture.cap, fracture.cap,
-        FIELD_WORDS_HERE(SPH_CAPS, [SPH_CAP_BA95] = "ba95", [SPH_CAP_COUNT] = "count", [SPH_CAP_NONE] = "none"),
-        .when = "target.fracture=auto|on", .choice_docs = "(n/n_tot)^(1/3), as printed\nn/n_tot\n1",
-        .doc = "Largest damage of a particle with n of its n_tot flaws open.", .source = "BA95 eq. 22 for `ba95`"),
-    INPUT_CHOICE(
-        fracture.crack_radius, fracture.crack_radius,
-        FIELD_WORDS_HERE(SPH_CRACK_RADII, [SPH_CRACK_RADIUS_VOLUME] = "volume", [SPH_CRACK_RADIUS_SUPPORT] = "support"),
-        .when = "target.fracture=auto|on",
-        .choice_docs = "radius of the sphere of the particle's volume\n"
-                       "2h: strength falls with R_s, and most of a body is destroyed where `volume` leaves a core",
-        .doc = "R_s: length that a crack has to grow until its particle is broken.",
-        .source = "BA95 eq. 15; the paper gives no value"),
-    INPUT_REAL(fidelity.damage_step, fracture.damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
-               .doc = "Largest change of D^(1/3) in a time step."),
-#endif
-
 #ifdef SPH_MODULE_DESCRIPTORS
 
-    static bool fracture_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+static bool fracture_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;
   return body->flaws != NULL;
 }
@@ -246,4 +223,27 @@ static const struct sph_module fracture_module = {
     .fill = fracture_fill,
 };
 
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_CHOICE(fracture.growth, fracture.growth,
+             FIELD_WORDS_HERE(SPH_GROWTHS, [SPH_GROWTH_CUBE_ROOT] = "cube-root", [SPH_GROWTH_LINEAR] = "linear"),
+             .when = "target.fracture=auto|on",
+             .choice_docs = "n^(1/3) c_g/R_s, which gives Grady and Kipp's rate law\nn c_g/R_s, as printed",
+             .doc = "Rate of D^(1/3) of a particle with n open flaws.", .source = "BA95 section 4.3 for `linear`"),
+    INPUT_CHOICE(
+        fracture.cap, fracture.cap,
+        FIELD_WORDS_HERE(SPH_CAPS, [SPH_CAP_BA95] = "ba95", [SPH_CAP_COUNT] = "count", [SPH_CAP_NONE] = "none"),
+        .when = "target.fracture=auto|on", .choice_docs = "(n/n_tot)^(1/3), as printed\nn/n_tot\n1",
+        .doc = "Largest damage of a particle with n of its n_tot flaws open.", .source = "BA95 eq. 22 for `ba95`"),
+    INPUT_CHOICE(
+        fracture.crack_radius, fracture.crack_radius,
+        FIELD_WORDS_HERE(SPH_CRACK_RADII, [SPH_CRACK_RADIUS_VOLUME] = "volume", [SPH_CRACK_RADIUS_SUPPORT] = "support"),
+        .when = "target.fracture=auto|on",
+        .choice_docs = "radius of the sphere of the particle's volume\n"
+                       "2h: strength falls with R_s, and most of a body is destroyed where `volume` leaves a core",
+        .doc = "R_s: length that a crack has to grow until its particle is broken.",
+        .source = "BA95 eq. 15; the paper gives no value"),
+    INPUT_REAL(fidelity.damage_step, fracture.damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
+               .doc = "Largest change of D^(1/3) in a time step."),
 #endif

@@ -164,17 +164,9 @@ INLINE void TYPED(gradient_correction_sum)(const struct pair_batch *p, const vec
 
 #endif
 
-#ifdef SPH_MODULE_INPUT_ROWS
-INPUT_SWITCH(method.gradient_correction, gradient_correction.on, 0,
-             .doc = "Velocity gradients exact for linear fields, and forces conjugate to them: a body turns without "
-                    "strain and keeps its angular momentum, and its free sides are as stiff as its inside. For ringing "
-                    "and spinning bodies; costs a quarter more time.",
-             .source = "Randles & Libersky 1996; Bonet & Lok 1999; off in BA95"),
-#endif
-
 #ifdef SPH_MODULE_DESCRIPTORS
 
-    static bool gradient_correction_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+static bool gradient_correction_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)body, (void)inputs;
   return inputs->gradient_correction.on;
 }
@@ -199,4 +191,12 @@ static const struct sph_module gradient_correction_module = {
     .cost = 65,
 };
 
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_SWITCH(method.gradient_correction, gradient_correction.on, 0,
+             .doc = "Velocity gradients exact for linear fields, and forces conjugate to them: a body turns without "
+                    "strain and keeps its angular momentum, and its free sides are as stiff as its inside. For ringing "
+                    "and spinning bodies; costs a quarter more time.",
+             .source = "Randles & Libersky 1996; Bonet & Lok 1999; off in BA95"),
 #endif

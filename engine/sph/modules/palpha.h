@@ -268,91 +268,10 @@ static const sph_hook palpha_hooks[SPH_STAGES] = {[SPH_RESPOND] = palpha_range,
 
 #endif
 
-#ifdef SPH_MODULE_INPUT_ROWS
-INPUT_REAL(fidelity.distention_step, palpha.distention_step, "1", 0.01, 1e-6, 1,
-           .when = "target.material.porosity.curve=quadratic|two-power",
-           .doc = "Largest change of a porous particle's distention in a time step.",
-           .source = "Jutzi, Benz & Michel 2008"),
-#endif
-
-#ifdef SPH_MODULE_MATERIAL_ROWS
-#define PORES(member, unit, low, high, ...)                                                                            \
-  MATERIAL_REAL(porosity.member, palpha.member, unit, NAN, low, high, .when = "porosity.curve=quadratic|two-power",    \
-                __VA_ARGS__)
-#define TWO_POWER(member, unit, low, high, flags_, ...)                                                                \
-  MATERIAL_REAL(porosity.member, palpha.member, unit, NAN, low, high, .when = "porosity.curve=two-power",              \
-                .flags = FIELD_REQUIRED | (flags_), __VA_ARGS__)
-    MATERIAL_CHOICE(porosity.curve, palpha.curve,
-                    FIELD_WORDS_HERE(SPH_CRUSHES, [SPH_CRUSH_NONE] = "none", [SPH_CRUSH_QUADRATIC] = "quadratic",
-                                     [SPH_CRUSH_TWO_POWER] = "two-power"),
-                    .label = "crush curve",
-                    .choice_docs =
-                        "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"
-                        "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",
-                    .doc = "Crush curve: how pores far below the resolution close under pressure (P-alpha). The "
-                           "material's density and yield_stress are then those of the solid between the pores, and the "
-                           "porous body yields at Y_0/alpha. tension_limit is that of the porous body, as strengths "
-                           "are measured (our choice); of the solid's value give that over alpha_0.",
-                    .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"),
-    PORES(distention, "1", 1, 100, .flags = FIELD_REQUIRED,
-          .doc = "alpha_0: density of the solid over that of the porous body. 1: no pores, the solid itself to the "
-                 "bit. In a scene porosity.fraction may be given instead.",
-          .source = "Herrmann 1969"),
-    PORES(fraction, "1", 0, 0.99, .flags = FIELD_MAY_BE_OFF,
-          .doc = "Porosity, 1 - 1/alpha_0: give it or porosity.distention, not both; the other follows."),
-    PORES(elastic_pressure, "Pa", 0, 1e15, .flags = FIELD_REQUIRED,
-          .doc = "P_e: above this pressure pores close and stay closed.", .source = "Jutzi, Benz & Michel 2008"),
-    PORES(solid_pressure, "Pa", 0, 1e15, .flags = FIELD_REQUIRED | FIELD_ABOVE_MINIMUM,
-          .doc = "P_s: above this pressure all pores are closed.", .source = "Jutzi, Benz & Michel 2008"),
-    PORES(sound_speed, "m/s", 0, 1e6, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
-          .doc = "c_e: bulk sound speed of the porous body, not above the solid's. off: pores do not give way "
-                 "elastically, and the solid's speed is taken.",
-          .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"),
-    TWO_POWER(elastic_distention, "1", 1, 100, FIELD_ABOVE_MINIMUM,
-              .doc = "alpha_e: distention at the beginning of the crush curve, at P_e. A body of lower alpha_0 keeps "
-                     "it until it meets the curve.",
-              .source = "Jutzi et al. 2009"),
-    TWO_POWER(transition_distention, "1", 1, 100, 0,
-              .doc = "alpha_t: distention at the end of the first power law, at P_t.", .source = "Jutzi et al. 2009"),
-    TWO_POWER(transition_pressure, "Pa", 0, 1e15, FIELD_ABOVE_MINIMUM,
-              .doc = "P_t: pressure at the end of the first power law.", .source = "Jutzi et al. 2009"),
-    TWO_POWER(exponent_low, "1", 1, 100, 0, .doc = "n1: exponent of the law between P_e and P_t.",
-              .source = "Jutzi et al. 2009"),
-    TWO_POWER(exponent_high, "1", 1, 100, 0, .doc = "n2: exponent of the law up to P_s.",
-              .source = "Jutzi et al. 2009"),
-#endif
-
-#ifdef SPH_MODULE_RESULT_ROWS
-    RESULT_REAL(mean_distention, palpha.mean_distention, "1", 1,
-                .doc = "Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off "
-                       "without pores.",
-                .source = "Jutzi, Benz & Michel 2008"),
-    RESULT_SHARE(compaction.mass_fraction, palpha.compaction.mass_fraction,
-                 .doc = "Impact: mass share of the target that was compacted: its distention at zero pressure fell "
-                        "from 1.01 or more to below 1.01. Off without pores.",
-                 .source = "Jutzi & Benz, figure 2"),
-    RESULT_REAL(compaction.volume, palpha.compaction.volume, "m^3", 0,
-                .doc = "Impact: volume that the retained matter lost as its pores closed; off without pores."),
-    RESULT_REAL(
-        compaction.depth, palpha.compaction.depth, "m", 0,
-        .doc = "Impact: depth at the start of the deepest compacted particle near the axis; off without pores."),
-    RESULT_REAL(compaction.reach, palpha.compaction.reach, "m", 0,
-                .doc = "Impact: largest distance from the point of impact at which matter lost a hundredth of its "
-                       "pores; off without pores."),
-    RESULT_REAL(shock.distention, palpha.shock, "1", 1,
-                .doc = "Piston: mean distention behind the shock, in the same region; off without pores."),
-    RESULT_REAL(shock.distention_exact, palpha.shock_exact, "1", 1,
-                .doc = "Piston: distention behind the shock by the jump conditions and the crush curve."),
-    RESULT_REAL(precursor.distention, palpha.precursor, "1", 1,
-                .doc = "Piston: mean distention between precursor and shock."),
-    RESULT_REAL(precursor.distention_exact, palpha.precursor_exact, "1", 1,
-                .doc = "Piston: distention behind the precursor on the elastic branch."),
-#endif
-
 #ifdef SPH_MODULE_REPORT
 
-    /* Of the target, by mass. */
-    static double palpha_mean_distention(const struct sph_run *run) {
+/* Of the target, by mass. */
+static double palpha_mean_distention(const struct sph_run *run) {
   const struct sph_particles *p = run->now;
   double mass = 0, distention = 0;
   for (size_t i = 0; i < run->targets; i++) {
@@ -500,4 +419,85 @@ static const struct sph_module palpha_module = {
     .complete_material = palpha_complete_material,
 };
 
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_REAL(fidelity.distention_step, palpha.distention_step, "1", 0.01, 1e-6, 1,
+           .when = "target.material.porosity.curve=quadratic|two-power",
+           .doc = "Largest change of a porous particle's distention in a time step.",
+           .source = "Jutzi, Benz & Michel 2008"),
+#endif
+
+#ifdef SPH_MODULE_MATERIAL_ROWS
+#define PORES(member, unit, low, high, ...)                                                                            \
+  MATERIAL_REAL(porosity.member, palpha.member, unit, NAN, low, high, .when = "porosity.curve=quadratic|two-power",    \
+                __VA_ARGS__)
+#define TWO_POWER(member, unit, low, high, flags_, ...)                                                                \
+  MATERIAL_REAL(porosity.member, palpha.member, unit, NAN, low, high, .when = "porosity.curve=two-power",              \
+                .flags = FIELD_REQUIRED | (flags_), __VA_ARGS__)
+    MATERIAL_CHOICE(porosity.curve, palpha.curve,
+                    FIELD_WORDS_HERE(SPH_CRUSHES, [SPH_CRUSH_NONE] = "none", [SPH_CRUSH_QUADRATIC] = "quadratic",
+                                     [SPH_CRUSH_TWO_POWER] = "two-power"),
+                    .label = "crush curve",
+                    .choice_docs =
+                        "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"
+                        "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",
+                    .doc = "Crush curve: how pores far below the resolution close under pressure (P-alpha). The "
+                           "material's density and yield_stress are then those of the solid between the pores, and the "
+                           "porous body yields at Y_0/alpha. tension_limit is that of the porous body, as strengths "
+                           "are measured (our choice); of the solid's value give that over alpha_0.",
+                    .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"),
+    PORES(distention, "1", 1, 100, .flags = FIELD_REQUIRED,
+          .doc = "alpha_0: density of the solid over that of the porous body. 1: no pores, the solid itself to the "
+                 "bit. In a scene porosity.fraction may be given instead.",
+          .source = "Herrmann 1969"),
+    PORES(fraction, "1", 0, 0.99, .flags = FIELD_MAY_BE_OFF,
+          .doc = "Porosity, 1 - 1/alpha_0: give it or porosity.distention, not both; the other follows."),
+    PORES(elastic_pressure, "Pa", 0, 1e15, .flags = FIELD_REQUIRED,
+          .doc = "P_e: above this pressure pores close and stay closed.", .source = "Jutzi, Benz & Michel 2008"),
+    PORES(solid_pressure, "Pa", 0, 1e15, .flags = FIELD_REQUIRED | FIELD_ABOVE_MINIMUM,
+          .doc = "P_s: above this pressure all pores are closed.", .source = "Jutzi, Benz & Michel 2008"),
+    PORES(sound_speed, "m/s", 0, 1e6, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
+          .doc = "c_e: bulk sound speed of the porous body, not above the solid's. off: pores do not give way "
+                 "elastically, and the solid's speed is taken.",
+          .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"),
+    TWO_POWER(elastic_distention, "1", 1, 100, FIELD_ABOVE_MINIMUM,
+              .doc = "alpha_e: distention at the beginning of the crush curve, at P_e. A body of lower alpha_0 keeps "
+                     "it until it meets the curve.",
+              .source = "Jutzi et al. 2009"),
+    TWO_POWER(transition_distention, "1", 1, 100, 0,
+              .doc = "alpha_t: distention at the end of the first power law, at P_t.", .source = "Jutzi et al. 2009"),
+    TWO_POWER(transition_pressure, "Pa", 0, 1e15, FIELD_ABOVE_MINIMUM,
+              .doc = "P_t: pressure at the end of the first power law.", .source = "Jutzi et al. 2009"),
+    TWO_POWER(exponent_low, "1", 1, 100, 0, .doc = "n1: exponent of the law between P_e and P_t.",
+              .source = "Jutzi et al. 2009"),
+    TWO_POWER(exponent_high, "1", 1, 100, 0, .doc = "n2: exponent of the law up to P_s.",
+              .source = "Jutzi et al. 2009"),
+#endif
+
+#ifdef SPH_MODULE_RESULT_ROWS
+    RESULT_REAL(mean_distention, palpha.mean_distention, "1", 1,
+                .doc = "Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off "
+                       "without pores.",
+                .source = "Jutzi, Benz & Michel 2008"),
+    RESULT_SHARE(compaction.mass_fraction, palpha.compaction.mass_fraction,
+                 .doc = "Impact: mass share of the target that was compacted: its distention at zero pressure fell "
+                        "from 1.01 or more to below 1.01. Off without pores.",
+                 .source = "Jutzi & Benz, figure 2"),
+    RESULT_REAL(compaction.volume, palpha.compaction.volume, "m^3", 0,
+                .doc = "Impact: volume that the retained matter lost as its pores closed; off without pores."),
+    RESULT_REAL(
+        compaction.depth, palpha.compaction.depth, "m", 0,
+        .doc = "Impact: depth at the start of the deepest compacted particle near the axis; off without pores."),
+    RESULT_REAL(compaction.reach, palpha.compaction.reach, "m", 0,
+                .doc = "Impact: largest distance from the point of impact at which matter lost a hundredth of its "
+                       "pores; off without pores."),
+    RESULT_REAL(shock.distention, palpha.shock, "1", 1,
+                .doc = "Piston: mean distention behind the shock, in the same region; off without pores."),
+    RESULT_REAL(shock.distention_exact, palpha.shock_exact, "1", 1,
+                .doc = "Piston: distention behind the shock by the jump conditions and the crush curve."),
+    RESULT_REAL(precursor.distention, palpha.precursor, "1", 1,
+                .doc = "Piston: mean distention between precursor and shock."),
+    RESULT_REAL(precursor.distention_exact, palpha.precursor_exact, "1", 1,
+                .doc = "Piston: distention behind the precursor on the elastic branch."),
 #endif

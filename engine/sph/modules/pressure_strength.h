@@ -79,36 +79,9 @@ static const sph_hook pressure_strength_hooks[SPH_STAGES] = {[SPH_YIELD] = press
 
 #endif
 
-#ifdef SPH_MODULE_MATERIAL_ROWS
-#define OF_LAW(member, unit, default, ...)                                                                             \
-  MATERIAL_REAL(pressure_strength.member, pressure_strength.member, unit, default, __VA_ARGS__,                        \
-                .when = "pressure_strength.law=lundborg")
-MATERIAL_CHOICE(
-    pressure_strength.law, pressure_strength.law,
-    FIELD_WORDS_HERE(
-        SPH_PRESSURE_STRENGTHS, [SPH_PRESSURE_STRENGTH_NONE] = "none", [SPH_PRESSURE_STRENGTH_LUNDBORG] = "lundborg"),
-    .absent = "none", .when = "../strength=true", .label = "yield law",
-    .choice_docs = "yield_stress at any pressure, and (1 - D) of the deviator acts\n"
-                   "intact rock follows Lundborg, broken rock keeps friction, and damage acts on the deviator through "
-                   "the yield stress alone; yield_stress is not used, melt_energy is",
-    .doc = "Yield stress under pressure.", .source = "Collins, Melosh & Ivanov 2004; Jutzi 2015"),
-    OF_LAW(intact_cohesion, "Pa", 90e6, 0, 1e15, .doc = "Y_0: bound of sqrt(J2) of intact rock at P = 0.",
-           .source = "Collins, Melosh & Ivanov 2004; 90 MPa: granite, Jutzi 2015"),
-    OF_LAW(intact_friction, "1", 2, 0, 100, .doc = "mu_i: internal friction of intact rock.",
-           .source = "Lundborg 1968; Collins, Melosh & Ivanov 2004"),
-    OF_LAW(intact_limit, "Pa", 1.5e9, 0, 1e15, .flags = FIELD_ABOVE_MINIMUM,
-           .doc = "Y_M: bound of sqrt(J2) of intact rock at high pressure, above intact_cohesion.",
-           .source = "Lundborg 1968; 1.5 GPa: granite, Jutzi 2015"),
-    OF_LAW(broken_cohesion, "Pa", 0, 0, 1e15, .doc = "Y_d0: bound of sqrt(J2) of broken rock at P = 0.",
-           .source = "Collins, Melosh & Ivanov 2004"),
-    OF_LAW(broken_friction, "1", 0.8, 0, 100,
-           .doc = "mu_d: friction of broken rock. 0, with broken_cohesion 0: broken rock bears no shear.",
-           .source = "Collins, Melosh & Ivanov 2004; 0.8: Jutzi 2015"),
-#endif
-
 #ifdef SPH_MODULE_DESCRIPTORS
 
-    static bool pressure_strength_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+static bool pressure_strength_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;
   return body->strength && body->material.pressure_strength.law == SPH_PRESSURE_STRENGTH_LUNDBORG;
 }
@@ -138,4 +111,31 @@ static const struct sph_module pressure_strength_module = {
     .check_material = pressure_strength_check_material,
 };
 
+#endif
+
+#ifdef SPH_MODULE_MATERIAL_ROWS
+#define OF_LAW(member, unit, default, ...)                                                                             \
+  MATERIAL_REAL(pressure_strength.member, pressure_strength.member, unit, default, __VA_ARGS__,                        \
+                .when = "pressure_strength.law=lundborg")
+MATERIAL_CHOICE(
+    pressure_strength.law, pressure_strength.law,
+    FIELD_WORDS_HERE(
+        SPH_PRESSURE_STRENGTHS, [SPH_PRESSURE_STRENGTH_NONE] = "none", [SPH_PRESSURE_STRENGTH_LUNDBORG] = "lundborg"),
+    .absent = "none", .when = "../strength=true", .label = "yield law",
+    .choice_docs = "yield_stress at any pressure, and (1 - D) of the deviator acts\n"
+                   "intact rock follows Lundborg, broken rock keeps friction, and damage acts on the deviator through "
+                   "the yield stress alone; yield_stress is not used, melt_energy is",
+    .doc = "Yield stress under pressure.", .source = "Collins, Melosh & Ivanov 2004; Jutzi 2015"),
+    OF_LAW(intact_cohesion, "Pa", 90e6, 0, 1e15, .doc = "Y_0: bound of sqrt(J2) of intact rock at P = 0.",
+           .source = "Collins, Melosh & Ivanov 2004; 90 MPa: granite, Jutzi 2015"),
+    OF_LAW(intact_friction, "1", 2, 0, 100, .doc = "mu_i: internal friction of intact rock.",
+           .source = "Lundborg 1968; Collins, Melosh & Ivanov 2004"),
+    OF_LAW(intact_limit, "Pa", 1.5e9, 0, 1e15, .flags = FIELD_ABOVE_MINIMUM,
+           .doc = "Y_M: bound of sqrt(J2) of intact rock at high pressure, above intact_cohesion.",
+           .source = "Lundborg 1968; 1.5 GPa: granite, Jutzi 2015"),
+    OF_LAW(broken_cohesion, "Pa", 0, 0, 1e15, .doc = "Y_d0: bound of sqrt(J2) of broken rock at P = 0.",
+           .source = "Collins, Melosh & Ivanov 2004"),
+    OF_LAW(broken_friction, "1", 0.8, 0, 100,
+           .doc = "mu_d: friction of broken rock. 0, with broken_cohesion 0: broken rock bears no shear.",
+           .source = "Collins, Melosh & Ivanov 2004; 0.8: Jutzi 2015"),
 #endif

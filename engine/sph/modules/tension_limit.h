@@ -52,16 +52,9 @@ static const sph_hook tension_limit_hooks[SPH_STAGES] =
 
 #endif
 
-#ifdef SPH_MODULE_MATERIAL_ROWS
-MATERIAL_REAL(tension_limit, tension_limit.pressure, "Pa", NAN, 0, 1e15, .flags = FIELD_MAY_BE_OFF,
-              .doc = "Largest tension of a body without flaws (its lowest pressure is minus this). It falls with "
-                     "expansion, to none at 0.9 of the density, so that cold matter reaches 1/(1 + 10 tension_limit/A) "
-                     "of it. off: no limit, down to -A and beyond."),
-#endif
-
 #ifdef SPH_MODULE_DESCRIPTORS
 
-    static bool tension_limit_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+static bool tension_limit_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;
   return !body->flaws && body->material.tension_limit.pressure >= 0 && isfinite(body->material.tension_limit.pressure);
 }
@@ -78,4 +71,11 @@ static const struct sph_module tension_limit_module = {
     .on = tension_limit_on,
 };
 
+#endif
+
+#ifdef SPH_MODULE_MATERIAL_ROWS
+MATERIAL_REAL(tension_limit, tension_limit.pressure, "Pa", NAN, 0, 1e15, .flags = FIELD_MAY_BE_OFF,
+              .doc = "Largest tension of a body without flaws (its lowest pressure is minus this). It falls with "
+                     "expansion, to none at 0.9 of the density, so that cold matter reaches 1/(1 + 10 tension_limit/A) "
+                     "of it. off: no limit, down to -A and beyond."),
 #endif

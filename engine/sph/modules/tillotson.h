@@ -56,26 +56,9 @@ static const sph_hook tillotson_hooks[SPH_STAGES] = {[SPH_RESPOND] = tillotson_r
 
 #endif
 
-#ifdef SPH_MODULE_MATERIAL_ROWS
-#define REQUIRED(member, unit, low, high, doc_, source_)                                                               \
-  MATERIAL_REAL(tillotson.member, tillotson.member, unit, NAN, low, high, .flags = FIELD_REQUIRED, .doc = doc_,        \
-                .source = source_ "Melosh 1989, appendix II")
-REQUIRED(A, "Pa", 1, 1e15, "Tillotson's A: bulk modulus at rest.", "Tillotson 1962; "),
-    REQUIRED(B, "Pa", 0, 1e15, "Tillotson's B: quadratic term in compression.", ""),
-    REQUIRED(a, "1", 0, 100,
-             "Tillotson's a: Grueneisen coefficient of hot matter. 0, with b 0: pressure does not depend on energy.",
-             ""),
-    REQUIRED(b, "1", 0, 100, "Tillotson's b: a + b is the Grueneisen coefficient at rest.", ""),
-    REQUIRED(alpha, "1", 0, 1e3, "Tillotson's alpha: decay in hot expansion.", ""),
-    REQUIRED(beta, "1", 0, 1e3, "Tillotson's beta: decay in hot expansion.", ""),
-    REQUIRED(E0, "J/kg", 1e-3, 1e15, "Tillotson's reference energy.", ""),
-    REQUIRED(E_iv, "J/kg", 1e-3, 1e15, "Energy of incipient vaporisation.", ""),
-    REQUIRED(E_cv, "J/kg", 1e-3, 1e15, "Energy of complete vaporisation, above E_iv.", ""),
-#endif
-
 #ifdef SPH_MODULE_DESCRIPTORS
 
-    static bool tillotson_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+static bool tillotson_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)body, (void)inputs;
   return true;
 }
@@ -120,4 +103,21 @@ static const struct sph_module tillotson_module = {
     .check = tillotson_check,
 };
 
+#endif
+
+#ifdef SPH_MODULE_MATERIAL_ROWS
+#define REQUIRED(member, unit, low, high, doc_, source_)                                                               \
+  MATERIAL_REAL(tillotson.member, tillotson.member, unit, NAN, low, high, .flags = FIELD_REQUIRED, .doc = doc_,        \
+                .source = source_ "Melosh 1989, appendix II")
+REQUIRED(A, "Pa", 1, 1e15, "Tillotson's A: bulk modulus at rest.", "Tillotson 1962; "),
+    REQUIRED(B, "Pa", 0, 1e15, "Tillotson's B: quadratic term in compression.", ""),
+    REQUIRED(a, "1", 0, 100,
+             "Tillotson's a: Grueneisen coefficient of hot matter. 0, with b 0: pressure does not depend on energy.",
+             ""),
+    REQUIRED(b, "1", 0, 100, "Tillotson's b: a + b is the Grueneisen coefficient at rest.", ""),
+    REQUIRED(alpha, "1", 0, 1e3, "Tillotson's alpha: decay in hot expansion.", ""),
+    REQUIRED(beta, "1", 0, 1e3, "Tillotson's beta: decay in hot expansion.", ""),
+    REQUIRED(E0, "J/kg", 1e-3, 1e15, "Tillotson's reference energy.", ""),
+    REQUIRED(E_iv, "J/kg", 1e-3, 1e15, "Energy of incipient vaporisation.", ""),
+    REQUIRED(E_cv, "J/kg", 1e-3, 1e15, "Energy of complete vaporisation, above E_iv.", ""),
 #endif

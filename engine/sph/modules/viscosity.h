@@ -29,16 +29,9 @@ INLINE void TYPED(viscosity_pair)(const struct sph_pair_constants *k, const stru
 
 #endif
 
-#ifdef SPH_MODULE_INPUT_ROWS
-INPUT_REAL(viscosity.alpha, viscosity.alpha, "1", 1.5, 0, 100, .doc = "Monaghan's linear artificial viscosity.",
-           .source = "Monaghan 1992"),
-    INPUT_REAL(viscosity.beta, viscosity.beta, "1", 3, 0, 100, .doc = "Monaghan's quadratic artificial viscosity.",
-               .source = "Monaghan 1992"),
-#endif
-
 #ifdef SPH_MODULE_DESCRIPTORS
 
-    static bool viscosity_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+static bool viscosity_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)body, (void)inputs;
   return inputs->viscosity.alpha > 0 || inputs->viscosity.beta > 0;
 }
@@ -51,4 +44,11 @@ static const struct sph_module viscosity_module = {
     .on = viscosity_on,
 };
 
+#endif
+
+#ifdef SPH_MODULE_INPUT_ROWS
+INPUT_REAL(viscosity.alpha, viscosity.alpha, "1", 1.5, 0, 100, .doc = "Monaghan's linear artificial viscosity.",
+           .source = "Monaghan 1992"),
+    INPUT_REAL(viscosity.beta, viscosity.beta, "1", 3, 0, 100, .doc = "Monaghan's quadratic artificial viscosity.",
+               .source = "Monaghan 1992"),
 #endif

@@ -21,6 +21,34 @@ struct sph_weibull_inputs {
 };
 #endif
 
+#ifdef SPH_MODULE_DESCRIPTORS
+
+static status weibull_prepare(const struct sph_inputs *inputs, const struct sph_particles *particles,
+                              struct sph_solid *body, struct error *error) {
+  (void)particles;
+  return sph_flaws_lists_make(body->physics.flaws, inputs->weibull.flaws == SPH_FLAWS_COMPACT,
+                              &body->prepared[SPH_MODULE_weibull], error);
+}
+
+static bool weibull_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)inputs;
+  return body->flaws != NULL;
+}
+
+static const struct sph_module weibull_module = {
+    .name = "weibull",
+    .doc = "Explicit flaws: each particle has its own list of strains at which a flaw opens, or that list's lowest, "
+           "number and exponent (compact).",
+    .source = "Benz & Asphaug 1995, eqs. 11 and 20",
+    .when = "a body whose material has Weibull parameters",
+    .on = weibull_on,
+    .prepare = weibull_prepare,
+    .free_prepared = sph_flaws_lists_free,
+    .bytes_prepared = sph_flaws_lists_bytes,
+};
+
+#endif
+
 #ifdef SPH_MODULE_INPUT_ROWS
 INPUT_CHOICE(fracture.draw, weibull.draw,
              FIELD_WORDS_HERE(SPH_FLAW_DRAWS, [SPH_FLAWS_RANKED] = "ranked", [SPH_FLAWS_POISSON] = "poisson"),
@@ -45,32 +73,4 @@ INPUT_CHOICE(fracture.draw, weibull.draw,
                   .when = "../fracture=auto|on",
                   .doc = "Weibull's k (papers print 1/cm^3, which is 1e6 of these). off: no flaws.",
                   .source = "Benz & Asphaug 1995, eq. 11"),
-#endif
-
-#ifdef SPH_MODULE_DESCRIPTORS
-
-    static status weibull_prepare(const struct sph_inputs *inputs, const struct sph_particles *particles,
-                                  struct sph_solid *body, struct error *error) {
-  (void)particles;
-  return sph_flaws_lists_make(body->physics.flaws, inputs->weibull.flaws == SPH_FLAWS_COMPACT,
-                              &body->prepared[SPH_MODULE_weibull], error);
-}
-
-static bool weibull_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
-  (void)inputs;
-  return body->flaws != NULL;
-}
-
-static const struct sph_module weibull_module = {
-    .name = "weibull",
-    .doc = "Explicit flaws: each particle has its own list of strains at which a flaw opens, or that list's lowest, "
-           "number and exponent (compact).",
-    .source = "Benz & Asphaug 1995, eqs. 11 and 20",
-    .when = "a body whose material has Weibull parameters",
-    .on = weibull_on,
-    .prepare = weibull_prepare,
-    .free_prepared = sph_flaws_lists_free,
-    .bytes_prepared = sph_flaws_lists_bytes,
-};
-
 #endif

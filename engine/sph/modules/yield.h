@@ -38,16 +38,9 @@ static const sph_hook yield_hooks[SPH_STAGES] = {[SPH_YIELD] = yield_limit};
 
 #endif
 
-#ifdef SPH_MODULE_MATERIAL_ROWS
-MATERIAL_REAL(yield_stress, yield.stress, "Pa", NAN, 0, 1e15, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
-              .when = "../strength=true",
-              .doc = "Y_0: von Mises yield stress of cold solid matter. off: elastic at any stress.",
-              .source = "Benz & Asphaug 1995, eq. 9"),
-#endif
-
 #ifdef SPH_MODULE_DESCRIPTORS
 
-    static bool yield_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+static bool yield_on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;
   return body->strength && isfinite(body->material.yield.stress);
 }
@@ -61,4 +54,11 @@ static const struct sph_module yield_module = {
     .sets = SPH_SETS_YIELD_LIMIT,
 };
 
+#endif
+
+#ifdef SPH_MODULE_MATERIAL_ROWS
+MATERIAL_REAL(yield_stress, yield.stress, "Pa", NAN, 0, 1e15, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
+              .when = "../strength=true",
+              .doc = "Y_0: von Mises yield stress of cold solid matter. off: elastic at any stress.",
+              .source = "Benz & Asphaug 1995, eq. 9"),
 #endif
