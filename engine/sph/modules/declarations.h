@@ -34,8 +34,8 @@
  * Sections, each behind `#ifdef`:
  *   SPH_MODULE_STRUCTS         structs of inputs, values of a material and results (structs.h)
  *   SPH_MODULE_INPUT_ROWS, SPH_MODULE_MATERIAL_ROWS, SPH_MODULE_RESULT_ROWS
- *                              the rows of their members (scene/inputs.c, material/material.c, observe/results.c; they
- *                              come last in the file: clang-format takes what follows for a part of them
+ *                              the rows of their members (scene/inputs.c, material/material.c, observe/results.c).
+ *                              They come last in the file: clang-format takes what follows for a part of them
  *   SPH_MODULE_LOOPS           loops over particles, and NAME_hooks, the table of them (ranges.h)
  *   SPH_PAIR_TERM              functions of a term (pairs/pairs_kernels_body.h)
  *   SPH_MODULE_DESCRIPTORS     checks, preparation and NAME_module, the descriptor (modules.c)
@@ -144,6 +144,14 @@
 #include "engine/sph/modules/artificial_stress.h"
 #include "engine/sph/modules/gradient_correction.h"
 /* clang-format on */
+
+/* The combinations of terms for which the pair loop is compiled, in two precisions and three CPU classes: a name, and
+ * the terms that are on. */
+#define SPH_PAIR_COMBINATIONS(COMBINATION)                                                                             \
+  COMBINATION(plain, 0)                                                                                                \
+  COMBINATION(artificial, .artificial_stress = true)                                                                   \
+  COMBINATION(corrected, .gradient_correction = true)                                                                  \
+  COMBINATION(both, .artificial_stress = true, .gradient_correction = true)
 
 #undef SPH_MODULE_STRUCTS
 #undef SPH_MODULE_LOOPS

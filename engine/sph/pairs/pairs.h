@@ -26,16 +26,15 @@
 #include "engine/sph/scene/inputs.h"
 #include "schemas/status.h"
 
-/* Sections of the inputs, and what follows from the bodies. */
+/* Sections of the inputs, those of all modules too, and what follows from the bodies. */
 struct sph_pair_options {
-  struct sph_viscosity_inputs viscosity;
   struct sph_method method;
-  struct sph_artificial_stress_inputs artificial_stress;
-  struct sph_gradient_correction_inputs gradient_correction;
   struct sph_fidelity fidelity; /* precision, and threads, on which the bits do not depend */
   bool strength;                /* stress[] is given; else the pressure alone */
   double spacing_over_h;        /* initial particle spacing over h: the f = W(r)/W(spacing) of the artificial stress */
   double periodic[3];           /* m, length of the periodic box along each axis; NaN = open */
+#define MODULE_INPUTS(name) struct sph_##name##_inputs name;
+#include "engine/sph/modules/declarations.h"
 };
 
 /* Columns of n particles in sorted order; read only. */
@@ -122,14 +121,7 @@ struct sph_pair_shape {
 #define PAIR_TERM(name, on) bool name;
 #include "engine/sph/modules/declarations.h"
 };
-/* The combinations of terms for which the pair loop is compiled, in two precisions and three CPU classes: a name, and
- * the terms that are on. */
-#define SPH_PAIR_COMBINATIONS(COMBINATION)                                                                             \
-  COMBINATION(plain, 0)                                                                                                \
-  COMBINATION(artificial, .artificial_stress = true)                                                                   \
-  COMBINATION(corrected, .gradient_correction = true)                                                                  \
-  COMBINATION(both, .artificial_stress = true, .gradient_correction = true)
-/* The shapes of these combinations. */
+/* The shapes of SPH_PAIR_COMBINATIONS (modules/declarations.h). */
 enum sph_pair_combination {
 #define COMBINATION(name, ...) PAIR_SHAPE_##name,
   SPH_PAIR_COMBINATIONS(COMBINATION) PAIR_SHAPES

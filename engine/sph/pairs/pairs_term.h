@@ -3,7 +3,7 @@
  * A term is a part of the pair loop that a module adds to it: columns of a particle's record, sums, and what happens in
  * a pair. The module declares it in its NAME.h (modules/declarations.h: PAIR_TERM and the kinds below it), and defines
  * the functions that it declares behind `#ifdef SPH_PAIR_TERM`. All are inlined into the pair loop, which is compiled
- * for each combination of terms of SPH_PAIR_COMBINATIONS (pairs.h). Off means absent.
+ * for each combination of terms of SPH_PAIR_COMBINATIONS (modules/declarations.h). Off means absent.
  *
  *   PAIR_MADE     void NAME_make(options, fields, first, last, made[])             in double only
  *                 before the pass: arrays of the particles first .. last - 1 that follow from the fields

@@ -381,13 +381,12 @@ static status make_blocks(struct sph_system *s, struct error *error) {
 
 static status make_pairs(struct sph_system *s, struct error *error) {
   struct sph_pair_options o = {
-      .viscosity = s->in.viscosity,
       .method = s->in.method,
-      .artificial_stress = s->in.artificial_stress,
-      .gradient_correction = s->in.gradient_correction,
       .fidelity = s->in.fidelity,
       .strength = s->c.stress[0] != NULL,
       .spacing_over_h = s->domain.spacing_over_h,
+#define MODULE_INPUTS(name) .name = s->in.name,
+#include "engine/sph/modules/declarations.h"
   };
   memcpy(o.periodic, s->domain.periodic, sizeof o.periodic);
   return sph_pairs_create(s->n, &o, &s->pairs, error);
