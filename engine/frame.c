@@ -60,6 +60,22 @@ status frame_advance(struct frame *f, uint64_t max_steps) {
   return STATUS_OK;
 }
 
+status frame_step(void *run, uint64_t max_steps, bool *finished, struct error *error) {
+  struct frame *f = run;
+  const status code = frame_advance(f, max_steps);
+  *finished = f->state->finished;
+  return code ? status_fail(error, code, "%s", f->kind->failure(f)) : STATUS_OK;
+}
+
+double frame_time(const void *run) {
+  return ((const struct frame *)run)->kind->time(run);
+}
+
+double frame_progress(const void *run) {
+  const struct frame *f = run;
+  return f->state->finished ? 1 : fmin(frame_time(run) / f->end_time, 1);
+}
+
 struct outcome frame_outcome(const struct frame *f, double time_step) {
   const struct frame_state *state = f->state;
   struct outcome outcome = {.state = state->finished ? state->outcome_state : OUTCOME_END_TIME,

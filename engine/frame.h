@@ -38,6 +38,7 @@ struct frame_kind {
   struct frame_energy (*energy)(void *run);
   size_t (*fastest)(void *run, double *speed);    /* the fastest member, or the first that is not finite; m/s */
   const char *(*remedy)(void *run, double drift); /* against a drift (J or J/m); NaN: against what is not finite */
+  const char *(*failure)(const void *run);        /* why there was no step, when memory is out */
 };
 
 struct frame {
@@ -46,7 +47,8 @@ struct frame {
   size_t state_size;
   const void *inputs;
   uint64_t seed;
-  void *sample; /* the curve: sample_capacity samples; NULL: the protocol records none */
+  double end_time; /* s: the hard end, for the progress */
+  void *sample;    /* the curve: sample_capacity samples; NULL: the protocol records none */
   size_t sample_size, sample_capacity;
 };
 
@@ -60,6 +62,10 @@ void frame_end_not_finite(struct frame *frame, const char *quantity);
 /* At most max_steps; the result does not depend on how steps are split over calls. STATUS_MEMORY: the run has no result
  * and cannot go on. */
 status frame_advance(struct frame *frame, uint64_t max_steps);
+/* The calls of struct engine_kind that all runs with a frame have in common. */
+status frame_step(void *run, uint64_t max_steps, bool *finished, struct error *error);
+double frame_time(const void *run);
+double frame_progress(const void *run);
 /* Ends the run when its energy has drifted too far. frame_advance calls it every kind->looks steps and at the end. */
 void frame_look(struct frame *frame);
 

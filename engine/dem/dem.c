@@ -1,28 +1,249 @@
-/* The descriptor of engine `dem`. */
+/* Engine `dem`: a run from its set-up to its end (steps, checks of energy and speed, stop rules), and the descriptor.
+ */
 #include "engine/dem/dem.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "engine/dem/run/run.h"
+
+double dem_run_closed(const struct dem_ledger *l) {
+  return l->kinetic + l->beam + l->contact + l->broken_beam + l->damping + l->friction - l->external_work;
+}
+
+void dem_run_momentum(const struct dem_run *run, double momentum[2], double *magnitude) {
+  momentum[0] = momentum[1] = *magnitude = 0;
+  for (uint32_t i = 0; i < run->tessellation->cell_count; i++) {
+    struct dem_grain g = dem_system_grain(run->system, i);
+    if (!g.present)
+      continue;
+    if (!(run->held[i] & 1))
+      momentum[0] += g.mass * g.vx;
+    if (!(run->held[i] & 2))
+      momentum[1] += g.mass * g.vy;
+    *magnitude += g.mass * hypot(g.vx, g.vy);
+  }
+}
+
+static void held_force(const struct dem_run *run, double force[2]) {
+  force[0] = force[1] = 0;
+  const uint32_t *layers[2] = {run->lower, run->upper};
+  const size_t counts[2] = {run->lower_count, run->upper_count};
+  for (int l = 0; l < 2; l++)
+    for (size_t k = 0; k < counts[l]; k++) {
+      double fx, fy, torque;
+      dem_system_force(run->system, layers[l][k], &fx, &fy, &torque);
+      if (run->held[layers[l][k]] & 1)
+        force[0] += fx;
+      if (run->held[layers[l][k]] & 2)
+        force[1] += fy;
+    }
+}
+
+/* Largest distance that a grain may move in one step, in mean diameters. A faster grain can pass through a neighbour
+ * without a step in which they overlap, and the energy ledger would not show it. */
+static const double largest_way = 0.5;
+
+/* The fastest grain, or the first one that is not finite. */
+static size_t fastest_grain(void *of, double *speed) {
+  const struct dem_run *run = of;
+  uint32_t fastest = 0;
+  *speed = 0;
+  for (uint32_t i = 0; i < run->tessellation->cell_count; i++) {
+    struct dem_grain g = dem_system_grain(run->system, i);
+    const double v = g.present ? hypot(g.vx, g.vy) : 0;
+    if (v > *speed || !isfinite(v + g.x + g.y)) {
+      fastest = i;
+      *speed = v;
+    }
+    if (!isfinite(v + g.x + g.y))
+      break;
+  }
+  return fastest;
+}
+
+static void check_speed(void *of) {
+  struct dem_run *run = of;
+  double speed;
+  const size_t grain = fastest_grain(run, &speed);
+  const double way = speed * run->inputs.fidelity.time_step / run->grain_diameter;
+  if (run->inputs.contact.law != DEM_CONTACT_OFF && way > largest_way)
+    frame_end(&run->state.frame, DEM_STOP_FAULT, OUTCOME_TIME_STEP,
+              "at %.6g s grain %zu moves by %.3g grain diameters in a time step and could pass through others unseen: "
+              "give a fidelity.time_step below %.3g s",
+              dem_system_time(run->system), grain, way, run->inputs.fidelity.time_step * largest_way / way);
+}
+
+static double time_of(const void *run) {
+  return dem_system_time(((const struct dem_run *)run)->system);
+}
+
+static uint64_t steps_of(const void *run) {
+  return dem_system_steps(((const struct dem_run *)run)->system);
+}
+
+static const char *failure(const void *run) {
+  (void)run;
+  return "no memory for a step";
+}
+
+static const char *remedy(void *run, double drift) {
+  (void)run, (void)drift;
+  return "give a shorter fidelity.time_step, or less contact damping";
+}
+
+static struct frame_energy energy_of(void *of) {
+  struct dem_run *run = of;
+  const struct dem_ledger ledger = dem_system_ledger(run->system);
+  /* Under a load the work starts from zero: check once the sides move at their full speed. */
+  const bool early = dem_inputs_loaded(&run->inputs) && dem_system_time(run->system) < run->inputs.loading.ramp;
+  return (struct frame_energy){.closed = dem_run_closed(&ledger),
+                               .input = run->state.frame.energy_input + fabs(ledger.external_work),
+                               .bound = early ? (double)NAN : run->inputs.fidelity.energy_bound};
+}
+
+/* The rules of the end. */
+static void check_stop(void *of) {
+  struct dem_run *run = of;
+  double time = dem_system_time(run->system), last = dem_system_last_break(run->system);
+  double half_step = 0.5 * run->inputs.fidelity.time_step;
+  if (dem_inputs_loaded(&run->inputs))
+    return; /* loading.c ends these runs */
+  const struct dem_break *log;
+  bool broke = dem_system_breaks(run->system, &log) > 0;
+  double least = fmin(run->inputs.stop.least_time, run->inputs.stop.end_time);
+  if (broke && time >= least - half_step && time - last >= run->inputs.stop.quiet_time - half_step)
+    frame_end(&run->state.frame, DEM_STOP_QUIET, OUTCOME_COMPLETED, "%s", "");
+  else if (time >= run->inputs.stop.end_time - half_step) {
+    if (broke)
+      frame_end(&run->state.frame, DEM_STOP_END_TIME, OUTCOME_END_TIME,
+                "beams still broke %.3g s before the hard end: raise stop.end_time", time - last);
+    else /* nothing has broken: there is no fracture that could go on */
+      frame_end(&run->state.frame, DEM_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
+  }
+}
+
+static bool step(void *of) {
+  struct dem_run *run = of;
+  const double dt = run->inputs.fidelity.time_step;
+  const bool is_loaded = dem_inputs_loaded(&run->inputs);
+  if (is_loaded)
+    dem_loading_drive(run);
+  if (!dem_system_step(run->system)) {
+    if (!dem_system_lacks_memory(run->system))
+      frame_end_not_finite(&run->frame, "a position or velocity");
+    return false;
+  }
+  if (is_loaded) {
+    double force[2];
+    held_force(run, force);
+    for (int d = 0; d < 2; d++) {
+      run->state.impulse[d] += 0.5 * dt * (force[d] + run->state.force_before[d]);
+      run->state.force_before[d] = force[d];
+    }
+    dem_loading_record(run);
+  }
+  return true;
+}
+
+/* Every step checks that all values are finite. */
+static const struct frame_kind kind = {.fault = DEM_STOP_FAULT,
+                                       .looks = 100,
+                                       .member = "grain",
+                                       .step = step,
+                                       .stop = check_stop,
+                                       .look = check_speed,
+                                       .time = time_of,
+                                       .steps = steps_of,
+                                       .energy = energy_of,
+                                       .fastest = fastest_grain,
+                                       .remedy = remedy,
+                                       .failure = failure};
+
+status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error) {
+  *out = NULL;
+  TRY(dem_inputs_check(inputs, error));
+  struct dem_run *run = calloc(1, sizeof *run);
+  if (!run)
+    return status_fail(error, STATUS_MEMORY, "no memory for a run");
+  run->inputs = *inputs;
+  run->seed = seed;
+  run->charge = UINT32_MAX;
+  struct dem_ledger ledger;
+  double magnitude;
+  status code = STATUS_OK;
+  if ((code = dem_protocol_body(inputs, seed, &run->tessellation, error)) ||
+      (code = dem_system_create(run->tessellation, &run->inputs, seed, &run->system, error)))
+    goto cleanup;
+  run->held = calloc(run->tessellation->cell_count, 1);
+  if (!run->held) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for %zu grains", run->tessellation->cell_count);
+    goto cleanup;
+  }
+  double area = 0;
+  for (uint32_t i = 0; i < run->tessellation->cell_count; i++)
+    area += run->tessellation->area[i];
+  run->grain_diameter = sqrt(4 / M_PI * area / (double)run->tessellation->cell_count);
+  run->stable_time_step = dem_system_stable_time_step(run->system);
+  if (isnan(run->stable_time_step)) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for the longest time step of %zu grains",
+                       run->tessellation->cell_count);
+    goto cleanup;
+  }
+  run->passing_speed = dem_describe_passing_speed(inputs);
+  if (inputs->fidelity.time_step > run->stable_time_step) {
+    code = status_fail(
+        error, STATUS_CONTENT,
+        "fidelity.time_step is %.4g s, but with fidelity.integrator %s this body is unstable above %.4g s: "
+        "give a shorter step, at most half of that for good energy",
+        inputs->fidelity.time_step, inputs->fidelity.integrator == DEM_GEAR ? "gear" : "verlet", run->stable_time_step);
+    goto cleanup;
+  }
+  if ((code = dem_protocol_start(run, error)))
+    goto cleanup;
+  ledger = dem_system_ledger(run->system);
+  run->state.frame.closed_start = dem_run_closed(&ledger);
+  run->frame = (struct frame){.kind = &kind,
+                              .state = &run->state.frame,
+                              .state_size = sizeof run->state,
+                              .inputs = &run->inputs,
+                              .seed = seed,
+                              .end_time = dem_inputs_end_time(inputs),
+                              .sample = run->sample,
+                              .sample_size = sizeof *run->sample,
+                              .sample_capacity = run->sample_capacity};
+  dem_run_momentum(run, run->state.momentum_start, &magnitude);
+  check_speed(run);
+  *out = run;
+  run = NULL;
+cleanup:
+  dem_run_free(run);
+  return code;
+}
+
+void dem_run_free(void *of) {
+  struct dem_run *run = of;
+  if (!run)
+    return;
+  dem_system_free(run->system);
+  dem_tessellation_free(run->tessellation);
+  free(run->held);
+  free(run->lower);
+  free(run->upper);
+  free(run->left);
+  free(run->right);
+  free(run->sample);
+  free(run);
+}
+
+/* ---- the descriptor ---- */
 
 /* An upper bound per grain: outlines, beams and contacts of the moving system, the tessellation, and the search for
  * fragments at the end. tests/unit/test_dem_engine.c compares it with the built-in scenes. */
 enum { BYTES_PER_GRAIN = 4000, BYTES_ANYWAY = 1 << 20 };
 
-static status check(const void *inputs, struct error *error) {
-  return dem_inputs_check(inputs, error);
-}
-
-static char *describe(const void *inputs) {
-  return dem_describe_scene(inputs);
-}
-
 static size_t memory(const void *inputs) {
   return (size_t)(dem_inputs_grains(inputs) * BYTES_PER_GRAIN) + BYTES_ANYWAY;
-}
-
-static unsigned warn(const void *inputs, FILE *out) {
-  return dem_warn_inputs(inputs, out);
 }
 
 static double work(const void *inputs) {
@@ -32,34 +253,9 @@ static double work(const void *inputs) {
 
 static status prepare(const void *inputs, uint64_t seed, void **run, struct error *error) {
   struct dem_run *made;
-  status code = dem_run_create(inputs, seed, &made, error);
+  const status code = dem_run_create(inputs, seed, &made, error);
   *run = made;
   return code;
-}
-
-static status step(void *run, uint64_t max_steps, bool *finished, struct error *error) {
-  struct dem_run *r = run;
-  const status code = frame_advance(&r->frame, max_steps);
-  *finished = r->state.frame.finished;
-  return code ? status_fail(error, code, "no memory for a step") : STATUS_OK;
-}
-
-static double time_of(const void *run) {
-  return dem_system_time(((const struct dem_run *)run)->system);
-}
-
-static double progress(const void *run) {
-  const struct dem_run *r = run;
-  return r->state.frame.finished ? 1 : fmin(dem_system_time(r->system) / dem_inputs_end_time(&r->inputs), 1);
-}
-
-static status finish(void *run, struct outcome *outcome, void *result, struct fragment **fragments,
-                     size_t *fragment_count, struct error *error) {
-  return dem_report_finish(run, outcome, result, fragments, fragment_count, error);
-}
-
-static status write_snapshot(void *run, const char *path, struct error *error) {
-  return dem_snapshot_write(run, path, error);
 }
 
 static size_t system_size(const void *run) {
@@ -73,10 +269,6 @@ static void save_system(const void *run, void *bytes) {
 static status load_system(void *run, const void *bytes, size_t size, struct error *error) {
   const struct dem_run *r = run;
   return dem_system_state_load(r->system, bytes, size) ? STATUS_OK : status_fail(error, STATUS_CONTENT, "%s", "");
-}
-
-static void release(void *run) {
-  dem_run_free(run);
 }
 
 static const struct knob knobs[] = {
@@ -114,19 +306,19 @@ const struct engine_kind dem_engine = {
     .inputs = &dem_inputs,
     .results = &dem_results,
     .knobs = knobs,
-    .check = check,
-    .warn = warn,
-    .describe = describe,
+    .check = dem_inputs_check,
+    .warn = dem_describe_warnings,
+    .describe = dem_describe_scene,
     .memory = memory,
     .work = work,
     .prepare = prepare,
-    .step = step,
-    .progress = progress,
-    .time = time_of,
-    .finish = finish,
-    .write_snapshot = write_snapshot,
+    .step = frame_step,
+    .progress = frame_progress,
+    .time = frame_time,
+    .finish = dem_report_finish,
+    .write_snapshot = dem_snapshot_write,
     .system_size = system_size,
     .save_system = save_system,
     .load_system = load_system,
-    .free = release,
+    .free = dem_run_free,
 };

@@ -1,8 +1,6 @@
 /* The descriptor of engine `sph`: its hooks call the run and its reports. */
 #include "engine/sph/sph.h"
 
-#include <math.h>
-
 #include "engine/sph/material/material.h"
 #include "engine/sph/run/run.h"
 
@@ -42,22 +40,6 @@ static status prepare(const void *inputs, uint64_t seed, void **run, struct erro
   status code = sph_run_create(inputs, seed, &made, error);
   *run = made;
   return code;
-}
-
-static status step(void *run, uint64_t max_steps, bool *finished, struct error *error) {
-  struct sph_run *r = run;
-  const status code = frame_advance(&r->frame, max_steps);
-  *finished = r->state.frame.finished;
-  return code ? status_fail(error, code, "%s", r->system->failure) : STATUS_OK;
-}
-
-static double time_of(const void *run) {
-  return ((const struct sph_run *)run)->system->now.time;
-}
-
-static double progress(const void *run) {
-  const struct sph_run *r = run;
-  return r->state.frame.finished ? 1 : fmin(r->system->now.time / r->inputs.stop.end_time, 1);
 }
 
 static status finish(void *run, struct outcome *outcome, void *result, struct fragment **fragments,
@@ -149,9 +131,9 @@ const struct engine_kind sph_engine = {
     .work = work,
     .threads = threads,
     .prepare = prepare,
-    .step = step,
-    .progress = progress,
-    .time = time_of,
+    .step = frame_step,
+    .progress = frame_progress,
+    .time = frame_time,
     .finish = finish,
     .write_snapshot = write_snapshot,
     .system_size = system_size,

@@ -2,7 +2,6 @@
  * effect. */
 #include "tests/support/run_case.h"
 
-#include "engine/dem/lattice/assemble.h"
 #include "engine/dem/run/run.h"
 #include "engine/dem/step/system_layout.h"
 

@@ -145,7 +145,7 @@ static void block_equals_qhull(void **state) {
       for (uint64_t seed = 0; seed < 8; seed++) {
         struct dem_lattice lattice = {DEM_OUTLINE_BLOCK, 1, disorders[d], 0, sizes[s][0], sizes[s][1], {0, 0}, seed, 0};
         struct dem_lattice_points points;
-        assert_int_equal(dem_lattice_fill(&lattice, &points, NULL), STATUS_OK);
+        assert_int_equal(dem_tessellation_points(&lattice, &points, NULL), STATUS_OK);
         size_t n = (size_t)points.columns * points.rows;
         /* walls by mirror images: the bisector of a point and its image is the wall */
         double *all = malloc(10 * n * sizeof *all);
@@ -190,7 +190,7 @@ static void disc_equals_qhull(void **state) {
                                       .radius = radii[r],
                                       .seed = seed};
         struct dem_lattice_points points;
-        assert_int_equal(dem_lattice_fill(&lattice, &points, NULL), STATUS_OK);
+        assert_int_equal(dem_tessellation_points(&lattice, &points, NULL), STATUS_OK);
         size_t n = (size_t)points.columns * points.rows;
         double middle = points.columns / 2.0;
         struct oracle o;

@@ -14,8 +14,6 @@
 
 #include <cmocka.h>
 
-#include "engine/dem/beams/breaking.h"
-#include "engine/dem/step/kernels.h"
 #include "engine/dem/step/system.h"
 #include "engine/dem/step/system_layout.h"
 

@@ -5,7 +5,7 @@
 #include "tests/verification/dem_fixture.h"
 
 #include "engine/cpu_class.h"
-#include "engine/dem/lattice/assemble.h"
+#include "engine/dem/step/system_layout.h"
 
 enum { GRAINS = 9, PAIRS = GRAINS * (GRAINS - 1) / 2, MOST = 40 };
 

@@ -478,7 +478,7 @@ static void gear_starts_with_the_derivatives(void **state) {
   dem_system_set_velocity(s, 1, 0.5 * speed, 0.0, 0.0);
   fixture_evaluate(s);
   s->now.ready = 1;
-  assert_true(dem_gear_start(s));
+  assert_true(dem_system_start_gear(s));
   const double w = sqrt(2.0 * in.beam.young_modulus / s->mass[0]),
                turn = w * in.fidelity.time_step;       /* alpha = E for S = l */
   const double u = 0.5 * stretch, v = 0.5 * speed / w; /* of grain 1 about the middle; v in radians of the swing */

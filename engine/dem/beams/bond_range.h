@@ -15,8 +15,8 @@
 #ifndef CLAST_ENGINE_DEM_BEAMS_BOND_RANGE_H
 #define CLAST_ENGINE_DEM_BEAMS_BOND_RANGE_H
 
-#include "engine/dem/beams/breaking.h"
-#include "engine/dem/contacts/contact_force.h"
+#include "engine/dem/contacts/contact_range.h"
+#include "engine/dem/step/system_layout.h"
 
 /* Sides nearer to one line than this share of their length count as in one line; the share is above the rounding of
  * positions. */
@@ -147,7 +147,7 @@ LANES_INLINE lanes_i bond_window(const struct dem_bond_block *block, int at, con
 }
 
 /* Lengths and directions at rest, as bond_range will compute them: strain and angle start at exactly zero. */
-LANES_INLINE void bond_rest(struct dem_system *s) {
+static void bond_rest(struct dem_system *s) {
   for (size_t b = 0; b < s->now.bond_blocks; b++) {
     struct dem_bond_block *block = &s->bond[b];
     for (int at = 0; at < DEM_BLOCK; at += LANES) {

@@ -1,9 +1,7 @@
 /* Changes at the break of a beam: lanes, log, ledger, contact. */
-#include "engine/dem/beams/breaking.h"
+#include "engine/dem/step/system_layout.h"
 
 #include <math.h>
-
-#include "engine/dem/step/kernels.h"
 
 struct dem_contact dem_breaking_contact(const struct dem_system *s, int32_t pair) {
   const struct dem_contact_inputs *law = &s->in->contact;

@@ -1,7 +1,7 @@
 /* The laws of contact, all in this file: a law is an entry of the list, a descriptor, and its formulas.
  *
  * Two grains overlap by the area A; the chord joins the two points where their outlines cross. The elastic force acts
- * at the chord's middle, at right angles to it (contact_force.h). A law says how large it is. */
+ * at the chord's middle, at right angles to it (contact_range.h). A law says how large it is. */
 #ifndef CLAST_ENGINE_DEM_CONTACTS_LAWS_H
 #define CLAST_ENGINE_DEM_CONTACTS_LAWS_H
 

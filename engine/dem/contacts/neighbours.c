@@ -1,13 +1,10 @@
 /* Neighbour lists: skins, the cell grid, near pairs, repacked bond blocks. */
-#include "engine/dem/contacts/neighbours.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/dem/beams/breaking.h"
-#include "engine/dem/lattice/assemble.h"
-#include "engine/dem/step/kernels.h"
+#include "engine/dem/step/system_layout.h"
 #include "engine/grow.h"
 
 static const double horizon_steps = 150.0; /* a skin lasts about this many steps at the grain's present speed */

@@ -1,10 +1,9 @@
 /* Constants of grains, beams and contacts, from the tessellation and the inputs. */
-#include "engine/dem/lattice/assemble.h"
 
 #include <float.h>
 #include <math.h>
 
-#include "engine/dem/beams/breaking.h"
+#include "engine/dem/step/system_layout.h"
 #include "engine/random.h"
 
 /* Common sides shorter than this share of the grains' mean diameter turn by large angles under small motions. A window

@@ -1,5 +1,5 @@
-/* Joins cells that were cut one by one into one planar subdivision: corners that coincide become one, so that
- * neighbours share their vertices to the last bit and a body at rest has no overlap. */
+/* Grains of a body: points of a random lattice, the Voronoi cell of each, and the cells joined into one planar
+ * subdivision. */
 #include "engine/dem/lattice/tessellation.h"
 
 #include <math.h>
@@ -7,6 +7,155 @@
 #include <string.h>
 
 #include "engine/grow.h"
+#include "engine/random.h"
+
+/* ---- points and cells, in lattice units (spacing 1) ----
+ *
+ * One point per grid square, drawn uniformly from the concentric square of side `disorder` (K99 section 2.1: "randomly
+ * and independently in each square of the grid with a maximal distance a from the center", a between 0 and the
+ * spacing). K99 does not say whether that region is a disc or a square. A disc of radius a = spacing would leave the
+ * grid square, against "in each square"; the square of side a = spacing fills it exactly, so the region is that square.
+ * No place in the plane is then farther than sqrt(2) from a point. Hence a cell reaches at most sqrt(2) from its point,
+ * and neighbours lie at most three squares apart. */
+
+enum { CELL_CORNERS = 40 };
+
+/* A cell while it is cut: corners counter-clockwise relative to its point; `across` identifies the neighbour beyond the
+ * side from corner k to k + 1: the index of another point, or -1..-4 for the left, lower, right, upper wall. */
+struct cell {
+  int count;
+  double x[CELL_CORNERS], y[CELL_CORNERS];
+  int64_t across[CELL_CORNERS];
+};
+
+enum { BEYOND = 6 }; /* squares around a disc: a cell reaches sqrt(2), its neighbours lie within 3, 1 for rounding */
+
+status dem_tessellation_points(const struct dem_lattice *lattice, struct dem_lattice_points *points,
+                               struct error *error) {
+  *points = (struct dem_lattice_points){.columns = lattice->columns, .rows = lattice->rows, .walled = true};
+  if (lattice->outline == DEM_OUTLINE_DISC) {
+    points->centre = (uint32_t)ceil(lattice->radius / lattice->spacing) + BEYOND;
+    points->columns = points->rows = 2 * points->centre + 1;
+    points->walled = false;
+  }
+  points->point = malloc((size_t)points->columns * points->rows * sizeof *points->point);
+  if (!points->point)
+    return status_fail(error, STATUS_MEMORY, "no memory for a lattice of %u x %u grains", points->columns,
+                       points->rows);
+  for (uint32_t row = 0; row < points->rows; row++)
+    for (uint32_t column = 0; column < points->columns; column++) {
+      /* An item is a square counted from the disc's centre or the block's corner: a larger body of one seed holds the
+       * smaller one's points. */
+      uint64_t item = dem_lattice_square(column - points->centre, row - points->centre);
+      uint64_t bits[4];
+      random_bits(lattice->seed, RANDOM_LATTICE, item, lattice->stream, bits);
+      points->point[(size_t)row * points->columns +
+                    column] = (struct dem_point){column + 0.5 + lattice->disorder * (random_uniform(bits[0]) - 0.5),
+                                                 row + 0.5 + lattice->disorder * (random_uniform(bits[1]) - 0.5)};
+    }
+  return STATUS_OK;
+}
+
+/* Keeps the part with nx x + ny y <= c; the new side faces `across`. */
+static bool cut(struct cell *cell, double nx, double ny, double c, int64_t across) {
+  double side[CELL_CORNERS];
+  bool outside = false;
+  for (int k = 0; k < cell->count; k++) {
+    side[k] = nx * cell->x[k] + ny * cell->y[k] - c;
+    outside |= side[k] > 0;
+  }
+  if (!outside)
+    return true;
+  struct cell old = *cell;
+  int n = 0;
+  for (int k = 0; k < old.count; k++) {
+    int next = k + 1 < old.count ? k + 1 : 0;
+    if (n + 2 >= CELL_CORNERS)
+      return false;
+    if (side[k] <= 0) {
+      cell->x[n] = old.x[k];
+      cell->y[n] = old.y[k];
+      cell->across[n++] = old.across[k];
+    }
+    if ((side[k] <= 0) != (side[next] <= 0)) {
+      double t = side[k] / (side[k] - side[next]);
+      cell->x[n] = old.x[k] + t * (old.x[next] - old.x[k]);
+      cell->y[n] = old.y[k] + t * (old.y[next] - old.y[k]);
+      cell->across[n++] = side[k] <= 0 ? across : old.across[k];
+    }
+  }
+  cell->count = n;
+  return n > 0;
+}
+
+/* Cuts one cell. False when it has too many corners (never seen: nearly all of its 48 candidates would have to be
+ * neighbours). */
+static bool cut_cell(const struct dem_lattice_points *points, uint32_t column, uint32_t row, struct cell *cell) {
+  struct dem_point p = points->point[(size_t)row * points->columns + column];
+  double left = -4, lower = -4, right = 4, upper = 4; /* beyond any cell: cut away, unless they are walls */
+  if (points->walled) {
+    left = -p.x;
+    lower = -p.y;
+    right = points->columns - p.x;
+    upper = points->rows - p.y;
+  }
+  *cell = (struct cell){.count = 4,
+                        .x = {left, left, right, right},
+                        .y = {upper, lower, lower, upper},
+                        .across = {-1, -2, -3, -4}};
+  for (int ring = 1; ring <= 3; ring++)
+    for (int dy = -ring; dy <= ring; dy++)
+      for (int dx = -ring; dx <= ring; dx += (dy == -ring || dy == ring) ? 1 : 2 * ring) {
+        int64_t x = (int64_t)column + dx, y = (int64_t)row + dy;
+        if (x < 0 || y < 0 || x >= points->columns || y >= points->rows)
+          continue;
+        int64_t j = y * points->columns + x;
+        double qx = points->point[j].x - p.x, qy = points->point[j].y - p.y;
+        double half = 0.5 * (qx * qx + qy * qy);
+        double reach = 0; /* a bisector beyond the farthest corner cuts nothing */
+        for (int k = 0; k < cell->count; k++)
+          reach = fmax(reach, cell->x[k] * cell->x[k] + cell->y[k] * cell->y[k]);
+        if (half * 0.5 < reach * (1 + 1e-9) && !cut(cell, qx, qy, half, j))
+          return false;
+      }
+  return true;
+}
+
+static struct dem_point circumcentre(const struct dem_point *p, int64_t i, int64_t j, int64_t k) {
+  double ax = p[j].x - p[i].x, ay = p[j].y - p[i].y, bx = p[k].x - p[i].x, by = p[k].y - p[i].y;
+  double a = ax * ax + ay * ay, b = bx * bx + by * by, d = 2 * (ax * by - ay * bx);
+  return (struct dem_point){p[i].x + (a * by - b * ay) / d, p[i].y + (b * ax - a * bx) / d};
+}
+
+/* The corner between the sides that the cell of point i shares with a and b. All cells that meet there get the same
+ * bits. */
+static struct dem_point corner_of(const struct dem_lattice_points *points, int64_t i, int64_t a, int64_t b) {
+  int64_t key[3] = {i, a, b}; /* sorted: walls first */
+  for (int pass = 0; pass < 2; pass++)
+    for (int k = 0; k < 2; k++)
+      if (key[k] > key[k + 1]) {
+        int64_t swap = key[k];
+        key[k] = key[k + 1];
+        key[k + 1] = swap;
+      }
+  const struct dem_point *p = points->point;
+  if (key[0] >= 0)
+    return circumcentre(p, key[0], key[1], key[2]);
+  const double wall[5] = {0, 0, 0, points->columns, points->rows}; /* by minus the name */
+  if (key[1] < 0) /* two walls: -4 upper, -3 right, -2 lower, -1 left; one is odd (vertical), one even */
+    return key[0] % 2 ? (struct dem_point){wall[-key[0]], wall[-key[1]]}
+                      : (struct dem_point){wall[-key[1]], wall[-key[0]]};
+  /* a wall and the bisector of two points */
+  double qx = p[key[2]].x - p[key[1]].x, qy = p[key[2]].y - p[key[1]].y;
+  double mx = p[key[1]].x + 0.5 * qx, my = p[key[1]].y + 0.5 * qy, at = wall[-key[0]];
+  return key[0] % 2 ? (struct dem_point){at, my - (at - mx) * qx / qy}
+                    : (struct dem_point){mx - (at - my) * qy / qx, at};
+}
+
+/* ---- one planar subdivision ----
+ *
+ * Corners of cells that were cut one by one become one where they coincide, so that neighbours share their vertices to
+ * the last bit and a body at rest has no overlap. */
 
 /* Corners nearer than this (in spacings) count as one. Rounding puts the same corner at most some 1e-14 apart at
  * coordinates below 100; a true side is this short in one of 1e10 pairs. */
@@ -114,11 +263,10 @@ static bool is_outside(const struct builder *b, struct dem_point centroid) {
 }
 
 /* The unique corners of the cell of point i. False: no memory. */
-static bool find_corners(struct builder *b, int64_t i, const struct dem_lattice_cell *cell,
-                         uint32_t corner[DEM_LATTICE_CORNERS]) {
+static bool find_corners(struct builder *b, int64_t i, const struct cell *cell, uint32_t corner[CELL_CORNERS]) {
   for (int k = 0; k < cell->count; k++) {
     const int64_t before = cell->across[k ? k - 1 : cell->count - 1];
-    corner[k] = corner_find(&b->corners, dem_lattice_corner(&b->points, i, cell->across[k], before));
+    corner[k] = corner_find(&b->corners, corner_of(&b->points, i, cell->across[k], before));
     if (corner[k] == UINT32_MAX)
       return false;
   }
@@ -126,8 +274,7 @@ static bool find_corners(struct builder *b, int64_t i, const struct dem_lattice_
 }
 
 /* Writes the cell's vertices from `start` on, without sides whose ends are the same corner. Returns their number. */
-static size_t write_vertices(struct builder *b, const struct dem_lattice_cell *cell, const uint32_t *corner,
-                             size_t start) {
+static size_t write_vertices(struct builder *b, const struct cell *cell, const uint32_t *corner, size_t start) {
   size_t n = 0;
   for (int k = 0; k < cell->count; k++) {
     if (corner[k] == corner[k + 1 < cell->count ? k + 1 : 0])
@@ -146,9 +293,9 @@ static bool add_cell(struct builder *b, uint32_t column, uint32_t row) {
   if (is_far_outside(b, b->points.point[i]))
     return true;
 
-  struct dem_lattice_cell cell;
-  uint32_t corner[DEM_LATTICE_CORNERS];
-  if (!dem_lattice_cell(&b->points, column, row, &cell) || !find_corners(b, i, &cell, corner))
+  struct cell cell;
+  uint32_t corner[CELL_CORNERS];
+  if (!cut_cell(&b->points, column, row, &cell) || !find_corners(b, i, &cell, corner))
     return false;
   const size_t c = t->cell_count, start = t->first_vertex[c], need = start + (size_t)cell.count;
   size_t room = b->vertex_capacity;
@@ -178,7 +325,7 @@ static bool add_pairs(struct builder *b) {
   struct dem_tessellation *t = b->out;
   for (uint32_t c = 0; c < t->cell_count; c++) {
     uint32_t start = t->first_vertex[c], end = t->first_vertex[c + 1];
-    uint32_t found[DEM_LATTICE_CORNERS][2]; /* the other cell, the side's first vertex */
+    uint32_t found[CELL_CORNERS][2]; /* the other cell, the side's first vertex */
     size_t count = 0;
     for (uint32_t k = start; k < end; k++) {
       const uint32_t other = b->across[k] < 0 ? UINT32_MAX : b->number[b->across[k]];
@@ -249,9 +396,8 @@ status dem_tessellation_make(const struct dem_lattice *lattice, struct dem_tesse
   if (!(squares >= 1 && squares < 1e8))
     return status_fail(error, STATUS_CONTENT,
                        "a body of %.3g grains is not possible: change its size or the grain spacing", squares);
-  status code = dem_lattice_fill(lattice, &b.points, error);
-  if (code)
-    return code;
+  TRY(dem_tessellation_points(lattice, &b.points, error));
+  status code = STATUS_OK;
   b.ox = disc ? 0.5 * b.points.columns : 0;
   b.oy = disc ? 0.5 * b.points.rows : 0;
   if (!cut_body(&b)) {

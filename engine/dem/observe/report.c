@@ -109,9 +109,7 @@ static status fill_finality(const struct dem_run *run, const struct outcome *out
   for (size_t k = breaks; k > 0 && log[k - 1].time > half; k--)
     results->late_breaks++;
   struct fragment *then;
-  status code = fragments_of(run, half, NULL, &then, &count, error);
-  if (code)
-    return code;
+  TRY(fragments_of(run, half, NULL, &then, &count, error));
   if (count > 0)
     results->largest_loss = fmax(0, then[0].mass / outcome->total_mass - outcome->largest_fraction);
   free(then);
@@ -194,7 +192,7 @@ static double given(const struct dem_ledger *ledger) {
 /* The words of warnings. When grains met too fast, a message says so, unless a fault has its own message. */
 static void warn(const struct dem_run *run, const struct dem_ledger *ledger, double input, struct outcome *outcome) {
   const double fastest = dem_system_fastest_approach(run->system);
-  unsigned set = dem_warn_known(&run->inputs, run->stable_time_step);
+  unsigned set = dem_describe_known_warnings(&run->inputs, run->stable_time_step);
   if (outcome->energy_error > WARNINGS_LARGEST_DRIFT)
     set |= WARNINGS_DRIFT;
   if (run->passing_speed > 0 && fastest > run->passing_speed)
@@ -250,11 +248,11 @@ static void fill_balance(const struct dem_run *run, const struct dem_ledger *led
     outcome->momentum_error = not_infinite(hypot(px, py) / magnitude);
 }
 
-status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct dem_results *results,
-                         struct fragment **fragments, size_t *count, struct error *error) {
-  status code = dem_report_fragments(run, NULL, fragments, count, error);
-  if (code)
-    return code;
+status dem_report_finish(void *of, struct outcome *outcome, void *report, struct fragment **fragments, size_t *count,
+                         struct error *error) {
+  struct dem_run *run = of;
+  struct dem_results *results = report;
+  TRY(dem_report_fragments(run, NULL, fragments, count, error));
   const struct dem_ledger ledger = dem_system_ledger(run->system);
   const double input = run->state.frame.energy_input + fabs(ledger.external_work);
   fill_results(run, &ledger, input, results);
@@ -263,7 +261,7 @@ status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct de
   const struct outcome_small small = small_fragments(*count, *fragments);
   outcome_fragments(outcome, *count, *fragments, &small);
   results->energy.vibration = vibration(*count, *fragments);
-  code = fill_finality(run, outcome, results, error);
+  const status code = fill_finality(run, outcome, results, error);
   if (code) {
     free(*fragments);
     *fragments = NULL;

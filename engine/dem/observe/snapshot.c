@@ -228,7 +228,8 @@ static void content(struct snapshot_file *file, const struct dem_run *run, const
   outlines(file, run, label);
 }
 
-status dem_snapshot_write(struct dem_run *run, const char *path, struct error *error) {
+status dem_snapshot_write(void *of, const char *path, struct error *error) {
+  struct dem_run *run = of;
   struct outcome outcome;
   struct dem_results results;
   struct fragment *fragments = NULL;

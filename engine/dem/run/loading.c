@@ -58,9 +58,7 @@ status dem_loading_start(struct dem_run *run, struct error *error) {
   const struct dem_tessellation *t = run->tessellation;
   const uint32_t rows = (uint32_t)run->inputs.body.rows;
   const unsigned freedoms = run->inputs.kind == DEM_COMPRESSION ? 7 : 6;
-  const status code = allocate(run, error);
-  if (code)
-    return code;
+  TRY(allocate(run, error));
   for (uint32_t c = 0; c < t->cell_count; c++) {
     const bool lower = t->grid_y[c] == 0, upper = t->grid_y[c] == rows - 1;
     if (lower)

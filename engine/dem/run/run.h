@@ -48,8 +48,9 @@ struct dem_run {
   size_t sample_capacity;
 };
 
+/* dem.c. Calls of struct engine_kind have its types: the run is a struct dem_run, inputs are a struct dem_inputs. */
 status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error);
-void dem_run_free(struct dem_run *run);                 /* NULL is fine */
+void dem_run_free(void *run);                           /* NULL is fine */
 double dem_run_closed(const struct dem_ledger *ledger); /* the sum that must stay constant, J/m */
 /* Sum over grains free along each axis, and sum of all magnitudes, kg/s per m of thickness. */
 void dem_run_momentum(const struct dem_run *run, double momentum[2], double *magnitude);
@@ -64,28 +65,26 @@ void dem_loading_drive(struct dem_run *run);  /* before a step */
 void dem_loading_record(struct dem_run *run); /* after it */
 void dem_loading_results(const struct dem_run *run, struct dem_results *results);
 
-/* report.c */
+/* report.c; `results`: struct dem_results */
 status dem_report_fragments(const struct dem_run *run, uint32_t *label, struct fragment **fragments, size_t *count,
                             struct error *error);
-status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct dem_results *results,
-                         struct fragment **fragments, size_t *count, struct error *error);
+status dem_report_finish(void *run, struct outcome *outcome, void *results, struct fragment **fragments, size_t *count,
+                         struct error *error);
 
 /* describe.c */
-char *dem_describe_scene(const struct dem_inputs *inputs);
+char *dem_describe_scene(const void *inputs); /* struct dem_inputs */
 double dem_describe_threshold_energy(const struct dem_inputs *inputs, const struct dem_tessellation *tessellation);
 /* Closing speed above which two free grains pass through each other: no overlap stores that much energy, m/s. */
 double dem_describe_passing_speed(const struct dem_inputs *inputs);
 void dem_describe_sound_speeds(const struct dem_inputs *inputs, double *extension, double *compression);
-
-/* warn.c */
-double dem_warn_stable_step(const struct dem_inputs *inputs); /* s: an estimate, without a body */
-double dem_warn_damping(const struct dem_inputs *inputs);     /* 1/s: the largest active damping */
+double dem_describe_stable_step(const struct dem_inputs *inputs); /* s: an estimate, without a body */
+double dem_describe_damping(const struct dem_inputs *inputs);     /* 1/s: the largest active damping */
 /* Warnings about time step and damping, once the longest stable step (s) is known. */
-unsigned dem_warn_known(const struct dem_inputs *inputs, double stable_step);
+unsigned dem_describe_known_warnings(const struct dem_inputs *inputs, double stable_step);
 /* Warnings before the run: engine_kind.warn. */
-unsigned dem_warn_inputs(const struct dem_inputs *inputs, FILE *out);
+unsigned dem_describe_warnings(const void *inputs, FILE *out);
 
 /* snapshot.c */
-status dem_snapshot_write(struct dem_run *run, const char *path, struct error *error);
+status dem_snapshot_write(void *run, const char *path, struct error *error);
 
 #endif

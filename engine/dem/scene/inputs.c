@@ -174,7 +174,8 @@ double dem_inputs_end_time(const struct dem_inputs *in) {
   return strain >= rate * ramp / 2 ? strain / rate + ramp / 2 : sqrt(2 * ramp * strain / rate);
 }
 
-status dem_inputs_check(const struct dem_inputs *in, struct error *error) {
+status dem_inputs_check(const void *inputs, struct error *error) {
+  const struct dem_inputs *in = inputs;
   double grains = dem_inputs_grains(in);
   bool disc = discs(in);
   if (disc && !(in->body.diameter >= 4 * in->grain.spacing))

@@ -64,7 +64,7 @@ extern const struct field_table dem_inputs;
 
 /* Checks conditions across fields: sizes that cannot be run, times that contradict each other. STATUS_CONTENT with a
  * remedy. */
-status dem_inputs_check(const struct dem_inputs *inputs, struct error *error);
+status dem_inputs_check(const void *inputs, struct error *error); /* struct dem_inputs */
 
 /* Whether moving sides load the body (uniaxial, compression). */
 bool dem_inputs_loaded(const struct dem_inputs *inputs);

@@ -2,6 +2,4 @@
 #define LANES         2
 #define KERNELS_TABLE dem_kernels_baseline
 #define KERNELS_NAME  "baseline"
-#include "engine/dem/step/kernels.h"
-
 #include "engine/dem/step/kernels_body.h"

@@ -4,7 +4,5 @@
 #define LANES         4
 #define KERNELS_TABLE dem_kernels_v3
 #define KERNELS_NAME  "v3"
-#include "engine/dem/step/kernels.h"
-
 #include "engine/dem/step/kernels_body.h"
 #endif

@@ -4,7 +4,5 @@
 #define LANES         8
 #define KERNELS_TABLE dem_kernels_v4
 #define KERNELS_NAME  "v4"
-#include "engine/dem/step/kernels.h"
-
 #include "engine/dem/step/kernels_body.h"
 #endif

@@ -7,7 +7,6 @@
 
 #include <stdbool.h>
 
-#include "engine/dem/beams/break.h"
 #include "engine/dem/lattice/tessellation.h"
 #include "engine/dem/scene/inputs.h"
 
@@ -56,7 +55,7 @@ double dem_system_last_break(const struct dem_system *system); /* s; 0 before an
 /* Largest speed so far, m/s, at which two grains without a beam between them came near each other on paths that meet:
  * centres within a mean diameter. */
 double dem_system_fastest_approach(const struct dem_system *system);
-/* Longest stable time step, s: 2 / omega_max for Verlet, 0.54 / omega_max for Gear (why: system_stable.c), by power
+/* Longest stable time step, s: 2 / omega_max for Verlet, 0.54 / omega_max for Gear (why: system.c), by power
  * iteration on the beams and contacts at rest. NaN: no memory. */
 double dem_system_stable_time_step(const struct dem_system *system);
 /* Number of pairs that overlap now, divided by the number of the tessellation's neighbour pairs. */

@@ -4,11 +4,11 @@
  * of eight. A pair of the tessellation owns one lane of a bond block: its beam, and its contact as a *window*, the
  * common side of either grain with the side before and after it (bond_range.h says when this is exact). All other near
  * pairs are in near blocks, each with a cached separating side. Pairs that neither decides go one by one to the general
- * overlap of two convex polygons (overlap.h). */
+ * overlap of two convex polygons (contact_range.h). */
 #ifndef CLAST_ENGINE_DEM_STEP_SYSTEM_LAYOUT_H
 #define CLAST_ENGINE_DEM_STEP_SYSTEM_LAYOUT_H
 
-#include "engine/dem/beams/break.h"
+#include "engine/cpu_class.h"
 #include "engine/dem/lattice/tessellation.h"
 #include "engine/dem/scene/inputs.h"
 #include "engine/restart.h"
@@ -76,7 +76,7 @@ struct dem_overlap {
   int owner;                 /* whose side it is: 0 or 1 */
   size_t side, vertex;       /* that side, and the vertex of the other that is nearest to it */
   double origin_x, origin_y; /* of the sums */
-  double twice_area, chord_x, chord_y, moment, xx, xy, yy; /* see contact_force.h */
+  double twice_area, chord_x, chord_y, moment, xx, xy, yy; /* see contact_range.h */
 };
 
 /* A pair for the general overlap: near list position, or bond lane with the high bit set. */
@@ -102,7 +102,7 @@ struct dem_progress {
   uint64_t gear_started;
 };
 
-struct dem_kernels; /* kernels.h */
+struct dem_kernels;
 
 /* Columns: one double per grain, padded to blocks of eight; they lie in one arena. */
 /* clang-format off */
@@ -193,23 +193,101 @@ struct dem_system {
 /* Allocates every array for the grains and pairs counted so far, zeroed. False: no memory; what was allocated is in
  * the system. */
 bool dem_system_arrays_allocate(struct dem_system *system);
-void dem_system_arrays_free(struct dem_system *system);
 size_t dem_system_arrays_bytes(const struct dem_system *system); /* of the arrays and the system itself */
 /* Gives the near list a capacity of at least `pairs` and keeps its entries. False: no memory, and nothing changes. */
 bool dem_system_arrays_grow_near(struct dem_system *system, size_t pairs);
-/* Lists the memory blocks on which the next step depends, and returns their number. */
-enum { DEM_SAVED_BLOCKS = 48 };
-size_t dem_system_arrays_saved(struct dem_system *system, struct restart_block blocks[DEM_SAVED_BLOCKS]);
-
 /* Writes the outline of a grain, in its present orientation and shifted by (dx, dy) from its own centre. */
 void dem_system_arrays_ring(const struct dem_system *system, uint32_t grain, double dx, double dy,
                             struct dem_ring *ring);
 
 /* Fills the Gear derivatives r_2 .. r_5 from the accelerations along four trial steps of the classical Runge-Kutta
  * method; the trial steps are undone. False: no memory, or the trial steps are not finite. */
-bool dem_gear_start(struct dem_system *system);
+bool dem_system_start_gear(struct dem_system *system);
 
-/* Computes forces at the present positions with the present lists. Books the dissipated powers over `dt` (s). */
-void dem_system_evaluate(struct dem_system *system, double dt);
+/* ---- lattice/assemble.c: from a tessellation to the arrays of a system ---- */
+
+/* `system` must be zero except for in, velocities, kernels. STATUS_CONTENT: outlines that cannot be used;
+ * STATUS_MEMORY. In both cases *system owns the allocated memory. */
+status dem_assemble(struct dem_system *system, const struct dem_tessellation *tessellation, uint64_t seed,
+                    struct error *error);
+
+/* S_ref of a pair (conservative law: kappa = Y / (L_c S_ref)), m; it never changes during a run.
+ * Pairs that were never bonded (side = 0): 0.27 (d_i + d_j). Bonded pairs: the common side, but at least half of that
+ * value. The floor is needed because the lattice makes arbitrarily short sides, and kappa acts on any later overlap of
+ * the two grains: without it, about 1 run in 100 had a pair too stiff for its time step after its beam had broken, and
+ * its energy diverged. A pair with a side below the floor is softer than Y by side/S_ref when aligned; such pairs carry
+ * little load. */
+double dem_assemble_reference_side(double side, double diameter_i, double diameter_j);
+
+/* Coefficients of the contact of two grains; `side` is their common side, 0 for grains that never had one. */
+struct dem_contact dem_assemble_contact(const struct dem_system *system, uint32_t i, uint32_t j, double side);
+
+/* ---- beams/breaking.c: rare changes of single lanes, outside the vector loops ---- */
+
+/* Breaks a beam: logs it, books its energy, sets its elastic constants to zero (K99 section 2.3), and switches on the
+ * pair's contact and damping if they were off while the beam held. (ux, uy) is the chord's direction. */
+void dem_breaking_lane(struct dem_system *system, struct dem_bond_block *block, int lane, double length, double ux,
+                       double uy, double theta_first, double theta_second);
+
+/* Removes a beam without a log entry (removed grains). */
+void dem_breaking_cut(struct dem_system *system, int32_t pair);
+
+/* Points an unused lane at the ghosts, with every constant zero. */
+void dem_breaking_clear(const struct dem_system *system, struct dem_bond_block *block, int lane);
+
+/* Makes the chord's present direction its reference (sine and cosine: of the turn since the old one), so that
+ * the angle from the reference stays small and the total angle unwrapped. */
+void dem_breaking_turn(struct dem_bond_block *block, int lane, double ux, double uy, double sine, double cosine);
+
+/* Present coefficients of a tessellation pair's contact: zero while the beam holds, if the inputs switch off contacts
+ * of bonded pairs. */
+struct dem_contact dem_breaking_contact(const struct dem_system *system, int32_t pair);
+/* Writes these coefficients to the pair's lane. */
+void dem_breaking_set_contact(const struct dem_system *system, int32_t pair, struct dem_bond_block *block, size_t lane);
+
+/* ---- contacts/neighbours.c: pairs that can come into contact soon ---- */
+
+/* Makes the near list and repacks the bond blocks, from the present positions. Every pair whose gap is less than the
+ * sum of its two skins is in one of them afterwards. A skin grows with its grain's speed, so that a few fast grains do
+ * not force a new list all the time. False: no memory; the list is then incomplete. */
+bool dem_neighbours_make(struct dem_system *system);
+
+/* Stores the side that keeps a near pair apart. */
+void dem_neighbours_cache_side(struct dem_system *system, uint32_t near, const struct dem_overlap *overlap);
+
+/* ---- kernels ---- */
+
+/* The loops over whole ranges. They are compiled once per CPU class and chosen at run time; engine/cpu_class.h says
+ * when results are bit-identical. */
+struct dem_kernels {
+  const char *name;                           /* of the CPU class */
+  void (*rest)(struct dem_system *system);    /* takes the positions now as the rest state of the beams */
+  void (*forces)(struct dem_system *system);  /* of beams and contacts, into fx, fy, torque */
+  void (*measure)(struct dem_system *system); /* fills sums.beam, sums.contact, sums.overlaps */
+  bool (*verlet_drift)(struct dem_system *system, bool *moved); /* false: not finite; moved: the lists end */
+  void (*verlet_kick)(struct dem_system *system);
+  bool (*gear_predict)(struct dem_system *system, bool *moved);
+  void (*gear_correct)(struct dem_system *system);
+  void (*turn)(struct dem_system *system); /* cosine and sine from the angles */
+  void (*best_side)(const struct dem_ring ring[2], struct dem_overlap *out);
+  void (*overlap)(struct dem_ring ring[2], struct dem_overlap *out); /* moves the rings' origin */
+};
+
+extern const struct dem_kernels dem_kernels_baseline;
+#ifdef __x86_64__
+extern const struct dem_kernels dem_kernels_v3, dem_kernels_v4;
+#endif
+
+/* The kernels of the CPU class that this run uses. */
+static inline const struct dem_kernels *dem_kernels_choose(void) {
+#ifdef __x86_64__
+  const enum cpu_class best = cpu_class_choose();
+  if (best == CPU_V4)
+    return &dem_kernels_v4;
+  if (best == CPU_V3)
+    return &dem_kernels_v3;
+#endif
+  return &dem_kernels_baseline;
+}
 
 #endif

@@ -86,6 +86,10 @@ static size_t fastest_particle(void *run, double *speed) {
 }
 
 /* The remedy against a drift, by its cause. */
+static const char *failure(const void *run) {
+  return ((const struct sph_run *)run)->system->failure;
+}
+
 static const char *remedy(void *of, double drift) {
   const struct sph_run *run = of;
   if (isnan(drift))
@@ -159,7 +163,8 @@ static const struct frame_kind kind = {.fault = SPH_STOP_FAULT,
                                        .steps = steps_of,
                                        .energy = energy_of,
                                        .fastest = fastest_particle,
-                                       .remedy = remedy};
+                                       .remedy = remedy,
+                                       .failure = failure};
 
 /* ---- making ---- */
 
@@ -177,6 +182,7 @@ static void begin(struct sph_run *run) {
                               .state_size = sizeof run->state,
                               .inputs = &run->inputs,
                               .seed = run->seed,
+                              .end_time = run->inputs.stop.end_time,
                               .sample = run->sample,
                               .sample_size = sizeof *run->sample,
                               .sample_capacity = run->sample_capacity};
