@@ -116,16 +116,26 @@ static status fill_finality(const struct dem_run *run, const struct outcome *out
   return STATUS_OK;
 }
 
-/* Motion inside fragments, J/m: their kinetic energy less that of translation and rotation. */
-static double vibration(size_t count, const struct fragment *fragments) {
-  double sum = 0;
+/* Sums over fragments. */
+struct fragment_sums {
+  double mass, grains; /* kg/m */
+  double translation;  /* J/m */
+  double vibration;    /* J/m: their kinetic energy less that of translation and rotation */
+};
+
+static struct fragment_sums sum_fragments(size_t count, const struct fragment *fragments) {
+  struct fragment_sums sums = {0};
   for (size_t k = 0; k < count; k++) {
     const struct fragment *f = &fragments[k];
     const double *v = f->velocity;
-    sum += f->kinetic_energy - 0.5 * f->mass * (v[0] * v[0] + v[1] * v[1]) -
-           0.5 * f->moment_of_inertia * f->spin[2] * f->spin[2];
+    sums.mass += f->mass;
+    sums.grains += f->count;
+    sums.translation += 0.5 * f->mass * (v[0] * v[0] + v[1] * v[1]);
+    sums.vibration += f->kinetic_energy - 0.5 * f->mass * (v[0] * v[0] + v[1] * v[1]) -
+                      0.5 * f->moment_of_inertia * f->spin[2] * f->spin[2];
   }
-  return fmax(0, sum); /* single grains alone give rounding errors only */
+  sums.vibration = fmax(0, sums.vibration); /* single grains alone give rounding errors only */
+  return sums;
 }
 
 static void fill_breaks(const struct dem_run *run, struct dem_results *results) {
@@ -183,12 +193,6 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
     dem_loading_results(run, results);
 }
 
-/* Energy that contacts gave without having taken it, J/m: a lower bound with the printed law, where what contacts still
- * store hides a part. */
-static double given(const struct dem_ledger *ledger) {
-  return ledger->begun - fmin(ledger->contact, 0);
-}
-
 /* The words of warnings. When grains met too fast, a message says so, unless a fault has its own message. */
 static void warn(const struct dem_run *run, const struct dem_ledger *ledger, double input, struct outcome *outcome) {
   const double fastest = dem_system_fastest_approach(run->system);
@@ -197,7 +201,9 @@ static void warn(const struct dem_run *run, const struct dem_ledger *ledger, dou
     set |= WARNINGS_DRIFT;
   if (run->passing_speed > 0 && fastest > run->passing_speed)
     set |= WARNINGS_PASSING;
-  if (given(ledger) > WARNINGS_LARGEST_DRIFT * input)
+  /* Energy that contacts gave without having taken it: a lower bound with the printed law, where what contacts still
+   * store hides a part. */
+  if (ledger->begun - fmin(ledger->contact, 0) > WARNINGS_LARGEST_DRIFT * input)
     set |= WARNINGS_GAIN;
   outcome_warnings(set, outcome->warnings, sizeof outcome->warnings);
   if (set & WARNINGS_PASSING && outcome->state <= OUTCOME_END_TIME)
@@ -208,26 +214,6 @@ static void warn(const struct dem_run *run, const struct dem_ledger *ledger, dou
 
 static double not_infinite(double value) {
   return isfinite(value) ? value : (double)NAN;
-}
-
-/* Single grains are dust; the spectrum is complete from two grains on. */
-static struct outcome_small small_fragments(size_t count, const struct fragment *fragments) {
-  double mass = 0, grains = 0;
-  for (size_t k = 0; k < count; k++) {
-    mass += fragments[k].mass;
-    grains += fragments[k].count;
-  }
-  return (struct outcome_small){.dust = NAN, .complete = grains > 0 ? 1.5 * mass / grains : 0};
-}
-
-/* Energy of the fragments' translation, J/m. */
-static double translation(size_t count, const struct fragment *fragments) {
-  double sum = 0;
-  for (size_t k = 0; k < count; k++) {
-    const double *v = fragments[k].velocity;
-    sum += 0.5 * fragments[k].mass * (v[0] * v[0] + v[1] * v[1]);
-  }
-  return sum;
 }
 
 /* Errors of energy and momentum, and the share of the energy that is translation; NaN where nothing was put in. */
@@ -258,9 +244,11 @@ status dem_report_finish(void *of, struct outcome *outcome, void *report, struct
   fill_results(run, &ledger, input, results);
 
   *outcome = frame_outcome(&run->frame, run->inputs.fidelity.time_step);
-  const struct outcome_small small = small_fragments(*count, *fragments);
+  const struct fragment_sums sums = sum_fragments(*count, *fragments);
+  /* Single grains are dust; the spectrum is complete from two grains on. */
+  const struct outcome_small small = {.dust = NAN, .complete = sums.grains > 0 ? 1.5 * sums.mass / sums.grains : 0};
   outcome_fragments(outcome, *count, *fragments, &small);
-  results->energy.vibration = vibration(*count, *fragments);
+  results->energy.vibration = sums.vibration;
   const status code = fill_finality(run, outcome, results, error);
   if (code) {
     free(*fragments);
@@ -268,7 +256,7 @@ status dem_report_finish(void *of, struct outcome *outcome, void *report, struct
     *count = 0;
     return code;
   }
-  fill_balance(run, &ledger, input, translation(*count, *fragments), outcome);
+  fill_balance(run, &ledger, input, sums.translation, outcome);
   warn(run, &ledger, input, outcome);
   return STATUS_OK;
 }

@@ -43,10 +43,6 @@ cleanup:
   return code;
 }
 
-static double kinetic(const struct dem_run *run) {
-  return dem_system_ledger(run->system).kinetic;
-}
-
 static uint32_t grain_nearest(const struct dem_tessellation *t, double x, double y) {
   uint32_t nearest = 0;
   double best = HUGE_VAL;
@@ -154,6 +150,6 @@ status dem_protocol_start(struct dem_run *run, struct error *error) {
   case DEM_COMPRESSION: return dem_loading_start(run, error);
   case DEM_KINDS: break;
   }
-  run->state.frame.energy_input = kinetic(run);
+  run->state.frame.energy_input = dem_system_ledger(run->system).kinetic;
   return code;
 }
