@@ -142,6 +142,19 @@ sed -i 's/0.05/1e-9/' sharp.yaml
 expect 65 "$clast" run sharp.yaml
 says "smallest error"
 
+# Points of a file are scenes like those of axes.
+printf 'threshold.strain,threshold.angle\n2 %%,2 deg\n5 %%,6 deg\n' >points.csv
+cat >file.yaml <<'YAML'
+name: file
+scene: disc-explosion
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.end_time: 1 ms}
+design: {file: points.csv}
+seeds: {per_point: 2}
+store: file.db
+YAML
+expect 0 "$clast" converge file.yaml --knob grains=1.8cm,1.4cm --seeds 2 --within off -j 2
+says "8 runs computed"
+
 # Time that is spent before the first run ends the study.
 expect 0 timeout -k 1 30 "$clast" converge "${disc[@]}" --knob time_step --seconds 1e-9 --store spent.db -j 2
 prints "the time given is spent"
@@ -156,4 +169,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 44
+done_after 45
