@@ -11,6 +11,7 @@
 #include "schemas/document.h"
 #include "schemas/file.h"
 #include "schemas/json_schema.h"
+#include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
@@ -107,7 +108,7 @@ static void take_word(document_node *node, const char *path, const char *folder)
   const char *text = document_scalar(node);
   if (!text || !*text)
     return; /* the reader describes the error */
-  char word[4096];
+  char word[LIMITS_PATH];
   snprintf(word, sizeof word, "%s", text);
   if (file_name_is_document(word))
     include_material(node, node, path, word, folder);

@@ -5,6 +5,8 @@
 #ifndef CLAST_SCHEMAS_STATUS_H
 #define CLAST_SCHEMAS_STATUS_H
 
+#include "schemas/limits.h"
+
 /* X(constant, pinned value, meaning) */
 #define STATUS_LIST(X)                                                                                                 \
   X(STATUS_OK, 0, "done")                                                                                              \
@@ -27,7 +29,7 @@ typedef enum status {
  * lines: a report of a document with a few dozen errors fits (schemas/document.h). */
 struct error {
   status status;
-  char message[8192];
+  char message[LIMITS_MESSAGE];
 };
 
 /* Fills *error (may be NULL) and returns `code`, so that a function can end with `return status_fail(error, STATUS_IO,

@@ -14,13 +14,14 @@
 
 #include "analysis/pictures/picture_canvas.h"
 #include "schemas/file.h"
+#include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
 extern char **environ;
 
 enum { LETTER = 8, LINE = 19, LINES = 4 }; /* pixels: width of a letter, height of a line; maximum lines of a text */
-enum { PATH = 4096, STEM = 256 };
+enum { STEM = 256 };
 
 struct chart {
   const char *template;
@@ -28,7 +29,7 @@ struct chart {
   char *variables_text, *data_text;
   size_t variables_size, data_size;
   FILE *variables, *data;
-  char folder[PATH], stem[STEM]; /* where gnuplot runs; the picture's name without folder and ending */
+  char folder[LIMITS_PATH], stem[STEM]; /* where gnuplot runs; the picture's name without folder and ending */
 };
 
 /* In single quotes gnuplot interprets no escapes and no `commands`, but it does expand a macro such as @x, so the text
@@ -196,7 +197,7 @@ static status read_template(const struct picture_page *page, const char *name, c
         *text = strdup(t->text);
     return *text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the template %s", name);
   }
-  char path[PATH];
+  char path[LIMITS_PATH];
   enum { MOST = 1 << 20 };
   snprintf(path, sizeof path, "%s/%s.gp", page->templates, name);
   TRY(file_input(path, error));
@@ -249,7 +250,7 @@ static status write_script(struct chart *chart, double height, char **script, si
 /* ---- gnuplot as a child process ---- */
 
 struct in_folder {
-  char path[PATH + STEM + 32];
+  char path[LIMITS_PATH + STEM + 32];
 };
 
 /* The file of the chart with this ending in its folder. */
@@ -309,7 +310,7 @@ static status refuse(const struct chart *chart, int end, struct error *error) {
 static status keep(const struct chart *chart, const char *script, size_t size, const char *drawn, struct error *error) {
   const struct picture_page *page = chart->page;
   const int stem = (int)(strrchr(page->path, '.') - page->path);
-  char beside[2][PATH + 8];
+  char beside[2][LIMITS_PATH + 8];
   unsigned char *bytes = NULL;
   snprintf(beside[0], sizeof beside[0], "%.*s.gp", stem, page->path);
   snprintf(beside[1], sizeof beside[1], "%.*s.dat", stem, page->path);
@@ -346,7 +347,7 @@ static status draw_in_folder(struct chart *chart, double height, struct error *e
                        height);
   const char *ending = strrchr(page->path, '.') + 1, *slash = strrchr(page->path, '/'),
              *base = slash ? slash + 1 : page->path;
-  if (strlen(page->path) + 16 > PATH)
+  if (strlen(page->path) + 16 > LIMITS_PATH)
     return status_fail(error, STATUS_USAGE, "the name of the picture is too long");
   snprintf(chart->stem, sizeof chart->stem, "%.*s", (int)(ending - 1 - base), base);
   char *script = NULL;

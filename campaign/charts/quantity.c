@@ -11,11 +11,12 @@
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/ask.h"
 #include "engine/grow.h"
+#include "schemas/limits.h"
 
 /* Columns of ask_group after the axes. */
 enum { VERSION = 1, MEAN = 6, HALF_WIDTH = 9, RESOLUTION = 10, COLUMNS = 12 };
 
-enum { QUANTITY_AXES = 64, MOST_ROWS = 10000, MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, INPUT_TEXT = 200 };
+enum { MOST_ROWS = 10000, MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, INPUT_TEXT = 200 };
 
 struct row {
   double input[2];            /* in the campaign's unit; NaN: a text, off, or does not apply */
@@ -33,7 +34,7 @@ struct quantity {
   char pooled[ASK_GROUP_POOLED]; /* other varied inputs that the means average over, with points as units; "": none */
   struct row *row;               /* owned */
   size_t count, room;
-  struct ask_column written[QUANTITY_AXES]; /* the varied inputs, in the units that the campaign gives */
+  struct ask_column written[LIMITS_AXES_OF_TABLE]; /* the varied inputs, in the units that the campaign gives */
   size_t written_count;
   const struct ask_column *unit[2]; /* the written unit of each axis; NULL: SI */
 };
@@ -127,7 +128,7 @@ static status read_quantity(struct store *store, const char *x, const char *y, c
   quantity->axes = y ? 2 : 1;
   snprintf(quantity->name, sizeof quantity->name, "%s", name);
   TRY(estimates_named(name, &quantity->exponent, &method, &window, error));
-  TRY(ask_columns_axes(store, true, QUANTITY_AXES, quantity->written, &quantity->written_count, error));
+  TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_TABLE, quantity->written, &quantity->written_count, error));
   snprintf(by, sizeof by, "%s%s%s", x, y ? "," : "", y ? y : "");
   ANSWER groups = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : name, quantity->pooled, error);
   TRY(answer_status(&groups));

@@ -6,6 +6,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/report/report_make.h"
 #include "schemas/file.h"
+#include "schemas/limits.h"
 
 enum { EVERY_MOST = 86400 };
 
@@ -39,7 +40,7 @@ static status watch(struct report_choice *choice, int64_t every, size_t *size, s
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  char name[4096];
+  char name[LIMITS_PATH];
   size_t size = 0;
   if (line->count > REPORT_STORES)
     return status_fail(error, STATUS_USAGE, "a page shows at most %d stores", REPORT_STORES);

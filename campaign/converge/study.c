@@ -8,6 +8,7 @@
 #include "analysis/statistics/sample.h"
 #include "analysis/statistics/scatter.h"
 #include "db/ask/ask.h"
+#include "schemas/limits.h"
 
 #define CONFIDENCE 0.95
 #define NOTHING    ((double)NAN)
@@ -59,7 +60,7 @@ status study_add(struct study *study, const struct scene *base, struct ladder *l
 void study_clear(struct study *study) {
   for (size_t i = 0; i < study->ladder_count; i++) {
     struct study_ladder *ladder = &study->ladder[i];
-    for (size_t q = 0; q < STUDY_QUANTITIES; q++)
+    for (size_t q = 0; q < LIMITS_STUDY_QUANTITIES; q++)
       for (size_t l = 0; l < KNOB_LEVELS; l++)
         free(ladder->values[q][l]);
     for (size_t l = 0; l < KNOB_LEVELS; l++)
@@ -184,7 +185,7 @@ static double error_at_base(const struct study_found *found) {
 }
 
 static void mark_frontier(size_t count, struct study_found *found) {
-  enum { MOST = STUDY_KNOBS * KNOB_LEVELS };
+  enum { MOST = LIMITS_STUDY_KNOBS * KNOB_LEVELS };
   double cost[MOST] = {0}, error[MOST] = {0};
   bool on[MOST];
   size_t n = 0;
@@ -234,7 +235,7 @@ static void add_reference_error(const struct study_ladder *ladders, size_t count
 
 /* Gives each level the errors of all knobs: for the other knobs, their errors at the scene's own setting. */
 static void combine(const struct study_ladder *ladders, size_t count, struct study_found *found) {
-  double own[STUDY_KNOBS] = {0};
+  double own[LIMITS_STUDY_KNOBS] = {0};
   for (size_t i = 0; i < count; i++)
     if (ladders[i].levels.knob->group == KNOB_SETTINGS)
       add_reference_error(ladders, count, i, found);
@@ -263,7 +264,7 @@ static void find_modes(const struct study_ladder *ladder, size_t quantity, struc
 size_t study_of_scene(const struct study *study, size_t from, size_t quantity, struct study_found *found) {
   size_t count = 0;
   for (size_t i = from; i < study->ladder_count && study->ladder[i].base == study->ladder[from].base; i++)
-    if (count < STUDY_KNOBS) {
+    if (count < LIMITS_STUDY_KNOBS) {
       study_find(study, &study->ladder[i], quantity, &found[count]);
       find_modes(&study->ladder[i], quantity, &found[count++]);
     }
@@ -272,7 +273,7 @@ size_t study_of_scene(const struct study *study, size_t from, size_t quantity, s
 }
 
 status study_store(const struct study *study, struct store *store, struct error *error) {
-  struct study_found *found = malloc(STUDY_KNOBS * sizeof *found);
+  struct study_found *found = malloc(LIMITS_STUDY_KNOBS * sizeof *found);
   status code = found ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the rows of a study");
   for (size_t from = 0, count = 0; code == STATUS_OK && from < study->ladder_count; from += count)
     for (size_t q = 0; code == STATUS_OK && q < study->quantity_count; q++) {

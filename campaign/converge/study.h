@@ -13,8 +13,7 @@
 #include "campaign/converge/ladder.h"
 #include "campaign/document/campaign.h"
 #include "campaign/launch/launch.h"
-
-enum { STUDY_QUANTITIES = 8, STUDY_KNOBS = 32 /* of one scene */ };
+#include "schemas/limits.h"
 
 /* The quantity of a study: a result of every run, or an exponent fitted to all runs of a point. */
 struct study_quantity {
@@ -36,13 +35,13 @@ struct study_ladder {
   const struct scene *base; /* borrowed */
   int64_t base_point;       /* in the store; 0 before study_run */
   int64_t point[KNOB_LEVELS];
-  bool left_out[KNOB_LEVELS];                    /* left out because of the budget */
-  int64_t seeds;                                 /* wanted number for every level that is not left out */
-  double *values[STUDY_QUANTITIES][KNOB_LEVELS]; /* by seed; NaN: no usable run. Owned. For an exponent: the run's
-                                                    contribution (pooled_exponent_of_runs), first `seeds` only */
-  bool *ran[KNOB_LEVELS];                        /* by seed: its run is in the store. Owned */
-  double cpu[KNOB_LEVELS], wall[KNOB_LEVELS];    /* means of the runs, s; NaN: none */
-  bool narrow;                                   /* every bias of every quantity is known to the wanted width */
+  bool left_out[KNOB_LEVELS];                           /* left out because of the budget */
+  int64_t seeds;                                        /* wanted number for every level that is not left out */
+  double *values[LIMITS_STUDY_QUANTITIES][KNOB_LEVELS]; /* by seed; NaN: no usable run. Owned. For an exponent: the
+                                                    run's contribution (pooled_exponent_of_runs), first `seeds` only */
+  bool *ran[KNOB_LEVELS];                               /* by seed: its run is in the store. Owned */
+  double cpu[KNOB_LEVELS], wall[KNOB_LEVELS];           /* means of the runs, s; NaN: none */
+  bool narrow;                                          /* every bias of every quantity is known to the wanted width */
   bool done;
   const char *end; /* why no more seeds are added: a sentence without full stop */
 };
@@ -58,7 +57,7 @@ struct study {
   struct campaign limits; /* name, store, first_seed, time and memory limits, attempts, failures; nothing is owned */
   const char *scene_reference;
   struct study_rule rule;
-  struct study_quantity quantity[STUDY_QUANTITIES];
+  struct study_quantity quantity[LIMITS_STUDY_QUANTITIES];
   size_t quantity_count;
   struct study_ladder *ladder; /* owned */
   size_t ladder_count;
@@ -79,9 +78,9 @@ struct study_found {
 /* Results of one ladder: the member `error` of its rows is that of its knob alone. */
 void study_find(const struct study *study, const struct study_ladder *ladder, size_t quantity,
                 struct study_found *found);
-/* Results of all ladders of one scene, beginning with ladder `from`; `found` has STUDY_KNOBS elements. Each level's
- * error includes the errors of the other knobs at the scene's own setting; the frontier is over all ladders. Returns
- * the number of ladders. */
+/* Results of all ladders of one scene, beginning with ladder `from`; `found` has LIMITS_STUDY_KNOBS elements. Each
+ * level's error includes the errors of the other knobs at the scene's own setting; the frontier is over all ladders.
+ * Returns the number of ladders. */
 size_t study_of_scene(const struct study *study, size_t from, size_t quantity, struct study_found *found);
 
 /* Index of the level that the others are compared with. */

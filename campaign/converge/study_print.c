@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "campaign/charts/charts.h"
+#include "schemas/limits.h"
 
 status study_print_knobs(enum table_format format, struct error *error) {
   struct table *table = table_new(format, stdout);
@@ -145,7 +146,7 @@ static const char legend[] =
     "upper of two modes.\n";
 
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error) {
-  struct study_found *found = malloc(STUDY_KNOBS * sizeof *found);
+  struct study_found *found = malloc(LIMITS_STUDY_KNOBS * sizeof *found);
   if (!found)
     return status_fail(error, STATUS_MEMORY, "out of memory");
   status code = STATUS_OK;
@@ -172,10 +173,10 @@ status study_print(const struct study *study, enum table_format format, bool qui
 
 /* ---- pictures: results over cost, and the error over cost with the frontier ---- */
 
-enum { CURVES = PICTURE_SERIES, MARKS = STUDY_KNOBS * KNOB_LEVELS };
+enum { CURVES = PICTURE_SERIES, MARKS = LIMITS_STUDY_KNOBS * KNOB_LEVELS };
 
 struct drawing {
-  struct study_found found[STUDY_KNOBS];
+  struct study_found found[LIMITS_STUDY_KNOBS];
   struct picture_mean means[CURVES][MARKS];
   struct picture_curve curves[CURVES];
   size_t count;

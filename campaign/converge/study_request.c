@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "campaign/document/campaign.h"
+#include "schemas/limits.h"
 
 /* ---- the subject ---- */
 
@@ -92,8 +93,8 @@ static status read_quantities(struct study *study, const char *names, const stru
                               struct error *error) {
   char name[FIELD_TEXT_SIZE];
   while (ladder_next_word(&names, name, sizeof name)) {
-    if (study->quantity_count == STUDY_QUANTITIES)
-      return status_fail(error, STATUS_USAGE, "at most %d quantities in one study", STUDY_QUANTITIES);
+    if (study->quantity_count == LIMITS_STUDY_QUANTITIES)
+      return status_fail(error, STATUS_USAGE, "at most %d quantities in one study", LIMITS_STUDY_QUANTITIES);
     if (study_quantity_find(kind, name, &study->quantity[study->quantity_count++], error) != STATUS_OK)
       return STATUS_USAGE;
   }

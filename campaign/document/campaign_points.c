@@ -10,6 +10,7 @@
 
 #include "engine/grow.h"
 #include "schemas/csv.h"
+#include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/sha256.h"
 #include "schemas/unit.h"
@@ -41,7 +42,7 @@ static bool wrong(struct reading *r, const char *format, ...) {
 /* Opens the file of points. False: reported. */
 static bool open_points(struct reading *r, const char *folder) {
   const char *name = r->campaign->design.file;
-  char path[4096];
+  char path[LIMITS_PATH];
   struct stat facts;
   struct error error;
   const bool alone = name[0] == '/' || !folder;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "schemas/file.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 
 static const double MORRIS_STEP = 0.5; /* change of the quantile: two of four levels */
@@ -86,7 +87,7 @@ status sensitivity_design_write(const char *path, const char *output, enum desig
                                 uint64_t seed, struct error *error) {
   struct campaign *campaign = NULL, *written = NULL;
   struct design_sensitivity *design = NULL;
-  char points[4096];
+  char points[LIMITS_PATH];
   const size_t length = strlen(output);
   if (length < 6 || strcmp(output + length - 5, ".yaml") != 0 || length >= sizeof points)
     return status_fail(error, STATUS_USAGE, "'%s' is to be written: its name must end in .yaml", output);

@@ -8,8 +8,9 @@
 #include "campaign/charts/charts.h"
 #include "db/ask/ask.h"
 #include "schemas/file.h"
+#include "schemas/limits.h"
 
-enum { PATH = 4096, WIDTH = 600 };
+enum { WIDTH = 600 };
 
 struct cinema {
   struct store *store;
@@ -22,7 +23,7 @@ struct cinema {
 
 /* Draws the spectrum of a point. A point without fragments has none. */
 static status draw_spectrum(struct cinema *cinema, int64_t point, struct error *error) {
-  char path[PATH];
+  char path[LIMITS_PATH];
   snprintf(path, sizeof path, "%s/point%" PRId64 ".png", cinema->folder, point);
   const struct spectrum_choice choice = {.pool = {.point = point}};
   const struct picture_page page = {.path = path, .width = WIDTH};
@@ -42,7 +43,7 @@ static void file_cell(struct cinema *cinema, bool there, const char *kind, int64
 static status write_run(struct cinema *cinema, const struct answer *runs, struct error *error) {
   const int64_t run = answer_integer(runs, 0), point = answer_integer(runs, 1);
   const size_t fields = answer_count(runs) - 1;
-  char path[PATH];
+  char path[LIMITS_PATH];
   if (point != cinema->point)
     TRY(draw_spectrum(cinema, point, error));
   cinema->point = point;
@@ -85,7 +86,7 @@ static status write_table(struct cinema *cinema, struct error *error) {
 }
 
 status cinema_write(struct store *store, const char *folder, struct error *error) {
-  char path[PATH];
+  char path[LIMITS_PATH];
   struct file_output file;
   TRY(file_folder(folder, error));
   if (snprintf(path, sizeof path, "%s/data.csv", folder) >= (int)sizeof path - 64)

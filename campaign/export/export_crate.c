@@ -16,13 +16,13 @@
 #include "campaign/build_facts.h"
 #include "db/ask/ask.h"
 #include "schemas/file.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 
 #define SPECIFICATION "https://w3id.org/ro/crate/1.1"
 #define PROFILE       "https://w3id.org/ro/wfrun/process/0.5"
 #define STORE         "store.db"
 #define METADATA      "ro-crate-metadata.json"
-enum { PATH_SIZE = 4096 };
 
 struct crate {
   const struct export_crate_options *options;
@@ -30,8 +30,8 @@ struct crate {
   bool failed;                     /* there was no memory for an entity */
 };
 
-static bool join(char path[PATH_SIZE], const char *folder, const char *name) {
-  return snprintf(path, PATH_SIZE, "%s/%s", folder, name) < PATH_SIZE;
+static bool join(char path[LIMITS_PATH], const char *folder, const char *name) {
+  return snprintf(path, LIMITS_PATH, "%s/%s", folder, name) < LIMITS_PATH;
 }
 
 /* ---- JSON ---- */
@@ -62,7 +62,7 @@ static void append(struct crate *crate, json_t *list, json_t *made) {
 }
 
 static void add_file(struct crate *crate, const char *name, const char *format, const char *description) {
-  char path[PATH_SIZE], size[32];
+  char path[LIMITS_PATH], size[32];
   struct stat facts;
   const bool known = join(path, crate->options->folder, name) && stat(path, &facts) == 0;
   if (known)
@@ -94,7 +94,7 @@ static void add_program(struct crate *crate, const char *version, const char *co
 
 /* campaign, name, document */
 static status add_campaign(struct crate *crate, const struct answer *row, struct error *error) {
-  char name[64], path[PATH_SIZE], description[512];
+  char name[64], path[LIMITS_PATH], description[512];
   snprintf(name, sizeof name, "campaign-%" PRId64 ".yaml", answer_integer(row, 0));
   if (!join(path, crate->options->folder, name))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
@@ -170,7 +170,7 @@ static void add_people(struct crate *crate) {
 /* Writes the metadata, after all other files: what describes the crate, then the entities. */
 static status finish(struct crate *crate, const char *title, struct error *error) {
   const char *license = crate->options->license;
-  char path[PATH_SIZE], date[32];
+  char path[LIMITS_PATH], date[32];
   now_text(date);
   if (!join(path, crate->options->folder, METADATA))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
@@ -214,7 +214,7 @@ static status take_folder(const char *folder, struct error *error) {
 }
 
 static status fill(struct crate *crate, struct store *store, const char *title, struct error *error) {
-  char path[PATH_SIZE];
+  char path[LIMITS_PATH];
   if (!join(path, crate->options->folder, STORE))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
   TRY(store_export(store, path, error));

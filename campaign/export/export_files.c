@@ -3,6 +3,7 @@
 
 #include "db/ask/ask.h"
 #include "schemas/file.h"
+#include "schemas/limits.h"
 
 static const char *const exported[] = {"runs", "points", "spectra", "estimates", "column_doc"};
 
@@ -23,7 +24,7 @@ status export_files_write(struct store *store, const char *path, const char *vie
 
 status export_files_folder(struct store *store, const char *folder, struct error *error) {
   enum { TABLES = sizeof exported / sizeof exported[0] };
-  char path[TABLES][4096];
+  char path[TABLES][LIMITS_PATH];
   TRY(file_folder(folder, error));
   for (size_t i = 0; i < TABLES; i++) { /* all before the first is written */
     if (snprintf(path[i], sizeof path[i], "%s/%s.csv", folder, exported[i]) >= (int)sizeof path[i])

@@ -1,5 +1,6 @@
 /* Non-blocking messages between ranks: collects frames, sends, receives, finalizes MPI. */
 #include "campaign/farm/farm_private.h"
+#include "schemas/limits.h"
 #include "schemas/memory.h"
 
 #include <dirent.h>
@@ -36,7 +37,7 @@ struct farm_link {
 #ifdef OPEN_MPI
 /* True when a folder has Open MPI components for PMIx, but none for PMI-1 (s1) or PMI-2 (s2). */
 static bool lacks_pmi(const char *folder) {
-  char pmix[4096], s1[4200], s2[4200];
+  char pmix[LIMITS_PATH], s1[LIMITS_PATH + 104], s2[LIMITS_PATH + 104];
   glob_t found;
   snprintf(pmix, sizeof pmix, "%s/mca_pmix_*.so", folder);
   snprintf(s1, sizeof s1, "%s/mca_pmix_s1.so", folder);
@@ -315,7 +316,7 @@ static void mark_mapped(struct leftovers *found, const char *path) {
 
 /* A process whose mappings are not readable has other rights than this one: it is not one of our ranks. */
 static void look_into(const char *process, struct leftovers *found) {
-  char path[300], line[4096 + 200];
+  char path[300], line[LIMITS_PATH + 200];
   snprintf(path, sizeof path, "/proc/%s/maps", process);
   FILE *maps = fopen(path, "r");
   if (!maps)

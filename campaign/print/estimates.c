@@ -5,6 +5,7 @@
 #include "campaign/print/print.h"
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/ask.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 
 struct printing {
@@ -13,7 +14,7 @@ struct printing {
   struct table *table;
   bool studied; /* some exponent has a study; otherwise no point's study is read */
   size_t axes;
-  struct ask_column axis[ASK_POINTS_INPUTS];
+  struct ask_column axis[LIMITS_AXES_OF_POOL];
   size_t shown;         /* axes that fit into a terminal */
   bool only_likelihood; /* least squares does not fit */
 };
@@ -225,9 +226,9 @@ void print_estimates_legend(struct store *store) {
 status print_estimates(struct store *store, const struct ask_points_choice *choice, enum table_format format, FILE *out,
                        struct error *error) {
   struct printing printing = {.store = store, .format = format};
-  TRY(ask_columns_axes(store, format == TABLE_TEXT, ASK_POINTS_INPUTS, printing.axis, &printing.axes, error));
+  TRY(ask_columns_axes(store, format == TABLE_TEXT, LIMITS_AXES_OF_POOL, printing.axis, &printing.axes, error));
   TRY(ask_resolution_of_exponents(store, &printing.studied, error));
-  const char *inputs[ASK_POINTS_INPUTS];
+  const char *inputs[LIMITS_AXES_OF_POOL];
   for (size_t i = 0; i < printing.axes; i++)
     inputs[i] = printing.axis[i].name;
 

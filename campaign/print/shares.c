@@ -10,6 +10,7 @@
 #include "campaign/print/print.h"
 #include "db/ask/ask.h"
 #include "engine/grow.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 
 struct run_cells_run {
@@ -18,12 +19,12 @@ struct run_cells_run {
 };
 struct run_cell {
   size_t runs;
-  struct run_cells_run *run;  /* by seed */
-  char *input[ASK_POOL_AXES]; /* as text: a number with 17 digits, a choice, "off" */
+  struct run_cells_run *run;        /* by seed */
+  char *input[LIMITS_AXES_OF_POOL]; /* as text: a number with 17 digits, a choice, "off" */
 };
 struct run_cells {
   size_t axes, count, room;
-  char column[ASK_POOL_AXES][ASK_GROUP_NAME];
+  char column[LIMITS_AXES_OF_POOL][ASK_GROUP_NAME];
   struct run_cell *cell;
 };
 
@@ -184,13 +185,13 @@ static status print_parts(const struct run_cells *cells, const struct scatter_pa
 
 status print_shares_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
                              struct error *error) {
-  struct ask_column axis[ASK_POOL_AXES];
+  struct ask_column axis[LIMITS_AXES_OF_POOL];
   struct run_cells cells = {0};
-  struct scatter_part parts[ASK_POOL_AXES + SCATTER_PARTS];
-  char by[ASK_POOL_AXES * (sizeof axis[0].name + 1)] = "";
+  struct scatter_part parts[LIMITS_AXES_OF_POOL + SCATTER_PARTS];
+  char by[LIMITS_AXES_OF_POOL * (sizeof axis[0].name + 1)] = "";
   size_t axes = 0, runs = 0;
   struct ask_pool_choice pool = choice->pool;
-  status code = ask_columns_axes(store, false, ASK_POOL_AXES, axis, &axes, error);
+  status code = ask_columns_axes(store, false, LIMITS_AXES_OF_POOL, axis, &axes, error);
   for (size_t a = 0; a < axes; a++)
     text_append(by, sizeof by, "%s%s", a ? "," : "", axis[a].name);
   if (!pool.by)
@@ -241,7 +242,7 @@ static void write_input(const struct campaign *campaign, size_t a, size_t i, cha
 
 static int by_inputs(const void *a, const void *b) {
   const struct run_cell *p = a, *q = b;
-  for (size_t i = 0; i < ASK_POOL_AXES && p->input[i] && q->input[i]; i++) {
+  for (size_t i = 0; i < LIMITS_AXES_OF_POOL && p->input[i] && q->input[i]; i++) {
     const int order = strcmp(p->input[i], q->input[i]);
     if (order)
       return order;
@@ -252,7 +253,7 @@ static int by_inputs(const void *a, const void *b) {
 /* Finds the cell of every row, and the blocks of which all cells exist. */
 static void find_places(struct reading *r) {
   const size_t n = r->campaign->axis_count;
-  char text[ASK_POOL_AXES][ASK_POOL_TEXT];
+  char text[LIMITS_AXES_OF_POOL][ASK_POOL_TEXT];
   if (r->cells.count > 0)
     qsort(r->cells.cell, r->cells.count, sizeof *r->cells.cell, by_inputs);
   for (size_t b = 0; b < r->blocks; b++) {
@@ -306,9 +307,9 @@ static status fill_table(struct reading *r, struct error *error) {
 static status read_runs(struct store *store, const char *quantity, struct reading *r, struct error *error) {
   const struct campaign *campaign = r->campaign;
   const size_t n = campaign->axis_count;
-  char by[ASK_POOL_AXES * ASK_GROUP_NAME] = "";
-  if (n > ASK_POOL_AXES)
-    return status_fail(error, STATUS_USAGE, "at most %d inputs, not %zu", ASK_POOL_AXES, n);
+  char by[LIMITS_AXES_OF_POOL * ASK_GROUP_NAME] = "";
+  if (n > LIMITS_AXES_OF_POOL)
+    return status_fail(error, STATUS_USAGE, "at most %d inputs, not %zu", LIMITS_AXES_OF_POOL, n);
   for (size_t a = 0; a < n; a++)
     text_append(by, sizeof by, "%s%s", a ? "," : "", campaign->axes[a].row->path);
   const struct ask_pool_choice choice = {.by = by};
@@ -332,7 +333,7 @@ static void interval(struct table *table, const struct sample_interval *i) {
 }
 
 static status print_sobol(const struct reading *r, enum table_format format, struct error *error) {
-  struct sensitivity_index index[ASK_POOL_AXES + 1];
+  struct sensitivity_index index[LIMITS_AXES_OF_POOL + 1];
   const size_t n = r->table.inputs;
   TRY(sensitivity_sobol(&r->table, index, error));
   struct table *table = table_new(format, stdout);
@@ -356,7 +357,7 @@ static status print_sobol(const struct reading *r, enum table_format format, str
 
 static status print_morris(const struct reading *r, enum table_format format, struct error *error) {
   const size_t n = r->table.inputs;
-  struct sensitivity_effect effect[ASK_POOL_AXES];
+  struct sensitivity_effect effect[LIMITS_AXES_OF_POOL];
   size_t *order = malloc(n * r->blocks * sizeof *order);
   double *step = malloc(n * r->blocks * sizeof *step);
   status code = order && step ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a design");

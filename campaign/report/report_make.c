@@ -13,6 +13,7 @@
 #include "db/ask/ask.h"
 #include "engine/outcome.h"
 #include "schemas/file.h"
+#include "schemas/limits.h"
 
 enum { PICTURES = 24, PICTURE_WIDTH = 400, PICTURE_BYTES = 330000 /* most pictures of one page */ };
 
@@ -69,7 +70,7 @@ static status add_differences(struct making *making, const char *name, struct er
 static status add_picture(struct making *making, const struct answer *kept, struct error *error) {
   unsigned char *png = NULL;
   size_t size = 0;
-  char path[4096];
+  char path[LIMITS_PATH];
   if (making->picture_bytes >= PICTURE_BYTES)
     return STATUS_OK;
   snprintf(path, sizeof path, "%s.%ld.png", making->choice->output, (long)getpid());

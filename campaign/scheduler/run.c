@@ -8,6 +8,7 @@
 #include "engine/restart.h"
 #include "engine/scene.h"
 #include "schemas/file.h"
+#include "schemas/limits.h"
 
 /* The encodings begin with these marks. All ranks of a farm run one binary, so arrays of structs are sent as they are
  * in memory. The marks, the sizes and the hashes of the tables find anything else. */
@@ -334,7 +335,7 @@ static status decode_task(const uint8_t *task, size_t size, struct run_request *
 status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size, struct error *error) {
   struct run_request request = {0};
   struct run_result values = {0};
-  char fields_path[4096];
+  char fields_path[LIMITS_PATH];
   void *inputs = NULL;
   *result = NULL;
   *result_size = 0;

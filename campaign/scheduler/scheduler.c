@@ -8,6 +8,7 @@
 
 #include "engine/grow.h"
 #include "schemas/clock.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 
 void scheduler_limits(const struct campaign *campaign, struct farm_options *options) {
@@ -81,7 +82,7 @@ static status next_run(struct scheduler *scheduler, struct scheduler_run *run, s
 
 static status send(struct scheduler *scheduler, struct farm_task *task, struct error *error) {
   struct scheduler_run run;
-  char path[4096] = "";
+  char path[LIMITS_PATH] = "";
   TRY(next_run(scheduler, &run, error));
   task->bytes = NULL;
   if (!run.scene)
@@ -160,7 +161,7 @@ static status take_attempt(struct scheduler *scheduler, struct scheduler_run *ru
   const struct farm_report *report = end->report;
   const int64_t attempts = scheduler->planner.limits->attempts;
   if (run->replay) {
-    char path[4096], text[4400];
+    char path[LIMITS_PATH], text[LIMITS_PATH + 304];
     fields_path(scheduler, run, false, path, sizeof path);
     snprintf(text, sizeof text, "fields of seed %llu could not be written to %s: %s", (unsigned long long)run->seed,
              path, report->message && report->message[0] ? report->message : "the replay did not end well");
@@ -179,7 +180,7 @@ static status take_attempt(struct scheduler *scheduler, struct scheduler_run *ru
 static status store_result(struct scheduler *scheduler, const struct scheduler_run *run, struct scheduler_end *end,
                            struct error *error) {
   const struct run_result *result = end->result;
-  char path[4096];
+  char path[LIMITS_PATH];
   end->fields = run->fields && result->outcome.state != OUTCOME_INVALID && !result->unwritten.status;
   fields_path(scheduler, run, false, path, sizeof path);
   struct store_run row = {
@@ -210,7 +211,7 @@ static status store_result(struct scheduler *scheduler, const struct scheduler_r
 /* The run was computed again for its fields. */
 static status store_fields(struct scheduler *scheduler, const struct scheduler_run *run, struct scheduler_end *end,
                            struct error *error) {
-  char path[4096];
+  char path[LIMITS_PATH];
   end->fields = !end->result->unwritten.status;
   end->result = NULL;
   fields_path(scheduler, run, false, path, sizeof path);

@@ -10,9 +10,10 @@
 #include "analysis/pictures/picture_canvas.h"
 #include "campaign/document/campaign.h"
 #include "schemas/file.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 
-enum { ROWS_MAXIMUM = 30, HELP_VALUE = 1000, ROW_VALUE = 1001, WORD_MAXIMUM = 63 };
+enum { HELP_VALUE = 1000, ROW_VALUE = 1001, WORD_MAXIMUM = 63 };
 
 struct table_options {
   bool json, csv;
@@ -90,8 +91,8 @@ struct parse {
   const struct command *command;
   void *options; /* the command's struct */
   struct table_options table;
-  struct option names[ROWS_MAXIMUM + 2]; /* for getopt_long */
-  char letters[2 * ROWS_MAXIMUM + 4];
+  struct option names[LIMITS_OPTIONS + 2]; /* for getopt_long */
+  char letters[2 * LIMITS_OPTIONS + 4];
 };
 
 static status take_value(struct parse *parse, size_t index, const char *text, struct error *error) {
@@ -132,7 +133,7 @@ status option_claim_outputs(const struct command *command, const void *options, 
 }
 
 static status unknown_option(const struct command *command, const char *typed, int letter, struct error *error) {
-  const char *names[ROWS_MAXIMUM + 1];
+  const char *names[LIMITS_OPTIONS + 1];
   size_t count = 0;
   for (const struct option_row *row; (row = option_row(command, count));)
     names[count++] = row->name;
@@ -151,7 +152,7 @@ static status unknown_option(const struct command *command, const char *typed, i
 /* Fills the tables of getopt_long and sets every option to its default. */
 static status prepare(struct parse *parse, struct error *error) {
   const struct command *command = parse->command;
-  if (command->option_count + 2 > ROWS_MAXIMUM || command->options_size > OPTION_STRUCT_MAXIMUM)
+  if (command->option_count + 2 > LIMITS_OPTIONS || command->options_size > OPTION_STRUCT_MAXIMUM)
     return status_fail(error, STATUS_INTERNAL, "the option table of %s is too large", command->name);
   memset(parse->options, 0, command->options_size);
   char *letter = parse->letters;

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "db/ask/ask.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 
 enum { SAMPLE_ROWS = 500, COLUMNS_MAXIMUM = 2000 }; /* SQLite's own limit on columns is 2000 */
@@ -393,12 +394,12 @@ status table_text_only(enum table_format format, const char *what, struct error 
 /* ---- the rows of a question, with the units of the store's columns ---- */
 
 /* Bytes of a blob shown in the aligned table: an identity fits, a list of masses does not. */
-enum { ROWS_AXES = 64, BLOB_SHOWN = 64 };
+enum { BLOB_SHOWN = 64 };
 
 struct rows {
   struct table *table;
   enum table_format format;
-  struct ask_column written[ROWS_AXES]; /* varied inputs, in the campaign's units */
+  struct ask_column written[LIMITS_AXES_OF_TABLE]; /* varied inputs, in the campaign's units */
   size_t written_count;
   const struct ask_column **shown; /* per column: the varied input that it is; NULL: shown as stored; owned */
 };
@@ -414,7 +415,7 @@ static status name_columns(struct rows *rows, const struct answer *answer, bool 
   if (people) /* on an error headings have no units, and values stay in SI */
     (void)ask_columns_units(answer->store, &units, &unit_count, NULL);
   if (people && written)
-    (void)ask_columns_axes(answer->store, true, ROWS_AXES, rows->written, &rows->written_count, NULL);
+    (void)ask_columns_axes(answer->store, true, LIMITS_AXES_OF_TABLE, rows->written, &rows->written_count, NULL);
   for (size_t i = 0; i < answer_count(answer); i++) {
     const char *name = answer_name(answer, i);
     for (size_t k = 0; k < rows->written_count && !rows->shown[i]; k++)

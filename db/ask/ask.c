@@ -10,6 +10,7 @@
 #include "db/store/views.h"
 #include "engine/grow.h"
 #include "engine/outcome.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 #include "schemas/unit.h"
 
@@ -326,7 +327,7 @@ struct answer ask_points_rows(struct store *store, const struct ask_points_choic
   sqlite3_str *sql = sqlite3_str_new(NULL);
   sqlite3_str_appendall(sql, "SELECT point_id, results_version, n, failed, largest_fraction_mean, "
                              "largest_fraction_hw95, largest_fraction_resolution, largest_fraction_resolution_verdict");
-  for (size_t i = 0; i < input_count && i < ASK_POINTS_INPUTS; i++)
+  for (size_t i = 0; i < input_count && i < LIMITS_AXES_OF_POOL; i++)
     sqlite3_str_appendf(sql, ", \"%w\"", inputs[i]);
   sqlite3_str_appendall(sql, " FROM points AS p");
   write_choice(sql, choice);
@@ -474,12 +475,11 @@ status ask_run_wall_times(struct store *store, double *mean, double *longest, st
 }
 
 struct answer ask_run_kept(struct store *store, struct error *error) {
-  enum { AXES = 64 };
-  struct ask_column axes[AXES];
+  struct ask_column axes[LIMITS_AXES_OF_TABLE];
   const char *results[VIEWS_STATISTICS_MAIN];
   const size_t result_count = views_statistics_main(results);
   size_t axis_count = 0;
-  const status code = ask_columns_axes(store, false, AXES, axes, &axis_count, error);
+  const status code = ask_columns_axes(store, false, LIMITS_AXES_OF_TABLE, axes, &axis_count, error);
   if (code)
     return answer_failed(code, error);
   sqlite3_str *columns = sqlite3_str_new(NULL);

@@ -8,6 +8,7 @@
 #include "analysis/statistics/sample.h"
 #include "db/ask/answer.h"
 #include "engine/outcome.h"
+#include "schemas/limits.h"
 
 /* ---- The campaigns and sessions of a store: their progress, their documents, and which of their runs are safe
  * (usable, `warnings` is empty), warned (usable, with warnings) or refused (another state, which gives the reason).
@@ -127,8 +128,6 @@ bool ask_convergence_next(struct answer *answer, struct convergence_row *row);
 /* ---- Lists of points: which of them have runs, their inputs and the statistics of their runs. point_read() reads the
  * fragments of one point. ---- */
 
-enum { ASK_POINTS_INPUTS = 16 };
-
 /* A point's runs of one results_version. */
 struct ask_points_row {
   int64_t point_id;
@@ -139,7 +138,7 @@ struct ask_points_row {
   double resolution;       /* error that the resolution leaves in it; NaN: not known */
   enum ask_resolution_verdict resolution_verdict;
   size_t input_count;
-  struct query_value inputs[ASK_POINTS_INPUTS]; /* values of the requested inputs, in their order; texts are borrowed
+  struct query_value inputs[LIMITS_AXES_OF_POOL]; /* values of the requested inputs, in their order; texts are borrowed
                                                    until the next row */
 };
 
@@ -155,7 +154,7 @@ status ask_points_count(struct store *store, const struct ask_points_choice *cho
 /* STATUS_USAGE, with the known numbers, when the store has no point of this number. 0 means every point. */
 status ask_points_known(struct store *store, int64_t point, struct error *error);
 
-/* These points with the named input columns (ask_columns_axes; at most ASK_POINTS_INPUTS), in the order of their
+/* These points with the named input columns (ask_columns_axes; at most LIMITS_AXES_OF_POOL), in the order of their
  * numbers. Each point comes with its newest results_version only (`newest`), or once for every results_version. */
 struct answer ask_points_rows(struct store *store, const struct ask_points_choice *choice, bool newest,
                               size_t input_count, const char *const *inputs, struct error *error);
@@ -369,7 +368,7 @@ struct ask_pool_choice {
                         per point */
 };
 
-enum { ASK_POOL_AXES = 16, ASK_POOL_TEXT = 64, ASK_POOL_LABEL = 256 };
+enum { ASK_POOL_TEXT = 64, ASK_POOL_LABEL = 256 };
 /* Holds only runs that count, of the newest results_version among the points of the pool. */
 struct ask_pool {
   char label[ASK_POOL_LABEL]; /* "strain 0.03, angle 0.0698 rad", or "point 7" */
@@ -377,8 +376,8 @@ struct ask_pool {
   const int64_t *point;    /* numbers of the points */
   const size_t *first_run; /* points + 1: the runs of point p are first_run[p] .. first_run[p + 1] - 1 */
   size_t axes;             /* of `by` */
-  char column[ASK_POOL_AXES][ASK_GROUP_NAME];
-  struct query_value input[ASK_POOL_AXES];
+  char column[LIMITS_AXES_OF_POOL][ASK_GROUP_NAME];
+  struct query_value input[LIMITS_AXES_OF_POOL];
   /* without a quantity: fragments of all runs, point after point; complete_mass and element_mass are those of the point
    * where they are largest; point_id is 0 if there are several. With a quantity: only the run ids, no fragments. */
   struct point_data data;
@@ -393,7 +392,7 @@ struct ask_pools {
   bool of_values;
   char quantity[ASK_GROUP_NAME]; /* column of the values */
   size_t axes;
-  char column[ASK_POOL_AXES][ASK_GROUP_NAME];
+  char column[LIMITS_AXES_OF_POOL][ASK_GROUP_NAME];
   struct ask_pool_member *list;
   size_t count, room, next;
   status code;

@@ -6,12 +6,13 @@
 #include "db/store/internal.h"
 #include "db/store/views.h"
 #include "engine/engine.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 
-enum { NAMES = 32, NAME = 128 };
+enum { NAME = 128 };
 
 struct names {
-  char name[NAMES][NAME];
+  char name[LIMITS_NAMES][NAME];
   size_t count;
 };
 
@@ -115,8 +116,8 @@ static status resolve(struct store *store, const char *list, const char *what, c
       continue;
     TRY(look_for(store, columns_sql, word, &choice, error));
     TRY(judge(&choice, what, word, error));
-    if (out->count == NAMES)
-      return status_fail(error, STATUS_USAGE, "More than %d of them: %s", NAMES, what);
+    if (out->count == LIMITS_NAMES)
+      return status_fail(error, STATUS_USAGE, "More than %d of them: %s", LIMITS_NAMES, what);
     snprintf(out->name[out->count++], NAME, "%s", choice.found);
   }
   return STATUS_OK;
@@ -153,7 +154,7 @@ static void write_points(FILE *out, const struct names *axes, const struct names
         out);
   write_names(out, axes);
   fputs("engine, results_version, point_id) LEFT JOIN ", out);
-  const char *list[NAMES];
+  const char *list[LIMITS_NAMES];
   for (size_t i = 0; i < quantities->count; i++)
     list[i] = quantities->name[i];
   views_statistics_resolution(quantities->count, list, out);

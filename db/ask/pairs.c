@@ -9,6 +9,7 @@
 
 #include "db/sql.h"
 #include "engine/grow.h"
+#include "schemas/limits.h"
 
 struct group { /* the runs of one point */
   char *inputs;
@@ -90,7 +91,7 @@ static status read_values(struct store *store, int64_t point, const char *campai
 }
 
 static status read_side(const char *operand, const char *quantity, struct side *side, struct error *error) {
-  char path[4096];
+  char path[LIMITS_PATH];
   int64_t point = 0;
   const char *campaign = NULL;
   const char *colon = strrchr(operand, ':');

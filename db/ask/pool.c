@@ -9,12 +9,13 @@
 #include "db/sql.h"
 #include "engine/engine.h"
 #include "engine/grow.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 
 struct ask_pool_member { /* a point, in the order of the pools */
   int64_t point, version;
-  struct query_value input[ASK_POOL_AXES]; /* texts point to `text` */
-  char text[ASK_POOL_AXES][ASK_POOL_TEXT];
+  struct query_value input[LIMITS_AXES_OF_POOL]; /* texts point to `text` */
+  char text[LIMITS_AXES_OF_POOL][ASK_POOL_TEXT];
 };
 
 static status no_memory(struct error *error) {
@@ -249,7 +250,7 @@ static status begin(struct ask_pools *pools, const char *quantity, struct error 
   if (quantity)
     TRY(ask_group_quantity(pools->store, quantity, pools->quantity, error));
   if (pools->choice.by)
-    TRY(ask_group_columns(pools->store, pools->choice.by, ASK_POOL_AXES, pools->column, &pools->axes, error));
+    TRY(ask_group_columns(pools->store, pools->choice.by, LIMITS_AXES_OF_POOL, pools->column, &pools->axes, error));
   return find_members(pools, error);
 }
 

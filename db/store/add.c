@@ -10,6 +10,7 @@
 #include "db/store/views.h"
 #include "engine/grow.h"
 #include "engine/scene.h"
+#include "schemas/limits.h"
 
 static const char adding_point[] = "adding a point";
 static const char adding_campaign[] = "adding a campaign";
@@ -65,8 +66,8 @@ static status find_kind(struct store *store, const struct engine_kind *kind, str
       *found = &store->kinds[i];
       return STATUS_OK;
     }
-  if (store->kind_count == STORE_KINDS)
-    return status_fail(error, STATUS_INTERNAL, "more than %d engines in one store", STORE_KINDS);
+  if (store->kind_count == LIMITS_ENGINES)
+    return status_fail(error, STATUS_INTERNAL, "more than %d engines in one store", LIMITS_ENGINES);
   *found = &store->kinds[store->kind_count];
   const status result = open_kind(store, kind, *found, grown, error);
   store->kind_count += result == STATUS_OK;

@@ -9,6 +9,7 @@
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "db/store/views.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 
 enum { LONGEST_VALUE = 1 << 28 }; /* bytes of a text or blob: the masses of 3e7 fragments */
@@ -289,7 +290,6 @@ static status judge_tables(struct guard *guard, struct error *error) {
 
 /* Rows of table axis name columns of the views: by the names that views_axis_column() gives. */
 static status judge_axes(struct guard *guard, struct error *error) {
-  enum { MOST_AXES = 1000 }; /* SQLite's views have 2000 columns */
   STATEMENT rows = NULL;
   int count = 0;
   status result = sql_prepare(guard->db, "SELECT path, column_name FROM main.axis", &rows, reading, error);
@@ -297,7 +297,7 @@ static status judge_axes(struct guard *guard, struct error *error) {
     char plain[SCHEMA_NAME_SIZE];
     const char *path = sql_text(rows, 0), *name = sql_text(rows, 1);
     field_column_name(path, plain, sizeof plain);
-    if (++count > MOST_AXES || !is_plain(name, strlen(name)) ||
+    if (++count > LIMITS_AXES_OF_STORE || !is_plain(name, strlen(name)) ||
         (strcmp(name, plain) != 0 && (strncmp(name, "input_", 6) != 0 || strcmp(name + 6, plain) != 0)))
       refuse(guard, "the column of axis", path, NULL);
   }

@@ -6,6 +6,7 @@
 #include "analysis/statistics/spectrum.h"
 #include "db/sql.h"
 #include "db/store/store.h"
+#include "schemas/limits.h"
 
 /* ---- digests ---- */
 
@@ -177,7 +178,7 @@ char *paths_between(const char *target, const char *source);
 
 /* ---- the open store ---- */
 
-enum { STORE_BATCH_ROWS = 500, STORE_KINDS = 16 };
+enum { STORE_BATCH_ROWS = 500 };
 #define STORE_BATCH_SECONDS 1.0
 
 struct store_kind { /* fills result_<engine> */
@@ -213,7 +214,7 @@ struct store {
   struct sql_insert run, attempt, estimate;
   sqlite3_stmt *masses, *spectrum, *spectrum_together;
   sqlite3_stmt *point_find, *point, *point_input, *campaign_point, *axis_find;
-  struct store_kind kinds[STORE_KINDS];
+  struct store_kind kinds[LIMITS_ENGINES];
   size_t kind_count;
 
   uint8_t *blob; /* scratch for masses */

@@ -6,9 +6,10 @@
 #include <unistd.h>
 
 #include "db/store/internal.h"
+#include "schemas/limits.h"
 #include "schemas/text.h"
 
-enum { PATHS_LONGEST = 8192 };
+enum { PATHS_LONGEST = 2 * LIMITS_PATH };
 
 char *paths_of_fields(const char *store_path, const char *fields_path) {
   const char *slash = strrchr(store_path, '/');

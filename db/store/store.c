@@ -15,6 +15,7 @@
 #include "db/store/views.h"
 #include "schemas/clock.h"
 #include "schemas/file.h"
+#include "schemas/limits.h"
 
 /* ---- the place: names that are no files, a file that is moved while it is written, a copy without its -wal file ----
  */
@@ -325,7 +326,7 @@ static void release(struct store *store) {
   };
   for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++)
     sqlite3_finalize(statements[i]);
-  for (size_t i = 0; i < STORE_KINDS; i++) {
+  for (size_t i = 0; i < LIMITS_ENGINES; i++) {
     sqlite3_finalize(store->kinds[i].insert.statement);
     digest_names_clear(&store->kinds[i].names);
   }
