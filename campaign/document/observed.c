@@ -145,7 +145,8 @@ static int descending(const void *a, const void *b) {
 }
 
 /* Takes the largest fragment, and the numbers of fragments above up to four masses. These are evenly spaced in the
- * logarithm, from the second largest fragment to the mass down to which the list is complete. */
+ * logarithm, from the second largest fragment to the mass down to which the list is complete. A fragment of just such a
+ * mass counts. Rounding must not decide that, so the masses are smaller by a billionth, which no balance resolves. */
 static void take_masses(struct reading *r, document_node *node, size_t count, double *masses, double total,
                         double complete) {
   enum { STEPS = 4 };
@@ -163,7 +164,7 @@ static void take_masses(struct reading *r, document_node *node, size_t count, do
       return;
     snprintf(datum->quantity, sizeof datum->quantity, COUNT_ABOVE);
     datum->ask.kind = ASK_SPECIMENS_COUNT;
-    datum->share = datum->ask.share = from * pow(to / from, (double)step / STEPS);
+    datum->share = datum->ask.share = (1 - 1e-9) * from * pow(to / from, (double)step / STEPS);
     for (size_t i = 0; i < count; i++)
       datum->value += masses[i] > datum->share * total;
   }

@@ -54,8 +54,18 @@ static double seeds_of(const struct fit *fit, size_t k) {
   return sqrt(variance) * (datum->ask.kind == ASK_SPECIMENS_COUNT ? 1 + datum->value : 1);
 }
 
+/* A quantile of one more experiment, in the range of the quantity. The normal law of the scatter has no ends. What it
+ * places beyond an end of the range is taken to be at that end, which only moves the quantiles that lie beyond it. */
 static double predicted(const struct fit *fit, size_t k, double level) {
-  return fit_back(&fit->observed->data[k], posterior_predicted(&fit->surfaces.model, &fit->posterior, k, level));
+  const struct observed_datum *datum = &fit->observed->data[k];
+  const double value = fit_back(datum, posterior_predicted(&fit->surfaces.model, &fit->posterior, k, level));
+  switch (datum->ask.kind) {
+  case ASK_SPECIMENS_RESULT: return fmin(fmax(value, datum->ask.row->minimum), datum->ask.row->maximum);
+  case ASK_SPECIMENS_SHARE: return fmin(fmax(value, 0), 1);
+  case ASK_SPECIMENS_COUNT: return fmax(value, 0);
+  case ASK_SPECIMENS_EXPONENT: break; /* any number */
+  }
+  return value;
 }
 
 static void datum_cells(const struct fit *fit, size_t k, struct table *table) {

@@ -548,7 +548,7 @@ static double heavier(const struct ask_specimens_quantity *quantity, size_t n, c
   }
   for (size_t i = 0; i < n; i++) {
     memcpy(&mass, (const char *)masses + i * sizeof mass, sizeof mass);
-    if (mass > quantity->share * total) {
+    if (mass > (1 + 1e-12) * quantity->share * total) { /* rounding of the sum must not make a fragment heavier */
       number++;
       heavy += mass;
     }

@@ -112,6 +112,30 @@ assert abs(rows['weak: mass share above 0.05 M'] / statistics.mean(shares) - 1) 
 PY
 ok "counts and shares are those of the masses"
 
+# One more experiment, as it is predicted, lies in the range of each quantity, also where the scatter is wide.
+sed 's/points: 10/points: 8/; /threshold.angle/d' disc.yaml >ends.yaml
+cat >ends_measured.yaml <<YAML
+name: both ends
+source: made up
+shots:
+  - measured:
+      - {quantity: largest_fraction, value: 0.1, error: 0.02, resolution: 0}
+      - {quantity: dust_fraction, value: 0.9, error: 0.02, resolution: 0}
+      - {quantity: share_above, share: 0.3, value: 0.02, error: 0.02, resolution: 0}
+      - {quantity: count_above, share: 0.3, value: 0, resolution: 0}
+YAML
+expect 0 "$clast" fit ends_measured.yaml ends.yaml --rounds 3 --store ends.db -j 2 --json
+python - <<'PY'
+import json
+rows = [r for r in json.load(open('out')) if r['kind'] == 'measured']
+assert len(rows) == 4
+for r in rows:
+    most = 1e9 if 'fragments above' in r['name'] else 1
+    assert 0 <= r['q05'] <= r['median'] <= r['q95'] <= most, r
+assert any(r['q05'] == 0 or r['q95'] == 1 for r in rows), rows
+PY
+ok "predictions lie in the range of their quantity"
+
 # Error messages and their places.
 sed 's/largest_fraction/largest_fractoin/' one.yaml >wrong.yaml
 expect 65 "$clast" fit wrong.yaml disc.yaml
@@ -124,4 +148,4 @@ expect 65 "$clast" fit one.yaml grid.yaml
 says "latin_hypercube"
 expect 64 "$clast" fit one.yaml
 expect 64 "$clast" fit one.yaml disc.yaml --rounds 2
-done_after 18
+done_after 20

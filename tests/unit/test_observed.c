@@ -80,10 +80,39 @@ static void masses_become_numbers(void **state) {
   assert_true(fabs(m->data[0].value - 0.6) < 1e-12);
   const double counts[4] = {3, 4, 5, 6}; /* above 9.46, 4.47, 2.11 and 1 g */
   for (size_t k = 0; k < 4; k++) {
-    assert_true(fabs(m->data[k + 1].share - 0.2 * pow(0.05, (double)(k + 1) / 4)) < 1e-12);
+    assert_true(fabs(m->data[k + 1].share - 0.2 * pow(0.05, (double)(k + 1) / 4)) < 1e-9);
     assert_true(m->data[k + 1].value == counts[k]);
   }
   observed_free(m);
+}
+
+/* Fragments of just a mass from which numbers count are in them, whatever the rounding of that mass: eight of the
+ * complete mass below second fragments of many masses, and a list in which every mass is such a mass. */
+static void ties_count(void **state) {
+  (void)state;
+  for (int second = 150; second < 400; second++) {
+    char text[512];
+    snprintf(text, sizeof text,
+             SHOT
+             "fragments: {total: 200 g, complete: 0.7 g, masses: [94 g, %.1f g, 12 g, 5 g, 2 g, 1 g, 0.7 g, 0.7 g, "
+             "0.7 g, 0.7 g, 0.7 g, 0.7 g, 0.7 g, 0.7 g]}\n",
+             second / 10.0);
+    struct observed *m = good(text);
+    assert_true(m->datum_count == 5 && m->data[4].value == 14);
+    observed_free(m);
+  }
+  for (int scale = 1; scale < 100; scale++) {
+    char text[512];
+    snprintf(text, sizeof text, SHOT "fragments: {total: %d g, complete: %d g, masses: [", 150 * scale, 3 * scale);
+    for (int k = 5; k >= 0; k--)
+      snprintf(text + strlen(text), sizeof text - strlen(text), "%d g%s", 3 * (k < 5 ? 1 << k : 16) * scale,
+               k ? ", " : "]}\n");
+    struct observed *m = good(text);
+    assert_int_equal(m->datum_count, 5);
+    for (int k = 1; k < 5; k++) /* above 24, 12, 6 and 3 times the scale */
+      assert_true(m->data[k].value == k + 2);
+    observed_free(m);
+  }
 }
 
 static void errors_have_a_place(void **state) {
@@ -199,6 +228,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(numbers_and_units),
       cmocka_unit_test(masses_become_numbers),
+      cmocka_unit_test(ties_count),
       cmocka_unit_test(errors_have_a_place),
       cmocka_unit_test(documents_of_the_pages_are_good),
       cmocka_unit_test(campaigns_need_priors_and_seeds),
