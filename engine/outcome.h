@@ -90,7 +90,8 @@ void outcome_fragments(struct outcome *outcome, size_t count, const struct fragm
     "(sph)")                                                                                                           \
   X(LINKS, "links",                                                                                                    \
     "particles at the start stand farther apart than fragments.link_length times h, so that a whole body "             \
-    "counts as many fragments (sph)")
+    "counts as many fragments (sph)")                                                                                  \
+  X(TAIL, "tail", "a binary STL file goes on behind its last triangle, and the rest was not read (sph)")
 
 #define WARNINGS_BIT(name_, word_, doc_) WARNINGS_PLACE_##name_,
 enum warnings_place { WARNINGS(WARNINGS_BIT) WARNINGS_COUNT };

@@ -9,6 +9,7 @@ struct mesh_soup {
   const char *name;
   bool numbered; /* `line` holds numbers of faces, as a binary file has no lines */
   size_t vertices, vertex_room, faces, face_room;
+  size_t tail; /* bytes behind the last face of a binary file */
   double (*vertex)[3];
   uint32_t (*face)[3];
   uint32_t *line; /* of each face */
@@ -21,8 +22,9 @@ status mesh_refuse(const struct mesh_soup *soup, size_t line, struct error *erro
 status mesh_soup_vertex(struct mesh_soup *soup, size_t line, const double place[3], struct error *error);
 status mesh_soup_face(struct mesh_soup *soup, size_t line, const uint32_t corners[3], struct error *error);
 
-/* formats.c: reads a file into the soup. `text` ends with a NUL behind its `size` bytes. */
-status mesh_formats_read(struct mesh_soup *soup, const char *text, size_t size, struct error *error);
+/* formats.c: reads a file into the soup. `text` ends with a NUL behind its `size` bytes; joined lines are changed in
+ * place. */
+status mesh_formats_read(struct mesh_soup *soup, char *text, size_t size, struct error *error);
 
 /* search.c: lists the faces by column, checks that lines enter and leave the solid in turn, and makes the tree of
  * boxes. STATUS_CONTENT, STATUS_MEMORY. */

@@ -89,12 +89,28 @@ static status read_obj_line(struct mesh_soup *soup, size_t line, const char *at,
                      (int)(length < 20 ? length : 20), at);
 }
 
-static status read_obj(struct mesh_soup *soup, const char *text, struct error *error) {
-  size_t line = 1;
-  for (const char *at = text; *at; line++) {
+/* The end of the line at `at`. A backslash at its end joins the next line to it: backslash and line end become blanks,
+ * and *lines counts the lines that were joined. A comment ends with its line (it may name a Windows folder). */
+static char *end_of_line(char *at, size_t *lines) {
+  for (;;) {
+    char *end = at + strcspn(at, "\n"), *last = end;
+    while (last > at && strchr(blanks, last[-1]))
+      last--;
+    if (!*end || last == at || last[-1] != '\\' || memchr(at, '#', (size_t)(end - at)))
+      return end;
+    memset(last - 1, ' ', (size_t)(end - last) + 2);
+    ++*lines;
+    at = end + 1;
+  }
+}
+
+static status read_obj(struct mesh_soup *soup, char *text, struct error *error) {
+  size_t line = 1, lines;
+  for (char *at = text; *at; line += lines) {
+    lines = 1;
+    const char *end = end_of_line(at, &lines);
     TRY(read_obj_line(soup, line, at + strspn(at, blanks), error));
-    at += strcspn(at, "\n");
-    at += *at != 0;
+    at += end - at + (*end != 0);
   }
   return STATUS_OK;
 }
@@ -189,11 +205,12 @@ static double float_at(const char *bytes) {
 static status read_stl_binary(struct mesh_soup *soup, const char *bytes, size_t size, struct error *error) {
   soup->numbered = true;
   const uint64_t count = size >= HEAD ? word_at(bytes + 80) : 0, wanted = HEAD + EACH * count;
-  if (size != wanted)
+  if (size < wanted)
     return mesh_refuse(soup, 0, error,
                        "a binary STL file of %llu faces has %llu bytes, and this one has %zu: it was cut short or "
                        "damaged",
                        (unsigned long long)count, (unsigned long long)wanted, size);
+  soup->tail = size - (size_t)wanted;
   for (size_t f = 0; f < count; f++) {
     uint32_t corner[3];
     for (size_t c = 0; c < 3; c++) {
@@ -206,9 +223,10 @@ static status read_stl_binary(struct mesh_soup *soup, const char *bytes, size_t 
   return STATUS_OK;
 }
 
-status mesh_formats_read(struct mesh_soup *soup, const char *text, size_t size, struct error *error) {
+/* A binary file has a NUL in the number of its faces, as files of more than 2^24 faces are refused; a text has none. */
+status mesh_formats_read(struct mesh_soup *soup, char *text, size_t size, struct error *error) {
   struct words w = {text, 1};
-  if ((size >= HEAD && size == HEAD + EACH * (uint64_t)word_at(text + 80)) || strlen(text) < size)
+  if (strlen(text) < size)
     TRY(read_stl_binary(soup, text, size, error));
   else if (take(&w, "solid"))
     TRY(read_stl_text(soup, text, error));

@@ -268,6 +268,7 @@ static status check_size(const struct mesh *m, const struct mesh_soup *soup, str
 static status build(struct mesh *m, struct mesh_soup *soup, struct error *error) {
   m->vertices = soup->vertices;
   m->faces = soup->faces;
+  m->tail = soup->tail;
   m->vertex = soup->vertex;
   m->face = soup->face;
   soup->vertex = NULL;

@@ -21,6 +21,7 @@ struct mesh_tree;
 
 struct mesh {
   size_t vertices, faces;
+  size_t tail; /* bytes of the file behind the last face, which are not read (binary STL) */
   double (*vertex)[3];
   uint32_t (*face)[3]; /* its vertices, counter-clockwise seen from outside */
   double centre[3];    /* of mass, in the coordinates of the file */

@@ -68,6 +68,15 @@ assert abs(one / two - 1) < 1e-6 and abs(one / mass - 1) < 1e-6, (one, two, mass
 PY
 ok "OBJ and STL"
 
+# Bytes behind the last triangle change nothing, and a note tells of them; a shorter file is refused.
+{ cat scenes/lobes.stl; printf '\0made by a program'; } >scenes/tail.stl
+head -c -1 scenes/lobes.stl >scenes/short.stl
+expect 0 "$clast" simulate ./scenes/lobes.yaml --set target.mesh.file=scenes/tail.stl --json
+says "warning: tail: the shape file has 18 bytes behind its last triangle"
+prints '"warnings": "tail"'
+expect 64 "$clast" simulate ./scenes/lobes.yaml --set target.mesh.file=scenes/short.stl
+says "cut short"
+
 sed 's/lobes.obj/open.obj/' scenes/lobes.yaml >scenes/open.yaml
 expect 65 "$clast" simulate ./scenes/open.yaml
 says "scenes/open.yaml:5"
@@ -98,4 +107,4 @@ says "have changed since it was stored"
 expect 65 "$clast" check damaged.db
 prints "have changed since it was stored"
 
-done_after 24
+done_after 26

@@ -176,6 +176,41 @@ static void formats_agree(void **state) {
 }
 
 /* Inside and distance of the ball against its chords: faces lie between the radii r and 1. */
+/* Bytes behind the last face, as some programs write them, are not read, and the mesh knows their number. */
+static void binary_file_with_a_tail(void **state) {
+  (void)state;
+  static const char tail[] = "\0exported by a program\n";
+  size_t size;
+  struct mesh *plain, *longer;
+  struct error error;
+  char *bytes = write_ball(2, false, &size);
+  assert_int_equal(mesh_read("ball", bytes, size, &plain, &error), STATUS_OK);
+  assert_int_equal(plain->tail, 0);
+  bytes = realloc(bytes, size + sizeof tail);
+  memcpy(bytes + size, tail, sizeof tail);
+  for (size_t more = 1; more <= sizeof tail; more++) {
+    if (mesh_read("ball", bytes, size + more, &longer, &error))
+      fail_msg("%s", error.message);
+    assert_int_equal(longer->tail, more);
+    assert_int_equal(longer->faces, plain->faces);
+    assert_memory_equal(longer->vertex, plain->vertex, plain->vertices * sizeof *plain->vertex);
+    mesh_free(longer);
+  }
+  mesh_free(plain);
+  free(bytes);
+}
+
+/* A backslash joins the next line of an OBJ file. Comments end with their line, and places in messages count all. */
+static void obj_lines_go_on(void **state) {
+  (void)state;
+  struct mesh *m = read_text("# made in C:\\models\\\n"
+                             "v 0 \\\n 0 0\nv 6\\\r\n 0 \\  \n\\\n 0\nv 0 6 0\nv 0 0 6 # C:\\\n"
+                             "f 1 3 \\\n2\nf 1\\\n 2\\\n 4\nf 1 4 3\nf \\\n2 3 4");
+  assert_int_equal(m->faces, 4);
+  near(m->volume, 36, 1e-13);
+  mesh_free(m);
+}
+
 static void ball_inside_and_distance(void **state) {
   (void)state;
   size_t size;
@@ -279,6 +314,8 @@ static void refusals(void **state) {
       {"v 0 0 0\n", "no faces"},
       {"engine: sph\n", "a.obj:1: \"engine:\" begins no line of an OBJ file"},
       {"v 0 0\n", "a.obj:1: expected three numbers"},
+      {"v 0 \\\n0 \\\n0\nv 1 \\\n2\n", "a.obj:4: expected three numbers"},
+      {"v 0 0 0\nv 1 0 0\nf 1 2 \\", "got \"\\\""},
       {"v 0 0 1x\n", "a.obj:1: expected three numbers"},
       {"v 0 0 nan\n", "not finite"},
       {"v 0 0 1e30\n", "above 1e+15"},
@@ -305,6 +342,7 @@ static void refusals(void **state) {
   size_t size;
   char *bytes = write_ball(2, false, &size);
   refused(bytes, size - 1, "cut short or damaged");
+  refused(bytes, 84, "cut short or damaged");
   refused(bytes, 83, "cut short or damaged");
   bytes[84 + 50 * 7 + 12 + 3] = 0x7f; /* the largest exponent */
   bytes[84 + 50 * 7 + 12 + 2] = (char)0x80;
@@ -364,10 +402,11 @@ static void files_by_content(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(cube_in_all_forms),  cmocka_unit_test(tetrahedron_of_words),
-      cmocka_unit_test(formats_agree),      cmocka_unit_test(ball_inside_and_distance),
-      cmocka_unit_test(parts_and_cavities), cmocka_unit_test(refusals),
-      cmocka_unit_test(ring_is_missed),     cmocka_unit_test(files_by_content),
+      cmocka_unit_test(cube_in_all_forms),       cmocka_unit_test(tetrahedron_of_words),
+      cmocka_unit_test(formats_agree),           cmocka_unit_test(ball_inside_and_distance),
+      cmocka_unit_test(parts_and_cavities),      cmocka_unit_test(refusals),
+      cmocka_unit_test(ring_is_missed),          cmocka_unit_test(files_by_content),
+      cmocka_unit_test(binary_file_with_a_tail), cmocka_unit_test(obj_lines_go_on),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

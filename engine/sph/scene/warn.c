@@ -1,6 +1,7 @@
 /* Warnings that follow from the inputs before a run. The limits are measured: tests/extremes/map.md. */
 #include <math.h>
 
+#include "engine/mesh/mesh.h"
 #include "engine/outcome.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
@@ -45,6 +46,13 @@ static void fronts(const struct sph_inputs *in, double *compression, double *arr
   *arrival = in->target.width / (exact.has_precursor ? exact.precursor.speed : exact.shock.speed);
 }
 
+/* Bytes that the shape files of the bodies have behind their last triangles. */
+static size_t unread(const struct sph_inputs *in) {
+  const struct sph_shape target = sph_derived_target(in), projectile = sph_derived_projectile(in);
+  return (target.mesh ? target.mesh->tail : 0) +
+         (sph_derived_has_projectile(in) && projectile.mesh ? projectile.mesh->tail : 0);
+}
+
 static double largest_step(const struct sph_inputs *in) {
   return in->viscosity.alpha < least_viscosity ? largest_undamped_cfl : largest_cfl;
 }
@@ -82,6 +90,11 @@ static void tell(const struct sph_inputs *in, unsigned set, double compressed, d
         "links: particles up to %.4g spacings apart belong together (fragments.link_length times fidelity.smoothing), "
         "but nearest neighbours stand %.4g apart: a whole body counts as many fragments; give a link_length of %.2g\n",
         reach_spacings(in), nearest_spacings(in), 1.36 / in->fidelity.smoothing);
+  if (set & WARNINGS_TAIL)
+    fprintf(out,
+            "tail: the shape file has %zu byte%s behind its last triangle, which are not read: if they are a second "
+            "body, write each body into a file of its own\n",
+            unread(in), unread(in) == 1 ? "" : "s");
 }
 
 unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
@@ -100,6 +113,8 @@ unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
     set |= WARNINGS_ARRIVAL;
   if (reach_spacings(in) <= nearest_spacings(in))
     set |= WARNINGS_LINKS;
+  if (unread(in))
+    set |= WARNINGS_TAIL;
   if (out)
     tell(in, set, compressed, arrival, out);
   return set;
