@@ -3,9 +3,13 @@
 
 #include <math.h>
 #include <stdlib.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 #include "analysis/statistics/power_law.h"
 #include "engine/random.h"
+#include "engine/threads.h"
 
 /* Data of every run for the fits. */
 struct prepared {
@@ -484,9 +488,10 @@ static void fill_draw(const struct windows *windows, double beta, uint64_t numbe
 
 /* Counts the draws from .. to - 1 that are at least as far from their fits. */
 static size_t count_larger(const struct windows *windows, double beta, double distance, size_t from, size_t to,
-                           bool *failed) {
+                           int threads, bool *failed) {
+  (void)threads;
   size_t larger = 0;
-#pragma omp parallel reduction(+ : larger)
+#pragma omp parallel num_threads(threads) reduction(+ : larger)
   {
     struct draw draw;
     double ignored;
@@ -508,9 +513,14 @@ static size_t count_larger(const struct windows *windows, double beta, double di
 static void bootstrap(const struct windows *windows, double beta, size_t draws, struct pooled_goodness *out,
                       bool *failed) {
   size_t larger = 0;
+#ifdef _OPENMP
+  const int threads = threads_granted(omp_get_max_threads());
+#else
+  const int threads = 1;
+#endif
   while (out->draws < draws && larger < ENOUGH && !*failed) {
     const size_t to = out->draws + BATCH < draws ? out->draws + BATCH : draws;
-    larger += count_larger(windows, beta, out->distance, out->draws, to, failed);
+    larger += count_larger(windows, beta, out->distance, out->draws, to, threads, failed);
     out->draws = to;
   }
   out->p = ((double)larger + 1) / ((double)out->draws + 1);

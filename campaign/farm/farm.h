@@ -26,6 +26,10 @@
 typedef status (*farm_work)(const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size,
                             struct error *error);
 
+/* Raises the memory limit of the task that this process computes, if it has one. farm_work calls it for address space
+ * that a task takes and does not fill, such as stacks of threads. */
+void farm_allow_memory(size_t bytes);
+
 struct farm_options {
   int slots;           /* slots per rank; 0: one per core that this process may use (under MPI: one) */
   bool in_process;     /* runs are computed in the slot's process: no fork per run, but a crash ends the slot as well */

@@ -41,15 +41,26 @@ static size_t address_space(void) {
   return n > 0 ? (size_t)strtoull(text, NULL, 10) * (size_t)sysconf(_SC_PAGESIZE) : 0;
 }
 
+static bool has_limit; /* the task in this process has a limit of memory */
+
 /* Soft RLIMIT_AS; 0: none. */
 static void limit_memory(size_t bytes) {
   struct rlimit limit;
   if (getrlimit(RLIMIT_AS, &limit) != 0)
     return;
   limit.rlim_cur = limit.rlim_max;
+  has_limit = bytes > 0;
   const size_t base = bytes ? address_space() : 0;
   if (bytes && bytes < SIZE_MAX - base && (limit.rlim_max == RLIM_INFINITY || base + bytes < limit.rlim_max))
     limit.rlim_cur = base + bytes;
+  setrlimit(RLIMIT_AS, &limit);
+}
+
+void farm_allow_memory(size_t bytes) {
+  struct rlimit limit;
+  if (!has_limit || getrlimit(RLIMIT_AS, &limit) != 0)
+    return;
+  limit.rlim_cur = limit.rlim_max - limit.rlim_cur > bytes ? limit.rlim_cur + bytes : limit.rlim_max;
   setrlimit(RLIMIT_AS, &limit);
 }
 
@@ -249,7 +260,8 @@ static void judge_end(struct farm_result *head, bool in_time, int ended, double 
   }
   if (!WIFSIGNALED(ended)) {
     head->ending = head->exit_code == STATUS_MEMORY || head->exit_code == STATUS_IO ? FARM_LOST : FARM_CRASHED;
-    snprintf(text, size, "the run's process exited with code %d and no result", head->exit_code);
+    snprintf(text, size, "the run's process exited with code %d and no result%s", head->exit_code,
+             head->exit_code == STATUS_MEMORY ? ": the system refused it memory or a thread" : "");
     return;
   }
   head->ending = farm_slot_ending_by(head->signal);
@@ -427,6 +439,14 @@ static void offer_to_oom_killer(void) {
   close(score);
 }
 
+/* A library that ends the process of a run with EXIT_FAILURE is one, such as OpenMP, that the system refused memory or
+ * a thread. The run is not at fault: the exit code says what happened. */
+static void end_of_process(int code, void *unused) {
+  (void)unused;
+  if (code == EXIT_FAILURE)
+    _exit(STATUS_MEMORY);
+}
+
 struct serving {
   const struct farm_slot_setup *setup;
   int slot, channel;
@@ -480,6 +500,7 @@ static void read_tasks(struct serving *s) {
 _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, int channel, pid_t parent) {
   farm_slot_die_with(parent);
   offer_to_oom_killer();
+  on_exit(end_of_process, NULL);
   struct serving serving = {.setup = setup, .slot = slot, .channel = channel, .flushed_ns = clock_ns()};
   peak_memory(&serving.memory_floor);
   if (!setup->options.in_process && !open_isolate(&serving.isolate, channel))

@@ -5,8 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "campaign/farm/farm.h"
 #include "engine/restart.h"
 #include "engine/scene.h"
+#include "engine/threads.h"
 #include "schemas/file.h"
 #include "schemas/limits.h"
 
@@ -342,6 +344,8 @@ status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t 
   status code = decode_task(task, task_size, &request, &inputs, fields_path, sizeof fields_path, error);
   if (code != STATUS_OK)
     goto cleanup;
+  if (request.kind->threads)
+    farm_allow_memory(threads_stacks(*request.kind->threads(inputs) - 1));
   code = run_simulate(&request, NULL, NULL, 0, &values, error);
   if (code != STATUS_OK && !values.result)
     goto cleanup;

@@ -82,6 +82,7 @@ static void every_ending(void **state) {
     list.tasks[27] = (struct task){.id = 27, .kind = TASK_EXIT, .number = 0};
     list.tasks[31].kind = TASK_WILD;
     list.tasks[35] = (struct task){.id = 35, .kind = TASK_FAIL, .number = STATUS_IO};
+    list.tasks[38] = (struct task){.id = 38, .kind = TASK_EXIT, .number = 1};
     const struct farm_options options = {.slots = 2,
                                          .in_process = mode,
                                          .time_limit_s = 0.4,
@@ -104,6 +105,8 @@ static void every_ending(void **state) {
     assert_int_equal(list.endings[27], FARM_CRASHED); /* exit(0) without a result is no success */
     assert_int_equal(list.endings[31], FARM_LOST);    /* SIGKILL comes from outside */
     assert_int_equal(list.endings[35], FARM_LOST);    /* the machine's disk */
+    assert_int_equal(list.endings[38], FARM_LOST);    /* a library that the system refused a thread */
+    assert_non_null(strstr(list.messages[38], "code 71"));
     for (size_t i = 0; i < list.count; i++)
       if (list.tasks[i].kind == TASK_ECHO)
         assert_int_equal(list.endings[i], FARM_DONE);

@@ -11,6 +11,7 @@
 #include "engine/restart.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/material/material.h"
+#include "engine/threads.h"
 #include "schemas/memory.h"
 
 /* The columns of a system: which exist, their memory, and copying particles into them and back. The arrays of the
@@ -468,6 +469,7 @@ status sph_system_create(const struct sph_particles *particles, size_t body_coun
     return status_fail(error, STATUS_MEMORY, "no memory for a system");
   struct sph_system *s = memory_small(1, sizeof *s);
   s->in = *inputs;
+  s->in.fidelity.threads = threads_granted(inputs->fidelity.threads);
   s->domain = *domain;
   s->n = particles->n;
   s->body_count = body_count;
