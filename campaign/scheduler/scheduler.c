@@ -272,11 +272,13 @@ static status tick(void *context, int running, struct error *error) {
   return store_tick(scheduler->store, error);
 }
 
-/* Commits first: mpirun may kill this process within a second. */
+/* Commits first: mpirun may kill this process within a second. Without a signal a rank was lost, and the others go on.
+ */
 static void stopping(void *context, int signal_number) {
   struct scheduler *scheduler = context;
-  (void)signal_number;
   store_flush(scheduler->store, NULL);
+  if (signal_number == 0)
+    return;
   if (scheduler->planner.stopping)
     scheduler->planner.stopping(scheduler->planner.context);
   else

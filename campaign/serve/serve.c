@@ -285,20 +285,20 @@ static void stopping(void *context) {
 }
 
 /* Answers what is pending, writes the points' exponents for the view estimates, and ends the session. A signal is the
- * normal end of a server. */
+ * normal end of a server. The farm also stops when no slot is left, which is none. */
 static status end(void *context, status code, struct error *error) {
   struct serve *serve = context;
   struct store *store = serve->scheduler->store;
+  const bool good = code == STATUS_OK || (code == STATUS_STOPPED && serve->stopping);
   serve->stopping = true;
   for (struct job *job = serve->jobs; job; job = job->next) {
     if (!job->answered)
       serve_http_answer(job->ticket, serve_request_error(503, "Unavailable", "the server was stopped"));
     job->answered = true;
   }
-  const bool good = code == STATUS_OK || code == STATUS_STOPPED;
   const status pooled = pooling_store(store, serve->campaign_id, good ? error : NULL);
-  const status ended = store_end_session(store, serve->session_id, pooled ? "failed" : "finished",
-                                         good && !pooled ? error : NULL);
+  const char *outcome = good && !pooled ? "finished" : code == STATUS_STOPPED && !pooled ? "stopped" : "failed";
+  const status ended = store_end_session(store, serve->session_id, outcome, good && !pooled ? error : NULL);
   if (!good)
     return code;
   return pooled ? pooled : ended;

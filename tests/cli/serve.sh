@@ -86,6 +86,23 @@ client hopeless
 ended 0 "1 given up"
 same "$(number short.db "select count(*) from attempt where reason = 'time_limit'")" 2 "attempts at a hopeless run"
 
+# ---- the process that starts the runs is killed, as by a system without memory: no normal end
+served disc
+fork_server=
+for _ in $(seq 100); do
+  fork_server=$(cat "/proc/$pid/task/$pid/children")
+  [ -z "$fork_server" ] || break
+  sleep 0.05
+done
+kill -KILL $fork_server
+got=0
+wait $pid || got=$?
+same "$got" 75 "exit code without a fork server"
+cp serve.err err
+says "error: no slot is left"
+says "the same command resumes"
+same "$(number disc.db "select outcome from session order by session_id desc limit 1")" stopped "session without a fork server"
+
 # ---- what cannot be served
 served disc --listen 127.0.0.1
 expect 74 "$clast" serve disc.yaml --port "$port"
@@ -102,4 +119,4 @@ expect 65 "$clast" serve still.yaml --port 0
 says "varies nothing"
 sed 's/threshold.angle: \[2 deg, 6 deg\]/contact.law: [conservative, printed]/' disc.yaml >law.yaml
 expect 65 "$clast" serve law.yaml --port 0
-done_after 25
+done_after 27
