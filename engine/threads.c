@@ -17,7 +17,8 @@ static void *wait_at(void *gate) {
   return NULL;
 }
 
-/* How many of `most` more threads the system grants. */
+/* How many of `most` more threads to use: all, or half of those that the system grants. The limit may be one of memory,
+ * and the other half is left to the data. */
 static int more_granted(int most) {
   pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
   pthread_t *made = memory_small((size_t)most, sizeof *made);
@@ -29,7 +30,7 @@ static int more_granted(int most) {
   for (int i = 0; i < count; i++)
     pthread_join(made[i], NULL);
   free(made);
-  return count;
+  return count < most ? count / 2 : count;
 }
 
 int threads_granted(int64_t wanted) {

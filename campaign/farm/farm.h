@@ -20,6 +20,12 @@
 
 #include "schemas/status.h"
 
+/* Signals that stop a farm: of a terminal, and of batch systems, some of which announce the end with SIGUSR1 (Slurm),
+ * SIGUSR2 (LSF, Grid Engine) or SIGXCPU (Grid Engine, PBS). The main process watches them; the processes that it starts
+ * ignore them. */
+enum { FARM_STOP_SIGNALS = 6 };
+extern const int farm_stop_signals[FARM_STOP_SIGNALS];
+
 /* Computes one task in a slot or its child: task bytes in, malloc'd result bytes out. Neither MPI nor the store is open
  * here. A status other than STATUS_OK, with *error filled, is a failed attempt whose process did not crash (reason
  * "exit"). */
@@ -39,8 +45,8 @@ struct farm_options {
   /* In the following members zero means the default. */
   double grace_s;      /* time that running tasks get after SIGINT, SIGTERM or SIGHUP. Default 2; under MPI 0.5, because
                           mpirun kills after 1 s */
-  double drain_s;      /* the same after SIGUSR1, which a batch system sends early, and after report() returned
-                          STATUS_STOPPED. Default 120 */
+  double drain_s;      /* the same after SIGUSR1, SIGUSR2 or SIGXCPU, which a batch system sends early, and after
+                          report() returned STATUS_STOPPED. Default 120 */
   double lost_after_s; /* a rank that sends nothing for this time is lost (it sends a message every 2 s). Default 60 */
 };
 
@@ -62,8 +68,8 @@ int farm_ranks(const struct farm *farm);
 int farm_slots_total(const struct farm *farm); /* slots of all ranks */
 
 /* FARM_LOST says nothing about the task: a signal from outside ended it, a rank or slot went away, or the machine had
- * no memory, process or disk for it. Tasks ignore SIGINT, SIGTERM, SIGHUP and SIGUSR1, which a terminal or batch system
- * sends to the whole process group: the manager decides what these mean. */
+ * no memory, process or disk for it. Tasks ignore the stop signals, which a terminal or batch system sends to
+ * the whole process group: the manager decides what these mean. */
 enum farm_ending { FARM_DONE, FARM_FAILED, FARM_TIME_LIMIT, FARM_MEMORY_LIMIT, FARM_CRASHED, FARM_LOST };
 
 struct farm_task {
@@ -107,7 +113,7 @@ struct farm_manager {
 };
 
 /* Runs until next() gives no task and no task is out. Rank 0 manages; the other ranks serve until it ends them, and
- * return its final status. After the first SIGINT, SIGTERM, SIGHUP or SIGUSR1 no new tasks start, running ones get
+ * return its final status. After the first stop signal no new tasks start, running ones get
  * grace_s or drain_s to finish, and the status is STATUS_STOPPED. A second signal ends the farm immediately. */
 status farm_run(struct farm *farm, const struct farm_manager *manager, struct error *error);
 

@@ -250,7 +250,8 @@ static void obey(struct manager *m, status said) {
 static void stop(struct manager *m, int number) {
   const struct farm_options *options = &m->farm->options;
   m->signal_ns = clock_ns();
-  drain(m, STATUS_STOPPED, number == SIGUSR1 ? options->drain_s : options->grace_s);
+  const bool early = number == SIGUSR1 || number == SIGUSR2 || number == SIGXCPU;
+  drain(m, STATUS_STOPPED, early ? options->drain_s : options->grace_s);
   recall_all(m);
 }
 

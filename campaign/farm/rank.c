@@ -48,15 +48,16 @@ static int usable_cores(void) {
   return sched_getaffinity(0, sizeof set, &set) == 0 && CPU_COUNT(&set) > 0 ? CPU_COUNT(&set) : 1;
 }
 
+const int farm_stop_signals[FARM_STOP_SIGNALS] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
+
 static status watch_signals(struct farm *farm, struct error *error) {
-  const int wanted[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
   sigset_t set;
   sigemptyset(&set);
-  for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+  for (size_t i = 0; i < FARM_STOP_SIGNALS; i++) {
     struct sigaction now;
-    if (sigaction(wanted[i], NULL, &now) == 0 && now.sa_handler == SIG_IGN)
+    if (sigaction(farm_stop_signals[i], NULL, &now) == 0 && now.sa_handler == SIG_IGN)
       continue; /* nohup, or `&` in a script */
-    sigaddset(&set, wanted[i]);
+    sigaddset(&set, farm_stop_signals[i]);
   }
   if (sigprocmask(SIG_BLOCK, &set, &farm->mask_before) != 0 ||
       (farm->signals = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK)) < 0)

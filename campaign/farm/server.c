@@ -117,9 +117,9 @@ static void spread(int slots) {
 /* Signals typed at a terminal or sent by mpirun reach the whole group; the main process decides what they mean. Data is
  * printed by the main process alone: what a library prints in a run goes to stderr. */
 static void detach(void) {
-  const int ignored[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGQUIT};
-  for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
-    signal(ignored[i], SIG_IGN);
+  for (size_t i = 0; i < FARM_STOP_SIGNALS; i++)
+    signal(farm_stop_signals[i], SIG_IGN);
+  signal(SIGQUIT, SIG_IGN);
   signal(SIGPIPE, SIG_DFL);
   signal(SIGCHLD, SIG_DFL);
   dup2(STDERR_FILENO, STDOUT_FILENO);

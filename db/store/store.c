@@ -73,9 +73,25 @@ static status check_companions(const char *path, struct error *error) {
   return result;
 }
 
+/* SQLite opens no file whose path, from / on and with its journal's ending, is longer than its limit (512 bytes on
+ * Unix), and does not say so. */
+static status check_length(const char *path, struct error *error) {
+  sqlite3_vfs *vfs = sqlite3_vfs_find(NULL);
+  char full[LIMITS_PATH] = "";
+  const int most = vfs->mxPathname - (int)strlen("-journal"), code = vfs->xFullPathname(vfs, path, LIMITS_PATH, full);
+  if ((code & 0xff) != SQLITE_OK || strlen(full) <= (size_t)most)
+    return STATUS_OK; /* opening it reports other faults */
+  return status_fail(
+      error, STATUS_IO,
+      "%s: its path from / on has %zu bytes, and SQLite opens files with at most %d. Name a store in a folder "
+      "with a shorter path (`--store FILE`), or move the folder.",
+      path, strlen(full), most);
+}
+
 /* A file or a free path? Opening a pipe would block. */
 static status check_file(const char *path, struct error *error) {
   struct stat file;
+  TRY(check_length(path, error));
   if (stat(path, &file) != 0 || S_ISREG(file.st_mode))
     return check_companions(path, error);
   return status_fail(error, STATUS_IO, "%s is a %s: name the store's file.", path,
@@ -695,6 +711,8 @@ status store_export(struct store *store, const char *path, struct error *error) 
     return status_fail(error, STATUS_IO, "%s exists already: name another file, or remove it first.", path);
   TRY(store_flush(store, error));
   TRY(file_begin(&file, path, "copy of the store", error));
+  if (check_length(file.temporary, error) != STATUS_OK)
+    return file_end(&file, STATUS_IO, error);
   /* query_only refuses VACUUM INTO, although VACUUM INTO writes another file. */
   sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
   status result = guard_vacuum_into(store->db, file.temporary, "writing the hand-over file", error);

@@ -2,7 +2,7 @@
 # Series of snapshots of both engines as ParaView sees them: times, points, arrays. Where there is no pvpython (Debian: apt install
 # python3-paraview; 5.11 is meant) nothing is checked, and it says so.
 . "$(dirname "$0")/lib.bash"
-command -v pvpython >/dev/null || { echo "skipped: no pvpython on this machine"; exit 0; }
+command -v pvpython >/dev/null || { echo "skipped: no pvpython on this machine"; exit 77; }
 
 expect 0 "$clast" simulate basalt-sphere --quiet --set fidelity.particles=500 --set 'stop.end_time=10 us' --snapshots 3
 expect 0 "$clast" simulate disc-explosion --quiet --set 'body.diameter=8 cm' --set 'stop.end_time=0.2 ms' --snapshots 3

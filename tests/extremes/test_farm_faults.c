@@ -54,8 +54,8 @@ static void kill_anything(void **state) {
 
 static void signals_drain(void **state) {
   (void)state;
-  const int signals[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP};
-  for (int i = 0; i < 4; i++) {
+  const int signals[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP, SIGUSR2, SIGXCPU};
+  for (int i = 0; i < 6; i++) {
     struct outcome_of out;
     const struct running it = launch(program, (struct launch){ALONE, .in_process = i % 2, .count = 1000,
                                                               .kind = TASK_SLEEP, .amount = 0.05});
@@ -68,6 +68,23 @@ static void signals_drain(void **state) {
     assert_true(out.reported < 100);
     assert_int_equal(out.twice + out.wrong, 0);
     assert_int_equal(out.done, out.reported);
+  }
+}
+
+/* Signals that batch systems send early: runs that need longer than the grace period are finished. */
+static void early_signals_wait(void **state) {
+  (void)state;
+  const int signals[] = {SIGUSR1, SIGUSR2, SIGXCPU};
+  for (int i = 0; i < 3; i++) {
+    struct outcome_of out;
+    const struct running it = launch(program, (struct launch){ALONE, .count = 10, .kind = TASK_SLEEP, .amount = 2.5});
+    assert_true(await_descendant(&it, it.pid, CHILD, 1) > 0);
+    killpg(it.pid, signals[i]);
+    assert_true(ended(&it, 10, &out));
+    assert_int_equal(orphans(&it, 1), 0);
+    assert_int_equal(out.exit_code, STATUS_STOPPED);
+    assert_int_equal(out.reported, 2);
+    assert_int_equal(out.done, 2);
   }
 }
 
@@ -135,8 +152,8 @@ int main(int argc, char **argv) {
     return program_work(argv);
   char path[4096];
   program = program_path(path, sizeof path);
-  const struct CMUnitTest tests[] = {cmocka_unit_test(kill_anything), cmocka_unit_test(signals_drain),
-                                     cmocka_unit_test(long_runs_are_dropped), cmocka_unit_test(crash_storm),
-                                     cmocka_unit_test(stdout_stays_clean)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(kill_anything),      cmocka_unit_test(signals_drain),
+                                     cmocka_unit_test(early_signals_wait), cmocka_unit_test(long_runs_are_dropped),
+                                     cmocka_unit_test(crash_storm),        cmocka_unit_test(stdout_stays_clean)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

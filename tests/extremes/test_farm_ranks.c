@@ -111,8 +111,8 @@ static void a_killed_rank_ends_the_job(void **state) {
 
 static void signals_to_mpirun(void **state) {
   (void)state;
-  const int signals[] = {SIGUSR1, SIGTERM, SIGINT};
-  for (int i = 0; i < 3; i++) {
+  const int signals[] = {SIGUSR1, SIGUSR2, SIGTERM, SIGINT};
+  for (int i = 0; i < 4; i++) {
     struct outcome_of out;
     const struct running it = launch(program, (struct launch){.ranks = 3,
                                                               .slots = 1,
@@ -128,7 +128,7 @@ static void signals_to_mpirun(void **state) {
     assert_int_equal(out.status, STATUS_STOPPED);
     assert_int_equal(out.stopping, 1);
     assert_int_equal(out.twice + out.wrong, 0);
-    if (signals[i] == SIGUSR1) {
+    if (signals[i] == SIGUSR1 || signals[i] == SIGUSR2) {
       assert_int_equal(out.exit_code, STATUS_STOPPED);
       assert_int_equal(out.lost, 0);
     } else {

@@ -124,6 +124,8 @@ static inline struct running launch(const char *program, struct launch it) {
   running.pid = fork();
   if (running.pid == 0) {
     setpgid(0, 0);
+    for (size_t i = 0; i < FARM_STOP_SIGNALS; i++) /* the test may run under nohup, which ignores some */
+      signal(farm_stop_signals[i], SIG_DFL);
     setenv(TAG_VARIABLE, running.tag, 1);
     setenv("CLAST_FARM_TEST_SUMMARY", running.summary, 1);
     setenv("CLAST_FARM_TEST_JOURNAL", running.journal, 1);
