@@ -84,6 +84,7 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   rank INTEGER NOT NULL, -- MPI rank that computed it
   finished_at REAL NOT NULL, -- [s] when it was stored, seconds since 1970-01-01 UTC
   fields_path TEXT, -- HDF5 file with its fields, relative to the store's folder; NULL when none was kept
+  fields_digest TEXT, -- changes when any bit of that file changes; NULL in older rows
   counts INTEGER NOT NULL CHECK (counts = (surplus = 0 AND state IN ('completed', 'end-time') AND largest_fraction IS NOT NULL AND second_fraction IS NOT NULL AND fragment_count IS NOT NULL AND dust_fraction IS NOT NULL AND mean_fragment_mass IS NOT NULL)), -- 1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)
   digest BLOB CHECK (length(digest) = 16), -- changes when any bit changes of what the run determined: results, masses, estimates, seed, identity
   state TEXT, -- How the run ended: with a usable result (completed, end-time), or without one. One of: completed, end-time, not-finite, time-step, energy, invalid
@@ -172,6 +173,7 @@ CREATE TABLE point_estimate ( -- Estimates pooled over the runs of a point that 
   point_id INTEGER NOT NULL REFERENCES point (point_id), -- the point
   results_version INTEGER NOT NULL, -- version of the engine's results it was made from
   ordinal INTEGER NOT NULL, -- number among the estimates of the point
+  digest TEXT, -- changes when any bit of the row changes; NULL in older rows
   window TEXT, -- Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10
   method TEXT, -- Method of the estimate. One of: least_squares, masses, cutoff
   headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
@@ -216,6 +218,7 @@ CREATE TABLE convergence ( -- Studies of convergence (clast converge): the level
   results_version INTEGER NOT NULL, -- version of the engine's results
   level INTEGER NOT NULL, -- number of the level, from 0, coarse to fine
   point_id INTEGER NOT NULL REFERENCES point (point_id), -- the level, as a point: its runs are in run
+  digest TEXT, -- changes when any bit of the row changes; NULL in older rows
   knob TEXT, -- What was made coarser or finer (`clast converge --list`).
   quantity TEXT, -- Result, as a column of the view runs. Its unit is that of mean, bias and error.
   setting TEXT, -- Value of the knob's first input at this level.
@@ -248,6 +251,7 @@ CREATE TABLE convergence ( -- Studies of convergence (clast converge): the level
 CREATE TABLE convergence_limit ( -- Order and limit of each knob of a study, for each quantity.
   base_point_id INTEGER NOT NULL REFERENCES point (point_id), -- the scene studied, as a point
   results_version INTEGER NOT NULL, -- version of the engine's results
+  digest TEXT, -- changes when any bit of the row changes; NULL in older rows
   knob TEXT, -- What was made coarser or finer.
   quantity TEXT, -- Result, as a column of the view runs. Its unit is that of the limit.
   verdict TEXT, -- What the three finest levels tell. One of: too-few, unchanged, order, no-order, unsure
@@ -702,6 +706,8 @@ INSERT INTO column_doc VALUES ('convergence', 'cpu', 's', 'Mean processor time o
 
 INSERT INTO column_doc VALUES ('convergence', 'deviation', NULL, 'Standard deviation between seeds.', 1);
 
+INSERT INTO column_doc VALUES ('convergence', 'digest', NULL, 'changes when any bit of the row changes; NULL in older rows', 0);
+
 INSERT INTO column_doc VALUES ('convergence', 'error', NULL, 'resolution (of a model: |bias| and half width), and what the other knobs leave unknown at the scene''s own setting. Off where it is not known.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'frontier', NULL, '1: no level studied is both cheaper and nearer (Pareto).', 1);
@@ -741,6 +747,8 @@ INSERT INTO column_doc VALUES ('convergence', 'step', NULL, 'Size that goes to z
 INSERT INTO column_doc VALUES ('convergence', 'upper_mode', NULL, 'Share of the runs in the upper of two modes (`clast scatter`). Off: one mode.', 1);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'base_point_id', NULL, 'the scene studied, as a point', 0);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'digest', NULL, 'changes when any bit of the row changes; NULL in older rows', 0);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'extrapolated', NULL, 'Extrapolated value at step 0.', 1);
 
@@ -859,6 +867,8 @@ INSERT INTO column_doc VALUES ('point', 'scene_name', NULL, 'name of the scene t
 INSERT INTO column_doc VALUES ('point_estimate', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.', 1);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'digest', NULL, 'changes when any bit of the row changes; NULL in older rows', 0);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'headline', NULL, '1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.', 1);
 
@@ -1227,6 +1237,8 @@ INSERT INTO column_doc VALUES ('run', 'digest', NULL, 'changes when any bit chan
 INSERT INTO column_doc VALUES ('run', 'dust_fraction', '1', 'Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 1);
 
 INSERT INTO column_doc VALUES ('run', 'energy_error', '1', 'Energy gained or lost by numerical errors, as a share of the energy put in.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'fields_digest', NULL, 'changes when any bit of that file changes; NULL in older rows', 0);
 
 INSERT INTO column_doc VALUES ('run', 'fields_path', NULL, 'HDF5 file with its fields, relative to the store''s folder; NULL when none was kept', 0);
 

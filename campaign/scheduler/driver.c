@@ -47,7 +47,7 @@ struct driver {
   int64_t started_done;             /* runs finished in this invocation, for the rate */
   double finished_s;                /* their wall time */
   double begin, last_left, seconds_left;
-  int64_t fields_missing; /* fields files of stored runs that no longer exist */
+  int64_t fields_missing; /* fields files of stored runs that no longer exist, or are damaged */
   int64_t wanted;         /* runs that the points met so far need */
 };
 
@@ -129,17 +129,20 @@ static status take_stored(struct driver *driver, struct point *point, const stru
     return STATUS_OK;
   if (!point_reserve(point, r))
     return status_fail(error, STATUS_MEMORY, "no memory for a point's runs");
-  const bool usable = outcome_is_usable(run->state), kept = run->fields_path && !run->fields_missing;
+  const bool usable = outcome_is_usable(run->state), keeps = driver->campaign->keep != CAMPAIGN_KEEP_NONE;
+  bool kept = run->fields_path && !run->fields_missing;
+  if (keeps && kept)
+    TRY(store_check_fields(driver->scheduler->store, run->identity, &kept, error));
   const double value = usable ? run->value : NOTHING;
   point_finish_replicate(point, r, POINT_DONE, value);
   point->replicates[r].surplus = run->surplus;
   point->replicates[r].fields = kept || run->state == OUTCOME_INVALID;
-  if (driver->campaign->keep != CAMPAIGN_KEEP_NONE && run->fields_missing && driver->fields_missing++ == 0) {
+  if (keeps && run->fields_path && !kept && driver->fields_missing++ == 0) {
     char text[4400];
     snprintf(text, sizeof text,
-             "fields file %.4000s of the store is missing, perhaps others too (`clast check` lists them): those that "
-             "the campaign keeps are computed again",
-             run->fields_path);
+             "fields file %.4000s of the store is %s, perhaps others too (`clast check` lists them): those that the "
+             "campaign keeps are computed again",
+             run->fields_path, run->fields_missing ? "missing" : "damaged");
     scheduler_note(driver->scheduler, text);
   }
   point_cost_learn(&driver->cost, &point->cost, run->wall_s);

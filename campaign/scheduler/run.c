@@ -15,7 +15,7 @@
 /* The encodings begin with these marks. All ranks of a farm run one binary, so arrays of structs are sent as they are
  * in memory. The marks, the sizes and the hashes of the tables find anything else. */
 #define TASK_MARK   "clast task 2"
-#define RESULT_MARK "clast result 2"
+#define RESULT_MARK "clast result 3"
 
 void run_result_clear(struct run_result *result) {
   free(result->result);
@@ -227,6 +227,7 @@ static void write_result(struct writer *writer, const struct engine_kind *kind, 
   put_count(writer, sizeof(struct estimate));
   put_count(writer, result->estimate_count);
   put(writer, result->estimates, result->estimate_count * sizeof(struct estimate));
+  put_text(writer, result->fields_digest);
   put_count(writer, result->unwritten.status);
   put_text(writer, result->unwritten.status != STATUS_OK ? result->unwritten.message : "");
 }
@@ -287,6 +288,7 @@ status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, s
     return status_fail(error, STATUS_MEMORY, "no memory for a result");
   }
   take_estimates(&reader, result);
+  take_text(&reader, result->fields_digest, sizeof result->fields_digest);
   result->unwritten.status = (status)take_count(&reader);
   take_text(&reader, result->unwritten.message, sizeof result->unwritten.message);
   if (reader.good && reader.left == 0)
@@ -349,6 +351,8 @@ status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t 
   code = run_simulate(&request, NULL, NULL, 0, &values, error);
   if (code != STATUS_OK && !values.result)
     goto cleanup;
+  if (code == STATUS_OK && request.fields_path && values.outcome.state != OUTCOME_INVALID)
+    code = store_digest_fields(request.fields_path, values.fields_digest, error);
   if (code != STATUS_OK && error)
     values.unwritten = *error;
   values.unwritten.status = code;

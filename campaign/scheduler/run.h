@@ -5,6 +5,7 @@
 #define CLAST_CAMPAIGN_SCHEDULER_RUN_H
 
 #include "analysis/statistics/estimates.h"
+#include "db/store/store.h"
 #include "engine/scene.h"
 
 struct run_request {
@@ -21,7 +22,8 @@ struct run_result {
   struct fragment *fragments; /* owned: by descending mass */
   size_t fragment_count;
   struct estimate estimates[ESTIMATES_COUNT];
-  size_t estimate_count;  /* 0 for a run without fragments */
+  size_t estimate_count;                 /* 0 for a run without fragments */
+  char fields_digest[STORE_DIGEST_SIZE]; /* from run_work: of the fields file that was written; else "" */
   struct error unwritten; /* from run_work: why the fields file could not be written; STATUS_OK: it was written, or
                              was not requested */
 };

@@ -203,6 +203,7 @@ static status store_result(struct scheduler *scheduler, const struct scheduler_r
       .host = end->report->host,
       .rank = end->report->rank,
       .fields_path = end->fields ? path : NULL,
+      .fields_digest = end->fields ? result->fields_digest : NULL,
   };
   memcpy(row.identity, run->identity, sizeof row.identity);
   return store_add_run(scheduler->store, &row, error);
@@ -212,10 +213,12 @@ static status store_result(struct scheduler *scheduler, const struct scheduler_r
 static status store_fields(struct scheduler *scheduler, const struct scheduler_run *run, struct scheduler_end *end,
                            struct error *error) {
   char path[LIMITS_PATH];
-  end->fields = !end->result->unwritten.status;
+  const struct run_result *result = end->result;
+  end->fields = !result->unwritten.status;
   end->result = NULL;
   fields_path(scheduler, run, false, path, sizeof path);
-  return end->fields ? store_set_fields(scheduler->store, run->identity, path, error) : STATUS_OK;
+  return end->fields ? store_set_fields(scheduler->store, run->identity, path, result->fields_digest, error)
+                     : STATUS_OK;
 }
 
 /* Starts no more runs; results of running ones are still stored. The next invocation writes the missing fields. Commits

@@ -34,6 +34,7 @@ static status name_columns(struct store *store, struct store_kind *kind, struct 
   store->name_of.replicate = digest_name("run", "replicate");
   store->name_of.seed = digest_name("run", "seed");
   store->name_of.results_version = digest_name("run", "results_version");
+  store->name_of.fields_digest = digest_name("run", "fields_digest");
   store->name_of.masses = digest_name("fragment_mass", "masses");
   TRY(digest_names_make(&store->outcome_names, "run", &outcome_table, error));
   TRY(digest_names_make(&store->estimate_names, "estimate", &estimates_table, error));
@@ -404,6 +405,7 @@ static const struct sql_column run_columns[] = {
     RUN("rank", INT, run.rank),
     RUN("finished_at", REAL, finished_at),
     RUN("fields_path", TEXT, run.fields_path),
+    RUN("fields_digest", TEXT, run.fields_digest),
     RUN("digest", IDENTITY, digest),
 };
 
@@ -416,6 +418,8 @@ static void digest_run(const struct store *store, const struct store_kind *kind,
   digest_add(&sum, store->name_of.replicate, 0, sql_of_integer(run->replicate));
   digest_add(&sum, store->name_of.seed, 0, sql_of_integer((int64_t)run->seed));
   digest_add(&sum, store->name_of.results_version, 0, sql_of_integer(run->kind->results_version));
+  if (run->fields_digest)
+    digest_add(&sum, store->name_of.fields_digest, 0, sql_of_text(run->fields_digest));
   digest_add_fields(&sum, &store->outcome_names, &outcome_table, 0, run->outcome);
   if (run->result)
     digest_add_fields(&sum, &kind->names, run->kind->results, 0, run->result);

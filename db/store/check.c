@@ -158,16 +158,21 @@ static status check_ranges(struct report *report, struct error *error) {
 }
 
 static status check_files(struct report *report, struct error *error) {
+  const bool digests = schema_has_column(report->store->db, "run", "fields_digest");
   STATEMENT statement = NULL;
-  status result = sql_prepare(report->store->db, "SELECT run_id, fields_path FROM run WHERE fields_path IS NOT NULL",
-                              &statement, checking, error);
+  status result = sql_preparef(report->store->db, &statement, checking, error,
+                               "SELECT run_id, fields_path, %s FROM run WHERE fields_path IS NOT NULL",
+                               digests ? "fields_digest" : "NULL");
   while (sql_next(statement, &result, checking, error)) {
     char *path = paths_of_fields(report->store->path, sql_text(statement, 1));
-    if (path && access(path, R_OK) != 0)
+    if (!path)
+      return status_fail(error, STATUS_MEMORY, "%s: memory ran out", checking);
+    const bool here = access(path, R_OK) == 0;
+    if (!here || !paths_whole(path, sqlite3_column_type(statement, 2) == SQLITE_NULL ? NULL : sql_text(statement, 2)))
       say(report,
-          "run %lld: its fields file %s is missing; `clast run` of a campaign with keep.fields makes it again, or "
+          "run %lld: its fields file %s is %s; `clast run` of a campaign with keep.fields makes it again, or "
           "`clast replay --fields`",
-          (long long)sqlite3_column_int64(statement, 0), path);
+          (long long)sqlite3_column_int64(statement, 0), path, here ? "damaged" : "missing");
     free(path);
   }
   return result;
@@ -334,6 +339,41 @@ status store_check_run(struct store *store, int64_t run_id, bool *whole, struct 
   return digest_rows_end(&runs);
 }
 
+/* Exponents of points and studies of convergence have a digest in each row. */
+static status check_rows(struct report *report, struct error *error) {
+  static const struct {
+    const char *table, *point, *what;
+  } tables[] = {{"point_estimate", "point_id", "the exponents of all its runs"},
+                {"convergence", "base_point_id", "its studies of convergence"},
+                {"convergence_limit", "base_point_id", "its studies of convergence"}};
+  for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
+    char *expression = NULL;
+    if (!schema_has_column(report->store->db, tables[i].table, "digest"))
+      continue;
+    TRY(digest_expression(report->store->db, tables[i].table, &expression, error));
+    char *sql = sqlite3_mprintf("SELECT DISTINCT 'point ' || %s || ': a bit of %s has changed since they were stored' "
+                                "FROM %s WHERE digest <> %z",
+                                tables[i].point, tables[i].what, tables[i].table, expression);
+    const status result = sql ? no_rows(report, sql, error)
+                              : status_fail(error, STATUS_MEMORY, "%s: memory ran out", checking);
+    sqlite3_free(sql);
+    TRY(result);
+  }
+  return STATUS_OK;
+}
+
+static status check_bins(struct report *report, struct error *error) {
+  STATEMENT bins = NULL;
+  status result = sql_prepare(report->store->db, "SELECT bin, lower, upper FROM bin", &bins, checking, error);
+  while (sql_next(bins, &result, checking, error)) {
+    const int64_t bin = sqlite3_column_int64(bins, 0);
+    if (bin < -SUMS_BINS_LIMIT || bin > SUMS_BINS_LIMIT || sqlite3_column_double(bins, 1) != spectrum_edge((int)bin) ||
+        sqlite3_column_double(bins, 2) != spectrum_edge((int)bin + 1))
+      say(report, "bin %lld: its edges are not those of this number", (long long)bin);
+  }
+  return result;
+}
+
 static status check_sums(struct report *report, struct error *error) {
   int64_t wrong = 0;
   status result = sums_mismatches(report->store->db, &wrong, error);
@@ -346,10 +386,10 @@ static status check_sums(struct report *report, struct error *error) {
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error) {
   static status (*const checks[])(struct report *,
-                                  struct error *) = {check_pages,     check_questions, check_fragment_counts,
-                                                     check_results,   check_ranges,    check_files,
-                                                     check_sums,      check_masses,    check_digests,
-                                                     check_identities};
+                                  struct error *) = {check_pages,   check_questions, check_fragment_counts,
+                                                     check_results, check_ranges,    check_files,
+                                                     check_bins,    check_sums,      check_masses,
+                                                     check_digests, check_rows,      check_identities};
   struct report report = {.store = store, .line = line, .context = context};
   status result = store_flush(store, error);
   for (size_t i = 0; result == STATUS_OK && !report.pages_damaged && i < sizeof checks / sizeof checks[0]; i++) {

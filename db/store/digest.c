@@ -1,10 +1,14 @@
-/* Digests of values before they are stored, and of stored rows. */
+/* Digests of values before they are stored, of stored rows, and of fields files. */
 #include <endian.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "db/store/internal.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 /* Both lanes are one to one in the word and in the state: an odd factor has an inverse, and so has x ^= x >> k. The
@@ -92,6 +96,117 @@ void digest_write(struct digest sum, uint8_t bytes[16]) {
   }
 }
 
+static void write_text(struct digest sum, char text[STORE_DIGEST_SIZE]) {
+  uint8_t bytes[16];
+  digest_write(sum, bytes);
+  text_hex(bytes, sizeof bytes, text);
+}
+
+/* ---- fields files ---- */
+
+enum { CHUNK = 1 << 16 };
+
+/* Reads until the chunk is full or the file ends. -1: it cannot be read. */
+static ssize_t read_chunk(int file, uint8_t *bytes) {
+  size_t size = 0;
+  while (size < CHUNK) {
+    const ssize_t count = read(file, bytes + size, CHUNK - size);
+    if (count < 0 && errno == EINTR)
+      continue;
+    if (count < 0)
+      return -1;
+    if (count == 0)
+      break;
+    size += (size_t)count;
+  }
+  return (ssize_t)size;
+}
+
+/* A store may name a pipe or a device: it is no fields file, and reading it may never end. */
+status store_digest_fields(const char *path, char digest[STORE_DIGEST_SIZE], struct error *error) {
+  struct stat kind;
+  const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0)
+    return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "the fields file '%s' cannot be read: %s",
+                       path, strerror(errno));
+  uint8_t *bytes = memory_small(1, CHUNK);
+  struct digest state = digest_name("fields", "");
+  ssize_t size = fstat(file, &kind) == 0 && S_ISREG(kind.st_mode) ? CHUNK : -1;
+  while (size == CHUNK) {
+    size = read_chunk(file, bytes);
+    if (size > 0)
+      state = step_bytes(state, bytes, (size_t)size);
+  }
+  free(bytes);
+  close(file);
+  if (size < 0)
+    return status_fail(error, STATUS_IO, "the fields file '%s' cannot be read", path);
+  write_text(state, digest);
+  return STATUS_OK;
+}
+
+/* ---- digests of single rows, in their column `digest` ---- */
+
+static struct sql_value value_of(sqlite3_value *from) {
+  struct sql_value value = {.type = sqlite3_value_type(from)};
+  switch (value.type) {
+  case SQLITE_INTEGER: value.integer = sqlite3_value_int64(from); break;
+  case SQLITE_FLOAT: value.real = sqlite3_value_double(from); break;
+  case SQLITE_TEXT: value.bytes = sqlite3_value_text(from); break;
+  case SQLITE_BLOB: value.bytes = sqlite3_value_blob(from); break;
+  default: return value;
+  }
+  if (value.bytes)
+    value.size = (size_t)sqlite3_value_bytes(from);
+  return value;
+}
+
+/* row_digest(table, column, value, column, value, ...) */
+static void row_digest(sqlite3_context *context, int count, sqlite3_value **values) {
+  const char *table = (const char *)sqlite3_value_text(values[0]);
+  struct digest sum = {0};
+  char text[STORE_DIGEST_SIZE];
+  for (int i = 1; i + 1 < count; i += 2) {
+    const char *column = (const char *)sqlite3_value_text(values[i]);
+    if (!table || !column) {
+      sqlite3_result_error_nomem(context);
+      return;
+    }
+    digest_add(&sum, digest_name(table, column), 0, value_of(values[i + 1]));
+  }
+  write_text(sum, text);
+  sqlite3_result_text(context, text, -1, SQLITE_TRANSIENT);
+}
+
+void digest_function(sqlite3 *db) {
+  sqlite3_create_function(db, "row_digest", -1, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_DIRECTONLY, NULL,
+                          row_digest, NULL, NULL);
+}
+
+status digest_expression(sqlite3 *db, const char *table, char **sql, struct error *error) {
+  static const char doing[] = "listing columns";
+  enum { MOST_COLUMNS = 60 }; /* SQLite's functions have at most 127 arguments */
+  STATEMENT columns = NULL;
+  status result = sql_prepare(db,
+                              "SELECT group_concat(format('%Q, \"%w\"', name, name), ', '), count(*) FROM "
+                              "pragma_table_info(?1, 'main') WHERE name <> 'digest'",
+                              &columns, doing, error);
+  sql_bind_text(columns, 1, table);
+  if (!sql_next(columns, &result, doing, error))
+    return result;
+  if (sqlite3_column_int(columns, 1) > MOST_COLUMNS)
+    return status_fail(error, STATUS_CONTENT, "table %s has more than %d columns", table, MOST_COLUMNS);
+  *sql = sqlite3_mprintf("row_digest(%Q, %s)", table, sql_text(columns, 0));
+  return *sql ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+}
+
+status digest_fill(sqlite3 *db, const char *table, const char *where, struct error *error) {
+  char *expression = NULL;
+  TRY(digest_expression(db, table, &expression, error));
+  return sql_executef(db, "writing digests", error, "UPDATE main.\"%w\" SET digest = %z WHERE %s", table, expression,
+                      where);
+}
+
 /* ---- stored rows ---- */
 
 static const char doing[] = "reading digests";
@@ -104,8 +219,9 @@ struct source {
   const char *row, *but;
 };
 
-/* All values that follow from inputs, seed and results_version. Left out: times, hosts and ids within the store, and
- * the values that stopping rules change (surplus, counts). The spectrum follows from the masses, bit by bit. */
+/* All values that follow from inputs, seed and results_version, and the digest of the fields file, which printed
+ * digests leave out: a campaign need not keep fields. Left out: times, hosts and ids within the store, and the values
+ * that stopping rules change (surplus, counts). The spectrum follows from the masses, bit by bit. */
 static const struct source of_runs[] = {
     {"run", "0",
      "'run_id', 'point_id', 'session_id', 'surplus', 'counts', 'attempt', 'wall_time', 'cpu_time', 'peak_memory', "
@@ -118,11 +234,11 @@ static const struct source of_points[] = {
     {"point_input", "path", "'point_id', 'path'"},
 };
 
-static status open_table(struct digest_rows *rows, const struct source *source, struct error *error) {
+static status open_table(struct digest_rows *rows, const struct source *source, bool to_print, struct error *error) {
   if (rows->count == DIGEST_TABLES)
     return status_fail(error, STATUS_CONTENT, "more than %d tables of results in one store", DIGEST_TABLES);
-  char *question = sqlite3_mprintf("SELECT name FROM pragma_table_info(?1, 'main') WHERE name NOT IN (%s)",
-                                   source->but);
+  char *question = sqlite3_mprintf("SELECT name FROM pragma_table_info(?1, 'main') WHERE name NOT IN (%s%s)",
+                                   source->but, to_print ? ", 'fields_digest'" : "");
   char *columns = question ? sql_name_list(rows->db, question, source->table, NULL) : NULL;
   sqlite3_free(question);
   if (!columns)
@@ -143,7 +259,7 @@ static status open_table(struct digest_rows *rows, const struct source *source, 
 }
 
 /* Opens the result tables of all engines: each run has a row in the table of its engine. */
-static status open_results(struct digest_rows *rows, struct error *error) {
+static status open_results(struct digest_rows *rows, bool to_print, struct error *error) {
   STATEMENT names = NULL;
   status result = sql_prepare(rows->db,
                               "SELECT name FROM main.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*'",
@@ -151,7 +267,7 @@ static status open_results(struct digest_rows *rows, struct error *error) {
   while (sql_next(names, &result, doing, error)) {
     struct source source = {.row = "0", .but = "'run_id'"};
     snprintf(source.table, sizeof source.table, "%s", sql_text(names, 0));
-    result = open_table(rows, &source, error);
+    result = open_table(rows, &source, to_print, error);
   }
   return result;
 }
@@ -164,9 +280,9 @@ static status open_rows(struct digest_rows *rows, enum digest_kind kind, int64_t
   rows->key = runs ? "run_id" : "point_id";
   const size_t count = runs ? sizeof of_runs / sizeof of_runs[0] : sizeof of_points / sizeof of_points[0];
   for (size_t i = 0; i < count; i++)
-    TRY(open_table(rows, runs ? &of_runs[i] : &of_points[i], error));
+    TRY(open_table(rows, runs ? &of_runs[i] : &of_points[i], to_print, error));
   if (runs)
-    TRY(open_results(rows, error));
+    TRY(open_results(rows, to_print, error));
   return sql_preparef(rows->db, &rows->numbers, doing, error,
                       "SELECT %s, digest, lower(hex(%s)) FROM main.%s WHERE %s BETWEEN %lld AND %lld%s%s%s", rows->key,
                       hash, rows->table, rows->key, (long long)(only ? only : INT64_MIN),
@@ -234,6 +350,39 @@ status digest_rows_fill(sqlite3 *db, int64_t run_id, struct error *error) {
     TRY(sql_run(update, doing, error));
   }
   return digest_rows_end(&rows);
+}
+
+static struct digest digest_of_bytes(const uint8_t *bytes) {
+  return (struct digest){word_at(bytes, 8), word_at(bytes + 8, 8)};
+}
+
+status digest_set_fields(sqlite3 *db, int64_t run_id, const char *path, struct sql_value digest, struct error *error) {
+  static const char noting[] = "noting a fields file";
+  const struct digest name = digest_name("run", "fields_digest");
+  STATEMENT run = NULL;
+  STATEMENT update = NULL;
+  struct digest sum = {0}, before = {0};
+  uint8_t bytes[16];
+  TRY(sql_prepare(db, "SELECT digest, fields_digest FROM main.run WHERE run_id = ?1", &run, noting, error));
+  TRY(sql_prepare(db, "UPDATE main.run SET fields_path = ?2, fields_digest = ?3, digest = ?4 WHERE run_id = ?1",
+                  &update, noting, error));
+  sqlite3_bind_int64(run, 1, run_id);
+  status result = STATUS_OK;
+  if (!sql_next(run, &result, noting, error))
+    return result;
+  sqlite3_bind_int64(update, 1, run_id);
+  sql_bind_text(update, 2, path);
+  sql_bind(update, 3, digest);
+  if (sqlite3_column_bytes(run, 0) == sizeof bytes) {
+    sum = digest_of_bytes(sqlite3_column_blob(run, 0));
+    digest_add(&before, name, 0, sql_of_column(run, 1));
+    sum.a -= before.a;
+    sum.b -= before.b;
+    digest_add(&sum, name, 0, digest);
+    digest_write(sum, bytes);
+    sqlite3_bind_blob(update, 4, bytes, sizeof bytes, SQLITE_STATIC);
+  }
+  return sql_run(update, noting, error);
 }
 
 status digest_rows_print(sqlite3 *db, enum digest_kind kind, FILE *out, struct error *error) {

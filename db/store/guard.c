@@ -269,7 +269,8 @@ static status judge_table(struct guard *guard, const struct schema_table *table,
   if (!text_close(out, &ours))
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", reading);
   for (size_t i = 0; guard->version == SCHEMA_VERSION && i < table->count; i++)
-    if (!schema_has_column(guard->db, table->name, table->columns[i].name))
+    if (!schema_may_lack(table->name, table->columns[i].name) &&
+        !schema_has_column(guard->db, table->name, table->columns[i].name))
       refuse(guard, "the lack of column", table->columns[i].name, table->name);
   if (result == STATUS_OK && guard->strangers == before)
     result = compare(guard, table->name, ours, sql, error);

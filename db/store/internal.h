@@ -44,6 +44,16 @@ void digest_add_fields(struct digest *sum, const struct digest_names *names, con
 uint64_t digest_row(const char *text);
 void digest_write(struct digest sum, uint8_t bytes[16]);
 
+/* Digests of single rows, for tables whose rows do not belong to a run: their column `digest` is that of the other
+ * columns, as text, or NULL in rows of older programs. */
+/* Makes the SQL function that computes them known to the connection. The file itself cannot call it. */
+void digest_function(sqlite3 *db);
+/* *sql: the SQL expression for the digest of a row of this table as it is now. The caller frees it with sqlite3_free().
+ * STATUS_CONTENT: the table has too many columns for a function. */
+status digest_expression(sqlite3 *db, const char *table, char **sql, struct error *error);
+/* Writes the digests of the rows that the SQL condition `where` selects. Within the caller's transaction. */
+status digest_fill(sqlite3 *db, const char *table, const char *where, struct error *error);
+
 /* Runs or points as they are stored, with the digest of what they contain now. A variable of type DIGEST_ROWS closes
  * itself where its block is left. */
 enum digest_kind { DIGEST_RUNS, DIGEST_POINTS };
@@ -74,6 +84,9 @@ void digest_rows_drop(struct digest_rows *rows); /* for DIGEST_ROWS */
 /* Prints a line for each point, or each run that is not surplus, in the order of identities: "run", its identity, and
  * the digest of its contents as they are now. STATUS_IO: `out` failed. */
 status digest_rows_print(sqlite3 *db, enum digest_kind kind, FILE *out, struct error *error);
+/* Writes the path and digest (a text, or NULL) of a run's fields file. The digest of the run changes by this value
+ * alone, so that damage elsewhere still shows. Within the caller's transaction. */
+status digest_set_fields(sqlite3 *db, int64_t run_id, const char *path, struct sql_value digest, struct error *error);
 /* Writes the digest of one run. Within the caller's transaction. */
 status digest_rows_fill(sqlite3 *db, int64_t run_id, struct error *error);
 
@@ -171,6 +184,10 @@ char *paths_of_fields(const char *store_path, const char *fields_path);
 /* Can this file be read? */
 bool paths_readable(const char *store_path, const char *fields_path);
 
+/* Has the file the digest of store_digest_fields() that was stored (NULL: none, and true)? Reads the whole file.
+ * `path`: as this process can open it. */
+bool paths_whole(const char *path, const char *digest);
+
 /* The prefix that turns a path relative to the folder of the store `source` into one relative to the folder of
  * `target`: "" when the folders are the same, else "../" and names, with a slash at the end. The caller frees it. NULL:
  * a folder does not exist, or memory ran out. */
@@ -209,7 +226,7 @@ struct store {
 
   struct digest_names outcome_names, estimate_names;
   struct {
-    struct digest identity, replicate, seed, results_version, masses;
+    struct digest identity, replicate, seed, results_version, fields_digest, masses;
   } name_of; /* columns of a run's digest */
   struct sql_insert run, attempt, estimate;
   sqlite3_stmt *masses, *spectrum, *spectrum_together;

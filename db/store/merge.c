@@ -291,15 +291,14 @@ static status keep_paths(struct store *store, const char *way, struct error *err
 /* For a run in both stores, only the other store may name a fields file, or only the other store's file may exist. */
 static status take_paths(struct store *store, const char *way, struct error *error) {
   STATEMENT pairs = NULL;
-  STATEMENT update = NULL;
+  const bool digests = sqlite3_table_column_metadata(store->db, "other", "run", "fields_digest", NULL, NULL, NULL, NULL,
+                                                     NULL) == SQLITE_OK;
   status result =
-      sql_prepare(store->db,
-                  "SELECT a.run_id, a.fields_path, iif(b.fields_path LIKE '/%', '', ?1) || b.fields_path "
-                  "FROM other.run b CROSS JOIN main.run a USING (identity) WHERE b.fields_path IS NOT NULL AND "
-                  "a.run_id NOT IN (SELECT ours FROM merge_run) ORDER BY a.run_id",
-                  &pairs, doing, error);
-  if (result == STATUS_OK)
-    result = sql_prepare(store->db, "UPDATE main.run SET fields_path = ?2 WHERE run_id = ?1", &update, doing, error);
+      sql_preparef(store->db, &pairs, doing, error,
+                   "SELECT a.run_id, a.fields_path, iif(b.fields_path LIKE '/%%', '', ?1) || b.fields_path, %s "
+                   "FROM other.run b CROSS JOIN main.run a USING (identity) WHERE b.fields_path IS NOT NULL AND "
+                   "a.run_id NOT IN (SELECT ours FROM merge_run) ORDER BY a.run_id",
+                   digests ? "b.fields_digest" : "NULL");
   if (result == STATUS_OK)
     sql_bind_text(pairs, 1, way);
   while (sql_next(pairs, &result, doing, error)) {
@@ -307,9 +306,7 @@ static status take_paths(struct store *store, const char *way, struct error *err
     const bool here = sqlite3_column_type(pairs, 1) != SQLITE_NULL && paths_readable(store->path, sql_text(pairs, 1));
     if (here || !paths_readable(store->path, theirs))
       continue;
-    sqlite3_bind_int64(update, 1, sqlite3_column_int64(pairs, 0));
-    sql_bind_text(update, 2, theirs);
-    result = sql_run(update, doing, error);
+    result = digest_set_fields(store->db, sqlite3_column_int64(pairs, 0), theirs, sql_of_column(pairs, 3), error);
   }
   return result;
 }

@@ -28,6 +28,30 @@ bool paths_readable(const char *store_path, const char *fields_path) {
   return readable;
 }
 
+bool paths_whole(const char *path, const char *digest) {
+  char now[STORE_DIGEST_SIZE];
+  return !digest || (store_digest_fields(path, now, NULL) == STATUS_OK && strcmp(now, digest) == 0);
+}
+
+status store_check_fields(struct store *store, const uint8_t identity[16], bool *whole, struct error *error) {
+  static const char doing[] = "checking a fields file";
+  STATEMENT run = NULL;
+  status result = sql_prepare(store->db,
+                              "SELECT fields_path, fields_digest FROM run WHERE identity = ?1 AND fields_path IS NOT "
+                              "NULL AND fields_digest IS NOT NULL",
+                              &run, doing, error);
+  *whole = true;
+  sqlite3_bind_blob(run, 1, identity, 16, SQLITE_STATIC);
+  if (!sql_next(run, &result, doing, error))
+    return result;
+  char *path = paths_of_fields(store->path, sql_text(run, 0));
+  if (!path)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  *whole = paths_whole(path, sql_text(run, 1));
+  free(path);
+  return STATUS_OK;
+}
+
 /* The folder of a file, with symbolic links resolved and a slash at the end. */
 static char *folder_of(const char *file, char resolved[PATHS_LONGEST]) {
   char *copy = strdup(file);

@@ -83,6 +83,7 @@ static const struct schema_column run[] = {
     {"rank", "INTEGER NOT NULL", NULL, "MPI rank that computed it"},
     {"finished_at", "REAL NOT NULL", "s", "when it was stored, seconds since 1970-01-01 UTC"},
     {"fields_path", "TEXT", NULL, "HDF5 file with its fields, relative to the store's folder; NULL when none was kept"},
+    {"fields_digest", "TEXT", NULL, "changes when any bit of that file changes; NULL in older rows"},
     {"counts", "INTEGER NOT NULL", NULL,
      "1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)"},
     {"digest", "BLOB CHECK (length(digest) = 16)", NULL,
@@ -138,6 +139,7 @@ static const struct schema_column point_estimate[] = {
     {"point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the point"},
     {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results it was made from"},
     {"ordinal", "INTEGER NOT NULL", NULL, "number among the estimates of the point"},
+    {"digest", "TEXT", NULL, "changes when any bit of the row changes; NULL in older rows"},
 };
 
 static const struct schema_column attempt[] = {
@@ -165,11 +167,13 @@ static const struct schema_column convergence[] = {
     {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results"},
     {"level", "INTEGER NOT NULL", NULL, "number of the level, from 0, coarse to fine"},
     {"point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the level, as a point: its runs are in run"},
+    {"digest", "TEXT", NULL, "changes when any bit of the row changes; NULL in older rows"},
 };
 
 static const struct schema_column convergence_limit[] = {
     {"base_point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the scene studied, as a point"},
     {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results"},
+    {"digest", "TEXT", NULL, "changes when any bit of the row changes; NULL in older rows"},
 };
 
 static const struct schema_column holder[] = {
@@ -385,11 +389,25 @@ bool schema_has_column(sqlite3 *db, const char *table, const char *column) {
   return sqlite3_table_column_metadata(db, "main", table, column, NULL, NULL, NULL, NULL, NULL) == SQLITE_OK;
 }
 
+bool schema_may_lack(const char *table, const char *column) {
+  static const char *const later[][2] = {{"run", "fields_digest"},
+                                         {"point_estimate", "digest"},
+                                         {"convergence", "digest"},
+                                         {"convergence_limit", "digest"}};
+  for (size_t i = 0; i < sizeof later / sizeof later[0]; i++)
+    if (strcmp(later[i][0], table) == 0 && strcmp(later[i][1], column) == 0)
+      return true;
+  return false;
+}
+
 bool schema_is_complete(sqlite3 *db) {
   for (size_t i = 0; i < schema_tables_count; i++)
-    for (size_t k = 0; k < column_count(&schema_tables[i]); k++)
-      if (!schema_has_column(db, schema_tables[i].name, column_at(&schema_tables[i], k).name))
+    for (size_t k = 0; k < column_count(&schema_tables[i]); k++) {
+      const struct column column = column_at(&schema_tables[i], k);
+      if (!schema_may_lack(schema_tables[i].name, column.name) &&
+          !schema_has_column(db, schema_tables[i].name, column.name))
         return false;
+    }
   return true;
 }
 

@@ -61,7 +61,11 @@ status schema_check_names(const struct schema_table *table, struct error *error)
 
 /* Does this table have this column (NULL: does the table exist)? */
 bool schema_has_column(sqlite3 *db, const char *table, const char *column);
-/* Has the database all tables and columns but those that only one engine reports? An older program's may lack some. */
+/* May a store of the current version lack this column? These came without a new version: readers do without them, a
+ * writer adds them (NULL in old rows), and programs that do not know them leave them as they are. */
+bool schema_may_lack(const char *table, const char *column);
+/* Has the database all tables and columns but those, and those that only one engine reports? An older program's may
+ * lack some. */
 bool schema_is_complete(sqlite3 *db);
 /* Creates missing parts in the database: the table, or columns that its field table has gained (NULL in old rows), and
  * their rows of column_doc. */

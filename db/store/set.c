@@ -39,9 +39,9 @@ static status set_of_run(struct store *store, int64_t run_id, size_t count, cons
 static status set_of_point(struct store *store, int64_t point_id, int results_version, size_t count,
                            const struct estimate *rows, struct error *error) {
   struct sql_insert insert = {0};
-  TRY(sql_executef(store->db, writing, error,
-                   "DELETE FROM point_estimate WHERE point_id = %lld AND results_version = %d", (long long)point_id,
-                   results_version));
+  char where[100];
+  snprintf(where, sizeof where, "point_id = %lld AND results_version = %d", (long long)point_id, results_version);
+  TRY(sql_executef(store->db, writing, error, "DELETE FROM point_estimate WHERE %s", where));
   TRY(sql_insert_prepare(store->db, &insert, "point_estimate", 3, of_point, &estimates_table, 1, writing, error));
   STATEMENT statement = insert.statement;
   for (size_t i = 0; i < count; i++) {
@@ -49,7 +49,7 @@ static status set_of_point(struct store *store, int64_t point_id, int results_ve
     sql_insert_bind(&insert, 0, &key, &rows[i]);
     TRY(sql_run(statement, writing, error));
   }
-  return STATUS_OK;
+  return digest_fill(store->db, "point_estimate", where, error);
 }
 
 status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
@@ -89,20 +89,22 @@ status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, s
 }
 
 static status set_fields(struct store *store, const uint8_t identity[16], const char *fields_path,
-                         struct error *error) {
+                         const char *fields_digest, struct error *error) {
   static const char doing[] = "noting a fields file";
-  STATEMENT statement = NULL;
-  TRY(sql_prepare(store->db, "UPDATE run SET fields_path = ?2 WHERE identity = ?1", &statement, doing, error));
-  sqlite3_bind_blob(statement, 1, identity, 16, SQLITE_STATIC);
-  sql_bind_text(statement, 2, fields_path);
-  TRY(sql_run(statement, doing, error));
-  return sqlite3_changes(store->db) > 0 ? STATUS_OK
-                                        : status_fail(error, STATUS_INTERNAL, "%s: no such run is stored", doing);
+  STATEMENT run = NULL;
+  status result = sql_prepare(store->db, "SELECT run_id FROM run WHERE identity = ?1", &run, doing, error);
+  sqlite3_bind_blob(run, 1, identity, 16, SQLITE_STATIC);
+  if (sql_next(run, &result, doing, error))
+    return digest_set_fields(store->db, sqlite3_column_int64(run, 0), fields_path,
+                             fields_digest ? sql_of_text(fields_digest) : (struct sql_value){.type = SQLITE_NULL},
+                             error);
+  return result != STATUS_OK ? result : status_fail(error, STATUS_INTERNAL, "%s: no such run is stored", doing);
 }
 
-status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path, struct error *error) {
+status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path,
+                        const char *fields_digest, struct error *error) {
   TRY(store_begin(store, error));
-  return store_end(store, set_fields(store, identity, fields_path, error), 1, error);
+  return store_end(store, set_fields(store, identity, fields_path, fields_digest, error), 1, error);
 }
 
 /* ---- studies of convergence ---- */
@@ -120,17 +122,13 @@ static const struct sql_column of_level[] = {LEVEL("base_point_id", INTEGER, bas
                                              LEVEL("level", INTEGER, level), LEVEL("point_id", INTEGER, point_id)};
 enum { LEVEL_COLUMNS = 4, LIMIT_COLUMNS = 2 }; /* of a limit: the first two */
 
-/* Replaces the rows of the knob and quantity of this scene in a table: `count` rows of `size` bytes that `fields`
- * describes. */
-static status replace_rows(struct store *store, const struct store_convergence *study, const char *table,
-                           size_t columns, const struct field_table *fields, size_t count, size_t size,
-                           const void *rows, struct error *error) {
+/* Replaces the rows that `where` selects, those of the knob and quantity of this scene, in a table: by `count` rows of
+ * `size` bytes that `fields` describes. */
+static status replace_rows(struct store *store, const struct store_convergence *study, const char *where,
+                           const char *table, size_t columns, const struct field_table *fields, size_t count,
+                           size_t size, const void *rows, struct error *error) {
   struct sql_insert insert = {0};
-  TRY(sql_executef(store->db, writing_study, error,
-                   "DELETE FROM \"%w\" WHERE base_point_id = %lld AND results_version = %d AND knob = %Q AND "
-                   "quantity = %Q",
-                   table, (long long)study->base_point_id, study->results_version, study->limit->knob,
-                   study->limit->quantity));
+  TRY(sql_executef(store->db, writing_study, error, "DELETE FROM \"%w\" WHERE %s", table, where));
   TRY(sql_insert_prepare(store->db, &insert, table, columns, of_level, fields, 1, writing_study, error));
   STATEMENT statement = insert.statement;
   for (size_t i = 0; i < count; i++) {
@@ -139,14 +137,22 @@ static status replace_rows(struct store *store, const struct store_convergence *
     sql_insert_bind(&insert, 0, &key, (const char *)rows + i * size);
     TRY(sql_run(statement, writing_study, error));
   }
-  return STATUS_OK;
+  return digest_fill(store->db, table, where, error);
 }
 
 static status replace_study(struct store *store, const struct store_convergence *study, struct error *error) {
-  TRY(replace_rows(store, study, "convergence", LEVEL_COLUMNS, &convergence_table, study->count, sizeof *study->rows,
-                   study->rows, error));
-  return replace_rows(store, study, "convergence_limit", LIMIT_COLUMNS, &convergence_limit_table, 1, 0, study->limit,
-                      error);
+  char *where = sqlite3_mprintf("base_point_id = %lld AND results_version = %d AND knob = %Q AND quantity = %Q",
+                                (long long)study->base_point_id, study->results_version, study->limit->knob,
+                                study->limit->quantity);
+  if (!where)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", writing_study);
+  status result = replace_rows(store, study, where, "convergence", LEVEL_COLUMNS, &convergence_table, study->count,
+                               sizeof *study->rows, study->rows, error);
+  if (result == STATUS_OK)
+    result = replace_rows(store, study, where, "convergence_limit", LIMIT_COLUMNS, &convergence_limit_table, 1, 0,
+                          study->limit, error);
+  sqlite3_free(where);
+  return result;
 }
 
 status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error) {

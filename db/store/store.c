@@ -367,6 +367,7 @@ static status open_database(struct store *store, int flags, struct error *error)
     return sql_fail(store->db, code, "opening", error);
   sqlite3_busy_timeout(store->db, 10000);
   guard_connection(store->db);
+  digest_function(store->db);
   return sql_execute(store->db, "PRAGMA cell_size_check = ON", "opening", error);
 }
 

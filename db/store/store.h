@@ -75,7 +75,8 @@ struct store_run {
   int attempt;         /* 1.. */
   const char *host;
   int rank;
-  const char *fields_path; /* HDF5 file kept, or NULL */
+  const char *fields_path;   /* HDF5 file kept, or NULL */
+  const char *fields_digest; /* of store_digest_fields(); NULL: it is not known */
 };
 /* Adds the rows of run, result_<engine>, fragment_mass, spectrum and estimate and the point's running sums, in the
  * transaction of its batch (500 rows or 1 s). If the identity is stored already, nothing changes and the status is
@@ -128,11 +129,20 @@ bool store_has_run(struct store *store, const uint8_t identity[16]);
  * say nothing about the run. */
 int store_attempts(struct store *store, const uint8_t identity[16], double time_limit, double memory_limit);
 
-/* Stores the path of a run's HDF5 file: a replay may write the file after the run. */
-status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path, struct error *error);
+enum { STORE_DIGEST_SIZE = 33 }; /* 32 hexadecimal digits and the end */
+/* The digest of a fields file, which changes when any bit of it changes. `path`: as this process can open it.
+ * STATUS_MISSING, STATUS_IO: it cannot be read, or is no plain file. */
+status store_digest_fields(const char *path, char digest[STORE_DIGEST_SIZE], struct error *error);
+/* Stores the path and the digest of a run's HDF5 file: a replay may write the file after the run. */
+status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path,
+                        const char *fields_digest, struct error *error);
+/* *whole: the run's fields file has the digest that is stored. Also true when the store has no digest of it. Reads the
+ * whole file. */
+status store_check_fields(struct store *store, const uint8_t identity[16], bool *whole, struct error *error);
 
-/* Checks the file's integrity, foreign keys, rows without an owner, missing fields files, running sums and spectra
- * against the masses, masses against the total mass, digests against the rows, identities against the scenes. Each
+/* Checks the file's integrity, foreign keys, rows without an owner, fields files that are missing or not of their
+ * digest, edges of bins, running sums and spectra against the masses, masses against the total mass, digests against
+ * the rows, identities against the scenes. Each
  * problem is one call of `line`. STATUS_CONTENT when there are any. For a reader or a writer. */
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error);

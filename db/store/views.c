@@ -154,7 +154,7 @@ static char *result_tables(struct view *view) {
  * gets its table's name as a prefix; this happens in a store with runs of two engines. */
 static void write_result_columns(struct view *view, const char *tables) {
   write_rows(view, "SELECT format('  r.\"%w\",' || char(10), name) FROM pragma_table_xinfo('run') WHERE name NOT "
-                   "IN ('run_id', 'point_id', 'replicate', 'seed', 'identity', 'digest')");
+                   "IN ('run_id', 'point_id', 'replicate', 'seed', 'identity', 'fields_digest', 'digest')");
   write_rows_of(
       view,
       sqlite3_mprintf(

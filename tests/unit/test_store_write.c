@@ -226,10 +226,10 @@ static void runs_of_a_point_in_order(void **state) {
   struct scene scene = fixture_scene(&inputs, 6, 1e30);
   uint8_t identity[16];
   scene_identity(&scene, 1003, identity);
-  OK(store_set_fields(store, identity, "x.h5", &error));
+  OK(store_set_fields(store, identity, "x.h5", NULL, &error));
   assert_near(number(store, "SELECT replicate FROM run WHERE fields_path = 'x.h5'"), 3, 0);
   identity[0] ^= 1;
-  assert_int_equal(store_set_fields(store, identity, "x.h5", &error), STATUS_INTERNAL);
+  assert_int_equal(store_set_fields(store, identity, "x.h5", NULL, &error), STATUS_INTERNAL);
   store_close(store, NULL);
 }
 
