@@ -9,6 +9,7 @@
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "db/store/views.h"
 #include "engine/grow.h"
 #include "engine/scene.h"
 #include "schemas/text.h"
@@ -374,6 +375,36 @@ static status check_bins(struct report *report, struct error *error) {
   return result;
 }
 
+/* Answers are told in the units of column_doc. Its rows are made again in a temporary table, which takes precedence;
+ * columns that this program does not know are taken as they are. */
+static status make_docs(sqlite3 *db, struct error *error) {
+  TRY(sql_execute(db,
+                  "CREATE TEMP TABLE column_doc (table_name TEXT, column_name TEXT, unit TEXT, meaning TEXT, "
+                  "deterministic INTEGER DEFAULT 0, PRIMARY KEY (table_name, column_name)); "
+                  "INSERT OR REPLACE INTO temp.column_doc SELECT table_name, column_name, unit, meaning, deterministic "
+                  "FROM main.column_doc",
+                  checking, error));
+  TRY(schema_document_all(db, error));
+  return views_document(db, error);
+}
+
+static status check_units(struct report *report, struct error *error) {
+  sqlite3 *db = report->store->db;
+  sqlite3_exec(db, "PRAGMA query_only = OFF", NULL, NULL, NULL); /* it covers temporary tables, too */
+  status result = make_docs(db, error);
+  if (result == STATUS_OK)
+    result = no_rows(report,
+                     "SELECT format('column %s of %s: its unit is %s, not %s', column_name, table_name, ifnull(a.unit, "
+                     "'none'), ifnull(b.unit, 'none')) FROM temp.column_doc b LEFT JOIN main.column_doc a USING "
+                     "(table_name, column_name) WHERE ifnull(a.unit, '1') <> ifnull(b.unit, '1') OR (a.table_name IS "
+                     "NULL AND table_name NOT IN ('runs', 'points', 'spectra', 'estimates', 'resolution'))",
+                     error);
+  sqlite3_exec(db, "DROP TABLE IF EXISTS temp.column_doc", NULL, NULL, NULL);
+  if (!report->store->writer)
+    sqlite3_exec(db, "PRAGMA query_only = ON", NULL, NULL, NULL);
+  return result;
+}
+
 static status check_sums(struct report *report, struct error *error) {
   int64_t wrong = 0;
   status result = sums_mismatches(report->store->db, &wrong, error);
@@ -386,10 +417,11 @@ static status check_sums(struct report *report, struct error *error) {
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error) {
   static status (*const checks[])(struct report *,
-                                  struct error *) = {check_pages,   check_questions, check_fragment_counts,
-                                                     check_results, check_ranges,    check_files,
-                                                     check_bins,    check_sums,      check_masses,
-                                                     check_digests, check_rows,      check_identities};
+                                  struct error *) = {check_pages,     check_questions, check_fragment_counts,
+                                                     check_results,   check_ranges,    check_files,
+                                                     check_bins,      check_sums,      check_masses,
+                                                     check_digests,   check_rows,      check_units,
+                                                     check_identities};
   struct report report = {.store = store, .line = line, .context = context};
   status result = store_flush(store, error);
   for (size_t i = 0; result == STATUS_OK && !report.pages_damaged && i < sizeof checks / sizeof checks[0]; i++) {

@@ -465,6 +465,18 @@ status schema_complete(sqlite3 *db, const struct schema_table *table, struct err
   return STATUS_OK;
 }
 
+status schema_document_all(sqlite3 *db, struct error *error) {
+  for (size_t i = 0; i < schema_table_count(); i++) {
+    const struct schema_table table = schema_table_at(i);
+    for (size_t k = 0; k < column_count(&table); k++) {
+      const struct column column = column_at(&table, k);
+      if (schema_has_column(db, table.name, column.name))
+        TRY(write_doc(db, table.name, &column, error));
+    }
+  }
+  return STATUS_OK;
+}
+
 status schema_complete_all(sqlite3 *db, struct error *error) {
   for (size_t i = 0; i < schema_table_count(); i++) {
     const struct schema_table table = schema_table_at(i);

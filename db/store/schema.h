@@ -70,6 +70,8 @@ bool schema_is_complete(sqlite3 *db);
 /* Creates missing parts in the database: the table, or columns that its field table has gained (NULL in old rows), and
  * their rows of column_doc. */
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error);
+/* Writes the rows of column_doc (temp.column_doc, if there is one) of all columns that the database has. */
+status schema_document_all(sqlite3 *db, struct error *error);
 /* schema_complete of every table. Within the caller's transaction. */
 status schema_complete_all(sqlite3 *db, struct error *error);
 

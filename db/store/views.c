@@ -257,7 +257,7 @@ static void write_estimates(struct view *view) {
 
 /* ---- making them ---- */
 
-static status document(sqlite3 *db, struct error *error) {
+status views_document(sqlite3 *db, struct error *error) {
   return sql_execute(db, views_columns_sql, "documenting the views", error);
 }
 
@@ -300,7 +300,7 @@ status views_make_temporary(sqlite3 *db, struct error *error) {
 
 status views_regenerate(sqlite3 *db, struct error *error) {
   const status result = make_all(db, true, error);
-  return result == STATUS_OK ? document(db, error) : result;
+  return result == STATUS_OK ? views_document(db, error) : result;
 }
 
 status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size, struct error *error) {

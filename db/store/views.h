@@ -17,6 +17,9 @@ status views_regenerate(sqlite3 *db, struct error *error);
 /* Makes the views of this connection only. Changes no file: for readers. */
 status views_make_temporary(sqlite3 *db, struct error *error);
 
+/* Writes the rows of the views in column_doc (temp.column_doc, if there is one) from those of their tables. */
+status views_document(sqlite3 *db, struct error *error);
+
 /* The column of a new axis: its path with underscores. "input_" goes in front when a view has such a column already:
  * SQL takes A and a for one name. */
 status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size, struct error *error);

@@ -21,6 +21,37 @@ says "is missing"
 cmp -s first.h5 "here/kept-fields/$gone" || fail "the fields file was not made again"
 expect 0 "$clast" check here/kept.db
 
+# A damaged file: cut short, other bytes of the same length, one bit.
+damaged() {
+  expect 65 "$clast" check here/kept.db
+  prints "$gone is damaged"
+  expect 0 "$clast" run kept.yaml --store here/kept.db -j 2
+  says "is damaged"
+  cmp -s first.h5 "here/kept-fields/$gone" || fail "the damaged fields file was not made again"
+  expect 0 "$clast" check here/kept.db
+}
+truncate -s 5000 "here/kept-fields/$gone"
+damaged
+head -c "$(stat -c %s first.h5)" /dev/zero | tr '\0' x >"here/kept-fields/$gone"
+damaged
+python -c "
+f = open('here/kept-fields/$gone', 'r+b')
+f.seek(-100, 2); byte = f.read(1)[0]; f.seek(-100, 2); f.write(bytes([byte ^ 1]))"
+damaged
+# Damage of the run itself still shows when its file is made again.
+cp here/kept.db whole.db
+python -c "
+import sqlite3
+db = sqlite3.connect('here/kept.db')
+db.execute(\"update run set largest_fraction = largest_fraction * 0.99 where fields_path like '%$gone'\")
+db.commit()"
+rm "here/kept-fields/$gone"
+expect 0 "$clast" run kept.yaml --store here/kept.db -j 2
+expect 65 "$clast" check here/kept.db
+prints "has changed since it was stored"
+cp whole.db here/kept.db
+expect 0 "$clast" check here/kept.db
+
 # The stores of another folder: the files stay where they are.
 expect 0 "$clast" merge all.db here/kept.db
 same "$(number all.db "select count(*) from runs where fields_path like 'here/kept-fields/%'")" 4 "paths in the merged store"
@@ -52,4 +83,4 @@ same "$(number here/kept.db "select count(*) from runs where fields_path like 'k
 sed 's,^name:.*,name: ../kept,; /^store/d' kept.yaml >out.yaml
 expect 65 "$clast" plan out.yaml
 says "slash"
-done_after 26
+done_after 38
