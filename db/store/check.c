@@ -391,7 +391,10 @@ static status make_docs(sqlite3 *db, struct error *error) {
 static status check_units(struct report *report, struct error *error) {
   sqlite3 *db = report->store->db;
   sqlite3_exec(db, "PRAGMA query_only = OFF", NULL, NULL, NULL); /* it covers temporary tables, too */
-  status result = make_docs(db, error);
+  status result = views_make_temporary(db,
+                                       error); /* after a merge, SQLite cannot list the columns of the earlier ones */
+  if (result == STATUS_OK)
+    result = make_docs(db, error);
   if (result == STATUS_OK)
     result = no_rows(report,
                      "SELECT format('column %s of %s: its unit is %s, not %s', column_name, table_name, ifnull(a.unit, "
