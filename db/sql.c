@@ -40,6 +40,9 @@ static const char *remedy(int code, int system) {
            "check` tells more.";
   case SQLITE_NOTADB: return "It is not an SQLite database.";
   case SQLITE_NOMEM: return "Memory ran out.";
+  case SQLITE_TOOBIG:
+    return "A value is longer than those that clast stores: the file is damaged, or another program has changed it. "
+           "`clast check` tells more.";
   default: return "This is a bug in clast, or another program has changed the store's tables.";
   }
 }
@@ -56,6 +59,7 @@ static status status_of(int code) {
   case SQLITE_IOERR: return STATUS_IO;
   case SQLITE_CORRUPT:
   case SQLITE_CONSTRAINT:
+  case SQLITE_TOOBIG:
   case SQLITE_NOTADB: return STATUS_CONTENT;
   case SQLITE_NOMEM: return STATUS_MEMORY;
   default: return STATUS_INTERNAL;

@@ -493,14 +493,32 @@ void scene_free(struct scene *scene) {
 
 /* ---- overrides ---- */
 
+/* Another material in place of the document's own one (`custom`): all values of that one go, also those from its file.
+ * Values that overrides gave stay. `before`: the value of `row` before it was set. */
+static void leave_custom(struct scene *scene, const struct field *row, const struct field_value *before) {
+  const struct field_table *table = scene->kind->inputs;
+  const char *const name = strrchr(row->path, '.');
+  struct field_value now;
+  if (!name || strcmp(name, ".name") != 0 || row->kind != FIELD_CHOICE || strcmp(before->text, "custom") != 0)
+    return;
+  field_get(row, scene->inputs, &now);
+  if (strcmp(now.text, "custom") == 0)
+    return;
+  for (size_t i = 0; i < table->count; i++)
+    if (!scene->overridden[i] && strncmp(table->rows[i].path, row->path, (size_t)(name + 1 - row->path)) == 0)
+      scene->given[i] = false;
+}
+
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
   const struct field *row = field_find(table, path, error);
   if (!row)
     return STATUS_CONTENT;
-  struct field_value taken = *value;
+  struct field_value taken = *value, before;
   TRY(set_file(row, &taken, error));
+  field_get(row, scene->inputs, &before);
   TRY(field_set(row, scene->inputs, &taken, error));
+  leave_custom(scene, row, &before);
   scene->given[row - table->rows] = scene->overridden[row - table->rows] = true;
   if (scene->kind->complete)
     scene->kind->complete(scene->inputs, scene->given);

@@ -51,7 +51,8 @@ struct scene *scene_copy(const struct scene *scene);
 void scene_free(struct scene *scene);
 
 /* Overrides one input by path or unique suffix, from text ("5 km/s") or as a value. Inputs that follow from it and were
- * not given are completed again. Conditions across fields are not checked. */
+ * not given are completed again. The name of a material replaces the document's own material with all its values.
+ * Conditions across fields are not checked. */
 status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error);
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error);
 /* The settings of this name, or NULL. */

@@ -124,6 +124,11 @@ static char *read_cell(struct csv *csv, struct csv_cell *cell) {
   return NULL;
 }
 
+static bool guards_formula(const char *text) {
+  const char *first = text + 1 + strspn(text + 1, " \t\n");
+  return *text == '\'' && *first && strchr(CSV_FORMULA, *first);
+}
+
 /* Reads the cells of a record. Returns their number; 0: csv->wrong says why. */
 static size_t read_record(struct csv *csv) {
   size_t count = 0;
@@ -141,6 +146,7 @@ static size_t read_record(struct csv *csv) {
     else
       csv->at++;
     *end = '\0';
+    csv->cells[count].text += guards_formula(csv->cells[count].text);
   }
   return count;
 }

@@ -3,7 +3,8 @@
  *   - Every record has as many cells as there are names.
  *   - A decimal comma is read where semicolons separate the cells, or in double quotes. A file has one decimal mark.
  * Cells may be in double quotes, with "" for a quote; blanks around a cell are no part of it. Lines end with LF or
- * CRLF. Empty records are skipped. A line that begins with # is a remark. A NUL byte is refused. */
+ * CRLF. Empty records are skipped. A line that begins with # is a remark. A NUL byte is refused. The apostrophe before
+ * =, +, - or @, by which a writer keeps spreadsheets from taking a text as a formula, is no part of the cell. */
 #ifndef CLAST_SCHEMAS_CSV_H
 #define CLAST_SCHEMAS_CSV_H
 
@@ -14,6 +15,8 @@
 #include "schemas/status.h"
 
 enum { CSV_CELLS = 1000 }; /* most cells of a record: a study varies at most some hundred inputs */
+
+#define CSV_FORMULA "=+-@" /* a text that begins with one of these is a formula for a spreadsheet */
 
 struct csv_cell {
   char *text; /* may be changed by the caller */

@@ -82,7 +82,14 @@ static struct file *open_file(const char *path) {
     return NULL;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 prints nothing: the return values report errors */
   H5PLset_loading_state(0);              /* a file must not choose libraries to load: its unknown filters are errors */
-  f->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  /* No lock: some file systems have none, and a program that only shows the file may hold one. clast puts whole files
+   * in place and never writes into one. */
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  if (access >= 0)
+    H5Pset_file_locking(access, false, true);
+  f->file = H5Fopen(path, H5F_ACC_RDONLY, access >= 0 ? access : H5P_DEFAULT);
+  if (access >= 0)
+    H5Pclose(access);
   if (f->file >= 0 && H5Fget_filesize(f->file, &size) >= 0) {
     f->bytes = (double)size * MOST_COMPRESSED;
     return f;

@@ -44,9 +44,11 @@ export const shell = (text) => (/^[\w./:,=+-]+$/.test(text) ? text : `'${String(
 // The name of a store on a command line; a dash in front would be an option.
 export const shellFile = (text) => shell(text.startsWith('-') ? `./${text}` : text);
 
+// A text that a spreadsheet would run as a formula gets an apostrophe, as in the tables of clast.
 export function csv(columns, rows) {
   const cell = (value) => {
-    const text = value === null || value === undefined ? '' : value instanceof Uint8Array ? '(bytes)' : String(value);
+    const bare = value === null || value === undefined ? '' : value instanceof Uint8Array ? '(bytes)' : String(value);
+    const text = typeof value === 'string' && /^\s*[=+\-@]/.test(value) && Number.isNaN(Number(value)) ? `'${bare}` : bare;
     return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
   };
   return [columns, ...rows].map((row) => row.map(cell).join(',')).join('\r\n') + '\r\n';

@@ -8,6 +8,18 @@
 #include "schemas/limits.h"
 #include "schemas/text.h"
 
+/* Columns of the table for people that can be left out, in this order: the least wanted first. Varied inputs stay, else
+ * rows of different points look alike. */
+enum { LEAST_SQUARES, BETA_RESOLUTION, FRAGMENTS, MEAN_RESOLUTION, LIKELIHOOD, OPTIONAL_COLUMNS };
+static const struct {
+  const char *name;
+  size_t width; /* with the gap before the next column */
+} optional[OPTIONAL_COLUMNS] = {{"beta LSQ", 11},
+                                {"\xc2\xb1res of beta", 6},
+                                {"n", 6},
+                                {"\xc2\xb1res of M_1/M", 7},
+                                {"beta ML with its window", 20}};
+
 struct printing {
   struct store *store;
   enum table_format format;
@@ -15,8 +27,7 @@ struct printing {
   bool studied; /* some exponent has a study; otherwise no point's study is read */
   size_t axes;
   struct ask_column axis[LIMITS_AXES_OF_POOL];
-  size_t shown;         /* axes that fit into a terminal */
-  bool only_likelihood; /* least squares does not fit */
+  bool left_out[OPTIONAL_COLUMNS]; /* they do not fit into a terminal */
 };
 
 /* Order of the methods in point_estimates. */
@@ -80,21 +91,25 @@ static status row_for_programs(struct printing *printing, const struct ask_point
 
 /* ---- for people: values with their intervals, and no wider than a terminal ---- */
 
-/* Widths: the table; columns other than axes and methods; a method; the gap between columns; most values. */
-enum { WIDTH = 100, FIXED = 54, METHOD = 11, GAP = 2, NUMBER = 5 };
+/* Widths: the table; point, runs and M_1/M; the gap between columns; most values. */
+enum { WIDTH = 100, FIXED = 26, GAP = 2, NUMBER = 5 };
 
-/* A heading for the axis: the last word of its path where no other axis has it, else its whole name. */
-static const char *short_axis(const struct printing *printing, size_t axis) {
-  const char *name = printing->axis[axis].name, *word = name;
-  for (const char *at = name; *at; at++)
-    if (*at == '_')
-      word = at + 1;
+/* Does the name of another axis end like this? */
+static bool is_ambiguous(const struct printing *printing, size_t axis, const char *tail) {
   for (size_t i = 0; i < printing->axes; i++) {
-    const size_t length = strlen(printing->axis[i].name), tail = strlen(word);
-    if (i != axis && length >= tail && strcmp(printing->axis[i].name + length - tail, word) == 0)
-      return name;
+    const size_t length = strlen(printing->axis[i].name), end = strlen(tail);
+    if (i != axis && length >= end && strcmp(printing->axis[i].name + length - end, tail) == 0)
+      return true;
   }
-  return strlen(word) > 1 ? word : name; /* "m" and "k" alone are not clear enough */
+  return false;
+}
+
+/* A heading for the axis: the last words of its path that no other axis has. "m" and "k" alone are not clear enough. */
+static const char *short_axis(const struct printing *printing, size_t axis) {
+  const char *const name = printing->axis[axis].name, *word = name + strlen(name);
+  while (word > name && (word[-1] != '_' || strlen(word) < 2 || is_ambiguous(printing, axis, word)))
+    word--;
+  return word;
 }
 
 static size_t axis_width(const struct printing *printing, size_t axis) {
@@ -115,26 +130,46 @@ static void axis_cell(struct table *table, const struct ask_column *axis, const 
   table_text(table, text);
 }
 
-/* Shows as many axes as fit beside maximum likelihood, then least squares if it fits. */
+/* Leaves columns out until the rest fits, or all are out that can be. */
 static void choose_columns(struct printing *printing) {
-  size_t used = FIXED + METHOD;
-  printing->shown = 0;
-  while (printing->shown < printing->axes && used + axis_width(printing, printing->shown) <= WIDTH)
-    used += axis_width(printing, printing->shown++);
-  printing->only_likelihood = used + METHOD > WIDTH;
+  size_t used = FIXED;
+  for (size_t i = 0; i < printing->axes; i++)
+    used += axis_width(printing, i);
+  for (int i = 0; i < OPTIONAL_COLUMNS; i++)
+    used += optional[i].width;
+  for (int i = 0; i < OPTIONAL_COLUMNS && used > WIDTH; i++) {
+    printing->left_out[i] = true;
+    used -= optional[i].width;
+  }
+}
+
+static void tell_left_out(const struct printing *printing) {
+  for (int i = 0; i < OPTIONAL_COLUMNS && printing->left_out[i]; i++)
+    fprintf(stderr, "%s%s", i ? ", " : "clast: for lack of room these columns are left out: ", optional[i].name);
+  if (printing->left_out[0])
+    fputs("; --csv and --json have all\n", stderr);
 }
 
 static void columns_for_people(struct printing *printing) {
   struct table *table = printing->table;
+  const bool *out = printing->left_out;
   choose_columns(printing);
   table_column(table, "point", NULL);
-  for (size_t i = 0; i < printing->shown; i++)
+  for (size_t i = 0; i < printing->axes; i++)
     table_column(table, short_axis(printing, i), NULL);
-  table_columns(table, (const char *const[]){"runs", "M_1/M", "\xc2\xb1res", "window", "n", NULL});
-  if (!printing->only_likelihood)
+  table_columns(table, (const char *const[]){"runs", "M_1/M", NULL});
+  if (!out[MEAN_RESOLUTION])
+    table_column(table, "\xc2\xb1res", NULL);
+  if (!out[LIKELIHOOD])
+    table_column(table, "window", NULL);
+  if (!out[FRAGMENTS])
+    table_column(table, "n", NULL);
+  if (!out[LEAST_SQUARES])
     table_column(table, "beta LSQ", NULL);
-  table_column(table, printing->only_likelihood ? "beta ML" : "ML", NULL);
-  table_column(table, "\xc2\xb1res", NULL);
+  if (!out[LIKELIHOOD])
+    table_column(table, out[LEAST_SQUARES] ? "beta ML" : "ML", NULL);
+  if (!out[BETA_RESOLUTION])
+    table_column(table, "\xc2\xb1res", NULL);
 }
 
 /* "2.01 \u00b1 0.13" without the blanks; the value alone when it has no interval; "-" for none. */
@@ -164,28 +199,34 @@ static void resolution_cell(struct table *table, enum ask_resolution_verdict ver
 static status row_for_people(struct printing *printing, const struct ask_points_row *row, int window,
                              const struct point_estimate *fits, struct error *error) {
   struct table *table = printing->table;
+  const bool *out = printing->left_out;
   if (window > 0) { /* only the point's first row shows its inputs and runs */
-    for (size_t i = 0; i < printing->shown + 4; i++)
+    for (size_t i = 0; i < printing->axes + 3 + !out[MEAN_RESOLUTION]; i++)
       table_text(table, "");
   } else {
     char runs[64] = "";
     table_integer(table, row->point_id);
-    for (size_t i = 0; i < printing->shown; i++)
+    for (size_t i = 0; i < printing->axes; i++)
       axis_cell(table, &printing->axis[i], &row->inputs[i]);
     text_append(runs, sizeof runs, "%lld", (long long)row->n);
     if (row->failed)
       text_append(runs, sizeof runs, "/%.0f", (double)row->n + (double)row->failed); /* a sum that cannot overflow */
     table_text(table, runs);
     with_interval(table, row->mean, row->half_width, 3);
-    resolution_cell(table, row->resolution_verdict, row->resolution);
+    if (!out[MEAN_RESOLUTION])
+      resolution_cell(table, row->resolution_verdict, row->resolution);
   }
-  table_text(table, estimates_window_names[window]);
-  table_integer(table, fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n);
+  if (!out[LIKELIHOOD])
+    table_text(table, estimates_window_names[window]);
+  if (!out[FRAGMENTS])
+    table_integer(table, fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n);
   for (int m = 0; m < METHODS; m++) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
-    if (m == MASSES || !printing->only_likelihood)
+    if (!out[m == MASSES ? LIKELIHOOD : LEAST_SQUARES])
       with_interval(table, fit->fit.beta, fit->interval.half_width, 2);
   }
+  if (out[BETA_RESOLUTION])
+    return STATUS_OK;
   struct ask_resolution resolution;
   const status code = read_resolution(printing, row, MASSES, window, &resolution, error);
   resolution_cell(table, resolution.verdict, resolution.half_width);
@@ -202,7 +243,8 @@ static status print_point(struct printing *printing, const struct ask_points_row
   for (int window = 0; window < ESTIMATES_WINDOWS; window++) {
     if (printing->format != TABLE_TEXT)
       TRY(row_for_programs(printing, row, window, fits, error));
-    else if (window == 0 || fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n > 0)
+    else if (window == 0 ||
+             (!printing->left_out[LIKELIHOOD] && fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n > 0))
       TRY(row_for_people(printing, row, window, fits, error)); /* people do not need an empty row */
   }
   return STATUS_OK;
@@ -244,8 +286,6 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
   if (code == STATUS_OK)
     code = answer_end(&points);
   code = table_finish(printing.table, code, error);
-  if (format == TABLE_TEXT && printing.shown < printing.axes)
-    fprintf(stderr, "clast: %zu of %zu varied inputs are not shown for lack of room; --csv and --json have all\n",
-            printing.axes - printing.shown, printing.axes);
+  tell_left_out(&printing);
   return code;
 }

@@ -15,6 +15,7 @@
 #include "campaign/scheduler/point.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"
+#include "schemas/text.h"
 
 #define NOTHING ((double)NAN)
 
@@ -49,6 +50,7 @@ struct driver {
   double begin, last_left, seconds_left;
   int64_t fields_missing; /* fields files of stored runs that no longer exist, or are damaged */
   int64_t wanted;         /* runs that the points met so far need */
+  bool alone;             /* no series, whose campaigns differ on purpose */
 };
 
 struct driver *driver_new(const struct campaign *campaign) {
@@ -201,6 +203,54 @@ static status resume(struct driver *driver, struct point *point, struct error *e
   return admit(driver, point, error); /* a fixed number of replicates may cover runs that an older rule left out */
 }
 
+/* Did the document give the value, or is it the default? Other values follow from other inputs. */
+static bool is_chosen(const struct scene *scene, const struct field *row) {
+  struct field_value value, usual;
+  field_get(row, scene->inputs, &value);
+  field_default(row, &usual);
+  return scene->given[row - scene->kind->inputs->rows] || field_same_value(row, &value, &usual);
+}
+
+/* Appends "PATH (VALUE there, VALUE here)". */
+static void write_hidden(const struct scene *scene, const struct field *row, const struct query_value *theirs,
+                         char *text, size_t size) {
+  struct field_value here, there = {.kind = row->kind, .number = theirs->real, .integer = theirs->integer};
+  char mine[FIELD_TEXT_SIZE + 40], other[FIELD_TEXT_SIZE + 40] = "none";
+  field_get(row, scene->inputs, &here);
+  field_print(row, &here, mine, sizeof mine);
+  if (theirs->text)
+    snprintf(other, sizeof other, "%s", theirs->text);
+  else if (theirs->kind != QUERY_NULL)
+    field_print(row, &there, other, sizeof other);
+  text_append(text, size, "%s%s (%s there, %s here)", *text ? ", " : "", row->path, other, mine);
+}
+
+/* Warns of points in the store that are of an earlier form of this campaign and look the same in tables. `id`: the
+ * first point. */
+static status tell_hidden_inputs(struct driver *driver, const struct scene *scene, int64_t id, struct error *error) {
+  enum { NAMED = 8 };
+  const struct field_table *inputs = scene->kind->inputs;
+  char names[2048] = "", text[2600];
+  size_t count = 0;
+  ANSWER hidden = ask_campaign_hidden_inputs(driver->scheduler->store, driver->summary.campaign_id, id, error);
+  while (answer_next(&hidden)) {
+    const struct field *row = field_find(inputs, answer_text(&hidden, 0), NULL);
+    const struct query_value theirs = answer_value(&hidden, 1);
+    if (row && is_chosen(scene, row) && count++ < NAMED)
+      write_hidden(scene, row, &theirs, names, sizeof names);
+  }
+  TRY(answer_end(&hidden));
+  if (count == 0)
+    return STATUS_OK;
+  snprintf(
+      text, sizeof text,
+      "warning: the store has other points of campaign %s, which look the same in tables: %s%s differs, but is not "
+      "varied. Vary it, name another store, or ask for one campaign: clast estimates STORE --campaign %lld",
+      driver->campaign->name, names, count > NAMED ? " and more" : "", (long long)driver->summary.campaign_id);
+  scheduler_note(driver->scheduler, text);
+  return STATUS_OK;
+}
+
 /* Takes the next design point and its stored runs into the window. *more is false when the window is full or the design
  * has no more points. Points with an invalid combination of values are counted, and the first few noted. */
 static status expand(struct driver *driver, bool *more, struct error *error) {
@@ -234,7 +284,10 @@ static status expand(struct driver *driver, bool *more, struct error *error) {
   point->id = id;
   driver->summary.points++;
   driver->wanted += point->prefix;
-  code = resume(driver, point, error);
+  if (driver->alone && driver->summary.points == 1)
+    code = tell_hidden_inputs(driver, scene, id, error);
+  if (code == STATUS_OK)
+    code = resume(driver, point, error);
   if (code != STATUS_OK || point_over(point))
     point_free(point);
   else
@@ -532,6 +585,7 @@ struct scheduler_planner driver_planner(struct driver *driver) {
 status driver_run(const struct campaign *campaign, struct farm *farm, const struct scheduler_options *options,
                   struct driver_summary *summary, struct error *error) {
   struct driver *driver = driver_new(campaign);
+  driver->alone = true;
   const struct scheduler_planner planner = driver_planner(driver);
   const status code = scheduler_compute(&planner, farm, options, error);
   *summary = driver->summary;

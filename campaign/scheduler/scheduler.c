@@ -51,7 +51,7 @@ int scheduler_attempts(const struct scheduler *scheduler, const uint8_t identity
  * with `folder` begins with that folder. */
 static void fields_path(const struct scheduler *scheduler, const struct scheduler_run *run, bool folder, char *path,
                         size_t size) {
-  const char *store = scheduler->options.store_path;
+  const char *store = store_path(scheduler->store);
   const char *slash = strrchr(store, '/');
   const char *base = slash ? slash + 1 : store;
   const char *dot = strrchr(base, '.');

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "db/ask/ask.h"
+#include "schemas/csv.h"
 #include "schemas/limits.h"
 #include "schemas/text.h"
 
@@ -140,18 +141,36 @@ static void print_kept(struct table *table) {
   table->kept_count = 0;
 }
 
-static void csv_text(const char *text, FILE *out) {
-  if (!strpbrk(text, ",\"\r\n") && *text && *text != ' ') {
-    fputs(text, out);
+/* Would a spreadsheet run the text as a formula? It takes a number as a number. */
+static bool is_formula(const char *text) {
+  const char *first = text + strspn(text, " \t\n");
+  char *end = NULL;
+  if (!*first || !strchr(CSV_FORMULA, *first))
+    return false;
+  (void)strtod(first, &end);
+  return end == first || *end;
+}
+
+/* The text comes from a store, perhaps a foreign one: it neither controls a terminal nor runs in a spreadsheet. */
+static void print_csv_text(struct table *table, const char *text) {
+  FILE *const out = table->out;
+  char *plain = copy(table, text);
+  if (!plain)
     return;
+  text_make_plain(plain, "\t\n");
+  const char *before = is_formula(plain) ? "'" : "";
+  if (!strpbrk(plain, ",\"\t\n") && *plain && *plain != ' ') {
+    fprintf(out, "%s%s", before, plain);
+  } else {
+    fprintf(out, "\"%s", before);
+    for (const char *at = plain; *at; at++) {
+      if (*at == '"')
+        fputc('"', out);
+      fputc(*at, out);
+    }
+    fputc('"', out);
   }
-  fputc('"', out);
-  for (; *text; text++) {
-    if (*text == '"')
-      fputc('"', out);
-    fputc(*text, out);
-  }
-  fputc('"', out);
+  free(plain);
 }
 
 static void header(struct table *table) {
@@ -159,7 +178,7 @@ static void header(struct table *table) {
     print_kept(table);
   } else if (table->format == TABLE_CSV) {
     for (size_t c = 0; c < table->column_count; c++) {
-      csv_text(table->columns[c].name, table->out);
+      print_csv_text(table, table->columns[c].name);
       fputs(c + 1 < table->column_count ? "," : "\r\n", table->out);
     }
   } else if (table->format == TABLE_JSON) {
@@ -202,7 +221,7 @@ static void keep(struct table *table, const struct cell *cell) {
 
 static void print_csv(struct table *table, const struct cell *cell) {
   if (cell->kind == CELL_TEXT)
-    csv_text(cell->text, table->out);
+    print_csv_text(table, cell->text);
   else if (cell->kind == CELL_NUMBER)
     fputs(cell->text, table->out);
   fputs(table->cell + 1 < table->column_count ? "," : "\r\n", table->out);

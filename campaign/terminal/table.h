@@ -4,7 +4,8 @@
  * Cells are added in column order, row after row. Formats for programs are written row by row immediately; the aligned
  * table keeps the first rows to find its widths. Numbers for programs read back as the same bits; the aligned table
  * shows five significant digits and the unit in the heading. Missing values and NaN: empty in CSV, null in JSON, "-" in
- * the table. */
+ * the table. In CSV a text that a spreadsheet would run as a formula has an apostrophe before it, which readers of
+ * schemas/csv.h take off; control characters are spaces but tabs and line ends. */
 #ifndef CLAST_CAMPAIGN_TERMINAL_TABLE_H
 #define CLAST_CAMPAIGN_TERMINAL_TABLE_H
 

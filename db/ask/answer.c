@@ -57,6 +57,13 @@ static int authorize(void *context, int action, const char *first, const char *s
   return SQLITE_DENY;
 }
 
+/* Is the SQL text at fault, and not the store or the program? Too big a value and a value of the wrong type are the
+ * results of an expression. */
+static bool is_of_sql(int code) {
+  const int kind = code & 0xff;
+  return kind == SQLITE_ERROR || kind == SQLITE_TOOBIG || kind == SQLITE_MISMATCH || kind == SQLITE_RANGE;
+}
+
 static const char between_statements[] = " \t\n\v\f\r;";
 
 static status refuse_sql(sqlite3 *db, const char *sql, struct error *error) {
@@ -79,7 +86,7 @@ static status prepare(struct store *store, const char *sql, sqlite3_stmt **state
   if (code == SQLITE_AUTH || refused || (*statement && !sqlite3_stmt_readonly(*statement)))
     return status_fail(error, STATUS_USAGE,
                        "A query may only read (SELECT): this statement would change something, or open another file.");
-  if ((code & 0xff) == SQLITE_ERROR)
+  if (is_of_sql(code))
     return refuse_sql(store->db, sql, error);
   if (code != SQLITE_OK)
     return sql_fail(store->db, code, "the query", error);
@@ -185,7 +192,11 @@ static status judge_end(const struct answer *answer, int code) {
   if (sql_values_are_wrong(db, code))
     return status_fail(answer->error, STATUS_CONTENT,
                        "SQL error: %s. A value in the store, or in the SQL text, is not usable.", sqlite3_errmsg(db));
-  if ((code & 0xff) == SQLITE_ERROR)
+  if ((code & 0xff) == SQLITE_TOOBIG)
+    return status_fail(answer->error, STATUS_USAGE,
+                       "SQL error: %s. A value may have %d MiB: ask for less, or for a part of it (substr).",
+                       sqlite3_errmsg(db), sqlite3_limit(db, SQLITE_LIMIT_LENGTH, -1) >> 20);
+  if (is_of_sql(code))
     return status_fail(answer->error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(db));
   return sql_fail(db, code, "the query", answer->error);
 }

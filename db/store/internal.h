@@ -187,6 +187,8 @@ bool paths_readable(const char *store_path, const char *fields_path);
 /* Has the file the digest of store_digest_fields() that was stored (NULL: none, and true)? Reads the whole file.
  * `path`: as this process can open it. */
 bool paths_whole(const char *path, const char *digest);
+/* The file that a symbolic link leads to, else the path itself. The caller frees it. NULL: memory ran out. */
+char *paths_followed(const char *path);
 
 /* The prefix that turns a path relative to the folder of the store `source` into one relative to the folder of
  * `target`: "" when the folders are the same, else "../" and names, with a slash at the end. The caller frees it. NULL:
@@ -208,7 +210,7 @@ struct store_kind { /* fills result_<engine> */
 struct store {
   sqlite3 *db;
   bool writer, functions;
-  char *path;
+  char *path;      /* of the file itself, where a link led to it: its fields files lie beside it */
   int lock;        /* descriptor, -1 for readers */
   double deadline; /* s, monotonic: end of the time limit of a user's query (db/ask/answer.c) */
   bool lacks_wal;  /* in WAL mode without its -wal file when it was opened (db/store/store.c) */

@@ -2,6 +2,8 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 
 #include "db/store/internal.h"
 #include "db/store/views.h"
@@ -312,7 +314,8 @@ static status take_paths(struct store *store, const char *way, struct error *err
 }
 
 static status merge_paths(struct store *store, const char *source, const struct merged *merged, struct error *error) {
-  char *way = paths_between(store->path, source);
+  char *followed = paths_followed(source), *way = followed ? paths_between(store->path, followed) : NULL;
+  free(followed);
   if (!way)
     return status_fail(error, STATUS_IO, "%s: the path of its folder cannot be resolved", source);
   status result = keep_paths(store, way, error);
@@ -357,10 +360,27 @@ static status merge_inspected(struct store *store, const char *source, struct in
   return result;
 }
 
+/* A hard link is the same store. SQLite would take it for another file, and look for other journals. */
+static status check_names(const struct store *store, const char *source, struct error *error) {
+  struct stat ours, theirs;
+  if (stat(store->path, &ours) != 0 || stat(source, &theirs) != 0 || ours.st_dev != theirs.st_dev ||
+      ours.st_ino != theirs.st_ino)
+    return STATUS_OK;
+  char *one = realpath(store->path, NULL), *other = realpath(source, NULL);
+  const bool same = one && other && strcmp(one, other) == 0;
+  free(one);
+  free(other);
+  return same ? STATUS_OK
+              : status_fail(error, STATUS_USAGE,
+                            "%s is the same store as %s under a second name (a hard link): there is nothing to merge.",
+                            source, store->path);
+}
+
 /* Nothing is kept unless everything was copied and the source is whole. */
 static status merge(struct store *store, const char *source, struct inspection *inspection, int64_t *added,
                     int64_t *differing, struct error *error) {
   struct merged merged = {0};
+  TRY(check_names(store, source, error));
   TRY(store_flush(store, error));
   TRY(begin_inspection(inspection, error));
   TRY(merge_inspected(store, source, inspection, &merged, differing, error));

@@ -1,8 +1,9 @@
-/* Folders of stores, and the relative path from one to another. */
+/* Places of stores, and the relative path from one to another. */
 #include <libgen.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "db/store/internal.h"
@@ -50,6 +51,12 @@ status store_check_fields(struct store *store, const uint8_t identity[16], bool 
   *whole = paths_whole(path, sql_text(run, 1));
   free(path);
   return STATUS_OK;
+}
+
+char *paths_followed(const char *path) {
+  struct stat file;
+  char *real = lstat(path, &file) == 0 && S_ISLNK(file.st_mode) ? realpath(path, NULL) : NULL;
+  return real ? real : strdup(path);
 }
 
 /* The folder of a file, with symbolic links resolved and a slash at the end. */

@@ -20,6 +20,9 @@
 /* ---- the place: names that are no files, a file that is moved while it is written, a copy without its -wal file ----
  */
 
+/* Of the writer's lock. SQLite locks bytes 0x40000000 to 0x400001ff, for any size of the file. */
+static const off_t LOCK_BYTE = (off_t)1 << 62;
+
 const char *store_name_refused(const char *path) {
   if (!*path)
     return "a store needs a file name";
@@ -88,12 +91,43 @@ static status check_length(const char *path, struct error *error) {
       path, strlen(full), most);
 }
 
+/* Locks of SQLite's kind. Without them SQLite waits, then says that another program holds the file. */
+static status check_locks(const char *path, struct error *error) {
+  struct flock lock = {.l_type = F_RDLCK, .l_whence = SEEK_SET, .l_start = LOCK_BYTE + 1, .l_len = 1};
+  const int file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+  if (file < 0)
+    return STATUS_OK;
+  const int why = fcntl(file, F_SETLK, &lock) == 0 ? 0 : errno;
+  close(file);
+  if (why == 0 || why == EACCES || why == EAGAIN || why == EINTR)
+    return STATUS_OK;
+  return status_fail(error, STATUS_IO,
+                     "%s: the file system of the store has no locks: %s. Copy the store to a local disk, with its -wal "
+                     "file if it has one, and use it there.",
+                     path, strerror(why));
+}
+
+/* A second name of a store in use. SQLite finds the journals by the name that the store was opened with. */
+static status check_second_name(const char *path, bool lacks_wal, struct error *error) {
+  struct stat file;
+  if (!lacks_wal || stat(path, &file) != 0 || file.st_nlink < 2)
+    return STATUS_OK;
+  return status_fail(error, STATUS_IO,
+                     "%s has another name (a hard link), and is in use under that one, or a program was stopped there: "
+                     "use that name. Nothing was changed.",
+                     path);
+}
+
 /* A file or a free path? Opening a pipe would block. */
 static status check_file(const char *path, struct error *error) {
   struct stat file;
   TRY(check_length(path, error));
-  if (stat(path, &file) != 0 || S_ISREG(file.st_mode))
+  if (stat(path, &file) != 0)
     return check_companions(path, error);
+  if (S_ISREG(file.st_mode)) {
+    TRY(check_companions(path, error));
+    return check_locks(path, error);
+  }
   return status_fail(error, STATUS_IO, "%s is a %s: name the store's file.", path,
                      S_ISDIR(file.st_mode) ? "folder" : "pipe, socket or device");
 }
@@ -135,9 +169,6 @@ static bool lacks_wal(const char *path) {
 /* ---- the writer's lock: an open-file-description lock (fcntl(2), F_OFD_SETLK) on a byte of the store far beyond those
  * that SQLite locks. It ends with the process, leaves no file, and does not affect readers. A traditional record lock
  * would not work: when SQLite unlocks the file, all record locks of the process on it are dropped ---- */
-
-/* SQLite locks bytes 0x40000000 to 0x400001ff, for any size of the file. */
-static const off_t LOCK_BYTE = (off_t)1 << 62;
 
 static const char *remedy_of(int code) {
   switch (code) {
@@ -327,7 +358,7 @@ static struct store *allocate(const char *path) {
     return NULL;
   store->lock = -1;
   store->lowest_bin = 1;
-  store->path = strdup(path);
+  store->path = paths_followed(path);
   if (store->path)
     return store;
   free(store);
@@ -454,6 +485,12 @@ static void write_warning(const struct store *store, char *warning, size_t size)
     warning[0] = '\0';
 }
 
+static status follow_again(struct store *store, const char *path, struct error *error) {
+  free(store->path);
+  store->path = paths_followed(path);
+  return store->path ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
+}
+
 status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size,
                          struct error *error) {
   bool held = false;
@@ -470,8 +507,12 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   store->writer = true;
   struct stat file;
   const off_t before = stat(path, &file) == 0 ? file.st_size : -1;
-  store->lacks_wal = lacks_wal(path);
+  store->lacks_wal = lacks_wal(store->path);
   status result = take_lock(path, &store->lock, &held, error);
+  if (result == STATUS_OK && before < 0) /* a link to a free path: now there is a file */
+    result = follow_again(store, path, error);
+  if (result == STATUS_OK)
+    result = check_second_name(path, store->lacks_wal, error);
   if (result != STATUS_OK) {
     release(store);
     return held ? refuse_held(path, error) : result;
@@ -524,13 +565,19 @@ status store_open_reader(const char *path, struct store **out, struct error *err
   struct store *store = allocate(path);
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
-  store->lacks_wal = lacks_wal(path);
-  const status result = open_readable(store, error);
+  store->lacks_wal = lacks_wal(store->path);
+  status result = check_second_name(path, store->lacks_wal, error);
+  if (result == STATUS_OK)
+    result = open_readable(store, error);
   if (result == STATUS_OK)
     *out = store;
   else
     release(store);
   return result;
+}
+
+const char *store_path(const struct store *store) {
+  return store->path;
 }
 
 status store_close(struct store *store, struct error *error) {

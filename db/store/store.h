@@ -1,4 +1,5 @@
-/* The store: every result of a campaign in one SQLite file that any tool can read. db/README.md describes it for users.
+/* The store: every result of a campaign in one SQLite file that any tool with SQLite 3.37 or later can read.
+ * db/README.md describes it for users.
  *
  * One process writes, under an OS lock that ends with the process. Readers, in any number, never block it (WAL mode
  * while writing; a clean end leaves journal_mode=DELETE). The tables follow from db/store/schema.c and the field
@@ -30,6 +31,8 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
 /* Opens for reading only; never blocks the writer. STATUS_MISSING when absent. The functions of db/ask read
  * from a store. They also accept a writer and then see its open batch. */
 status store_open_reader(const char *path, struct store **out, struct error *error);
+/* The path of the store's file: the given one, or where a symbolic link led. Fields files lie beside it. Borrowed. */
+const char *store_path(const struct store *store);
 /* Is a process writing this store? Call it before the store is opened: closing a descriptor of the file drops SQLite's
  * locks on it. */
 bool store_is_being_written(const char *path);

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "campaign/terminal/table.h"
+#include "schemas/csv.h"
 #include "schemas/text.h"
 
 static char *print_rows(enum table_format format, int rows) {
@@ -90,6 +91,50 @@ static void test_text_is_harmless(void **state) {
   free(text);
 }
 
+/* CSV neither controls the terminal nor runs in a spreadsheet, and our reader gets the texts back. */
+static void test_csv_is_harmless(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *cell;
+  } cases[] = {
+      {"=HYPERLINK(1)", "'=HYPERLINK(1)"},
+      {"+1+1", "'+1+1"},
+      {"-2+3", "'-2+3"},
+      {"@SUM(1)", "'@SUM(1)"},
+      {"\t=1", "\"'\t=1\""},
+      {" =1", "\"' =1\""},
+      {"\n@x", "\"'\n@x\""},
+      {"=a,b", "\"'=a,b\""},
+      {"-", "'-"},
+      {"-5", "-5"},
+      {"+1e-3", "+1e-3"},
+      {"a=b", "a=b"},
+      {"\x1b]0;x\x07", "\" ]0;x \""},
+      {"a\xc2\x9b\x7f|", "a   |"},
+      {"\r=1", "\"' =1\""},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char *text = NULL, expected[100], wanted[100];
+    size_t size = 0;
+    struct csv csv;
+    FILE *out = open_memstream(&text, &size);
+    struct table *table = table_new(TABLE_CSV, out);
+    table_column(table, cases[i].text, NULL);
+    table_text(table, cases[i].text);
+    assert_int_equal(table_end(table, NULL), STATUS_OK);
+    fclose(out);
+    snprintf(expected, sizeof expected, "%s\r\n%s\r\n", cases[i].cell, cases[i].cell);
+    assert_string_equal(text, expected);
+    assert_int_equal(csv_text(&csv, "t", text, size, NULL), STATUS_OK);
+    assert_int_equal(csv_next(&csv), CSV_NAMES);
+    snprintf(wanted, sizeof wanted, "%s", cases[i].text);
+    text_make_plain(wanted, "\t\n");
+    assert_string_equal(csv.cells[0].text + strspn(csv.cells[0].text, " \t\n"), wanted + strspn(wanted, " \t\n"));
+    csv_close(&csv);
+    free(text);
+  }
+}
+
 static void test_numbers_round_trip(void **state) {
   (void)state;
   static const double numbers[] = {0.1, 1.0 / 3, 1e300, 5e-324, -0.0, 123456789.123456789, 2.0000000000000004};
@@ -155,6 +200,7 @@ int main(void) {
       cmocka_unit_test(test_json),
       cmocka_unit_test(test_text),
       cmocka_unit_test(test_text_is_harmless),
+      cmocka_unit_test(test_csv_is_harmless),
       cmocka_unit_test(test_numbers_round_trip),
       cmocka_unit_test(test_strings),
       cmocka_unit_test(test_full_disk),

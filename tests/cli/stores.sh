@@ -1,0 +1,157 @@
+#!/usr/bin/env bash
+# Stores under other names and in unusual places, texts from strangers, and tables that must show what differs: the answer is
+# right, or the message names the cause.
+. "$(dirname "$0")/lib.bash"
+
+# A name that a spreadsheet would run, and one that would steer the terminal.
+one() { # one NAME [LINE]: a campaign of one short run
+  printf 'name: "%s"\nscene: disc-explosion\nset: {body.diameter: 8 cm, stop.end_time: 0.05 ms}\nseeds: {per_point: %s}\nstore: %s.db\n%s\n' \
+    "${3:-$1}" "${4:-1}" "$1" "${2:-}" >"$1.yaml"
+}
+one formula '' '=HYPERLINK(1)'
+expect 0 "$clast" run formula.yaml -j 1 --quiet
+expect 0 "$clast" status formula.db --csv
+prints ",'=HYPERLINK(1),"
+expect 0 "$clast" query formula.db "select char(27) || ']0;x' || char(7) as x" --csv
+same "$(tr -cd '\033\007' <out | wc -c)" 0 "control characters in CSV"
+
+# Every varied input is in the table of a sweep, by a short name; what is left out is named.
+cat >two.yaml <<'YAML'
+name: two
+scene: basalt-sphere
+set: {particles: 200, stop.end_time: 5 us}
+vary: {target.material.weibull.m: [8, 9], target.material.weibull.k: [1e34 1/m^3, 5e34 1/m^3]}
+seeds: {per_point: 2}
+YAML
+expect 0 "$clast" run two.yaml -j 1 --quiet
+same "$(head -1 out | grep -o 'weibull_[mk]' | tr '\n' ' ')" "weibull_k weibull_m " "varied inputs of the table"
+same "$(sed 1d out | grep -cE ' (1e|5e)\+34.* (8|9) ')" 4 "rows of four points"
+[ "$(LC_ALL=C.UTF-8 awk '{ if (length($0) > n) n = length($0) } END { print n }' out)" -le 100 ] || fail "wider than 100 columns"
+one many 'vary: {threshold.strain: [2 %], threshold.angle: [2 deg], contact.friction: [0.1], charge.energy: [2000 J/m], threshold.modulus: [10], contact.bonded: [true], stop.least_time: [0.02 ms]}'
+sed -i 's/threshold.modulus: \[10\], //' many.yaml
+expect 0 "$clast" run many.yaml -j 1 --quiet
+says "for lack of room these columns are left out: beta LSQ"
+for word in strain angle friction energy bonded time; do head -1 out | grep -q "$word" || fail "the table lacks $word"; done
+
+# SQL that asks for too much is a fault of the SQL.
+for sql in 'select randomblob(1e18)' 'select zeroblob(2000000000)' "select replace(hex(zeroblob(1e7)), '0', hex(zeroblob(100)))" "select 1 from run limit 'a'"; do
+  expect 64 "$clast" query formula.db "$sql"
+  grep -q 'bug in clast' err && fail "told as a bug: $sql"
+done
+
+# A store whose path is too long for SQLite: 504 bytes work, 505 do not.
+part=$(printf 'd%.0s' $(seq 100))
+deep=$work/$part/$part/$part/$part
+mkdir -p "$deep"
+(cd "$deep" && one x)
+name=$(printf 'n%.0s' $(seq $((504 - ${#deep} - 1 - 3)))).db
+expect 0 "$clast" run "$deep/x.yaml" -j 1 --quiet --store "$deep/$name"
+expect 74 "$clast" run "$deep/x.yaml" -j 1 --quiet --store "$deep/n$name"
+says "505 bytes"
+expect 74 "$clast" export formula.db "$deep/n$name"
+says "SQLite opens files with at most"
+[ ! -e "$deep/n$name" ] || fail "a file was left behind"
+
+# A material that is named later replaces the one of a file whole.
+"$clast" materials granite | sed 's/^material: granite/material: my-granite/' >my.yaml
+cat >rock.yaml <<'YAML'
+engine: sph
+name: rock
+kind: impact
+target: {shape: sphere, radius: 3 cm, material: ./my.yaml}
+projectile: {shape: sphere, radius: 4 mm, material: {name: nylon}}
+impact: {speed: 1 km/s}
+stop: {end_time: 15 us}
+fidelity: {particles: 200}
+YAML
+m_of() { "$clast" query "$1" "select group_concat(value, ' ') from (select value from point_input where path = 'target.material.weibull.m' order by point_id)" --csv | tail -1 | tr -d '\r'; }
+printf 'name: rocks\nscene: ./rock.yaml\nvary: {target.material.name: [basalt, gabbro]}\nseeds: {per_point: 1}\n' >rocks.yaml
+expect 0 "$clast" run rocks.yaml -j 1 --quiet
+same "$(m_of rocks.db)" "8.5 3.0" "Weibull's m of basalt and gabbro"
+printf 'name: later\nscene: ./rock.yaml\nset: {target.material.name: gabbro, target.material.weibull.m: 4}\nseeds: {per_point: 1}\n' >later.yaml
+expect 0 "$clast" run later.yaml -j 1 --quiet
+same "$(m_of later.db)" "4.0" "a value that is set beside the name"
+expect 0 "$clast" run later.yaml -j 1 --quiet --store command.db --set target.material.weibull.m=5
+same "$(m_of command.db)" "5.0" "a value on the command line"
+
+# A changed `set` in the same store is told; the same campaign with more seeds is not.
+one changed
+expect 0 "$clast" run changed.yaml -j 1 --quiet
+one changed '' '' 2
+expect 0 "$clast" run changed.yaml -j 1 --quiet
+silent err
+sed -i 's/set: {/set: {contact.friction: 0.3, /' changed.yaml
+expect 0 "$clast" run changed.yaml -j 1 --quiet
+says "contact.friction ("
+says "0.3 here)"
+says "other points of campaign changed"
+
+# A link to a store is the store, with its fields beside the file; also a link that leads to no file yet.
+one kept 'keep: {fields: all}'
+mkdir link
+ln -s ../kept.db link/there.db
+expect 0 "$clast" run kept.yaml -j 1 --quiet --store link/there.db
+one kept 'keep: {fields: all}' '' 3
+expect 0 "$clast" run kept.yaml -j 1 --quiet --store link/there.db
+same "$(ls link)" "there.db" "files beside the link"
+same "$(ls kept-fields | wc -l)" 3 "fields files beside the store"
+expect 0 "$clast" check kept.db
+expect 0 "$clast" check link/there.db
+mkdir merged
+expect 0 "$clast" merge merged/all.db link/there.db
+expect 0 "$clast" check merged/all.db
+
+# A fields file that another program has locked can be drawn.
+fields=$(ls kept-fields/*.h5 | head -1)
+flock -x "$fields" sleep 20 &
+holder=$!
+sleep 0.3
+expect 0 "$clast" picture "$fields" p.png
+kill "$holder"
+
+# A second name of a store is the same store, also while it is in use.
+ln kept.db second.db
+expect 64 "$clast" merge kept.db second.db
+says "the same store"
+[ ! -e second.db-wal ] || fail "a journal of the second name"
+expect 0 "$clast" check kept.db
+sqlite3 kept.db 'pragma journal_mode = wal' >/dev/null # as a killed program leaves it
+expect 74 "$clast" status second.db
+says "a hard link"
+[ ! -e second.db-wal ] || fail "a journal of the second name"
+
+# A file system without locks is named.
+cat >nolocks.c <<'C'
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+static int locks(int command) {
+  return command == F_SETLK || command == F_SETLKW || command == F_GETLK || command == F_OFD_SETLK || command == F_OFD_GETLK;
+}
+#define WRAP(name)                                                                                                     \
+  int name(int file, int command, ...) {                                                                               \
+    va_list more;                                                                                                      \
+    va_start(more, command);                                                                                           \
+    void *argument = va_arg(more, void *);                                                                             \
+    va_end(more);                                                                                                      \
+    int (*real)(int, int, ...) = dlsym(RTLD_NEXT, #name);                                                              \
+    if (!locks(command))                                                                                               \
+      return real(file, command, argument);                                                                            \
+    errno = ENOLCK;                                                                                                    \
+    return -1;                                                                                                         \
+  }
+WRAP(fcntl)
+WRAP(fcntl64)
+C
+if [ "$sanitized" -eq 0 ]; then
+  cc -shared -fPIC -o nolocks.so nolocks.c -ldl
+  expect 74 env LD_PRELOAD="$work/nolocks.so" "$clast" status formula.db
+  says "no locks"
+  expect 74 env LD_PRELOAD="$work/nolocks.so" "$clast" run formula.yaml -j 1 --quiet
+  says "no locks"
+else
+  ok "1"; ok "2" # the sanitizer's library must be loaded first
+fi
+done_after 38
