@@ -4,6 +4,7 @@
 #ifndef CLAST_ENGINE_ENGINE_H
 #define CLAST_ENGINE_ENGINE_H
 
+#include "engine/condition.h"
 #include "engine/outcome.h"
 #include "schemas/field.h"
 
@@ -81,9 +82,7 @@ struct engine_kind {
   status (*check_given)(const void *inputs, const bool *given, struct error *error);
   /* Checks conditions across fields (a charge energy needs a disc...). STATUS_CONTENT with a remedy. */
   status (*check)(const void *inputs, struct error *error);
-  /* Returns the warnings that follow from the inputs alone, a set of enum warnings_bits. Prints a line per warning with
-   * its remedy to `out` (NULL: prints nothing). NULL: the engine has none. */
-  unsigned (*warn)(const void *inputs, FILE *out);
+  const struct condition *conditions; /* under which results are valid (engine/condition.h); NULL: none are known */
   /* What is modelled and why, memory, expected cost: text for `clast explain scene` and `plan`. malloc'd. */
   char *(*describe)(const void *inputs);
   size_t (*memory)(const void *inputs); /* bytes a run will need, before anything is allocated */

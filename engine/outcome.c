@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-#include "schemas/text.h"
-
 static FIELD_WORDS(states, OUTCOME_STATES, [OUTCOME_COMPLETED] = "completed", [OUTCOME_END_TIME] = "end-time",
                    [OUTCOME_NOT_FINITE] = "not-finite", [OUTCOME_TIME_STEP] = "time-step", [OUTCOME_ENERGY] = "energy",
                    [OUTCOME_INVALID] = "invalid");
@@ -13,8 +11,6 @@ static FIELD_WORDS(states, OUTCOME_STATES, [OUTCOME_COMPLETED] = "completed", [O
   { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct outcome, path_), __VA_ARGS__ }
 #define REAL(path_, unit_, low, ...) ROW(path_, FIELD_REAL, unit_, .minimum = low, .maximum = HUGE_VAL, __VA_ARGS__)
 #define COUNT(path_, ...)            ROW(path_, FIELD_INTEGER, "1", .minimum = 0, .maximum = HUGE_VAL, __VA_ARGS__)
-
-#define WARNING_DOC(name_, word_, doc_) " " word_ ": " doc_ "."
 
 static const struct field rows[] = {
     ROW(state, FIELD_CHOICE, NULL, .choices = states,
@@ -27,7 +23,7 @@ static const struct field rows[] = {
         .doc = "How the run ended: with a usable result (completed, end-time), or without one."),
     ROW(message, FIELD_TEXT, NULL, .text = "", .doc = "What went wrong, in words; empty when nothing did."),
     ROW(warnings, FIELD_TEXT, NULL, .text = "",
-        .doc = "Doubts about a usable run, a word for each; empty when there are none." WARNINGS(WARNING_DOC)),
+        .doc = "Conditions that a usable run does not meet, a word for each; empty when it meets all."),
     COUNT(steps, .label = "time steps", .doc = "Time steps taken."),
     REAL(time, "s", 0, .label = "simulated time", .doc = "Simulated time at the end."),
     REAL(time_step, "s", 0, .doc = "The smallest time step used."),
@@ -119,14 +115,4 @@ void outcome_fragments(struct outcome *outcome, size_t count, const struct fragm
   outcome->second_fraction = count > 1 ? fragments[1].mass / mass : 0;
   outcome->mean_fragment_mass = over(square, mass);
   outcome->mean_fragment_mass_rest = count > 1 ? over(fmax(square - largest * largest, 0), mass - largest) : 0;
-}
-
-void outcome_warnings(unsigned set, char *text, size_t size) {
-#define WORD(name_, word_, doc_) word_,
-  static const char *const words[WARNINGS_COUNT] = {WARNINGS(WORD)};
-#undef WORD
-  text[0] = 0;
-  for (size_t k = 0; k < WARNINGS_COUNT; k++)
-    if (set >> k & 1)
-      text_append(text, size, "%s%s", *text ? ", " : "", words[k]);
 }

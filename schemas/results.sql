@@ -89,7 +89,7 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   digest BLOB CHECK (length(digest) = 16), -- changes when any bit changes of what the run determined: results, masses, estimates, seed, identity
   state TEXT, -- How the run ended: with a usable result (completed, end-time), or without one. One of: completed, end-time, not-finite, time-step, energy, invalid
   message TEXT, -- What went wrong, in words; empty when nothing did.
-  warnings TEXT, -- Doubts about a usable run, a word for each; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene's fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph). gain: contacts gave the grains more than 1 % of the energy put in, as contact.law printed and contact.bonded false can; the energy ledger books this as work (dem). kernel: fidelity.smoothing is below 0.9 without method.gradient_correction: stresses and wave speeds are too small, up to 39 % (sph). arrival: a wave reaches the far side of the plate before the end, so that speeds and plateaus of its fronts are wrong (sph). links: particles at the start stand farther apart than fragments.link_length times h, so that a whole body counts as many fragments (sph). tail: a binary STL file goes on behind its last triangle, and the rest was not read (sph).
+  warnings TEXT, -- Conditions that a usable run does not meet, a word for each; empty when it meets all.
   steps INTEGER, -- [1] Time steps taken.
   time REAL, -- [s] Simulated time at the end.
   time_step REAL, -- [s] The smallest time step used.
@@ -289,6 +289,7 @@ CREATE TABLE result_dem ( -- What this engine reports beyond the columns of tabl
   sound_speed_compression REAL, -- [m/s] Estimate sqrt((E + Y sqrt(pi)/2)/rho): beams and contacts, aligned with the wave.
   overlap_share REAL, -- [1] Pairs of grains that overlap, at the end, over the pairs that were neighbours at the start. Above 1 if many grains overlap that were none.
   passing_share REAL, -- [1] Fastest approach of two near grains that no beam joins and whose paths meet, over the speed at which they pass through each other. Above 1 the model has no answer for them. Off without contacts.
+  angular_momentum_error REAL, -- [1] Change of the angular momentum about the origin, over the larger of its value at the start and the sum of the momenta times half of the body's size. Off for bodies between moving sides.
   late_breaks INTEGER, -- [1] Beams broken in the second half of the run's time.
   largest_loss REAL, -- [1] Loss of M_1/M of the largest fragment in the second half of the run's time; 0 for a final run. Expect about as much in the next doubling of the time.
   energy_kinetic REAL, -- [J/m] Kinetic energy at the end.
@@ -427,6 +428,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   "result_dem"."sound_speed_compression",
   "result_dem"."overlap_share",
   "result_dem"."passing_share",
+  "result_dem"."angular_momentum_error" AS "result_dem_angular_momentum_error",
   "result_dem"."late_breaks",
   "result_dem"."largest_loss",
   "result_dem"."energy_kinetic" AS "result_dem_energy_kinetic",
@@ -478,7 +480,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   "result_sph"."energy_input" AS "result_sph_energy_input",
   "result_sph"."clamped_share",
   "result_sph"."density_held_share",
-  "result_sph"."angular_momentum_error",
+  "result_sph"."angular_momentum_error" AS "result_sph_angular_momentum_error",
   "result_sph"."limited_courant",
   "result_sph"."limited_force",
   "result_sph"."limited_energy",
@@ -1020,6 +1022,8 @@ INSERT INTO column_doc VALUES ('resolution', 'results_version', NULL, 'version o
 
 INSERT INTO column_doc VALUES ('resolution', 'verdict', NULL, 'known; at least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge', 0);
 
+INSERT INTO column_doc VALUES ('result_dem', 'angular_momentum_error', '1', 'Change of the angular momentum about the origin, over the larger of its value at the start and the sum of the momenta times half of the body''s size. Off for bodies between moving sides.', 1);
+
 INSERT INTO column_doc VALUES ('result_dem', 'beams', '1', 'Number of beams at the start, without those of the explosive grain.', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'broken', '1', 'Beams broken.', 1);
@@ -1296,9 +1300,7 @@ INSERT INTO column_doc VALUES ('run', 'total_mass', 'kg', 'Mass of the body at t
 
 INSERT INTO column_doc VALUES ('run', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('run', 'warnings', NULL, 'Doubts about a usable run, a word for each; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph). gain: contacts gave the grains more than 1 % of the energy put in, as contact.law printed and contact.bonded false can; the energy ledger books this as work (dem). kernel: fidelity.smoothing is below 0.9 without method.gradient_correction: stresses and wave speeds are too small, up to 39 % (sph). arrival: a wave reaches the far side of the plate before the end, so that speeds and plateaus of its fronts are wrong (sph). links: particles at the start stand farther apart than fragments.link_length times h, so that a whole body counts as many fragments (sph). tail: a binary STL file goes on behind its last triangle, and the rest was not read (sph).', 1);
-
-INSERT INTO column_doc VALUES ('runs', 'angular_momentum_error', '1', 'Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 0);
+INSERT INTO column_doc VALUES ('run', 'warnings', NULL, 'Conditions that a usable run does not meet, a word for each; empty when it meets all.', 1);
 
 INSERT INTO column_doc VALUES ('runs', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
 
@@ -1490,11 +1492,15 @@ INSERT INTO column_doc VALUES ('runs', 'rebound', '1', 'Collision: speed of sepa
 
 INSERT INTO column_doc VALUES ('runs', 'replicate', NULL, 'which seed of the point, from 0', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'result_dem_angular_momentum_error', '1', 'Change of the angular momentum about the origin, over the larger of its value at the start and the sum of the momenta times half of the body''s size. Off for bodies between moving sides.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'result_dem_energy_input', 'J/m', 'Energy put in: initial kinetic energy (collision: in the common frame), or the work of the load.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'result_dem_energy_kinetic', 'J/m', 'Kinetic energy at the end.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'result_dem_stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, strain, failure, fault', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'result_sph_angular_momentum_error', '1', 'Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'result_sph_energy_input', 'J', 'Energy put in: kinetic energy at the start plus the absolute value of energy.work_of_held.', 0);
 
@@ -1568,7 +1574,7 @@ INSERT INTO column_doc VALUES ('runs', 'upright_share', '1', 'Compression: broke
 
 INSERT INTO column_doc VALUES ('runs', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'warnings', NULL, 'Doubts about a usable run, a word for each; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph). gain: contacts gave the grains more than 1 % of the energy put in, as contact.law printed and contact.bonded false can; the energy ledger books this as work (dem). kernel: fidelity.smoothing is below 0.9 without method.gradient_correction: stresses and wave speeds are too small, up to 39 % (sph). arrival: a wave reaches the far side of the plate before the end, so that speeds and plateaus of its fronts are wrong (sph). links: particles at the start stand farther apart than fragments.link_length times h, so that a whole body counts as many fragments (sph). tail: a binary STL file goes on behind its last triangle, and the rest was not read (sph).', 0);
+INSERT INTO column_doc VALUES ('runs', 'warnings', NULL, 'Conditions that a usable run does not meet, a word for each; empty when it meets all.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 0);
 

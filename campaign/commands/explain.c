@@ -62,6 +62,25 @@ static bool explain_exponent(const char *word) {
   return true;
 }
 
+/* Prints the conditions of a word; NULL: all. False: there is none. */
+static bool explain_conditions(const char *word) {
+  bool found = false;
+  for (size_t i = 0; i < engine_count(); i++)
+    for (const struct condition *c = engine_at(i)->conditions; c && c->word; c++) {
+      if (word && strcmp(word, c->word) != 0)
+        continue;
+      found = true;
+      printf("%s (%s): a run has this word when %s is %s %g.\n", c->word, engine_at(i)->name, c->number,
+             c->least ? "below" : "above", c->bound);
+      printf("    Then: %s.\n    The bound: %s.\n    What to do: %s.\n    Results that rest on it%s: %s.\n", c->doubt,
+             c->reason, c->remedy, c->withheld ? ", which are withheld" : "",
+             !c->results    ? "all"
+             : !*c->results ? "none, it is only told before the run"
+                            : c->results);
+    }
+  return found;
+}
+
 /* Prints the meaning of a word of clast or a column of the store. False: it is neither. */
 static bool explain_word(const char *word) {
   char words[WORDS], meaning[1024];
@@ -72,7 +91,7 @@ static bool explain_word(const char *word) {
     text_wrap(meaning, 0, 4, 96, stdout);
     return true;
   }
-  return explain_exponent(word) || explain_column(word);
+  return explain_exponent(word) || explain_conditions(word) || explain_column(word);
 }
 
 /* Offers all words to the search for the nearest name. `name` keeps the one that is the nearest. */
@@ -181,6 +200,11 @@ static bool explain_whole(const char *word) {
     explain_table(&outcome_table, "");
     for (size_t i = 0; i < engine_count(); i++)
       explain_table(engine_at(i)->results, "\n");
+  } else if (strcmp(word, "conditions") == 0) {
+    puts(
+        "conditions: what a result rests on. Each compares a number with a bound, before the run or at its end. A run\n"
+        "beyond a bound has the condition's word in its result `warnings`, and stays in every mean.\n");
+    explain_conditions(NULL);
   } else if (strcmp(word, "outcome") == 0) {
     explain_table(&outcome_table, "");
   } else if (strcmp(word, "estimates") == 0) {
@@ -199,8 +223,11 @@ static bool explain_whole(const char *word) {
 static status explain_path(const char *path, struct error *error) {
   struct text_guess guess = text_guess(path);
   const struct campaign_key *key = campaign_keys_find(path);
-  if (explain_rows(path, &guess))
+  if (explain_rows(path, &guess)) {
+    if (strcmp(path, OUTCOME_NAME(warnings)) == 0 && putchar('\n'))
+      explain_conditions(NULL);
     return STATUS_OK;
+  }
   if (key) {
     printf("%s: %s\n%s: %s\n%s", campaign_table.name, campaign_table.doc, key->name, key->doc, key->forms);
     if (key->table) {

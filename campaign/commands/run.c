@@ -22,7 +22,7 @@ static status run(const struct command_line *line, struct error *error) {
   const char *store = options->store || code ? options->store : campaign->store;
   if (!code && !launch_other_rank()) /* only the manager takes runs from the campaign */
     code = accuracy_settle(campaign, path, store, ACCURACY_SILENT, NULL, error);
-  if (!code && !options->launch.quiet && !launch_other_rank())
+  if (!code && !launch_other_rank())
     campaign_warn(campaign, "clast: warning: ", stderr);
   if (!code)
     code = launch_campaign(campaign, store, &options->launch, line->format, line, error);

@@ -12,8 +12,7 @@ struct options {
 static status simulate(const struct scene *scene, const struct one_run_options *options, enum table_format format,
                        struct error *error) {
   struct run_result result = {0};
-  if (!options->quiet)
-    campaign_warn_scene(scene, "clast: warning: ", stderr);
+  campaign_warn_scene(scene, "clast: warning: ", stderr);
   status code = one_run(scene, options, &result, error);
   /* Results are printed also when a file could not be written: hours of computing must not be lost for that. */
   if (result.result) {
@@ -28,8 +27,8 @@ static status simulate(const struct scene *scene, const struct one_run_options *
     code = status_fail(error, STATUS_FAILED_RUNS, "the run ended without a usable result: %s", result.outcome.message);
   else if (*result.outcome.message && !options->quiet)
     fprintf(stderr, "clast: %s\n", result.outcome.message);
-  if (*result.outcome.warnings && !options->quiet)
-    fprintf(stderr, "clast: warnings of this run: %s (`clast explain warnings`)\n", result.outcome.warnings);
+  condition_tell(scene->kind->conditions, result.outcome.warnings,
+                 condition_before(scene->kind->conditions, scene->inputs, NULL), "clast: warning: ", stderr);
 cleanup:
   run_result_clear(&result);
   return code;

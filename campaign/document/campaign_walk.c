@@ -34,24 +34,24 @@ struct scene *campaign_walk_scene(const struct campaign_walk *walk, struct error
 
 /* ---- Collects the engine's warnings about the first points of a campaign ---- */
 
-enum { LOOKED_AT = 1000, LINE = 400 };
+enum { LOOKED_AT = 1000, LINE = 500, CONDITIONS = 64 /* most of an engine */ };
 
 struct doubts {
-  size_t points, count[WARNINGS_COUNT];
-  char first[WARNINGS_COUNT][LINE]; /* the engine's text for the first point with this warning */
+  size_t points, count[CONDITIONS];
+  char first[CONDITIONS][LINE]; /* the engine's text for the first point with this warning */
 };
 
 /* The engine writes its lines in the order of the bits. */
 static void add(struct doubts *doubts, const struct scene *scene) {
   char *text = NULL;
   size_t size = 0;
-  FILE *out = scene->kind->warn ? text_open(&text, &size) : NULL;
+  FILE *out = text_open(&text, &size);
   doubts->points++;
   if (!out)
     return;
-  const unsigned set = scene->kind->warn(scene->inputs, out);
+  const uint64_t set = condition_before(scene->kind->conditions, scene->inputs, out);
   const char *line = text_close(out, &text) ? text : "";
-  for (size_t k = 0; k < WARNINGS_COUNT; k++) {
+  for (size_t k = 0; k < CONDITIONS; k++) {
     if (!(set >> k & 1))
       continue;
     const size_t length = strcspn(line, "\n");
@@ -63,7 +63,7 @@ static void add(struct doubts *doubts, const struct scene *scene) {
 }
 
 static void print(const struct doubts *doubts, const char *before, bool counted, FILE *out) {
-  for (size_t k = 0; k < WARNINGS_COUNT; k++) {
+  for (size_t k = 0; k < CONDITIONS; k++) {
     if (doubts->count[k] == 0)
       continue;
     fputs(before, out);

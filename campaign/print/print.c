@@ -20,9 +20,21 @@ void print_pool_cells(struct table *table, const struct ask_pools *pools, const 
   table_integer(table, pools->choice.by ? (int64_t)pool->points : pool->data.point_id);
 }
 
-static void value_cell(struct table *table, const struct field *row, const void *object) {
+/* A withheld value is empty; a marked one has a "!" where a person reads. */
+static void value_cell(struct table *table, const struct field *row, const void *object, enum condition_mark mark,
+                       bool person) {
   struct field_value value;
   field_get(row, object, &value);
+  if (mark == CONDITION_WITHHELD) {
+    table_real(table, NAN);
+    return;
+  }
+  if (mark == CONDITION_MARKED && person && row->kind == FIELD_REAL) {
+    char text[40];
+    snprintf(text, sizeof text, "%.5g !", value.number);
+    table_text(table, text);
+    return;
+  }
   switch (row->kind) {
   case FIELD_REAL: table_real(table, value.number); break;
   case FIELD_INTEGER: table_integer(table, value.integer); break;
@@ -32,24 +44,29 @@ static void value_cell(struct table *table, const struct field *row, const void 
   }
 }
 
-void print_results_row(struct table *table, const struct field *row, const void *object) {
+static void print_row(struct table *table, const struct field *row, const void *object, enum condition_mark mark) {
   char meaning[FIELD_TEXT_SIZE];
   text_sentence(row->doc, meaning, sizeof meaning);
   table_text(table, row->path);
-  value_cell(table, row, object);
+  value_cell(table, row, object, mark, true);
   table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "");
   table_text(table, meaning);
 }
 
+void print_results_row(struct table *table, const struct field *row, const void *object) {
+  print_row(table, row, object, CONDITION_SOUND);
+}
+
 /* Lists the values of an object; left out is what does not apply to this scene, and the message, which goes to stderr.
  */
-static void list(struct table *table, const struct field_table *fields, const void *object) {
+static void list(struct table *table, const struct field_table *fields, const void *object,
+                 const struct condition *conditions, const char *words) {
   for (size_t i = 0; i < fields->count; i++) {
     const struct field *row = &fields->rows[i];
     struct field_value value;
     field_get(row, object, &value);
     if (row->kind != FIELD_TEXT && !(row->kind == FIELD_REAL && isnan(value.number)))
-      print_results_row(table, row, object);
+      print_row(table, row, object, condition_mark(conditions, words, row->path));
   }
 }
 
@@ -76,7 +93,8 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
   table_integer(table, seed);
   for (size_t t = 0; t < 2; t++)
     for (size_t i = 0; i < tables[t]->count; i++)
-      value_cell(table, &tables[t]->rows[i], objects[t]);
+      value_cell(table, &tables[t]->rows[i], objects[t],
+                 condition_mark(kind->conditions, result->outcome.warnings, tables[t]->rows[i].path), false);
   for (size_t i = 0; i < result->estimate_count; i++)
     table_real(table, result->estimates[i].fit.beta);
   return table_end(table, error);
@@ -86,8 +104,8 @@ static status print_long(const char *scene, const struct engine_kind *kind, cons
                          struct error *error) {
   struct table *table = table_new(TABLE_TEXT, stdout);
   table_columns(table, (const char *const[]){"result", "value", "unit", "meaning", NULL});
-  list(table, &outcome_table, &result->outcome);
-  list(table, kind->results, result->result);
+  list(table, &outcome_table, &result->outcome, kind->conditions, result->outcome.warnings);
+  list(table, kind->results, result->result, kind->conditions, result->outcome.warnings);
   TRY(table_end(table, error));
   fputs("\nexponent beta of F(m) ~ m^-beta, of this run alone:\n", stdout);
   table = table_new(TABLE_TEXT, stdout);

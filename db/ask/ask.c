@@ -79,7 +79,7 @@ static struct answer ask_judged(struct store *store, const char *question, struc
       "drift_allowed, coalesce(warnings, '') AS warnings, CASE WHEN state NOT IN ('completed', 'end-time') "
       "THEN 'refused' WHEN coalesce(warnings, '') <> '' THEN 'warned' ELSE 'safe' END AS class FROM "
       "campaign_point JOIN run USING (point_id)) %s",
-      OUTCOME_NAME(energy_error), WARNINGS_LARGEST_DRIFT, question);
+      OUTCOME_NAME(energy_error), CONDITION_LARGEST_DRIFT, question);
 }
 
 struct answer ask_campaign_extremes(struct store *store, struct error *error) {

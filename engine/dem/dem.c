@@ -25,6 +25,15 @@ void dem_run_momentum(const struct dem_run *run, double momentum[2], double *mag
   }
 }
 
+double dem_run_angular_momentum(const struct dem_run *run) {
+  double sum = 0;
+  for (uint32_t i = 0; i < run->tessellation->cell_count; i++) {
+    const struct dem_grain g = dem_system_grain(run->system, i);
+    sum += g.present ? g.mass * (g.x * g.vy - g.y * g.vx) + g.moment_of_inertia * g.spin : 0;
+  }
+  return sum;
+}
+
 static void held_force(const struct dem_run *run, double force[2]) {
   force[0] = force[1] = 0;
   const uint32_t *layers[2] = {run->lower, run->upper};
@@ -307,7 +316,7 @@ const struct engine_kind dem_engine = {
     .results = &dem_results,
     .knobs = knobs,
     .check = dem_inputs_check,
-    .warn = dem_describe_warnings,
+    .conditions = dem_conditions,
     .describe = dem_describe_scene,
     .memory = memory,
     .work = work,

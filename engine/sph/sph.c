@@ -15,10 +15,6 @@ static status check(const void *inputs, struct error *error) {
   return sph_inputs_check(inputs, error);
 }
 
-static unsigned warn(const void *inputs, FILE *out) {
-  return sph_warn_inputs(inputs, out);
-}
-
 static char *describe(const void *inputs) {
   return sph_describe_scene(inputs);
 }
@@ -125,7 +121,7 @@ const struct engine_kind sph_engine = {
     .complete = complete,
     .check_given = check_given,
     .check = check,
-    .warn = warn,
+    .conditions = sph_conditions,
     .describe = describe,
     .memory = memory,
     .work = work,

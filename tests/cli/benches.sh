@@ -10,7 +10,7 @@ figures() { # figures LEAST PROGRAM [ARGUMENT...]: the program prints at least L
   [ "$(wc -l <out)" -ge "$least" ] || fail "$(wc -l <out) figures, expected $least at least"
 }
 figures 9 "$build/tests/bench/bench_palpha_program"
-figures 9 "$build/tests/bench/bench_analysis_program"
+figures 8 "$build/tests/bench/bench_analysis_program"
 figures 3 "$build/tests/bench/bench_campaign_program"
 if [ "$sanitized" -eq 0 ]; then
   figures 18 "$build/tests/bench/bench_dem_program"

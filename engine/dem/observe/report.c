@@ -193,20 +193,12 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
     dem_loading_results(run, results);
 }
 
-/* The words of warnings. When grains met too fast, a message says so, unless a fault has its own message. */
-static void warn(const struct dem_run *run, const struct dem_ledger *ledger, double input, struct outcome *outcome) {
+/* The words of broken conditions. When grains met too fast, a message says so, unless a fault has its own message. */
+static void judge(const struct dem_run *run, const struct dem_results *results, struct outcome *outcome) {
   const double fastest = dem_system_fastest_approach(run->system);
-  unsigned set = dem_describe_known_warnings(&run->inputs, run->stable_time_step);
-  if (outcome->energy_error > WARNINGS_LARGEST_DRIFT)
-    set |= WARNINGS_DRIFT;
-  if (run->passing_speed > 0 && fastest > run->passing_speed)
-    set |= WARNINGS_PASSING;
-  /* Energy that contacts gave without having taken it: a lower bound with the printed law, where what contacts still
-   * store hides a part. */
-  if (ledger->begun - fmin(ledger->contact, 0) > WARNINGS_LARGEST_DRIFT * input)
-    set |= WARNINGS_GAIN;
-  outcome_warnings(set, outcome->warnings, sizeof outcome->warnings);
-  if (set & WARNINGS_PASSING && outcome->state <= OUTCOME_END_TIME)
+  const struct condition_run end = {run, &run->inputs, outcome, results};
+  condition_after(dem_conditions, &end, outcome->warnings, sizeof outcome->warnings);
+  if (run->passing_speed > 0 && fastest > run->passing_speed && outcome_is_usable(outcome->state))
     snprintf(outcome->message, sizeof outcome->message,
              "grains closed in at %.4g m/s: above %.4g m/s they pass through each other, and the model has no answer",
              fastest, run->passing_speed);
@@ -218,7 +210,7 @@ static double not_infinite(double value) {
 
 /* Errors of energy and momentum, and the share of the energy that is translation; NaN where nothing was put in. */
 static void fill_balance(const struct dem_run *run, const struct dem_ledger *ledger, double input, double translation,
-                         struct outcome *outcome) {
+                         struct outcome *outcome, struct dem_results *results) {
   const struct dem_state *s = &run->state;
   double momentum[2], magnitude;
   dem_run_momentum(run, momentum, &magnitude);
@@ -229,6 +221,14 @@ static void fill_balance(const struct dem_run *run, const struct dem_ledger *led
   if (input > 0) {
     outcome->energy_error = not_infinite(fabs(dem_run_closed(ledger) - s->frame.closed_start) / input);
     outcome->kinetic_energy_share = not_infinite(translation / input);
+  }
+  results->angular_momentum_error = NAN;
+  if (!dem_inputs_loaded(&run->inputs) && magnitude > 0) {
+    const struct dem_inputs *in = &run->inputs;
+    const double longest = fmax(in->body.diameter,
+                                in->grain.spacing * fmax((double)in->body.columns, (double)in->body.rows));
+    results->angular_momentum_error = not_infinite(fabs(dem_run_angular_momentum(run) - run->angular_start) /
+                                                   fmax(fabs(run->angular_start), magnitude * longest / 2));
   }
   if (magnitude > 0)
     outcome->momentum_error = not_infinite(hypot(px, py) / magnitude);
@@ -256,7 +256,7 @@ status dem_report_finish(void *of, struct outcome *outcome, void *report, struct
     *count = 0;
     return code;
   }
-  fill_balance(run, &ledger, input, sums.translation, outcome);
-  warn(run, &ledger, input, outcome);
+  fill_balance(run, &ledger, input, sums.translation, outcome, results);
+  judge(run, results, outcome);
   return STATUS_OK;
 }

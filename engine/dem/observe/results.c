@@ -47,6 +47,10 @@ static const struct field rows[] = {
     REAL(passing_share, "1", 0,
          .doc = "Fastest approach of two near grains that no beam joins and whose paths meet, over the speed at which "
                 "they pass through each other. Above 1 the model has no answer for them. Off without contacts."),
+    REAL(angular_momentum_error, "1", 0,
+         .doc =
+             "Change of the angular momentum about the origin, over the larger of its value at the start and the sum "
+             "of the momenta times half of the body's size. Off for bodies between moving sides."),
     COUNT(late_breaks, "Beams broken in the second half of the run's time."),
     REAL(largest_loss, "1", 0,
          .doc = "Loss of M_1/M of the largest fragment in the second half of the run's time; 0 for a final run. Expect "

@@ -21,6 +21,7 @@ struct dem_results {
   double broken_share, first_break, last_break;
   double energy_input, threshold_energy, stable_time_step, sound_speed_extension, sound_speed_compression;
   double overlap_share, passing_share;
+  double angular_momentum_error;
   int64_t late_breaks;
   double largest_loss;
   struct {

@@ -2,6 +2,7 @@
 #ifndef CLAST_ENGINE_DEM_RUN_RUN_H
 #define CLAST_ENGINE_DEM_RUN_RUN_H
 
+#include "engine/condition.h"
 #include "engine/dem/observe/results.h"
 #include "engine/dem/scene/inputs.h"
 #include "engine/dem/step/system.h"
@@ -33,6 +34,7 @@ struct dem_run {
   struct dem_system *system;
   struct dem_state state;
   double stable_time_step;
+  double angular_start;  /* kg m^2/s per m, about the origin */
   double grain_diameter; /* m, of the circle of mean area */
   double passing_speed;  /* m/s: grains that close in faster pass through each other; 0 without contacts */
 
@@ -54,6 +56,8 @@ void dem_run_free(void *run);                           /* NULL is fine */
 double dem_run_closed(const struct dem_ledger *ledger); /* the sum that must stay constant, J/m */
 /* Sum over grains free along each axis, and sum of all magnitudes, kg/s per m of thickness. */
 void dem_run_momentum(const struct dem_run *run, double momentum[2], double *magnitude);
+/* Angular momentum of the present grains about the origin, kg m^2/s per m of thickness. */
+double dem_run_angular_momentum(const struct dem_run *run);
 /* protocol.c: the body, and the load or impact at the start. */
 status dem_protocol_body(const struct dem_inputs *inputs, uint64_t seed, struct dem_tessellation **out,
                          struct error *error);
@@ -79,10 +83,9 @@ double dem_describe_passing_speed(const struct dem_inputs *inputs);
 void dem_describe_sound_speeds(const struct dem_inputs *inputs, double *extension, double *compression);
 double dem_describe_stable_step(const struct dem_inputs *inputs); /* s: an estimate, without a body */
 double dem_describe_damping(const struct dem_inputs *inputs);     /* 1/s: the largest active damping */
-/* Warnings about time step and damping, once the longest stable step (s) is known. */
-unsigned dem_describe_known_warnings(const struct dem_inputs *inputs, double stable_step);
-/* Warnings before the run: engine_kind.warn. */
-unsigned dem_describe_warnings(const void *inputs, FILE *out);
+
+/* conditions.c */
+extern const struct condition dem_conditions[]; /* engine_kind.conditions */
 
 /* snapshot.c */
 status dem_snapshot_write(void *run, const char *path, struct error *error);

@@ -151,5 +151,6 @@ status dem_protocol_start(struct dem_run *run, struct error *error) {
   case DEM_KINDS: break;
   }
   run->state.frame.energy_input = dem_system_ledger(run->system).kinetic;
+  run->angular_start = dem_run_angular_momentum(run);
   return code;
 }

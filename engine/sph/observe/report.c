@@ -12,9 +12,6 @@
 /* `link_h` of the inputs; parts of a rod count as separate when each is more than 1/ROD_PARTS of it. */
 enum { ROD_PARTS = 100 };
 
-/* Shares above which a run gets a warning (engine/outcome.h). */
-static const double largest_clamped = 0.01, largest_held = 0.01;
-
 /* The fragments of `particles`: those of the run as they are now, or as they were at the start. */
 static status fragments_of(const struct sph_run *run, const struct sph_particles *particles, double static_strength,
                            bool layer, struct sph_fragments *out, struct error *error) {
@@ -43,14 +40,15 @@ status sph_report_fragments(const struct sph_run *run, double static_strength, b
   return fragments_of(run, run->now, static_strength, layer, out, error);
 }
 
-/* Do particles that belong together stand too far apart at the start? Then a whole body counts as many fragments. */
-static status find_gaps(const struct sph_run *run, bool *gaps, struct error *error) {
+bool sph_report_has_gaps(const struct sph_run *run) {
   const size_t bodies = (size_t)run->body_count - sph_derived_has_intruder(&run->inputs);
   struct sph_fragments found;
-  TRY(fragments_of(run, run->start, NAN, true, &found, error));
-  *gaps = found.count > bodies;
+  struct error error;
+  if (fragments_of(run, run->start, NAN, true, &found, &error))
+    return false; /* without memory */
+  const bool gaps = found.count > bodies;
   sph_fragments_clear(&found);
-  return STATUS_OK;
+  return gaps;
 }
 
 static double norm(const double v[3]) {
@@ -299,26 +297,6 @@ static void fill_outcome(const struct sph_run *run, const struct sph_ledger *led
   outcome->momentum_error = closed(run) ? sph_results_share(norm(change), momentum_scale(run, ledger)) : (double)NAN;
 }
 
-/* The words of warnings. A leaking piston and gaps between particles show in the state only, not in the inputs. */
-static status warn(const struct sph_run *run, const struct sph_results *results, struct outcome *outcome,
-                   struct error *error) {
-  unsigned set = sph_warn_inputs(&run->inputs, NULL) & ~(unsigned)(WARNINGS_PISTON | WARNINGS_LINKS);
-  bool gaps;
-  TRY(find_gaps(run, &gaps, error));
-  if (gaps)
-    set |= WARNINGS_LINKS;
-  if (outcome->energy_error > WARNINGS_LARGEST_DRIFT)
-    set |= WARNINGS_DRIFT;
-  if (results->clamped_share > largest_clamped)
-    set |= WARNINGS_CLAMPED;
-  if (results->density_held_share > largest_held)
-    set |= WARNINGS_HELD;
-  if (run->inputs.kind == SPH_PISTON && sph_plate_leaks(run))
-    set |= WARNINGS_PISTON;
-  outcome_warnings(set, outcome->warnings, sizeof outcome->warnings);
-  return STATUS_OK;
-}
-
 status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,
                          struct fragment **fragments, size_t *count, struct error *error) {
   *fragments = NULL;
@@ -333,7 +311,8 @@ status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sp
   status code = fill_results(run, &ledger, input, &found, results, error);
   if (!code) {
     fill_outcome(run, &ledger, input, &found, outcome);
-    code = warn(run, results, outcome, error);
+    const struct condition_run end = {run, in, outcome, results};
+    condition_after(sph_conditions, &end, outcome->warnings, sizeof outcome->warnings);
   }
   if (!code) {
     *fragments = found.fragments;

@@ -94,7 +94,8 @@ static const char *remedy(void *of, double drift) {
   const struct sph_run *run = of;
   if (isnan(drift))
     return "lower fidelity.cfl";
-  if (sph_warn_inputs(&run->inputs, NULL) & WARNINGS_CONTRAST)
+  const struct condition *contrast = condition_find(sph_conditions, "contrast");
+  if (condition_broken(contrast, contrast->before(&run->inputs)))
     return "bodies differ much in density: set method.volume_weights: true";
   const struct sph_ledger ledger = sph_system_ledger(run->system);
   if (fabs(ledger.clamped) > drift / 2)

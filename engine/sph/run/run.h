@@ -77,11 +77,10 @@ char *sph_describe_scene(const struct sph_inputs *inputs);
 size_t sph_describe_memory(const struct sph_inputs *inputs); /* bytes a run will need */
 double sph_describe_work(const struct sph_inputs *inputs);   /* particle-steps, an estimate */
 
-/* warn.c */
+/* conditions.c */
+extern const struct condition sph_conditions[]; /* engine_kind.conditions */
 /* Ratio of the densities of target and projectile; 1 where it causes no error. */
-double sph_warn_contrast(const struct sph_inputs *inputs);
-/* Warnings before the run: engine_kind.warn. */
-unsigned sph_warn_inputs(const struct sph_inputs *inputs, FILE *out);
+double sph_conditions_contrast(const struct sph_inputs *inputs);
 
 /* The output of one run of engine `sph`: the record of a protocol during the run, results and fragments at the end, and
  * its fields files. For this folder, run/ and sph.c. */
@@ -117,6 +116,8 @@ struct sph_crater_options sph_report_crater_options(const struct sph_run *run);
 status sph_report_fragments(const struct sph_run *run, double static_strength, bool layer, struct sph_fragments *out,
                             struct error *error);
 /* *fragments: by descending mass, malloc'd. */
+/* Do particles that belong together stand too far apart at the start? Then a whole body counts as many fragments. */
+bool sph_report_has_gaps(const struct sph_run *run);
 status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,
                          struct fragment **fragments, size_t *count, struct error *error);
 

@@ -184,6 +184,10 @@ static status check_flight(const struct sph_inputs *in, struct error *error) {
 }
 
 static status check_impact(const struct sph_inputs *in, struct error *error) {
+  if (in->target.spin != 0 && !in->gradient_correction.on)
+    REFUSE("target.spin %.4g rad/s without method.gradient_correction: the uncorrected velocity gradient strains a "
+           "body that only turns, and breaks it: set method.gradient_correction: true",
+           in->target.spin);
   TRY(check_projectile(in, error));
   TRY(check_flight(in, error));
   const double pieces = sph_derived_particles(in) - (double)in->fidelity.particles;

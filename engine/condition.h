@@ -1,0 +1,62 @@
+/* A result knows when it is valid: a condition is a row beside the engine that needs it. It compares a dimensionless
+ * number with a bound, before the run from the inputs, at the end from the run itself, or both. A run beyond a bound is
+ * marked with the condition's word in its result `warnings`; it stays in every mean. What the program says before a
+ * run, the marks beside numbers and `clast explain warnings` follow from these rows. */
+#ifndef CLAST_ENGINE_CONDITION_H
+#define CLAST_ENGINE_CONDITION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "engine/outcome.h"
+
+/* Error of the energy ledger, divided by the energy put in, above which a run is marked. */
+#define CONDITION_LARGEST_DRIFT 0.01
+
+/* A run at its end, as conditions look at it. */
+struct condition_run {
+  const void *run, *inputs;
+  const struct outcome *outcome;
+  const void *results; /* of the engine */
+};
+
+struct condition {
+  const char *word;   /* in the result `warnings`; rows of one word stand together */
+  const char *number; /* what is compared with the bound: "fidelity.cfl" */
+  double bound;       /* doubtful above it */
+  bool least;         /* doubtful below it instead */
+  const char *doubt;  /* what is wrong beyond the bound; begins in lower case, without a full stop */
+  const char *reason; /* where the bound comes from */
+  const char *remedy; /* what to do */
+  const char
+      *results;  /* the results that rest on it: paths, separated by spaces. NULL: all; "": none, it is only told */
+  bool withheld; /* beyond the bound these results have no meaning */
+  /* The number; NaN where the condition does not apply. At least one of the two. A condition with both is judged at the
+   * end by `after` alone. */
+  double (*before)(const void *inputs);
+  double (*after)(const struct condition_run *run);
+};
+
+/* Is a number beyond the bound? Not when it is NaN. */
+bool condition_broken(const struct condition *condition, double number);
+
+/* The conditions that the inputs alone break: bit k is the k-th row of `list`, which ends with a word of NULL. Prints a
+ * line for each, with number, bound, doubt and remedy, to `out` (NULL: prints nothing). A list of NULL has no rows. */
+uint64_t condition_before(const struct condition *list, const void *inputs, FILE *out);
+
+/* Judges a run at its end. Writes the words of broken conditions, separated by ", ", into `words`. */
+void condition_after(const struct condition *list, const struct condition_run *run, char *words, size_t size);
+
+/* What the words of a run say of one of its results, by the result's path. */
+enum condition_mark { CONDITION_SOUND, CONDITION_MARKED, CONDITION_WITHHELD };
+enum condition_mark condition_mark(const struct condition *list, const char *words, const char *path);
+
+/* Prints "word: number is above bound: doubt; remedy" for each of the words that `told`, a set of condition_before(),
+ * has not. */
+void condition_tell(const struct condition *list, const char *words, uint64_t told, const char *before, FILE *out);
+
+/* The first row of a word in a list; NULL when there is none. */
+const struct condition *condition_find(const struct condition *list, const char *word);
+
+#endif

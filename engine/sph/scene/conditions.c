@@ -1,0 +1,458 @@
+/* Conditions under which results of engine sph are valid (engine/condition.h). */
+#include <math.h>
+
+#include "engine/condition.h"
+#include "engine/mesh/mesh.h"
+#include "engine/sph/material/palpha.h"
+#include "engine/sph/run/run.h"
+#include "engine/sph/scene/derived.h"
+
+static const struct sph_run *run_of(const struct condition_run *r) {
+  return r->run;
+}
+
+static const struct sph_results *results_of(const struct condition_run *r) {
+  return r->results;
+}
+
+static bool is_porous(const struct sph_body_inputs *body) {
+  return body->material.palpha.curve != SPH_CRUSH_NONE && body->material.palpha.distention > 1;
+}
+
+/* ---- the integration ---- */
+
+static double drift(const struct condition_run *r) {
+  return r->outcome->energy_error;
+}
+
+static double courant(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return in->viscosity.alpha < 0.5 ? (double)NAN : in->fidelity.cfl;
+}
+
+static double courant_undamped(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return in->viscosity.alpha < 0.5 ? in->fidelity.cfl : (double)NAN;
+}
+
+static double clamped(const struct condition_run *r) {
+  return results_of(r)->clamped_share;
+}
+
+static double held(const struct condition_run *r) {
+  return results_of(r)->density_held_share;
+}
+
+static double angular(const struct condition_run *r) {
+  return results_of(r)->angular_momentum_error;
+}
+
+double sph_conditions_contrast(const struct sph_inputs *in) {
+  if (!sph_derived_has_projectile(in) || in->method.volume_weights)
+    return 1;
+  const double target = sph_derived_density(&in->target), projectile = sph_derived_density(&in->projectile);
+  return fmax(target, projectile) / fmin(target, projectile);
+}
+
+static double contrast(const void *inputs) {
+  return sph_conditions_contrast(inputs);
+}
+
+/* ---- too few particles for the number ---- */
+
+static double smoothing(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return in->gradient_correction.on ? (double)NAN : in->fidelity.smoothing;
+}
+
+/* Radius of the sphere of the projectile's volume over the coarser spacing of both bodies. */
+static double spacings(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  if (!sph_derived_has_projectile(in))
+    return NAN;
+  const struct sph_shape projectile = sph_derived_projectile(in);
+  return cbrt(3 * sph_shape_volume(&projectile) / (4 * M_PI)) /
+         (sph_derived_fine_spacing(in) * fmax(1, in->fidelity.projectile_spacing));
+}
+
+static double dust(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  if (!sph_derived_has_projectile(in))
+    return NAN;
+  const double spacing = sph_derived_spacing(in);
+  return in->fragments.dust_mass / (sph_derived_density(&in->target) * spacing * spacing * spacing);
+}
+
+/* Distance over the spacing up to which particles at rest belong together, over the distance of nearest neighbours: of
+ * irregular bodies, the distance from which all particles hang together (1.07 spacings with 300 particles, 1.11 with
+ * 10 000). */
+static double reach(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  const double nearest = in->target.lattice == SPH_LATTICE_CUBIC ? 1 : 1.122462048309373;
+  return in->fragments.link_length * in->fidelity.smoothing / nearest;
+}
+
+static double reach_of_start(const struct condition_run *r) {
+  return sph_report_has_gaps(run_of(r)) ? 0 : 2;
+}
+
+/* Bytes behind the last triangle of the bodies' shape files. */
+static double tail(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  const struct sph_shape target = sph_derived_target(in), projectile = sph_derived_projectile(in);
+  return (double)((target.mesh ? target.mesh->tail : 0) +
+                  (sph_derived_has_projectile(in) && projectile.mesh ? projectile.mesh->tail : 0));
+}
+
+/* ---- plates ---- */
+
+static double compression(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  struct sph_plane_shock exact;
+  if (in->kind != SPH_PISTON || sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL) ||
+      !exact.has_shock)
+    return NAN;
+  return exact.shock.density / exact.first_density;
+}
+
+static double leaks(const struct condition_run *r) {
+  const struct sph_run *run = run_of(r);
+  return run->inputs.kind == SPH_PISTON && sph_plate_leaks(run) ? HUGE_VAL : (double)NAN;
+}
+
+/* End of the run over the time at which the first front reaches the far side. */
+static double arrival(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  struct sph_plane_shock exact;
+  if (in->kind != SPH_PISTON || sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL))
+    return NAN;
+  const double speed = exact.has_precursor ? exact.precursor.speed : exact.shock.speed;
+  return in->stop.end_time * speed / in->target.width;
+}
+
+/* The larger of the errors of pressure and speed of the shock. A plateau that was not found is wrong, too. */
+static double plateau(const struct condition_run *r) {
+  const struct sph_run *run = run_of(r);
+  if (run->inputs.kind != SPH_PISTON || !run->exact.has_shock)
+    return NAN;
+  const struct sph_results *results = results_of(r);
+  const double pressure = fabs(results->shock.pressure / results->shock.pressure_exact - 1),
+               speed = fabs(results->shock.speed / results->shock.speed_exact - 1);
+  return isnan(pressure + speed) ? HUGE_VAL : fmax(pressure, speed);
+}
+
+/* ---- waves in bodies ---- */
+
+/* Width of a crushing shock over the shortest extent of the porous target. The linear viscosity alpha c h, with the
+ * speed c of elastic waves, balances the shock over a width of about 2 alpha h c/U. U is the speed of the shock that
+ * just closes all pores, U^2 (1 - 1/alpha_0) = P_s/rho. */
+static double front(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  if (in->kind != SPH_IMPACT || !is_porous(&in->target))
+    return NAN;
+  const struct sph_palpha_material *pores = &in->target.material.palpha;
+  const double shock = sqrt(pores->solid_pressure / (sph_derived_density(&in->target) * (1 - 1 / pores->distention)));
+  const struct sph_shape target = sph_derived_target(in);
+  const double extent = in->target.shape == SPH_SHAPE_BOX ? sph_derived_shortest_side(&in->target)
+                                                          : cbrt(sph_shape_volume(&target));
+  return 2 * in->viscosity.alpha * in->fidelity.smoothing * sph_derived_fine_spacing(in) *
+         sph_derived_wave_speed(&in->target) / shock / extent;
+}
+
+/* ---- contact ---- */
+
+/* Speed of an impact over that of waves in the softer body, of bodies that both have strength. */
+static double approach(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  if (in->kind != SPH_IMPACT || !in->target.strength || !in->projectile.strength)
+    return NAN;
+  return in->impact.speed / fmin(sph_derived_wave_speed(&in->target), sph_derived_wave_speed(&in->projectile));
+}
+
+/* ---- what a result needs to have happened ---- */
+
+/* The time at which a wave has crossed the target once after the hit, over the simulated time; of a run without damage.
+ * Bodies that do not crack need the hit alone. */
+static double unfinished(const struct condition_run *r) {
+  const struct sph_inputs *in = r->inputs;
+  if ((in->kind != SPH_IMPACT && in->kind != SPH_COLLISION) || !isnan(run_of(r)->state.first_damage))
+    return NAN;
+  const double crossing = sph_derived_cracks(&in->target) ? sph_derived_crossing(in) : 0;
+  return (sph_derived_arrival(in) + crossing) / r->outcome->time;
+}
+
+/* Mean damage of a target without damped sides. */
+static double gone(const struct condition_run *r) {
+  const struct sph_inputs *in = r->inputs;
+  return in->kind == SPH_IMPACT && in->sides.far != SPH_FAR_DAMPED ? results_of(r)->mean_damage : (double)NAN;
+}
+
+/* Mass share of particles of the target for which `is` holds, of those for which `of` holds (NULL: all). */
+static double share_of(const struct sph_run *run, bool (*is)(const struct sph_run *run, size_t i),
+                       bool (*of)(const struct sph_run *run, size_t i)) {
+  double part = 0, whole = 0;
+  for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
+    if (of && !of(run, i))
+      continue;
+    whole += run->now->mass[i];
+    part += is(run, i) ? run->now->mass[i] : 0;
+  }
+  return whole > 0 ? part / whole : (double)NAN;
+}
+
+static bool is_damped(const struct sph_run *run, size_t i) {
+  return run->start->damping && run->start->damping[i] > 0;
+}
+
+static bool is_damaged(const struct sph_run *run, size_t i) {
+  return sph_particles_damage(run->now, i) >= run->inputs.fragments.damage;
+}
+
+/* Undamaged by its number, but melted (where the material has a melt energy) or partly vapour. */
+static bool is_hot_and_whole(const struct sph_run *run, size_t i) {
+  const struct sph_material *material = &run->inputs.target.material;
+  const double melt = material->melt_energy, most = field_is_off(melt) ? material->tillotson.E_iv : melt;
+  return !is_damaged(run, i) && run->now->energy[i] > most;
+}
+
+static double box(const struct condition_run *r) {
+  const struct sph_run *run = run_of(r);
+  return run->inputs.sides.far == SPH_FAR_DAMPED ? share_of(run, is_damaged, is_damped) : (double)NAN;
+}
+
+static double hot(const struct condition_run *r) {
+  return run_of(r)->inputs.kind == SPH_IMPACT ? share_of(run_of(r), is_hot_and_whole, NULL) : (double)NAN;
+}
+
+/* ---- materials ---- */
+
+static double body_moduli(const struct sph_body_inputs *body) {
+  const double ratio = sph_material_bulk_modulus(&body->material) / body->material.tillotson.A;
+  return body->strength ? fmax(ratio, 1 / ratio) : (double)NAN;
+}
+
+static double moduli(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  const double target = body_moduli(&in->target);
+  return sph_derived_has_projectile(in) ? fmax(target, body_moduli(&in->projectile)) : target;
+}
+
+static double body_poisson(const struct sph_body_inputs *body) {
+  return body->strength ? sph_material_poisson_ratio(&body->material) : (double)NAN;
+}
+
+static double poisson(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  const double target = body_poisson(&in->target);
+  return sph_derived_has_projectile(in) ? fmin(target, body_poisson(&in->projectile)) : target;
+}
+
+/* Compliance of the pores along the elastic branch over that along the crush curve, where the two meet. */
+static double body_crush(const struct sph_body_inputs *body) {
+  struct sph_palpha_law law;
+  if (!is_porous(body) || sph_palpha_prepare(&body->material.palpha, &body->material, &law, NULL))
+    return NAN;
+  const double just_above = law.given.elastic_pressure * (1 + 1e-9) + 1e-9 * law.given.solid_pressure;
+  return sph_palpha_elastic_slope(&law, law.elastic_distention) / sph_palpha_crush_slope(&law, just_above);
+}
+
+static double crush(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  const double target = body_crush(&in->target);
+  return sph_derived_has_projectile(in) ? fmax(target, body_crush(&in->projectile)) : target;
+}
+
+#define ALL_OF_A_BODY                                                                                                  \
+  "largest_fraction second_fraction dust_fraction undamaged_fraction mean_damage largest.bare_fraction "               \
+  "largest.veneer_fraction largest.dynamic_fraction"
+
+const struct condition sph_conditions[] = {
+    {.word = "drift",
+     .number = "the error of the energy ledger, over the energy put in,",
+     .bound = CONDITION_LARGEST_DRIFT,
+     .doubt = "numerical errors made or lost more than 1 % of the energy",
+     .reason = "our choice; the scene's fidelity.energy_bound may allow more",
+     .remedy = "lower fidelity.cfl, or take more particles",
+     .after = drift},
+    {.word = "step",
+     .number = "fidelity.cfl",
+     .bound = 0.5,
+     .doubt = "energy may drift",
+     .reason = "measured (tests/extremes/map.md)",
+     .remedy = "give a cfl of 0.3",
+     .before = courant},
+    {.word = "step",
+     .number = "fidelity.cfl with viscosity.alpha below 0.5",
+     .bound = 0.2,
+     .doubt = "without much viscosity the energy drifts at smaller steps, too",
+     .reason = "measured (tests/extremes/map.md)",
+     .remedy = "give a cfl of 0.15, or more viscosity",
+     .before = courant_undamped},
+    {.word = "clamped",
+     .number = "the energy given to cold matter that is held at u = 0, over the energy put in,",
+     .bound = 0.01,
+     .doubt = "the computation makes energy where matter would have less than none",
+     .reason = "as for the energy ledger",
+     .remedy = "take more particles",
+     .after = clamped},
+    {.word = "held",
+     .number = "the share of particle steps that held the density at its lower limit",
+     .bound = 0.01,
+     .doubt = "expanded matter keeps a density that it has not",
+     .reason = "our choice",
+     .remedy = "give a lower limit, or end the run earlier",
+     .after = held},
+    {.word = "turn",
+     .number = "the error of the angular momentum",
+     .bound = 0.01,
+     .doubt = "a body that turns is strained by the computation, and may break by that",
+     .reason = "our choice, as for the energy ledger",
+     .remedy = "set method.gradient_correction: true",
+     .after = angular},
+    {.word = "contrast",
+     .number = "the ratio of the densities of target and projectile without method.volume_weights",
+     .bound = 3,
+     .doubt = "energy may drift",
+     .reason = "the energy drifts by 1 % in some runs from 3.1 on (tests/extremes/map.md)",
+     .remedy = "set method.volume_weights: true",
+     .before = contrast},
+    {.word = "coarse",
+     .number = "the number of particle spacings in the projectile's radius",
+     .bound = 5,
+     .least = true,
+     .doubt = "the shock of the impact is not resolved, and all that follows from it moves with the particles",
+     .reason =
+         "benchmarks of impact codes ask for 10 to 20 (Pierazzo and others 2008, Meteorit. Planet. Sci. 43, 1917)",
+     .remedy = "take more particles, or fidelity.graded: true with a fidelity.fine_spacing of a tenth of the radius",
+     .before = spacings},
+    {.word = "dust",
+     .number = "fragments.dust_mass in particles",
+     .bound = 2,
+     .least = true,
+     .doubt = "dust is then no fragment at all, or single particles",
+     .reason = "a fragment of one particle has no strength of its own",
+     .remedy = "take more particles, or give a larger fragments.dust_mass",
+     .results = "dust_fraction",
+     .withheld = true,
+     .before = dust},
+    {.word = "links",
+     .number = "the distance up to which particles belong together, over that of neighbours at the start,",
+     .bound = 1,
+     .least = true,
+     .doubt = "a whole body counts as many fragments",
+     .reason = "geometry of the particles",
+     .remedy = "give a larger fragments.link_length: 1.36 over fidelity.smoothing",
+     .before = reach,
+     .after = reach_of_start},
+    {.word = "tail",
+     .number = "the number of bytes in the shape file behind its last triangle",
+     .bound = 0,
+     .doubt = "they are not read",
+     .reason = "the header of a binary STL file gives the number of triangles",
+     .remedy = "if they are a second body, write each body into a file of its own",
+     .before = tail},
+    {.word = "kernel",
+     .number = "fidelity.smoothing without method.gradient_correction",
+     .bound = 0.9,
+     .least = true,
+     .doubt = "stresses and wave speeds are too small, up to 39 %",
+     .reason = "a plate's shock is 2.5 % too weak at 0.9, 5 % at 0.85 and 20 % at 0.7",
+     .remedy = "give 1.13, or set method.gradient_correction: true",
+     .before = smoothing},
+    {.word = "piston",
+     .number = "the compression by the shock",
+     .bound = 1.8,
+     .doubt = "matter of the plate goes through the piston",
+     .reason = "compression that four layers of piston hold (tests/verification/sph_palpha_plate.md)",
+     .remedy = "lower piston.speed",
+     .before = compression,
+     .after = leaks},
+    {.word = "arrival",
+     .number = "stop.end_time over the time at which a wave reaches the far side of the plate",
+     .bound = 1,
+     .doubt = "speeds and plateaus of the fronts are wrong after that",
+     .reason = "the wave comes back",
+     .remedy = "give an earlier stop.end_time, or a larger target.width",
+     .before = arrival},
+    {.word = "plateau",
+     .number = "the error of the shock's pressure or speed, beside the exact one,",
+     .bound = 0.02,
+     .doubt = "the shock is wider than its plateau, or has not its final form",
+     .reason = "the largest error that we allow for a plate of 200 points",
+     .remedy = "take more points and a longer plate, or a lower viscosity.alpha with a fidelity.cfl of 0.15",
+     .results = "shock.speed shock.density shock.pressure shock.distention",
+     .after = plateau},
+    {.word = "front",
+     .number = "the width of a shock that closes pores, over the target's extent,",
+     .bound = 0.25,
+     .doubt = "the artificial viscosity smears the shock over the body, and pressures are too low",
+     .reason = "a plate whose shock is half as wide as its way is 25 % low in pressure",
+     .remedy = "take more particles, or a lower viscosity.alpha with a fidelity.cfl of 0.15",
+     .before = front},
+    {.word = "stick",
+     .number = "the speed of the impact over that of waves",
+     .bound = 0.03,
+     .least = true,
+     .doubt = "intact bodies that touch stick together in this method, since a pair of two bodies acts as in one",
+     .reason = "elastic spheres of basalt keep 0.62 of their speed at 0.02, and 0.02 of it at 0.002",
+     .remedy = "take no result that rests on the contact of intact bodies",
+     .before = approach},
+    {.word = "early",
+     .number = "the time that a wave needs to cross the body after the hit, over the simulated time,",
+     .bound = 1,
+     .doubt = "the run ended before anything could break",
+     .reason = "a body can break from the hit until a wave has crossed it",
+     .remedy = "give a longer stop.end_time",
+     .after = unfinished},
+    {.word = "gone",
+     .number = "the mean damage of the target",
+     .bound = 0.9,
+     .doubt = "no body is left that could have a crater",
+     .reason = "our choice",
+     .remedy = "use the fragments",
+     .results = "crater.depth crater.radius crater.volume crater.compaction_share",
+     .withheld = true,
+     .after = gone},
+    {.word = "box",
+     .number = "the damaged share of the damped sides",
+     .bound = 0.01,
+     .doubt =
+         "the damage reaches the sides of a box that stands for a half-space, so shares of the mass measure the box",
+     .reason = "our choice",
+     .remedy = "take a larger target, and use masses and the crater",
+     .results = ALL_OF_A_BODY,
+     .withheld = true,
+     .after = box},
+    {.word = "hot",
+     .number = "the mass share of the target that counts as undamaged and is melted or vapour",
+     .bound = 0.01,
+     .doubt = "hot matter that never was in tension has no damage, and counts as whole",
+     .reason = "our choice",
+     .remedy = "count energies, not damage",
+     .results = ALL_OF_A_BODY,
+     .withheld = true,
+     .after = hot},
+    {.word = "moduli",
+     .number = "the ratio of material.bulk_modulus and material.tillotson.A",
+     .bound = 3,
+     .doubt = "the two give the same stiffness, so that waves and cracks follow different ones",
+     .reason = "of the built-in materials the largest ratio is 2.8 (granite)",
+     .remedy = "correct one of them",
+     .before = moduli},
+    {.word = "moduli",
+     .number = "Poisson's ratio, by material.bulk_modulus and material.shear_modulus,",
+     .bound = 0,
+     .least = true,
+     .doubt = "no rock widens when it is pulled",
+     .reason = "K below 2/3 of the shear modulus",
+     .remedy = "correct one of them",
+     .before = poisson},
+    {.word = "crush",
+     .number = "the compliance of the pores on the elastic branch, over that on the crush curve where the two meet,",
+     .bound = 1,
+     .doubt = "the elastic branch is the softer one, so that shocks follow it and not the crush curve",
+     .reason = "pores that close for good give way more",
+     .remedy = "raise porosity.sound_speed, or lower porosity.solid_pressure",
+     .before = crush},
+    {0},
+};

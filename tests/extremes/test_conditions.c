@@ -1,0 +1,240 @@
+/* Conditions of results (engine/condition.h): each row is well formed; a run beyond the bound has the word, and a sound
+ * twin of it, with an answer that means what its name says, has it not. */
+#include <ctype.h>
+
+#include "engine/condition.h"
+#include "engine/engine.h"
+#include "tests/support/run_case.h"
+
+static bool has_word(const char *words, const char *word) {
+  const size_t length = strlen(word);
+  for (const char *at = words; (at = strstr(at, word)); at += length)
+    if ((at == words || at[-1] == ' ') && strchr(", ", at[length]))
+      return true;
+  return false;
+}
+
+/* ---- the rows ---- */
+
+static void sentence_of(const char *text) {
+  assert_non_null(text);
+  assert_true(*text && !isspace((unsigned char)*text));
+  assert_true(text[strlen(text) - 1] != '.' && text[strlen(text) - 1] != ' ');
+}
+
+static void rows_are_well_formed(void **state) {
+  (void)state;
+  for (size_t e = 0; e < engine_count(); e++) {
+    const struct engine_kind *kind = engine_at(e);
+    size_t count = 0;
+    for (const struct condition *c = kind->conditions; c && c->word; c++, count++) {
+      for (const char *at = c->word; *at; at++)
+        assert_true(islower((unsigned char)*at));
+      sentence_of(c->number);
+      sentence_of(c->doubt);
+      sentence_of(c->reason);
+      sentence_of(c->remedy);
+      assert_true(c->before || c->after);
+      assert_true(isfinite(c->bound));
+      char paths[400], *rest = NULL;
+      snprintf(paths, sizeof paths, "%s", c->results ? c->results : "");
+      for (char *path = strtok_r(paths, " ", &rest); path; path = strtok_r(NULL, " ", &rest))
+        if (!field_find(&outcome_table, path, NULL) && !field_find(kind->results, path, NULL))
+          fail_msg("%s, %s: %s is no result", kind->name, c->word, path);
+      assert_true(!c->withheld || c->results); /* a run without any result would be no run */
+      for (const struct condition *other = c + 1; other->word; other++)
+        if (strcmp(other->word, c->word) == 0 && other != c + 1)
+          fail_msg("rows of %s do not stand together", c->word);
+    }
+    assert_true(count <= 64);
+  }
+}
+
+/* ---- judgement ---- */
+
+static double five(const void *inputs) {
+  (void)inputs;
+  return 5;
+}
+
+static double none(const void *inputs) {
+  (void)inputs;
+  return NAN;
+}
+
+static double three(const struct condition_run *run) {
+  (void)run;
+  return 3;
+}
+
+static const struct condition rows[] = {
+    {.word = "high", .number = "n", .bound = 4, .doubt = "d", .remedy = "r", .results = "a b", .before = five},
+    {.word = "low", .number = "n", .bound = 5, .least = true, .doubt = "d", .remedy = "r", .before = five},
+    {.word = "off", .number = "n", .bound = 0, .doubt = "d", .remedy = "r", .before = none},
+    {.word = "told", .number = "n", .bound = 4, .doubt = "d", .remedy = "r", .results = "", .before = five},
+    {.word = "end",
+     .number = "n",
+     .bound = 4,
+     .least = true,
+     .doubt = "d",
+     .remedy = "r",
+     .results = "b c",
+     .withheld = true,
+     .before = five,
+     .after = three},
+    {0},
+};
+
+static void bounds_are_exclusive_and_the_end_decides(void **state) {
+  (void)state;
+  char *text = NULL, words[100];
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  const uint64_t set = condition_before(rows, NULL, out);
+  fclose(out);
+  assert_int_equal(set, 1 | 8);
+  assert_string_equal(text, "high: n is 5, above 4: d; r\ntold: n is 5, above 4: d; r\n");
+  free(text);
+  condition_after(rows, &(struct condition_run){0}, words, sizeof words);
+  assert_string_equal(words, "high, end");
+
+  assert_int_equal(condition_mark(rows, words, "a"), CONDITION_MARKED);
+  assert_int_equal(condition_mark(rows, words, "b"), CONDITION_WITHHELD);
+  assert_int_equal(condition_mark(rows, words, "c"), CONDITION_WITHHELD);
+  assert_int_equal(condition_mark(rows, words, "d"), CONDITION_SOUND);
+  assert_int_equal(condition_mark(rows, "low", "d"), CONDITION_MARKED); /* all results rest on it */
+  assert_int_equal(condition_mark(rows, "lower, endless", "b"), CONDITION_SOUND);
+  assert_int_equal(condition_mark(NULL, words, "a"), CONDITION_SOUND);
+
+  out = open_memstream(&text, &size);
+  condition_tell(rows, words, set, "! ", out);
+  fclose(out);
+  assert_string_equal(text, "! end: n is below 4: d; r\n");
+  free(text);
+}
+
+/* ---- every row, with a twin ---- */
+
+static const struct twin {
+  const char *word, *scene;
+  const char *common[8], *beyond[6], *sound[6];
+} twins[] = {
+    {"load", "uniaxial", {"grain.disorder=0"}, {"loading.rate=5 1/s", "loading.ramp=1 us"}, {NULL}},
+    {"load", "uniaxial", {"grain.disorder=0"}, {"beam.young_modulus=1e8 Pa", "grain.spacing=5 cm"}, {NULL}},
+    {"event",
+     "compression",
+     {"body.columns=12", "body.rows=20"},
+     {"loading.strain_end=2 %"},
+     {"loading.strain_end=6 %"}},
+    {"early", "disc-collision", {"body.diameter=10 cm"}, {"collision.speed=0.5 m/s"}, {"collision.speed=200 m/s"}},
+    /* below its threshold, but it had its time: nothing broke, and that is the answer */
+    {"early",
+     "disc-explosion",
+     {"body.diameter=8 cm", "charge.energy=20 J/m"},
+     {"stop.end_time=20 us"},
+     {"stop.end_time=2 ms"}},
+    {"effect",
+     "disc-explosion",
+     {"body.diameter=8 cm", "stop.end_time=0.2 ms"},
+     {"contact.friction=0.3"},
+     {"contact.friction=0.3", "contact.tangential_damping=1e4 1/s"}},
+    {"dust", "disruption", {"stop.end_time=3 us"}, {"fidelity.particles=1000"}, {"fidelity.particles=2500"}},
+    {"coarse",
+     "basalt-sphere",
+     {"stop.end_time=3 us", "fidelity.projectile_spacing=1"},
+     {"fidelity.particles=1000"},
+     {"fidelity.particles=1000", "impact.mass=150 g"}},
+    {"stick",
+     "disruption",
+     {"fidelity.particles=300", "impact.gap=1 um", "stop.end_time=1 us"},
+     {"impact.speed=20 m/s"},
+     {NULL}},
+    {"gone",
+     "disruption",
+     {"fidelity.particles=300", "impact.projectile=mass", "impact.gap=0.1 mm", "fidelity.projectile_spacing=2"},
+     {"impact.mass=3 kg", "impact.speed=500 m/s"},
+     {"impact.mass=20 g", "impact.speed=100 m/s"}},
+    {"box",
+     "solid-ice",
+     {"fidelity.particles=2500", "fidelity.projectile_spacing=0.5"},
+     {"impact.speed=6 km/s"},
+     {"impact.speed=100 m/s"}},
+    {"hot",
+     "disruption",
+     {"fidelity.particles=300", "impact.projectile=mass"},
+     {"impact.mass=20 g", "impact.speed=50 km/s"},
+     {"impact.mass=20 g", "impact.speed=1 km/s"}},
+    {"plateau",
+     "porous-plate",
+     {"fidelity.points=100"},
+     {"target.material.name=perlite-mix", "piston.speed=200 m/s"},
+     {NULL}},
+    {"front",
+     "pumice-sphere",
+     {"stop.end_time=3 us", "fidelity.particles=3000"},
+     {NULL},
+     {"viscosity.alpha=0.1", "fidelity.cfl=0.15"}},
+    {"moduli",
+     "basalt-sphere",
+     {"fidelity.particles=300", "stop.end_time=3 us"},
+     {"target.material.bulk_modulus=26.7 GPa", "target.material.tillotson.A=128 GPa"},
+     {NULL}},
+    {"moduli",
+     "basalt-sphere",
+     {"fidelity.particles=300", "stop.end_time=3 us"},
+     {"target.material.shear_modulus=60 GPa"},
+     {"target.material.shear_modulus=30 GPa"}},
+    {"crush",
+     "porous-plate",
+     {"fidelity.points=60", "target.material.name=porous-ice", "piston.speed=300 m/s"},
+     {"target.material.porosity.distention=10", "target.material.porosity.elastic_pressure=1 MPa",
+      "target.material.porosity.solid_pressure=100 MPa", "target.material.porosity.sound_speed=500 m/s"},
+     {NULL}},
+};
+
+/* Is the word told before the run or a word of its end? */
+static bool is_marked(const struct twin *twin, const char *const *more) {
+  const char *sets[16];
+  size_t count = 0;
+  for (size_t k = 0; k < 8 && twin->common[k]; k++)
+    sets[count++] = twin->common[k];
+  for (size_t k = 0; k < 6 && more[k]; k++)
+    sets[count++] = more[k];
+  sets[count] = NULL;
+  const union run_case_inputs inputs = run_case(twin->scene, sets);
+  struct scene *scene = NULL;
+  struct error error;
+  assert_int_equal(scene_load(twin->scene, NULL, &scene, &error), STATUS_OK);
+  const struct engine_kind *kind = scene->kind;
+  scene_free(scene);
+  const struct ran ran = run_case_run(kind, &inputs, 1);
+  free(ran.fragments);
+  const uint64_t told = condition_before(kind->conditions, &inputs, NULL);
+  for (size_t k = 0; kind->conditions[k].word; k++)
+    if (told >> k & 1 && strcmp(kind->conditions[k].word, twin->word) == 0 && kind->conditions[k].results &&
+        !*kind->conditions[k].results)
+      return true;
+  return has_word(ran.outcome.warnings, twin->word);
+}
+
+static void runs_beyond_a_bound_are_marked_and_their_twins_are_not(void **state) {
+  (void)state;
+  size_t wrong = 0;
+  for (size_t k = 0; k < sizeof twins / sizeof *twins; k++) {
+    const bool beyond = is_marked(&twins[k], twins[k].beyond), sound = is_marked(&twins[k], twins[k].sound);
+    if (beyond && !sound)
+      continue;
+    print_message("%s, %s: %s\n", twins[k].word, twins[k].scene, beyond ? "the sound twin has it" : "not marked");
+    wrong++;
+  }
+  assert_int_equal(wrong, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rows_are_well_formed),
+      cmocka_unit_test(bounds_are_exclusive_and_the_end_decides),
+      cmocka_unit_test(runs_beyond_a_bound_are_marked_and_their_twins_are_not),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
