@@ -125,8 +125,10 @@ static char *read_cell(struct csv *csv, struct csv_cell *cell) {
 }
 
 static bool guards_formula(const char *text) {
+  if (*text != '\'')
+    return false; /* an empty last cell has nothing behind it */
   const char *first = text + 1 + strspn(text + 1, " \t\n");
-  return *text == '\'' && *first && strchr(CSV_FORMULA, *first);
+  return *first && strchr(CSV_FORMULA, *first);
 }
 
 /* Reads the cells of a record. Returns their number; 0: csv->wrong says why. */
