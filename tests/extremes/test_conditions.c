@@ -36,7 +36,7 @@ static void rows_are_well_formed(void **state) {
       sentence_of(c->remedy);
       assert_true(c->before || c->after);
       assert_true(isfinite(c->bound));
-      char paths[400], *rest = NULL;
+      char paths[1000], *rest = NULL;
       snprintf(paths, sizeof paths, "%s", c->results ? c->results : "");
       for (char *path = strtok_r(paths, " ", &rest); path; path = strtok_r(NULL, " ", &rest))
         if (!field_find(&outcome_table, path, NULL) && !field_find(kind->results, path, NULL))
@@ -133,6 +133,11 @@ static const struct twin {
      {"body.diameter=8 cm", "charge.energy=20 J/m"},
      {"stop.end_time=20 us"},
      {"stop.end_time=2 ms"}},
+    {"early",
+     "disruption",
+     {"fidelity.particles=300", "impact.gap=1 um", "impact.speed=20 m/s"},
+     {"stop.end_time=3 us"},
+     {"stop.end_time=60 us", "stop.quiet_time=60 us"}},
     {"effect",
      "disc-explosion",
      {"body.diameter=8 cm", "stop.end_time=0.2 ms"},

@@ -40,15 +40,13 @@ status sph_report_fragments(const struct sph_run *run, double static_strength, b
   return fragments_of(run, run->now, static_strength, layer, out, error);
 }
 
-bool sph_report_has_gaps(const struct sph_run *run) {
+static status find_gaps(struct sph_run *run, struct error *error) {
   const size_t bodies = (size_t)run->body_count - sph_derived_has_intruder(&run->inputs);
   struct sph_fragments found;
-  struct error error;
-  if (fragments_of(run, run->start, NAN, true, &found, &error))
-    return false; /* without memory */
-  const bool gaps = found.count > bodies;
+  TRY(fragments_of(run, run->start, NAN, true, &found, error));
+  run->has_gaps = found.count > bodies;
   sph_fragments_clear(&found);
-  return gaps;
+  return STATUS_OK;
 }
 
 static double norm(const double v[3]) {
@@ -311,10 +309,11 @@ status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sp
   status code = fill_results(run, &ledger, input, &found, results, error);
   if (!code) {
     fill_outcome(run, &ledger, input, &found, outcome);
-    const struct condition_run end = {run, in, outcome, results};
-    condition_after(sph_conditions, &end, outcome->warnings, sizeof outcome->warnings);
+    code = find_gaps(run, error);
   }
   if (!code) {
+    const struct condition_run end = {run, in, outcome, results};
+    condition_after(sph_conditions, &end, outcome->warnings, sizeof outcome->warnings);
     *fragments = found.fragments;
     *count = found.count;
     found.fragments = NULL;

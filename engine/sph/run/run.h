@@ -59,6 +59,9 @@ struct sph_run {
   double sample_interval;        /* s */
   struct sph_plane_shock exact;  /* piston: the exact solution */
   struct sph_plate_layer *layer; /* piston: memory of plate.c */
+  /* Do particles that belong together stand too far apart at the start, so that a whole body counts as many fragments?
+   * Known from the first report on. */
+  bool has_gaps;
 };
 
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error);
@@ -116,8 +119,6 @@ struct sph_crater_options sph_report_crater_options(const struct sph_run *run);
 status sph_report_fragments(const struct sph_run *run, double static_strength, bool layer, struct sph_fragments *out,
                             struct error *error);
 /* *fragments: by descending mass, malloc'd. */
-/* Do particles that belong together stand too far apart at the start? Then a whole body counts as many fragments. */
-bool sph_report_has_gaps(const struct sph_run *run);
 status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,
                          struct fragment **fragments, size_t *count, struct error *error);
 
