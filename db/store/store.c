@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -77,16 +78,24 @@ static status check_companions(const char *path, struct error *error) {
 }
 
 /* SQLite opens no file whose path, from / on and with its journal's ending, is longer than its limit (512 bytes on
- * Unix), and does not say so. */
+ * Unix), and does not say so. Nor does a folder take a name that is too long with that ending. */
 static status check_length(const char *path, struct error *error) {
   sqlite3_vfs *vfs = sqlite3_vfs_find(NULL);
   char full[LIMITS_PATH] = "";
-  const int most = vfs->mxPathname - (int)strlen("-journal"), code = vfs->xFullPathname(vfs, path, LIMITS_PATH, full);
-  if ((code & 0xff) != SQLITE_OK || strlen(full) <= (size_t)most)
+  const size_t ending = strlen("-journal"), most = (size_t)vfs->mxPathname - ending, longest = NAME_MAX - ending;
+  if ((vfs->xFullPathname(vfs, path, LIMITS_PATH, full) & 0xff) != SQLITE_OK)
     return STATUS_OK; /* opening it reports other faults */
+  const char *slash = strrchr(full, '/'), *name = slash ? slash + 1 : full;
+  if (strlen(name) > longest)
+    return status_fail(error, STATUS_IO,
+                       "%s: its name has %zu bytes, and with the endings of SQLite's journals at most %zu fit. Name "
+                       "a store with a shorter name (`--store FILE`).",
+                       path, strlen(name), longest);
+  if (strlen(full) <= most)
+    return STATUS_OK;
   return status_fail(
       error, STATUS_IO,
-      "%s: its path from / on has %zu bytes, and SQLite opens files with at most %d. Name a store in a folder "
+      "%s: its path from / on has %zu bytes, and SQLite opens files with at most %zu. Name a store in a folder "
       "with a shorter path (`--store FILE`), or move the folder.",
       path, strlen(full), most);
 }

@@ -239,9 +239,13 @@ says "SQLite opens files with at most 504"
 same "$(ls -A "$long/$long/$long")" "" "files beside a refused store"
 here=$(pwd -P)/$long
 longest=$(printf 's%.0s' $(seq $((504 - ${#here} - 4)))) # with a slash and .db
-[ ${#longest} -le 252 ] || { mkdir "$long/${longest::100}"; longest=${longest::100}/${longest:101}; }
+[ ${#longest} -le 244 ] || { mkdir "$long/${longest::100}"; longest=${longest::100}/${longest:101}; }
 expect 0 "$clast" run slow.yaml --store "$long/$longest.db" -j 2 --quiet
 expect 74 "$clast" run slow.yaml --store "$long/${longest}s.db" -j 2 --quiet
+name=$(printf 'n%.0s' $(seq 244)) # with .db and -journal 255 bytes, the longest name of a file
+expect 0 "$clast" run slow.yaml --store "$name.db" -j 2 --quiet
+expect 74 "$clast" run slow.yaml --store "n$name.db" -j 2 --quiet
+says "its name has 248 bytes"
 
 # a benchmark that gets SIGTERM ends
 "$build/tests/bench/bench_farm_program" 1 farm >out 2>err &
@@ -249,4 +253,4 @@ pid=$!
 sleep 1.5; kill -TERM "$pid"
 got=0; wait "$pid" || got=$?
 case $got in 75 | 143) ok "bench_farm ended with $got after SIGTERM" ;; *) fail "bench_farm ended with $got after SIGTERM" ;; esac
-done_after 61
+done_after 63
