@@ -6,15 +6,35 @@
 
 #include "schemas/text.h"
 
-/* Is `word` one of the words of a text, which commas and spaces part? */
-static bool has_word(const char *text, const char *word) {
-  const size_t length = strlen(word);
-  for (const char *at = text; *at; at += strcspn(at, ", ")) {
-    at += strspn(at, ", ");
-    if (strcspn(at, ", ") == length && strncmp(at, word, length) == 0)
+/* Length of the next word of a list, which commas and spaces part; 0: there is none. *at moves to its begin. */
+static size_t next_word(const char **at) {
+  *at += strspn(*at, ", ");
+  return strcspn(*at, ", ");
+}
+
+/* Is a name one of a list? A path and its column in the store are the same name, also behind "result_ENGINE_". */
+static bool is_in(const char *list, const char *name, size_t length) {
+  for (size_t n; (n = next_word(&list)) > 0; list += n) {
+    size_t same = 0;
+    const bool behind = n < length && strncmp(name, "result_", strlen("result_")) == 0;
+    const char *tail = behind ? name + length - n : name;
+    while (same < n && (tail[same] == list[same] || (tail[same] == '_' && list[same] == '.')))
+      same++;
+    if (same == n && (behind ? tail[-1] == '_' : n == length))
       return true;
   }
   return false;
+}
+
+bool condition_has(const char *words, const char *word) {
+  return is_in(words, word, strlen(word));
+}
+
+static bool rests_on(const char *names, const struct condition *c) {
+  for (size_t n; c->results && (n = next_word(&names)) > 0; names += n)
+    if (is_in(c->results, names, n))
+      return true;
+  return !c->results;
 }
 
 bool condition_broken(const struct condition *c, double number) {
@@ -55,16 +75,37 @@ const struct condition *condition_find(const struct condition *list, const char 
   return NULL;
 }
 
-enum condition_mark condition_mark(const struct condition *list, const char *words, const char *path) {
+enum condition_mark condition_next(const struct condition *list, const char **words, const char *names,
+                                   char word[CONDITION_WORD], const struct condition **row) {
   enum condition_mark mark = CONDITION_SOUND;
-  for (const struct condition *c = list; c && c->word; c++) {
-    if (!has_word(words, c->word) || (c->results && !has_word(c->results, path)))
+  const size_t length = next_word(words);
+  snprintf(word, CONDITION_WORD, "%.*s", (int)length, *words);
+  *words += length;
+  *row = NULL;
+  if (!condition_find(list, word))
+    return CONDITION_MARKED;
+  for (const struct condition *c = list; c->word; c++) {
+    if (strcmp(c->word, word) != 0 || !rests_on(names, c) || mark == CONDITION_WITHHELD)
       continue;
-    mark = CONDITION_MARKED;
-    if (c->withheld)
-      return CONDITION_WITHHELD;
+    mark = c->withheld ? CONDITION_WITHHELD : CONDITION_MARKED;
+    *row = c;
   }
   return mark;
+}
+
+enum condition_mark condition_mark(const struct condition *list, const char *words, const char *names) {
+  enum condition_mark worst = CONDITION_SOUND;
+  const struct condition *row;
+  char word[CONDITION_WORD];
+  while (next_word(&words) > 0) {
+    const enum condition_mark mark = condition_next(list, &words, names, word, &row);
+    worst = mark > worst ? mark : worst;
+  }
+  return worst;
+}
+
+void condition_sentence(const struct condition *c, FILE *out) {
+  fprintf(out, "%s is %s %g: %s; %s\n", c->number, c->least ? "below" : "above", c->bound, c->doubt, c->remedy);
 }
 
 void condition_tell(const struct condition *list, const char *words, uint64_t told, const char *before, FILE *out) {
@@ -76,10 +117,10 @@ void condition_tell(const struct condition *list, const char *words, uint64_t to
     bool known = false;
     for (size_t j = 0; list[j].word; j++)
       known = known || (said[j] && strcmp(list[j].word, c->word) == 0);
-    if (known || !has_word(words, c->word))
+    if (known || !condition_has(words, c->word))
       continue;
-    fprintf(out, "%s%s: %s is %s %g: %s; %s\n", before, c->word, c->number, c->least ? "below" : "above", c->bound,
-            c->doubt, c->remedy);
+    fprintf(out, "%s%s: ", before, c->word);
+    condition_sentence(c, out);
     said[k] = true;
   }
 }

@@ -48,13 +48,26 @@ uint64_t condition_before(const struct condition *list, const void *inputs, FILE
 /* Judges a run at its end. Writes the words of broken conditions, separated by ", ", into `words`. */
 void condition_after(const struct condition *list, const struct condition_run *run, char *words, size_t size);
 
-/* What the words of a run say of one of its results, by the result's path. */
+/* What the words of a run say of its results `names`: paths or columns of the store, separated by spaces or commas; the
+ * worst of them. A word without a row comes from another version, and marks every result. */
 enum condition_mark { CONDITION_SOUND, CONDITION_MARKED, CONDITION_WITHHELD };
-enum condition_mark condition_mark(const struct condition *list, const char *words, const char *path);
+enum condition_mark condition_mark(const struct condition *list, const char *words, const char *names);
+
+/* One word of a text of words. Returns what it says of the results, as condition_mark(), and moves *words on. `word`
+ * gets it; *row is the row that it comes from, NULL: none. */
+enum { CONDITION_WORD = 32 };
+enum condition_mark condition_next(const struct condition *list, const char **words, const char *names,
+                                   char word[CONDITION_WORD], const struct condition **row);
 
 /* Prints "word: number is above bound: doubt; remedy" for each of the words that `told`, a set of condition_before(),
  * has not. */
 void condition_tell(const struct condition *list, const char *words, uint64_t told, const char *before, FILE *out);
+
+/* Is a word one of some words? */
+bool condition_has(const char *words, const char *word);
+
+/* Prints "number is above bound: doubt; remedy". */
+void condition_sentence(const struct condition *condition, FILE *out);
 
 /* The first row of a word in a list; NULL when there is none. */
 const struct condition *condition_find(const struct condition *list, const char *word);

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/statistics/sample.h"
@@ -26,12 +27,12 @@ static status nothing_to_draw(const struct picture_page *page, struct error *err
 static const double LOG_FROM = 20; /* x is logarithmic if its ends differ by at least this factor */
 
 static void write_curve(struct chart *chart, const struct picture_curve *curve) {
-  chart_columns(chart, "x mean low high thin_low thin_high");
+  chart_columns(chart, "x mean low high thin_low thin_high doubtful");
   for (size_t i = 0; i < curve->count; i++) {
     const struct picture_mean *m = &curve->mean[i];
     const bool bar = isfinite(m->low) && isfinite(m->high) && m->low < m->high;
     const double low = bar ? m->low : m->y, high = bar ? m->high : m->y;
-    double row[6] = {m->x, m->y, NAN, NAN, NAN, NAN};
+    double row[7] = {m->x, m->y, NAN, NAN, NAN, NAN, m->doubtful};
     if (bar) {
       row[2] = low;
       row[3] = high;
@@ -40,10 +41,10 @@ static void write_curve(struct chart *chart, const struct picture_curve *curve) 
       row[4] = low - m->resolution;
       row[5] = high + m->resolution;
     }
-    chart_row(chart, 6, row);
+    chart_row(chart, 7, row);
   }
   if (curve->count == 0)
-    chart_row(chart, 6, (double[]){NAN, NAN, NAN, NAN, NAN, NAN});
+    chart_row(chart, 7, (double[]){NAN, NAN, NAN, NAN, NAN, NAN, NAN});
   chart_block_end(chart);
 }
 
@@ -247,7 +248,7 @@ struct axis {
   double *values; /* ascending, distinct */
 };
 
-static void distinct(size_t count, const double (*points)[3], int coordinate, struct axis *axis) {
+static void distinct(size_t count, const double (*points)[4], int coordinate, struct axis *axis) {
   axis->count = 0;
   for (size_t i = 0; i < count; i++)
     axis->values[i] = points[i][coordinate];
@@ -262,12 +263,12 @@ static size_t place(const struct axis *axis, double value) {
   return (size_t)(found - axis->values); /* always found: the axis was made from these values */
 }
 
-/* Blocks: the tiles (number of column and row from 0, value), the columns' values, the rows' values. */
-static void write_tiles(struct chart *chart, const struct axis *x, const struct axis *y, const double *value) {
-  chart_columns(chart, "column row value");
+/* Blocks: the tiles (number of column and row from 0, value, doubtful), the columns' values, the rows' values. */
+static void write_tiles(struct chart *chart, const struct axis *x, const struct axis *y, const double (*value)[2]) {
+  chart_columns(chart, "column row value doubtful");
   for (size_t j = 0; j < y->count; j++)
     for (size_t i = 0; i < x->count; i++)
-      chart_row(chart, 3, (double[]){(double)i, (double)j, value[j * x->count + i]});
+      chart_row(chart, 4, (double[]){(double)i, (double)j, value[j * x->count + i][0], value[j * x->count + i][1]});
   chart_block_end(chart);
   const struct axis *axes[2] = {x, y};
   for (int a = 0; a < 2; a++) {
@@ -280,10 +281,10 @@ static void write_tiles(struct chart *chart, const struct axis *x, const struct 
 
 /* Draws x->count times y->count values, a row for each value of y. */
 static status draw_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
-                       const struct axis *x, const struct axis *y, const double *value, struct error *error) {
+                       const struct axis *x, const struct axis *y, const double (*value)[2], struct error *error) {
   double range[2] = {none[0], none[1]};
   for (size_t i = 0; i < x->count * y->count; i++)
-    extend(range, value[i]);
+    extend(range, value[i][0]);
   if (!(range[1] >= range[0]))
     return status_fail(error, STATUS_USAGE, "%s: there is no value to draw", page->path);
   struct chart *chart = chart_new("map", page, words);
@@ -297,14 +298,14 @@ static status draw_map(const struct picture_page *page, const struct picture_wor
 }
 
 status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
-                   size_t count, const double (*points)[3], struct error *error) {
+                   size_t count, const double (*points)[4], struct error *error) {
   if (count == 0)
     return status_fail(error, STATUS_USAGE, "%s: an axis of the map is empty or not finite", page->path);
   for (size_t i = 0; i < count; i++)
     if (!isfinite(points[i][0]) || !isfinite(points[i][1]))
       return status_fail(error, STATUS_USAGE, "%s: a point of the map is not on its axes", page->path);
   struct axis x = {.values = malloc(count * sizeof *x.values)}, y = {.values = malloc(count * sizeof *y.values)};
-  double *value = malloc(MOST_TILES * sizeof *value);
+  double(*value)[2] = calloc(MOST_TILES, sizeof *value);
   status code = STATUS_OK;
   if (!x.values || !y.values || !value) {
     code = status_fail(error, STATUS_MEMORY, "%s: no memory for the map", page->path);
@@ -318,10 +319,10 @@ status picture_map(const struct picture_page *page, const struct picture_words *
     goto cleanup;
   }
   for (size_t i = 0; i < x.count * y.count; i++)
-    value[i] = NAN;
+    value[i][0] = NAN;
   for (size_t i = 0; i < count; i++)
-    value[place(&y, points[i][1]) * x.count + place(&x, points[i][0])] = points[i][2];
-  code = draw_map(page, words, quantity, &x, &y, value, error);
+    memcpy(value[place(&y, points[i][1]) * x.count + place(&x, points[i][0])], &points[i][2], sizeof *value);
+  code = draw_map(page, words, quantity, &x, &y, (const double(*)[2])value, error);
 cleanup:
   free(x.values);
   free(y.values);

@@ -165,6 +165,7 @@ status picture_profile(const struct picture_page *page, const struct picture_wor
 struct picture_mean {
   double x, y, low, high; /* low, high: ends of the interval; NaN: none is drawn */
   double resolution;      /* a thin bar extends both ends by this; NaN: none is drawn */
+  bool doubtful;          /* has a "!" beside it */
 };
 struct picture_curve {
   const char *label; /* may be NULL */
@@ -205,11 +206,11 @@ struct picture_margin {
 status picture_margins(const char *path, double width, const char *title, size_t count,
                        const struct picture_margin *row, struct error *error);
 
-/* Draws a heat map from points (x, y, value) in any order: every distinct x is a column, every distinct y a row. A tile
- * with NaN or without a point is crossed. If two points have the same x and y, the later one counts. At most 10 000
- * tiles (STATUS_USAGE). quantity: label of the colour bar. */
+/* Draws a heat map from points (x, y, value, 1 for a "!" behind it) in any order: every distinct x is a column, every
+ * distinct y a row. A tile with NaN or without a point is crossed. If two points have the same x and y, the later one
+ * counts. At most 10 000 tiles (STATUS_USAGE). quantity: label of the colour bar. */
 status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
-                   size_t count, const double (*points)[3], struct error *error);
+                   size_t count, const double (*points)[4], struct error *error);
 
 /* One measured number, and the fit's prediction for one more such experiment. */
 enum { PICTURE_QUANTILES = 5, PICTURE_PREDICTIONS = 32 };

@@ -1,6 +1,7 @@
 /* Names of quantities and the page of a chart. */
 #include "campaign/charts/charts.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -85,4 +86,13 @@ void charts_resolution(struct store *store, const char *quantity, const char *ad
       before = adds;
   }
   snprintf(text, size, "%s%s", before, words);
+}
+
+void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size) {
+  char words[UNCERTAINTY_TEXT];
+  if (doubts->doubtful == 0)
+    return;
+  ask_doubts_words(doubts, words, sizeof words);
+  text_append(text, size, "%s! in doubt, %" PRId64 " of %" PRId64 " runs: %s", *text ? "; " : "", doubts->doubtful,
+              doubts->runs, words);
 }

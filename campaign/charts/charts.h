@@ -39,6 +39,9 @@ void charts_intervals(const char *pooled, char *text, size_t size);
  * one. */
 void charts_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size);
 
+/* Appends "; ! in doubt, 3 of 20 runs: coarse, early" to a caption, if there are such runs. */
+void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size);
+
 /* ---- a quantity over one or two varied inputs: the mean of a result over the runs that share the inputs, or an
  * exponent fitted to the runs of each point ---- */
 
@@ -52,6 +55,9 @@ void charts_resolution(struct store *store, const char *quantity, const char *ad
       .doc = "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a "         \
              "point: beta, or beta_METHOD_WINDOW (beta_masses_from_2).")
 
+/* Prints a line on stderr for each condition that the runs behind these quantities (ask_doubts_results()) break. */
+status quantity_tell_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *quantities,
+                            struct error *error);
 /* Prints a line on stderr: the meaning of the intervals, and the error of the resolution. pooled: from ask_group. */
 void quantity_tell_resolution(struct store *store, const char *name, const char *pooled);
 /* Prints a line for each of several comma-separated names; "main": the default quantity. */

@@ -14,7 +14,7 @@
 #include "schemas/limits.h"
 
 /* Columns of ask_group after the axes. */
-enum { VERSION = 1, MEAN = 6, HALF_WIDTH = 9, RESOLUTION = 10, COLUMNS = 12 };
+enum { VERSION = 1, MEAN = 6, HALF_WIDTH = 9, RESOLUTION = 10, DOUBTFUL = 13, COLUMNS = 15 };
 
 enum { MOST_ROWS = 10000, MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, INPUT_TEXT = 200 };
 
@@ -24,6 +24,7 @@ struct row {
   int64_t version;            /* results_version */
   double value, lower, upper; /* bounds of the 95 % interval; NaN: unknown */
   double resolution;          /* possible change of the value by finer settings; NaN: unknown */
+  bool doubtful;              /* rests on runs in doubt */
 };
 
 struct quantity {
@@ -89,7 +90,8 @@ static status read_groups(struct quantity *quantity, struct answer *groups, stru
                             .value = mean,
                             .lower = mean - half_width,
                             .upper = mean + half_width,
-                            .resolution = answer_real(groups, axes + RESOLUTION)};
+                            .resolution = answer_real(groups, axes + RESOLUTION),
+                            .doubtful = answer_integer(groups, axes + DOUBTFUL) > 0};
     TRY(add_row(quantity, inputs, row, error));
   }
   return answer_end(groups);
@@ -103,16 +105,20 @@ static status read_exponents(struct store *store, struct quantity *quantity, enu
   for (struct ask_points_row point; ask_points_next(&points, &point);) {
     struct pooled_exponent fit;
     struct ask_resolution resolution;
+    struct ask_doubts doubts = {0};
     if (point.n == 0 && !newest)
       continue;
     TRY(point_exponent(store, point.point_id, newest ? 0 : point.results_version, method, window, 0.95, &fit, error));
     TRY(ask_resolution(store, point.point_id, quantity->name, &resolution, error));
+    TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = point.point_id}, OUTCOME_NAME(mean_fragment_mass),
+                   &doubts, error));
     const double half_width = fit.interval.half_width;
     const struct row row = {.version = point.results_version,
                             .value = fit.fit.beta,
                             .lower = fit.fit.beta - half_width,
                             .upper = fit.fit.beta + half_width,
-                            .resolution = resolution.half_width};
+                            .resolution = resolution.half_width,
+                            .doubtful = doubts.doubtful > 0};
     TRY(add_row(quantity, point.inputs, row, error));
   }
   return answer_end(&points);
@@ -137,6 +143,16 @@ static status read_quantity(struct store *store, const char *x, const char *y, c
     return read_groups(quantity, &groups, error);
   quantity->pooled[0] = '\0'; /* exponents belong to single points */
   return read_exponents(store, quantity, method, window, newest, error);
+}
+
+status quantity_tell_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *quantities,
+                            struct error *error) {
+  char results[ASK_DOUBTS_RESULTS];
+  struct ask_doubts doubts = {0};
+  TRY(ask_doubts_results(store, quantities, results, error));
+  TRY(ask_doubts(store, choice, results, &doubts, error));
+  uncertainty_doubts(&doubts, stderr);
+  return STATUS_OK;
 }
 
 void quantity_tell_resolution(struct store *store, const char *name, const char *pooled) {
@@ -222,7 +238,8 @@ static status add_mean(struct plot *plot, const struct row *row, struct error *e
           error, STATUS_USAGE,
           "several points share %s = %g and one line, and their exponents cannot be averaged: separate them by --by",
           column, x);
-  line->means[line->count++] = (struct picture_mean){x, row->value, row->lower, row->upper, row->resolution};
+  line->means[line->count++] = (struct picture_mean){x,          row->value,      row->lower,
+                                                     row->upper, row->resolution, row->doubtful};
   return STATUS_OK;
 }
 
@@ -250,6 +267,17 @@ static void label_lines(struct plot *plot, const char *by) {
   }
 }
 
+/* Says in the caption, and at length on stderr, what the runs behind the quantity leave in doubt. */
+static status add_doubts(struct store *store, const char *quantity, char *caption, size_t size, struct error *error) {
+  char results[ASK_DOUBTS_RESULTS];
+  struct ask_doubts doubts = {0};
+  TRY(ask_doubts_results(store, quantity, results, error));
+  TRY(ask_doubts(store, &(struct ask_doubts_choice){0}, results, &doubts, error));
+  charts_doubts(&doubts, caption, size);
+  uncertainty_doubts(&doubts, stderr);
+  return STATUS_OK;
+}
+
 static status draw_lines(struct store *store, struct plot *plot, const struct picture_page *page, struct error *error) {
   const struct quantity *quantity = &plot->quantity;
   char x[CHARTS_LABEL], by[CHARTS_LABEL] = "", y[CHARTS_LABEL], name[CHARTS_LABEL], over[CHARTS_LABEL];
@@ -275,6 +303,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   charts_intervals(quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "thin bars add ", resolution, sizeof resolution);
   snprintf(caption, sizeof caption, "Bars: %s; %s", intervals, resolution);
+  TRY(add_doubts(store, quantity->name, caption, sizeof caption, error));
   return picture_curves(page, &(struct picture_words){title, caption, x, y}, plot->count, curves, error);
 }
 
@@ -299,7 +328,7 @@ status quantity_plot(struct store *store, const char *x, const char *by, const c
 
 /* ---- tiles ---- */
 
-static status draw_tiles(struct store *store, const struct quantity *quantity, size_t count, const double (*tile)[3],
+static status draw_tiles(struct store *store, const struct quantity *quantity, size_t count, const double (*tile)[4],
                          double widest, const struct picture_page *page, struct error *error) {
   char x[CHARTS_LABEL], y[CHARTS_LABEL], z[CHARTS_LABEL], title[ASK_GROUP_POOLED + 400], caption[1100];
   char made[ASK_GROUP_POOLED + 40], intervals[600], resolution[400];
@@ -315,11 +344,12 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
     snprintf(caption, sizeof caption, "At most \xc2\xb1 %.2g: %s; %s", widest, intervals, resolution);
   else
     snprintf(caption, sizeof caption, "No interval: one run a point; %s", resolution);
+  TRY(add_doubts(store, quantity->name, caption, sizeof caption, error));
   return picture_map(page, &(struct picture_words){title, caption, x, y}, z, count, tile, error);
 }
 
 /* Makes a tile (x, y, value) of each row that has two numbers, and draws them. */
-static status make_tiles(struct store *store, const struct quantity *quantity, double (*tile)[3],
+static status make_tiles(struct store *store, const struct quantity *quantity, double (*tile)[4],
                          const struct picture_page *page, struct error *error) {
   double widest = 0; /* half width of the widest interval, in the quantity's unit; 0: there is none */
   size_t count = 0;
@@ -334,10 +364,11 @@ static status make_tiles(struct store *store, const struct quantity *quantity, d
                            quantity->column[0], row->input[0], quantity->column[1], row->input[1]);
     tile[count][0] = row->input[0];
     tile[count][1] = row->input[1];
-    tile[count++][2] = row->value;
+    tile[count][2] = row->value;
+    tile[count++][3] = row->doubtful;
     widest = fmax(widest, row->upper - row->value); /* NaN: no interval */
   }
-  return draw_tiles(store, quantity, count, (const double(*)[3])tile, widest, page, error);
+  return draw_tiles(store, quantity, count, (const double(*)[4])tile, widest, page, error);
 }
 
 status quantity_map(struct store *store, const char *x, const char *y, const char *name,
@@ -345,7 +376,7 @@ status quantity_map(struct store *store, const char *x, const char *y, const cha
   struct quantity quantity = {0};
   status code = read_quantity(store, x, y, name, true, "a map needs two different inputs (--x, --y) and one quantity",
                               &quantity, error);
-  double(*tile)[3] = calloc(quantity.count + 1, sizeof *tile);
+  double(*tile)[4] = calloc(quantity.count + 1, sizeof *tile);
   if (code == STATUS_OK)
     code = tile ? make_tiles(store, &quantity, tile, page, error) : status_fail(error, STATUS_MEMORY, "out of memory");
   if (code == STATUS_OK)

@@ -88,13 +88,14 @@ static status make_thin(const struct ask_pool *pool, struct curve *curve, struct
 static status make_curve(const struct spectrum_choice *choice, bool with_rivals, const struct ask_pool *pool,
                          struct curve *curve, struct error *error) {
   const size_t runs = pool->data.runs.count;
+  const char *mark = pool->doubts.doubtful ? " !" : "";
   *curve = (struct curve){.form = ask_pool_form(pool, choice->cumulative, choice->density),
                           .complete_mass = pool->data.complete_mass,
                           .fit = {.beta = NAN}};
   if (pool->points == 1)
-    snprintf(curve->label, sizeof curve->label, "%s, %zu run%s", pool->label, runs, runs == 1 ? "" : "s");
+    snprintf(curve->label, sizeof curve->label, "%s, %zu run%s%s", pool->label, runs, runs == 1 ? "" : "s", mark);
   else
-    snprintf(curve->label, sizeof curve->label, "%s, %zu points, %zu runs", pool->label, pool->points, runs);
+    snprintf(curve->label, sizeof curve->label, "%s, %zu points, %zu runs%s", pool->label, pool->points, runs, mark);
   TRY(pooled_spectrum(&pool->data.runs, &curve->form, &curve->bins, &curve->count, error));
   TRY(fit_curve(pool, with_rivals, curve, error));
   if (choice->runs)
@@ -135,11 +136,14 @@ struct curves {
   size_t count, most;
   bool more; /* there are more pools than are drawn */
   int64_t point;
+  struct ask_doubts doubts;
   struct curve curve[PICTURE_SERIES];
 };
 
+enum { CAPTION = 1000 };
+
 /* The meaning of axes and intervals, and the error of the resolution. */
-static void write_caption(struct store *store, const struct curves *curves, char caption[800]) {
+static void write_caption(struct store *store, const struct curves *curves, char caption[CAPTION]) {
   static const char *const laws[2][2] = {{"F(m) ~ m^-\xce\xb2, N(>m) ~ m^-(\xce\xb2 \xe2\x88\x92 1)",
                                           "N(>m) ~ m^-(\xce\xb2 \xe2\x88\x92 1)"},
                                          {"F(L) ~ L^-(D + 1), N(>L) ~ L^-D", "N(>L) ~ L^-D"}};
@@ -148,10 +152,11 @@ static void write_caption(struct store *store, const struct curves *curves, char
   char text[UNCERTAINTY_TEXT] = "resolution: not known";
   if (ask_resolution(store, curves->point, "beta", &resolution, NULL) == STATUS_OK)
     uncertainty_resolution(&resolution, text);
-  snprintf(caption, 800,
+  snprintf(caption, CAPTION,
            "%s. %s: 95 %% intervals over %s; of \xce\xb2, %s. Grey: fragments are missing (too few particles)",
            laws[choice->density > 0][choice->cumulative], choice->cumulative ? "Bands" : "Bars",
            curves->several ? "points" : "seeds", text);
+  charts_doubts(&curves->doubts, caption, CAPTION);
 }
 
 static status draw_picture(struct store *store, const struct curves *curves, const struct picture_page *page,
@@ -164,7 +169,7 @@ static status draw_picture(struct store *store, const struct curves *curves, con
   struct picture_series series[PICTURE_SERIES];
   struct pooled_bin *bins = NULL;
   size_t count = 0;
-  char caption[800], label[300];
+  char caption[CAPTION], label[300];
   struct pooled_form form = {.cumulative = choice->cumulative, .size = {choice->density, 3}};
   if (curves->count)
     form = curves->curve[0].form;
@@ -210,6 +215,7 @@ static status take_curves(struct store *store, bool with_rivals, struct curves *
     TRY(make_curve(curves->choice, with_rivals, pool, curve, error));
     curve->fit.label = curve->fit_label;
     curves->several |= pool->points > 1;
+    ask_doubts_add(&curves->doubts, &pool->doubts);
   }
   TRY(ask_pools_end(&pools));
   if (curves->count > 0)
@@ -229,6 +235,8 @@ status spectrum_curves_draw(struct store *store, const struct spectrum_choice *c
     code = draw_picture(store, curves, drawing->page, error);
   if (code == STATUS_OK && drawing->text)
     print_plots(curves, drawing->ascii);
+  if (code == STATUS_OK && drawing->text && !drawing->page)
+    uncertainty_doubts(&curves->doubts, stderr);
   if (code == STATUS_OK && curves->more)
     fprintf(stderr, "clast: only the first %zu spectra are drawn; --point, --where and --by choose others\n",
             curves->count);

@@ -2,23 +2,31 @@
 #include <stdio.h>
 
 #include "campaign/commands/commands.h"
+#include "campaign/terminal/uncertainty.h"
 #include "db/ask/ask.h"
 
 struct options {
   const char *quantity;
 };
 
-static void print(struct table *table, const struct ask_pairs_row *row) {
+static void print(struct table *table, const struct ask_pairs_row *row, struct ask_doubts *sum) {
+  struct ask_doubts both = *row->doubts[0];
+  ask_doubts_add(&both, row->doubts[1]);
+  ask_doubts_add(sum, &both);
   table_integer(table, row->point[0]);
   table_integer(table, row->point[1]);
   table_text(table, row->inputs);
   for (int k = 0; k < 2; k++)
     table_integer(table, (int64_t)row->difference.n[k]);
   table_integer(table, (int64_t)row->difference.pairs);
-  for (int k = 0; k < 2; k++)
+  for (int k = 0; k < 2; k++) {
+    table_rests_on(table, row->doubts[k]);
     table_real(table, row->difference.mean[k]);
+  }
+  table_rests_on(table, &both);
   table_real(table, row->difference.difference);
   table_real(table, row->difference.half_width);
+  table_doubt_cells(table, &both);
 }
 
 static status run(const struct command_line *line, struct error *error) {
@@ -28,15 +36,19 @@ static status run(const struct command_line *line, struct error *error) {
   struct table *table = table_new(line->format, stdout);
   table_columns(table, (const char *const[]){"point_a", "point_b", "inputs", "n_a", "n_b", "pairs", "mean_a", "mean_b",
                                              "difference", "hw95", NULL});
+  table_doubt_columns(table);
+  struct ask_doubts doubts = {0};
   for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
-    print(table, &row);
+    print(table, &row, &doubts);
   status code = ask_pairs_end(pairs, error);
   code = table_finish(table, code, error);
-  if (code == STATUS_OK && line->format == TABLE_TEXT)
+  if (code == STATUS_OK && line->format == TABLE_TEXT) {
+    uncertainty_doubts(&doubts, stderr);
     fprintf(stderr,
             "clast: %s: b less a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "
             "runs. It does not hold the error of the resolution\n",
             options->quantity);
+  }
   ask_pairs_free(pairs);
   return code;
 }

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "campaign/commands/commands.h"
+#include "campaign/terminal/uncertainty.h"
 #include "db/ask/ask.h"
 #include "engine/outcome.h"
 
@@ -35,14 +36,17 @@ static status print_pool(struct table *table, size_t draws, const struct ask_poo
   const double any = 1; /* a density: the exponents by size do not depend on it */
   for (int form = 0; form < 4; form++) {
     const struct pooled_form named = ask_pool_form(pool, form % 2, form / 2 ? any : 0);
+    table_rests_on(table, &pool->doubts);
     table_fixed(table, pooled_spectrum_exponent(&named, fit.fit.beta), 2);
     if (form == 0 || form == 3)
       table_fixed(table, pooled_spectrum_half_width(&named, fit.interval.half_width), 2);
   }
-  table_real(table, goodness.distance);
-  table_real(table, goodness.p);
-  table_real(table, rivals.cutoff_p);
-  table_real(table, rivals.lognormal_p);
+  const double tests[] = {goodness.distance, goodness.p, rivals.cutoff_p, rivals.lognormal_p};
+  for (int k = 0; k < 4; k++) {
+    table_rests_on(table, &pool->doubts);
+    table_real(table, tests[k]);
+  }
+  table_doubt_cells(table, &pool->doubts);
   return STATUS_OK;
 }
 
@@ -56,17 +60,23 @@ static status ask(struct store *store, const struct command_line *line, struct e
   table_column(table, OUTCOME_NAME(complete_mass), "kg");
   table_columns(table, (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "N(>m)", "F(L)", "N(>L)",
                                              "N(>L)_hw95", "distance", "p", "cutoff_p", "lognormal_p", NULL});
+  table_doubt_columns(table);
+  struct ask_doubts doubts = {0};
   ASK_POOLS pools = ask_pools(store, &choice, NULL, error);
   status code = STATUS_OK;
-  for (const struct ask_pool *pool; code == STATUS_OK && !table_broken(table) && (pool = ask_pools_next(&pools));)
+  for (const struct ask_pool *pool; code == STATUS_OK && !table_broken(table) && (pool = ask_pools_next(&pools));) {
+    ask_doubts_add(&doubts, &pool->doubts);
     code = print_pool(table, (size_t)options->draws, pool, error);
+  }
   if (code == STATUS_OK)
     code = ask_pools_end(&pools);
   code = table_finish(table, code, error);
-  if (code == STATUS_OK && line->format == TABLE_TEXT)
+  if (code == STATUS_OK && line->format == TABLE_TEXT) {
+    uncertainty_doubts(&doubts, stderr);
     fputs("clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete mass. "
           "p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better\n",
           stderr);
+  }
   return code;
 }
 

@@ -53,8 +53,10 @@ static status ask(struct store *store, const struct command_line *line, struct e
   TRY(table_answer(ask_group(store, options->by, quantity, pooled, error), true, line->format, stdout));
   if (*pooled)
     fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
-  if (line->format == TABLE_TEXT)
+  if (line->format == TABLE_TEXT) {
+    TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, options->quantity, error));
     quantity_tell_resolutions(store, options->quantity, pooled);
+  }
   return warn_of_twins(store, error);
 }
 

@@ -311,7 +311,7 @@ static status read_runs(const struct study *study, struct study_ladder *ladder, 
     if (s < 0 || s >= study->rule.most_seeds)
       continue;
     if (values)
-      values[s] = outcome_is_usable(run.state) ? run.value : NOTHING;
+      values[s] = outcome_is_usable(run.state) && !run.withheld ? run.value : NOTHING;
     ladder->ran[l][s] = true;
     cpu += run.cpu_s;
     wall += run.wall_s;

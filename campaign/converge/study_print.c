@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "campaign/charts/charts.h"
+#include "campaign/terminal/uncertainty.h"
 #include "schemas/limits.h"
 
 status study_print_knobs(enum table_format format, struct error *error) {
@@ -23,7 +24,29 @@ status study_print_knobs(enum table_format format, struct error *error) {
   return table_end(table, error);
 }
 
-static void print_level(struct table *table, const struct convergence_row *row) {
+/* What the study prints, and the store of its runs. */
+struct printing {
+  const struct study *study;
+  struct store *store;
+  struct ask_doubts sum; /* of all levels */
+};
+
+/* Of the runs of a level. */
+static status read_doubts(struct printing *printing, const struct study_ladder *ladder, size_t level, size_t quantity,
+                          struct ask_doubts *doubts, struct error *error) {
+  const struct study *study = printing->study;
+  const long long first = study->limits.first_seed;
+  char results[ASK_DOUBTS_RESULTS], where[80];
+  snprintf(where, sizeof where, "seed BETWEEN %lld AND %lld", first, first + (long long)study->rule.most_seeds - 1);
+  const struct ask_doubts_choice choice = {.point = ladder->point[level], .where = where};
+  *doubts = (struct ask_doubts){0};
+  TRY(ask_doubts_results(printing->store, study->quantity[quantity].name, results, error));
+  TRY(ask_doubts(printing->store, &choice, results, doubts, error));
+  ask_doubts_add(&printing->sum, doubts);
+  return STATUS_OK;
+}
+
+static void print_level(struct table *table, const struct convergence_row *row, const struct ask_doubts *doubts) {
   char setting[80];
   if (row->n == 0)
     return; /* left out by the budget, or every run failed: print_limit names it */
@@ -31,12 +54,14 @@ static void print_level(struct table *table, const struct convergence_row *row) 
   table_text(table, row->knob);
   table_text(table, setting);
   table_integer(table, row->n);
+  table_rests_on(table, doubts);
   table_real(table, row->mean);
   table_real(table, row->half_width);
   table_real(table, row->deviation);
   table_real(table, row->skew);
   table_real(table, row->upper_mode);
   table_real(table, row->cpu);
+  table_rests_on(table, doubts);
   table_real(table, row->bias);
   table_real(table, row->bias_half_width);
   table_real(table, row->correlation);
@@ -99,8 +124,9 @@ static void print_gain(size_t count, const struct study_found *found) {
            best->knob, best->setting, best->gain, most);
 }
 
-static status print_quantity(const struct study *study, size_t from, size_t quantity, size_t count,
+static status print_quantity(struct printing *printing, size_t from, size_t quantity, size_t count,
                              const struct study_found *found, struct error *error) {
+  const struct study *study = printing->study;
   const struct study_quantity *what = &study->quantity[quantity];
   const char *unit = what->row ? what->row->unit : NULL;
   const bool named = unit && strcmp(unit, "1") != 0;
@@ -110,19 +136,26 @@ static status print_quantity(const struct study *study, size_t from, size_t quan
   table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skew", "upper_mode", "cpu_s",
                                              "bias", "bias_hw95", "corr", "corr_low", "corr_high", "break_even",
                                              "error", "frontier", NULL});
+  status code = STATUS_OK;
   for (size_t i = 0; i < count; i++)
-    for (size_t l = 0; l < found[i].count; l++)
-      print_level(table, &found[i].rows[l]);
-  status code = table_end(table, error);
+    for (size_t l = 0; l < found[i].count && code == STATUS_OK; l++) {
+      struct ask_doubts doubts;
+      code = read_doubts(printing, &study->ladder[from + i], l, quantity, &doubts, error);
+      print_level(table, &found[i].rows[l], &doubts);
+    }
+  code = table_finish(table, code, error);
   for (size_t i = 0; i < count; i++)
     print_limit(&study->ladder[from + i], &found[i]);
   print_gain(count, found);
   return code;
 }
 
-static void print_rows(size_t count, const struct study_found *found, struct table *table) {
+static status print_rows(struct printing *printing, size_t from, size_t quantity, size_t count,
+                         const struct study_found *found, struct table *table, struct error *error) {
   for (size_t i = 0; i < count; i++)
-    for (size_t l = 0; l < found[i].count; l++)
+    for (size_t l = 0; l < found[i].count; l++) {
+      struct ask_doubts doubts;
+      TRY(read_doubts(printing, &printing->study->ladder[from + i], l, quantity, &doubts, error));
       for (size_t c = 0; c < convergence_table.count; c++) {
         const struct field *row = &convergence_table.rows[c];
         struct field_value value;
@@ -136,6 +169,9 @@ static void print_rows(size_t count, const struct study_found *found, struct tab
         else
           table_real(table, value.number);
       }
+      table_doubt_cells(table, &doubts);
+    }
+  return STATUS_OK;
 }
 
 static const char legend[] =
@@ -149,24 +185,30 @@ status study_print(const struct study *study, enum table_format format, bool qui
   struct study_found *found = malloc(LIMITS_STUDY_KNOBS * sizeof *found);
   if (!found)
     return status_fail(error, STATUS_MEMORY, "out of memory");
-  status code = STATUS_OK;
-  struct table *table = format == TABLE_TEXT ? NULL : table_new(format, stdout);
+  struct printing printing = {.study = study};
+  status code = store_open_reader(study->limits.store, &printing.store, error);
+  struct table *table = format == TABLE_TEXT || code ? NULL : table_new(format, stdout);
   for (size_t c = 0; table && c < convergence_table.count; c++)
     table_column(table, convergence_table.rows[c].path, convergence_table.rows[c].unit);
+  if (table)
+    table_doubt_columns(table);
   for (size_t from = 0, count = 0; code == STATUS_OK && from < study->ladder_count; from += count)
     for (size_t q = 0; code == STATUS_OK && q < study->quantity_count; q++) {
       count = study_of_scene(study, from, q, found);
       if (table)
-        print_rows(count, found, table);
+        code = print_rows(&printing, from, q, count, found, table, error);
       else
-        code = print_quantity(study, from, q, count, found, error);
+        code = print_quantity(&printing, from, q, count, found, error);
     }
   if (table)
-    code = table_end(table, error);
-  else if (!quiet) {
+    code = table_finish(table, code, error);
+  else if (code == STATUS_OK) {
     fflush(stdout);
-    fputs(legend, stderr);
+    uncertainty_doubts(&printing.sum, stderr);
+    if (!quiet)
+      fputs(legend, stderr);
   }
+  store_close(printing.store, NULL);
   free(found);
   return code;
 }
@@ -180,15 +222,20 @@ struct drawing {
   struct picture_mean means[CURVES][MARKS];
   struct picture_curve curves[CURVES];
   size_t count;
+  bool doubtful[LIMITS_STUDY_KNOBS][KNOB_LEVELS];
 };
 
 /* Adds a mark of the level to the last curve, in order of cost. */
-static void add_mark(struct drawing *drawing, const struct convergence_row *row, bool of_errors) {
+static void add_mark(struct drawing *drawing, const struct convergence_row *row, bool of_errors, bool doubtful) {
   struct picture_mean *means = drawing->means[drawing->count];
   struct picture_curve *curve = &drawing->curves[drawing->count];
-  const struct picture_mean mark = of_errors ? (struct picture_mean){row->cpu, row->error, NAN, NAN, NAN}
-                                             : (struct picture_mean){row->cpu, row->mean, row->mean - row->half_width,
-                                                                     row->mean + row->half_width, NAN};
+  const struct picture_mean mark = of_errors ? (struct picture_mean){row->cpu, row->error, NAN, NAN, NAN, doubtful}
+                                             : (struct picture_mean){row->cpu,
+                                                                     row->mean,
+                                                                     row->mean - row->half_width,
+                                                                     row->mean + row->half_width,
+                                                                     NAN,
+                                                                     doubtful};
   if (!isfinite(mark.x) || !isfinite(mark.y) || curve->count == MARKS)
     return;
   size_t place = curve->count++;
@@ -198,13 +245,14 @@ static void add_mark(struct drawing *drawing, const struct convergence_row *row,
 }
 
 /* A curve of the levels of some knobs; with `frontier` only of those on it. */
-static void add_curve(struct drawing *drawing, const char *label, const struct study_found *found, size_t knobs,
-                      bool of_errors, bool frontier) {
+static void add_curve(struct drawing *drawing, const char *label, size_t from, size_t knobs, bool of_errors,
+                      bool frontier) {
+  const struct study_found *found = drawing->found;
   drawing->curves[drawing->count] = (struct picture_curve){.label = label, .mean = drawing->means[drawing->count]};
-  for (size_t i = 0; i < knobs; i++)
+  for (size_t i = from; i < from + knobs; i++)
     for (size_t l = 0; l < found[i].count; l++)
       if (!frontier || found[i].rows[l].frontier)
-        add_mark(drawing, &found[i].rows[l], of_errors);
+        add_mark(drawing, &found[i].rows[l], of_errors, drawing->doubtful[i][l]);
   drawing->count += drawing->curves[drawing->count].count > 0;
 }
 
@@ -213,22 +261,36 @@ status study_print_picture(const struct study *study, bool of_errors, const char
   if (!drawing)
     return status_fail(error, STATUS_MEMORY, "out of memory");
   const size_t knobs = study_of_scene(study, 0, 0, drawing->found);
+  struct printing printing = {.study = study};
+  status code = store_open_reader(study->limits.store, &printing.store, error);
+  for (size_t i = 0; i < knobs; i++)
+    for (size_t l = 0; l < drawing->found[i].count && code == STATUS_OK; l++) {
+      struct ask_doubts doubts;
+      code = read_doubts(&printing, &study->ladder[i], l, 0, &doubts, error);
+      drawing->doubtful[i][l] = doubts.doubtful > 0;
+    }
+  store_close(printing.store, NULL);
+  if (code != STATUS_OK) {
+    free(drawing);
+    return code;
+  }
   if (of_errors)
-    add_curve(drawing, "frontier: no level is both cheaper and nearer", drawing->found, knobs, true, true);
+    add_curve(drawing, "frontier: no level is both cheaper and nearer", 0, knobs, true, true);
   for (size_t i = 0; i < knobs && drawing->count < CURVES; i++)
-    add_curve(drawing, drawing->found[i].limit.knob, &drawing->found[i], 1, of_errors, false);
+    add_curve(drawing, drawing->found[i].limit.knob, i, 1, of_errors, false);
 
   char title[800], quantity[CHARTS_LABEL], y[CHARTS_LABEL + 16];
   charts_label(study->quantity[0].name, quantity);
   snprintf(y, sizeof y, "%s%s", of_errors ? "error of " : "", quantity);
   snprintf(title, sizeof title, "%s: %s over the cost of a run", study->ladder[0].base->name, y);
   const struct picture_page page = charts_page(path, NULL);
-  const struct picture_words words =
-      {title,
-       of_errors ? "A mark is a level of a knob: how far finer settings may move the mean, all knobs together"
-                 : "A mark is a level of a knob: mean over seeds with its 95 % interval",
-       "processor time of a run (s)", y};
-  status code = picture_curves(&page, &words, drawing->count, drawing->curves, error);
+  char caption[CHARTS_LABEL];
+  snprintf(caption, sizeof caption, "A mark is a level of a knob: %s",
+           of_errors ? "how far finer settings may move the mean, all knobs together"
+                     : "mean over seeds with its 95 % interval");
+  charts_doubts(&printing.sum, caption, sizeof caption);
+  const struct picture_words words = {title, caption, "processor time of a run (s)", y};
+  code = picture_curves(&page, &words, drawing->count, drawing->curves, error);
   free(drawing);
   return code;
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "campaign/terminal/uncertainty.h"
 #include "schemas/text.h"
 
 static const double levels[PICTURE_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
@@ -13,9 +14,18 @@ static const struct field *row_of(const struct fit *fit, size_t input) {
   return fit->campaign->axes[fit->axis[input]].row;
 }
 
+/* An input rests on the runs of all data. */
+static struct ask_doubts all_doubts(const struct fit *fit) {
+  struct ask_doubts all = {0};
+  for (size_t k = 0; k < fit->observed->datum_count; k++)
+    ask_doubts_add(&all, &fit->doubts[k]);
+  return all;
+}
+
 /* ---- inputs ---- */
 
-static void input_cells(const struct fit *fit, size_t i, bool check, struct table *table) {
+static void input_cells(const struct fit *fit, size_t i, bool check, const struct ask_doubts *doubts,
+                        struct table *table) {
   const double z05 = posterior_coordinate(0.05), z95 = posterior_coordinate(0.95);
   double z[3];
   for (int q = 0; q < 3; q++)
@@ -23,8 +33,10 @@ static void input_cells(const struct fit *fit, size_t i, bool check, struct tabl
                  : posterior_quantile(&fit->posterior, i, levels[2 * q]);
   table_real(table, fit_number(fit, i, z05));
   table_real(table, fit_number(fit, i, z95));
-  for (int q = 0; q < 3; q++)
+  for (int q = 0; q < 3; q++) {
+    table_rests_on(table, doubts);
     table_real(table, fit_number(fit, i, z[q]));
+  }
   table_real(table, (posterior_share(z[2]) - posterior_share(z[0])) / 0.9);
 }
 
@@ -34,10 +46,11 @@ static const char *const input_columns[] = {"input",  "unit", "prior_05", "prior
 static status print_inputs(const struct fit *fit, bool check, struct error *error) {
   struct table *table = table_new(TABLE_TEXT, stdout);
   table_columns(table, input_columns);
+  const struct ask_doubts doubts = all_doubts(fit);
   for (size_t i = 0; i < fit->inputs; i++) {
     table_text(table, row_of(fit, i)->path);
     table_text(table, row_of(fit, i)->unit);
-    input_cells(fit, i, check, table);
+    input_cells(fit, i, check, &doubts, table);
   }
   return table_end(table, error);
 }
@@ -75,8 +88,10 @@ static void datum_cells(const struct fit *fit, size_t k, struct table *table) {
   table_real(table, datum->error);
   table_real(table, seeds_of(fit, k));
   table_real(table, fit->data[k].resolution * slope);
-  for (int q = 0; q < 3; q++)
+  for (int q = 0; q < 3; q++) {
+    table_rests_on(table, &fit->doubts[k]);
     table_real(table, predicted(fit, k, levels[2 * q]));
+  }
   table_real(table, posterior_below(&fit->surfaces.model, &fit->posterior, k));
 }
 
@@ -106,8 +121,10 @@ static void input_row(const struct fit *fit, size_t i, bool check, struct table 
   table_text(table, check ? "check" : "input");
   table_text(table, row_of(fit, i)->path);
   table_text(table, row_of(fit, i)->unit);
-  input_cells(fit, i, check, table);
+  const struct ask_doubts doubts = all_doubts(fit);
+  input_cells(fit, i, check, &doubts, table);
   skip(table, 5);
+  table_doubt_cells(table, &doubts);
 }
 
 static status print_rows(const struct fit *fit, enum table_format format, struct error *error) {
@@ -115,6 +132,7 @@ static status print_rows(const struct fit *fit, enum table_format format, struct
   char label[2 * FIELD_TEXT_SIZE];
   table_columns(table, (const char *const[]){"kind", "name", "unit", "prior_05", "prior_95", "q05", "median", "q95",
                                              "kept", "value", "error", "sd_seeds", "sd_resolution", "below", NULL});
+  table_doubt_columns(table);
   for (size_t i = 0; i < fit->inputs; i++)
     input_row(fit, i, false, table);
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
@@ -133,6 +151,7 @@ static status print_rows(const struct fit *fit, enum table_format format, struct
     table_real(table, seeds_of(fit, k));
     table_real(table, fit->data[k].resolution * slope);
     table_real(table, posterior_below(&fit->surfaces.model, &fit->posterior, k));
+    table_doubt_cells(table, &fit->doubts[k]);
   }
   for (size_t i = 0; fit->check.kept && i < fit->inputs; i++)
     input_row(fit, i, true, table);
@@ -325,6 +344,8 @@ status fit_print(const struct fit *fit, enum table_format format, struct error *
   TRY(print_data(fit, error));
   putchar('\n');
   tell(fit, stdout);
+  const struct ask_doubts doubts = all_doubts(fit);
+  uncertainty_doubts(&doubts, stderr);
   if (!fit->check.kept)
     return STATUS_OK;
   printf("\nCheck without a formula for the likelihood (ABC, %zu runs nearest to the data, distance up to %.3g):\n",
@@ -354,14 +375,17 @@ status fit_print_picture(const struct fit *fit, const char *path, const struct c
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct observed_datum *datum = &fit->observed->data[k];
     label_of(fit, k, labels[k], sizeof labels[k]);
+    text_append(labels[k], sizeof labels[k], "%s", fit->doubts[k].doubtful ? " !" : "");
     rows[k] = (struct picture_prediction){.label = labels[k], .measured = datum->value, .error = datum->error};
     for (int q = 0; q < PICTURE_QUANTILES; q++)
       rows[k].quantile[q] = predicted(fit, k, levels[q]);
   }
   snprintf(title, sizeof title, "%s: one more experiment, as the fit predicts it", fit->observed->name);
   const struct picture_page page = charts_page(path, chart);
-  const struct picture_words words =
-      {title, "Over the posterior; with the scatter of specimens, the errors of measurement and of the resolution",
-       "predicted over measured", NULL};
+  char caption[CHARTS_LABEL] =
+      "Over the posterior; with the scatter of specimens, the errors of measurement and of the resolution";
+  const struct ask_doubts doubts = all_doubts(fit);
+  charts_doubts(&doubts, caption, sizeof caption);
+  const struct picture_words words = {title, caption, "predicted over measured", NULL};
   return picture_predicted(&page, &words, fit->observed->datum_count, rows, error);
 }

@@ -98,7 +98,7 @@ static struct scene *scene_of(const struct fit *fit, const double *z, struct err
 }
 
 /* Reads the values of the shot's data at a point of the store; point 0: it has none. */
-static status read_data(const struct fit *fit, struct store *store, const struct scene *scene, int64_t point,
+static status read_data(struct fit *fit, struct store *store, const struct scene *scene, int64_t point,
                         const uint64_t *seeds, size_t count, double *values, size_t stride, struct error *error) {
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct observed_datum *datum = &fit->observed->data[k];
@@ -111,7 +111,7 @@ static status read_data(const struct fit *fit, struct store *store, const struct
     if (!point)
       continue;
     ANSWER runs = ask_specimens(store, point, scene->kind, &datum->ask, error);
-    while (ask_specimens_next(&runs, &datum->ask, &seed, &value))
+    while (ask_specimens_next(&runs, &datum->ask, &seed, &value, &fit->doubts[k]))
       for (size_t r = 0; r < count; r++)
         if (seeds[r] == seed)
           of_datum[r] = fit_transform(datum, value);
@@ -122,7 +122,7 @@ static status read_data(const struct fit *fit, struct store *store, const struct
 
 /* Reads `count` replicates of the shot's data at z; the values of datum k begin at values + k * stride. A point that
  * cannot be run has no values. */
-static status read_point(const struct fit *fit, struct store *store, const double *z, bool independent, size_t count,
+static status read_point(struct fit *fit, struct store *store, const double *z, bool independent, size_t count,
                          double *values, size_t stride, struct error *error) {
   struct error invalid = {0};
   struct campaign own = *fit->campaign;

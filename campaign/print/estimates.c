@@ -34,6 +34,11 @@ struct printing {
 static const enum exponent_method methods[] = {EXPONENT_LEAST_SQUARES, EXPONENT_MASSES};
 enum { METHODS = sizeof methods / sizeof methods[0], MASSES = METHODS - 1 };
 
+/* Of a point's runs: about the masses of the fragments, and about any number of its rows. */
+struct doubts {
+  struct ask_doubts masses, all;
+};
+
 /* ---- for programs: every number in a column of its own ---- */
 
 static void columns_for_programs(struct printing *printing) {
@@ -52,6 +57,7 @@ static void columns_for_programs(struct printing *printing) {
       table_column(table, name, NULL);
     }
   }
+  table_doubt_columns(table);
 }
 
 /* Reads the possible change by finer settings of the exponent of a method and window at a point. */
@@ -64,7 +70,7 @@ static status read_resolution(const struct printing *printing, const struct ask_
 }
 
 static status row_for_programs(struct printing *printing, const struct ask_points_row *row, int window,
-                               const struct point_estimate *fits, struct error *error) {
+                               const struct point_estimate *fits, const struct doubts *doubts, struct error *error) {
   struct table *table = printing->table;
   table_integer(table, row->point_id);
   for (size_t i = 0; i < row->input_count; i++)
@@ -86,6 +92,7 @@ static status row_for_programs(struct printing *printing, const struct ask_point
     table_real(table, resolution.half_width);
     table_text(table, ask_resolution_names[resolution.verdict]);
   }
+  table_doubt_cells(table, &doubts->all);
   return STATUS_OK;
 }
 
@@ -197,7 +204,7 @@ static void resolution_cell(struct table *table, enum ask_resolution_verdict ver
 }
 
 static status row_for_people(struct printing *printing, const struct ask_points_row *row, int window,
-                             const struct point_estimate *fits, struct error *error) {
+                             const struct point_estimate *fits, const struct doubts *doubts, struct error *error) {
   struct table *table = printing->table;
   const bool *out = printing->left_out;
   if (window > 0) { /* only the point's first row shows its inputs and runs */
@@ -212,6 +219,7 @@ static status row_for_people(struct printing *printing, const struct ask_points_
     if (row->failed)
       text_append(runs, sizeof runs, "/%.0f", (double)row->n + (double)row->failed); /* a sum that cannot overflow */
     table_text(table, runs);
+    table_rests_on(table, &row->doubts);
     with_interval(table, row->mean, row->half_width, 3);
     if (!out[MEAN_RESOLUTION])
       resolution_cell(table, row->resolution_verdict, row->resolution);
@@ -222,8 +230,10 @@ static status row_for_people(struct printing *printing, const struct ask_points_
     table_integer(table, fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n);
   for (int m = 0; m < METHODS; m++) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
-    if (!out[m == MASSES ? LIKELIHOOD : LEAST_SQUARES])
-      with_interval(table, fit->fit.beta, fit->interval.half_width, 2);
+    if (out[m == MASSES ? LIKELIHOOD : LEAST_SQUARES])
+      continue;
+    table_rests_on(table, &doubts->masses);
+    with_interval(table, fit->fit.beta, fit->interval.half_width, 2);
   }
   if (out[BETA_RESOLUTION])
     return STATUS_OK;
@@ -236,22 +246,28 @@ static status row_for_people(struct printing *printing, const struct ask_points_
 static status print_point(struct printing *printing, const struct ask_points_row *row, struct error *error) {
   struct point_estimate fits[POINT_ESTIMATES];
   struct point_data point;
+  struct doubts doubts = {0};
+  const struct ask_doubts_choice choice = {.point = row->point_id};
+  char all[ASK_DOUBTS_RESULTS];
+  TRY(ask_doubts_results(printing->store, OUTCOME_DEFAULT ",beta", all, error));
+  TRY(ask_doubts(printing->store, &choice, OUTCOME_NAME(mean_fragment_mass), &doubts.masses, error));
+  TRY(ask_doubts(printing->store, &choice, all, &doubts.all, error));
   TRY(point_read(printing->store, row->point_id, row->results_version, &point, error));
   const status code = point_estimates(&point, 0.95, fits, error);
   point_release(&point);
   TRY(code);
   for (int window = 0; window < ESTIMATES_WINDOWS; window++) {
     if (printing->format != TABLE_TEXT)
-      TRY(row_for_programs(printing, row, window, fits, error));
+      TRY(row_for_programs(printing, row, window, fits, &doubts, error));
     else if (window == 0 ||
              (!printing->left_out[LIKELIHOOD] && fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n > 0))
-      TRY(row_for_people(printing, row, window, fits, error)); /* people do not need an empty row */
+      TRY(row_for_people(printing, row, window, fits, &doubts, error)); /* people do not need an empty row */
   }
   return STATUS_OK;
 }
 
 static const char *const estimates_legend =
-    "runs: those that count; 19/20: one of 20 failed. M_1/M: mass share of the largest fragment.\n"
+    "runs: those that count; 19/20: one of 20 failed. M_1/M: mass share of the largest fragment. !: in doubt.\n"
     "\xc2\xb1: half width of the 95 % interval over seeds (Student's t); one run has none. \xc2\xb1res: how far finer "
     "settings\nmay move M_1/M, and beta ML (`clast converge` measures it, with -q beta; ?: not studied).\n"
     "beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together. LSQ: least squares on\n"
@@ -287,5 +303,9 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
     code = answer_end(&points);
   code = table_finish(printing.table, code, error);
   tell_left_out(&printing);
+  if (code == STATUS_OK && format == TABLE_TEXT)
+    code = quantity_tell_doubts(store,
+                                &(struct ask_doubts_choice){.campaign = choice->campaign, .point = choice->point},
+                                OUTCOME_DEFAULT ",beta", error);
   return code;
 }

@@ -20,21 +20,16 @@ void print_pool_cells(struct table *table, const struct ask_pools *pools, const 
   table_integer(table, pools->choice.by ? (int64_t)pool->points : pool->data.point_id);
 }
 
-/* A withheld value is empty; a marked one has a "!" where a person reads. */
-static void value_cell(struct table *table, const struct field *row, const void *object, enum condition_mark mark,
-                       bool person) {
+/* A withheld value is empty; people see a mark behind one that is in doubt. */
+static void value_cell(struct table *table, const struct field *row, const void *object, enum condition_mark mark) {
   struct field_value value;
   field_get(row, object, &value);
   if (mark == CONDITION_WITHHELD) {
     table_real(table, NAN);
     return;
   }
-  if (mark == CONDITION_MARKED && person && row->kind == FIELD_REAL) {
-    char text[40];
-    snprintf(text, sizeof text, "%.5g !", value.number);
-    table_text(table, text);
-    return;
-  }
+  if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER)
+    table_rests_on(table, &(struct ask_doubts){.runs = 1, .doubtful = mark == CONDITION_MARKED});
   switch (row->kind) {
   case FIELD_REAL: table_real(table, value.number); break;
   case FIELD_INTEGER: table_integer(table, value.integer); break;
@@ -48,7 +43,7 @@ static void print_row(struct table *table, const struct field *row, const void *
   char meaning[FIELD_TEXT_SIZE];
   text_sentence(row->doc, meaning, sizeof meaning);
   table_text(table, row->path);
-  value_cell(table, row, object, mark, true);
+  value_cell(table, row, object, mark);
   table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "");
   table_text(table, meaning);
 }
@@ -94,7 +89,7 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
   for (size_t t = 0; t < 2; t++)
     for (size_t i = 0; i < tables[t]->count; i++)
       value_cell(table, &tables[t]->rows[i], objects[t],
-                 condition_mark(kind->conditions, result->outcome.warnings, tables[t]->rows[i].path), false);
+                 condition_mark(kind->conditions, result->outcome.warnings, tables[t]->rows[i].path));
   for (size_t i = 0; i < result->estimate_count; i++)
     table_real(table, result->estimates[i].fit.beta);
   return table_end(table, error);
@@ -102,6 +97,8 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
 
 static status print_long(const char *scene, const struct engine_kind *kind, const struct run_result *result,
                          struct error *error) {
+  const enum condition_mark masses = condition_mark(kind->conditions, result->outcome.warnings,
+                                                    OUTCOME_NAME(mean_fragment_mass));
   struct table *table = table_new(TABLE_TEXT, stdout);
   table_columns(table, (const char *const[]){"result", "value", "unit", "meaning", NULL});
   list(table, &outcome_table, &result->outcome, kind->conditions, result->outcome.warnings);
@@ -114,6 +111,7 @@ static status print_long(const char *scene, const struct engine_kind *kind, cons
     table_text(table, exponent_method_names[result->estimates[i].fit.method]);
     table_text(table, estimates_window_names[result->estimates[i].window]);
     table_integer(table, result->estimates[i].fit.n);
+    table_rests_on(table, &(struct ask_doubts){.runs = 1, .doubtful = masses != CONDITION_SOUND});
     table_real(table, result->estimates[i].fit.beta);
   }
   TRY(table_end(table, error));

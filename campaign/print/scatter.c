@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { COLUMNS = 100 };
 
@@ -17,9 +18,12 @@ struct printing {
 static void row(const struct printing *printing, const char *name, double value, double low, double high) {
   print_pool_cells(printing->table, printing->pools, printing->pool);
   table_text(printing->table, name);
+  if (strcmp(name, "runs") != 0)
+    table_rests_on(printing->table, &printing->pool->doubts);
   table_real(printing->table, value);
   table_real(printing->table, low);
   table_real(printing->table, high);
+  table_doubt_cells(printing->table, &printing->pool->doubts);
 }
 
 /* Number of runs for the wanted interval, from the standard deviation. NaN: not known. */
@@ -57,11 +61,14 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
   struct printing printing = {.choice = choice, .table = table_new(format, stdout), .pools = &pools};
   print_pool_columns(printing.table, &pools);
   table_columns(printing.table, (const char *const[]){"statistic", "value", "low", "high", NULL});
+  table_doubt_columns(printing.table);
+  struct ask_doubts doubts = {0};
   bool several = false; /* a pool has more than one point */
   status code = STATUS_OK;
   while (code == STATUS_OK && !table_broken(printing.table) && (printing.pool = ask_pools_next(&pools))) {
     struct scatter scatter;
     several |= printing.pool->points > 1;
+    ask_doubts_add(&doubts, &printing.pool->doubts);
     code = scatter_make(printing.pool->data.runs.count, printing.pool->value, &scatter, error);
     if (code)
       break;
@@ -70,23 +77,28 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
   }
   if (code == STATUS_OK)
     code = ask_pools_end(&pools);
-  if (code == STATUS_OK && format == TABLE_TEXT)
+  code = table_finish(printing.table, code, error);
+  if (code == STATUS_OK && format == TABLE_TEXT) {
+    uncertainty_doubts(&doubts, stderr);
     fputs(
         "clast: low and high: 95 % intervals over runs; of modes the values that belong to them. dip p below 0.05: the "
         "runs have two modes\n",
         stderr);
+  }
   if (code == STATUS_OK && several)
     fputs("clast: pooled over points: the scatter holds that of the inputs; the intervals take the runs as "
           "independent\n",
           stderr);
-  return table_finish(printing.table, code, error);
+  return code;
 }
 
 static status plot_pool(bool ascii, const struct ask_pool *pool, struct error *error) {
   struct scatter scatter;
+  char mark[UNCERTAINTY_TEXT];
   TRY(scatter_make(pool->data.runs.count, pool->value, &scatter, error));
   const struct scatter_histogram histogram = scatter_histogram_of(&scatter);
-  printf("%s, %zu runs\n", pool->label, scatter.n);
+  uncertainty_mark(&pool->doubts, mark);
+  printf("%s, %zu runs%s\n", pool->label, scatter.n, mark);
   text_plot_histogram(stdout, COLUMNS, !ascii, &histogram);
   if (isfinite(scatter.between))
     printf("two modes: %.4g and %.4g, apart at %.4g; %.0f %% of the runs are in the upper one (%.0f to %.0f %%)\n",
@@ -98,8 +110,12 @@ static status plot_pool(bool ascii, const struct ask_pool *pool, struct error *e
 
 status print_scatter_plots(struct store *store, const struct scatter_choice *choice, bool ascii, struct error *error) {
   ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
-  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));)
+  struct ask_doubts doubts = {0};
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
     TRY(plot_pool(ascii, pool, error));
+    ask_doubts_add(&doubts, &pool->doubts);
+  }
+  uncertainty_doubts(&doubts, stderr);
   return ask_pools_end(&pools);
 }
 
@@ -107,6 +123,7 @@ struct samples {
   size_t count;
   bool more;
   struct scatter scatter[PICTURE_SERIES];
+  struct ask_doubts doubts;
   char label[PICTURE_SERIES][ASK_POOL_LABEL + 64];
 };
 
@@ -122,8 +139,9 @@ static status take_samples(struct store *store, const struct scatter_choice *cho
     if (scatter->n == 0)
       scatter_release(scatter);
     else
-      snprintf(samples->label[samples->count++], sizeof samples->label[0], "%s, %zu runs%s", pool->label, scatter->n,
-               isfinite(scatter->between) ? ", two modes" : "");
+      snprintf(samples->label[samples->count++], sizeof samples->label[0], "%s, %zu runs%s%s", pool->label, scatter->n,
+               isfinite(scatter->between) ? ", two modes" : "", pool->doubts.doubtful ? " !" : "");
+    ask_doubts_add(&samples->doubts, &pool->doubts);
   }
   TRY(ask_pools_end(&pools));
   if (samples->count > 0)
@@ -137,7 +155,11 @@ static status draw_samples(const struct samples *samples, const char *axis, cons
   for (size_t i = 0; i < samples->count; i++)
     sample[i] = (struct picture_sample){samples->label[i], samples->scatter[i].n, samples->scatter[i].sorted,
                                         scatter_histogram_of(&samples->scatter[i])};
-  const status code = picture_scatter(page, &(struct picture_words){"Scatter of the runs", NULL, axis, NULL},
+  char caption[CHARTS_LABEL] = "";
+  charts_doubts(&samples->doubts, caption, sizeof caption);
+  const status code = picture_scatter(page,
+                                      &(struct picture_words){"Scatter of the runs", *caption ? caption : NULL, axis,
+                                                              NULL},
                                       samples->count, sample, error);
   if (code == STATUS_OK && samples->more)
     fprintf(stderr, "clast: only the first %d are drawn; --point, --where and --by choose others\n", PICTURE_SERIES);

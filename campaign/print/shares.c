@@ -24,6 +24,7 @@ struct run_cell {
 };
 struct run_cells {
   size_t axes, count, room;
+  struct ask_doubts doubts; /* of all runs */
   char column[LIMITS_AXES_OF_POOL][ASK_GROUP_NAME];
   struct run_cell *cell;
 };
@@ -43,6 +44,7 @@ static status add_cell(struct run_cells *cells, const struct ask_pool *pool, str
   struct run_cell *cell = &cells->cell[cells->count++];
   *cell = (struct run_cell){.run = malloc((pool->data.runs.count + 1) * sizeof *cell->run)};
   cells->axes = pool->axes;
+  ask_doubts_add(&cells->doubts, &pool->doubts);
   memcpy(cells->column, pool->column, sizeof cells->column);
   for (size_t a = 0; a < pool->axes; a++) {
     char text[ASK_POOL_TEXT] = "off";
@@ -173,12 +175,16 @@ static status print_parts(const struct run_cells *cells, const struct scatter_pa
                                                    "whole"};
   struct table *table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"part", "variance", "share", "low", "high", NULL});
+  table_doubt_columns(table);
   for (size_t i = 0; i < cells->axes + SCATTER_PARTS; i++) {
     table_text(table, i < cells->axes ? cells->column[i] : names[i - cells->axes]);
+    table_rests_on(table, &cells->doubts);
     table_real(table, parts[i].variance);
+    table_rests_on(table, &cells->doubts);
     table_real(table, parts[i].share);
     table_real(table, parts[i].share - parts[i].half_width);
     table_real(table, parts[i].share + parts[i].half_width);
+    table_doubt_cells(table, &cells->doubts);
   }
   return table_end(table, error);
 }
@@ -202,12 +208,14 @@ status print_shares_variance(struct store *store, const struct scatter_choice *c
     code = split(&cells, parts, &runs, error);
   if (code == STATUS_OK)
     code = print_parts(&cells, parts, format, error);
-  if (code == STATUS_OK && format == TABLE_TEXT)
+  if (code == STATUS_OK && format == TABLE_TEXT) {
+    uncertainty_doubts(&cells.doubts, stderr);
     fprintf(stderr,
             "clast: %zu points with %zu seeds each, which count alike. An input: variance of its means over the other "
             "inputs (in a full grid; else ask `clast sensitivity`); what the inputs together have beyond their sum is "
             "their interplay. Low, high: 95 %% interval over seeds\n",
             cells.count, runs);
+  }
   run_cells_release(&cells);
   return code;
 }
@@ -327,7 +335,8 @@ static status read_runs(struct store *store, const char *quantity, struct readin
   return fill_table(r, error);
 }
 
-static void interval(struct table *table, const struct sample_interval *i) {
+static void interval(struct table *table, const struct sample_interval *i, const struct ask_doubts *doubts) {
+  table_rests_on(table, doubts);
   table_real(table, i->estimate);
   table_real(table, i->half_width);
 }
@@ -338,10 +347,12 @@ static status print_sobol(const struct reading *r, enum table_format format, str
   TRY(sensitivity_sobol(&r->table, index, error));
   struct table *table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"input", "first", "first_hw95", "total", "total_hw95", NULL});
+  table_doubt_columns(table);
   for (size_t i = 0; i <= n; i++) {
     table_text(table, i < n ? r->campaign->axes[i].row->path : "seed");
-    interval(table, &index[i].first);
-    interval(table, &index[i].total);
+    interval(table, &index[i].first, &r->cells.doubts);
+    interval(table, &index[i].total, &r->cells.doubts);
+    table_doubt_cells(table, &r->cells.doubts);
   }
   if (format == TABLE_TEXT)
     fprintf(
@@ -373,12 +384,15 @@ static status print_morris(const struct reading *r, enum table_format format, st
   if (table) {
     table_columns(table, (const char *const[]){"input", "mean_absolute", "mean_absolute_hw95", "mean", "deviation",
                                                "noise", NULL});
+    table_doubt_columns(table);
     for (size_t i = 0; i < n; i++) {
       table_text(table, r->campaign->axes[i].row->path);
-      interval(table, &effect[i].mean_absolute);
+      interval(table, &effect[i].mean_absolute, &r->cells.doubts);
+      table_rests_on(table, &r->cells.doubts);
       table_real(table, effect[i].mean);
       table_real(table, effect[i].deviation);
       table_real(table, effect[i].noise);
+      table_doubt_cells(table, &r->cells.doubts);
     }
     if (format == TABLE_TEXT)
       fprintf(stderr,
@@ -408,6 +422,8 @@ status print_shares_sensitivity(struct store *store, const char *path, const cha
     fprintf(stderr, "clast: %zu of %zu blocks lack a finished run and are left out\n", r.blocks - r.whole, r.blocks);
   if (code == STATUS_OK)
     code = r.kind == DESIGN_SENSITIVITY_SALTELLI ? print_sobol(&r, format, error) : print_morris(&r, format, error);
+  if (code == STATUS_OK && format == TABLE_TEXT)
+    uncertainty_doubts(&r.cells.doubts, stderr);
   run_cells_release(&r.cells);
   free(r.place);
   free(r.block);

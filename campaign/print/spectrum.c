@@ -7,7 +7,7 @@
 /* Prints the bins of a pool, or with run_id those of one of its runs. */
 static status print_bins(struct table *table, const struct spectrum_choice *choice, const struct ask_pools *pools,
                          const struct ask_pool *pool, const struct pooled_runs *runs, const int64_t *run_id,
-                         struct error *error) {
+                         const struct ask_doubts *doubts, struct error *error) {
   struct pooled_form form = ask_pool_form(pool, choice->cumulative, choice->density);
   struct pooled_bin *bins;
   size_t count;
@@ -26,9 +26,11 @@ static status print_bins(struct table *table, const struct spectrum_choice *choi
       table_real(table, bins[b].upper);
     table_integer(table, (int64_t)runs->count);
     table_integer(table, bins[b].count);
+    table_rests_on(table, doubts);
     table_real(table, bins[b].value);
     table_real(table, bins[b].half_width);
     table_real(table, bins[b].mass / mass);
+    table_doubt_cells(table, doubts);
   }
   free(bins);
   return table_broken(table) ? STATUS_IO : STATUS_OK;
@@ -51,18 +53,29 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   table_column(table, choice->cumulative ? "number" : "density", per_unit);
   table_column(table, choice->cumulative ? "number_hw95" : "density_hw95", per_unit);
   table_column(table, "mass_share", NULL);
+  table_doubt_columns(table);
+  struct ask_doubts sum = {0};
   status code = STATUS_OK;
   for (const struct ask_pool *pool; code == STATUS_OK && (pool = ask_pools_next(&pools));) {
     const struct pooled_runs *runs = &pool->data.runs;
+    ask_doubts_add(&sum, &pool->doubts);
     if (!choice->runs)
-      code = print_bins(table, choice, &pools, pool, runs, NULL, error);
-    for (size_t r = 0; choice->runs && r < runs->count && code == STATUS_OK; r++)
-      code = print_bins(table, choice, &pools, pool, &(struct pooled_runs){1, runs->first + r, runs->masses},
-                        &pool->data.run_id[r], error);
+      code = print_bins(table, choice, &pools, pool, runs, NULL, &pool->doubts, error);
+    for (size_t r = 0; choice->runs && r < runs->count && code == STATUS_OK; r++) {
+      struct ask_doubts doubts = {0};
+      code = ask_doubts(store, &(struct ask_doubts_choice){.run = pool->data.run_id[r]},
+                        OUTCOME_NAME(mean_fragment_mass), &doubts, error);
+      if (code == STATUS_OK)
+        code = print_bins(table, choice, &pools, pool, &(struct pooled_runs){1, runs->first + r, runs->masses},
+                          &pool->data.run_id[r], &doubts, error);
+    }
   }
   if (code == STATUS_OK)
     code = ask_pools_end(&pools);
-  return table_finish(table, code, error);
+  code = table_finish(table, code, error);
+  if (code == STATUS_OK && format == TABLE_TEXT)
+    uncertainty_doubts(&sum, stderr);
+  return code;
 }
 
 status print_spectrum_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
@@ -79,6 +92,8 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   table_column(table, "from", "kg");
   table_columns(table, (const char *const[]){"measured", "runs", "fragments_mean", "fragments_hw95", "distance",
                                              "runs_as_far", "log_likelihood", NULL});
+  table_doubt_columns(table);
+  struct ask_doubts sum = {0};
   status code = STATUS_OK;
   for (const struct ask_pool *pool; code == STATUS_OK && (pool = ask_pools_next(&pools));) {
     struct measured_match match;
@@ -89,19 +104,28 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
     table_real(table, match.from);
     table_real(table, match.fragments);
     table_integer(table, (int64_t)pool->data.runs.count);
+    table_rests_on(table, &pool->doubts);
     table_real(table, match.simulated.mean);
     table_real(table, match.simulated.half_width);
+    table_rests_on(table, &pool->doubts);
     table_real(table, match.distance);
+    table_rests_on(table, &pool->doubts);
     table_real(table, match.share);
+    table_rests_on(table, &pool->doubts);
     table_real(table, match.log_likelihood);
+    table_doubt_cells(table, &pool->doubts);
+    ask_doubts_add(&sum, &pool->doubts);
   }
   if (code == STATUS_OK)
     code = ask_pools_end(&pools);
-  if (code == STATUS_OK && format == TABLE_TEXT)
+  code = table_finish(table, code, error);
+  if (code == STATUS_OK && format == TABLE_TEXT) {
+    uncertainty_doubts(&sum, stderr);
     fprintf(stderr,
             "clast: fragments from %.3g kg on, where the measured and all simulated spectra are complete. distance: "
             "Kolmogorov's, of %s; runs_as_far: share of the runs that are as far from the other runs as the "
             "measured one (one experiment is one specimen; below 0.05 speaks against the point)\n",
             complete, choice->measured->weighed ? "the shares of mass" : "the shapes");
-  return table_finish(table, code, error);
+  }
+  return code;
 }

@@ -123,6 +123,11 @@ static bool remember(struct driver *driver, int64_t id) {
   return true;
 }
 
+/* Do a run's words mark the main quantity? */
+static bool is_doubtful(const struct driver *driver, const struct scene *scene, const char *words) {
+  return condition_mark(scene->kind->conditions, words, driver->row->path) != CONDITION_SOUND;
+}
+
 /* Takes over a stored run. */
 static status take_stored(struct driver *driver, struct point *point, const struct ask_run_of_point *run,
                           struct error *error) {
@@ -152,6 +157,7 @@ static status take_stored(struct driver *driver, struct point *point, const stru
   driver->summary.runs_surplus += run->surplus;
   driver->summary.runs_failed += !usable;
   driver->summary.runs_censored += run->state == OUTCOME_END_TIME;
+  driver->summary.runs_doubtful += is_doubtful(driver, point->scene, run->warnings);
   sample_add(&driver->moments, value);
   return STATUS_OK;
 }
@@ -423,6 +429,7 @@ static status take_result(struct driver *driver, const struct scheduler_run *run
   summary->runs_failed += !usable;
   summary->runs_surplus += surplus;
   summary->runs_censored += outcome->state == OUTCOME_END_TIME;
+  summary->runs_doubtful += is_doubtful(driver, point->scene, outcome->warnings);
   summary->fields_written += end->fields;
   summary->cpu_s += end->report->cpu_s;
   return judge_failures(driver, !usable, error);
@@ -531,6 +538,7 @@ static void tick(void *context, int running, bool last) {
       .seconds_left = last ? NOTHING : time_left(driver, now),
       .quantity = driver->row->path,
       .mean = quantity.mean,
+      .doubtful = summary->runs_doubtful > 0,
       .half_width = points == 1 ? quantity.half_width : NOTHING, /* of one point's seeds */
   };
   progress_update(progress, &state, now, last);

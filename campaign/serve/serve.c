@@ -86,7 +86,7 @@ static status begin(void *context, struct scheduler *scheduler, struct error *er
 
 /* ---- what the store has of a job ---- */
 
-/* `values`: NaN where there is no usable run. Both arrays may be NULL. */
+/* `values`: NaN where there is no usable run, or its value has no meaning. Both arrays may be NULL. */
 static status read_store(struct serve *serve, const struct job *job, const struct serve_result *result, double *values,
                          bool *there, struct error *error) {
   const struct serve_config *config = &job->request.config;
@@ -97,7 +97,7 @@ static status read_store(struct serve *serve, const struct job *job, const struc
     if (r < 0 || r >= config->count)
       continue;
     if (values)
-      values[r] = outcome_is_usable(run.state) ? run.value : (double)NAN;
+      values[r] = outcome_is_usable(run.state) && !run.withheld ? run.value : (double)NAN;
     if (there)
       there[r] = true;
   }

@@ -69,11 +69,12 @@ static void facts(const struct progress_state *state, char *buffer, size_t size)
     snprintf(time, sizeof time, ", %s left", left);
   if (state->quantity && isfinite(state->mean)) {
     char both[UNCERTAINTY_TEXT];
+    const char *mark = state->doubtful ? " !" : "";
     uncertainty_seeds(state->mean, state->half_width, both);
     if (isfinite(state->half_width))
-      snprintf(mean, sizeof mean, ", %.60s %.60s", state->quantity, both);
+      snprintf(mean, sizeof mean, ", %.60s %.60s%s", state->quantity, both, mark);
     else
-      snprintf(mean, sizeof mean, ", %.60s %.4g", state->quantity, state->mean);
+      snprintf(mean, sizeof mean, ", %.60s %.4g%s", state->quantity, state->mean, mark);
   }
   snprintf(buffer, size, "%lld of %s%lld runs%s, %d running%s%s%s", (long long)state->done,
            state->total_is_minimum ? "at least " : "", (long long)state->total, failed, (int)state->running, rate, time,

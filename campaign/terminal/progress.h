@@ -17,6 +17,7 @@ struct progress_state {
   const char *quantity;    /* the main quantity's name */
   double mean, half_width; /* mean of `quantity` over the runs so far, half width of its 95 % interval; NaN = none yet,
                               or runs of several points */
+  bool doubtful;           /* some of these runs are in doubt: "!" behind the mean */
 };
 
 enum progress_style { PROGRESS_PLAIN, PROGRESS_BAR };

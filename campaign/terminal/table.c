@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/ask/ask.h"
+#include "campaign/terminal/uncertainty.h"
 #include "schemas/csv.h"
 #include "schemas/limits.h"
 #include "schemas/text.h"
@@ -19,6 +19,7 @@ struct column {
   char *name, *unit;
   size_t width; /* width in the aligned table, characters */
   bool text;    /* aligned left */
+  bool marked;  /* a number has a mark behind it; the others leave its room free */
 };
 
 struct table {
@@ -32,6 +33,7 @@ struct table {
     bool left;
   } * kept;
   size_t kept_count;
+  char mark[UNCERTAINTY_TEXT]; /* behind the next cell */
   bool out_of_memory, broken;
   int write_error;
 };
@@ -105,8 +107,19 @@ static void pad(struct table *table, size_t count) {
     fputc(' ', table->out);
 }
 
+static bool has_mark(const char *text) {
+  const size_t length = strlen(text), mark = strlen(UNCERTAINTY_MARK);
+  return length > mark && strcmp(text + length - mark, UNCERTAINTY_MARK) == 0;
+}
+
+/* Characters behind a number where another one has its mark. */
+static size_t room_of_mark(const struct column *column, const char *text, bool left) {
+  return column->marked && !left && !has_mark(text) ? strlen(UNCERTAINTY_MARK) : 0;
+}
+
 static void print_aligned(struct table *table, size_t column, const char *text, const char *unit, bool left) {
-  size_t width = width_of(text) + (unit ? width_of(unit) + 3 : 0);
+  const size_t room = unit ? 0 : room_of_mark(&table->columns[column], text, left);
+  size_t width = width_of(text) + (unit ? width_of(unit) + 3 : 0) + room;
   size_t gap = table->columns[column].width > width ? table->columns[column].width - width : 0;
   bool last = column + 1 == table->column_count;
   if (!left)
@@ -114,8 +127,8 @@ static void print_aligned(struct table *table, size_t column, const char *text, 
   fputs(text, table->out);
   if (unit)
     fprintf(table->out, " [%s]", unit);
-  if (left && !last)
-    pad(table, gap);
+  if (!last)
+    pad(table, left ? gap : room);
   fputs(last ? "\n" : "  ", table->out);
 }
 
@@ -123,8 +136,10 @@ static void print_kept(struct table *table) {
   for (size_t c = 0; c < table->column_count; c++) {
     struct column *column = &table->columns[c];
     column->width = width_of(column->name) + (column->unit ? width_of(column->unit) + 3 : 0);
+    for (size_t i = c; i < table->kept_count; i += table->column_count)
+      column->marked |= !table->kept[i].left && has_mark(table->kept[i].text);
     for (size_t i = c; i < table->kept_count; i += table->column_count) {
-      size_t width = width_of(table->kept[i].text);
+      size_t width = width_of(table->kept[i].text) + room_of_mark(column, table->kept[i].text, table->kept[i].left);
       column->width = width > column->width ? width : column->width;
       column->text |= table->kept[i].left;
     }
@@ -247,8 +262,14 @@ static void add_cell(struct table *table, struct cell cell) {
   if (table->broken || table->column_count == 0)
     return;
   const uint64_t header_row = table->format == TABLE_TEXT ? SAMPLE_ROWS : 0;
+  char marked[2 * UNCERTAINTY_TEXT];
   if (table->cell == 0 && table->rows == header_row)
     header(table);
+  if (*table->mark && cell.kind != CELL_MISSING) {
+    snprintf(marked, sizeof marked, "%.*s%s", UNCERTAINTY_TEXT, cell.shown, table->mark);
+    cell.shown = marked;
+  }
+  table->mark[0] = 0;
   switch (table->format) {
   case TABLE_CSV: print_csv(table, &cell); break;
   case TABLE_JSON:
@@ -265,6 +286,25 @@ static void add_cell(struct table *table, struct cell cell) {
   table->cell = 0;
   table->rows++;
   check_output(table);
+}
+
+void table_rests_on(struct table *table, const struct ask_doubts *doubts) {
+  if (!table->broken)
+    uncertainty_mark(doubts, table->mark);
+}
+
+void table_doubt_columns(struct table *table) {
+  if (table->format != TABLE_TEXT)
+    table_columns(table, (const char *const[]){"doubtful", "doubts", NULL});
+}
+
+void table_doubt_cells(struct table *table, const struct ask_doubts *doubts) {
+  char words[UNCERTAINTY_TEXT];
+  if (table->format == TABLE_TEXT)
+    return;
+  ask_doubts_words(doubts, words, sizeof words);
+  table_integer(table, doubts->doubtful);
+  table_text(table, words);
 }
 
 void table_missing(struct table *table) {
@@ -420,8 +460,38 @@ struct rows {
   enum table_format format;
   struct ask_column written[LIMITS_AXES_OF_TABLE]; /* varied inputs, in the campaign's units */
   size_t written_count;
-  const struct ask_column **shown; /* per column: the varied input that it is; NULL: shown as stored; owned */
+  struct shown {
+    const struct ask_column *written; /* the varied input that it is; NULL: shown as stored */
+    bool hidden;
+    size_t doubtful; /* of a mean: its column _doubtful, behind its column _n; 0: none */
+  } * shown;         /* per column; owned */
+  size_t n;          /* the column of the number of runs */
 };
+
+/* The column of the mean whose number of doubtful runs is in column `i`; 0: none. */
+static size_t mean_of(const struct answer *answer, size_t i) {
+  const char *name = answer_name(answer, i), *end = strstr(name, "_doubtful");
+  for (size_t k = 1; end && !end[strlen("_doubtful")] && k < i; k++)
+    if (strncmp(answer_name(answer, k), name, (size_t)(end - name)) == 0 &&
+        strcmp(answer_name(answer, k) + (end - name), "_mean") == 0)
+      return k;
+  return 0;
+}
+
+/* People see marks, not the columns that they come from. */
+static void find_marks(struct rows *rows, const struct answer *answer) {
+  const size_t count = answer_count(answer);
+  for (size_t i = 1; i < count; i++) {
+    const size_t mean = mean_of(answer, i);
+    if (mean > 0) {
+      rows->shown[mean].doubtful = i;
+      rows->shown[i].hidden = rows->shown[i - 1].hidden = true;
+    }
+    if (strcmp(answer_name(answer, i), "n") == 0)
+      rows->n = i;
+  }
+  rows->shown[count - 1].hidden = true;
+}
 
 /* The headings, with the units of the store's columns: people see varied inputs in the campaign's units (`written`). */
 static status name_columns(struct rows *rows, const struct answer *answer, bool written) {
@@ -433,18 +503,22 @@ static status name_columns(struct rows *rows, const struct answer *answer, bool 
     return status_fail(answer->error, STATUS_MEMORY, "no memory for a table");
   if (people) /* on an error headings have no units, and values stay in SI */
     (void)ask_columns_units(answer->store, &units, &unit_count, NULL);
-  if (people && written)
+  if (people && written) {
+    find_marks(rows, answer);
     (void)ask_columns_axes(answer->store, true, LIMITS_AXES_OF_TABLE, rows->written, &rows->written_count, NULL);
+  }
   for (size_t i = 0; i < answer_count(answer); i++) {
     const char *name = answer_name(answer, i);
-    for (size_t k = 0; k < rows->written_count && !rows->shown[i]; k++)
+    struct shown *shown = &rows->shown[i];
+    for (size_t k = 0; k < rows->written_count && !shown->written; k++)
       if (strcmp(rows->written[k].name, name) == 0)
-        rows->shown[i] = &rows->written[k];
-    const char *unit = rows->shown[i] ? rows->shown[i]->unit : NULL;
+        shown->written = &rows->written[k];
+    const char *unit = shown->written ? shown->written->unit : NULL;
     for (size_t k = 0; k < unit_count && !unit; k++)
       if (strcmp(units[k].name, name) == 0)
         unit = units[k].unit;
-    table_column(rows->table, name, unit);
+    if (!shown->hidden)
+      table_column(rows->table, name, unit);
   }
   free(units);
   return STATUS_OK;
@@ -480,9 +554,17 @@ void table_value(struct table *table, const struct query_value *value) {
 
 static void print_row(struct rows *rows, const struct answer *answer) {
   for (size_t i = 0; i < answer_count(answer); i++) {
+    const struct shown *shown = &rows->shown[i];
     struct query_value value = answer_value(answer, i);
-    if (rows->shown[i])
-      value = ask_columns_value(rows->shown[i], &value);
+    if (shown->hidden)
+      continue;
+    if (shown->written)
+      value = ask_columns_value(shown->written, &value);
+    if (shown->doubtful) {
+      const int64_t doubtful = answer_integer(answer, shown->doubtful), n = answer_integer(answer, rows->n);
+      const int64_t withheld = n - answer_integer(answer, shown->doubtful - 1);
+      table_rests_on(rows->table, &(struct ask_doubts){.runs = n, .doubtful = doubtful, .withheld = withheld});
+    }
     if (value.kind == QUERY_BLOB)
       print_blob(rows, value.blob, value.size);
     else

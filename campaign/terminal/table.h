@@ -13,7 +13,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "db/ask/answer.h"
+#include "db/ask/ask.h"
 
 enum table_format { TABLE_TEXT, TABLE_CSV, TABLE_JSON, TABLE_JSON_LINES };
 
@@ -35,6 +35,14 @@ void table_integer(struct table *table, int64_t number);
 void table_boolean(struct table *table, bool value);
 void table_missing(struct table *table);
 
+/* The next cell rests on these runs: people see "!" behind a number that rests on runs in doubt (uncertainty_mark()).
+ */
+void table_rests_on(struct table *table, const struct ask_doubts *doubts);
+/* The last columns, `doubtful` and `doubts` (number of runs in doubt, and their words), and the cells of a row. For
+ * programs only: people see marks. */
+void table_doubt_columns(struct table *table);
+void table_doubt_cells(struct table *table, const struct ask_doubts *doubts);
+
 /* Writes the remaining rows and frees the table. STATUS_IO when writing failed (disk full). A closed pipe (EPIPE: `|
  * head`) is not an error. */
 status table_end(struct table *table, struct error *error);
@@ -49,8 +57,8 @@ void table_drop(struct table *table); /* frees the table without printing the re
 bool table_broken(const struct table *table);
 
 /* Prints all rows of an answer as a table, and ends the answer. Headings have the units of the store's table
- * column_doc; with `written`, a table for people shows varied inputs in the campaign's units. A closed pipe is not an
- * error. */
+ * column_doc. With `written`, the answer is that of ask_group(): a table for people shows varied inputs in the
+ * campaign's units, and marks instead of the columns _n, _doubtful and doubts. A closed pipe is not an error. */
 status table_answer(struct answer answer, bool written, enum table_format format, FILE *out);
 
 /* Adds one cell: number, text or missing. Not for QUERY_BLOB. */

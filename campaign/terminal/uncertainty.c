@@ -1,6 +1,7 @@
 /* Words for the errors of a mean. */
 #include "campaign/terminal/uncertainty.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -52,5 +53,26 @@ void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double hal
   case ASK_RESOLUTION_AT_LEAST: snprintf(text, UNCERTAINTY_TEXT, ">= %.2g", half_width); return;
   case ASK_RESOLUTION_DIVERGES: snprintf(text, UNCERTAINTY_TEXT, "diverges"); return;
   case ASK_RESOLUTION_NOT_STUDIED: snprintf(text, UNCERTAINTY_TEXT, "not studied"); return;
+  }
+}
+
+void uncertainty_mark(const struct ask_doubts *doubts, char text[UNCERTAINTY_TEXT]) {
+  const int64_t values = doubts->runs - doubts->withheld;
+  text[0] = 0;
+  if (doubts->doubtful > 0 && doubts->withheld > 0)
+    snprintf(text, UNCERTAINTY_TEXT, " (%" PRId64 ")" UNCERTAINTY_MARK, values);
+  else if (doubts->doubtful > 0)
+    snprintf(text, UNCERTAINTY_TEXT, UNCERTAINTY_MARK);
+}
+
+void uncertainty_doubts(const struct ask_doubts *doubts, FILE *out) {
+  for (size_t k = 0; k < doubts->count; k++) {
+    const struct ask_doubt *doubt = &doubts->word[k];
+    fprintf(out, "clast: %s, %" PRId64 " of %" PRId64 " runs: %s: ",
+            doubt->row && doubt->row->withheld ? "withheld" : "marked (!)", doubt->runs, doubts->runs, doubt->word);
+    if (doubt->row)
+      condition_sentence(doubt->row, out);
+    else
+      fputs("a word of another version of clast\n", out);
   }
 }

@@ -3,6 +3,7 @@
 #define CLAST_CAMPAIGN_TERMINAL_UNCERTAINTY_H
 
 #include <stddef.h>
+#include <stdio.h>
 
 #include "db/ask/ask.h"
 
@@ -19,5 +20,12 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
 
 /* The same for the cell of a table: "0.06", ">= 0.06", "diverges", or "not studied". */
 void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double half_width, char text[UNCERTAINTY_TEXT]);
+
+#define UNCERTAINTY_MARK " !"
+/* Behind a number: nothing, " !" when it rests on runs in doubt, " (17) !" when the values of others are withheld. */
+void uncertainty_mark(const struct ask_doubts *doubts, char text[UNCERTAINTY_TEXT]);
+
+/* A line for each condition that runs break: how many of how many, what it says, and what to do. */
+void uncertainty_doubts(const struct ask_doubts *doubts, FILE *out);
 
 #endif

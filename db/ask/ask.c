@@ -348,6 +348,27 @@ struct answer ask_points_rows(struct store *store, const struct ask_points_choic
   return answer_to(store, error, "%z ORDER BY point_id, results_version", sqlite3_str_finish(sql));
 }
 
+/* The view has the mean of all runs: where some values are withheld, the mean is that of the others. */
+static status read_doubts(struct store *store, struct ask_points_row *row, struct error *error) {
+  const struct ask_doubts_choice choice = {.point = row->point_id};
+  TRY(ask_doubts(store, &choice, OUTCOME_DEFAULT, &row->doubts, error));
+  if (row->doubts.withheld == 0)
+    return STATUS_OK;
+  struct sample_moments moments = {0};
+  TRY(ask_register_functions(store, error));
+  ANSWER answer = answer_to(store, error,
+                            "SELECT meant(engine, warnings, %Q, \"%w\") AS value FROM runs WHERE point_id = %lld AND "
+                            "results_version = %lld AND counts = 1 AND value IS NOT NULL ORDER BY replicate, seed",
+                            OUTCOME_DEFAULT, OUTCOME_DEFAULT, (long long)row->point_id,
+                            (long long)row->results_version);
+  while (answer_next(&answer))
+    sample_add(&moments, answer_real(&answer, 0));
+  const struct sample_summary of_others = sample_summarise_moments(&moments, 0.95);
+  row->mean = moments.n ? of_others.mean : (double)NAN;
+  row->half_width = of_others.half_width;
+  return answer_end(&answer);
+}
+
 bool ask_points_next(struct answer *answer, struct ask_points_row *row) {
   if (!answer_next(answer))
     return false;
@@ -362,7 +383,8 @@ bool ask_points_next(struct answer *answer, struct ask_points_row *row) {
                                  .input_count = answer_count(answer) - FIRST_INPUT};
   for (size_t i = 0; i < row->input_count; i++)
     row->inputs[i] = answer_value(answer, FIRST_INPUT + i);
-  return true;
+  answer->code = read_doubts(answer->store, row, answer->error);
+  return answer->code == STATUS_OK;
 }
 
 status ask_points_label(struct store *store, int64_t point_id, char *text, size_t size, struct error *error) {
@@ -522,11 +544,16 @@ struct answer ask_run_of_point(struct store *store, int64_t point_id, const stru
   field_column_name(row->path, column, sizeof column);
   if (!of_outcome)
     snprintf(table, sizeof table, "result_%s", kind->name);
+  const status code = ask_register_functions(store, error);
+  if (code)
+    return answer_failed(code, error);
   return answer_to(store, error,
                    "SELECT replicate, seed, identity, surplus, state, \"%w\".\"%w\", wall_time, cpu_time, peak_memory, "
-                   "fields_path FROM run%s%w%s WHERE point_id = %lld AND results_version = %d ORDER BY replicate, seed",
-                   table, column, of_outcome ? "" : " LEFT JOIN \"", of_outcome ? "" : table,
-                   of_outcome ? "" : "\" USING (run_id)", (long long)point_id, kind->results_version);
+                   "fields_path, meant(%Q, warnings, %Q, 1) IS NULL, warnings, %Q FROM run%s%w%s WHERE point_id = "
+                   "%lld AND results_version = %d ORDER BY replicate, seed",
+                   table, column, kind->name, column, kind->name, of_outcome ? "" : " LEFT JOIN \"",
+                   of_outcome ? "" : table, of_outcome ? "" : "\" USING (run_id)", (long long)point_id,
+                   kind->results_version);
 }
 
 bool ask_run_of_point_next(struct answer *answer, struct ask_run_of_point *run) {
@@ -539,6 +566,8 @@ bool ask_run_of_point_next(struct answer *answer, struct ask_run_of_point *run) 
       .surplus = answer_integer(answer, 3) != 0,
       .state = state_of(answer_text(answer, 4)),
       .value = answer_real(answer, 5),
+      .withheld = answer_integer(answer, 10) != 0,
+      .warnings = answer_text(answer, 11),
       .wall_s = answer_real(answer, 6),
       .cpu_s = answer_real(answer, 7),
       .peak_memory = answer_integer(answer, 8),
@@ -573,38 +602,43 @@ struct answer ask_specimens(struct store *store, int64_t point_id, const struct 
     return ask_run_of_point(store, point_id, kind, quantity->row, quantity->of_outcome, error);
   if (quantity->kind == ASK_SPECIMENS_EXPONENT)
     return answer_to(store, error,
-                     "SELECT seed, beta FROM run JOIN estimate USING (run_id) WHERE point_id = %lld AND "
+                     "SELECT seed, beta, warnings, %Q FROM run JOIN estimate USING (run_id) WHERE point_id = %lld AND "
                      "results_version = %d AND counts = 1 AND method = %Q AND \"window\" = %Q ORDER BY replicate",
-                     (long long)point_id, kind->results_version, exponent_method_names[quantity->method],
+                     kind->name, (long long)point_id, kind->results_version, exponent_method_names[quantity->method],
                      estimates_window_names[quantity->window]);
-  return answer_to(store, error,
-                   "SELECT seed, masses FROM run JOIN fragment_mass USING (run_id) WHERE point_id = %lld AND "
-                   "results_version = %d AND counts = 1 ORDER BY replicate",
-                   (long long)point_id, kind->results_version);
+  return answer_to(
+      store, error,
+      "SELECT seed, masses, warnings, %Q FROM run JOIN fragment_mass USING (run_id) WHERE point_id = %lld AND "
+      "results_version = %d AND counts = 1 ORDER BY replicate",
+      kind->name, (long long)point_id, kind->results_version);
 }
 
 bool ask_specimens_next(struct answer *answer, const struct ask_specimens_quantity *quantity, uint64_t *seed,
-                        double *value) {
+                        double *value, struct ask_doubts *doubts) {
   const void *masses;
   size_t count;
   if (quantity->kind == ASK_SPECIMENS_RESULT) {
     struct ask_run_of_point run;
     while (ask_run_of_point_next(answer, &run)) {
       *seed = run.seed;
-      *value = run.value;
-      if (!run.surplus && outcome_is_usable(run.state))
-        return true;
+      *value = run.withheld ? (double)NAN : run.value;
+      if (run.surplus || !outcome_is_usable(run.state))
+        continue;
+      (void)ask_doubts_run(doubts, answer_text(answer, 12), run.warnings, quantity->row->path, 1);
+      return true;
     }
     return false;
   }
   if (!answer_next(answer))
     return false;
   *seed = (uint64_t)answer_integer(answer, 0);
+  const char *results = quantity->kind == ASK_SPECIMENS_SHARE ? OUTCOME_DEFAULT : OUTCOME_NAME(mean_fragment_mass);
+  const enum condition_mark mark = ask_doubts_run(doubts, answer_text(answer, 3), answer_text(answer, 2), results, 1);
   if (quantity->kind == ASK_SPECIMENS_EXPONENT)
     *value = answer_real(answer, 1);
   else if (!answer_masses(answer, 1, "a run", &masses, &count))
     return false;
   else
-    *value = heavier(quantity, count, masses);
+    *value = mark == CONDITION_WITHHELD ? (double)NAN : heavier(quantity, count, masses);
   return true;
 }

@@ -15,8 +15,8 @@
  * ---- */
 
 /* One row per campaign: campaign, name, state, points, runs, counted, censored, failed, surplus, failed_attempts,
- * without_result, cpu_time (s), and start and end of its last session. `writing`: a process is writing the store
- * (store_is_being_written). */
+ * without_result, cpu_time (s), start and end of its last session, and warned runs that count. `writing`: a process is
+ * writing the store (store_is_being_written). */
 struct answer ask_campaign_progress(struct store *store, bool writing, struct error *error);
 
 /* Name and YAML text of a campaign (0: the last one); the caller frees both. Both NULL: the store has no campaign. */
@@ -44,6 +44,46 @@ struct answer ask_campaign_reasons(struct store *store, struct error *error);
 /* A row per value of each varied input, in ascending order within campaign and input: campaign, path, value, and the
  * numbers of safe, warned and refused runs. Inputs with only one value are left out. */
 struct answer ask_campaign_values(struct store *store, struct error *error);
+
+/* ---- The conditions that the runs behind a number break (engine/condition.h). ---- */
+
+/* Runs behind a number. They stay in every mean; a value that is withheld is missing in it. */
+struct ask_doubts {
+  int64_t runs, doubtful, withheld; /* that count; whose words mark a result; of these, whose result is withheld */
+  size_t count;
+  struct ask_doubt {
+    char word[CONDITION_WORD];
+    const struct condition *row; /* NULL: a word of another version */
+    int64_t runs;
+  } word[32];
+};
+
+/* Runs that count, of each point's newest results_version with such runs; 0 and NULL: all. */
+struct ask_doubts_choice {
+  int64_t campaign, point, run;
+  const char *campaign_name;
+  const char *where; /* an SQL condition on the view runs */
+};
+
+/* Adds these runs to *doubts (zeroed before the first call). `results`: the result columns that the number rests on,
+ * separated by spaces (ask_doubts_results()). */
+status ask_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *results,
+                  struct ask_doubts *doubts, struct error *error);
+
+/* Adds `runs` runs of these words, and returns what the words say of the results. */
+enum condition_mark ask_doubts_run(struct ask_doubts *doubts, const char *engine, const char *words,
+                                   const char *results, int64_t runs);
+/* Adds other runs. */
+void ask_doubts_add(struct ask_doubts *doubts, const struct ask_doubts *others);
+
+/* The columns of comma-separated quantities: results or unique endings of one, "main", or exponents, which rest on what
+ * the masses of fragments rest on (NULL). */
+enum { ASK_DOUBTS_RESULTS = 1024 };
+status ask_doubts_results(struct store *store, const char *quantities, char results[ASK_DOUBTS_RESULTS],
+                          struct error *error);
+
+/* The words, as in the result `warnings`. */
+void ask_doubts_words(const struct ask_doubts *doubts, char *text, size_t size);
 
 /* ---- Ready queries, by name. ---- */
 
@@ -142,6 +182,7 @@ struct ask_points_row {
                               few runs */
   double resolution;       /* error that the resolution leaves in it; NaN: not known */
   enum ask_resolution_verdict resolution_verdict;
+  struct ask_doubts doubts; /* of the largest fraction; without withheld values in mean and half width */
   size_t input_count;
   struct query_value inputs[LIMITS_AXES_OF_POOL]; /* values of the requested inputs, in their order; texts are borrowed
                                                    until the next row */
@@ -207,8 +248,10 @@ struct ask_run_of_point {
   uint64_t seed;
   uint8_t identity[16];
   bool surplus;
-  int state;    /* enum outcome_state */
-  double value; /* of the quantity; NaN when the store has none */
+  int state;            /* enum outcome_state */
+  double value;         /* of the quantity; NaN when the store has none */
+  bool withheld;        /* the value has no meaning */
+  const char *warnings; /* borrowed until the next row */
   double wall_s, cpu_s;
   int64_t peak_memory;
   const char *fields_path; /* NULL when none was kept; borrowed until the next row */
@@ -256,18 +299,20 @@ struct ask_specimens_quantity {
 /* A row per run that counts, of the results_version of this program's engine. */
 struct answer ask_specimens(struct store *store, int64_t point_id, const struct engine_kind *kind,
                             const struct ask_specimens_quantity *quantity, struct error *error);
-/* The next run. *value is NaN if it has no such value. False at the end and after an error; then answer_end(). */
+/* The next run. *value is NaN if it has no such value, or it is withheld. Adds the run to *doubts. False at the end and
+ * after an error; then answer_end(). */
 bool ask_specimens_next(struct answer *answer, const struct ask_specimens_quantity *quantity, uint64_t *seed,
-                        double *value);
+                        double *value, struct ask_doubts *doubts);
 
 /* ---- Statistics of runs grouped by varied inputs, and the names of inputs and results that users abbreviate. ---- */
 
 /* points, n, failed, censored, and of each quantity mean, standard deviation, standard error, 95 % half width,
- * resolution error and its verdict (the worst of all points), of all runs that share the named
- * axes. A group of one point is a sample of runs (seeds). A group of several points pools over other inputs: its points
- * are the units, each with the mean of its runs, and the interval is that of a mean over such points; the scatter
- * between points includes that of the seeds. `pooled` names these inputs ("threshold.angle, material.m"; "": every
- * group has one point).
+ * resolution error and its verdict (the worst of all points), of all runs that share the named axes. Last, of each
+ * quantity the number of its values in the mean (_n: without withheld ones) and of runs in doubt (_doubtful); and
+ * `doubts`, the words of these runs. A group of one point is a sample of runs (seeds). A group of several points pools
+ * over other inputs: its points are the units, each with the mean of its runs, and the interval is that of a mean over
+ * such points; the scatter between points includes that of the seeds. `pooled` names these inputs ("threshold.angle,
+ * material.m"; "": every group has one point).
  *
  * `by`: comma-separated paths of varied inputs or unique suffixes of one ("m,k"); "" pools everything. `quantities`:
  * comma-separated result columns or unique suffixes; NULL = the main ones. Results of different results_version are
@@ -305,6 +350,7 @@ struct ask_pairs_row {
   int64_t point[2];   /* number of each point in its store */
   const char *inputs; /* varied inputs that both have; "" when two points were named */
   struct difference difference;
+  const struct ask_doubts *doubts[2];
 };
 
 /* Reads the values of both sides: STORE, STORE:POINT or STORE:CAMPAIGN. STATUS_USAGE: unknown name; STATUS_MISSING: no
@@ -386,8 +432,9 @@ struct ask_pool {
   /* without a quantity: fragments of all runs, point after point; complete_mass and element_mass are those of the point
    * where they are largest; point_id is 0 if there are several. With a quantity: only the run ids, no fragments. */
   struct point_data data;
-  const double *value; /* with a quantity: of each run, NaN: off; else NULL */
-  const int64_t *seed; /* with a quantity: of each run */
+  const double *value;      /* with a quantity: of each run, NaN: off or withheld; else NULL */
+  const int64_t *seed;      /* with a quantity: of each run */
+  struct ask_doubts doubts; /* of the quantity, or of the masses */
 };
 /* Pools under way. A variable of type ASK_POOLS frees itself where its block is left. */
 struct ask_pools {

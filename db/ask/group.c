@@ -141,14 +141,16 @@ static void write_points(FILE *out, const struct names *axes, const struct names
   for (size_t i = 0; i < quantities->count; i++) {
     const char *q = quantities->name[i];
     fprintf(out,
-            ",\n  count(iif(counts, \"%s\", NULL)) AS r%zu, avg(iif(counts, \"%s\", NULL)) AS p%zu, stdev(iif(counts, "
-            "\"%s\", NULL)) AS o%zu",
-            q, i, q, i, q, i);
+            ",\n  count(iif(counts, \"%1$s\", NULL)) AS r%2$zu, avg(iif(counts, \"%1$s\", NULL)) AS p%2$zu, "
+            "stdev(iif(counts, \"%1$s\", NULL)) AS o%2$zu, count(iif(counts, w%2$zu, NULL)) AS b%2$zu, "
+            "words(iif(counts, w%2$zu, NULL)) AS w%2$zu",
+            q, i);
   }
   fputs("\nFROM (SELECT ", out); /* only the needed columns, because the rows are sorted */
   write_names(out, axes);
   for (size_t i = 0; i < quantities->count; i++)
-    fprintf(out, "\"%s\", ", quantities->name[i]);
+    fprintf(out, "meant(engine, warnings, '%1$s', \"%1$s\") AS \"%1$s\", doubts(engine, warnings, '%1$s') AS w%2$zu, ",
+            quantities->name[i], i);
   fputs("engine, results_version, point_id, counts, state FROM runs WHERE surplus = 0 ORDER BY point_id, "
         "results_version, replicate, seed)\nGROUP BY ",
         out);
@@ -181,6 +183,9 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
     views_statistics_student(degrees, out);
     fprintf(out, ") AS \"%s_hw95\", e%zu AS \"%s_resolution\", v%zu AS \"%s_resolution_verdict\"", q, i, q, i, q);
   }
+  for (size_t i = 0; i < quantities->count; i++)
+    fprintf(out, ",\n  r%1$zu AS \"%2$s_n\", b%1$zu AS \"%2$s_doubtful\"", i, quantities->name[i]);
+  fputs(",\n  doubts", out);
   fputs("\nFROM (SELECT ", out);
   write_names(out, axes);
   fputs("engine, results_version, sum(n > 0) AS points, sum(n) AS n, sum(failed) AS failed, sum(censored) AS censored",
@@ -192,8 +197,12 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
             "iif(count(e%1$zu) = count(*), max(e%1$zu), NULL) AS e%1$zu, CASE WHEN count(e%1$zu) < count(*) THEN "
             "'not-studied' WHEN max(v%1$zu = 'diverges') THEN 'diverges' WHEN max(v%1$zu = 'at-least') THEN 'at-least' "
             "ELSE "
-            "'known' END AS v%1$zu",
+            "'known' END AS v%1$zu, sum(r%1$zu) AS r%1$zu, sum(b%1$zu) AS b%1$zu",
             i);
+  fputs(",\n  words(", out);
+  for (size_t i = 0; i < quantities->count; i++)
+    fprintf(out, "%sw%zu", i ? " || ', ' || " : "", i);
+  fputs(quantities->count ? ") AS doubts" : "'') AS doubts", out);
   write_points(out, axes, quantities);
   write_names(out, axes);
   fputs("engine, results_version) ORDER BY ", out);

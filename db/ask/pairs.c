@@ -15,6 +15,7 @@ struct group { /* the runs of one point */
   char *inputs;
   int64_t point;
   size_t first, count; /* in `values` */
+  struct ask_doubts doubts;
 };
 struct side {
   bool one_point;
@@ -49,10 +50,11 @@ static struct answer ask_values(struct store *store, int64_t point, const char *
       store, error,
       "WITH varied AS MATERIALIZED (SELECT point_id, (SELECT group_concat(v, ', ') FROM (SELECT path || ' = ' || "
       "CAST(value AS TEXT) AS v FROM axis JOIN point_input i USING (path) WHERE i.point_id = p.point_id ORDER BY "
-      "path)) AS inputs FROM point p)\nSELECT inputs, point_id, seed, \"%w\" FROM runs JOIN varied USING (point_id) "
+      "path)) AS inputs FROM point p)\nSELECT inputs, point_id, seed, meant(engine, warnings, %Q, \"%w\") FROM runs "
+      "JOIN varied USING (point_id) "
       "WHERE counts = 1 AND results_version = (SELECT max(results_version) FROM run WHERE counts = 1)%s%z "
       "ORDER BY inputs, point_id, seed, replicate",
-      column, of_point, of_campaign);
+      column, column, of_point, of_campaign);
 }
 
 /* Adds a run to its point, which is the last one or a new one. */
@@ -64,7 +66,7 @@ static status add_run(struct side *side, const struct answer *row, struct error 
       free(inputs);
       return no_memory(error);
     }
-    side->groups[side->group_count++] = (struct group){inputs, point, side->value_count, 0};
+    side->groups[side->group_count++] = (struct group){.inputs = inputs, .point = point, .first = side->value_count};
   }
   if (!grow_room(&side->values, &side->value_room, side->value_count + 1, sizeof *side->values))
     return no_memory(error);
@@ -78,6 +80,7 @@ static status read_values(struct store *store, int64_t point, const char *campai
   char column[ASK_GROUP_NAME];
   double there = 1;
   TRY(ask_points_known(store, point, error));
+  TRY(ask_register_functions(store, error));
   TRY(ask_group_quantity(store, quantity, column, error));
   if (campaign)
     TRY(answer_number(store, &there, error, "SELECT count(*) FROM campaign WHERE name = %Q", campaign));
@@ -87,7 +90,11 @@ static status read_values(struct store *store, int64_t point, const char *campai
   while (answer_next(&answer))
     if (!isnan(answer_real(&answer, 3)))
       TRY(add_run(side, &answer, error));
-  return answer_end(&answer);
+  TRY(answer_end(&answer));
+  for (size_t i = 0; i < side->group_count; i++)
+    TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = side->groups[i].point}, column, &side->groups[i].doubts,
+                   error));
+  return STATUS_OK;
 }
 
 static status read_side(const char *operand, const char *quantity, struct side *side, struct error *error) {
@@ -113,7 +120,8 @@ static status read_side(const char *operand, const char *quantity, struct side *
   code = read_values(store, point, campaign, quantity, side, error);
   store_close(store, NULL);
   if (code == STATUS_OK && side->group_count == 0)
-    code = status_fail(error, STATUS_USAGE, "%s: no run that counts has a value of %s", operand, quantity);
+    code = status_fail(error, STATUS_USAGE, "%s: no run that counts has a value of %s that is not withheld", operand,
+                       quantity);
   return code;
 }
 
@@ -159,7 +167,8 @@ bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
     *row = (struct ask_pairs_row){{first->point, second->point},
                                   first->inputs,
                                   sample_difference(first->count, a->values + first->first, second->count,
-                                                    b->values + second->first, 0.95)};
+                                                    b->values + second->first, 0.95),
+                                  {&first->doubts, &second->doubts}};
     pairs->found++;
     return true;
   }

@@ -93,9 +93,11 @@ static status read_values(const struct ask_pools *pools, struct point_data *poin
     return no_memory(error);
   ANSWER
   answer = answer_to(pools->store, error,
-                     "SELECT run_id, seed, \"%w\" FROM runs WHERE point_id = %lld AND results_version = %lld AND "
+                     "SELECT run_id, seed, meant(engine, warnings, %Q, \"%w\") FROM runs WHERE point_id = %lld AND "
+                     "results_version = %lld AND "
                      "counts = 1%z ORDER BY replicate, seed",
-                     pools->quantity, (long long)point->point_id, (long long)point->results_version, condition);
+                     pools->quantity, pools->quantity, (long long)point->point_id, (long long)point->results_version,
+                     condition);
   for (; answer_next(&answer); point->runs.count++) {
     const size_t run = point->runs.count;
     if (run == room) {
@@ -178,6 +180,10 @@ static status read_pool(struct ask_pools *pools, size_t from, size_t end, int64_
     code = pools->of_values
                ? read_values(pools, &point, &values, error)
                : point_read_where(pools->store, point.point_id, version, pools->choice.where, &point, error);
+    const struct ask_doubts_choice runs = {.point = point.point_id, .where = pools->choice.where};
+    if (code == STATUS_OK)
+      code = ask_doubts(pools->store, &runs, pools->of_values ? pools->quantity : OUTCOME_NAME(mean_fragment_mass),
+                        &pools->pool.doubts, error);
     if (code == STATUS_OK && point.runs.count > 0)
       code = add_point(pools, &point, &values, error);
     point_release(&point);
@@ -247,6 +253,7 @@ void ask_pools_drop(struct ask_pools *pools) {
 }
 
 static status begin(struct ask_pools *pools, const char *quantity, struct error *error) {
+  TRY(ask_register_functions(pools->store, error));
   if (quantity)
     TRY(ask_group_quantity(pools->store, quantity, pools->quantity, error));
   if (pools->choice.by)

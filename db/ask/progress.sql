@@ -1,7 +1,7 @@
 -- The progress of campaigns. :writing is 1 while a process writes the store. The last session has the largest number:
 -- clocks are set back at times.
 WITH done AS (SELECT campaign_id, count(*) AS runs, sum(counts) AS counted,
-  sum(counts AND state = 'end-time') AS censored,
+  sum(counts AND state = 'end-time') AS censored, sum(counts AND warnings <> '') AS warned,
   sum(state NOT IN ('completed', 'end-time')) AS failed, sum(surplus) AS surplus, sum(cpu_time) AS cpu_time
   FROM campaign_point JOIN run USING (point_id) GROUP BY campaign_id),
 tried AS (SELECT campaign_id, count(*) AS failed_attempts
@@ -27,7 +27,8 @@ SELECT campaign_id AS campaign, name,
   coalesce(runs, 0) AS runs, coalesce(counted, 0) AS counted, coalesce(censored, 0) AS censored,
   coalesce(failed, 0) AS failed, coalesce(surplus, 0) AS surplus,
   coalesce(failed_attempts, 0) AS failed_attempts, coalesce(without_result, 0) AS without_result,
-  coalesce(cpu_time, 0.0) AS cpu_time, last.started_at AS last_started, last.ended_at AS last_ended
+  coalesce(cpu_time, 0.0) AS cpu_time, last.started_at AS last_started, last.ended_at AS last_ended,
+  coalesce(warned, 0) AS warned
 FROM campaign LEFT JOIN done USING (campaign_id) LEFT JOIN tried USING (campaign_id)
   LEFT JOIN given_up USING (campaign_id) LEFT JOIN last USING (campaign_id)
   LEFT JOIN planned USING (campaign_id) LEFT JOIN filled USING (campaign_id)

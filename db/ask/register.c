@@ -7,6 +7,7 @@
 #include "analysis/statistics/spectrum.h"
 #include "db/ask/answer.h"
 #include "db/store/internal.h"
+#include "engine/engine.h"
 #include "engine/grow.h"
 #include "schemas/text.h"
 
@@ -55,6 +56,57 @@ static void median_final(sqlite3_context *context) {
   qsort(s->values, s->n, sizeof *s->values, sample_ascending);
   sqlite3_result_double(context, s->n % 2 ? s->values[s->n / 2] : (s->values[s->n / 2 - 1] + s->values[s->n / 2]) / 2);
   free(s->values);
+}
+
+static const char *text_of(sqlite3_value *value) {
+  const char *text = (const char *)sqlite3_value_text(value);
+  return text ? text : "";
+}
+
+static const struct condition *conditions_of(sqlite3_value *engine) {
+  const struct engine_kind *kind = engine_find(text_of(engine), NULL);
+  return kind ? kind->conditions : NULL;
+}
+
+/* meant(engine, warnings, results, value): the value; NULL where one of the results is withheld. */
+static void meant(sqlite3_context *context, int count, sqlite3_value **values) {
+  (void)count;
+  if (condition_mark(conditions_of(values[0]), text_of(values[1]), text_of(values[2])) != CONDITION_WITHHELD)
+    sqlite3_result_value(context, values[3]);
+}
+
+/* doubts(engine, warnings, results): the words that mark one of the results; NULL: none. */
+static void doubts(sqlite3_context *context, int count, sqlite3_value **values) {
+  (void)count;
+  const struct condition *list = conditions_of(values[0]), *row;
+  char text[FIELD_TEXT_SIZE] = "", word[CONDITION_WORD];
+  for (const char *words = text_of(values[1]); words[strspn(words, ", ")];)
+    if (condition_next(list, &words, text_of(values[2]), word, &row))
+      text_append(text, sizeof text, "%s%s", *text ? ", " : "", word);
+  if (*text)
+    sqlite3_result_text(context, text, -1, SQLITE_TRANSIENT);
+}
+
+/* words(texts): all their words, each once. */
+struct words {
+  char text[FIELD_TEXT_SIZE];
+};
+
+static void words_step(sqlite3_context *context, int count, sqlite3_value **values) {
+  (void)count;
+  struct words *all = sqlite3_aggregate_context(context, sizeof *all);
+  const struct condition *row;
+  char word[CONDITION_WORD];
+  for (const char *words = text_of(values[0]); all && words[strspn(words, ", ")];) {
+    (void)condition_next(NULL, &words, "", word, &row);
+    if (!condition_has(all->text, word))
+      text_append(all->text, sizeof all->text, "%s%s", *all->text ? ", " : "", word);
+  }
+}
+
+static void words_final(sqlite3_context *context) {
+  const struct words *all = sqlite3_aggregate_context(context, 0);
+  sqlite3_result_text(context, all ? all->text : "", -1, SQLITE_TRANSIENT);
 }
 
 enum { LOWEST = -400, BINS = 800 }; /* 1e-40 to 1e40 kg */
@@ -127,6 +179,12 @@ status ask_register_functions(struct store *store, struct error *error) {
     code = sqlite3_create_function(store->db, "hist_sum", 1, flags, NULL, NULL, hist_sum_step, hist_sum_final);
   if (code == SQLITE_OK)
     code = sqlite3_create_function(store->db, "pooled_hw95", 3, flags, NULL, pooled_hw95, NULL, NULL);
+  if (code == SQLITE_OK)
+    code = sqlite3_create_function(store->db, "meant", 4, flags, NULL, meant, NULL, NULL);
+  if (code == SQLITE_OK)
+    code = sqlite3_create_function(store->db, "doubts", 3, flags, NULL, doubts, NULL, NULL);
+  if (code == SQLITE_OK)
+    code = sqlite3_create_function(store->db, "words", 1, flags, NULL, NULL, words_step, words_final);
   if (code != SQLITE_OK)
     return sql_fail(store->db, code, "registering functions", error);
   store->functions = true;

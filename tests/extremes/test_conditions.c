@@ -102,9 +102,16 @@ static void bounds_are_exclusive_and_the_end_decides(void **state) {
   assert_int_equal(condition_mark(rows, words, "b"), CONDITION_WITHHELD);
   assert_int_equal(condition_mark(rows, words, "c"), CONDITION_WITHHELD);
   assert_int_equal(condition_mark(rows, words, "d"), CONDITION_SOUND);
-  assert_int_equal(condition_mark(rows, "low", "d"), CONDITION_MARKED); /* all results rest on it */
-  assert_int_equal(condition_mark(rows, "lower, endless", "b"), CONDITION_SOUND);
-  assert_int_equal(condition_mark(NULL, words, "a"), CONDITION_SOUND);
+  assert_int_equal(condition_mark(rows, "low", "d"), CONDITION_MARKED);         /* all results rest on it */
+  assert_int_equal(condition_mark(rows, "high, end", "d a"), CONDITION_MARKED); /* the worst of two results */
+  assert_int_equal(condition_mark(rows, "", "b"), CONDITION_SOUND);
+  assert_int_equal(condition_mark(rows, "lower", "d"), CONDITION_MARKED); /* a word of another version */
+  assert_int_equal(condition_mark(NULL, words, "a"), CONDITION_MARKED);
+  /* columns of a store are paths, too */
+  assert_int_equal(condition_mark(sph_engine.conditions, "gone", "crater.depth"), CONDITION_WITHHELD);
+  assert_int_equal(condition_mark(sph_engine.conditions, "gone", "crater_depth"), CONDITION_WITHHELD);
+  assert_int_equal(condition_mark(sph_engine.conditions, "gone", "result_sph_crater_depth"), CONDITION_WITHHELD);
+  assert_int_equal(condition_mark(sph_engine.conditions, "gone", "largest_crater_depth"), CONDITION_SOUND);
 
   out = open_memstream(&text, &size);
   condition_tell(rows, words, set, "! ", out);

@@ -210,7 +210,7 @@ static void spectra_are_drawn(void **state) {
 
 static void maps_are_drawn(void **state) {
   (void)state;
-  double points[24][3];
+  double points[24][4] = {{0}};
   for (int i = 0; i < 24; i++) {
     points[i][0] = 0.01 * (i % 6 + 1);
     points[i][1] = i / 6 + 1;
@@ -220,17 +220,17 @@ static void maps_are_drawn(void **state) {
   const char *const x = "threshold.strain", *const y = "beam.threshold.angle (deg)";
   assert_int_equal(picture_map(&(struct picture_page){.path = at("map.png"), .width = 900},
                                &(struct picture_words){"beta over both thresholds", NULL, x, y}, "beta", 24,
-                               (const double(*)[3])points, NULL),
+                               (const double(*)[4])points, NULL),
                    STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("map.png"), &dark, &coloured, &width, &height);
   assert_true(coloured > 0.3);
-  const double loose[5][3] = {{2, 0.1, 5}, {1, 0.1, 4}, {2, 0.3, 7}, {1, 0.1, 4.5}, {3, 0.2, NAN}};
+  const double loose[5][4] = {{2, 0.1, 5}, {1, 0.1, 4, 1}, {2, 0.3, 7}, {1, 0.1, 4.5}, {3, 0.2, NAN}};
   assert_int_equal(picture_map(&(struct picture_page){.path = at("loose.png"), .width = 600},
                                &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 5, loose, NULL),
                    STATUS_OK);
-  const double nowhere[1][3] = {{NAN, 1, 1}};
+  const double nowhere[1][4] = {{NAN, 1, 1}};
   assert_int_equal(picture_map(&(struct picture_page){.path = at("none.png"), .width = 600},
                                &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 1, nowhere, NULL),
                    STATUS_USAGE);
@@ -240,7 +240,7 @@ static void maps_are_drawn(void **state) {
   for (int i = 0; i < 24; i++)
     points[i][2] = NAN;
   assert_int_equal(picture_map(&(struct picture_page){.path = at("none.png"), .width = 900},
-                               &(struct picture_words){NULL, NULL, x, y}, "beta", 24, (const double(*)[3])points, NULL),
+                               &(struct picture_words){NULL, NULL, x, y}, "beta", 24, (const double(*)[4])points, NULL),
                    STATUS_USAGE);
 }
 
@@ -289,23 +289,29 @@ static status curves(const char *name, size_t count, const struct picture_curve 
 /* gnuplot receives exactly the given numbers, and a gap stays a gap; the axis is logarithmic from a factor of 20. */
 static void curves_are_drawn(void **state) {
   (void)state;
-  const struct picture_mean high[] = {{1, 0.9, 0.85, 0.95, 0.1}, {10, 0.9, 0.85, 0.95, NAN}, {100, 0.9, NAN, NAN, 0.2}};
-  const struct picture_mean low[] = {{1, 0.1, 0.1, 0.1, 0}, {10, NAN, 0, 0, NAN}, {100, 0.125, NAN, NAN, NAN}};
+  const struct picture_mean high[] = {{1, 0.9, 0.85, 0.95, 0.1, false},
+                                      {10, 0.9, 0.85, 0.95, NAN, true},
+                                      {100, 0.9, NAN, NAN, 0.2, false}};
+  const struct picture_mean low[] = {{1, 0.1, 0.1, 0.1, 0, false},
+                                     {10, NAN, 0, 0, NAN, false},
+                                     {100, 0.125, NAN, NAN, NAN, false}};
   const struct picture_curve both[] = {{"high", 3, high}, {"low", 3, low}};
   assert_int_equal(curves("curves.png", 2, both), STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("curves.png"), &dark, &coloured, &width, &height);
   assert_true(width == 900 && coloured > 0.005);
-  assert_string_equal(text_of(at("curves.dat")), "# x mean low high thin_low thin_high\n1 0.9 0.85 0.95 0.75 1.05\n"
-                                                 "10 0.9 0.85 0.95 NaN NaN\n100 0.9 NaN NaN 0.7 1.1\n\n\n"
-                                                 "# x mean low high thin_low thin_high\n1 0.1 NaN NaN NaN NaN\n"
-                                                 "10 NaN NaN NaN NaN NaN\n100 0.125 NaN NaN NaN NaN\n\n\n");
+  assert_string_equal(text_of(at("curves.dat")),
+                      "# x mean low high thin_low thin_high doubtful\n"
+                      "1 0.9 0.85 0.95 0.75 1.05 0\n"
+                      "10 0.9 0.85 0.95 NaN NaN 1\n100 0.9 NaN NaN 0.7 1.1 0\n\n\n"
+                      "# x mean low high thin_low thin_high doubtful\n1 0.1 NaN NaN NaN NaN 0\n"
+                      "10 NaN NaN NaN NaN NaN 0\n100 0.125 NaN NaN NaN NaN 0\n\n\n");
   const char *script = text_of(at("curves.gp"));
   assert_non_null(strstr(script, "\nlog_x = 1\n"));
   assert_non_null(strstr(script, "\noutput_file = './curves.png'\n"));
   assert_non_null(strstr(script, "0xD55E00")); /* vermilion of Okabe and Ito */
-  const struct picture_mean short_way[] = {{1, 0.1, NAN, NAN, NAN}, {19, 0.9, NAN, NAN, NAN}};
+  const struct picture_mean short_way[] = {{1, 0.1, NAN, NAN, NAN, false}, {19, 0.9, NAN, NAN, NAN, false}};
   assert_int_equal(curves("narrow.pdf", 1, &(struct picture_curve){"one label", 2, short_way}), STATUS_OK);
   assert_non_null(strstr(text_of(at("narrow.gp")), "\nlog_x = 0\n"));
   assert_memory_equal(text_of(at("narrow.pdf")), "%PDF", 4);
@@ -319,7 +325,7 @@ static void curves_are_drawn(void **state) {
 /* Text from users reaches the picture as plain text: no command, no markup, no file. */
 static void hostile_text_is_text(void **state) {
   (void)state;
-  const struct picture_mean mean[] = {{1, 2, 1, 3, NAN}, {2, 3, 2, 4, NAN}};
+  const struct picture_mean mean[] = {{1, 2, 1, 3, NAN, false}, {2, 3, 2, 4, NAN, false}};
   const char *evil = "'; system('touch hacked'); `touch hacked` \"$(touch hacked)\" @x {/=99 a}_b \\n\n! touch hacked\n"
                      "\x01\xff\xc3 'end";
   const struct picture_curve curve = {evil, 2, mean};
@@ -340,7 +346,7 @@ static void hostile_text_is_text(void **state) {
 /* Without gnuplot, with a template that gnuplot refuses, and with a folder without templates. */
 static void missing_gnuplot_is_told(void **state) {
   (void)state;
-  const struct picture_mean mean[] = {{1, 2, 1, 3, NAN}, {2, 3, 2, 4, NAN}};
+  const struct picture_mean mean[] = {{1, 2, 1, 3, NAN, false}, {2, 3, 2, 4, NAN, false}};
   const struct picture_curve curve = {"a", 2, mean};
   struct picture_page page = {.path = "missing.png", .width = 900};
   struct error error = {0};

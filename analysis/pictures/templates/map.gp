@@ -1,5 +1,5 @@
 # A quantity over two inputs: one tile for each pair of values.
-# Blocks of the data: 0 the tiles (column, row, value), 1 the values of the columns, 2 the values of the rows.
+# Blocks of the data: 0 the tiles (column, row, value, 1 for one in doubt), 1 the values of the columns, 2 the values of the rows.
 # Cividis: readable in grey and without colour vision.
 set palette defined (0 '#00224e', 1 '#123570', 2 '#3b496c', 3 '#575d6d', 4 '#707173', 5 '#8a8779', 6 '#a69d75', 7 '#c4b56c', 8 '#e4cf5b', 9 '#fee838')
 set cbrange [low:high]
@@ -19,9 +19,10 @@ fits = wide > 34 && page_height * 0.7 / rows > 16
 small = wide > 60 ? 1.0 : 0.75
 number_font = letters.sprintf(',%g', (ending eq 'svg' ? 14 : 10.5) * small)
 middle = (low + high) / 2
+number(value, doubtful) = sprintf('%.3g', value) . (doubtful > 0 ? ' !' : '')
 plot data index 0 using 1:2:(column(3)) with image pixels notitle, \
-     data index 0 using 1:2:(fits && column(3) == column(3) && column(3) >= middle ? sprintf('%.3g', column(3)) : '') with labels font number_font tc rgb 0x101010 notitle, \
-     data index 0 using 1:2:(fits && column(3) == column(3) && column(3) < middle ? sprintf('%.3g', column(3)) : '') with labels font number_font tc rgb 0xFFFFFF notitle, \
+     data index 0 using 1:2:(fits && column(3) == column(3) && column(3) >= middle ? number(column(3), column(4)) : '') with labels font number_font tc rgb 0x101010 notitle, \
+     data index 0 using 1:2:(fits && column(3) == column(3) && column(3) < middle ? number(column(3), column(4)) : '') with labels font number_font tc rgb 0xFFFFFF notitle, \
      data index 0 using 1:(column(3) == column(3) ? NaN : column(2)) with points pt 2 ps 2 lc rgb 0x909090 notitle, \
      data index 1 using 1:(NaN):xticlabels(int(column(1)) % every_x ? '' : sprintf('%.4g', column(2))) with points notitle, \
      data index 2 using (NaN):1:yticlabels(int(column(1)) % every_y ? '' : sprintf('%.4g', column(2))) with points notitle

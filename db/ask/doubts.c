@@ -1,0 +1,104 @@
+/* Counts the runs behind a number whose words mark or withhold it. */
+#include <string.h>
+
+#include "analysis/statistics/estimates.h"
+#include "db/ask/ask.h"
+#include "db/sql.h"
+#include "db/store/views.h"
+#include "engine/engine.h"
+#include "schemas/text.h"
+
+static void add_word(struct ask_doubts *doubts, const char *word, const struct condition *row, int64_t runs) {
+  size_t k = 0;
+  while (k < doubts->count && (strcmp(doubts->word[k].word, word) != 0 || doubts->word[k].row != row))
+    k++;
+  if (k == sizeof doubts->word / sizeof doubts->word[0])
+    return; /* more words than all engines have */
+  if (k == doubts->count) {
+    doubts->word[k] = (struct ask_doubt){.row = row};
+    snprintf(doubts->word[doubts->count++].word, CONDITION_WORD, "%s", word);
+  }
+  doubts->word[k].runs += runs;
+}
+
+enum condition_mark ask_doubts_run(struct ask_doubts *doubts, const char *engine, const char *words,
+                                   const char *results, int64_t runs) {
+  const struct engine_kind *kind = engine_find(engine, NULL);
+  const struct condition *list = kind ? kind->conditions : NULL, *row;
+  const enum condition_mark mark = condition_mark(list, words, results);
+  char word[CONDITION_WORD];
+  doubts->runs += runs;
+  doubts->doubtful += mark != CONDITION_SOUND ? runs : 0;
+  doubts->withheld += mark == CONDITION_WITHHELD ? runs : 0;
+  while (words[strspn(words, ", ")])
+    if (condition_next(list, &words, results, word, &row))
+      add_word(doubts, word, row, runs);
+  return mark;
+}
+
+void ask_doubts_add(struct ask_doubts *doubts, const struct ask_doubts *others) {
+  doubts->runs += others->runs;
+  doubts->doubtful += others->doubtful;
+  doubts->withheld += others->withheld;
+  for (size_t k = 0; k < others->count; k++)
+    add_word(doubts, others->word[k].word, others->word[k].row, others->word[k].runs);
+}
+
+status ask_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *results,
+                  struct ask_doubts *doubts, struct error *error) {
+  sqlite3_str *where = sqlite3_str_new(NULL);
+  if (choice->point)
+    sqlite3_str_appendf(where, " AND point_id = %lld", (long long)choice->point);
+  if (choice->run)
+    sqlite3_str_appendf(where, " AND run_id = %lld", (long long)choice->run);
+  if (choice->campaign || choice->campaign_name)
+    sqlite3_str_appendf(where,
+                        " AND point_id IN (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE "
+                        "campaign_id = %lld OR name = %Q)",
+                        (long long)choice->campaign, choice->campaign_name);
+  if (choice->where)
+    sqlite3_str_appendf(where, " AND (%s\n)", choice->where);
+  ANSWER
+  answer = answer_to(store, error,
+                     "SELECT engine, warnings, count(*) FROM runs WHERE counts = 1 AND results_version = (SELECT "
+                     "max(results_version) FROM point_total t WHERE t.point_id = runs.point_id AND t.runs > 0)%z "
+                     "GROUP BY engine, warnings ORDER BY engine, warnings",
+                     sqlite3_str_finish(where));
+  while (answer_next(&answer))
+    (void)ask_doubts_run(doubts, answer_text(&answer, 0), answer_text(&answer, 1), results, answer_integer(&answer, 2));
+  return answer_end(&answer);
+}
+
+status ask_doubts_results(struct store *store, const char *quantities, char results[ASK_DOUBTS_RESULTS],
+                          struct error *error) {
+  results[0] = 0;
+  if (!quantities)
+    quantities = "beta";
+  const bool all = strcmp(quantities, "main") == 0;
+  const char *names[VIEWS_STATISTICS_MAIN];
+  for (size_t i = 0; all && i < views_statistics_main(names); i++)
+    text_append(results, ASK_DOUBTS_RESULTS, "%s ", names[i]);
+  for (size_t length; !all && *quantities; quantities += length + (quantities[length] == ',')) {
+    char name[ASK_GROUP_NAME];
+    enum exponent_method method;
+    enum estimates_window window;
+    bool exponent;
+    quantities += strspn(quantities, " ");
+    length = strcspn(quantities, ",");
+    snprintf(name, sizeof name, "%.*s", (int)length, quantities);
+    TRY(estimates_named(name, &exponent, &method, &window, error));
+    if (exponent)
+      snprintf(name, sizeof name, "%s", OUTCOME_NAME(mean_fragment_mass));
+    else
+      TRY(ask_group_quantity(store, name, name, error));
+    text_append(results, ASK_DOUBTS_RESULTS, "%s ", name);
+  }
+  return STATUS_OK;
+}
+
+void ask_doubts_words(const struct ask_doubts *doubts, char *text, size_t size) {
+  *text = 0;
+  for (size_t k = 0; k < doubts->count; k++)
+    if (!condition_has(text, doubts->word[k].word))
+      text_append(text, size, "%s%s", *text ? ", " : "", doubts->word[k].word);
+}

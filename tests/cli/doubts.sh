@@ -1,0 +1,167 @@
+# Results in doubt: every command that prints a number of a store marks one that rests on runs beyond the bound of a condition,
+# and says how many runs and what to do. A command that is not in the list below fails this test.
+. "$(dirname "$0")/lib.bash"
+
+# Half of the points have a time step that marks every result; both halves have numbers.
+cat >marked.yaml <<'YAML'
+name: marked
+scene: disc-explosion
+set: {body.diameter: 14 cm, charge.energy: 6 kJ/m, stop.end_time: 1 ms}
+vary: {fidelity.time_step: [1 us, 4 us], threshold.strain: [2 %, 5 %]}
+seeds: {per_point: 3}
+YAML
+cat >unknown.yaml <<'YAML'
+name: unknown
+scene: disc-explosion
+set: {body.diameter: 6 cm, charge.energy: 2 kJ/m, stop.end_time: 0.3 ms, fidelity.time_step: 4 us}
+vary: {threshold.strain: {log_uniform: [1 %, 8 %]}}
+design: {kind: latin_hypercube, points: 8, seed: 3}
+seeds: {per_point: 3}
+store: unknown.db
+YAML
+cat >measured.yaml <<'YAML'
+name: one
+source: made up for this test
+shots:
+  - name: a
+    measured:
+      - {quantity: largest_fraction, value: 0.3, error: 0.05, resolution: 0.02}
+YAML
+cat >sweep.yaml <<'YAML'
+name: sweep
+scene: disc-explosion
+set: {body.diameter: 6 cm, charge.energy: 2 kJ/m, stop.end_time: 0.3 ms, fidelity.time_step: 4 us}
+vary: {threshold.strain: {uniform: [1 %, 6 %]}, threshold.angle: {uniform: [2 deg, 6 deg]}}
+design: {kind: sobol, points: 4}
+seeds: {per_point: 2}
+YAML
+printf '# source: made up\nmass (kg), count\n0.5, 3\n2, 1\n' >measured.csv
+expect 0 "$clast" run marked.yaml --store marked.db -j 2
+says "12 of 12 runs" # the progress line
+grep -q 'largest_fraction 0.[0-9]* !' err || fail "the mean of the progress line is not marked"
+says "6 runs in doubt (!)"
+expect 0 "$clast" sensitivity sweep.yaml ask.yaml --design saltelli --blocks 4
+expect 0 "$clast" run ask.yaml --store ask.db -j 2 --quiet
+
+# What a person sees: " !" behind a number, and below the table the runs, the word, the reason and the remedy.
+marked() { # marked RUNS COMMAND...
+  local runs=$1
+  shift
+  expect 0 "$clast" "$@"
+  grep -Eq '[0-9s] !( |$)' out || fail "no mark: $*"
+  says "marked (!), $runs runs: step: fidelity.time_step over the longest stable step is above 0.25: energy may drift; give a"
+  same "$(grep -c 'marked (!)' err)" 1 "sentences"
+}
+# What a program gets: the number of runs and their words, in rows that rest on them, and in no others.
+columns() { # columns SOUND COMMAND...: SOUND 1: some rows are sound
+  expect 0 "$clast" "${@:2}" --csv
+  python - "$1" <<'PY' || fail "columns of doubts: ${*:2}"
+import csv, sys
+rows = list(csv.DictReader(open("out", newline="")))
+assert list(rows[0])[-1] == "doubts", list(rows[0])
+count = [k for k in rows[0] if k.endswith("doubtful")]
+assert count and {r["doubts"] for r in rows} == ({"", "step"} if sys.argv[1] == "1" else {"step"}), rows
+assert all((int(r[k]) > 0) == (r["doubts"] == "step") for r in rows for k in count), rows
+PY
+  expect 0 "$clast" "${@:2}" --json
+  python -c 'import json; assert any(r["doubts"] == "step" for r in json.load(open("out")))' || fail "JSON: ${*:2}"
+}
+caption() { # caption NAME COMMAND...: the picture NAME.png marks a value or a name, and its caption says why
+  expect 0 "$clast" "${@:2}" --keep-script
+  grep '^caption_text' "$1.gp" | sed "s/'\.\"\\\\n\"\.'/ /g" | grep -q "! in doubt, .* runs: step" || fail "no caption: ${*:2}"
+}
+
+for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "first steps:" {print $1}'); do
+  case $command in
+  run) marked "6 of 12" run marked.yaml --store marked.db
+    columns 1 run marked.yaml --store marked.db ;;
+  estimates) marked "6 of 12" estimates marked.db
+    columns 1 estimates marked.db ;;
+  exponents) marked "3 of 3" exponents marked.db --point 3 --draws 100
+    columns 1 exponents marked.db --draws 100 ;;
+  stats) marked "6 of 12" stats marked.db --by time_step,strain -q main
+    columns 1 stats marked.db --by time_step ;;
+  scatter) marked "6 of 12" scatter marked.db
+    columns 1 scatter marked.db
+    marked "6 of 12" scatter marked.db --plot
+    marked "6 of 12" scatter marked.db --split
+    columns 0 scatter marked.db --split
+    caption s scatter marked.db --picture s.png ;;
+  sensitivity) marked "32 of 32" sensitivity ask.db ask.yaml -q fragment_count
+    columns 0 sensitivity ask.db ask.yaml -q fragment_count ;;
+  spectrum) marked "6 of 12" spectrum marked.db
+    columns 1 spectrum marked.db
+    columns 1 spectrum marked.db --runs
+    marked "6 of 12" spectrum marked.db --plot
+    marked "6 of 12" spectrum marked.db --with measured.csv
+    columns 1 spectrum marked.db --with measured.csv
+    caption f spectrum marked.db --picture f.png ;;
+  compare) marked "3 of 6" compare marked.db:1 marked.db:3
+    columns 0 compare marked.db:1 marked.db:3 ;;
+  plot) caption p plot marked.db p.png --x time_step --by strain
+    same "$(grep -c ' 1$' p.dat)" 2 "marked means" ;;
+  map) caption m map marked.db m.png --x time_step --y strain
+    same "$(grep -c ' 1$' m.dat)" 3 "marked tiles, and the last value of an axis" ;;
+  converge) study=(converge disc-explosion --set body.diameter='6 cm' --set charge.energy='2 kJ/m' --set stop.end_time='0.3 ms'
+    --knob time_step=4us,1us --seeds 2 --within off --store study.db --quiet)
+    marked "2 of 4" "${study[@]}"
+    columns 1 "${study[@]}" ;;
+  fit) marked "72 of 72" fit measured.yaml unknown.yaml --rounds 3 --quiet
+    columns 0 fit measured.yaml unknown.yaml --rounds 3 --quiet
+    caption q fit measured.yaml unknown.yaml --rounds 3 --quiet --picture q.png ;;
+  status) expect 0 "$clast" status marked.db --json
+    python -c 'import json; assert json.load(open("out"))[0]["warned"] == 6' || fail "status" ;;
+  extremes) expect 0 "$clast" extremes marked.db --why
+    prints "step" ;;
+  simulate) expect 0 "$clast" simulate disc-explosion --set fidelity.time_step='4 us' --set stop.end_time='20 us'
+    grep -q '^largest_fraction .* !' out || fail "simulate" ;;
+  plan) expect 0 "$clast" plan marked.yaml --no-trial
+    cat out err | grep -q "2 of 4 points: step: fidelity.time_step" || fail "plan does not tell the condition" ;;
+  explain) expect 0 "$clast" explain step
+    prints "above 0.25" ;;
+  report) ;; # cli.report looks at the page
+  # raw values, with the words beside them: clast query, clast export
+  query | export) ;;
+  # no numbers of a store that rest on runs: files, pictures of one body, bits, other programs
+  serve | retry | scenes | materials | schema | cite | picture | check | merge | replay | help | version | completion) ;;
+  *) fail "clast $command is new: does it print a number that may be in doubt?" ;;
+  esac
+done
+
+# Withheld: "-" where no run has a meaning; where some have one, the mean is theirs, and their number stands beside it.
+cat >withheld.yaml <<'YAML'
+name: withheld
+scene: compression
+set: {body.columns: 12, body.rows: 20}
+vary: {loading.strain_end: [2 %, 6 %]}
+seeds: {per_point: 3}
+store: withheld.db
+YAML
+expect 0 "$clast" run withheld.yaml -j 2 --quiet
+expect 0 "$clast" stats withheld.db -q strength --by strain_end
+says "withheld, 3 of 6 runs: event: the last stress over the largest one is above 0.9"
+expect 0 "$clast" stats withheld.db -q strength --by strain_end --csv
+python - <<'PY' || fail "withheld"
+import csv
+few, enough = csv.DictReader(open("out", newline=""))
+assert few["strength_mean"] == "" and few["strength_n"] == "0" and few["strength_doubtful"] == "3" and few["doubts"] == "event"
+assert float(enough["strength_mean"]) > 2e7 and enough["strength_n"] == "3" and enough["doubts"] == ""
+PY
+expect 0 "$clast" stats withheld.db -q strength
+grep -Eq ' [0-9.e+]+ \(3\) !' out || fail "a mean of three of six runs"
+expect 0 "$clast" query withheld.db "select count(strength) as n, count(meant(engine, warnings, 'strength', strength)) as m from runs" --csv
+prints "6,3" # the store keeps the raw values
+expect 64 "$clast" compare withheld.db:1 withheld.db:2 -q strength
+says "no run that counts has a value of strength that is not withheld"
+ok "withheld values"
+
+# A word without a row comes from another version of clast, and marks every result.
+expect 0 "$clast" export marked.db old.db
+python -c "
+import sqlite3
+db = sqlite3.connect('old.db')
+db.execute(\"UPDATE run SET warnings = 'soot' WHERE point_id = 1\")
+db.commit()"
+expect 0 "$clast" stats old.db --by time_step
+says "marked (!), 3 of 12 runs: soot: a word of another version of clast"
+done_after 78
