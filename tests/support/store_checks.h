@@ -1,4 +1,5 @@
-/* Common parts of the store's tests: calls that must succeed, and one number of a query. Include cmocka first. */
+/* Common parts of tests of the store: calls that must succeed, bytes of a file, one number of a query. Include cmocka
+ * first. */
 #ifndef CLAST_TESTS_STORE_CHECKS_H
 #define CLAST_TESTS_STORE_CHECKS_H
 
@@ -23,6 +24,31 @@ __attribute__((unused)) static char *dump(const char *path) {
   fclose(out);
   OK(store_close(store, &error));
   return text;
+}
+
+/* The bytes of a store that no program has open. They are malloc'd. */
+struct store_file {
+  uint8_t *bytes;
+  size_t size;
+};
+
+static inline struct store_file store_file_read(const char *path) {
+  FILE *in = fopen(path, "rb");
+  assert_non_null(in);
+  fseek(in, 0, SEEK_END);
+  struct store_file file = {.size = (size_t)ftell(in)};
+  file.bytes = malloc(file.size);
+  rewind(in);
+  assert_int_equal(fread(file.bytes, 1, file.size, in), file.size);
+  fclose(in);
+  return file;
+}
+
+static inline void store_file_write(const char *path, const struct store_file *file) {
+  FILE *out = fopen(path, "wb");
+  assert_non_null(out);
+  assert_int_equal(fwrite(file->bytes, 1, file->size, out), file->size);
+  assert_int_equal(fclose(out), 0);
 }
 
 static inline double number(struct store *store, const char *sql) {
