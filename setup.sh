@@ -3,6 +3,7 @@
 #
 #   ./setup.sh demo     install what is missing, build clast alone, run the demo campaign
 #   ./setup.sh test     install what is missing, build with warnings as errors, pass every test; again under sanitizers
+#                       (test --full: instead the long form of every test: hours to days, best as root)
 #   ./setup.sh build    install what is missing, build build/release/clast
 #   ./setup.sh deb DIR  install what is missing, put clast's Debian package into the folder DIR
 #   ./setup.sh packages only install what is missing
@@ -18,11 +19,12 @@ python3 python3-jsonschema python3-ruamel.yaml sqlite3"
 # The page of `clast report` is bundled by npm; its tests open it in a browser. The demo needs neither.
 page_packages="nodejs npm"
 test_packages="chromium file" # cpack needs file
+full_packages="clang debootstrap iproute2 munge slurm-wlm"
 
 say() { printf '\n== %s\n' "$*" >&2; }
 
 usage() {
-  sed -n '2,9s/^# \{0,1\}//p' "$0"
+  sed -n '2,10s/^# \{0,1\}//p' "$0"
   exit "$1"
 }
 
@@ -105,6 +107,13 @@ case "${1:-}" in
     ;;
   test)
     install_missing $packages $page_packages $test_packages
+    if [ "${2:-}" = --full ]; then
+      install_missing $full_packages
+      build ci
+      say "tests, long forms; those that cannot run here are told as skipped"
+      ctest --preset full -j "$(nproc)"
+      exit
+    fi
     build ci
     say "tests, release build"
     ctest --preset ci -j "$(nproc)"
