@@ -118,7 +118,8 @@ class Store:
         return self.query("SELECT * FROM runs" + (" WHERE counts = 1" if counted else ""))
 
     def points(self):
-        """A row for each point: varied inputs; n; _mean, _sd, _se and _hw95 (95 % interval) of the main results."""
+        """A row for each point: varied inputs; n; _mean, _sd, _se, _hw95, _low95 and
+        _high95 (95 % interval; _hw95 is None when all runs are equal) of the main results."""
         return self.query("SELECT * FROM points")
 
     def spectra(self, point=None):

@@ -30,7 +30,8 @@ if hasattr(points, "to_dict"):
     points = points.to_dict("records")
 for point in points:
     print(f"strain {point['threshold_strain']:.2f}  angle {math.degrees(point['threshold_angle']):.0f} deg  "
-          f"M_1/M {point['largest_fraction_mean']:.3f} +- {point['largest_fraction_hw95']:.3f}  (n = {point['n']})")
+          f"M_1/M {point['largest_fraction_mean']:.3f} ({point['largest_fraction_low95']:.3f} to "
+          f"{point['largest_fraction_high95']:.3f})  (n = {point['n']})")
 
 # %% [markdown]
 # All fragment masses of one run, and the body at its end.

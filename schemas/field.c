@@ -15,6 +15,10 @@ bool field_is_off(double value) {
   return isnan(value);
 }
 
+bool field_is_share(const struct field *row) {
+  return row->kind == FIELD_REAL && row->minimum >= 0 && row->minimum <= 0 && row->maximum >= 1 && row->maximum <= 1;
+}
+
 /* ---- names ---- */
 
 /* Does `path` end with the whole words of `suffix`? */

@@ -118,7 +118,8 @@ struct field_value {
 };
 
 size_t field_choice_count(const struct field *row);
-bool field_is_off(double value); /* value of a FIELD_MAY_BE_OFF row */
+bool field_is_off(double value);              /* value of a FIELD_MAY_BE_OFF row */
+bool field_is_share(const struct field *row); /* a real number from 0 to 1 */
 
 /* Exact path, or unique suffix after a dot ("strain" for "threshold.strain"), or the path as the name of a column
  * ("threshold_strain"). NULL: *error has STATUS_CONTENT and names the nearest known paths (or the candidates of an

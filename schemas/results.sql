@@ -543,6 +543,14 @@ WITH first AS (
     k3 + s3 / n AS m3, sqrt(max(0, (q3 - s3 * s3 / n) / (n - 1))) AS d3,
     k4 + s4 / n AS m4, sqrt(max(0, (q4 - s4 * s4 / n) / (n - 1))) AS d4
   FROM moment
+), width AS (
+  SELECT *,
+    iif(d0 > 1e-12 * abs(m0), t * d0 / sqrt(n) * (1 + 0.375 * min(sqrt(n), d0 / max(min(m0, 1 - m0), 1e-300)) * min(1, sqrt(25.0 / n))), NULL) AS h0,
+    iif(d1 > 1e-12 * abs(m1), t * d1 / sqrt(n) * (1 + 0.375 * min(sqrt(n), d1 / max(min(m1, 1 - m1), 1e-300)) * min(1, sqrt(25.0 / n))), NULL) AS h1,
+    iif(d2 > 1e-12 * abs(m2), t * d2 / sqrt(n), NULL) AS h2,
+    iif(d3 > 1e-12 * abs(m3), t * d3 / sqrt(n) * (1 + 0.375 * min(sqrt(n), d3 / max(min(m3, 1 - m3), 1e-300)) * min(1, sqrt(25.0 / n))), NULL) AS h3,
+    iif(d4 > 1e-12 * abs(m4), t * d4 / sqrt(n), NULL) AS h4
+  FROM scatter
 )
 , unresolved AS MATERIALIZED (SELECT point_id, results_version,
     max(iif('largest_fraction' IN (quantity, 'result_' || engine || '_' || quantity), half_width, NULL)) AS e0, max(iif('largest_fraction' IN (quantity, 'result_' || engine || '_' || quantity), verdict, NULL)) AS v0,
@@ -554,18 +562,29 @@ WITH first AS (
 SELECT p.point_id, p.engine, p.scene_name AS scene,
   t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS failed,
   ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS failed_attempts,
-  m0 AS largest_fraction_mean, d0 AS largest_fraction_sd, d0 / sqrt(n) AS largest_fraction_se, s.t * d0 / sqrt(n) AS largest_fraction_hw95,
-  e0 AS largest_fraction_resolution, ifnull(v0, 'not-studied') AS largest_fraction_resolution_verdict,
-  m1 AS second_fraction_mean, d1 AS second_fraction_sd, d1 / sqrt(n) AS second_fraction_se, s.t * d1 / sqrt(n) AS second_fraction_hw95,
-  e1 AS second_fraction_resolution, ifnull(v1, 'not-studied') AS second_fraction_resolution_verdict,
-  m2 AS fragment_count_mean, d2 AS fragment_count_sd, d2 / sqrt(n) AS fragment_count_se, s.t * d2 / sqrt(n) AS fragment_count_hw95,
-  e2 AS fragment_count_resolution, ifnull(v2, 'not-studied') AS fragment_count_resolution_verdict,
-  m3 AS dust_fraction_mean, d3 AS dust_fraction_sd, d3 / sqrt(n) AS dust_fraction_se, s.t * d3 / sqrt(n) AS dust_fraction_hw95,
-  e3 AS dust_fraction_resolution, ifnull(v3, 'not-studied') AS dust_fraction_resolution_verdict,
-  m4 AS mean_fragment_mass_mean, d4 AS mean_fragment_mass_sd, d4 / sqrt(n) AS mean_fragment_mass_se, s.t * d4 / sqrt(n) AS mean_fragment_mass_hw95,
-  e4 AS mean_fragment_mass_resolution, ifnull(v4, 'not-studied') AS mean_fragment_mass_resolution_verdict
+  m0 AS "largest_fraction_mean", d0 AS "largest_fraction_sd", d0 / sqrt(n) AS "largest_fraction_se", h0 AS "largest_fraction_hw95",
+  iif(h0 IS NULL, iif(n > 1, m0 * pow(0.05, 1.0 / n), NULL), max(m0 - h0, 0.0)) AS "largest_fraction_low95",
+  iif(h0 IS NULL, iif(n > 1, 1 - (1 - m0) * pow(0.05, 1.0 / n), NULL), min(m0 + h0, 1.0)) AS "largest_fraction_high95",
+  iif(h0 IS NULL, NULL, (n < 40 AND d0 < 0.045 * max(m0, 1 - m0)) OR (n < 20 AND d0 < 0.14 * max(m0, 1 - m0) AND d0 > 0.4 * min(m0, 1 - m0))) AS "largest_fraction_weak",
+  e0 AS "largest_fraction_resolution", ifnull(v0, 'not-studied') AS "largest_fraction_resolution_verdict",
+  m1 AS "second_fraction_mean", d1 AS "second_fraction_sd", d1 / sqrt(n) AS "second_fraction_se", h1 AS "second_fraction_hw95",
+  iif(h1 IS NULL, iif(n > 1, m1 * pow(0.05, 1.0 / n), NULL), max(m1 - h1, 0.0)) AS "second_fraction_low95",
+  iif(h1 IS NULL, iif(n > 1, 1 - (1 - m1) * pow(0.05, 1.0 / n), NULL), min(m1 + h1, 1.0)) AS "second_fraction_high95",
+  iif(h1 IS NULL, NULL, (n < 40 AND d1 < 0.045 * max(m1, 1 - m1)) OR (n < 20 AND d1 < 0.14 * max(m1, 1 - m1) AND d1 > 0.4 * min(m1, 1 - m1))) AS "second_fraction_weak",
+  e1 AS "second_fraction_resolution", ifnull(v1, 'not-studied') AS "second_fraction_resolution_verdict",
+  m2 AS "fragment_count_mean", d2 AS "fragment_count_sd", d2 / sqrt(n) AS "fragment_count_se", h2 AS "fragment_count_hw95",
+  m2 - h2 AS "fragment_count_low95", m2 + h2 AS "fragment_count_high95", NULL AS "fragment_count_weak",
+  e2 AS "fragment_count_resolution", ifnull(v2, 'not-studied') AS "fragment_count_resolution_verdict",
+  m3 AS "dust_fraction_mean", d3 AS "dust_fraction_sd", d3 / sqrt(n) AS "dust_fraction_se", h3 AS "dust_fraction_hw95",
+  iif(h3 IS NULL, iif(n > 1, m3 * pow(0.05, 1.0 / n), NULL), max(m3 - h3, 0.0)) AS "dust_fraction_low95",
+  iif(h3 IS NULL, iif(n > 1, 1 - (1 - m3) * pow(0.05, 1.0 / n), NULL), min(m3 + h3, 1.0)) AS "dust_fraction_high95",
+  iif(h3 IS NULL, NULL, (n < 40 AND d3 < 0.045 * max(m3, 1 - m3)) OR (n < 20 AND d3 < 0.14 * max(m3, 1 - m3) AND d3 > 0.4 * min(m3, 1 - m3))) AS "dust_fraction_weak",
+  e3 AS "dust_fraction_resolution", ifnull(v3, 'not-studied') AS "dust_fraction_resolution_verdict",
+  m4 AS "mean_fragment_mass_mean", d4 AS "mean_fragment_mass_sd", d4 / sqrt(n) AS "mean_fragment_mass_se", h4 AS "mean_fragment_mass_hw95",
+  m4 - h4 AS "mean_fragment_mass_low95", m4 + h4 AS "mean_fragment_mass_high95", NULL AS "mean_fragment_mass_weak",
+  e4 AS "mean_fragment_mass_resolution", ifnull(v4, 'not-studied') AS "mean_fragment_mass_resolution_verdict"
 FROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id
-  LEFT JOIN scatter s ON s.point_id = t.point_id AND s.results_version = t.results_version
+  LEFT JOIN width s ON s.point_id = t.point_id AND s.results_version = t.results_version
   LEFT JOIN unresolved u ON u.point_id = t.point_id AND u.results_version = t.results_version;
 
 CREATE VIEW spectra AS -- pooled fragment mass spectrum of every point
@@ -936,7 +955,11 @@ INSERT INTO column_doc VALUES ('point_total', 'surplus', '1', 'runs left out bec
 
 INSERT INTO column_doc VALUES ('points', 'censored', '1', 'runs that count and ended at their time: fragments may still have been breaking', 0);
 
-INSERT INTO column_doc VALUES ('points', 'dust_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean (Student): Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
+
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
+
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_low95', '1', 'lower end of this interval; of a share also when all runs are equal: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_mean', '1', 'mean over runs: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
@@ -948,13 +971,19 @@ INSERT INTO column_doc VALUES ('points', 'dust_fraction_sd', '1', 'standard devi
 
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_se', '1', 'standard error of the mean: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
+
 INSERT INTO column_doc VALUES ('points', 'engine', NULL, 'name of the engine', 0);
 
 INSERT INTO column_doc VALUES ('points', 'failed', '1', 'runs that gave no usable result (NaN, time step, energy, invalid)', 0);
 
 INSERT INTO column_doc VALUES ('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers', 0);
 
-INSERT INTO column_doc VALUES ('points', 'fragment_count_hw95', '1', 'half width of the 95 % confidence interval of the mean (Student): Fragments of any size, single grains (dust) included.', 0);
+INSERT INTO column_doc VALUES ('points', 'fragment_count_high95', '1', 'upper end of this interval; of a share also when all runs are equal: Fragments of any size, single grains (dust) included.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'fragment_count_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: Fragments of any size, single grains (dust) included.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'fragment_count_low95', '1', 'lower end of this interval; of a share also when all runs are equal: Fragments of any size, single grains (dust) included.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'fragment_count_mean', '1', 'mean over runs: Fragments of any size, single grains (dust) included.', 0);
 
@@ -966,7 +995,13 @@ INSERT INTO column_doc VALUES ('points', 'fragment_count_sd', '1', 'standard dev
 
 INSERT INTO column_doc VALUES ('points', 'fragment_count_se', '1', 'standard error of the mean: Fragments of any size, single grains (dust) included.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean (Student): Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'fragment_count_weak', '1', '1: too few runs of this kind for the interval of this share: Fragments of any size, single grains (dust) included.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal: Mass of the largest fragment over the total mass, M_1/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: Mass of the largest fragment over the total mass, M_1/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_low95', '1', 'lower end of this interval; of a share also when all runs are equal: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_mean', '1', 'mean over runs: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
@@ -978,7 +1013,13 @@ INSERT INTO column_doc VALUES ('points', 'largest_fraction_sd', '1', 'standard d
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_se', '1', 'standard error of the mean: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_hw95', 'kg', 'half width of the 95 % confidence interval of the mean (Student): Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass of the largest fragment over the total mass, M_1/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_high95', 'kg', 'upper end of this interval; of a share also when all runs are equal: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_hw95', 'kg', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_low95', 'kg', 'lower end of this interval; of a share also when all runs are equal: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_mean', 'kg', 'mean over runs: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
@@ -990,6 +1031,8 @@ INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_sd', 'kg', 'standar
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_se', 'kg', 'standard error of the mean: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_weak', 'kg', '1: too few runs of this kind for the interval of this share: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+
 INSERT INTO column_doc VALUES ('points', 'n', '1', 'runs that count: completed, or ended at their time, and not surplus', 0);
 
 INSERT INTO column_doc VALUES ('points', 'point_id', NULL, 'the point', 0);
@@ -998,7 +1041,11 @@ INSERT INTO column_doc VALUES ('points', 'results_version', NULL, 'version of th
 
 INSERT INTO column_doc VALUES ('points', 'scene', NULL, 'name of the scene the inputs started from', 0);
 
-INSERT INTO column_doc VALUES ('points', 'second_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean (Student): Mass of the second largest fragment over the total mass, M_2/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'second_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'second_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'second_fraction_low95', '1', 'lower end of this interval; of a share also when all runs are equal: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'second_fraction_mean', '1', 'mean over runs: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
@@ -1009,6 +1056,8 @@ INSERT INTO column_doc VALUES ('points', 'second_fraction_resolution_verdict', '
 INSERT INTO column_doc VALUES ('points', 'second_fraction_sd', '1', 'standard deviation between runs: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'second_fraction_se', '1', 'standard error of the mean: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'second_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'surplus', '1', 'runs left out because a stopping rule decided without them', 0);
 

@@ -5,7 +5,7 @@ import {inputsOf} from './spectrum.js';
 import * as questions from './questions.js';
 import {state} from './state.js';
 import {ask, has} from './stores.js';
-import {label, number, shellFile, withError} from './words.js';
+import {label, number, shellFile, withError, withInterval} from './words.js';
 
 const SHOWN = 500;
 
@@ -25,7 +25,7 @@ export function showCompare() {
   const [first, ...others] = state.stores;
   const known = others.map((other) => new Map(cells(other, state.quantity).map((cell) => [keyOf(other, cell), cell])));
   const rows = cells(first, state.quantity).map((cell) => [cell, ...known.map((map) => map.get(keyOf(first, cell)))]).filter((row) => row.slice(1).some(Boolean));
-  const shown = (cell) => (cell ? `${withError(cell.mean, cell.hw95)}, n=${cell.n ?? 0}` : '-');
+  const shown = (cell) => (cell ? `${withInterval(cell)}, n=${cell.n ?? 0}` : '-');
   const differences = others.map((other) => differencesOf(first, other));
   const less = (a, b, i) => differences[i].get(`${a.point_id} ${b?.point_id}`) ?? (b && a.mean !== null && b.mean !== null ? number(b.mean - a.mean, 3) : '-');
   const title = label(state.stores, state.quantity);

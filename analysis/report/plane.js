@@ -5,17 +5,18 @@ import {COLOURS, draw, nothing, scale} from './chart.js';
 import {listenToKeys, placesOf} from './keys.js';
 import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
-import {halfWidth} from './statistics.js';
+import {interval} from './statistics.js';
 import {ask, has, newest} from './stores.js';
-import {inUnit, label, number, plural, shellFile, withError} from './words.js';
+import {inUnit, isShare, label, number, plural, shellFile, withInterval} from './words.js';
 
 const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
 
 function statistics(from, quantity) {
   if (quantity === 'beta') return newest(ask(from, questions.exponents));
-  if (from.quantities.main.includes(quantity)) return newest(ask(from, questions.mainStatistics(quantity)));
-  if (has(from, 'means')) return newest(ask(from, questions.otherStatistics, {quantity}));
-  return newest(ask(from, questions.statisticsOfRuns(quantity)).map((row) => ({...row, hw95: halfWidth(row.sd, row.n)})));
+  const share = isShare(state.stores, quantity);
+  const rows = from.quantities.main.includes(quantity) ? ask(from, questions.mainStatistics(quantity))
+    : has(from, 'means') ? ask(from, questions.otherStatistics, {quantity}) : ask(from, questions.statisticsOfRuns(quantity));
+  return newest(rows.map((row) => ({...row, ...interval(row.mean, row.sd, row.n, share)})));
 }
 
 // Every point with the mean of the quantity, the half width of its interval over seeds, and the error that the
@@ -27,9 +28,9 @@ export function cells(from, quantity) {
   const modes = has(from, 'modes') ? new Map(ask(from, questions.modes, {quantity}).map((row) => [row.point_id, row])) : new Map();
   const judged = has(from, 'modes') && quantity !== 'beta'; // not on whole stores, and an exponent belongs to all runs
   return from.points.map((point) => {
-    const {mean = null, hw95 = null} = known.get(point.point_id) ?? {};
+    const {mean = null, hw95 = null, low95 = null, high95 = null, weak = null} = known.get(point.point_id) ?? {};
     const {half_width: resolution = null, verdict = null} = studied.get(point.point_id) ?? {};
-    return {...point, mean, hw95, resolution, verdict, modes: modes.get(point.point_id) ?? null, judged};
+    return {...point, mean, hw95, low95, high95, weak, resolution, verdict, modes: modes.get(point.point_id) ?? null, judged};
   });
 }
 
@@ -77,10 +78,10 @@ function data(quantity) {
     ...cell,
     [state.x]: placeOf(state.x, cell[state.x]),
     ...(state.y ? {[state.y]: placeOf(state.y, cell[state.y])} : {}),
-    shown: withError(cell.mean, cell.hw95),
+    shown: withInterval(cell),
     text: number(cell.mean, 3),
-    low: cell.mean - cell.hw95,
-    high: cell.mean + cell.hw95,
+    low: cell.low95 ?? cell.mean - cell.hw95,
+    high: cell.high95 ?? cell.mean + cell.hw95,
     resolutionText: resolutionText(cell),
     modesText: modesText(cell),
     twoModes: cell.modes !== null,
@@ -120,7 +121,7 @@ function planeSpec(rows, title) {
     layers.push({transform: [{filter: isChosen}], mark: {type: 'rect', filled: false, stroke: '#D40000', strokeWidth: 4, tooltip: null}, encoding: place});
   if (grid && room >= 50 && !several)
     layers.push({mark: {type: 'text', baseline: 'middle', tooltip: null, fontSize: 12},
-      transform: [{calculate: "datum.mean === null ? '-' : datum.text + (datum.hw95 === null ? '' : ' ±' + format(datum.hw95, '.1~g'))", as: 'cell'},
+      transform: [{calculate: "datum.mean === null ? '-' : datum.text + (datum.hw95 === null ? '' : ' ±' + format(datum.hw95, '.1~g')) + (datum.weak ? '~' : '')", as: 'cell'},
         {calculate: room >= 130 ? "datum.cell + '  n=' + datum.n" : room >= 90 ? 'datum.cell' : 'datum.text', as: 'cell'}],
       encoding: {...place, text: {field: 'cell'}, color: {condition: {test: `datum.mean === null || datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
   if (rows.some((row) => row.twoModes))
@@ -233,8 +234,8 @@ export async function showPlane() {
   const view = await draw(figure, state.y ? planeSpec(rows, title) : lineSpec(known, title), {
     name: 'plane', description: `${title} over ${inputs.map((input) => label(state.stores, input)).join(' and ')}. Arrow keys move, the space bar chooses; the table of points below has the numbers`,
     keys: true,
-    caption, command: commandOf(), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'resolution'],
-    rows: rows.map((row) => [row.point_id, ...inputs.map((input) => row[input]), row.n, row.mean, row.hw95, row.resolution]),
+    caption, command: commandOf(), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'low95', 'high95', 'weak', 'resolution'],
+    rows: rows.map((row) => [row.point_id, ...inputs.map((input) => row[input]), row.n, row.mean, row.hw95, row.low95, row.high95, row.weak, row.resolution]),
   });
   plane.view = view;
   listen(view);
@@ -258,7 +259,7 @@ export function showPoints() {
     change: () => choose([...body('points').querySelectorAll('input:checked')].map((box) => Number(box.value)))});
   fill(body('points'), table(`Points of ${store().name}${plane.rows.length > rows.length ? `: the first ${rows.length}` : ''}`,
     ['chosen', 'point', ...axes.map((axis) => label(state.stores, axis)), 'runs', 'failed', label(state.stores, state.quantity), 'resolution', 'modes'],
-    rows.map((row) => [boxes(row), row.point_id, ...axes.map((axis) => (axis === state.x || axis === state.y ? number(row[axis]) : number(inUnit(state.stores, axis, row[axis])))), row.n ?? 0, row.failed ?? 0, withError(row.mean, row.hw95), row.resolutionText, row.modesText])));
+    rows.map((row) => [boxes(row), row.point_id, ...axes.map((axis) => (axis === state.x || axis === state.y ? number(row[axis]) : number(inUnit(state.stores, axis, row[axis])))), row.n ?? 0, row.failed ?? 0, withInterval(row), row.resolutionText, row.modesText])));
 }
 
 export function showChoices() {

@@ -6,7 +6,7 @@ export const name = (text) => `"${String(text).replaceAll('"', '""')}"`;
 export const tables = 'SELECT name FROM sqlite_schema';
 export const columns = 'SELECT name FROM pragma_table_info(:table)';
 export const facts = 'SELECT name, value FROM fact';
-export const labels = 'SELECT column_name, label, unit, factor FROM label';
+export const labels = 'SELECT column_name, label, unit, factor, share FROM label';
 export const units = `SELECT column_name, min(unit) AS unit FROM column_doc WHERE unit <> '1'
   GROUP BY column_name HAVING count(DISTINCT unit) = 1`;
 export const axes = 'SELECT column_name, path, unit, meaning FROM axis ORDER BY path';
@@ -24,8 +24,8 @@ export const failedAttempts = 'SELECT reason, count(*) AS n, min(message) AS exa
 export const points = (axes) => `SELECT point_id, scene, results_version, n, failed, censored, surplus, failed_attempts
   ${axes.map((axis) => `, ${name(axis)}`).join('')} FROM points ORDER BY point_id, results_version`;
 export const mainStatistics = (quantity) => `SELECT point_id, results_version, n, ${name(`${quantity}_mean`)} AS mean,
-  ${name(`${quantity}_sd`)} AS sd, ${name(`${quantity}_hw95`)} AS hw95 FROM points ORDER BY results_version`;
-export const otherStatistics = 'SELECT point_id, results_version, n, mean, sd, hw95 FROM means WHERE quantity = :quantity ORDER BY results_version';
+  ${name(`${quantity}_sd`)} AS sd FROM points ORDER BY results_version`;
+export const otherStatistics = 'SELECT point_id, results_version, n, mean, sd FROM means WHERE quantity = :quantity ORDER BY results_version';
 export const otherQuantities = 'SELECT DISTINCT quantity FROM means';
 // Of a whole store, which has no table of means: two moments about the first value.
 export const statisticsOfRuns = (quantity) => `SELECT point_id, results_version, count(${name(quantity)}) AS n,

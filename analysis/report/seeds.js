@@ -7,7 +7,7 @@ import {nameOf, whereOf} from './spectrum.js';
 import {chosenPoints, state, store} from './state.js';
 import {summary} from './statistics.js';
 import {ask, has} from './stores.js';
-import {label, number, plural, shellFile, withError} from './words.js';
+import {isShare, label, number, plural, shellFile, withInterval} from './words.js';
 
 function valuesOf(from, point, quantity) {
   const rows = ask(from, questions.values(quantity), {point: point.point_id});
@@ -49,7 +49,7 @@ export async function showSeeds() {
   const x = {field: 'low', type: 'quantitative', title, scale: {zero: false, nice: false}, axis: {tickCount: 6, labelOverlap: true, format: '.3~g'}};
   const y = {field: 'runs', type: 'quantitative', title: 'runs', axis: {tickMinStep: 1, format: 'd'}};
   const whole = new Map(cells(from, quantity).map((cell) => [cell.point_id, cell]));
-  const means = drawn.map((sample) => ({name: sample.name, ...summary(sample.values), all: apart ? whole.get(sample.point.point_id) : null}));
+  const means = drawn.map((sample) => ({name: sample.name, ...summary(sample.values, isShare(state.stores, quantity)), all: apart ? whole.get(sample.point.point_id) : null}));
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend: names.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null};
   const dash = {field: 'name', type: 'nominal', scale: {domain: names, range: DASHES}, legend: colour.legend};
   const shape = names.length > 1
@@ -63,7 +63,7 @@ export async function showSeeds() {
     command: commandOf(from, quantity, samples.map((sample) => sample.point.point_id)),
     columns: ['point', quantity], rows: samples.flatMap((sample) => sample.values.map((value) => [sample.name, value])),
   });
-  const mean = (row) => (row.all ? `${withError(row.all.mean, row.all.hw95)}, n=${row.all.n}` : withError(row.mean, row.hw95));
+  const mean = (row) => (row.all ? `${withInterval(row.all)}, n=${row.all.n}` : withInterval(row));
   const known = apart && has(from, 'quantile') ? samples.map(({point}) => new Map(ask(from, questions.quantiles, {quantity, point: point.point_id}).map((row) => [row.share, row]))) : [];
   const quantileOf = (share, key) => (row, i) => {
     const all = known[i]?.get(share);

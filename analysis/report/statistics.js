@@ -12,7 +12,22 @@ export function student(degrees) {
   return 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 * x) * x) * x) * x;
 }
 
-export const halfWidth = (sd, n) => (n > 1 && sd !== null ? (student(n - 1) * sd) / Math.sqrt(n) : null);
+// The 95 % interval of a mean, as clast makes it; the numbers and their reasons are in analysis/statistics/sample.h.
+export function interval(mean, sd, n, share = false) {
+  const none = {hw95: null, low95: null, high95: null, weak: null};
+  if (!(n > 1) || sd === null) return none;
+  if (!(sd > 1e-12 * Math.abs(mean))) {
+    const seen = 0.05 ** (1 / n);
+    return share ? {...none, low95: mean * seen, high95: 1 - (1 - mean) * seen} : none;
+  }
+  const student95 = (student(n - 1) * sd) / Math.sqrt(n);
+  if (!share) return {hw95: student95, low95: mean - student95, high95: mean + student95, weak: null};
+  const near = Math.min(mean, 1 - mean), far = Math.max(mean, 1 - mean);
+  const skew = Math.min(Math.sqrt(n), sd / Math.max(near, 1e-300)) * Math.min(1, Math.sqrt(25 / n));
+  const hw95 = student95 * (1 + 0.375 * skew);
+  const weak = (n < 40 && sd < 0.045 * far) || (n < 20 && sd < 0.14 * far && sd > 0.4 * near);
+  return {hw95, low95: Math.max(mean - hw95, 0), high95: Math.min(mean + hw95, 1), weak: Number(weak)};
+}
 
 // values in ascending order; linear between neighbours.
 export function quantile(sorted, p) {
@@ -20,12 +35,12 @@ export function quantile(sorted, p) {
   return below + 1 < sorted.length ? sorted[below] + (place - below) * (sorted[below + 1] - sorted[below]) : sorted[below];
 }
 
-export function summary(values) {
+export function summary(values, share = false) {
   const n = values.length;
   const mean = values.reduce((sum, value) => sum + value, 0) / n;
   const sd = n > 1 ? Math.sqrt(values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (n - 1)) : null;
   const sorted = Float64Array.from(values).sort();
-  return {n, mean, sd, hw95: halfWidth(sd, n), least: sorted[0], quarter: quantile(sorted, 0.25), median: quantile(sorted, 0.5),
+  return {n, mean, sd, ...interval(mean, sd, n, share), least: sorted[0], quarter: quantile(sorted, 0.25), median: quantile(sorted, 0.5),
     threeQuarters: quantile(sorted, 0.75), largest: sorted[n - 1]};
 }
 
@@ -41,6 +56,6 @@ export function pool(spectra) {
     }
   return [...places.values()].sort((a, b) => a.lower - b.lower).map(({means, ...bin}) => {
     const {mean, sd} = summary([...means, ...new Array(points - means.length).fill(0)]);
-    return {...bin, count_mean: mean, count_hw95: halfWidth(sd, points)};
+    return {...bin, count_mean: mean, count_hw95: interval(mean, sd, points).hw95};
   });
 }

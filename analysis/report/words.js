@@ -12,11 +12,20 @@ export function number(value, digits = 4) {
 export const withError = (mean, half) =>
   half === null || half === undefined ? `${number(mean)}` : `${number(mean)} ± ${number(half, 2)}`;
 
+// A mean with its interval; of equal shares, what they bound.
+export function withInterval({mean, hw95, low95, high95, weak}) {
+  if (hw95 === null && typeof low95 === 'number') return `${number(mean)} (all equal: ${number(low95, 3)} to ${number(high95, 3)})`;
+  return withError(mean, hw95) + (weak ? ' (weak)' : '');
+}
+
 export const plural = (count, word) => `${count} ${word}${count === 1 ? '' : 's'}`;
 
 // The first store that names a column decides its name and its unit: inputs are shown in the unit that the campaign
 // gives them in, and one of it is `factor` in SI.
 const named = (stores, column) => stores.map((store) => store.labels.get(column)).find(Boolean);
+
+// A result between 0 and 1.
+export const isShare = (stores, column) => Boolean(named(stores, column)?.share);
 
 // The column in SI by its own words.
 export function plain(stores, column) {

@@ -213,7 +213,7 @@ status measured_compare(const struct measured *measured, const struct pooled_run
   complete = fmax(fmax(complete, measured->complete), 0); /* fmax ignores a NaN */
   while (first < measured->n && measured->mass[first] < complete)
     first++;
-  *out = (struct measured_match){complete, 0, {0, NAN, NAN, NAN, NAN}, NAN, NAN, NAN};
+  *out = (struct measured_match){complete, 0, sample_summarise(0, NULL, 0.95), NAN, NAN, NAN};
   if (first == measured->n || !(measured->above[first] > 0))
     return STATUS_OK;
   if (!measured->single || !(complete > 0))

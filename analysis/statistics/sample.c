@@ -30,7 +30,7 @@ void sample_add(struct sample_moments *moments, double value) {
 }
 
 struct sample_summary sample_summarise_moments(const struct sample_moments *moments, double level) {
-  struct sample_summary summary = {moments->n, NAN, NAN, NAN, NAN};
+  struct sample_summary summary = {moments->n, NAN, NAN, NAN, NAN, NAN, NAN, false};
   if (summary.n > 0)
     summary.mean = moments->mean;
   if (summary.n < 2 || isnan(moments->squares)) /* NaN: a value is infinite */
@@ -38,8 +38,32 @@ struct sample_summary sample_summarise_moments(const struct sample_moments *mome
   double n = (double)summary.n;
   summary.standard_deviation = sqrt(fmax(moments->squares, 0) / (n - 1));
   summary.standard_error = summary.standard_deviation / sqrt(n);
+  if (!(summary.standard_deviation > SAMPLE_ROUNDING * fabs(summary.mean)))
+    return summary;
   summary.half_width = sample_student(summary.n, level) * summary.standard_error;
+  summary.low = summary.mean - summary.half_width;
+  summary.high = summary.mean + summary.half_width;
   return summary;
+}
+
+void sample_of_share(struct sample_summary *summary, double level) {
+  const double n = (double)summary->n, mean = summary->mean, deviation = summary->standard_deviation;
+  if (summary->n < 2 || isnan(deviation))
+    return;
+  if (isnan(summary->half_width)) {
+    const double seen = pow(1 - level, 1 / n);
+    summary->low = mean * seen;
+    summary->high = 1 - (1 - mean) * seen;
+    return;
+  }
+  const double near = fmin(mean, 1 - mean), far = fmax(mean, 1 - mean);
+  const double skew = fmin(sqrt(n), deviation / fmax(near, 1e-300)) * fmin(1, sqrt(SAMPLE_SKEW_RUNS / n));
+  summary->half_width *= 1 + SAMPLE_SKEW * skew;
+  summary->low = fmax(mean - summary->half_width, 0);
+  summary->high = fmin(mean + summary->half_width, 1);
+  summary->weak = (summary->n < SAMPLE_NARROW_RUNS && deviation < SAMPLE_NARROW * far) ||
+                  (summary->n < SAMPLE_EDGE_RUNS && deviation < SAMPLE_EDGE * far &&
+                   deviation > SAMPLE_EDGE_SKEW * near);
 }
 
 /* Computes the mean first, then the deviations from it. */
@@ -159,7 +183,7 @@ static double welch(const struct sample_moments side[2], double level) {
   }
   const double variance = share[0] + share[1];
   if (!(degrees > 0)) /* neither sample varies */
-    return 0;
+    return NAN;
   return gsl_cdf_tdist_Pinv(0.5 + level / 2, variance * variance / degrees) * sqrt(variance);
 }
 

@@ -1,5 +1,6 @@
 /* Statistics of a sample with their uncertainty: every mean has its number of values and its interval. The store's
- * views compute the same in plain SQL (db/store/views_statistics.c); a test compares the two. */
+ * views compute the same in plain SQL (db/store/views.c), the page of `clast report` in JavaScript
+ * (analysis/report/statistics.js); tests compare them. */
 #ifndef CLAST_ANALYSIS_STATISTICS_SAMPLE_H
 #define CLAST_ANALYSIS_STATISTICS_SAMPLE_H
 
@@ -21,13 +22,36 @@ void sample_add(struct sample_moments *moments, double value); /* NaN is left ou
 struct sample_summary {
   size_t n;
   double mean, standard_deviation, standard_error;
-  double half_width; /* of the confidence interval of the mean, by Student's t */
+  double half_width; /* of the confidence interval of the mean, by Student's t. NaN: the values are equal (or differ by
+                        rounding, SAMPLE_ROUNDING of their size), which says nothing of how far the mean may be off */
+  double low, high;  /* the interval. A share: within 0 and 1, and a bound also when all values are equal */
+  bool weak;         /* a share only: few runs, of a kind whose interval often misses the mean */
 };
+#define SAMPLE_ROUNDING 1e-12
 /* NaN values are left out; n counts the others. level: 0.95 for a 95 % interval. Undefined results are NaN: everything
  * for n = 0, the scatter for n = 1. Two passes avoid cancellation. */
 struct sample_summary sample_summarise(size_t n, const double *values, double level);
 /* The same from running moments. */
 struct sample_summary sample_summarise_moments(const struct sample_moments *moments, double level);
+/* Turns the interval of a mean into that of a share, a value between 0 and 1 (field_is_share()). Student's t takes the
+ * values as normal. Near an end of the range they cannot be: they are skewed, the more the larger their standard
+ * deviation s is against the distance e of the mean from that end. Three rules, chosen by their coverage
+ * (tests/verification/shares.md):
+ *
+ * - The half width is Student's times 1 + SAMPLE_SKEW s/e. From 25 runs on the addition falls as 1/sqrt(n), as the
+ *   skewness of a mean does. s/e is at most sqrt(n) for any values of one sign.
+ * - When all n values are equal, a share of the runs of up to p = 1 - (1 - level)^(1/n) may end otherwise without being
+ *   seen. The interval is the value moved by p of its distance from both ends of the range.
+ * - The interval is weak when an outcome of a tenth of the runs may be missing from the sample and would move the mean
+ *   out of the interval: with fewer than SAMPLE_NARROW_RUNS runs when s is below SAMPLE_NARROW of the distance from the
+ *   far end; with fewer than SAMPLE_EDGE_RUNS when s is below SAMPLE_EDGE of it and above SAMPLE_EDGE_SKEW e. */
+void sample_of_share(struct sample_summary *summary, double level);
+#define SAMPLE_SKEW      0.375
+#define SAMPLE_SKEW_RUNS 25
+#define SAMPLE_NARROW    0.045
+#define SAMPLE_EDGE      0.14
+#define SAMPLE_EDGE_SKEW 0.4
+enum { SAMPLE_NARROW_RUNS = 40, SAMPLE_EDGE_RUNS = 20 };
 
 /* Two-sided quantile of Student's t for a mean of n values: its interval's half width is this times its standard error.
  * NaN for n < 2 or a level outside (0, 1). */
@@ -65,7 +89,7 @@ struct difference {
   size_t n[2];  /* values of each side */
   size_t pairs; /* pairs of runs with one seed that the interval is of; 0: the samples count as independent */
   double mean[2], difference; /* of the pairs, or of all values; second minus first */
-  double half_width;          /* of the interval of the difference; NaN: too few values */
+  double half_width;          /* of the interval of the difference; NaN: too few values, or they do not vary */
 };
 
 /* Both arrays are ascending in seed, without NaN. Pairs are used when there are two or more and at least half of the

@@ -11,25 +11,15 @@
 
 const double scatter_shares[SCATTER_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
-static double third_moment(size_t n, const uint32_t *chosen, void *context) {
-  const double *values = context;
-  double mean = 0, two = 0, three = 0;
-  for (size_t i = 0; i < n; i++)
-    mean += values[chosen[i]] / (double)n;
-  for (size_t i = 0; i < n; i++) {
-    const double d = values[chosen[i]] - mean;
-    two += d * d / (double)n;
-    three += d * d * d / (double)n;
+/* Third moment over the cube of the standard deviation; NaN: fewer than three values, or all are equal. */
+static double skewness_of(const struct sample_summary *mean, const double *values) {
+  double two = 0, three = 0;
+  for (size_t i = 0; i < mean->n; i++) {
+    const double d = values[i] - mean->mean;
+    two += d * d / (double)mean->n;
+    three += d * d * d / (double)mean->n;
   }
-  return n > 2 && two > 0 ? three / pow(two, 1.5) : (double)NAN;
-}
-
-static double deviation(size_t n, const uint32_t *chosen, void *context) {
-  const double *values = context;
-  struct sample_moments moments = {0};
-  for (size_t i = 0; i < n; i++)
-    sample_add(&moments, values[chosen[i]]);
-  return n > 1 ? sqrt(moments.squares / (double)(n - 1)) : (double)NAN;
+  return mean->n > 2 && isfinite(mean->half_width) ? three / pow(two, 1.5) : (double)NAN;
 }
 
 /* The interval is from the low-th to the high-th value, counted from 1. The probability that at most low - 1 values are
@@ -96,7 +86,8 @@ void scatter_find_modes(struct scatter *s) {
 }
 
 status scatter_make(size_t n, const double *values, struct scatter *out, struct error *error) {
-  *out = (struct scatter){.lower_mode = NAN,
+  *out = (struct scatter){.skewness = NAN,
+                          .lower_mode = NAN,
                           .upper_mode = NAN,
                           .between = NAN,
                           .upper_share = NAN,
@@ -108,10 +99,8 @@ status scatter_make(size_t n, const double *values, struct scatter *out, struct 
   for (size_t i = 0; i < n; i++)
     if (isfinite(values[i]))
       out->sorted[out->n++] = values[i];
-  double *kept = out->sorted; /* in the order of the runs, because the jackknife leaves out consecutive runs */
-  out->mean = sample_summarise(out->n, kept, 0.95);
-  out->deviation = sample_jackknife(out->n, 0.95, deviation, kept);
-  out->skewness = sample_jackknife(out->n, 0.95, third_moment, kept);
+  out->mean = sample_summarise(out->n, out->sorted, 0.95);
+  out->skewness = skewness_of(&out->mean, out->sorted);
   qsort(out->sorted, out->n, sizeof *out->sorted, sample_ascending);
   for (int q = 0; q < SCATTER_QUANTILES; q++)
     out->quantile[q] = quantile(out->n, out->sorted, scatter_shares[q]);

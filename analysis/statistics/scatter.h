@@ -1,4 +1,6 @@
-/* The scatter of a point's runs over seeds: moments, quantiles and modes, each with its interval. */
+/* The scatter of a point's runs over seeds: moments, quantiles and modes. Means, quantiles and shares of modes have
+ * intervals. Standard deviation and skewness have none: those of the jackknife held the true value of lognormal samples
+ * in 0.53 to 0.75 and in 0.00 to 0.28 of the cases, and a sample cannot tell that its law is of this kind. */
 #ifndef CLAST_ANALYSIS_STATISTICS_SCATTER_H
 #define CLAST_ANALYSIS_STATISTICS_SCATTER_H
 
@@ -15,10 +17,10 @@ struct scatter_quantile {
   double low, high; /* 95 % interval between two of the values, by the binomial law; NaN: too few values */
 };
 struct scatter {
-  size_t n;                                   /* number of values that are not NaN */
-  double *sorted;                             /* these values, ascending; owned */
-  struct sample_summary mean;                 /* with the half width of its 95 % interval */
-  struct sample_interval deviation, skewness; /* by the jackknife */
+  size_t n;                   /* number of values that are not NaN */
+  double *sorted;             /* these values, ascending; owned */
+  struct sample_summary mean; /* with the standard deviation and the 95 % interval of the mean */
+  double skewness;            /* NaN: all values are equal */
   struct scatter_quantile quantile[SCATTER_QUANTILES];
   double dip, dip_share; /* scatter_dip(). Below 0.05 the values have at least two modes. NaN: not known */
   /* The two classes with the least scatter within them (Fisher 1958), set only if dip_share is below 0.05: their means,
@@ -53,7 +55,7 @@ bool scatter_in_steps(size_t n, const double *sorted);
 void scatter_find_modes(struct scatter *scatter);
 
 /* The number of runs for a 95 % interval of the mean with at most this half width, given this standard deviation. 0:
- * not known. The deviation itself is uncertain: call it for both ends of its interval. */
+ * not known. */
 size_t scatter_runs_needed(double deviation, double half_width);
 
 /* Edges of a histogram: Freedman and Diaconis's width 2 (q75 - q25)/n^(1/3), rounded to 1, 2 or 5 times a power of ten;

@@ -14,7 +14,7 @@
 #include "schemas/limits.h"
 
 /* Columns of ask_group after the axes. */
-enum { VERSION = 1, MEAN = 6, HALF_WIDTH = 9, RESOLUTION = 10, DOUBTFUL = 13, COLUMNS = 15 };
+enum { VERSION = 1, MEAN = 6, LOW = 10, HIGH = 11, RESOLUTION = 13, DOUBTFUL = 16, COLUMNS = 18 };
 
 enum { MOST_ROWS = 10000, MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, INPUT_TEXT = 200 };
 
@@ -84,12 +84,10 @@ static status read_groups(struct quantity *quantity, struct answer *groups, stru
   const size_t axes = quantity->axes;
   while (answer_next(groups)) {
     const struct query_value inputs[2] = {answer_value(groups, 0), answer_value(groups, axes - 1)};
-    const double mean = answer_real(groups, axes + MEAN);
-    const double half_width = answer_real(groups, axes + HALF_WIDTH); /* NaN for one run */
     const struct row row = {.version = answer_integer(groups, axes + VERSION),
-                            .value = mean,
-                            .lower = mean - half_width,
-                            .upper = mean + half_width,
+                            .value = answer_real(groups, axes + MEAN),
+                            .lower = answer_real(groups, axes + LOW),
+                            .upper = answer_real(groups, axes + HIGH),
                             .resolution = answer_real(groups, axes + RESOLUTION),
                             .doubtful = answer_integer(groups, axes + DOUBTFUL) > 0};
     TRY(add_row(quantity, inputs, row, error));

@@ -117,7 +117,10 @@ static const char *result_of(const char *name, char plain[256], const char **sai
                                         {"_se", "standard error of the mean over the runs of a point"},
                                         {"_resolution_verdict", "what is known of the error of the resolution"},
                                         {"_resolution", "how far finer settings may move the result"},
-                                        {"_hw95", "half width of the 95 % interval of the mean over seeds"}};
+                                        {"_hw95", "half width of the 95 % interval of the mean over seeds"},
+                                        {"_low95", "lower end of the 95 % interval of the mean over seeds"},
+                                        {"_high95", "upper end of the 95 % interval of the mean over seeds"},
+                                        {"_weak", "1: too few runs of this kind for the interval of the mean"}};
   *said = NULL;
   for (size_t i = 0; i < engine_count(); i++) {
     char prefix[64];

@@ -86,7 +86,7 @@ size_t study_reference(const struct study_ladder *ladder) {
   return finest;
 }
 
-static void find_level(const struct study_ladder *ladder, size_t quantity, size_t l, size_t n,
+static void find_level(const struct study_ladder *ladder, size_t quantity, bool share, size_t l, size_t n,
                        struct convergence_row *row) {
   const struct ladder_level *level = &ladder->levels.level[l];
   const size_t reference = study_reference(ladder);
@@ -94,7 +94,9 @@ static void find_level(const struct study_ladder *ladder, size_t quantity, size_
   while (finer < ladder->levels.count && ladder->left_out[finer])
     finer++;
   double *const *values = ladder->values[quantity];
-  const struct sample_summary summary = sample_summarise(n, values[l], CONFIDENCE);
+  struct sample_summary summary = sample_summarise(n, values[l], CONFIDENCE);
+  if (share)
+    sample_of_share(&summary, CONFIDENCE);
   row->base = level->base;
   row->reference = l == reference;
   row->step = level->step;
@@ -148,6 +150,7 @@ static void find_limit(const struct study_ladder *ladder, size_t quantity, size_
 
 void study_find(const struct study *study, const struct study_ladder *ladder, size_t quantity,
                 struct study_found *found) {
+  const struct field *result = study->quantity[quantity].row;
   const char *column = study->quantity[quantity].column;
   const size_t n = (size_t)ladder->seeds;
   *found = (struct study_found){.count = ladder->levels.count, .adds = ladder->levels.knob->group == KNOB_RESOLUTION};
@@ -157,7 +160,7 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
     snprintf(row->knob, sizeof row->knob, "%s", ladder->levels.knob->name);
     snprintf(row->quantity, sizeof row->quantity, "%s", column);
     snprintf(row->setting, sizeof row->setting, "%s", ladder->levels.level[l].setting);
-    find_level(ladder, quantity, l, n, row);
+    find_level(ladder, quantity, result && field_is_share(result), l, n, row);
   }
   field_defaults(&convergence_limit_table, &found->limit);
   snprintf(found->limit.knob, sizeof found->limit.knob, "%s", ladder->levels.knob->name);

@@ -47,8 +47,9 @@ static void columns_for_programs(struct printing *printing) {
   for (size_t i = 0; i < printing->axes; i++)
     table_column(table, printing->axis[i].name, printing->axis[i].unit);
   table_columns(table, (const char *const[]){"n", "failed", "largest_fraction_mean", "largest_fraction_hw95",
-                                             "largest_fraction_resolution", "largest_fraction_resolution_verdict",
-                                             "window", "fragments", NULL});
+                                             "largest_fraction_low95", "largest_fraction_high95",
+                                             "largest_fraction_weak", "largest_fraction_resolution",
+                                             "largest_fraction_resolution_verdict", "window", "fragments", NULL});
   for (int m = 0; m < METHODS; m++) {
     static const char *const ends[] = {"", "_hw95", "_resolution", "_resolution_verdict"};
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
@@ -79,6 +80,9 @@ static status row_for_programs(struct printing *printing, const struct ask_point
   table_integer(table, row->failed);
   table_real(table, row->mean);
   table_real(table, row->half_width);
+  table_real(table, row->low);
+  table_real(table, row->high);
+  table_integer(table, row->weak);
   table_real(table, row->resolution);
   table_text(table, ask_resolution_names[row->resolution_verdict]);
   table_text(table, estimates_window_names[window]);
@@ -180,7 +184,7 @@ static void columns_for_people(struct printing *printing) {
 }
 
 /* "2.01 \u00b1 0.13" without the blanks; the value alone when it has no interval; "-" for none. */
-static void with_interval(struct table *table, double value, double half_width, int decimals) {
+static void with_interval(struct table *table, double value, double half_width, int decimals, const char *mark) {
   char text[80] = "";
   if (isnan(value)) {
     table_missing(table);
@@ -190,8 +194,22 @@ static void with_interval(struct table *table, double value, double half_width, 
   if (!isnan(half_width)) {
     text_append(text, sizeof text, "\xc2\xb1");
     text_append_fixed(text, sizeof text, half_width, decimals);
+    text_append(text, sizeof text, "%s", mark);
   }
   table_text(table, text);
+}
+
+/* "0.928\u00b10.009", "0.928\u00b10.009~" when the interval is weak, "1.000\u22650.905" when all runs are equal. */
+static void mean_cell(struct table *table, const struct ask_points_row *row) {
+  char text[80] = "";
+  if (row->mean >= 1 && isnan(row->half_width) && isfinite(row->low)) {
+    text_append_fixed(text, sizeof text, row->mean, 3);
+    text_append(text, sizeof text, "\xe2\x89\xa5");
+    text_append_fixed(text, sizeof text, row->low, 3);
+    table_text(table, text);
+    return;
+  }
+  with_interval(table, row->mean, row->half_width, 3, row->weak ? "~" : "");
 }
 
 static void resolution_cell(struct table *table, enum ask_resolution_verdict verdict, double half_width) {
@@ -220,7 +238,7 @@ static status row_for_people(struct printing *printing, const struct ask_points_
       text_append(runs, sizeof runs, "/%.0f", (double)row->n + (double)row->failed); /* a sum that cannot overflow */
     table_text(table, runs);
     table_rests_on(table, &row->doubts);
-    with_interval(table, row->mean, row->half_width, 3);
+    mean_cell(table, row);
     if (!out[MEAN_RESOLUTION])
       resolution_cell(table, row->resolution_verdict, row->resolution);
   }
@@ -233,7 +251,7 @@ static status row_for_people(struct printing *printing, const struct ask_points_
     if (out[m == MASSES ? LIKELIHOOD : LEAST_SQUARES])
       continue;
     table_rests_on(table, &doubts->masses);
-    with_interval(table, fit->fit.beta, fit->interval.half_width, 2);
+    with_interval(table, fit->fit.beta, fit->interval.half_width, 2, "");
   }
   if (out[BETA_RESOLUTION])
     return STATUS_OK;
@@ -268,8 +286,11 @@ static status print_point(struct printing *printing, const struct ask_points_row
 
 static const char *const estimates_legend =
     "runs: those that count; 19/20: one of 20 failed. M_1/M: mass share of the largest fragment. !: in doubt.\n"
-    "\xc2\xb1: half width of the 95 % interval over seeds (Student's t); one run has none. \xc2\xb1res: how far finer "
-    "settings\nmay move M_1/M, and beta ML (`clast converge` measures it, with -q beta; ?: not studied).\n"
+    "\xc2\xb1: half width of the 95 % interval over seeds; one run has none. ~: weak, too few runs for runs like "
+    "these\n"
+    "(`clast explain weak`). 1.000\xe2\x89\xa5"
+    "0.905: all runs are 1, and the mean is at least 0.905. \xc2\xb1res: how far "
+    "finer\nsettings may move M_1/M, and beta ML (`clast converge` measures it, with -q beta; ?: not studied).\n"
     "beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together. LSQ: least squares on\n"
     "logarithmic bins of one decade, as in the paper; it needs a fragment in every bin. ML: maximum\n"
     "likelihood, without the largest fragment of each run.\n"

@@ -32,15 +32,17 @@ static double needed(double deviation, double half_width) {
   return runs ? (double)runs : (double)NAN;
 }
 
-static void print_scatter(const struct printing *printing, const struct scatter *s) {
+static void print_scatter(const struct printing *printing, struct scatter *s) {
   static const char *const names[SCATTER_QUANTILES] = {"q05", "q25", "median", "q75", "q95"};
-  const double wanted = printing->choice->half_width, deviation = s->deviation.estimate;
-  const double least = fmax(deviation - s->deviation.half_width, 0), most = deviation + s->deviation.half_width;
-  const double mean = s->mean.mean, skewness = s->skewness.estimate, room = s->skewness.half_width;
+  const double wanted = printing->choice->half_width, deviation = s->mean.standard_deviation;
+  if (printing->pools->share)
+    sample_of_share(&s->mean, 0.95);
   row(printing, "runs", (double)s->n, NAN, NAN);
-  row(printing, "mean", mean, mean - s->mean.half_width, mean + s->mean.half_width);
-  row(printing, "standard deviation", deviation, least, most);
-  row(printing, "skewness", skewness, skewness - room, skewness + room);
+  row(printing, "mean", s->mean.mean, s->mean.low, s->mean.high);
+  if (s->mean.weak)
+    row(printing, "mean is weak", 1, NAN, NAN);
+  row(printing, "standard deviation", deviation, NAN, NAN);
+  row(printing, "skewness", s->skewness, NAN, NAN);
   for (int q = 0; q < SCATTER_QUANTILES; q++)
     row(printing, names[q], s->quantile[q].value, s->quantile[q].low, s->quantile[q].high);
   row(printing, "dip", s->dip, NAN, NAN);
@@ -51,7 +53,7 @@ static void print_scatter(const struct printing *printing, const struct scatter 
     row(printing, "share of upper mode", s->upper_share, s->upper_low, s->upper_high);
   }
   if (isfinite(wanted))
-    row(printing, "runs needed", needed(deviation, wanted), needed(least, wanted), needed(most, wanted));
+    row(printing, "runs needed", needed(deviation, wanted), NAN, NAN);
 }
 
 status print_scatter_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,

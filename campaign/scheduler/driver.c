@@ -525,7 +525,11 @@ static void tick(void *context, int running, bool last) {
   const struct driver_summary *summary = &driver->summary;
   const double now = clock_s(), elapsed = now - driver->begin;
   const uint64_t points = design_points(driver->walk.design), unmet = points - driver->expanded;
-  const struct sample_summary quantity = sample_summarise_moments(&driver->moments, 0.95);
+  struct sample_summary mean = sample_summarise_moments(&driver->moments, 0.95);
+  if (field_is_share(driver->row))
+    sample_of_share(&mean, 0.95);
+  if (points > 1) /* the interval is one of a single point's seeds */
+    mean.half_width = mean.low = mean.high = NOTHING;
   struct progress_state state = {
       .done = summary->runs_done + summary->runs_reused - summary->runs_surplus,
       .failed = summary->runs_failed,
@@ -537,9 +541,8 @@ static void tick(void *context, int running, bool last) {
                               : NOTHING,
       .seconds_left = last ? NOTHING : time_left(driver, now),
       .quantity = driver->row->path,
-      .mean = quantity.mean,
+      .mean = mean,
       .doubtful = summary->runs_doubtful > 0,
-      .half_width = points == 1 ? quantity.half_width : NOTHING, /* of one point's seeds */
   };
   progress_update(progress, &state, now, last);
 }

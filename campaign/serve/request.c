@@ -284,7 +284,9 @@ static double statistic_of(const struct sample_summary *summary, enum serve_stat
   case SERVE_MEAN: return summary->mean;
   case SERVE_SD: return summary->standard_deviation;
   case SERVE_SE: return summary->standard_error;
-  case SERVE_HW95: return summary->half_width;
+  case SERVE_HW95: /* equal shares have a bound only */
+    return isnan(summary->half_width) ? fmax(summary->high - summary->mean, summary->mean - summary->low)
+                                      : summary->half_width;
   case SERVE_STATISTICS: break;
   }
   return NAN;
@@ -298,7 +300,9 @@ struct serve_answer serve_request_answer(const struct serve_request *request, co
     json_t *vector = json_array();
     json_array_append_new(output, vector);
     for (size_t k = 0; k < config->result_count; k++) {
-      const struct sample_summary summary = sample_summarise(count, values + k * count, 0.95);
+      struct sample_summary summary = sample_summarise(count, values + k * count, 0.95);
+      if (field_is_share(config->results[k].row))
+        sample_of_share(&summary, 0.95);
       const double number = config->single ? values[k] : statistic_of(&summary, config->statistics[v]);
       if (!isfinite(number)) { /* JSON has no NaN and no infinity */
         json_decref(output);

@@ -67,14 +67,10 @@ static void facts(const struct progress_state *state, char *buffer, size_t size)
     snprintf(rate, sizeof rate, state->rate < 10 ? ", %.2g runs/s" : ", %.0f runs/s", state->rate);
   if (state->seconds_left >= 0)
     snprintf(time, sizeof time, ", %s left", left);
-  if (state->quantity && isfinite(state->mean)) {
+  if (state->quantity && isfinite(state->mean.mean)) {
     char both[UNCERTAINTY_TEXT];
-    const char *mark = state->doubtful ? " !" : "";
-    uncertainty_seeds(state->mean, state->half_width, both);
-    if (isfinite(state->half_width))
-      snprintf(mean, sizeof mean, ", %.60s %.60s%s", state->quantity, both, mark);
-    else
-      snprintf(mean, sizeof mean, ", %.60s %.4g%s", state->quantity, state->mean, mark);
+    uncertainty_seeds(&state->mean, both);
+    snprintf(mean, sizeof mean, ", %.60s %.60s%s", state->quantity, both, state->doubtful ? " !" : "");
   }
   snprintf(buffer, size, "%lld of %s%lld runs%s, %d running%s%s%s", (long long)state->done,
            state->total_is_minimum ? "at least " : "", (long long)state->total, failed, (int)state->running, rate, time,

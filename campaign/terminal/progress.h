@@ -7,17 +7,18 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "analysis/statistics/sample.h"
+
 struct progress_state {
   int64_t done; /* finished runs, including those found in the store */
   int64_t failed, running;
-  int64_t total;           /* least number of runs (exact without `until`) */
-  bool total_is_minimum;   /* `until`: the total may grow */
-  double rate;             /* runs/s of this invocation; NaN = not known yet */
-  double seconds_left;     /* NaN = not known yet */
-  const char *quantity;    /* the main quantity's name */
-  double mean, half_width; /* mean of `quantity` over the runs so far, half width of its 95 % interval; NaN = none yet,
-                              or runs of several points */
-  bool doubtful;           /* some of these runs are in doubt: "!" behind the mean */
+  int64_t total;              /* least number of runs (exact without `until`) */
+  bool total_is_minimum;      /* `until`: the total may grow */
+  double rate;                /* runs/s of this invocation; NaN = not known yet */
+  double seconds_left;        /* NaN = not known yet */
+  const char *quantity;       /* the main quantity's name */
+  struct sample_summary mean; /* of `quantity` over the runs so far; without an interval for runs of several points */
+  bool doubtful;              /* some of these runs are in doubt: "!" behind the mean */
 };
 
 enum progress_style { PROGRESS_PLAIN, PROGRESS_BAR };

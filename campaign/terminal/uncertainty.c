@@ -10,21 +10,25 @@
 enum { MOST_DECIMALS = 15 };
 static const double MOST_DIGITS = 1e15; /* a double has no more digits than that */
 
-void uncertainty_seeds(double mean, double half_width, char text[UNCERTAINTY_TEXT]) {
+void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_TEXT]) {
+  const double half_width = mean->half_width;
+  const char *weak = mean->weak ? ", weak" : "";
   if (!isfinite(half_width)) {
-    snprintf(text, UNCERTAINTY_TEXT, "%.4g (one run: no interval)", mean);
+    snprintf(text, UNCERTAINTY_TEXT, "%.4g", mean->mean);
+    if (isfinite(mean->low))
+      text_append(text, UNCERTAINTY_TEXT, " (all %zu runs; %.3g to %.3g)", mean->n, mean->low, mean->high);
     return;
   }
   /* One digit of the error, two after a leading 1: rounding moves it by at most a quarter. */
   double leading = floor(log10(half_width));
   if (half_width < 2 * pow(10, leading))
     leading--;
-  if (half_width == 0 || leading < -MOST_DECIMALS || leading > MOST_DECIMALS || fabs(mean) >= MOST_DIGITS) {
-    snprintf(text, UNCERTAINTY_TEXT, "%.4g +- %.2g (seeds, 95 %%)", mean, half_width);
+  if (leading < -MOST_DECIMALS || leading > MOST_DECIMALS || fabs(mean->mean) >= MOST_DIGITS) {
+    snprintf(text, UNCERTAINTY_TEXT, "%.4g +- %.2g (seeds, 95 %%%s)", mean->mean, half_width, weak);
     return;
   }
   const int decimals = leading < 0 ? (int)-leading : 0;
-  snprintf(text, UNCERTAINTY_TEXT, "%.*f +- %.*f (seeds, 95 %%)", decimals, mean, decimals, half_width);
+  snprintf(text, UNCERTAINTY_TEXT, "%.*f +- %.*f (seeds, 95 %%%s)", decimals, mean->mean, decimals, half_width, weak);
 }
 
 void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]) {

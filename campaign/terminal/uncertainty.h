@@ -9,9 +9,10 @@
 
 enum { UNCERTAINTY_TEXT = 256 };
 
-/* "0.349 +- 0.003 (seeds, 95 %)"; "0.349 (one run: no interval)" when half_width is NaN. The error has
- * one digit, or two after a leading 1; the mean has as many decimals. */
-void uncertainty_seeds(double mean, double half_width, char text[UNCERTAINTY_TEXT]);
+/* "0.349 +- 0.003 (seeds, 95 %)", or "(seeds, 95 %, weak)"; "1 (all 30 runs; 0.905 to 1)" when all values of a share
+ * are equal; "0.349" without an interval. The error has one digit, or two after a leading 1; the mean has as many
+ * decimals. */
+void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_TEXT]);
 
 /* "+- 0.06 (resolution: particles)", "up to +- 0.06 (resolution: particles); studied at 2 of 9 points, `clast converge
  * SCENE` studies others", "+- 0.06 or more (resolution: particles)", "resolution: not studied; `clast converge SCENE`

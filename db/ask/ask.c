@@ -296,7 +296,7 @@ bool ask_convergence_next(struct answer *answer, struct convergence_row *row) {
 
 /* ---- lists of points ---- */
 
-enum { FIRST_INPUT = 8 }; /* column of the first input in the query of ask_points_rows */
+enum { FIRST_INPUT = 11 }; /* column of the first input in the query of ask_points_rows */
 
 /* Condition that selects the chosen points, for any table with a column point_id. */
 static void write_choice(sqlite3_str *sql, const struct ask_points_choice *choice) {
@@ -337,7 +337,9 @@ struct answer ask_points_rows(struct store *store, const struct ask_points_choic
                               size_t input_count, const char *const *inputs, struct error *error) {
   sqlite3_str *sql = sqlite3_str_new(NULL);
   sqlite3_str_appendall(sql, "SELECT point_id, results_version, n, failed, largest_fraction_mean, "
-                             "largest_fraction_hw95, largest_fraction_resolution, largest_fraction_resolution_verdict");
+                             "largest_fraction_hw95, largest_fraction_low95, largest_fraction_high95, "
+                             "ifnull(largest_fraction_weak, 0), largest_fraction_resolution, "
+                             "largest_fraction_resolution_verdict");
   for (size_t i = 0; i < input_count && i < LIMITS_AXES_OF_POOL; i++)
     sqlite3_str_appendf(sql, ", \"%w\"", inputs[i]);
   sqlite3_str_appendall(sql, " FROM points AS p");
@@ -378,8 +380,11 @@ bool ask_points_next(struct answer *answer, struct ask_points_row *row) {
                                  .failed = answer_integer(answer, 3),
                                  .mean = answer_real(answer, 4),
                                  .half_width = answer_real(answer, 5),
-                                 .resolution = answer_real(answer, 6),
-                                 .resolution_verdict = ask_resolution_verdict(answer_text(answer, 7)),
+                                 .low = answer_real(answer, 6),
+                                 .high = answer_real(answer, 7),
+                                 .weak = answer_integer(answer, 8) != 0,
+                                 .resolution = answer_real(answer, 9),
+                                 .resolution_verdict = ask_resolution_verdict(answer_text(answer, 10)),
                                  .input_count = answer_count(answer) - FIRST_INPUT};
   for (size_t i = 0; i < row->input_count; i++)
     row->inputs[i] = answer_value(answer, FIRST_INPUT + i);

@@ -178,8 +178,10 @@ struct ask_points_row {
   int64_t point_id;
   int64_t results_version; /* 0: the point has no runs */
   int64_t n, failed;       /* runs that count; runs that failed */
-  double mean, half_width; /* of the largest fraction, with the half width of the 95 % interval of its mean. NaN: too
-                              few runs */
+  double mean;             /* of the largest fraction */
+  double half_width;       /* of the 95 % interval of this mean. NaN: one run, or all runs are equal */
+  double low, high;        /* the interval, or what equal runs bound (sample_of_share()). NaN: one run */
+  bool weak;               /* the interval often misses the mean (sample_of_share()) */
   double resolution;       /* error that the resolution leaves in it; NaN: not known */
   enum ask_resolution_verdict resolution_verdict;
   struct ask_doubts doubts; /* of the largest fraction; without withheld values in mean and half width */
@@ -443,6 +445,7 @@ struct ask_pools {
   struct ask_pool_choice choice;
   bool of_values;
   char quantity[ASK_GROUP_NAME]; /* column of the values */
+  bool share;                    /* they are between 0 and 1 */
   size_t axes;
   char column[LIMITS_AXES_OF_POOL][ASK_GROUP_NAME];
   struct ask_pool_member *list;

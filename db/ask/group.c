@@ -166,7 +166,7 @@ static void write_points(FILE *out, const struct names *axes, const struct names
 /* The units of a group are the runs of its only point, or the means of its points. The resolution error of a group is
  * the largest one among its points. */
 static char *group_sql(const struct names *axes, const struct names *quantities) {
-  char *sql = NULL;
+  char *sql = NULL, units[32], quantile[32];
   size_t size = 0;
   FILE *out = text_open(&sql, &size);
   if (!out)
@@ -175,17 +175,26 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   write_names(out, axes);
   fputs("engine, results_version, points, n, failed, censored", out);
   for (size_t i = 0; i < quantities->count; i++) {
-    const char *q = quantities->name[i];
-    fprintf(out, ",\n  m%zu AS \"%s_mean\", d%zu AS \"%s_sd\", d%zu / sqrt(u%zu) AS \"%s_se\", d%zu / sqrt(u%zu) * (",
-            i, q, i, q, i, i, q, i, i);
-    char degrees[32];
-    snprintf(degrees, sizeof degrees, "(u%zu - 1)", i);
-    views_statistics_student(degrees, out);
-    fprintf(out, ") AS \"%s_hw95\", e%zu AS \"%s_resolution\", v%zu AS \"%s_resolution_verdict\"", q, i, q, i, q);
+    snprintf(units, sizeof units, "u%zu", i);
+    views_statistics_columns(i, quantities->name[i], units, views_is_share(quantities->name[i]), out);
   }
   for (size_t i = 0; i < quantities->count; i++)
     fprintf(out, ",\n  r%1$zu AS \"%2$s_n\", b%1$zu AS \"%2$s_doubtful\"", i, quantities->name[i]);
   fputs(",\n  doubts", out);
+  fputs("\nFROM (SELECT *", out);
+  for (size_t i = 0; i < quantities->count; i++) {
+    snprintf(units, sizeof units, "u%zu", i);
+    snprintf(quantile, sizeof quantile, "t%zu", i);
+    fputs(",\n  ", out);
+    views_statistics_half_width(i, units, quantile, views_is_share(quantities->name[i]), out);
+  }
+  fputs("\nFROM (SELECT *", out);
+  for (size_t i = 0; i < quantities->count; i++) {
+    snprintf(units, sizeof units, "(u%zu - 1)", i);
+    fputs(",\n  ", out);
+    views_statistics_student(units, out);
+    fprintf(out, " AS t%zu", i);
+  }
   fputs("\nFROM (SELECT ", out);
   write_names(out, axes);
   fputs("engine, results_version, sum(n > 0) AS points, sum(n) AS n, sum(failed) AS failed, sum(censored) AS censored",
@@ -205,7 +214,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   fputs(quantities->count ? ") AS doubts" : "'') AS doubts", out);
   write_points(out, axes, quantities);
   write_names(out, axes);
-  fputs("engine, results_version) ORDER BY ", out);
+  fputs("engine, results_version))) ORDER BY ", out);
   write_names(out, axes);
   fputs("engine, results_version", out);
   return text_close(out, &sql);

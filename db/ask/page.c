@@ -151,7 +151,8 @@ enum { COLUMNS = 256, NAME = 128 };
 
 struct column {
   char name[NAME];
-  bool main, number, varies; /* of the view points; has a value; has two values */
+  bool main, share;    /* of the view points; a value between 0 and 1 */
+  bool number, varies; /* has a value; has two values */
   double first;
   struct sample_moments moments; /* of the current point */
   double *values;                /* of the current point; owned */
@@ -177,15 +178,17 @@ static bool is_main(const char *name) {
   return false;
 }
 
-static status add_mean(struct reading *reading, const struct column *column, const struct sample_summary *summary,
-                       struct error *error) {
+static status add_mean(struct reading *reading, const struct column *column, struct error *error) {
+  struct sample_summary summary = sample_summarise_moments(&column->moments, 0.95);
+  if (column->share)
+    sample_of_share(&summary, 0.95);
   sqlite3_bind_int64(reading->insert, 1, reading->point_id);
   sqlite3_bind_int64(reading->insert, 2, reading->results_version);
   sqlite3_bind_text(reading->insert, 3, column->name, -1, SQLITE_STATIC);
-  sqlite3_bind_int64(reading->insert, 4, (int64_t)summary->n);
-  sqlite3_bind_double(reading->insert, 5, (double)(float)summary->mean); /* NaN is NULL */
-  sqlite3_bind_double(reading->insert, 6, (double)(float)summary->standard_deviation);
-  sqlite3_bind_double(reading->insert, 7, (double)(float)summary->half_width);
+  sqlite3_bind_int64(reading->insert, 4, (int64_t)summary.n);
+  sqlite3_bind_double(reading->insert, 5, (double)(float)summary.mean); /* NaN is NULL */
+  sqlite3_bind_double(reading->insert, 6, (double)(float)summary.standard_deviation);
+  sqlite3_bind_double(reading->insert, 7, (double)(float)summary.half_width);
   return sql_run(reading->insert, doing, error);
 }
 
@@ -195,9 +198,8 @@ static status end_point(struct reading *reading, bool newest, struct error *erro
   status code = STATUS_OK;
   for (size_t i = 0; code == STATUS_OK && reading->begun && i < reading->count; i++) {
     struct column *column = &reading->column[i];
-    const struct sample_summary summary = sample_summarise_moments(&column->moments, 0.95);
-    if (summary.n > 0 && !column->main)
-      code = add_mean(reading, column, &summary, error);
+    if (column->moments.n > 0 && !column->main)
+      code = add_mean(reading, column, error);
     if (code == STATUS_OK && newest)
       code = add_modes(&reading->modes, reading->point_id, column->name, column->values_count, column->values, error);
     column->moments = (struct sample_moments){.n = 0};
@@ -349,6 +351,7 @@ static status fill_runs(struct reading *reading, struct store *store, struct err
     struct column *column = &reading->column[reading->count++];
     snprintf(column->name, NAME, "%s", answer_text(&names, 0));
     column->main = is_main(column->name);
+    column->share = views_is_share(column->name);
   }
   TRY(answer_end(&names));
   TRY(read_results(reading, store, error));
@@ -471,7 +474,7 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
   TRY(sql_execute(page->store.db,
                   "PRAGMA page_size = 4096;"
                   "CREATE TABLE fact (name TEXT PRIMARY KEY, value) WITHOUT ROWID;"
-                  "CREATE TABLE label (column_name TEXT PRIMARY KEY, label, unit, factor) WITHOUT ROWID;"
+                  "CREATE TABLE label (column_name TEXT PRIMARY KEY, label, unit, factor, share) WITHOUT ROWID;"
                   "CREATE TABLE question (name, doc, sql, parameters);"
                   "CREATE TABLE picture (run_id, point_id, quantile, png);"
                   "CREATE TABLE difference (quantity, first_point, point_id, pairs, difference, hw95);"
@@ -529,8 +532,8 @@ status ask_page_fact(struct ask_page *page, const char *name, const char *value,
 
 status ask_page_label(struct ask_page *page, const char *column, const char *label, const char *unit, double factor,
                       struct error *error) {
-  return sql_executef(page->store.db, doing, error, "INSERT OR REPLACE INTO label VALUES (%Q, %Q, %Q, %!.17g)", column,
-                      label, unit, factor);
+  return sql_executef(page->store.db, doing, error, "INSERT OR REPLACE INTO label VALUES (%Q, %Q, %Q, %!.17g, %d)",
+                      column, label, unit, factor, (int)views_is_share(column));
 }
 
 struct answer ask_page_columns(struct ask_page *page, struct error *error) {

@@ -3,8 +3,11 @@
 #include "db/store/views.h"
 
 #include <stdlib.h>
+#include <string.h>
 
+#include "analysis/statistics/sample.h"
 #include "db/store/schema.h"
+#include "engine/engine.h"
 #include "engine/outcome.h"
 #include "schemas/text.h"
 
@@ -16,6 +19,27 @@ extern const char views_columns_sql[], views_resolution_sql[];
 const char *const views_names[VIEWS_COUNT] = {"runs", "points", "spectra", "estimates", "resolution"};
 
 /* ---- statistics ---- */
+
+/* A column that two engines have begins with the name of its table. */
+static bool is_share(const struct field_table *table, const char *engine, const char *column) {
+  char prefix[64], name[FIELD_TEXT_SIZE];
+  snprintf(prefix, sizeof prefix, "result_%s_", engine);
+  const size_t length = strlen(prefix);
+  const char *bare = strncmp(column, prefix, length) == 0 ? column + length : column;
+  for (size_t i = 0; i < table->count; i++) {
+    field_column_name(table->rows[i].path, name, sizeof name);
+    if (strcmp(name, bare) == 0)
+      return field_is_share(&table->rows[i]);
+  }
+  return false;
+}
+
+bool views_is_share(const char *column) {
+  bool share = is_share(&outcome_table, "", column);
+  for (size_t i = 0; !share && i < engine_count(); i++)
+    share = is_share(engine_at(i)->results, engine_at(i)->name, column);
+  return share;
+}
 
 size_t views_statistics_main(const char *names[VIEWS_STATISTICS_MAIN]) {
   size_t count = 0;
@@ -36,6 +60,37 @@ void views_statistics_student(const char *degrees, FILE *out) {
           "\n      WHEN %1$s > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 "
           "+ 1.589534053394 / %1$s) / %1$s) / %1$s) / %1$s END",
           degrees);
+}
+
+void views_statistics_half_width(size_t i, const char *n, const char *t, bool share, FILE *out) {
+  fprintf(out, "iif(d%1$zu > %2$g * abs(m%1$zu), %4$s * d%1$zu / sqrt(%3$s)", i, SAMPLE_ROUNDING, n, t);
+  if (share)
+    fprintf(out,
+            " * (1 + %2$g * min(sqrt(%3$s), d%1$zu / max(min(m%1$zu, 1 - m%1$zu), 1e-300)) * min(1, sqrt(%4$d.0 / "
+            "%3$s)))",
+            i, SAMPLE_SKEW, n, SAMPLE_SKEW_RUNS);
+  fprintf(out, ", NULL) AS h%zu", i);
+}
+
+void views_statistics_columns(size_t i, const char *name, const char *n, bool share, FILE *out) {
+  fprintf(out,
+          ",\n  m%1$zu AS \"%2$s_mean\", d%1$zu AS \"%2$s_sd\", d%1$zu / sqrt(%3$s) AS \"%2$s_se\", h%1$zu AS "
+          "\"%2$s_hw95\",\n  ",
+          i, name, n);
+  if (share)
+    fprintf(
+        out,
+        "iif(h%1$zu IS NULL, iif(%3$s > 1, m%1$zu * pow(0.05, 1.0 / %3$s), NULL), max(m%1$zu - h%1$zu, 0.0)) AS "
+        "\"%2$s_low95\",\n  iif(h%1$zu IS NULL, iif(%3$s > 1, 1 - (1 - m%1$zu) * pow(0.05, 1.0 / %3$s), NULL), "
+        "min(m%1$zu + h%1$zu, 1.0)) AS \"%2$s_high95\",\n  iif(h%1$zu IS NULL, NULL, (%3$s < %4$d AND d%1$zu < %5$g "
+        "* max(m%1$zu, 1 - m%1$zu)) OR (%3$s < %6$d AND d%1$zu < %7$g * max(m%1$zu, 1 - m%1$zu) AND d%1$zu > %8$g * "
+        "min(m%1$zu, 1 - m%1$zu))) AS \"%2$s_weak\"",
+        i, name, n, SAMPLE_NARROW_RUNS, SAMPLE_NARROW, SAMPLE_EDGE_RUNS, SAMPLE_EDGE, SAMPLE_EDGE_SKEW);
+  else
+    fprintf(out, "m%1$zu - h%1$zu AS \"%2$s_low95\", m%1$zu + h%1$zu AS \"%2$s_high95\", NULL AS \"%2$s_weak\"", i,
+            name);
+  fprintf(out, ",\n  e%1$zu AS \"%2$s_resolution\", ifnull(v%1$zu, 'not-studied') AS \"%2$s_resolution_verdict\"", i,
+          name);
 }
 
 /* One pass over the index run_statistics. Deviations are from the value of the point's first run (kN), so that nothing
@@ -65,7 +120,12 @@ void views_statistics_write(size_t count, const char *const *names, FILE *out) {
     fprintf(out,
             ",\n    k%1$zu + s%1$zu / n AS m%1$zu, sqrt(max(0, (q%1$zu - s%1$zu * s%1$zu / n) / (n - 1))) AS d%1$zu",
             i);
-  fprintf(out, "\n  FROM moment\n)\n");
+  fprintf(out, "\n  FROM moment\n), width AS (\n  SELECT *");
+  for (size_t i = 0; i < count; i++) {
+    fprintf(out, ",\n    ");
+    views_statistics_half_width(i, "n", "t", views_is_share(names[i]), out);
+  }
+  fprintf(out, "\n  FROM scatter\n)\n");
 }
 
 /* A study names a quantity without its engine; the view runs may have the engine's table as a prefix. */
@@ -205,12 +265,9 @@ static void write_points(struct view *view) {
         "failed_attempts",
         out);
   for (size_t i = 0; i < count; i++)
-    fprintf(out,
-            ",\n  m%2$zu AS %1$s_mean, d%2$zu AS %1$s_sd, d%2$zu / sqrt(n) AS %1$s_se, s.t * d%2$zu / sqrt(n) AS "
-            "%1$s_hw95,\n  e%2$zu AS %1$s_resolution, ifnull(v%2$zu, 'not-studied') AS %1$s_resolution_verdict",
-            names[i], i);
+    views_statistics_columns(i, names[i], "n", views_is_share(names[i]), out);
   fputs("\nFROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id\n"
-        "  LEFT JOIN scatter s ON s.point_id = t.point_id AND s.results_version = t.results_version\n"
+        "  LEFT JOIN width s ON s.point_id = t.point_id AND s.results_version = t.results_version\n"
         "  LEFT JOIN unresolved u ON u.point_id = t.point_id AND u.results_version = t.results_version;\n",
         out);
 }

@@ -4,6 +4,7 @@
 #ifndef CLAST_DB_STORE_VIEWS_H
 #define CLAST_DB_STORE_VIEWS_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 #include "db/sql.h"
@@ -30,9 +31,20 @@ enum { VIEWS_STATISTICS_MAIN = 16 };
 size_t views_statistics_main(const char *names[VIEWS_STATISTICS_MAIN]);
 
 /* SQL that begins a query on the statistics of columns of table run, for every point and results_version: the table
- * expression `scatter` with point_id, results_version, n, the quantile t of views_statistics_student() and, for the
- * N-th name from 0, its mean mN and standard deviation dN. In C this is sample_summarise(); a test compares the two. */
+ * expression `width` with point_id, results_version, n, the quantile t of views_statistics_student() and, for the N-th
+ * name from 0, its mean mN, standard deviation dN and half width hN. In C this is sample_summarise(); a test compares
+ * the two. */
 void views_statistics_write(size_t count, const char *const *names, FILE *out);
+
+/* SQL of "... AS hN", the half width of the 95 % interval of mean mN with the deviation dN. n, t: SQL of the number of
+ * values and of Student's quantile. share: sample_of_share(). NULL: the values are equal. */
+void views_statistics_half_width(size_t i, const char *n, const char *t, bool share, FILE *out);
+/* SQL of the columns NAME_mean, _sd, _se, _hw95, _low95, _high95, _weak, _resolution and _resolution_verdict, with a
+ * comma before each, from mN, dN, hN, eN and vN. */
+void views_statistics_columns(size_t i, const char *name, const char *n, bool share, FILE *out);
+
+/* Is the column of the view runs a result between 0 and 1? */
+bool views_is_share(const char *column);
 
 /* SQL of a table expression with point_id, results_version and, for the N-th name from 0 (a column of the view runs),
  * the half width eN and the verdict vN of the view resolution; NULL if not studied. */

@@ -27,7 +27,10 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
   SELECT 'points', d.column_name || s.column1, d.unit, s.column2 || d.meaning
   FROM column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '),
     ('_se', 'standard error of the mean: '),
-    ('_hw95', 'half width of the 95 % confidence interval of the mean (Student): '),
+    ('_hw95', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: '),
+    ('_low95', 'lower end of this interval; of a share also when all runs are equal: '),
+    ('_high95', 'upper end of this interval; of a share also when all runs are equal: '),
+    ('_weak', '1: too few runs of this kind for the interval of this share: '),
     ('_resolution', 'how far finer settings may move the mean (view resolution): '),
     ('_resolution_verdict', 'known, at least, diverges, or not studied: ')) s
   WHERE d.table_name = 'run' AND EXISTS (SELECT 1 FROM pragma_table_info('points') c WHERE c.name = d.column_name || s.column1);

@@ -43,6 +43,26 @@ assert table and {point: p for point, p in page.items() if p is not None} == tab
 PY
 ok "the goodness of fits"
 
+# The page makes intervals as the program does: of shares and of counts, of 20 and of 3 runs, and of equal runs.
+for store in fits small; do
+  expect 0 "$clast" query $store.db --json "select 1 as share, n, largest_fraction_mean as mean, largest_fraction_sd as sd,
+    largest_fraction_hw95 as hw95, largest_fraction_low95 as low95, largest_fraction_high95 as high95, largest_fraction_weak
+    as weak from points union all select 1, n, 1.0, 0.0, null, pow(0.05, 1.0 / n), 1.0, null from points union all
+    select 0, n, fragment_count_mean, fragment_count_sd, fragment_count_hw95, fragment_count_low95, fragment_count_high95,
+    null from points"
+  node --input-type=module - "$source/analysis/report/statistics.js" <<'JS' || fail "$store: other intervals on the page"
+import {readFileSync} from 'node:fs';
+const {interval} = await import(process.argv[2]);
+const rows = JSON.parse(readFileSync('out', 'utf8'));
+for (const {share, n, mean, sd, ...want} of rows)
+  for (const [name, value] of Object.entries(interval(mean, sd, n, share === 1)))
+    if (want[name] === null ? value !== null : !(Math.abs(value - want[name]) <= 1e-9 * Math.abs(want[name])))
+      throw new Error(`${name}: ${value}, not ${want[name]} (${JSON.stringify({share, n, mean, sd})})`);
+if (rows.length !== 12) throw new Error(`${rows.length} rows`);
+JS
+done
+ok "intervals"
+
 # A page that is made again while a campaign runs, and a last time when it ends.
 slow watched
 "$clast" run watched.yaml -j 1 --quiet >/dev/null 2>&1 &
@@ -91,7 +111,7 @@ if [ "$sanitized" -eq 0 ]; then
   expect 0 "$clast" run other.yaml -j 2 --quiet
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 21
+  done_after 24
 else
-  done_after 19
+  done_after 22
 fi

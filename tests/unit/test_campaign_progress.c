@@ -18,8 +18,7 @@ static struct progress_state of(int64_t done) {
                                  .rate = 20,
                                  .seconds_left = 90,
                                  .quantity = "largest_fraction",
-                                 .mean = 0.3125,
-                                 .half_width = 0.008};
+                                 .mean = {.mean = 0.3125, .half_width = 0.008}};
 }
 
 static void durations(void **state) {

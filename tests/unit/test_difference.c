@@ -34,6 +34,10 @@ static void too_few_values_have_no_interval(void **state) {
   const struct difference d = sample_difference(1, a, 1, b, 0.95);
   assert_true(d.difference == 2 && isnan(d.half_width) && d.pairs == 0);
   assert_true(isnan(sample_difference(0, NULL, 1, b, 0.95).difference));
+  /* Nor have values that do not vary: with equal seeds, and without. */
+  const struct difference_value equal[] = {{1, 0.1}, {2, 0.1}, {3, 0.1}}, other[] = {{4, 0.4}, {5, 0.4}, {6, 0.4}};
+  assert_true(isnan(sample_difference(3, equal, 3, equal, 0.95).half_width));
+  assert_true(isnan(sample_difference(3, equal, 3, other, 0.95).half_width));
 }
 
 int main(void) {

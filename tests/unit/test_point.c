@@ -79,12 +79,16 @@ static void views_and_c_agree(void **state) {
       total += point.runs.masses[i];
     largest[r] = point.runs.masses[point.runs.first[r]] / total;
   }
-  const struct sample_summary s = sample_summarise(point.runs.count, largest, 0.95);
+  struct sample_summary s = sample_summarise(point.runs.count, largest, 0.95);
+  sample_of_share(&s, 0.95);
   assert_near(number(store, "SELECT n FROM points"), (double)s.n, 0);
   assert_near(number(store, "SELECT largest_fraction_mean FROM points"), s.mean, 1e-14);
   assert_near(number(store, "SELECT largest_fraction_sd FROM points"), s.standard_deviation, 1e-14);
   assert_near(number(store, "SELECT largest_fraction_se FROM points"), s.standard_error, 1e-14);
   assert_near(number(store, "SELECT largest_fraction_hw95 FROM points"), s.half_width, 1e-11);
+  assert_near(number(store, "SELECT largest_fraction_low95 FROM points"), s.low, 1e-11);
+  assert_near(number(store, "SELECT largest_fraction_high95 FROM points"), s.high, 1e-11);
+  assert_near(number(store, "SELECT largest_fraction_weak FROM points"), s.weak, 0);
 
   struct pooled_bin *bins;
   size_t count;

@@ -92,7 +92,8 @@ static void points_have_mean_scatter_and_interval(void **state) {
   char sql[300];
   const char *const columns[] = {"largest_fraction_mean", "largest_fraction_sd", "largest_fraction_se",
                                  "largest_fraction_hw95"};
-  const double expected[] = {mean, sd, sd / sqrt(RUNS), sd / sqrt(RUNS) * gsl_cdf_tdist_Pinv(0.975, RUNS - 1)};
+  const double share = 1 + SAMPLE_SKEW * sd / fmin(mean, 1 - mean); /* RUNS are not above SAMPLE_SKEW_RUNS */
+  const double expected[] = {mean, sd, sd / sqrt(RUNS), share * sd / sqrt(RUNS) * gsl_cdf_tdist_Pinv(0.975, RUNS - 1)};
   for (size_t i = 0; i < 4; i++) {
     snprintf(sql, sizeof sql, "SELECT %s FROM points WHERE material_m = 7 AND material_k = 1e31", columns[i]);
     assert_near(number(store, sql), expected[i], 1e-6 * expected[i] * (i == 3) + 1e-13); /* t within 5e-6; sums of 25 */
@@ -123,10 +124,55 @@ static void student_is_students(void **state) {
   store_close(store, NULL);
 }
 
+/* The interval of a mean in plain SQL against that in C, of shares and of other results. */
+static void interval_is_that_in_c(void **state) {
+  (void)state;
+  struct store *store = reader();
+  static const double means[] = {0, 1e-9, 0.02, 0.3, 0.5, 0.97, 1}, deviations[] = {0, 1e-16, 0.003, 0.02, 0.06, 0.3};
+  static const size_t numbers[] = {1, 2, 3, 5, 10, 19, 20, 25, 26, 39, 40, 200};
+  for (size_t i = 0; i < 7 * 6 * 12 * 2; i++) {
+    const double mean = means[i % 7], deviation = deviations[i / 7 % 6];
+    const size_t n = numbers[i / 42 % 12];
+    const bool share = i >= 504;
+    char *sql = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&sql, &size);
+    fputs("SELECT format('%.17g,%.17g,%.17g,%d,%s', coalesce(q_hw95, 'nan'), q_low95, q_high95, q_weak, "
+          "typeof(q_hw95) || typeof(q_low95) || typeof(q_high95)) FROM (SELECT 0",
+          out);
+    views_statistics_columns(0, "q", "n", share, out);
+    fputs(" FROM (SELECT *, ", out);
+    views_statistics_half_width(0, "n", "t", share, out);
+    fprintf(out, " FROM (SELECT %.17g AS m0, %s%.17g%s AS d0, NULL AS e0, NULL AS v0, %zu AS n, %.17g AS t)))", mean,
+            n > 1 ? "" : "nullif(", deviation, n > 1 ? "" : ", 0) * NULL", n, n > 1 ? sample_student(n, 0.95) : 0);
+    fclose(out);
+    struct rows rows = {.count = 0};
+    OK(ask(store, sql, &rows));
+    free(sql);
+    struct sample_moments moments = {n, mean, deviation * deviation * ((double)n - 1)};
+    struct sample_summary s = sample_summarise_moments(&moments, 0.95);
+    if (share)
+      sample_of_share(&s, 0.95);
+    double half = NAN, low = NAN, high = NAN;
+    int weak = 0;
+    char types[64] = "", expected[64];
+    assert_int_equal(sscanf(strchr(rows.text, '\n') + 1, "%lf,%lf,%lf,%d,%63[a-z]", &half, &low, &high, &weak, types),
+                     5);
+    snprintf(expected, sizeof expected, "%s%s%s", isnan(s.half_width) ? "null" : "real", isnan(s.low) ? "null" : "real",
+             isnan(s.high) ? "null" : "real");
+    assert_string_equal(types, expected);
+    assert_true(isnan(s.half_width) || fabs(half / s.half_width - 1) < 1e-11);
+    assert_true(isnan(s.low) || (fabs(low - s.low) < 1e-11 && fabs(high - s.high) < 1e-11));
+    assert_int_equal(weak, s.weak);
+  }
+  store_close(store, NULL);
+}
+
 static void spread_of_equal_values_is_zero(void **state) {
   (void)state;
   struct store *store = reader(); /* every run has FIXTURE_FRAGMENTS fragments */
   assert_near(number(store, "SELECT max(fragment_count_sd) FROM points"), 0, 0);
+  assert_near(number(store, "SELECT count(fragment_count_hw95) FROM points"), 0, 0); /* no +- 0 */
   assert_near(number(store, "SELECT min(fragment_count_mean) FROM points"), FIXTURE_FRAGMENTS, 0);
   store_close(store, NULL);
 }
@@ -159,14 +205,16 @@ static void groups_say_what_they_pool(void **state) {
   double sd, first = two_pass(largest, 6, 0, 1, &sd), second = two_pass(largest, 6, 1, 1, &sd);
   double scatter = fabs(first - second) / sqrt(2); /* of the means of two points */
   assert_true(scatter > 1e-3);
-  char expected[200]; /* the mean of `hardest` is 6 at every point: no scatter */
-  snprintf(expected, sizeof expected, "\n6,fake,3,2,50,0,0,6,0,0,0,nan,not-studied,%.6g,%.6g,%.6g,%.6g,",
-           (first + second) / 2, scatter, scatter / sqrt(2), 12.706204736174 * scatter / sqrt(2));
+  const double mean = (first + second) / 2;
+  char expected[200]; /* the mean of `hardest` is 6 at every point: no scatter, and no interval */
+  snprintf(expected, sizeof expected, "\n6,fake,3,2,50,0,0,6,0,0,nan,nan,nan,nan,nan,not-studied,%.6g,%.6g,%.6g,%.6g,",
+           mean, scatter, scatter / sqrt(2), 12.706204736174 * scatter / sqrt(2) * (1 + SAMPLE_SKEW * scatter / mean));
   if (!strstr(rows.text, expected))
     fail_msg("%s not in %s", expected, rows.text);
   assert_non_null(
       strstr(rows.text, "material_m,engine,results_version,points,n,failed,censored,hardest_mean,hardest_sd,hardest_se,"
-                        "hardest_hw95,hardest_resolution,hardest_resolution_verdict,largest_fraction_mean"));
+                        "hardest_hw95,hardest_low95,hardest_high95,hardest_weak,hardest_resolution,"
+                        "hardest_resolution_verdict,largest_fraction_mean"));
   OK(keep(ask_group(store, "material.k,m", NULL, pooled, &error), &rows));
   assert_int_equal(rows.count, M * K);
   assert_string_equal(pooled, "");
@@ -399,6 +447,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(points_have_mean_scatter_and_interval),
       cmocka_unit_test(student_is_students),
+      cmocka_unit_test(interval_is_that_in_c),
       cmocka_unit_test(spread_of_equal_values_is_zero),
       cmocka_unit_test(spectra_are_densities),
       cmocka_unit_test(groups_say_what_they_pool),

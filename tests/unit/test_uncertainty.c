@@ -13,20 +13,21 @@
 static void seeds(void **state) {
   (void)state;
   static const struct {
-    double mean, half_width;
+    struct sample_summary mean;
     const char *expected;
   } cases[] = {
-      {0.34912, 0.0031, "0.349 +- 0.003 (seeds, 95 %)"},
-      {0.34912, 0.0144, "0.349 +- 0.014 (seeds, 95 %)"},
-      {0.34912, 0.02, "0.35 +- 0.02 (seeds, 95 %)"},
-      {4321.6, 34, "4322 +- 34 (seeds, 95 %)"},
-      {1, 0, "1 +- 0 (seeds, 95 %)"},
-      {-2.5e-20, 3e-22, "-2.5e-20 +- 3e-22 (seeds, 95 %)"},
-      {0.34912, NAN, "0.3491 (one run: no interval)"},
+      {{.mean = 0.34912, .half_width = 0.0031}, "0.349 +- 0.003 (seeds, 95 %)"},
+      {{.mean = 0.34912, .half_width = 0.0031, .weak = true}, "0.349 +- 0.003 (seeds, 95 %, weak)"},
+      {{.mean = 0.34912, .half_width = 0.0144}, "0.349 +- 0.014 (seeds, 95 %)"},
+      {{.mean = 0.34912, .half_width = 0.02}, "0.35 +- 0.02 (seeds, 95 %)"},
+      {{.mean = 4321.6, .half_width = 34}, "4322 +- 34 (seeds, 95 %)"},
+      {{.mean = -2.5e-20, .half_width = 3e-22}, "-2.5e-20 +- 3e-22 (seeds, 95 %)"},
+      {{.n = 30, .mean = 1, .half_width = NAN, .low = 0.905, .high = 1}, "1 (all 30 runs; 0.905 to 1)"},
+      {{.n = 1, .mean = 0.34912, .half_width = NAN, .low = NAN, .high = NAN}, "0.3491"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char text[UNCERTAINTY_TEXT];
-    uncertainty_seeds(cases[i].mean, cases[i].half_width, text);
+    uncertainty_seeds(&cases[i].mean, text);
     assert_string_equal(text, cases[i].expected);
   }
 }
