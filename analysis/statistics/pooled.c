@@ -245,6 +245,26 @@ status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_met
   return STATUS_OK;
 }
 
+/* p of a cut-off in windows without an upper end, with each run's largest fragment. */
+static double open_cutoff_p(const struct pooled_runs *runs, double lower, struct power_law_group *groups) {
+  struct power_law pure = {.beta = NAN};
+  for (int rival = 0; rival < 2; rival++) {
+    for (size_t r = 0; r < runs->count; r++) {
+      const size_t begin = runs->first[r], count = window_end(runs, r, lower) - begin;
+      groups[r] = (struct power_law_group){0};
+      if (count > 0)
+        groups[r] = power_law_group_of(rival ? POWER_LAW_CUTOFF : POWER_LAW_PURE, count, runs->masses + begin, lower,
+                                       HUGE_VAL);
+    }
+    if (!rival)
+      pure = power_law_fit(runs->count, groups);
+  }
+  if (!isfinite(pure.beta))
+    return NAN;
+  const struct power_law_rival cutoff = power_law_rival_fit(POWER_LAW_CUTOFF, runs->count, groups);
+  return power_law_rival_p_value(power_law_rival_ratio(&cutoff, pure.log_likelihood));
+}
+
 /* Fits a rival of the pure power law to all runs. */
 static struct power_law_rival fit_rival(const struct pooled_runs *runs, double lower, enum power_law_kind kind,
                                         struct power_law_group *groups) {
@@ -254,7 +274,7 @@ static struct power_law_rival fit_rival(const struct pooled_runs *runs, double l
 }
 
 status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled_rivals *out, struct error *error) {
-  *out = (struct pooled_rivals){0, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+  *out = (struct pooled_rivals){0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
   TRY(check(runs, lower, error));
   struct power_law_group *groups = malloc((runs->count + 1) * sizeof *groups);
   if (!groups)
@@ -275,6 +295,7 @@ status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled
     out->cutoff_p = power_law_rival_p_value(out->cutoff_ratio);
     out->lognormal_ratio = power_law_rival_ratio(&lognormal, pure.log_likelihood);
     out->lognormal_p = power_law_rival_p_value(out->lognormal_ratio);
+    out->open_cutoff_p = open_cutoff_p(runs, lower, groups);
   }
   free(groups);
   return STATUS_OK;
@@ -430,7 +451,9 @@ enum { BATCH = 100, ENOUGH = 100 }; /* stop after this many larger distances: p 
 /* Numbers of fragments and windows of the runs, and the same for one draw. */
 struct windows {
   size_t count, fragments;
+  double lower;
   struct power_law_group *groups;
+  double *step; /* of each run: the mass that its masses are multiples of; 0: none */
 };
 
 struct draw {
@@ -468,18 +491,85 @@ static double distance_of(const struct windows *windows, struct draw *draw, doub
   return most;
 }
 
-/* Draws the same numbers of fragments in the same windows from the fitted law. */
+/* ---- Masses that are whole numbers of a particle's: most fragments of ten particles weigh the same. Such steps are
+ * far from any smooth law, so the draws need them, too. ---- */
+
+enum { FINEST = 1000, PAIRS = 50 }; /* steps below lower / FINEST change no distance */
+
+static bool is_multiple(double mass, double step, double lower) {
+  return fabs(mass - step * round(mass / step)) < 1e-6 / FINEST * lower + 1e-9 * mass;
+}
+
+/* The greatest mass that both masses are multiples of (Euclid), or 0. */
+static double common_divisor(double a, double b, double lower) {
+  while (b > lower / FINEST) {
+    if (is_multiple(a, b, lower))
+      return b;
+    const double rest = fmod(a, b);
+    a = b;
+    b = rest;
+  }
+  return 0;
+}
+
+/* The greatest mass that four of five fragments in the window of run r are multiples of, or 0. Others may hold
+ * particles of another body. Neighbours that differ show it. */
+static double step_of_run(const struct pooled_runs *runs, size_t r, double lower) {
+  size_t begin, end;
+  double best = 0;
+  window_of(runs, r, lower, &begin, &end);
+  for (size_t i = runs->first[r], pairs = 0; i + 1 < runs->first[r + 1] && pairs < PAIRS; i++) {
+    const double heavier = runs->masses[i], lighter = runs->masses[i + 1];
+    if (is_multiple(heavier, lighter, lower) && heavier < 1.5 * lighter)
+      continue; /* equal */
+    pairs++;
+    const double step = common_divisor(heavier, lighter, lower);
+    size_t multiples = 0;
+    for (size_t k = begin; step > best && k < end; k++)
+      multiples += is_multiple(runs->masses[k], step, lower);
+    if (step > best && 5 * multiples >= 4 * (end - begin))
+      best = step;
+  }
+  return best;
+}
+
+/* Few fragments may all be multiples of several particles. The run with most fragments shows the particle's mass; it is
+ * nearly the same in all runs of a point. */
+static void find_steps(const struct pooled_runs *runs, double lower, struct windows *windows) {
+  size_t most = 0;
+  for (size_t r = 0; r < windows->count; r++) {
+    windows->step[r] = windows->groups[r].weight > 0 ? step_of_run(runs, r, lower) : 0;
+    if (windows->groups[r].weight > windows->groups[most].weight)
+      most = r;
+  }
+  for (size_t r = 0; r < windows->count; r++)
+    if (windows->step[r] > 0 && windows->step[most] > 0)
+      windows->step[r] /= fmax(1, round(windows->step[r] / windows->step[most]));
+}
+
+/* u = ln(m/lower) of the nearest mass in steps that is at least `lower`. step: over `lower`. */
+static double to_step(double u, double step) {
+  const double first = ceil(1 / step - 1e-6);
+  return fmax(0, log(step * fmax(round(exp(u) / step), first)));
+}
+
+/* Draws the same numbers of fragments in the same windows from the fitted law. A window of masses in steps ends half a
+ * step below the largest fragment, so that each step stands for the masses that round to it. */
 static void fill_draw(const struct windows *windows, double beta, uint64_t number, struct draw *draw) {
   const double k = beta - 1;
   size_t i = 0;
   for (size_t r = 0; r < windows->count; r++) {
     struct power_law_group *group = &draw->groups[r];
     *group = windows->groups[r];
-    const double span = group->span, whole = -expm1(-k * span);
+    const double step = windows->step[r] / windows->lower;
+    const double span = step > 0 ? log(exp(group->span) - step / 2) : group->span;
+    const double whole = -expm1(-k * span);
     double sum = 0;
     for (size_t j = 0; j < (size_t)group->weight; j++, i++) {
       const double p = random_draw(windows->fragments, RANDOM_RESAMPLE, number, i);
       draw->u[i] = fabs(k * span) < 1e-9 ? p * span : -log1p(-p * whole) / k;
+      if (step > 0)
+        draw->u[i] = to_step(draw->u[i], step);
       sum += draw->u[i];
     }
     group->mean = group->weight > 0 ? sum / group->weight : 0;
@@ -537,6 +627,7 @@ static void take_runs(const struct pooled_runs *runs, double lower, struct windo
     windows->groups[r] = found->groups[r] = group_of(POWER_LAW_PURE, runs, r, lower);
   }
   windows->fragments = i;
+  find_steps(runs, lower, windows);
 }
 
 status pooled_goodness(const struct pooled_runs *runs, double lower, size_t draws, struct pooled_goodness *out,
@@ -544,11 +635,14 @@ status pooled_goodness(const struct pooled_runs *runs, double lower, size_t draw
   *out = (struct pooled_goodness){0, NAN, NAN, 0};
   if (!(lower > 0) || isinf(lower))
     return status_fail(error, STATUS_USAGE, "exponent: a window from %g kg: expected a positive mass", lower);
-  struct windows windows = {.count = runs->count, .fragments = runs->count ? runs->first[runs->count] : 0};
+  struct windows windows = {.count = runs->count,
+                            .fragments = runs->count ? runs->first[runs->count] : 0,
+                            .lower = lower};
   windows.groups = malloc((windows.count + 1) * sizeof *windows.groups);
+  windows.step = malloc((windows.count + 1) * sizeof *windows.step);
   struct draw found;
   double beta;
-  bool failed = make_draw(&windows, &found) != STATUS_OK || !windows.groups;
+  bool failed = make_draw(&windows, &found) != STATUS_OK || !windows.groups || !windows.step;
   if (!failed) {
     take_runs(runs, lower, &windows, &found);
     out->n = windows.fragments;
@@ -559,5 +653,6 @@ status pooled_goodness(const struct pooled_runs *runs, double lower, size_t draw
   }
   free_draw(&found);
   free(windows.groups);
+  free(windows.step);
   return failed ? status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu runs", runs->count) : STATUS_OK;
 }

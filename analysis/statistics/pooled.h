@@ -89,6 +89,8 @@ struct pooled_rivals {
   double cutoff_beta, cutoff_mass; /* HUGE_VAL: no cut-off needed */
   double cutoff_ratio, cutoff_p;   /* 2 dlnL; small p: the cut-off is needed */
   double lognormal_ratio, lognormal_p;
+  double open_cutoff_p; /* of windows without an upper end that hold each run's largest fragment: the stronger test
+                         * where this fragment follows the law, and wrong where it is a remnant of the body */
 };
 status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled_rivals *out, struct error *error);
 

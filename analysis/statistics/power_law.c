@@ -126,7 +126,7 @@ struct power_law power_law_fit(size_t count, const struct power_law_group *group
   for (size_t g = 0; g < count; g++)
     if (groups[g].weight > 0)
       fit.log_likelihood -= groups[g].weight * (k * groups[g].mean + log_integral(k, groups[g].span));
-  return isfinite(fit.beta) && isfinite(fit.standard_error) ? fit : none;
+  return fabs(k) < POWER_LAW_STEEPEST && isfinite(fit.standard_error) ? fit : none;
 }
 
 /* ---- Without a part of the groups ---- */

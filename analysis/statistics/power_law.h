@@ -35,8 +35,12 @@ struct power_law_group {
 struct power_law_group power_law_group_of(enum power_law_kind kind, size_t n, const double *masses, double lower,
                                           double upper);
 
+/* A larger beta - 1 is no exponent: the masses lie within some hundredth of one end of their windows, such as four
+ * equal quarters of a body. */
+#define POWER_LAW_STEEPEST 100
+
 struct power_law {
-  double beta, standard_error; /* NaN when the groups are empty or all at one end */
+  double beta, standard_error; /* NaN when the groups are empty or at one end (POWER_LAW_STEEPEST) */
   double log_likelihood;       /* of u, natural log */
 };
 

@@ -41,8 +41,8 @@ static status print_pool(struct table *table, size_t draws, const struct ask_poo
     if (form == 0 || form == 3)
       table_fixed(table, pooled_spectrum_half_width(&named, fit.interval.half_width), 2);
   }
-  const double tests[] = {goodness.distance, goodness.p, rivals.cutoff_p, rivals.lognormal_p};
-  for (int k = 0; k < 4; k++) {
+  const double tests[] = {goodness.distance, goodness.p, rivals.cutoff_p, rivals.open_cutoff_p, rivals.lognormal_p};
+  for (size_t k = 0; k < sizeof tests / sizeof tests[0]; k++) {
     table_rests_on(table, &pool->doubts);
     table_real(table, tests[k]);
   }
@@ -58,8 +58,9 @@ static status ask(struct store *store, const struct command_line *line, struct e
   table_column(table, "point_id", NULL);
   table_column(table, "from", "kg");
   table_column(table, OUTCOME_NAME(complete_mass), "kg");
-  table_columns(table, (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "N(>m)", "F(L)", "N(>L)",
-                                             "N(>L)_hw95", "distance", "p", "cutoff_p", "lognormal_p", NULL});
+  table_columns(table,
+                (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "N(>m)", "F(L)", "N(>L)", "N(>L)_hw95",
+                                      "distance", "p", "cutoff_p", "open_cutoff_p", "lognormal_p", NULL});
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
   ASK_POOLS pools = ask_pools(store, &choice, NULL, error);

@@ -90,7 +90,7 @@ static void cutoffs_are_told_apart(void **state) {
   enum { ENSEMBLES = 60 };
   static struct made made;
   double mean = 0, squares = 0;
-  int needed = 0, alarms = 0, lognormal = 0;
+  int needed = 0, alarms = 0, lognormal = 0, far = 0, open = 0, open_alarms = 0;
   for (uint64_t e = 0; e < ENSEMBLES; e++) {
     struct pooled_rivals rivals;
     struct pooled_runs runs = make(&made, 1000 + e, 30, true);
@@ -102,11 +102,21 @@ static void cutoffs_are_told_apart(void **state) {
     assert_int_equal(pooled_rivals(&runs, 1, &rivals, NULL), STATUS_OK);
     alarms += rivals.cutoff_p < 0.05;
     lognormal += rivals.lognormal_p < 0.05;
+    /* Without giants, and a cut-off that few fragments reach: the open windows see more of it. */
+    runs = make(&made, 2000 + e, 300, false);
+    assert_int_equal(pooled_rivals(&runs, 1, &rivals, NULL), STATUS_OK);
+    far += rivals.cutoff_p < 0.05;
+    open += rivals.open_cutoff_p < 0.05;
+    runs = make(&made, 3000 + e, HUGE_VAL, false);
+    assert_int_equal(pooled_rivals(&runs, 1, &rivals, NULL), STATUS_OK);
+    open_alarms += rivals.open_cutoff_p < 0.05;
   }
   double deviation = sqrt(squares - mean * mean);
   printf("  cut-off found in %d of %d, false alarms %d and %d (lognormal); beta %.3f +- %.3f\n", needed, ENSEMBLES,
          alarms, lognormal, mean, deviation);
+  printf("  far cut-off found in %d, in open windows in %d; false alarms there %d\n", far, open, open_alarms);
   assert_int_equal(needed, ENSEMBLES);
+  assert_true(open >= 0.8 * ENSEMBLES && open > 2 * far && open_alarms <= 3 + 4 * 1.7);
   /* nominal 5 % of 60 = 3 +- 1.7 */
   assert_true(alarms <= 3 + 4 * 1.7 && lognormal <= 3 + 4 * 1.7);
   assert_true(fabs(mean - 2) < 4 * deviation / sqrt(ENSEMBLES));
@@ -193,13 +203,16 @@ static void exponent_in_forms(void **state) {
   free(masses);
 }
 
-/* Under the law p is uniform in 0..1; a lognormal law is refused. Windows end at each run's largest fragment. */
+/* Under the law p is uniform in 0..1; a lognormal law is refused. Windows end at each run's largest fragment. Both are
+ * so for masses that are whole numbers of a particle's, 10 and more, with a particle that differs a little from run to
+ * run, and with a few fragments that hold a particle of another body. */
 static void goodness_of_fit(void **state) {
   (void)state;
   enum { SHOTS = 10, EACH = 40, CASES = 40 };
   static double masses[SHOTS * EACH];
   size_t first[SHOTS + 1];
-  for (int law = 0; law < 2; law++) {
+  for (int form = 0; form < 4; form++) {
+    const int law = form % 2, whole = form / 2;
     double mean = 0;
     int low = 0;
     for (uint64_t c = 0; c < CASES; c++) {
@@ -208,6 +221,10 @@ static void goodness_of_fit(void **state) {
       for (size_t i = 0; i < SHOTS * EACH; i++) {
         const double u = random_draw(41, (uint64_t)law, c, 2 * i), v = random_draw(41, (uint64_t)law, c, 2 * i + 1);
         masses[i] = law ? exp(1.2 * sqrt(-2 * log1p(-u)) * cos(2 * M_PI * v)) : pow(1 - u, -1 / 0.9);
+      }
+      for (size_t i = 0; whole && i < SHOTS * EACH; i++) {
+        const double particle = (law ? 0.5 : 1) / 9.5 * (1 + 0.001 * ((double)(i / EACH % 5) - 2));
+        masses[i] = particle * (round(masses[i] / particle) + (i % 37 == 0 ? 0.3 : 0));
       }
       for (size_t r = 0; r < SHOTS; r++)
         qsort(masses + first[r], EACH, sizeof *masses, sample_descending);
@@ -225,7 +242,8 @@ static void goodness_of_fit(void **state) {
       mean += g.p / CASES;
       low += g.p < 0.1;
     }
-    printf("  goodness: mean p %.3f, below 0.1 in %d of %d (%s)\n", mean, low, CASES, law ? "lognormal" : "power law");
+    printf("  goodness: mean p %.3f, below 0.1 in %d of %d (%s%s)\n", mean, low, CASES, law ? "lognormal" : "power law",
+           whole ? ", whole particles" : "");
     if (law)
       assert_true(low >= 0.9 * CASES);
     else
@@ -244,6 +262,27 @@ static void goodness_of_fit(void **state) {
   assert_int_equal(pooled_goodness(&(struct pooled_runs){1, none, masses}, 1, 100, &g, NULL), STATUS_OK);
   assert_true(g.n == 0 && isnan(g.p) && g.draws == 0);
   assert_int_equal(pooled_goodness(&(struct pooled_runs){1, none, masses}, 0, 100, &g, NULL), STATUS_USAGE);
+}
+
+/* Four nearly equal parts in each run lie at the upper ends of their windows: they have no exponent. Unlike ones do. */
+static void equal_parts_have_no_exponent(void **state) {
+  (void)state;
+  static const double apart[] = {0, 1e-16, 1e-12, 1e-6, 1e-3};
+  for (size_t c = 0; c < sizeof apart / sizeof apart[0]; c++) {
+    double masses[12];
+    const size_t first[4] = {0, 4, 8, 12};
+    for (size_t i = 0; i < 12; i++)
+      masses[i] = 24.3 * (1 - apart[c] * (double)(i % 4));
+    const struct pooled_runs runs = {3, first, masses};
+    struct pooled_exponent out;
+    assert_int_equal(pooled_exponent(&runs, EXPONENT_MASSES, 2.5, 0.95, &out, NULL), STATUS_OK);
+    assert_true(isnan(out.fit.beta) && isnan(out.interval.half_width));
+  }
+  const double unlike[12] = {24, 20, 18, 15, 30, 21, 17, 9, 19, 18, 11, 10};
+  const struct pooled_runs runs = {3, (const size_t[]){0, 4, 8, 12}, unlike};
+  struct pooled_exponent out;
+  assert_int_equal(pooled_exponent(&runs, EXPONENT_MASSES, 2.5, 0.95, &out, NULL), STATUS_OK);
+  assert_true(isfinite(out.fit.beta) && isfinite(out.interval.half_width));
 }
 
 static void empty_and_bad(void **state) {
@@ -278,6 +317,7 @@ int main(void) {
       cmocka_unit_test(spectrum_forms),
       cmocka_unit_test(exponent_in_forms),
       cmocka_unit_test(goodness_of_fit),
+      cmocka_unit_test(equal_parts_have_no_exponent),
       cmocka_unit_test(empty_and_bad),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
