@@ -30,11 +30,15 @@ bool condition_has(const char *words, const char *word) {
   return is_in(words, word, strlen(word));
 }
 
-static bool rests_on(const char *names, const struct condition *c) {
-  for (size_t n; c->results && (n = next_word(&names)) > 0; names += n)
-    if (is_in(c->results, names, n))
+/* Columns of a run that are no results of the simulation. */
+static const char costs[] = "wall_time cpu_time peak_memory";
+
+/* Is one of the names one of the results? NULL: of all results. */
+static bool rests_on(const char *names, const char *results) {
+  for (size_t n; (n = next_word(&names)) > 0; names += n)
+    if (results ? is_in(results, names, n) : !is_in(costs, names, n))
       return true;
-  return !c->results;
+  return false;
 }
 
 bool condition_broken(const struct condition *c, double number) {
@@ -83,9 +87,9 @@ enum condition_mark condition_next(const struct condition *list, const char **wo
   *words += length;
   *row = NULL;
   if (!condition_find(list, word))
-    return CONDITION_MARKED;
+    return rests_on(names, NULL) ? CONDITION_MARKED : CONDITION_SOUND;
   for (const struct condition *c = list; c->word; c++) {
-    if (strcmp(c->word, word) != 0 || !rests_on(names, c) || mark == CONDITION_WITHHELD)
+    if (strcmp(c->word, word) != 0 || !rests_on(names, c->results) || mark == CONDITION_WITHHELD)
       continue;
     mark = c->withheld ? CONDITION_WITHHELD : CONDITION_MARKED;
     *row = c;

@@ -1,11 +1,11 @@
 // Two stores and more: the points that they have in common, side by side.
 import {body, command, element, fill, table} from './elements.js';
-import {cells} from './plane.js';
+import {cells, doubtSentence} from './plane.js';
 import {inputsOf} from './spectrum.js';
 import * as questions from './questions.js';
 import {state} from './state.js';
 import {ask, has} from './stores.js';
-import {label, number, shellFile, withError, withInterval} from './words.js';
+import {label, marked, number, shellFile, withError, withInterval} from './words.js';
 
 const SHOWN = 500;
 
@@ -25,15 +25,18 @@ export function showCompare() {
   const [first, ...others] = state.stores;
   const known = others.map((other) => new Map(cells(other, state.quantity).map((cell) => [keyOf(other, cell), cell])));
   const rows = cells(first, state.quantity).map((cell) => [cell, ...known.map((map) => map.get(keyOf(first, cell)))]).filter((row) => row.slice(1).some(Boolean));
-  const shown = (cell) => (cell ? `${withInterval(cell)}, n=${cell.n ?? 0}` : '-');
+  const shown = (cell) => (cell ? `${marked(withInterval(cell), cell.doubt, cell.n)}, n=${cell.n ?? 0}` : '-');
   const differences = others.map((other) => differencesOf(first, other));
-  const less = (a, b, i) => differences[i].get(`${a.point_id} ${b?.point_id}`) ?? (b && a.mean !== null && b.mean !== null ? number(b.mean - a.mean, 3) : '-');
+  const both = (a, b) => (a.doubt || b?.doubt ? {withheld: 0} : null);
+  const less = (a, b, i) => marked(plainly(a, b, i), both(a, b));
+  const plainly = (a, b, i) => differences[i].get(`${a.point_id} ${b?.point_id}`) ?? (b && a.mean !== null && b.mean !== null ? number(b.mean - a.mean, 3) : '-');
   const title = label(state.stores, state.quantity);
   fill(body('compare'),
     rows.length ? table(`${title} of the points with the same varied inputs; ± is the 95 % interval over seeds`,
       ['inputs', first.name, ...others.flatMap((other) => [other.name, 'difference'])],
       rows.slice(0, SHOWN).map(([cell, ...rest]) => [inputsOf(first, cell) || 'the only point', shown(cell), ...rest.flatMap((other, i) => [shown(other), less(cell, other, i)])]))
       : element('p', {}, 'These stores have no point in common: their varied inputs differ.'),
+    ...state.stores.map((one, i) => element('p', {}, doubtSentence(one, rows.map((row) => row[i]).filter(Boolean)))),
     element('p', {}, 'Runs with one seed on both sides count as pairs: then the difference is known better than each mean. The same from a shell:'),
     ...(state.quantity === 'beta' ? [] : others.map((other) => element('p', {}, command(`clast compare ${shellFile(first.name)} ${shellFile(other.name)} --quantity ${state.quantity}`)))));
 }

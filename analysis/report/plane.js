@@ -7,7 +7,7 @@ import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
 import {interval} from './statistics.js';
 import {ask, has, newest} from './stores.js';
-import {inUnit, isShare, label, number, plural, shellFile, withInterval} from './words.js';
+import {inUnit, isShare, label, marked, number, plural, shellFile, withInterval} from './words.js';
 
 const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
 
@@ -16,7 +16,28 @@ function statistics(from, quantity) {
   const share = isShare(state.stores, quantity);
   const rows = from.quantities.main.includes(quantity) ? ask(from, questions.mainStatistics(quantity))
     : has(from, 'means') ? ask(from, questions.otherStatistics, {quantity}) : ask(from, questions.statisticsOfRuns(quantity));
-  return newest(rows.map((row) => ({...row, ...interval(row.mean, row.sd, row.n, share)})));
+  const withheld = new Map(doubtsOf(from, quantity).map((row) => [row.point_id, row.withheld]));
+  const values = (row) => row.n - (from.quantities.main.includes(quantity) ? withheld.get(row.point_id) ?? 0 : 0);
+  return newest(rows.map((row) => ({...row, ...interval(row.mean, row.sd, values(row), share)})));
+}
+
+function doubtsOf(from, quantity) {
+  if (has(from, 'doubt')) return ask(from, questions.doubts, {quantity});
+  return from.runColumns.has('warnings') ? ask(from, questions.doubtsOfRuns) : [];
+}
+
+const wordsOf = (doubt) => [...new Set(doubt?.words.split(/[, ]+/) ?? [])];
+const doubtText = ({doubt, n}) => (doubt ? `${doubt.doubtful} of ${plural(n ?? 0, 'run')}: ${wordsOf(doubt).join(', ')}` : 'none');
+
+// What the marks of these cells mean: how many runs, which conditions they break, and what to do.
+export function doubtSentence(from, rows) {
+  const doubtful = rows.filter((row) => row.doubt);
+  if (doubtful.length === 0) return '';
+  const sentences = new Map(has(from, 'doubt_word') ? ask(from, questions.sentences).map((row) => [row.word, row.sentence]) : []);
+  const sum = (of) => of.reduce((total, count) => total + (count ?? 0), 0);
+  const words = [...new Set(doubtful.flatMap((row) => wordsOf(row.doubt)))];
+  return ` !: in doubt, ${sum(doubtful.map((row) => row.doubt.doubtful))} of ${sum(rows.map((row) => row.n))} runs. ` +
+    words.map((word) => `${word}: ${sentences.get(word) ?? `clast explain ${word}`}.`).join(' ');
 }
 
 // Every point with the mean of the quantity, the half width of its interval over seeds, and the error that the
@@ -26,11 +47,12 @@ export function cells(from, quantity) {
   const studied = has(from, 'resolution')
     ? new Map(ask(from, questions.resolution, {quantity}).map((row) => [row.point_id, row])) : new Map();
   const modes = has(from, 'modes') ? new Map(ask(from, questions.modes, {quantity}).map((row) => [row.point_id, row])) : new Map();
+  const doubts = new Map(doubtsOf(from, quantity).map((row) => [row.point_id, row]));
   const judged = has(from, 'modes') && quantity !== 'beta'; // not on whole stores, and an exponent belongs to all runs
   return from.points.map((point) => {
     const {mean = null, hw95 = null, low95 = null, high95 = null, weak = null} = known.get(point.point_id) ?? {};
     const {half_width: resolution = null, verdict = null} = studied.get(point.point_id) ?? {};
-    return {...point, mean, hw95, low95, high95, weak, resolution, verdict, modes: modes.get(point.point_id) ?? null, judged};
+    return {...point, mean, hw95, low95, high95, weak, resolution, verdict, modes: modes.get(point.point_id) ?? null, judged, doubt: doubts.get(point.point_id) ?? null};
   });
 }
 
@@ -59,7 +81,8 @@ function alongAxis(column, rows) {
 
 function tooltip(columns, title) {
   return [{field: 'point_id', title: 'point'}, ...columns.map(([field, name]) => ({field, title: name})),
-    {field: 'shown', title}, {field: 'n', title: 'runs'}, {field: 'resolutionText', title: 'resolution'}, {field: 'modesText', title: 'modes'}];
+    {field: 'shown', title}, {field: 'n', title: 'runs'}, {field: 'resolutionText', title: 'resolution'}, {field: 'modesText', title: 'modes'},
+    {field: 'doubtText', title: 'in doubt'}];
 }
 
 // What finer settings may change, as far as clast converge knows.
@@ -78,8 +101,10 @@ function data(quantity) {
     ...cell,
     [state.x]: placeOf(state.x, cell[state.x]),
     ...(state.y ? {[state.y]: placeOf(state.y, cell[state.y])} : {}),
-    shown: withInterval(cell),
+    shown: marked(withInterval(cell), cell.doubt, cell.n),
     text: number(cell.mean, 3),
+    mark: cell.doubt ? ' !' : '',
+    doubtText: doubtText(cell),
     low: cell.low95 ?? cell.mean - cell.hw95,
     high: cell.high95 ?? cell.mean + cell.hw95,
     resolutionText: resolutionText(cell),
@@ -121,8 +146,8 @@ function planeSpec(rows, title) {
     layers.push({transform: [{filter: isChosen}], mark: {type: 'rect', filled: false, stroke: '#D40000', strokeWidth: 4, tooltip: null}, encoding: place});
   if (grid && room >= 50 && !several)
     layers.push({mark: {type: 'text', baseline: 'middle', tooltip: null, fontSize: 12},
-      transform: [{calculate: "datum.mean === null ? '-' : datum.text + (datum.hw95 === null ? '' : ' ±' + format(datum.hw95, '.1~g')) + (datum.weak ? '~' : '')", as: 'cell'},
-        {calculate: room >= 130 ? "datum.cell + '  n=' + datum.n" : room >= 90 ? 'datum.cell' : 'datum.text', as: 'cell'}],
+      transform: [{calculate: "datum.mean === null ? '-' : datum.text + (datum.hw95 === null ? '' : ' ±' + format(datum.hw95, '.1~g')) + (datum.weak ? '~' : '') + datum.mark", as: 'cell'},
+        {calculate: room >= 130 ? "datum.cell + '  n=' + datum.n" : room >= 90 ? 'datum.cell' : 'datum.text + datum.mark', as: 'cell'}],
       encoding: {...place, text: {field: 'cell'}, color: {condition: {test: `datum.mean === null || datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
   if (rows.some((row) => row.twoModes))
     layers.push({transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: room >= 90 ? '◆ two modes' : '◆', dy: 15, fontSize: 12, tooltip: null},
@@ -144,6 +169,7 @@ function lineSpec(rows, title) {
       encoding: {x: place, y, stroke: {condition: {test: isChosen, value: '#D40000'}, value: 'white'},
         strokeWidth: {condition: {test: isChosen, value: 4}, value: 1},
         tooltip: tooltip([[state.x, label(state.stores, state.x)]], title)}},
+    {transform: [{filter: 'datum.doubt'}], mark: {type: 'text', text: '!', dx: 12, fontSize: 14, fontWeight: 'bold', tooltip: null}, encoding: {x: place, y}},
     {transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: '◆ two modes', dy: -14, tooltip: null}, encoding: {x: place, y}},
     ...frame({x: place, y}, false)]};
 }
@@ -225,17 +251,17 @@ export async function showPlane() {
   const rows = (plane.rows = data(state.quantity));
   const known = rows.filter((row) => row.mean !== null);
   if (known.length === 0) return nothing(figure, 'No point has a value of this quantity.');
-  const caption = `${title}: mean over the runs of each point. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}`;
+  const caption = `${title}: mean over the runs of each point. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${doubtSentence(store(), rows)}`;
   if (!state.x) {
-    nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows)}`);
+    nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows)}${doubtSentence(store(), rows)}`);
     return;
   }
   const inputs = [state.x, state.y].filter(Boolean);
   const view = await draw(figure, state.y ? planeSpec(rows, title) : lineSpec(known, title), {
     name: 'plane', description: `${title} over ${inputs.map((input) => label(state.stores, input)).join(' and ')}. Arrow keys move, the space bar chooses; the table of points below has the numbers`,
     keys: true,
-    caption, command: commandOf(), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'low95', 'high95', 'weak', 'resolution'],
-    rows: rows.map((row) => [row.point_id, ...inputs.map((input) => row[input]), row.n, row.mean, row.hw95, row.low95, row.high95, row.weak, row.resolution]),
+    caption, command: commandOf(), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'low95', 'high95', 'weak', 'resolution', 'doubtful', 'doubts'],
+    rows: rows.map((row) => [row.point_id, ...inputs.map((input) => row[input]), row.n, row.mean, row.hw95, row.low95, row.high95, row.weak, row.resolution, row.doubt?.doubtful ?? 0, wordsOf(row.doubt).join(', ')]),
   });
   plane.view = view;
   listen(view);
@@ -258,8 +284,8 @@ export function showPoints() {
   const boxes = (row) => element('input', {type: 'checkbox', value: row.point_id, checked: state.chosen.has(row.point_id), 'aria-label': `point ${row.point_id}`,
     change: () => choose([...body('points').querySelectorAll('input:checked')].map((box) => Number(box.value)))});
   fill(body('points'), table(`Points of ${store().name}${plane.rows.length > rows.length ? `: the first ${rows.length}` : ''}`,
-    ['chosen', 'point', ...axes.map((axis) => label(state.stores, axis)), 'runs', 'failed', label(state.stores, state.quantity), 'resolution', 'modes'],
-    rows.map((row) => [boxes(row), row.point_id, ...axes.map((axis) => (axis === state.x || axis === state.y ? number(row[axis]) : number(inUnit(state.stores, axis, row[axis])))), row.n ?? 0, row.failed ?? 0, withInterval(row), row.resolutionText, row.modesText])));
+    ['chosen', 'point', ...axes.map((axis) => label(state.stores, axis)), 'runs', 'failed', label(state.stores, state.quantity), 'resolution', 'modes', 'in doubt'],
+    rows.map((row) => [boxes(row), row.point_id, ...axes.map((axis) => (axis === state.x || axis === state.y ? number(row[axis]) : number(inUnit(state.stores, axis, row[axis])))), row.n ?? 0, row.failed ?? 0, row.shown, row.resolutionText, row.modesText, row.doubtText])));
 }
 
 export function showChoices() {

@@ -3,7 +3,7 @@ import {body, command, element, fill, list, table} from './elements.js';
 import * as questions from './questions.js';
 import {chosenPoints, state, store} from './state.js';
 import {ask, has} from './stores.js';
-import {inUnit, label, number, plural, shellFile} from './words.js';
+import {inUnit, label, marked, number, plural, shellFile} from './words.js';
 
 const SHOWN = 200;
 let order = {column: null, down: false};
@@ -42,13 +42,17 @@ function sorted(rows, columns) {
 export function showRuns() {
   const from = store(), results = columnsOf(from), columns = ['run_id', 'point_id', 'seed', 'state', ...results];
   const rows = sorted(chosenPoints().flatMap((point) => ask(from, questions.runs(results), {point: point.point_id})), columns);
+  const marks = new Map(results.map((column) => [column, new Set(has(from, 'doubt_mark')
+    ? ask(from, questions.marks, {quantity: column}).map((row) => `${row.engine} ${row.words}`) : [])]));
+  const isMarked = (row, column) => results.includes(column) && row.counts && (has(from, 'doubt_mark') ? marks.get(column).has(`${row.engine} ${row.warnings}`) : Boolean(row.warnings));
   const heading = (column) => ({run_id: 'run', point_id: 'point', seed: 'seed', state: 'state'})[column] ?? label(state.stores, column);
   const cell = (row, column) => column === 'run_id'
-    ? element('button', {type: 'button', 'aria-label': `run ${row.run_id}`, click: () => showRun(row.run_id)}, String(row.run_id)) : number(row[column]);
+    ? element('button', {type: 'button', 'aria-label': `run ${row.run_id}`, click: () => showRun(row.run_id)}, String(row.run_id)) : marked(number(row[column]), isMarked(row, column) && {withheld: 0});
+  const isDoubted = (row) => results.some((column) => isMarked(row, column));
   const pictures = has(from, 'picture') ? chosenPoints().slice(0, 4).flatMap((point) => ask(from, questions.pictures, {point: point.point_id})) : [];
   fill(document.getElementById('run'));
   fill(body('runs'),
-    rows.length ? table(`${plural(rows.length, 'run')} of the chosen points${rows.length > SHOWN ? `; ${SHOWN} of them are listed` : ''}. A heading sorts; a run's number shows it.`,
+    rows.length ? table(`${plural(rows.length, 'run')} of the chosen points${rows.length > SHOWN ? `; ${SHOWN} of them are listed` : ''}. A heading sorts; a run's number shows it.${rows.some(isDoubted) ? ' !: in doubt; the run has the words of the conditions that it breaks.' : ''}`,
       columns.map(heading), rows.slice(0, SHOWN).map((row) => columns.map((column) => cell(row, column))), (i) => {
         order = {column: columns[i], down: order.column === columns[i] && !order.down};
         showRuns();

@@ -1,13 +1,13 @@
 // How much the seed matters: histogram and quantiles of the quantity over the runs of the chosen points.
 import {body, fill, table} from './elements.js';
 import {COLOURS, DASHES, draw, nothing} from './chart.js';
-import {cells, modesText} from './plane.js';
+import {cells, doubtSentence, modesText} from './plane.js';
 import * as questions from './questions.js';
 import {nameOf, whereOf} from './spectrum.js';
 import {chosenPoints, state, store} from './state.js';
 import {summary} from './statistics.js';
 import {ask, has} from './stores.js';
-import {isShare, label, number, plural, shellFile, withInterval} from './words.js';
+import {isShare, label, marked, number, plural, shellFile, withInterval} from './words.js';
 
 function valuesOf(from, point, quantity) {
   const rows = ask(from, questions.values(quantity), {point: point.point_id});
@@ -59,11 +59,11 @@ export async function showSeeds() {
     {data: {values: means}, mark: {type: 'rule', strokeWidth: 1.5, strokeDash: [5, 3]}, encoding: {x: {field: 'mean', type: 'quantitative'}, color: colour}},
   ]}, {
     name: 'seeds', description: `Histogram of ${title} over ${plural(all.length, 'run')}`,
-    caption: `${title} of ${plural(all.length, 'run')}${apart ? '' : `, ${samples.length} points together`}. Upright dashes: means.`,
+    caption: `${title} of ${plural(all.length, 'run')}${apart ? '' : `, ${samples.length} points together`}. Upright dashes: means.${doubtSentence(from, samples.map((sample) => whole.get(sample.point.point_id)))}`,
     command: commandOf(from, quantity, samples.map((sample) => sample.point.point_id)),
     columns: ['point', quantity], rows: samples.flatMap((sample) => sample.values.map((value) => [sample.name, value])),
   });
-  const mean = (row) => (row.all ? `${withInterval(row.all)}, n=${row.all.n}` : withInterval(row));
+  const mean = (row) => (row.all ? `${marked(withInterval(row.all), row.all.doubt, row.all.n)}, n=${row.all.n}` : withInterval(row));
   const known = apart && has(from, 'quantile') ? samples.map(({point}) => new Map(ask(from, questions.quantiles, {quantity, point: point.point_id}).map((row) => [row.share, row]))) : [];
   const quantileOf = (share, key) => (row, i) => {
     const all = known[i]?.get(share);

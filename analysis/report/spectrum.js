@@ -3,9 +3,10 @@
 import {COLOURS, DASHES, SHAPES, draw, nothing} from './chart.js';
 import * as questions from './questions.js';
 import {chosenPoints, state, store} from './state.js';
+import {cells, doubtSentence} from './plane.js';
 import {pool} from './statistics.js';
 import {ask, has, newest} from './stores.js';
-import {inUnit, number, plural, shellFile, unitOf, withError} from './words.js';
+import {inUnit, marked, number, plural, shellFile, unitOf, withError} from './words.js';
 
 export const inputsOf = (from, point) => from.axes.map((axis) => `${axis.path.split('.').pop()} ${number(inUnit(state.stores, axis.column_name, point[axis.column_name]))}${unitOf(state.stores, axis.column_name)}`).join(', ');
 
@@ -99,10 +100,12 @@ export async function showSpectrum() {
     {data: {values: fits.flatMap((fit) => fit?.ends ?? [])}, mark: {type: 'line', strokeWidth: 2, clip: true}, encoding: {x, y: y('density'),
       color: colour, strokeDash: {field: 'name', type: 'nominal', scale: {domain: names, range: DASHES}, legend}}},
   ];
-  const told = drawn.map((curve, i) => `${curve.name}${fits[i] ? `: ${fits[i].text}` : ''}`).join('; ');
+  const doubted = new Map(drawn.map((curve) => [curve.from, cells(curve.from, 'beta')]));
+  const of = (curve) => doubted.get(curve.from).filter((cell) => curve.points.some((point) => point.point_id === cell.point_id));
+  const told = drawn.map((curve, i) => marked(`${curve.name}${fits[i] ? `: ${fits[i].text}` : ''}`, of(curve).some((cell) => cell.doubt) && {withheld: 0})).join('; ');
   await draw(figure, {data: {values: rows}, height: 340, layer}, {
     name: 'spectrum', description: `Fragment mass spectrum of ${told}`,
-    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood; p (clast exponents): below 0.1 a power law does not fit.${complete ? ` Pale marks: below ${number(complete, 2)} kg fragments are missing (too few particles or grains).` : ''}`,
+    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood; p (clast exponents): below 0.1 a power law does not fit.${complete ? ` Pale marks: below ${number(complete, 2)} kg fragments are missing (too few particles or grains).` : ''}${doubtSentence(drawn[0].from, drawn.flatMap(of))}`,
     command: commandOf(drawn),
     columns: ['point', 'lower_kg', 'upper_kg', 'fragments', 'density', 'density_hw95'],
     rows: rows.map((row) => [row.name, row.lower, row.upper, row.count, row.density, row.hw95]),

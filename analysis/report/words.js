@@ -18,6 +18,9 @@ export function withInterval({mean, hw95, low95, high95, weak}) {
   return withError(mean, hw95) + (weak ? ' (weak)' : '');
 }
 
+// A number that rests on runs in doubt has a "!"; where the values of some are withheld, also the number of the others.
+export const marked = (text, doubt, n) => (!doubt || text === '-' ? text : `${text}${doubt.withheld ? ` (${n - doubt.withheld})` : ''} !`);
+
 export const plural = (count, word) => `${count} ${word}${count === 1 ? '' : 's'}`;
 
 // The first store that names a column decides its name and its unit: inputs are shown in the unit that the campaign

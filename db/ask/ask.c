@@ -365,9 +365,13 @@ static status read_doubts(struct store *store, struct ask_points_row *row, struc
                             (long long)row->results_version);
   while (answer_next(&answer))
     sample_add(&moments, answer_real(&answer, 0));
-  const struct sample_summary of_others = sample_summarise_moments(&moments, 0.95);
+  struct sample_summary of_others = sample_summarise_moments(&moments, 0.95);
+  sample_of_share(&of_others, 0.95); /* it is one */
   row->mean = moments.n ? of_others.mean : (double)NAN;
   row->half_width = of_others.half_width;
+  row->low = of_others.low;
+  row->high = of_others.high;
+  row->weak = of_others.weak;
   return answer_end(&answer);
 }
 

@@ -487,6 +487,9 @@ struct pooled_form ask_pool_form(const struct ask_pool *pool, bool cumulative, d
  *   means                   n, mean, sd and hw95 of the results that are not in `points`, a row for each point
  *   quantile                of the first main result: value and 95 % interval, of up to 200 points
  *   modes                   of all results, at the points whose runs have two modes
+ *   doubt                   of each point the runs that count with words in `warnings`
+ *   doubt_mark              the results that these words mark (`marks`: which of the words) or withhold; also beta
+ *   doubt_word              what each condition says
  *   goodness                p of the power law at each point, of the first points until it would take too long
  *   resolution              of the store's view: what finer settings may change, where `clast converge` was used
  *   campaign, session, attempt, axis, column_doc   of the store's tables

@@ -11,6 +11,7 @@
 #include "db/sql.h"
 #include "db/store/internal.h"
 #include "db/store/views.h"
+#include "engine/engine.h"
 #include "engine/grow.h"
 #include "engine/outcome.h"
 #include "schemas/text.h"
@@ -167,6 +168,7 @@ struct reading {
   struct column column[COLUMNS];
   bool begun;
   int64_t point_id, results_version; /* the current ones */
+  size_t runs;                       /* of the current point that count */
 };
 
 static bool is_main(const char *name) {
@@ -178,10 +180,15 @@ static bool is_main(const char *name) {
   return false;
 }
 
-static status add_mean(struct reading *reading, const struct column *column, struct error *error) {
+static struct sample_summary summary_of(const struct column *column) {
   struct sample_summary summary = sample_summarise_moments(&column->moments, 0.95);
   if (column->share)
     sample_of_share(&summary, 0.95);
+  return summary;
+}
+
+static status add_mean(struct reading *reading, const struct column *column, struct error *error) {
+  const struct sample_summary summary = summary_of(column);
   sqlite3_bind_int64(reading->insert, 1, reading->point_id);
   sqlite3_bind_int64(reading->insert, 2, reading->results_version);
   sqlite3_bind_text(reading->insert, 3, column->name, -1, SQLITE_STATIC);
@@ -192,6 +199,22 @@ static status add_mean(struct reading *reading, const struct column *column, str
   return sql_run(reading->insert, doing, error);
 }
 
+/* The view points has raw values: the mean of a main result leaves out those that are withheld. */
+static status correct_point(struct reading *reading, const struct column *column, struct error *error) {
+  STATEMENT update = NULL;
+  const struct sample_summary of = summary_of(column);
+  const double numbers[] = {of.mean, of.standard_deviation, of.standard_error, of.half_width, of.low, of.high};
+  TRY(sql_preparef(
+      reading->page->store.db, &update, doing, error,
+      "UPDATE points SET \"%w_mean\" = ?1, \"%w_sd\" = ?2, \"%w_se\" = ?3, \"%w_hw95\" = ?4, \"%w_low95\" = "
+      "?5, \"%w_high95\" = ?6 WHERE point_id = %lld AND results_version = %lld",
+      column->name, column->name, column->name, column->name, column->name, column->name, (long long)reading->point_id,
+      (long long)reading->results_version));
+  for (int k = 0; k < 6; k++)
+    sqlite3_bind_double(update, 1 + k, (double)(float)numbers[k]); /* NaN is NULL */
+  return sql_run(update, doing, error);
+}
+
 /* Writes the statistics of the current point: means of the results that the view points lacks, and modes of all
  * results. `newest`: the point has no newer version of results. */
 static status end_point(struct reading *reading, bool newest, struct error *error) {
@@ -200,6 +223,8 @@ static status end_point(struct reading *reading, bool newest, struct error *erro
     struct column *column = &reading->column[i];
     if (column->moments.n > 0 && !column->main)
       code = add_mean(reading, column, error);
+    else if (column->main && column->moments.n < reading->runs)
+      code = correct_point(reading, column, error);
     if (code == STATUS_OK && newest)
       code = add_modes(&reading->modes, reading->point_id, column->name, column->values_count, column->values, error);
     column->moments = (struct sample_moments){.n = 0};
@@ -227,9 +252,11 @@ static status add_run(struct reading *reading, const struct answer *run, struct 
   if (!reading->begun || point != reading->point_id || version != reading->results_version) {
     TRY(end_point(reading, point != reading->point_id, error));
     reading->begun = true;
+    reading->runs = 0;
     reading->point_id = point;
     reading->results_version = version;
   }
+  reading->runs++;
   for (size_t i = 0; i < reading->count; i++) {
     const double value = answer_real(run, 2 + i);
     if (isfinite(value))
@@ -242,7 +269,8 @@ static status add_run(struct reading *reading, const struct answer *run, struct 
 static status read_results(struct reading *reading, struct store *store, struct error *error) {
   sqlite3_str *columns = sqlite3_str_new(NULL);
   for (size_t i = 0; i < reading->count; i++)
-    sqlite3_str_appendf(columns, ", \"%w\"", reading->column[i].name);
+    sqlite3_str_appendf(columns, ", meant(engine, warnings, %Q, \"%w\")", reading->column[i].name,
+                        reading->column[i].name);
   ANSWER
   runs = answer_to(store, error,
                    "SELECT point_id, results_version%z FROM runs WHERE counts ORDER BY point_id, results_version, "
@@ -304,7 +332,8 @@ static void write_results(const struct reading *reading, double runs, sqlite3_st
         ++*left_out;
         continue;
       }
-      sqlite3_str_appendf(sql, ", \"%w\"", column->name);
+      sqlite3_str_appendf(sql, ", meant(engine, warnings, %Q, \"%w\") AS \"%w\"", column->name, column->name,
+                          column->name);
       room -= room > 0;
     }
 }
@@ -325,19 +354,79 @@ static status copy_runs(struct reading *reading, struct store *store, struct err
       reading->page,
       answer_to(store, error,
                 "SELECT run_id, point_id, replicate, seed, results_version, counts, surplus, state, engine, scene, "
-                "message, session_id, host, attempt%z FROM runs WHERE run_id IN (SELECT run_id FROM (SELECT run_id, "
+                "message, warnings, session_id, host, attempt%z FROM runs WHERE run_id IN (SELECT run_id FROM (SELECT "
+                "run_id, "
                 "row_number() OVER (PARTITION BY point_id, results_version ORDER BY replicate, seed) AS place FROM run "
                 "WHERE surplus = 0 AND point_id %% %d = %d) WHERE place <= %d) ORDER BY point_id, results_version, "
                 "replicate, seed",
                 sqlite3_str_finish(columns), every, every > 1 ? 1 : 0, replicates),
-      "runs", 14 + axis_count));
+      "runs", 15 + axis_count));
   TRY(set_fact(reading->page, "results_left_out", left_out, error));
   TRY(set_fact(reading->page, "replicates_kept", (size_t)replicates, error));
   return set_fact(reading->page, "runs_of_every_nth_point", (size_t)every, error);
 }
 
+/* ---- which runs are in doubt, and about what (engine/condition.h) ---- */
+
+/* What the words of an engine's runs say of a result. */
+static status add_mark(struct reading *reading, const struct answer *words, const char *quantity, const char *results,
+                       struct error *error) {
+  return sql_executef(
+      reading->page->store.db, doing, error,
+      "INSERT INTO doubt_mark SELECT engine, words, %Q, doubts(engine, words, %Q) AS marks, meant(engine, "
+      "words, %Q, 1) IS NULL FROM (SELECT %Q AS engine, %Q AS words) WHERE marks IS NOT NULL",
+      quantity, results, results, answer_text(words, 0), answer_text(words, 1));
+}
+
+static status add_sentences(struct reading *reading, struct error *error) {
+  STATEMENT insert = NULL;
+  TRY(sql_prepare(reading->page->store.db, "INSERT INTO doubt_word VALUES (?1, ?2, ?3)", &insert, doing, error));
+  for (size_t e = 0; e < engine_count(); e++)
+    for (const struct condition *c = engine_at(e)->conditions; c && c->word; c++) {
+      char *text = NULL;
+      size_t size = 0;
+      FILE *out = text_open(&text, &size);
+      if (out)
+        condition_sentence(c, out);
+      if (!out || !text_close(out, &text))
+        return status_fail(error, STATUS_MEMORY, "no memory for the page");
+      text[strcspn(text, "\n")] = 0;
+      sql_bind_text(insert, 1, engine_at(e)->name);
+      sql_bind_text(insert, 2, c->word);
+      sqlite3_bind_text(insert, 3, text, -1, SQLITE_TRANSIENT);
+      free(text);
+      TRY(sql_run(insert, doing, error));
+    }
+  return STATUS_OK;
+}
+
+static status add_doubts(struct reading *reading, struct store *store, struct error *error) {
+  TRY(ask_register_functions(&reading->page->store, error));
+  TRY(sql_execute(reading->page->store.db,
+                  "CREATE TABLE doubt_mark (engine, words, quantity, marks, withheld);"
+                  "CREATE TABLE doubt_word (engine, word, sentence)",
+                  doing, error));
+  TRY(copy(
+      reading->page,
+      answer_to(store, error,
+                "SELECT point_id, engine, warnings AS words, count(*) AS runs FROM runs WHERE counts AND warnings <> "
+                "'' AND results_version = (SELECT max(results_version) FROM point_total t WHERE t.point_id = "
+                "runs.point_id AND t.runs > 0) GROUP BY point_id, engine, warnings"),
+      "doubt", EXACT));
+  ANSWER words = answer_to(&reading->page->store, error,
+                           "SELECT DISTINCT engine, words FROM doubt ORDER BY engine, words");
+  while (answer_next(&words)) {
+    for (size_t i = 0; i < reading->count; i++)
+      TRY(add_mark(reading, &words, reading->column[i].name, reading->column[i].name, error));
+    TRY(add_mark(reading, &words, "beta", OUTCOME_NAME(mean_fragment_mass), error));
+  }
+  TRY(answer_end(&words));
+  return add_sentences(reading, error);
+}
+
 static status fill_runs(struct reading *reading, struct store *store, struct error *error) {
   sqlite3 *db = reading->page->store.db;
+  TRY(ask_register_functions(store, error));
   TRY(sql_execute(db,
                   "CREATE TABLE means (point_id, results_version, quantity, n, mean, sd, hw95);"
                   "CREATE TABLE modes (point_id, quantity, lower_mode, upper_mode, between_modes, "
@@ -356,10 +445,11 @@ static status fill_runs(struct reading *reading, struct store *store, struct err
   TRY(answer_end(&names));
   TRY(read_results(reading, store, error));
   TRY(thin_means(reading, error));
+  TRY(add_doubts(reading, store, error));
   return copy_runs(reading, store, error);
 }
 
-/* Fills in `runs`, `means` and `modes`. */
+/* Fills in `runs`, `means`, `modes` and the tables of doubts. */
 static status add_runs(struct ask_page *page, struct store *store, struct error *error) {
   struct reading *reading = calloc(1, sizeof *reading);
   if (!reading)

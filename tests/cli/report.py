@@ -1,6 +1,7 @@
-"""The page of `clast report` in headless Chromium, as a reader uses it. usage: report.py SUPPORT CLAST PAGE STORE OTHER
+"""The page of `clast report` in headless Chromium, as a reader uses it. usage: report.py SUPPORT CLAST PAGE STORE OTHER MARKED
 
-STORE is what the page was made from, OTHER is a store to drop on it."""
+STORE is what the page was made from, OTHER is a store to drop on it. MARKED.html is
+the page of MARKED.db, of which the points 2 and 4 are in doubt."""
 import base64
 import csv
 import gzip
@@ -14,7 +15,7 @@ import sqlite3
 import subprocess
 import sys
 
-support, clast, page, store, other = sys.argv[1:6]
+support, clast, page, store, other, marked = sys.argv[1:7]
 sys.path.insert(0, support)
 from browser import Browser  # noqa: E402
 
@@ -277,6 +278,31 @@ def loads_again(browser):
     done("a page of a running campaign loads itself again, and keeps what was chosen")
 
 
+def marks(browser):
+    browser.open(f"{marked}.html#points=1.2")
+    wait_shown(browser, 1)
+    why = " !: in doubt, 6 of 12 runs. step: fidelity.time_step over the longest stable step is above 0.25: energy may drift; give a"
+    assert why in text(browser, "#plane-chart figcaption"), text(browser, "#plane-chart figcaption")
+    assert why.replace("6 of 12", "3 of 6") in text(browser, "#seeds figcaption"), text(browser, "#seeds figcaption")
+    assert why.replace("6 of 12", "3 of 6") in text(browser, "#spectrum figcaption"), text(browser, "#spectrum figcaption")
+    table = "[...document.querySelectorAll('%s tbody tr')].map((r) => [...r.cells].map((c) => c.textContent.trim()))"
+    rows = browser.js(table % "#points")
+    assert [row[6][-2:] == " !" for row in rows] == [False, True, False, True] and rows[1][9] == "3 of 3 runs: step", rows
+    assert browser.js("[...document.querySelectorAll('#plane-chart text')].filter((t) => t.textContent.includes(' !')).length") == 2
+    mean = browser.js(table % "#seeds .body")[0]
+    assert " !" not in mean[1] and " !, n=3" in mean[2], mean
+    rows = browser.js(table % "#runs .body")
+    assert len(rows) == 6 and all((row[4][-2:] == " !") == (row[1] == "2") and row[-1][-2:] != " !" for row in rows), rows
+    done("numbers in doubt are marked, and captions say why")
+    count = shown(browser)
+    browser.choose_file("#file", f"{marked}.db")
+    wait_shown(browser, count + 1)
+    caption = text(browser, "#plane-chart figcaption")
+    assert "!: in doubt, 6 of 12 runs. step: clast explain step." in caption, caption
+    assert text(browser, "#compare .body").count(" !, n=3") == 4, text(browser, "#compare .body")
+    done("a dropped store is marked by the words of its runs")
+
+
 def widths(browser):
     for width in (1280, 768, 390):
         browser.size(width, 900)
@@ -300,6 +326,7 @@ with Browser() as browser:
     keep_downloads(browser)
     drop(browser)
     widths(browser)
+    marks(browser)
     assert browser.complaints == [], browser.complaints
     outside = [url for url in browser.requests if not url.startswith(("file:", "blob:", "data:", "about:"))]
     assert outside == [], outside

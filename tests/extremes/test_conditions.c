@@ -107,6 +107,7 @@ static void bounds_are_exclusive_and_the_end_decides(void **state) {
   assert_int_equal(condition_mark(rows, "", "b"), CONDITION_SOUND);
   assert_int_equal(condition_mark(rows, "lower", "d"), CONDITION_MARKED); /* a word of another version */
   assert_int_equal(condition_mark(NULL, words, "a"), CONDITION_MARKED);
+  assert_int_equal(condition_mark(rows, "low, lower", "wall_time"), CONDITION_SOUND); /* no result */
   /* columns of a store are paths, too */
   assert_int_equal(condition_mark(sph_engine.conditions, "gone", "crater.depth"), CONDITION_WITHHELD);
   assert_int_equal(condition_mark(sph_engine.conditions, "gone", "crater_depth"), CONDITION_WITHHELD);
