@@ -100,8 +100,8 @@ static double total_effect(const struct asking *a) {
 
 static double index_of(const struct asking *a) {
   const bool seed = a->input == a->table->inputs;
-  if (a->blocks < 2 || a->seeds < 1 || (seed && a->seeds < 2))
-    return NAN;
+  if (a->blocks < 2 || a->seeds < 1 || ((seed || a->total) && a->seeds < 2))
+    return NAN; /* one seed: the noise of the runs cannot be told from the effect of an input */
   /* The whole variance: between points with one seed, plus the effect of a seed that is the same at all points. */
   const double alike = a->seeds > 1 ? of_seeds(a, true) : 0, whole = between_points(a) + alike;
   if (seed)
@@ -125,8 +125,11 @@ static double over_seeds(size_t n, const uint32_t *chosen, void *context) {
 
 static struct sample_interval interval_of(struct asking *a) {
   struct sample_interval interval = sample_jackknife(a->blocks, 0.95, over_blocks, a);
-  if (a->seeds < 3)
+  if (a->seeds < 3) {
+    if (a->input == a->table->inputs && !a->total) /* a covariance of two seeds: more blocks do not tell how far off */
+      interval.standard_error = interval.half_width = NAN;
     return interval;
+  }
   const struct sample_interval seeds = sample_jackknife(a->seeds, 0.95, over_seeds, a);
   interval.standard_error = hypot(interval.standard_error, seeds.standard_error);
   interval.half_width = hypot(interval.half_width, seeds.half_width);

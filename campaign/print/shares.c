@@ -360,7 +360,7 @@ static status print_sobol(const struct reading *r, enum table_format format, str
         "clast: Sobol indices, shares of the variance, of %zu blocks with %zu %s. first: of the input alone; total: "
         "with what it does together with others\n",
         r->whole, r->table.seeds,
-        r->table.seeds == 1   ? "seed, of which nothing is known: give the campaign several"
+        r->table.seeds == 1   ? "seed: a total would hold all the scatter of the runs; give the campaign several seeds"
         : r->table.same_seeds ? "seeds, the same at all points"
                               : "seeds, different ones at each point");
   return table_end(table, error);
