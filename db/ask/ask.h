@@ -355,7 +355,8 @@ struct ask_pairs_row {
   const struct ask_doubts *doubts[2];
 };
 
-/* Reads the values of both sides: STORE, STORE:POINT or STORE:CAMPAIGN. STATUS_USAGE: unknown name; STATUS_MISSING: no
+/* Reads the values of both sides: STORE, STORE:POINT or STORE:CAMPAIGN. Of an exponent ("beta", estimates_named()) they
+ * are the contributions of the runs: pooled_exponent_of_runs(). STATUS_USAGE: unknown name; STATUS_MISSING: no
  * such store. */
 status ask_pairs_read(const char *first, const char *second, const char *quantity, struct ask_pairs **out,
                       struct error *error);

@@ -9,6 +9,7 @@
 
 #include "db/sql.h"
 #include "engine/grow.h"
+#include "engine/outcome.h"
 #include "schemas/limits.h"
 
 struct group { /* the runs of one point */
@@ -75,13 +76,59 @@ static status add_run(struct side *side, const struct answer *row, struct error 
   return STATUS_OK;
 }
 
+static int by_seed(const void *a, const void *b) {
+  const struct difference_value *p = a, *q = b;
+  return (p->seed > q->seed) - (p->seed < q->seed);
+}
+
+/* Appends the contributions of a point's runs to its exponent, in the order of their seeds; none where the exponent has
+ * no interval. */
+static status add_exponents(const struct point_data *point, enum exponent_method method, enum estimates_window window,
+                            struct side *side, struct group *group, struct error *error) {
+  const size_t runs = point->runs.count;
+  double *contribution = malloc((runs + 1) * sizeof *contribution);
+  if (!contribution || !grow_room(&side->values, &side->value_room, side->value_count + runs, sizeof *side->values)) {
+    free(contribution);
+    return no_memory(error);
+  }
+  const status code = point_exponent_of_runs(point, method, window, contribution, error);
+  group->first = side->value_count;
+  group->count = code == STATUS_OK && runs > 0 && isfinite(contribution[0]) ? runs : 0;
+  for (size_t r = 0; r < group->count; r++)
+    side->values[side->value_count++] = (struct difference_value){(int64_t)point->seed[r], contribution[r]};
+  qsort(side->values + group->first, group->count, sizeof *side->values, by_seed);
+  free(contribution);
+  return code;
+}
+
+/* Puts the contributions of the runs to their point's exponent in place of their values. */
+static status read_exponents(struct store *store, enum exponent_method method, enum estimates_window window,
+                             struct side *side, struct error *error) {
+  side->value_count = 0;
+  for (size_t i = 0; i < side->group_count; i++) {
+    struct point_data point;
+    TRY(point_read(store, side->groups[i].point, 0, &point, error));
+    const status code = add_exponents(&point, method, window, side, &side->groups[i], error);
+    point_release(&point);
+    TRY(code);
+  }
+  return STATUS_OK;
+}
+
 static status read_values(struct store *store, int64_t point, const char *campaign, const char *quantity,
                           struct side *side, struct error *error) {
   char column[ASK_GROUP_NAME];
   double there = 1;
+  bool exponent;
+  enum exponent_method method;
+  enum estimates_window window;
   TRY(ask_points_known(store, point, error));
   TRY(ask_register_functions(store, error));
-  TRY(ask_group_quantity(store, quantity, column, error));
+  TRY(estimates_named(quantity, &exponent, &method, &window, error));
+  if (exponent)
+    snprintf(column, sizeof column, "seed"); /* every run has one */
+  else
+    TRY(ask_group_quantity(store, quantity, column, error));
   if (campaign)
     TRY(answer_number(store, &there, error, "SELECT count(*) FROM campaign WHERE name = %Q", campaign));
   if (!(there > 0))
@@ -92,9 +139,9 @@ static status read_values(struct store *store, int64_t point, const char *campai
       TRY(add_run(side, &answer, error));
   TRY(answer_end(&answer));
   for (size_t i = 0; i < side->group_count; i++)
-    TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = side->groups[i].point}, column, &side->groups[i].doubts,
-                   error));
-  return STATUS_OK;
+    TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = side->groups[i].point},
+                   exponent ? OUTCOME_NAME(mean_fragment_mass) : column, &side->groups[i].doubts, error));
+  return exponent ? read_exponents(store, method, window, side, error) : STATUS_OK;
 }
 
 static status read_side(const char *operand, const char *quantity, struct side *side, struct error *error) {

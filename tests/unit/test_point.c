@@ -185,6 +185,37 @@ static void runs_that_count_in_order(void **state) {
   OK(store_close(store, &error));
 }
 
+/* Of an exponent the contributions of the runs are compared, seed by seed: their mean is the point's exponent, and
+ * Student's interval of their mean is that of the exponent. */
+static void pairs_of_exponents(void **state) {
+  (void)state;
+  char path[64], operand[80];
+  int64_t id;
+  struct point_data point;
+  struct pooled_exponent fit;
+  struct ask_pairs *pairs = NULL;
+  struct ask_pairs_row row;
+  double values[RUNS];
+  struct store *store = fill(path, &id);
+  OK(point_read(store, id, 0, &point, &error));
+  OK(point_exponent(store, id, 0, EXPONENT_MASSES, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW, 0.95, &fit,
+                    &error));
+  OK(point_exponent_of_runs(&point, EXPONENT_MASSES, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW, values, &error));
+  OK(store_close(store, &error));
+  snprintf(operand, sizeof operand, "%s:%lld", path, (long long)id);
+  OK(ask_pairs_read(operand, operand, "beta", &pairs, &error));
+  assert_true(ask_pairs_next(pairs, &row));
+  assert_int_equal(row.difference.n[0], point.runs.count);
+  assert_int_equal(row.difference.pairs, point.runs.count);
+  assert_near(row.difference.mean[0], fit.fit.beta, 1e-9);
+  assert_true(row.difference.difference == 0 && isnan(row.difference.half_width)); /* of a point with itself */
+  struct sample_summary summary = sample_summarise(point.runs.count, values, 0.95);
+  assert_near(summary.half_width, fit.interval.half_width, 1e-9);
+  ask_pairs_free(pairs);
+  assert_int_equal(ask_pairs_read(operand, operand, "beta_none", &pairs, &error), STATUS_USAGE);
+  point_release(&point);
+}
+
 static void line(void *context, const char *text) {
   snprintf(context, 4000, "%s", text);
 }
@@ -304,8 +335,11 @@ static void pairs_of_points(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(runs_that_count_in_order), cmocka_unit_test(views_and_c_agree),
-                                     cmocka_unit_test(pairs_of_points), cmocka_unit_test(methods_of_older_stores),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(runs_that_count_in_order),
+                                     cmocka_unit_test(views_and_c_agree),
+                                     cmocka_unit_test(pairs_of_points),
+                                     cmocka_unit_test(methods_of_older_stores),
+                                     cmocka_unit_test(pairs_of_exponents),
                                      cmocka_unit_test(resolution_names_the_scene)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
