@@ -377,7 +377,8 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   shock_distention REAL, -- [1] Piston: mean distention behind the shock, in the same region; off without pores.
   shock_distention_exact REAL, -- [1] Piston: distention behind the shock by the jump conditions and the crush curve.
   precursor_distention REAL, -- [1] Piston: mean distention between precursor and shock.
-  precursor_distention_exact REAL -- [1] Piston: distention behind the precursor on the elastic branch.
+  precursor_distention_exact REAL, -- [1] Piston: distention behind the precursor on the elastic branch.
+  energy_contact REAL -- [J] Energy of the overlap of bodies in contact at the end. Off with method.contact: welded.
 ) STRICT;
 
 CREATE VIEW runs AS -- every run with its varied inputs and all results of its engine
@@ -434,7 +435,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   "result_dem"."energy_kinetic" AS "result_dem_energy_kinetic",
   "result_dem"."energy_vibration",
   "result_dem"."energy_beam",
-  "result_dem"."energy_contact",
+  "result_dem"."energy_contact" AS "result_dem_energy_contact",
   "result_dem"."energy_damping",
   "result_dem"."energy_friction",
   "result_dem"."energy_broken_beam",
@@ -513,6 +514,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   "result_sph"."shock_distention_exact",
   "result_sph"."precursor_distention",
   "result_sph"."precursor_distention_exact",
+  "result_sph"."energy_contact" AS "result_sph_energy_contact",
   lower(hex(r.identity)) AS identity
 FROM run r JOIN point p ON p.point_id = r.point_id
   LEFT JOIN "result_dem" ON "result_dem".run_id = r.run_id
@@ -1173,6 +1175,8 @@ INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum', 'kg m/s', 'Impac
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_clamped', 'J', 'Energy added where internal energy would have become negative.', 1);
 
+INSERT INTO column_doc VALUES ('result_sph', 'energy_contact', 'J', 'Energy of the overlap of bodies in contact at the end. Off with method.contact: welded.', 1);
+
 INSERT INTO column_doc VALUES ('result_sph', 'energy_damped', 'J', 'Energy that the damping layer of a box took out of motion (sides.far: damped); 0 in all other scenes.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_input', 'J', 'Energy put in: kinetic energy at the start plus the absolute value of energy.work_of_held.', 1);
@@ -1407,8 +1411,6 @@ INSERT INTO column_doc VALUES ('runs', 'energy_broken_beam', 'J/m', 'Energy of t
 
 INSERT INTO column_doc VALUES ('runs', 'energy_clamped', 'J', 'Energy added where internal energy would have become negative.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which only a part can return).', 0);
-
 INSERT INTO column_doc VALUES ('runs', 'energy_damped', 'J', 'Energy that the damping layer of a box took out of motion (sides.far: damped); 0 in all other scenes.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_damping', 'J/m', 'Energy taken by damping.', 0);
@@ -1543,6 +1545,8 @@ INSERT INTO column_doc VALUES ('runs', 'replicate', NULL, 'which seed of the poi
 
 INSERT INTO column_doc VALUES ('runs', 'result_dem_angular_momentum_error', '1', 'Change of the angular momentum about the origin, over the larger of its value at the start and the sum of the momenta times half of the body''s size. Off for bodies between moving sides.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'result_dem_energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which only a part can return).', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'result_dem_energy_input', 'J/m', 'Energy put in: initial kinetic energy (collision: in the common frame), or the work of the load.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'result_dem_energy_kinetic', 'J/m', 'Kinetic energy at the end.', 0);
@@ -1550,6 +1554,8 @@ INSERT INTO column_doc VALUES ('runs', 'result_dem_energy_kinetic', 'J/m', 'Kine
 INSERT INTO column_doc VALUES ('runs', 'result_dem_stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, strain, failure, fault', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'result_sph_angular_momentum_error', '1', 'Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'result_sph_energy_contact', 'J', 'Energy of the overlap of bodies in contact at the end. Off with method.contact: welded.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'result_sph_energy_input', 'J', 'Energy put in: kinetic energy at the start plus the absolute value of energy.work_of_held.', 0);
 

@@ -161,7 +161,7 @@ static const struct twin {
      "disruption",
      {"fidelity.particles=300", "impact.gap=1 um", "stop.end_time=1 us"},
      {"impact.speed=20 m/s"},
-     {NULL}},
+     {"impact.speed=20 m/s", "method.contact=overlap"}},
     {"gone",
      "disruption",
      {"fidelity.particles=300", "impact.projectile=mass", "impact.gap=0.1 mm", "fidelity.projectile_spacing=2"},

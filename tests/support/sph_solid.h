@@ -29,7 +29,7 @@
 
 #define UNUSED __attribute__((unused))
 
-enum { SOLID_BODIES = 2 };
+enum { SOLID_BODIES = 3 };
 
 struct solid_case {
   size_t bodies;
@@ -155,7 +155,7 @@ UNUSED static void solid_end(struct solid_case *c) {
  * time 0. */
 UNUSED static double solid_energy_error(struct solid_case *c, struct sph_ledger start) {
   struct sph_ledger now = sph_system_ledger(c->system);
-  return now.kinetic + now.internal + now.damped - now.work_of_held - start.kinetic - start.internal;
+  return now.contact + now.kinetic + now.internal + now.damped - now.work_of_held - start.kinetic - start.internal;
 }
 
 /* A bar along direction 0-2, `length` long, that is one block of an endless solid across: the thinnest cross-section in

@@ -478,6 +478,91 @@ static void bits_do_not_depend_on_threads(void **state) {
   }
   free(c);
 }
+/* The particles first .. last - 1 of a cloud. */
+static struct cloud *part_of(const struct cloud *c, size_t first, size_t last) {
+  struct cloud *part = calloc(1, sizeof *part);
+  assert_non_null(part);
+  part->n = last - first;
+  for (int k = 0; k < COLUMNS; k++)
+    memcpy(part->a[k], c->a[k] + first, part->n * sizeof(double));
+  for (int k = 0; k < 5; k++)
+    memcpy(part->stress[k], c->stress[k] + first, part->n * sizeof(double));
+  memcpy(part->factor, c->factor + first, part->n * sizeof(double));
+  memcpy(part->slack, c->slack + first, part->n * sizeof(double));
+  return part;
+}
+
+static double distance2(const struct cloud *c, size_t i, size_t j) {
+  const double d[3] = {c->a[0][j] - c->a[0][i], c->a[1][j] - c->a[1][i], c->a[2][j] - c->a[2][i]};
+  return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+}
+
+/* Every pair of different bodies within the support is in the rows of both, once. */
+static void check_foreign(const struct cloud *c, const struct sph_pair_options *options) {
+  struct sph_pairs *pairs;
+  struct error error = {0};
+  assert_int_equal(sph_pairs_create(c->n, options, &pairs, &error), STATUS_OK);
+  assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+  const struct sph_foreign *f = sph_pairs_foreign(pairs);
+  size_t row = 0;
+  for (size_t i = 0; i < c->n; i++) {
+    size_t expected = 0, found = 0;
+    for (size_t j = 0; j < c->n; j++) {
+      const double reach = c->a[3][i] + c->a[3][j];
+      expected += options->body[i] != options->body[j] && distance2(c, i, j) < reach * reach;
+    }
+    if (row < f->count && f->row[row].particle == i) {
+      for (size_t k = f->row[row].first; k < f->row[row + 1].first; k++) {
+        const size_t j = f->row[f->other[k]].particle;
+        const double reach = c->a[3][i] + c->a[3][j];
+        assert_int_not_equal(options->body[i], options->body[j]);
+        found += distance2(c, i, j) < reach * reach;
+      }
+      row++;
+    }
+    assert_int_equal(found, expected);
+  }
+  assert_int_equal(row, f->count);
+  sph_pairs_free(pairs);
+}
+
+/* Bodies that are told apart have the sums of bodies that are alone, in a group of particles that share a list, too;
+ * and their pairs are in the rows. Tolerances as for kernels_equal_plain_c. */
+static void bodies_apart_are_alone(void **state) {
+  (void)state;
+  static const size_t end[] = {0, 1001, 1778}; /* odd, so that two bodies share a list */
+  struct cloud *c = cloud_make(15, 1, true, 11);
+  uint8_t *body = malloc(c->n);
+  assert_non_null(body);
+  for (size_t i = 0; i < c->n; i++)
+    body[i] = (uint8_t)((i >= end[1]) + (i >= end[2]));
+  for (int variant = 0; variant < 4; variant++) {
+    struct sph_pair_options options = usual, alone = usual;
+    options.fidelity.precision = alone.fidelity.precision = variant & 1 ? SPH_FLOAT : SPH_DOUBLE;
+    options.gradient_correction.on = alone.gradient_correction.on = variant & 2;
+    options.body = body;
+    struct summed *all = sum(c, &options);
+    for (int b = 0; b < 3; b++) {
+      const size_t last = b < 2 ? end[b + 1] : c->n;
+      struct cloud *part = part_of(c, end[b], last);
+      struct summed *own = sum(part, &alone);
+      for (int k = 0; k < SUMS; k++) {
+        double scale = 0;
+        for (size_t i = 0; i < part->n; i++)
+          scale = fmax(scale, fabs(own->a[k][i]));
+        for (size_t i = 0; i < part->n; i++)
+          assert_true(fabs(all->a[k][end[b] + i] - own->a[k][i]) <= (variant & 1 ? 1e-4 : 1e-12) * scale);
+      }
+      free(own);
+      free(part);
+    }
+    free(all);
+    check_foreign(c, &options);
+  }
+  free(body);
+  free(c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kernels_equal_plain_c),         cmocka_unit_test(momentum_is_conserved),
@@ -487,7 +572,7 @@ int main(void) {
       cmocka_unit_test(viscosity_of_two_by_hand),      cmocka_unit_test(not_finite_does_no_harm),
       cmocka_unit_test(tiny_numbers_stay_the_callers), cmocka_unit_test(coincident_particles_do_no_harm),
       cmocka_unit_test(float_is_as_good_far_away),     cmocka_unit_test(float_holds_sizes_far_apart),
-      cmocka_unit_test(bits_do_not_depend_on_threads),
+      cmocka_unit_test(bits_do_not_depend_on_threads), cmocka_unit_test(bodies_apart_are_alone),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

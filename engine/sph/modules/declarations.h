@@ -124,6 +124,7 @@
  *   weibull, fracture   last, because the stress that opens flaws is within the yield limit
  *   crack_cell          after fracture, whose R_s it sets for cells of particles
  *   crack_front         after fracture, whose thresholds, rates and caps it changes for the next step
+ *   contact             not within the pair loop, which it makes leave out pairs of different bodies
  *   the rest            options of the pair loop, without loops here
  * motion.h is no module: it has the loops of every body.
  *
@@ -143,6 +144,7 @@
 #include "engine/sph/modules/viscosity.h"
 #include "engine/sph/modules/artificial_stress.h"
 #include "engine/sph/modules/gradient_correction.h"
+#include "engine/sph/modules/contact.h"
 /* clang-format on */
 
 /* The combinations of terms for which the pair loop is compiled, in two precisions and three CPU classes: a name, and

@@ -13,7 +13,7 @@
  *   shear_damage   damage that scales the deviator, where it is not all damage (ranges.h)
  *
  * A step runs the stages in order, block by block, and within a stage the modules in the order of declarations.h. The
- * pair loop runs before SPH_RATES. */
+ * pair loop runs before SPH_FORCES. */
 #ifndef CLAST_ENGINE_SPH_MODULES_MODULE_H
 #define CLAST_ENGINE_SPH_MODULES_MODULE_H
 
@@ -94,7 +94,8 @@ enum sph_stage {
   SPH_RETURN,        /* the deviator back to the yield limit; this and the two before only where a law sets a limit */
   SPH_CRACK,         /* open flaws and the damage by them, from the stress that the solid bears */
   SPH_DAMAGE,        /* all damage, where a body has several causes of it */
-  SPH_RATES,         /* after the pair loop: new rates from the velocity gradient, and half the change of rates added */
+  SPH_FORCES,        /* after the pair loop: forces from elsewhere, before degrees of freedom are held */
+  SPH_RATES,         /* after these: new rates from the velocity gradient, and half the change of rates added */
   SPH_STAGES
 };
 
@@ -142,6 +143,9 @@ struct sph_module {
   /* Called once a step between SPH_RETURN and SPH_CRACK, when all blocks of all bodies have their new stress: for
    * computations on particles of several blocks. One module of a body may have it. */
   void (*meet)(struct sph_system *system, const struct sph_solid *body);
+  /* Called once a step when the lists hold, just before the pair loop, which then leaves out pairs of different bodies
+   * (sph_pairs_foreign): it computes what they do. One module may have it. False without memory. */
+  bool (*touch)(struct sph_system *system);
   /* Initial values of the body's columns. */
   void (*fill)(struct sph_system *system, const struct sph_solid *body, const struct sph_particles *particles);
   /* Values of a material that follow from others: `given` says of each row of sph_materials_table whether the scene

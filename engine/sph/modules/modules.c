@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/grow.h"
 #include "engine/sph/body/kd_tree.h"
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/scene/derived.h"

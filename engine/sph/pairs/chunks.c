@@ -24,6 +24,7 @@ void sph_chunks_clear(struct sph_chunks *c) {
   for (size_t k = 0; c->chunk && k < c->count; k++) {
     free(c->chunk[k].lists.j);
     free(c->chunk[k].halo_particle);
+    free(c->chunk[k].foreign);
   }
   sph_neighbours_free(c->neighbours);
   free(c->chunk);
@@ -35,8 +36,9 @@ void sph_chunks_clear(struct sph_chunks *c) {
 size_t sph_chunks_bytes(const struct sph_chunks *c) {
   size_t bytes = sph_neighbours_bytes(c->neighbours) + c->stretch_capacity * sizeof *c->stretch;
   for (size_t k = 0; k < c->count; k++)
-    bytes += sizeof *c->chunk +
-             (c->chunk[k].lists.capacity + c->chunk[k].halo_capacity + 2 * c->chunk[k].own + 1) * sizeof(uint32_t);
+    bytes += sizeof *c->chunk + (c->chunk[k].lists.capacity + c->chunk[k].halo_capacity +
+                                 2 * c->chunk[k].foreign_capacity + 2 * c->chunk[k].own + 1) *
+                                    sizeof(uint32_t);
   return bytes;
 }
 
@@ -295,7 +297,8 @@ static bool find_stretches(struct sph_chunks *s) {
 
 /* Makes the lists of chunk k. They are made in `scratch`, which a thread uses for one chunk after the other, and kept
  * in no more memory than they need. */
-static bool list_chunk(const struct sph_chunks *s, size_t k, size_t n, struct sph_neighbour_lists *scratch) {
+static bool list_chunk(const struct sph_chunks *s, size_t k, size_t n, const uint8_t *body,
+                       struct sph_neighbour_lists *scratch) {
   struct sph_chunk *c = &s->chunk[k];
   c->first = k * SPH_CHUNK;
   c->own = n - c->first < SPH_CHUNK ? n - c->first : SPH_CHUNK;
@@ -303,7 +306,8 @@ static bool list_chunk(const struct sph_chunks *s, size_t k, size_t n, struct sp
   c->lists.count = c->lists.start + c->own + 1;
   scratch->start = c->lists.start;
   scratch->count = c->lists.count;
-  if (!sph_neighbours_list(s->neighbours, k, scratch) || !sph_chunks_balance(c->own, s->per_list, scratch))
+  if (!sph_neighbours_list(s->neighbours, k, scratch) || (body && !sph_foreign_part(c, s->per_list, body, scratch)) ||
+      !sph_chunks_balance(c->own, s->per_list, scratch))
     return false;
 
   const size_t lists = (c->own + s->per_list - 1) / s->per_list, used = scratch->start[lists];
@@ -322,7 +326,8 @@ static bool list_chunk(const struct sph_chunks *s, size_t k, size_t n, struct sp
 }
 
 status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const double *y, const double *z,
-                       const double *reach, const double periodic[3], int threads, struct error *error) {
+                       const double *reach, const double periodic[3], const uint8_t *body, int threads,
+                       struct error *error) {
   const status code = sph_neighbours_find(s->neighbours, n, x, y, z, reach, periodic, threads, error);
   bool enough = true;
   if (code)
@@ -336,7 +341,7 @@ status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const do
 #pragma omp for schedule(dynamic, 1)
 #endif
     for (size_t k = 0; k < s->count; k++)
-      enough = list_chunk(s, k, n, &scratch) && enough;
+      enough = list_chunk(s, k, n, body, &scratch) && enough;
     free(scratch.j);
   }
   if (!enough || !find_stretches(s))

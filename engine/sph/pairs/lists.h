@@ -70,7 +70,9 @@ struct sph_chunk_stretch {
 };
 
 struct sph_chunk {
-  size_t first, own;                /* first particle, number of particles */
+  size_t first, own;      /* first particle, number of particles */
+  uint32_t (*foreign)[2]; /* pairs of different bodies, which are in no list: numbers of particles */
+  size_t foreign_count, foreign_capacity;
   size_t halo, halo_before;         /* size of the halo; total size of the halos of earlier chunks */
   uint32_t *halo_particle;          /* their numbers: ascending, all above the chunk's own */
   size_t halo_capacity;             /* of halo_particle */
@@ -98,13 +100,23 @@ status sph_chunks_create(size_t n, size_t per_list, const struct sph_pair_kernel
 void sph_chunks_clear(struct sph_chunks *chunks);
 size_t sph_chunks_bytes(const struct sph_chunks *chunks);
 
-/* Makes new lists. Arguments and errors as for sph_neighbours_find. */
+/* Makes new lists. Arguments and errors as for sph_neighbours_find. `body` (by particle; NULL: all pairs are in lists)
+ * parts the pairs: those of different bodies go to `foreign` of the chunks. */
 status sph_chunks_list(struct sph_chunks *chunks, size_t n, const double *x, const double *y, const double *z,
-                       const double *reach, const double periodic[3], int threads, struct error *error);
+                       const double *reach, const double periodic[3], const uint8_t *body, int threads,
+                       struct error *error);
 
 /* Balances the lists of a chunk of `own` particles, shared by `per_list` (one or two), so that most of them fill whole
  * batches. Afterwards a list may begin with particles before its first one; every pair is still in one list, and
  * entries are numbers without tags. lists->j is replaced. False without memory. */
 bool sph_chunks_balance(size_t own, size_t per_list, struct sph_neighbour_lists *lists);
+
+/* foreign.c: takes the pairs of different bodies out of the lists of a chunk as they come from sph_neighbours_list.
+ * False without memory. */
+bool sph_foreign_part(struct sph_chunk *chunk, size_t per_list, const uint8_t *body, struct sph_neighbour_lists *lists);
+/* Makes the rows of all foreign pairs of the chunks. False without memory. */
+struct sph_foreign;
+bool sph_foreign_collect(const struct sph_chunks *chunks, size_t n, struct sph_foreign *out);
+void sph_foreign_clear(struct sph_foreign *foreign);
 
 #endif

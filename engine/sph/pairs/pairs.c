@@ -51,6 +51,9 @@ struct sph_pairs {
   double *listed[5];              /* x y z h slack when the lists were made */
   double *reach;                  /* h + slack */
   struct sph_chunks lists;
+  struct sph_foreign foreign;
+  double *apart; /* positions on an open axis with bodies far apart: of float records with `body`; else NULL */
+  int apart_axis;
   void *in; /* records of a chunk, one buffer per thread */
   size_t in_capacity;
   void *out; /* records of sums of `depth` chunks, used in turn */
@@ -113,6 +116,10 @@ static bool allocate(struct sph_pairs *p) {
   p->listed[0] = malloc(6 * (n + PAD) * sizeof(double));
   p->buffer = malloc(p->threads * BUFFER * sizeof(double));
   bool enough = p->listed[0] && p->buffer;
+  if (p->single && p->options.body) {
+    p->apart = malloc(n * sizeof(double));
+    enough = enough && p->apart;
+  }
 #define PAIR_MADE(term, count)                                                                                         \
   for (size_t k = 0; k < (count) && p->shape.term; k++) {                                                              \
     p->made[MADE_##term + k] = malloc((n + 1) * sizeof(double));                                                       \
@@ -139,8 +146,14 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
   if (options->fidelity.precision == SPH_FLOAT && n > SPH_NUMBER)
     return status_fail(error, STATUS_CONTENT, "float precision takes %d particles at most, not %zu: use double",
                        SPH_NUMBER, n);
+  int open = 0;
+  while (open < 3 && !isnan(options->periodic[open]))
+    open++;
+  if (options->body && open == 3)
+    return status_fail(error, STATUS_CONTENT, "bodies in a box that is periodic along all axes are not told apart");
   struct sph_pairs *p = memory_small(1, sizeof *p);
   p->n = n;
+  p->apart_axis = open;
   p->units = (struct sph_pair_units){1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
   p->shape = shape;
   p->combination = combination;
@@ -168,6 +181,8 @@ void sph_pairs_free(struct sph_pairs *p) {
   if (!p)
     return;
   sph_chunks_clear(&p->lists);
+  sph_foreign_clear(&p->foreign);
+  free(p->apart);
   free(p->listed[0]);
   for (size_t k = 0; k < MADE_ALL; k++)
     free(p->made[k]);
@@ -180,12 +195,13 @@ void sph_pairs_free(struct sph_pairs *p) {
 
 size_t sph_pairs_bytes(const struct sph_pairs *p) {
   const size_t bytes = p->records->bytes;
-  size_t arrays = 6;
+  size_t arrays = p->apart ? 7 : 6;
   for (size_t k = 0; k < MADE_ALL; k++)
     arrays += p->made[k] != NULL;
   return sizeof *p + arrays * sizeof(double) * p->n + sph_chunks_bytes(&p->lists) +
          (p->out_capacity + p->halo_capacity) * p->out_columns * bytes + p->in_capacity * p->in_columns * bytes +
-         p->threads * BUFFER * sizeof(double);
+         p->threads * BUFFER * sizeof(double) + p->foreign.row_capacity * sizeof *p->foreign.row +
+         p->foreign.other_capacity * sizeof *p->foreign.other;
 }
 
 bool sph_pairs_look_back(const struct sph_pairs *p) {
@@ -194,7 +210,7 @@ bool sph_pairs_look_back(const struct sph_pairs *p) {
 
 /* ---- lists ---- */
 
-static double image(double along, double length) {
+double sph_pairs_image(double along, double length) {
   return isnan(length) ? along : along - length * nearbyint(along / length);
 }
 
@@ -206,11 +222,12 @@ double sph_pairs_slack(const struct sph_pairs *p, size_t low, size_t high, const
   for (size_t i = low; i < high; i++) {
     double dx = x[i] - p->listed[0][i], dy = y[i] - p->listed[1][i], dz = z[i] - p->listed[2][i];
     if (!open) {
-      dx = image(dx, periodic[0]);
-      dy = image(dy, periodic[1]);
-      dz = image(dz, periodic[2]);
+      dx = sph_pairs_image(dx, periodic[0]);
+      dy = sph_pairs_image(dy, periodic[1]);
+      dz = sph_pairs_image(dz, periodic[2]);
     }
-    const double left = p->listed[4][i] - (h[i] - p->listed[3][i]);
+    /* Foreign pairs reach as far as at the start, however small h is now. */
+    const double grown = h[i] - p->listed[3][i], left = p->listed[4][i] - (p->options.body ? fmax(grown, 0) : grown);
     const double unused = left - sqrt(dx * dx + dy * dy + dz * dz);
     if (!(unused >= least))
       least = isnan(unused) ? -HUGE_VAL : unused;
@@ -242,7 +259,10 @@ status sph_pairs_relist(struct sph_pairs *p, struct error *error) {
   for (int d = 0; d < 3; d++) /* a periodic axis has 2^32 units, so that integers wrap where it does */
     p->unit[d] = isnan(p->options.periodic[d]) ? p->h_unit : p->options.periodic[d] * 0x1p-32;
 
-  TRY(sph_chunks_list(&p->lists, p->n, at[0], at[1], at[2], p->reach, p->options.periodic, (int)p->threads, error));
+  TRY(sph_chunks_list(&p->lists, p->n, at[0], at[1], at[2], p->reach, p->options.periodic, p->options.body,
+                      (int)p->threads, error));
+  if (p->options.body && !sph_foreign_collect(&p->lists, p->n, &p->foreign))
+    return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", p->n);
   const size_t in_size = p->in_columns * p->records->bytes, out_size = p->out_columns * p->records->bytes;
   if (!grow_aligned(&p->halo, &p->halo_capacity, p->lists.halos, out_size, 0) ||
       !grow_aligned(&p->out, &p->out_capacity, p->depth * p->lists.most_slots, out_size, 0) ||
@@ -259,6 +279,40 @@ status sph_pairs_list(struct sph_pairs *p, size_t n, const double *x, const doub
   for (int k = 0; k < 5; k++)
     memcpy(p->listed[k], now[k], n * sizeof(double));
   return sph_pairs_relist(p, error);
+}
+
+const struct sph_foreign *sph_pairs_foreign(const struct sph_pairs *p) {
+  return &p->foreign;
+}
+
+/* Adds the volumes of two particles of one body to each other's sum. */
+static void add_volumes(const struct sph_pairs *p, const struct sph_pair_fields *f, size_t i, size_t j,
+                        double (*weight)(double square, double h), double *sum) {
+  const double d[3] = {sph_pairs_image(f->x[j] - f->x[i], p->options.periodic[0]),
+                       sph_pairs_image(f->y[j] - f->y[i], p->options.periodic[1]),
+                       sph_pairs_image(f->z[j] - f->z[i], p->options.periodic[2])};
+  const double w = weight(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], 0.5 * (f->h[i] + f->h[j]));
+  sum[i] += w * f->mass[j] / f->density[j];
+  sum[j] += w * f->mass[i] / f->density[i];
+}
+
+void sph_pairs_volumes(const struct sph_pairs *p, const struct sph_pair_fields *f,
+                       double (*weight)(double square, double h), double *sum) {
+  const size_t per_list = p->lists.per_list;
+  const uint8_t *body = p->options.body;
+  for (size_t i = 0; i < p->n; i++)
+    sum[i] += weight(0, f->h[i]) * f->mass[i] / f->density[i];
+  for (size_t k = 0; k < p->lists.count; k++) {
+    const struct sph_chunk *c = &p->lists.chunk[k];
+    for (size_t own = 0; own < c->own; own++) {
+      const uint32_t *entry = c->lists.j + c->lists.start[own / per_list];
+      for (uint32_t e = 0; e < c->lists.count[own / per_list]; e++) {
+        const size_t j = entry[e] < c->own ? c->first + entry[e] : c->halo_particle[entry[e] - c->own];
+        if (j != c->first + own && (!body || body[j] == body[c->first + own]))
+          add_volumes(p, f, c->first + own, j, weight, sum);
+      }
+    }
+  }
 }
 
 double sph_pairs_neighbours(const struct sph_pairs *p) {
@@ -553,6 +607,15 @@ static void take_turns(struct pass *w, size_t thread) {
   }
 }
 
+/* Two particles that share a list may belong to two bodies, and the kernel pairs both with every entry. So float
+ * records, whose positions are integers modulo 2^32, hold the bodies in parts of that range of their own. */
+static void move_apart(struct sph_pairs *p, const double *x) {
+  const double range = p->unit[p->apart_axis] * 0x1p32;
+  const int bodies = p->options.body[p->n - 1] + 1;
+  for (size_t i = 0; i < p->n; i++)
+    p->apart[i] = x[i] + range * p->options.body[i] / bodies;
+}
+
 void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *f, sph_pairs_take *take,
                    void *context) {
   if (!p->units_chosen)
@@ -571,6 +634,10 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
 #include "engine/sph/modules/declarations.h"
   }
   w.source = source_of(p, f);
+  if (p->apart) {
+    move_apart(p, w.source.column[PAIR_X + p->apart_axis]);
+    w.source.column[PAIR_X + p->apart_axis] = p->apart;
+  }
 #ifdef _OPENMP
 #pragma omp parallel num_threads((int)p->threads) if (p->threads > 1)
   take_turns(&w, (size_t)omp_get_thread_num());

@@ -33,6 +33,9 @@ struct sph_pair_options {
   bool strength;                /* stress[] is given; else the pressure alone */
   double spacing_over_h;        /* initial particle spacing over h: the f = W(r)/W(spacing) of the artificial stress */
   double periodic[3];           /* m, length of the periodic box along each axis; NaN = open */
+  /* By place: the body of a particle; the caller's, and constant. NULL: all pairs are in the loop, whatever their
+   * bodies. Else it leaves out pairs of different bodies, which sph_pairs_foreign has. */
+  const uint8_t *body;
 #define MODULE_INPUTS(name) struct sph_##name##_inputs name;
 #include "engine/sph/modules/declarations.h"
 };
@@ -89,6 +92,25 @@ status sph_pairs_list(struct sph_pairs *pairs, size_t n, const double *x, const 
  * same lists again. */
 double *const *sph_pairs_listed(struct sph_pairs *pairs);
 status sph_pairs_relist(struct sph_pairs *pairs, struct error *error);
+/* The pairs of different bodies that the loop leaves out, as rows: one for each particle that has such neighbours, by
+ * ascending places. Each pair is in both rows. As in the lists, pairs may be farther apart than their support. */
+struct sph_foreign {
+  size_t count;
+  struct {
+    size_t first;      /* its neighbours are other[first] ... other[first of the next row - 1] */
+    uint32_t particle; /* its place */
+  } * row;
+  uint32_t *other; /* rows of neighbours */
+  size_t row_capacity, other_capacity;
+};
+/* Without `body` there are none. They are those of the last lists. */
+const struct sph_foreign *sph_pairs_foreign(const struct sph_pairs *pairs);
+/* Adds to sum[i] the volumes m_j/rho_j of the neighbours of particle i in the loop, each times `weight` of the square
+ * of its distance and the mean h; itself too. */
+void sph_pairs_volumes(const struct sph_pairs *pairs, const struct sph_pair_fields *fields,
+                       double (*weight)(double square, double h), double *sum);
+/* The nearest image of a distance `along` on an axis of this periodic length (NaN: open). */
+double sph_pairs_image(double along, double length);
 /* Receives the sums of `count` particles, at most SPH_PIECE, from `first` on, a multiple of SPH_PIECE. They may be
  * changed and are gone afterwards. */
 typedef void sph_pairs_take(void *context, size_t first, size_t count, const struct sph_pair_sums *sums);

@@ -13,7 +13,7 @@
 enum { LOOK_INTERVAL = 8 }; /* steps between two checks of the damage */
 
 double sph_run_closed(const struct sph_ledger *l) {
-  return l->kinetic + l->internal + l->damped - l->work_of_held;
+  return l->kinetic + l->internal + l->contact + l->damped - l->work_of_held;
 }
 
 double sph_run_extent(const struct sph_run *run) {

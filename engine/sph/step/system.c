@@ -332,7 +332,7 @@ static void choose_hooks(const struct sph_system *s, struct sph_solid *b) {
       b->meet = sph_modules_at(m)->meet;
   }
   b->before[b->before_count++] = r->predict;
-  for (int stage = SPH_PREDICT; stage < SPH_RATES; stage++) {
+  for (int stage = SPH_PREDICT; stage < SPH_FORCES; stage++) {
     if (stage == SPH_CRACK)
       b->first_count = b->before_count;
     if (yields || stage < SPH_YIELD || stage > SPH_RETURN)
@@ -340,6 +340,7 @@ static void choose_hooks(const struct sph_system *s, struct sph_solid *b) {
   }
   b->before[b->before_count++] = damage ? r->output_damaged : strength ? r->output_whole : r->output_fluid;
 
+  add_stage(s, b, SPH_FORCES, b->after, &b->after_count);
   if (s->held || s->c.damping)
     b->after[b->after_count++] = r->hold;
   if (!strength)
@@ -386,6 +387,7 @@ static status make_pairs(struct sph_system *s, struct error *error) {
       .fidelity = s->in.fidelity,
       .strength = s->c.stress[0] != NULL,
       .spacing_over_h = s->domain.spacing_over_h,
+      .body = s->body,
 #define MODULE_INPUTS(name) .name = s->in.name,
 #include "engine/sph/modules/declarations.h"
   };
@@ -429,6 +431,21 @@ static void find_bodies(struct sph_system *s, const struct sph_particles *p, con
   }
 }
 
+/* Does a module compute what the bodies do to each other? Then it needs to know whose a particle is. */
+static status tell_bodies_apart(struct sph_system *s, const struct sph_particles *p, struct error *error) {
+  for (size_t b = 0; b < s->body_count; b++)
+    FOR_MODULES(m, s->solid[b].modules)
+      if (sph_modules_at(m)->touch)
+        s->meet_others = sph_modules_at(m)->touch;
+  if (!s->meet_others)
+    return STATUS_OK;
+  s->body = malloc(s->n);
+  if (!s->body)
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu particles", s->n);
+  memcpy(s->body, p->body, s->n);
+  return STATUS_OK;
+}
+
 static status build(struct sph_system *s, const struct sph_particles *p, const struct sph_body_physics *bodies,
                     struct error *error) {
   find_bodies(s, p, bodies);
@@ -436,6 +453,7 @@ static status build(struct sph_system *s, const struct sph_particles *p, const s
   for (size_t b = 0; b < s->body_count; b++)
     TRY(make_body(s, p, &s->solid[b], error));
   TRY(make_blocks(s, error));
+  TRY(tell_bodies_apart(s, p, error));
   TRY(make_pairs(s, error));
 
   bound_h(s, p);
@@ -492,6 +510,8 @@ void sph_system_free(struct sph_system *s) {
       if (s->solid[b].prepared[m])
         sph_modules_at(m)->free_prepared(s->solid[b].prepared[m]);
   sph_pairs_free(s->pairs);
+  free(s->body);
+  free(s->touch);
   free(s->arena);
   free(s->id);
   free(s->held);
@@ -506,6 +526,7 @@ size_t sph_system_bytes(const struct sph_system *s) {
                  s->body_count * sizeof *s->solid + s->block_count * sizeof *s->block + sph_pairs_bytes(s->pairs);
   if (s->held)
     bytes += s->n * sizeof *s->held;
+  bytes += (s->body ? s->n : 0) + s->touch_capacity * sizeof *s->touch;
   for (size_t b = 0; b < s->body_count; b++)
     for (size_t m = 0; m < SPH_MODULES; m++)
       if (s->solid[b].prepared[m])
@@ -576,6 +597,7 @@ struct sph_ledger sph_system_ledger(const struct sph_system *s) {
   struct sph_ledger sum = {0};
   for (size_t k = 0; k < s->block_count; k++)
     add_block(s, &s->block[k], &sum);
+  sum.contact = s->now.contact;
   sum.work_of_held = s->now.work_of_held;
   sum.damped = s->now.damped;
   sum.clamped = s->now.clamped;

@@ -37,10 +37,10 @@ enum sph_limiter { /* what set the time step */
                    SPH_LIMITS
 };
 
-/* J, kg m/s, kg m^2/s. Energy error = kinetic + internal + damped - initial - work_of_held. The energy that the bound
- * u >= 0 adds is `clamped`; it is no part of that sum. */
+/* J, kg m/s, kg m^2/s. Energy error = kinetic + internal + contact + damped - initial - work_of_held. `contact` is the
+ * energy of bodies that overlap. The energy that the bound u >= 0 adds is `clamped`; it is no part of that sum. */
 struct sph_ledger {
-  double kinetic, internal, work_of_held, damped, clamped;
+  double kinetic, internal, contact, work_of_held, damped, clamped;
   uint64_t density_held; /* particle-steps at the lowest density; it changes pressures, but adds no energy by itself */
   double momentum[3], angular_momentum[3];
   double momentum_scale; /* sum |p| */
@@ -170,6 +170,7 @@ struct sph_progress {
   double worst[SPH_LIMITS];
   double clamped, damped, work_of_held; /* J, since the start */
   double damping_power, holding_power;  /* W, at the last evaluation */
+  double contact;                       /* J, at the last evaluation: energy of bodies that overlap */
   uint64_t steps, listings, density_held;
   uint64_t horizon;  /* number of steps for which lists are made */
   double neighbours; /* within 2h, at the last pass of the pair loop */
@@ -177,6 +178,13 @@ struct sph_progress {
 };
 
 struct sph_ranges; /* ranges.h */
+
+/* What a particle gets from other bodies: one for each row of sph_pairs_foreign. */
+struct sph_touch {
+  double pressure, energy;         /* Pa, J */
+  double acceleration[3], heating; /* m/s^2, J/kg/s */
+  double signal;                   /* m/s, as in struct sph_pair_sums */
+};
 
 struct sph_system {
   struct sph_inputs in; /* a copy of all; the step itself reads viscosity, method, fracture and fidelity */
@@ -197,6 +205,10 @@ struct sph_system {
   struct sph_block *block;
   struct sph_column_set columns; /* that some body needs */
   struct sph_pairs *pairs;
+  bool (*meet_others)(struct sph_system *system); /* sph_module.touch; NULL: no module has it */
+  uint8_t *body;                                  /* by index: body of the particle; NULL without meet_others */
+  struct sph_touch *touch;
+  size_t touch_capacity;
   const struct sph_ranges *ranges;
   int fault; /* enum sph_fault; `failure` has the message */
   char failure[256];

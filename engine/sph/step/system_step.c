@@ -133,10 +133,11 @@ static bool list_anew(struct sph_system *s) {
     struct sph_block *block = &s->block[k];
     block->swollen = 0;
     for (size_t i = block->low; i < block->high; i++) {
-      const double h = c->h[i], most = fmin(ROOM * h, fmax(skin * h, reach - h));
+      const double h = c->h[i], wide = s->body ? fmax(h, c->h_initial[i]) : h; /* contact keeps the h of the start */
+      const double most = fmin(ROOM * h, fmax(skin * h, reach - wide));
       const double way = horizon * sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i] + c->vz[i] * c->vz[i]);
       const double slack = fmin(most, fmax(skin * h, way));
-      listed[0][i] = c->x[i], listed[1][i] = c->y[i], listed[2][i] = c->z[i], listed[3][i] = h, listed[4][i] = slack;
+      listed[0][i] = c->x[i], listed[1][i] = c->y[i], listed[2][i] = c->z[i], listed[3][i] = wide, listed[4][i] = slack;
       if (slack > skin * h)
         block->swollen += cube(1 + slack / h) - cube(1 + skin);
     }
@@ -346,6 +347,11 @@ static bool advance(struct sph_system *s, double dt) {
   before_pairs(s);
   if (!renew_lists(s))
     return false;
+  if (s->meet_others && !s->meet_others(s)) {
+    s->fault = SPH_FAULT_MEMORY;
+    snprintf(s->failure, sizeof s->failure, "no memory for the contact of bodies");
+    return false;
+  }
   const struct sph_pair_fields fields = sph_system_step_fields(s);
   sph_pairs_sum(s->pairs, s->n, &fields, after_pairs, s);
   s->now.neighbours = sph_pairs_neighbours(s->pairs);
