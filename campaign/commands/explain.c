@@ -62,7 +62,7 @@ static bool explain_exponent(const char *word) {
   return true;
 }
 
-/* Prints the conditions of a word; NULL: all. False: there is none. */
+/* Prints the conditions of a word as a list that is also Markdown; NULL: all. False: there is none. */
 static bool explain_conditions(const char *word) {
   bool found = false;
   for (size_t i = 0; i < engine_count(); i++)
@@ -70,15 +70,33 @@ static bool explain_conditions(const char *word) {
       if (word && strcmp(word, c->word) != 0)
         continue;
       found = true;
-      printf("%s (%s): a run has this word when %s is %s %g.\n", c->word, engine_at(i)->name, c->number,
+      printf("- **%s** (%s): a run has this word when %s is %s %g.\n", c->word, engine_at(i)->name, c->number,
              c->least ? "below" : "above", c->bound);
-      printf("    Then: %s.\n    The bound: %s.\n    What to do: %s.\n    Results that rest on it%s: %s.\n", c->doubt,
+      printf("  Then: %s.\n  The bound: %s.\n  What to do: %s.\n  Results that rest on it%s: %s.\n", c->doubt,
              c->reason, c->remedy, c->withheld ? ", which are withheld" : "",
              !c->results    ? "all"
              : !*c->results ? "none, it is only told before the run"
                             : c->results);
     }
   return found;
+}
+
+/* Prints the words of the conditions on which a result of an engine rests, besides those on which all rest; a withheld
+ * one in parentheses. Nothing when there are none. `path` NULL: the words on which all rest. */
+static void explain_rests_on(const struct engine_kind *kind, const char *path) {
+  const char *before = "", *last = "";
+  for (const struct condition *c = kind->conditions; c && c->word; c++) {
+    if (strcmp(last, c->word) == 0 || !c->results != !path ||
+        (path && condition_mark(c, c->word, path) == CONDITION_SOUND))
+      continue;
+    if (!*before)
+      printf("- %s (%s): ", path ? path : "every result", kind->name);
+    printf(c->withheld ? "%s(%s)" : "%s%s", before, c->word);
+    before = ", ";
+    last = c->word;
+  }
+  if (*before)
+    putchar('\n');
 }
 
 /* Prints the meaning of a word of clast or a column of the store. False: it is neither. */
@@ -204,9 +222,20 @@ static bool explain_whole(const char *word) {
     for (size_t i = 0; i < engine_count(); i++)
       explain_table(engine_at(i)->results, "\n");
   } else if (strcmp(word, "conditions") == 0) {
-    puts(
-        "conditions: what a result rests on. Each compares a number with a bound, before the run or at its end. A run\n"
-        "beyond a bound has the condition's word in its result `warnings`, and stays in every mean.\n");
+    puts("# What a number rests on\n\nEach condition compares a number with a bound, before the run or at its end. A "
+         "run "
+         "beyond a bound has the\ncondition's word in its result `warnings`, and stays in every mean. The program made "
+         "this "
+         "text from the rows\nin engine/*/scene/conditions.c (`clast explain conditions`).\n\n## Results and their "
+         "conditions\n\nIn parentheses: beyond the bound the result is withheld.\n");
+    for (size_t i = 0; i < engine_count(); i++) {
+      const struct field_table *tables[] = {&outcome_table, engine_at(i)->results};
+      explain_rests_on(engine_at(i), NULL);
+      for (size_t t = 0; t < 2; t++)
+        for (size_t k = 0; k < tables[t]->count; k++)
+          explain_rests_on(engine_at(i), tables[t]->rows[k].path);
+    }
+    puts("\n## Conditions\n");
     explain_conditions(NULL);
   } else if (strcmp(word, "outcome") == 0) {
     explain_table(&outcome_table, "");
