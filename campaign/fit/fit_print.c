@@ -171,18 +171,23 @@ static void say(FILE *out, const char *text) {
   text_wrap(text, 0, 0, WIDTH, out);
 }
 
-/* "a, b and c" of the inputs that are part of a direction. Returns how many. */
-static size_t list_mixed(const struct fit *fit, size_t direction, FILE *text) {
-  size_t count = 0, written = 0;
+static size_t count_mixed(const struct fit *fit, size_t direction) {
+  size_t count = 0;
   for (size_t i = 0; i < fit->inputs; i++)
     count += identify_mixed(&fit->found, direction, i);
-  for (size_t i = 0; i < fit->inputs; i++)
-    if (identify_mixed(&fit->found, direction, i))
-      fprintf(text, "%s%s", written == 0 ? "" : written + 1 == count ? " and " : ", ", name_of(fit, i)), written++;
   return count;
 }
 
-/* The inputs at both ends of the ridge: a standard deviation along it from the middle of the posterior. */
+/* "a, b and c" of the inputs that are part of a direction. */
+static void list_mixed(const struct fit *fit, size_t direction, FILE *text) {
+  const size_t count = count_mixed(fit, direction);
+  size_t written = 0;
+  for (size_t i = 0; i < fit->inputs; i++)
+    if (identify_mixed(&fit->found, direction, i))
+      fprintf(text, "%s%s", written == 0 ? "" : written + 1 == count ? " and " : ", ", name_of(fit, i)), written++;
+}
+
+/* The inputs at both ends of a direction: a standard deviation along it from the middle of the posterior. */
 static void list_ends(const struct fit *fit, size_t direction, FILE *text) {
   const struct identify_direction *d = &fit->found.direction[direction];
   size_t written = 0;
@@ -195,16 +200,16 @@ static void list_ends(const struct fit *fit, size_t direction, FILE *text) {
   }
 }
 
+/* The interval of an input counts as that of its prior when it keeps this share of the prior's width. */
+static const double AS_WIDE = 0.9;
+
 static void tell_open_direction(const struct fit *fit, size_t direction, FILE *out) {
   char *text = NULL;
   size_t size = 0;
   FILE *words = text_open(&text, &size);
   if (!words)
     return;
-  size_t mixed = 0;
-  for (size_t i = 0; i < fit->inputs; i++)
-    mixed += identify_mixed(&fit->found, direction, i);
-  if (mixed > 1) {
+  if (count_mixed(fit, direction) > 1) {
     fputs("RIDGE: these data cannot tell ", words);
     list_mixed(fit, direction, words);
     fputs(" apart. What was measured hardly changes while they change together: ", words);
@@ -216,24 +221,68 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
   } else {
     fputs("NOT DETERMINED: ", words);
     list_mixed(fit, direction, words);
-    fprintf(words, ". The data tell %.2g times what its prior tells; its interval is that of the prior.",
-            fit->found.direction[direction].information);
+    size_t input = 0;
+    while (input + 1 < fit->inputs && !identify_mixed(&fit->found, direction, input))
+      input++;
+    fprintf(words, ". The data tell %.2g times what its prior tells%s", fit->found.direction[direction].information,
+            fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (kept)."
+                                             : "; its interval is that of the prior.");
   }
   if (text_close(words, &text))
     say(out, text);
   free(text);
 }
 
+/* What the data determine of several inputs together, though not of each. */
+static void tell_together(const struct fit *fit, size_t direction, FILE *out) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *words = count_mixed(fit, direction) > 1 ? text_open(&text, &size) : NULL;
+  if (!words)
+    return;
+  fputs("TOGETHER: the data determine ", words);
+  list_mixed(fit, direction, words);
+  fputs(" together, to one standard deviation on either side: ", words);
+  list_ends(fit, direction, words);
+  fputs(".", words);
+  if (text_close(words, &text))
+    say(out, text);
+  free(text);
+}
+
+/* Share of predicted experiments beyond this datum, on the side where fewer are. */
+static double beyond(const struct fit *fit, size_t k) {
+  const double below = posterior_below(&fit->surfaces.model, &fit->posterior, k);
+  return fmin(below, 1 - below);
+}
+
 static void tell_determined(const struct fit *fit, FILE *out) {
   char text[512];
   const size_t known = fit->found.determined, p = fit->inputs;
-  if (known == p)
+  bool missed = false, as_wide = false;
+  for (size_t k = 0; k < fit->observed->datum_count; k++) /* of many data some are far off by chance */
+    missed = missed || beyond(fit, k) < 0.025 / (double)fit->observed->datum_count;
+  for (size_t i = 0; i < p; i++)
+    as_wide = as_wide || fit->found.kept[i] >= AS_WIDE;
+  if (missed) {
+    say(out,
+        "OUTSIDE: the measured values lie outside of what the priors can make (MISFIT). The intervals of the inputs "
+        "lean on the ends of the priors and are no estimates: widen the priors, or ask what the model lacks.");
+    return;
+  }
+  if (known == p && as_wide)
+    snprintf(text, sizeof text,
+             "The data tell more than the priors at most places, and yet they leave an input its whole range (kept): "
+             "inputs that are far apart give what was measured.");
+  else if (known == p)
     snprintf(text, sizeof text, "The data determine %s: in every direction they tell more than the priors.",
              p == 1 ? "the input" : "all inputs");
   else
     snprintf(text, sizeof text, "The data determine %zu combination%s of the %zu unknown input%s.", known,
              known == 1 ? "" : "s", p, p == 1 ? "" : "s");
   say(out, text);
+  for (size_t i = 0; known < p && i < known; i++)
+    tell_together(fit, i, out);
   for (size_t i = known; i < p; i++)
     tell_open_direction(fit, i, out);
 }
@@ -303,7 +352,7 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
           label, scatter->skewness, scatter->excess, scatter->excess < -1 ? ": two heaps" : "");
       say(out, text);
     }
-    if (below < 0.025 || below > 0.975) {
+    if (beyond(fit, k) < 0.025) {
       snprintf(text, sizeof text,
                "MISFIT: no inputs within the priors predict %s well: only %.2g of predicted experiments lie %s it.",
                label, below < 0.5 ? below : 1 - below, below < 0.5 ? "below" : "above");

@@ -48,6 +48,7 @@ ok "killed and not killed: the same report"
 expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --picture predicted.svg
 says "0 runs computed"
 prints "RIDGE: these data cannot tell threshold.strain and threshold.angle apart"
+prints "TOGETHER: the data determine threshold.strain and threshold.angle together"
 prints "One experiment is one specimen"
 prints "RESOLUTION: what a finer resolution would change is not known"
 grep -q 'M₁/M' predicted.svg || fail "the picture has no readable label"
@@ -63,6 +64,14 @@ datum, = [r for r in rows if r['kind'] == 'measured']
 assert datum['q05'] < datum['value'] < datum['q95'] and 0.05 < datum['below'] < 0.95, datum
 PY
 ok "the interval holds the input that was taken, the prediction what was measured"
+# A disc of this energy cannot stay whole. The report does not tell in one line what the data determine and deny it in
+# the next.
+sed 's/value: [^,]*/value: 0.99/' one.yaml >whole.yaml
+expect 0 "$clast" fit whole.yaml disc.yaml --rounds 3 -j 2 --store whole.db
+prints "OUTSIDE: the measured values lie outside of what the priors can make"
+prints "MISFIT: no inputs within the priors predict largest_fraction well"
+grep -qE 'The data determine|NOT DETERMINED|RIDGE' out && fail "a contradiction in the report"
+
 # The rounds are campaigns that clast run can repeat; the first is the campaign itself.
 expect 0 "$clast" check disc.db
 number disc.db "select document from campaign limit 1" >/dev/null
@@ -148,4 +157,4 @@ expect 65 "$clast" fit one.yaml grid.yaml
 says "latin_hypercube"
 expect 64 "$clast" fit one.yaml
 expect 64 "$clast" fit one.yaml disc.yaml --rounds 2
-done_after 20
+done_after 21
