@@ -595,7 +595,7 @@ SELECT p.point_id, p.engine, p.scene_name AS scene,
   1.0 * s.count / t.runs AS count_mean,
   sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1))) AS count_sd,
   (CASE WHEN (t.runs - 1) = 1 THEN 12.706204736174 WHEN (t.runs - 1) = 2 THEN 4.302652729749 WHEN (t.runs - 1) = 3 THEN 3.182446305284 WHEN (t.runs - 1) = 4 THEN 2.776445105198 WHEN (t.runs - 1) = 5 THEN 2.570581835636 WHEN (t.runs - 1) = 6 THEN 2.446911851145 WHEN (t.runs - 1) = 7 THEN 2.364624251593 WHEN (t.runs - 1) = 8 THEN 2.306004135204 WHEN (t.runs - 1) = 9 THEN 2.262157162798 WHEN (t.runs - 1) = 10 THEN 2.228138851986
-      WHEN (t.runs - 1) > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 / (t.runs - 1)) / (t.runs - 1)) / (t.runs - 1)) / (t.runs - 1) END) * sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1) / t.runs)) AS count_hw95,
+      WHEN (t.runs - 1) > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 / (t.runs - 1)) / (t.runs - 1)) / (t.runs - 1)) / (t.runs - 1) END) * sqrt(nullif(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1) / t.runs), 0)) AS count_hw95,
   s.count / (t.fragments * (b.upper - b.lower)) AS density
 FROM point p JOIN point_total t ON t.point_id = p.point_id
   JOIN point_spectrum s ON s.point_id = t.point_id AND s.results_version = t.results_version
@@ -1657,7 +1657,7 @@ INSERT INTO column_doc VALUES ('spectra', 'bin', NULL, 'number of a mass bin: te
 
 INSERT INTO column_doc VALUES ('spectra', 'count', '1', 'fragments in the bin, of all runs', 0);
 
-INSERT INTO column_doc VALUES ('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student)', 0);
+INSERT INTO column_doc VALUES ('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student); NULL: one run, or all are equal', 0);
 
 INSERT INTO column_doc VALUES ('spectra', 'count_mean', '1', 'fragments in the bin per run', 0);
 

@@ -303,11 +303,16 @@ status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled
 
 /* ---- The pooled spectrum: densities or cumulative numbers, with intervals from the scatter of runs or points ---- */
 
+/* Counts that vary by less are equal: rounding of the difference below. */
+#define SAME_COUNTS 1e-14
+
 double pooled_spectrum_count_hw95(size_t runs, double count, double squares) {
   if (runs < 2)
     return NAN;
-  double n = (double)runs;
-  return sample_student(runs, 0.95) * sqrt(fmax(0, squares - count * count / n) / (n - 1) / n);
+  const double n = (double)runs, spread = squares - count * count / n;
+  if (!(spread > SAME_COUNTS * squares))
+    return NAN;
+  return sample_student(runs, 0.95) * sqrt(spread / (n - 1) / n);
 }
 
 static int dimensions_of(const struct pooled_form *form) {

@@ -35,10 +35,12 @@ struct pooled_bin {
   int64_t count;       /* fragments of all runs; cumulative: of this bin and all above */
   double mass;         /* of these fragments, kg */
   double value;        /* F or N: the mean over the units */
-  double half_width;   /* of the 95 % interval of the value over the units (Student's t); NaN for one unit */
+  double
+      half_width; /* of the 95 % interval of the value over the units (Student's t); NaN for one unit, or equal ones */
 };
 /* Half width of the 95 % interval of the mean count per run in a bin, from the scatter between runs (Student's t).
- * count, squares: sum over the runs of their counts and of the squares. NaN for fewer than two runs. */
+ * count, squares: sum over the runs of their counts and of the squares. NaN for fewer than two runs, and when
+ * all runs have the same count. */
 double pooled_spectrum_count_hw95(size_t runs, double count, double squares);
 
 /* Computes the bins in ascending order; the caller frees *bins. Differential: the non-empty bins. Cumulative: all bins

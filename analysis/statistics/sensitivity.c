@@ -132,7 +132,8 @@ static struct sample_interval interval_of(struct asking *a) {
   }
   const struct sample_interval seeds = sample_jackknife(a->seeds, 0.95, over_seeds, a);
   interval.standard_error = hypot(interval.standard_error, seeds.standard_error);
-  interval.half_width = hypot(interval.half_width, seeds.half_width);
+  if (!isnan(seeds.half_width)) /* NaN: no seed moves the index */
+    interval.half_width = hypot(interval.half_width, seeds.half_width);
   return interval;
 }
 

@@ -283,7 +283,7 @@ static void write_spectra(struct view *view) {
         "  sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1))) AS count_sd,\n  (",
         out);
   views_statistics_student("(t.runs - 1)", out);
-  fputs(") * sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1) / t.runs)) AS "
+  fputs(") * sqrt(nullif(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1) / t.runs), 0)) AS "
         "count_hw95,\n"
         "  s.count / (t.fragments * (b.upper - b.lower)) AS density\n"
         "FROM point p JOIN point_total t ON t.point_id = p.point_id\n"

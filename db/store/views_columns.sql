@@ -16,7 +16,7 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
   ('spectra', 'mass', 'kg', 'their mass'),
   ('spectra', 'count_mean', '1', 'fragments in the bin per run'),
   ('spectra', 'count_sd', '1', 'standard deviation of the count between runs'),
-  ('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student)'),
+  ('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student); NULL: one run, or all are equal'),
   ('spectra', 'density', '1/kg', 'fragment number density F(m): share of all fragments per unit mass; its integral over mass is 1'),
   ('resolution', 'point_id', NULL, 'the point: the scene of a study, or one of its levels'),
   ('resolution', 'results_version', NULL, 'version of the engine''s results that was studied'),

@@ -163,6 +163,10 @@ static void jackknife_refuses_what_it_cannot_tell(void **state) {
   struct sample_interval four = sample_jackknife(4, 0.9, mean_of_four_at_least, &clusters);
   assert_true(four.estimate == 3.75 && isnan(four.half_width)); /* no value without any one of the runs */
   assert_true(isfinite(sample_jackknife(5, 0.9, mean_of_four_at_least, &clusters).half_width));
+  const double same[7] = {0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1}; /* no +- 0, also where their sum rounds */
+  struct clusters equal = {same};
+  assert_true(isnan(sample_jackknife(7, 0.9, mean_of, &equal).half_width));
+  assert_true(isnan(sample_summarise(7, same, 0.9).half_width) && isnan(sample_summarise(7, same, 0.9).low));
 }
 
 /* An infinite value, which only a damaged store has: no scatter is known. It is not 0, which would end a campaign. */
