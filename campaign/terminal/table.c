@@ -478,7 +478,12 @@ static size_t mean_of(const struct answer *answer, size_t i) {
   return 0;
 }
 
-/* People see marks, not the columns that they come from. */
+static bool is_end_of_interval(const char *name) {
+  const char *end = strrchr(name, '_');
+  return end && (strcmp(end, "_low95") == 0 || strcmp(end, "_high95") == 0);
+}
+
+/* People see marks, not the columns that they come from, and the half width of an interval, not its ends. */
 static void find_marks(struct rows *rows, const struct answer *answer) {
   const size_t count = answer_count(answer);
   for (size_t i = 1; i < count; i++) {
@@ -489,6 +494,8 @@ static void find_marks(struct rows *rows, const struct answer *answer) {
     }
     if (strcmp(answer_name(answer, i), "n") == 0)
       rows->n = i;
+    if (is_end_of_interval(answer_name(answer, i)))
+      rows->shown[i].hidden = true;
   }
   rows->shown[count - 1].hidden = true;
 }
