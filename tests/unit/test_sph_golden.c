@@ -1,9 +1,9 @@
 /* Pinned hashes of three small runs of engine sph: tests/support/golden.h says what to do when they change. */
 #include "tests/support/golden.h"
 
-enum { RESULTS_VERSION = 7 };
+enum { RESULTS_VERSION = 8 };
 #define GOLDEN_SPHERE "533d3e046e12d935ffeeeaf43f012018"
-#define GOLDEN_ROD    "16be91c675751dcd52f132503c488583"
+#define GOLDEN_ROD    "6aae48aab22fee0d5e0a0594652621cc"
 #define GOLDEN_RINGS  "afef6015b2971ed38d03ba0a44e3a789"
 
 static int changed(const char *name, const struct sph_inputs *inputs, const char *pinned) {

@@ -375,6 +375,26 @@ static void sound_speeds(void **state) {
        "c_e not given: the solid's");
 }
 
+/* While pores close, the wave that acts has the slope of the adiabat, here by a difference of 1e-6; else it is that of
+ * sound, also on reloading. */
+static void wave_speeds(void **state) {
+  (void)state;
+  const struct sph_palpha_law laws[] = {law_of(&porous_aluminium, &aluminium), law_of(&pumice, &pumice_matrix)};
+  for (int l = 0; l < 2; l++) {
+    const double top = laws[l].given.distention, rho = laws[l].solid_density / top * 1.15, step = 1e-6 * rho;
+    const struct sph_palpha_state s = sph_palpha_update(&laws[l], top, top, rho, 3e3);
+    assert_true(s.rest < top && s.distention > 1); /* it crushes */
+    const struct sph_palpha_state next = sph_palpha_update(&laws[l], s.rest, s.distention, rho + step,
+                                                           3e3 + s.pressure / (rho * rho) * step);
+    near(s.wave_speed / sqrt((next.pressure - s.pressure) / step), 1, 1e-3, "slope of the crush curve");
+    assert_true(s.wave_speed < 0.7 * s.sound_speed);
+    const struct sph_palpha_state back = sph_palpha_update(&laws[l], s.rest, s.distention, rho - step, 3e3);
+    assert_true(back.wave_speed == back.sound_speed);
+  }
+  const struct sph_palpha_state closed = sph_palpha_update(&laws[0], 1, 1, 2800, 0);
+  assert_true(closed.wave_speed == closed.sound_speed);
+}
+
 static void compaction_damage(void **state) {
   (void)state;
   struct sph_palpha_law law = law_of(&porous_aluminium, &aluminium);
@@ -499,6 +519,7 @@ int main(void) {
                                      cmocka_unit_test(heat),
                                      cmocka_unit_test(compaction_damage),
                                      cmocka_unit_test(sound_speeds),
+                                     cmocka_unit_test(wave_speeds),
                                      cmocka_unit_test(random_paths),
                                      cmocka_unit_test(soft_pores_follow_their_branch),
                                      cmocka_unit_test(refused)};

@@ -143,7 +143,7 @@ static void check(const struct sph_results *r, double piston, int points) {
     near(r->palpha.precursor, r->palpha.precursor_exact, 1e-4, "alpha of the precursor");
 }
 
-/* Error of a result that depends only on the curve: the weak shock leaves alpha = 1.0334. It falls with the spacing. */
+/* Error of a result that depends only on the curve: the weak shock leaves alpha = 1.0334. */
 static double weak_error(const struct sph_results *r) {
   return fabs(r->palpha.shock - r->palpha.shock_exact);
 }
@@ -169,10 +169,41 @@ static void all_speeds(void **state) {
   for (int points = 200; points <= (run_case_full() ? 800 : 200); points *= 2) {
     const struct sph_results weak = run(points, 200);
     check(&weak, 200, points);
-    assert_true(weak_error(&weak) < 0.5 * weak_error(&coarse)); /* first order at least */
+    assert_true(weak_error(&weak) < 1e-3); /* a smeared shock is also too weak: 1.3e-2 at 100, 3.2e-3 at 200 points */
     assert_true(precursor_error(&weak) < 0.6 * precursor_error(&coarse));
     coarse = weak;
     other_speeds(points);
+  }
+}
+
+/* Shocks that close a part of the pores of other matter, and move at a tenth of the speed of elastic waves: with the
+ * viscosity of those waves pumice at 150 m/s has half of its pressure. Threefold compression in a front of few
+ * particles: the density carried through it is 5 % low without geometric weights. */
+static void weak_shocks_in_other_matter(void **state) {
+  (void)state;
+  static const struct {
+    const char *material;
+    double piston, within; /* m/s; of P */
+  } shocks[] = {{"pumice", 150, 0.02},
+                {"perlite-mix", 200, 0.02},
+                {"porous-ice", 300, 0.02},
+                {"pumice", 250, 0.03},
+                {"pumice", 400, 0.04}};
+  const size_t count = SLOW ? 0 : run_case_full() ? sizeof shocks / sizeof *shocks : 2;
+  for (size_t k = 0; k < count; k++) {
+    char material[60], speed[40];
+    snprintf(material, sizeof material, "target.material.name=%s", shocks[k].material);
+    snprintf(speed, sizeof speed, "piston.speed=%g m/s", shocks[k].piston);
+    struct sph_inputs inputs = SPH_CASE("porous-plate", "fidelity.points=200", material, speed);
+    struct ran ran = run_case_run(&sph_engine, &inputs, 1);
+    const struct sph_results r = ran.results.sph;
+    free(ran.fragments);
+    print_message("%s, %g m/s: Us %.1f (%.1f) rho %.1f (%.1f) P %.3f (%.3f) MPa\n", shocks[k].material,
+                  shocks[k].piston, r.shock.speed, r.shock.speed_exact, r.shock.density, r.shock.density_exact,
+                  r.shock.pressure / 1e6, r.shock.pressure_exact / 1e6);
+    assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
+    near(r.shock.pressure, r.shock.pressure_exact, shocks[k].within, "P");
+    near(r.shock.speed, r.shock.speed_exact, 0.03, "Us");
   }
 }
 
@@ -199,6 +230,7 @@ static void solid_and_elastic(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(exact_answers_agree), cmocka_unit_test(slow_and_fast_pistons),
-                                     cmocka_unit_test(all_speeds), cmocka_unit_test(solid_and_elastic)};
+                                     cmocka_unit_test(all_speeds), cmocka_unit_test(weak_shocks_in_other_matter),
+                                     cmocka_unit_test(solid_and_elastic)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

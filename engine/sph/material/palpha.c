@@ -292,8 +292,12 @@ static double solve(const struct sph_palpha_law *law, double rest, double alpha,
 
 static struct sph_palpha_state without_pores(const struct sph_palpha_law *law, double rho, double u) {
   struct sph_pressure p = sph_tillotson(&law->solid, law->solid_density, rho, u);
-  return (struct sph_palpha_state){1, 1, p.pressure, p.by_density, p.by_energy, 0, 0, 1, p.sound_speed};
+  return (struct sph_palpha_state){1, 1, p.pressure, p.by_density, p.by_energy, 0, 0, 1, p.sound_speed, p.sound_speed};
 }
+
+/* Over this share of P_e above it the wave that acts turns from that of sound to that of the crush curve: an elastic
+ * precursor stands at P_e, and with little viscosity it would ring across it and close pores (our choice). */
+static const double BLEND = 0.1;
 
 struct sph_palpha_state sph_palpha_update(const struct sph_palpha_law *law, double rest, double guess, double rho,
                                           double u) {
@@ -326,5 +330,11 @@ struct sph_palpha_state sph_palpha_update(const struct sph_palpha_law *law, doub
   s.shear_factor = within(1 + adiabatic * rho / alpha, 0, 1);
   double c = t.solid.sound_speed;
   s.sound_speed = isnan(law->given.sound_speed) ? c : c + (law->given.sound_speed - c) * (alpha - 1) / (top - 1);
+  s.wave_speed = s.sound_speed;
+  if (crush) {
+    const double plastic = sqrt(fmax(s.by_density + t.pressure / (rho * rho) * s.by_energy, 0));
+    const double over = within((t.pressure - law->given.elastic_pressure) / (BLEND * law->given.elastic_pressure), 0, 1);
+    s.wave_speed += (plastic - s.sound_speed) * over;
+  }
   return s;
 }

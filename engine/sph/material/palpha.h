@@ -64,6 +64,7 @@ struct sph_palpha_state {
   double
       shear_factor; /* f = 1 + (rho/alpha) dalpha/drho along an adiabat, in [0, 1]: dS/dt = (f/alpha) 2 mu dev + ... */
   double sound_speed; /* m/s, from c_e at alpha_0 to the solid's at 1, at rho_s = alpha rho */
+  double wave_speed;  /* m/s, of the wave that acts: while pores close that of the crush curve */
 };
 
 /* (alpha, P) for a bulk density and energy, given the old rest distention; `guess` is where the search starts (the last

@@ -154,11 +154,12 @@ static void artificial_stress_make(const struct sph_pair_options *options, const
 
 INLINE void TYPED(artificial_stress_pack)(const struct sph_pair_source *source, size_t first, const uint32_t *which,
                                           vec_double base[], vec_double own[]) {
-  const vec_double square = base[PAIR_DENSITY] * base[PAIR_DENSITY];
+  const vec_double density = base[PAIR_DENSITY], one = {0};
+  const vec_double factor = source->volume_weights ? density * density : source->geometric_weights ? density : one + 1;
   UNROLL
   for (size_t c = 0; c < PAIR_RECORD_artificial_stress; c++) {
     const vec_double r = column_load(source->made[MADE_artificial_stress + c], source->unit.per_specific, first, which);
-    own[c] = source->volume_weights ? r * square : r;
+    own[c] = r * factor;
   }
 }
 

@@ -4,7 +4,13 @@
  *
  * The gradient correction, a term of the pair loop (pairs/pairs.h; Bonet & Lok 1999). The stress T = sigma B of a
  * record is not symmetric; the moments M are summed, and B is their inverse. Symmetric tensors have the columns xx xy
- * xz yy yz zz. */
+ * xz yy yz zz.
+ *
+ * The weight of a neighbour is m_j/sqrt(rho_i rho_j), unless method.volume_weights. The corrected gradient is a mean of
+ * the slopes (v_j - v_i)/(x_j - x_i), and each slope is the rate of the logarithm of that distance. With weights m_j
+ * the neighbours behind a front, which are more, count more: they close up before the particle is in the front, and
+ * those ahead of it after that. So the carried density ends too low where a thin front compresses much; with weights
+ * m_j/rho_j too high, and with the mean of both nearly right. */
 
 MODULE(gradient_correction)
 MODULE_INPUTS(gradient_correction)
@@ -19,7 +25,7 @@ COLUMN(correction[6]) /* B, at the last pair loop */
 
 PAIR_TERM(gradient_correction, o->gradient_correction.on)
 PAIR_FIELDS(correction, 6)
-PAIR_RECORD(gradient_correction, 3)                                     /* yx zx zy of T */
+PAIR_RECORD(gradient_correction, 4)                                     /* yx zx zy of T, rho^(-1/2) */
 PAIR_SUMS(gradient_correction, correction, 6, -u->distance / u->length) /* the moments times -1, then B */
 PAIR_POWER(gradient_correction)
 PAIR_PACK(gradient_correction)
@@ -136,18 +142,29 @@ INLINE void TYPED(gradient_correction_pack)(const struct sph_pair_source *source
   for (size_t c = 0; c < 6; c++)
     b[c] = column_load(source->fields.correction[c], 1, first, which);
   turn(base + PAIR_XX, b, t);
+  if (source->geometric_weights) { /* the records hold sigma B/rho */
+    UNROLL
+    for (size_t c = 0; c < 9; c++)
+      t[c] *= base[PAIR_DENSITY];
+  }
   UNROLL
   for (size_t c = 0; c < 6; c++)
     base[PAIR_XX + c] = t[c];
   UNROLL
-  for (size_t c = 0; c < PAIR_RECORD_gradient_correction; c++)
+  for (size_t c = 0; c < 3; c++)
     own[c] = t[6 + c];
+  own[3] = vec_inverse_root_double(base[PAIR_DENSITY]);
 }
 
 INLINE void TYPED(gradient_correction_stress)(const struct sph_pair_constants *k, const struct pair_member *me,
-                                              const REAL *mine, const vec *its, const struct pair_batch *p,
-                                              vec t[3][3]) {
-  (void)k, (void)me, (void)p;
+                                              const REAL *mine, const vec *its, struct pair_batch *p, vec t[3][3]) {
+  if (!k->volume_weights) {
+    const vec zero = {0}, weight = mine[3] * its[3], density = zero + me->record[PAIR_DENSITY];
+    p->slope *= weight;
+    FOR_AXES(a)
+      p->w[a] *= weight;
+    p->viscous *= weight * density * (p->densities - density); /* as it was, with the slope */
+  }
   t[1][0] = mine[0] + its[0];
   t[2][0] = mine[1] + its[1];
   t[2][1] = mine[2] + its[2];

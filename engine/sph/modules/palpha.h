@@ -54,6 +54,7 @@ struct sph_palpha_results {
 COLUMN(distention)      /* alpha now */
 COLUMN(rest_distention) /* alpha after unloading to P = 0 (material/palpha.h) */
 COLUMN(shear_factor)    /* f of the last evaluation */
+COLUMN(wave_speed)      /* m/s, of the wave that acts, for the viscosity: also in bodies without pores */
 COLUMN(compaction)      /* D^(1/3) by closed pores */
 
 PARTICLE_ARRAYS(DISTENTION, distention)
@@ -141,7 +142,7 @@ RANGE_INLINE void palpha_respond(struct sph_system *s, const struct sph_solid *b
   const double pores = quadratic ? law->elastic_distention - 1 : 0, never = quadratic ? 0 : -1;
   const double *density = s->c.density, *energy = s->c.energy;
   double *alpha = s->c.distention, *rest = s->c.rest_distention, *f = s->c.shear_factor;
-  double *pressure = s->c.pressure, *sound_speed = s->c.sound_speed;
+  double *pressure = s->c.pressure, *sound_speed = s->c.sound_speed, *wave = s->c.wave_speed;
   int64_t hard[SPH_BLOCK], any = 0;
   const size_t low = b->low, n = b->high - b->low;
   RANGE_LOOP
@@ -155,7 +156,7 @@ RANGE_INLINE void palpha_respond(struct sph_system *s, const struct sph_solid *b
     const double bound = 1 + pores * left * left + (r > 1 ? never : 0); /* crush curve */
     const double c = sqrt(range_larger(t.sound2, floor2));
     pressure[i] = t.pressure;
-    sound_speed[i] = c + (start - c) * (t.next - 1) * share;
+    sound_speed[i] = wave[i] = c + (start - c) * (t.next - 1) * share;
     f[i] = palpha_shear_factor(&t, rho);
     alpha[i] = t.next;
     const int64_t crush = -(int64_t)(t.pressure > low_pressure) & -(int64_t)(t.next > bound);
@@ -171,6 +172,7 @@ RANGE_INLINE void palpha_respond(struct sph_system *s, const struct sph_solid *b
     alpha[i] = now.distention;
     pressure[i] = now.pressure;
     sound_speed[i] = now.sound_speed;
+    wave[i] = now.wave_speed;
     f[i] = now.shear_factor;
     if (now.rest < rest[i] && sph_solid_has(body, SPH_COLUMN(compaction)))
       s->c.compaction[i] = sph_palpha_damage_cbrt(law, now.rest);
@@ -394,6 +396,7 @@ static void palpha_fill(struct sph_system *s, const struct sph_solid *body, cons
 static const struct sph_column_need palpha_columns[] = {{SPH_COLUMNS_OF(distention), 1, NULL},
                                                         {SPH_COLUMNS_OF(rest_distention), 1, NULL},
                                                         {SPH_COLUMNS_OF(shear_factor), 1, NULL},
+                                                        {SPH_COLUMNS_OF(wave_speed), 0, NULL},
                                                         {SPH_COLUMNS_OF(two_mu), 0, palpha_with_strength},
                                                         {SPH_COLUMNS_OF(damage), 0, palpha_with_strength},
                                                         {SPH_COLUMNS_OF(compaction), 0, palpha_with_strength},

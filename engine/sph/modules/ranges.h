@@ -5,6 +5,7 @@
 #define CLAST_ENGINE_SPH_MODULES_RANGES_H
 
 #include <math.h>
+#include <string.h>
 
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/step/system.h"

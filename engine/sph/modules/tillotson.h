@@ -42,14 +42,14 @@ RANGE_HOOK void tillotson_range(struct sph_system *s, const struct sph_solid *bo
     sound_speed[i] = sqrt(range_larger(c2, floor2));
     hot |= -(int64_t)(rho < density0) & -(int64_t)(u > t.E_iv);
   }
-  if (!hot)
-    return;
-  for (size_t i = b->low; i < b->high; i++)
+  for (size_t i = b->low; hot && i < b->high; i++)
     if (density[i] < density0 && energy[i] > t.E_iv) {
       const struct sph_pressure r = sph_tillotson(&t, density0, density[i], energy[i]);
       pressure[i] = r.pressure;
       sound_speed[i] = r.sound_speed;
     }
+  if (s->c.wave_speed) /* another body has pores */
+    memcpy(s->c.wave_speed + b->low, sound_speed + b->low, (b->high - b->low) * sizeof *sound_speed);
 }
 
 static const sph_hook tillotson_hooks[SPH_STAGES] = {[SPH_RESPOND] = tillotson_range};

@@ -2,7 +2,8 @@
  *
  *   viscosity.alpha, viscosity.beta   linear and quadratic; both 0: none
  *
- * Monaghan's artificial viscosity, the term of the pair loop that every combination has. */
+ * Monaghan's artificial viscosity, the term of the pair loop that every combination has. Its speed of sound is that of
+ * the wave that acts: where pores close, of a wave along the crush curve (palpha.h). */
 
 MODULE(viscosity)
 MODULE_INPUTS(viscosity)

@@ -368,6 +368,7 @@ static struct sph_pair_source source_of(const struct sph_pairs *p, const struct 
       .pressure = f->pressure_term,
       .stress_factor = f->stress_factor,
       .volume_weights = p->options.method.volume_weights,
+      .geometric_weights = p->shape.gradient_correction && !p->options.method.volume_weights,
       .shape = p->shape,
       .unit = *u,
       .fields = *f,
@@ -413,6 +414,7 @@ static struct sph_pair_sink sink_of(const struct sph_pairs *p, const struct sph_
                             .mass_unit = u->mass,
                             .density_unit = u->density,
                             .volume_weights = p->options.method.volume_weights,
+                            .geometric_weights = p->shape.gradient_correction && !p->options.method.volume_weights,
                             .columns = p->sums};
   for (int k = 0; k < 9; k++) {
     s.column[SUM_GRADIENT + k] = sums->gradient[k];

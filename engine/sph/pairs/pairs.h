@@ -8,11 +8,12 @@
  *   heating   = 1/2 sum_j m_j (v_i - v_j) . (Pi_ij - f^n (R_i + R_j)) . grad_i W   (J/kg/s; eq. 4 lacks it)
  * Pi is Monaghan's viscosity, for approaching pairs only (damaged ones included).
  *
- * With the gradient correction dv_a/dx_b is multiplied by B_i, the inverse of M_i = sum_j (m_j/rho_i) (x_j - x_i)
- * grad_i W, so that it is exact for linear fields. In the forces sigma_i/rho_i^2 becomes sigma_i B_i/rho_i^2, which
- * makes them conjugate to the corrected gradient: energy and angular momentum are conserved, and a free side is as
- * stiff as the inside [Bonet & Lok 1999, Comput. Methods Appl. Mech. Eng. 180, 97]. M_i is a sum of the same pass, so
- * the forces use the B_i of the pass before.
+ * With the gradient correction dv_a/dx_b is multiplied by B_i, the inverse of M_i = sum_j m_j/sqrt(rho_i rho_j)
+ * (x_j - x_i) grad_i W, so that it is exact for linear fields; its weights are the same (gradient_correction.h says
+ * why). In the forces sigma_i/rho_i^2 becomes sigma_i B_i/(rho_i sqrt(rho_i rho_j)), which makes them conjugate to the
+ * corrected gradient: energy and angular momentum are conserved, and a free side is as stiff as the inside [Bonet & Lok
+ * 1999, Comput. Methods Appl. Mech. Eng. 180, 97]. M_i is a sum of the same pass, so the forces use the B_i of the pass
+ * before.
  *
  * With `volume_weights` dv_a/dx_b has m_j/rho_j, and for the same reason sigma_i/rho_i^2 + sigma_j/rho_j^2 becomes
  * (sigma_i + sigma_j)/(rho_i rho_j). */
@@ -263,6 +264,7 @@ struct sph_pair_source {
   const double *stress_factor, *pressure; /* factor of the deviator; added to XX, YY, ZZ, in their units */
   double per_unit[3];                     /* 1/m, inverse unit of float records' positions */
   bool volume_weights;                    /* the stress is sigma, not sigma/rho^2 */
+  bool geometric_weights;                 /* the stress is sigma/rho */
   struct sph_pair_shape shape;            /* for its terms, also: */
   struct sph_pair_units unit;
   struct sph_pair_fields fields;
@@ -276,7 +278,8 @@ struct sph_pair_sink {
   size_t columns;
   const double *mass, *density;
   double mass_unit, density_unit;
-  bool volume_weights; /* if not, the gradient and the sums of terms are divided by the density */
+  bool volume_weights;    /* if not, the gradient and the sums of terms are divided by the density */
+  bool geometric_weights; /* but not with these */
 };
 
 struct sph_pair_constants {

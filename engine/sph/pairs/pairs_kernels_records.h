@@ -243,6 +243,8 @@ INLINE void unpack_columns(const struct sph_pair_sink *sink, size_t first, const
     memcpy(&density, sink->density + first, lanes * sizeof(double));
     weight = sink->volume_weights ? density / sink->density_unit : sink->density_unit / density;
   }
+  if (sink->geometric_weights)
+    weight = one;
   if (SINGLE) {
     memcpy(&per_mass, sink->mass + first, lanes * sizeof(double));
     per_mass = sink->mass_unit / per_mass;

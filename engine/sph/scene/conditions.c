@@ -144,19 +144,16 @@ static double plateau(const struct condition_run *r) {
 /* ---- waves in bodies ---- */
 
 /* Width of a crushing shock over the shortest extent of the porous target. The linear viscosity alpha c h, with the
- * speed c of elastic waves, balances the shock over a width of about 2 alpha h c/U. U is the speed of the shock that
- * just closes all pores, U^2 (1 - 1/alpha_0) = P_s/rho. */
+ * speed c of the wave along the crush curve, which is about that of the shock, balances it over a width of 2 alpha h.
+ */
 static double front(const void *inputs) {
   const struct sph_inputs *in = inputs;
   if (in->kind != SPH_IMPACT || !is_porous(&in->target))
     return NAN;
-  const struct sph_palpha_material *pores = &in->target.material.palpha;
-  const double shock = sqrt(pores->solid_pressure / (sph_derived_density(&in->target) * (1 - 1 / pores->distention)));
   const struct sph_shape target = sph_derived_target(in);
   const double extent = in->target.shape == SPH_SHAPE_BOX ? sph_derived_shortest_side(&in->target)
                                                           : cbrt(sph_shape_volume(&target));
-  return 2 * in->viscosity.alpha * in->fidelity.smoothing * sph_derived_fine_spacing(in) *
-         sph_derived_wave_speed(&in->target) / shock / extent;
+  return 2 * in->viscosity.alpha * in->fidelity.smoothing * sph_derived_fine_spacing(in) / extent;
 }
 
 /* ---- contact ---- */

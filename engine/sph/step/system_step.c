@@ -294,7 +294,7 @@ struct sph_pair_fields sph_system_step_fields(const struct sph_system *s) {
                                    .vz = c->vz,
                                    .mass = c->mass,
                                    .density = c->density,
-                                   .sound_speed = c->sound_speed,
+                                   .sound_speed = c->wave_speed ? c->wave_speed : c->sound_speed,
                                    .pressure_term = c->pressure_term,
                                    .stress_factor = c->stress_factor};
 #define PAIR_FIELDS(member, count) memcpy(fields.member, &c->member, sizeof fields.member);
