@@ -44,7 +44,7 @@ RANGE_HOOK void elastic_predict(struct sph_system *s, const struct sph_solid *bo
 RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_solid *body, struct sph_block *b,
                                      bool published) {
   const double half = 0.5 * s->dt, material_two_mu = 2 * body->physics.material.elastic.shear_modulus;
-  const double *effective = s->c.two_mu;
+  const double *effective = s->c.two_mu, *growing = s->c.shear_factor;
   double *const *g = b->sums->gradient;
   const double *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3], *g4 = g[4], *g5 = g[5], *g6 = g[6], *g7 = g[7],
                *g8 = g[8];
@@ -62,9 +62,10 @@ RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_soli
     const size_t i = low + k;
     const double exx = g0[k], eyy = g4[k], ezz = g8[k], divergence = exx + eyy + ezz, third = divergence * (1.0 / 3);
     const double exy = 0.5 * (g1[k] + g3[k]), exz = 0.5 * (g2[k] + g6[k]), eyz = 0.5 * (g5[k] + g7[k]);
-    const double two_mu = published ? effective[i] : material_two_mu;
     const double wxy = 0.5 * (g1[k] - g3[k]), wxz = 0.5 * (g2[k] - g6[k]), wyz = 0.5 * (g5[k] - g7[k]);
     const double xx = sxx[i], xy = sxy[i], xz = sxz[i], yy = syy[i], yz = syz[i], zz = -(xx + yy);
+    const double fed = xx * exx + yy * eyy + zz * ezz + 2 * (xy * exy + xz * exz + yz * eyz);
+    const double two_mu = published ? effective[i] * (fed < 0 ? 1 : growing[i]) : material_two_mu;
     const double axx = factor[i] * xx, ayy = factor[i] * yy; /* damaged */
     const double work = term[i] * divergence + axx * exx + ayy * eyy - (axx + ayy) * ezz +
                         2 * (factor[i] * xy * exy + factor[i] * xz * exz + factor[i] * yz * eyz);

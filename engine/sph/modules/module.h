@@ -7,7 +7,7 @@
  *
  *   solid_density  density of the solid matter, which the equation of state publishes
  *   yield_limit    a yield law sets it, other modules lower it, `elastic` brings the stress back to it
- *   two_mu         effective 2 mu, where it is not the material's
+ *   two_mu         effective 2 mu, where it is not the material's, and shear_factor, its factor where strain feeds S
  *   flaw_damage    damage by flaws, where another module damages the body, too
  *   crack_stress, crack_pressure   the stress that opens flaws, where it is not the particle's own
  *   shear_damage   damage that scales the deviator, where it is not all damage (ranges.h)

@@ -197,10 +197,12 @@ RANGE_HOOK void palpha_range(struct sph_system *s, const struct sph_solid *body,
   }
 }
 
-/* For other modules: the density of the solid between the pores, and the effective shear modulus, (f/alpha) 2 mu
- * [JBM08]. (The share of alpha's change in dS/dt is in palpha_range.) */
+/* For other modules: the density of the solid between the pores, and the effective shear modulus, 2 mu/alpha, times f
+ * where the deviator grows [JBM08: always]. Where it falls, f would keep it: on the crush curve f is nearly 0, so that
+ * the deviator would give back more work than it took, without end, and the internal energy would fall below zero. (The
+ * share of alpha's change in dS/dt is in palpha_range.) */
 RANGE_HOOK void palpha_publish(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const double *alpha = s->c.distention, *f = s->c.shear_factor, *density = s->c.density;
+  const double *alpha = s->c.distention, *density = s->c.density;
   double *solid_density = b->terms->published, *two_mu = s->c.two_mu;
   const double solid_two_mu = 2 * body->physics.material.elastic.shear_modulus;
   const size_t low = b->low, n = b->high - b->low;
@@ -212,7 +214,7 @@ RANGE_HOOK void palpha_publish(struct sph_system *s, const struct sph_solid *bod
     return;
   RANGE_LOOP
   for (size_t i = low; i < low + n; i++)
-    two_mu[i] = solid_two_mu * f[i] / alpha[i];
+    two_mu[i] = solid_two_mu / alpha[i];
 }
 
 /* The stored S is that of the body: |S| <= Y/alpha. */
