@@ -2,7 +2,7 @@
  * less is thrown out; alpha is 1 near the crater only and rises to alpha_0), and a polymer bullet into very porous
  * matter (the crater is made by compaction).
  *
- * Quick: 2 seeds of 4000 particles. CLAST_FULL=1: 10 seeds of 8000. Each seed is shown, and the ratio with its
+ * Quick: 2 seeds. CLAST_FULL=1: 10 seeds. Each seed is shown, and the ratio with its
  * interval. The criterion applies to the mean, not to every seed (a seed with the opposite result is a finding). */
 #include <math.h>
 #include <setjmp.h>
@@ -64,8 +64,8 @@ static void ice(void **state) {
   const int seeds = full() ? 10 : 2;
   double sum = 0, squares = 0;
   for (int seed = 1; seed <= seeds; seed++) {
-    struct result porous = run("porous-ice", (uint64_t)seed, full() ? "8000" : "4000");
-    struct result solid = run("solid-ice", (uint64_t)seed, full() ? "8000" : "4000");
+    struct result porous = run("porous-ice", (uint64_t)seed, "8000");
+    struct result solid = run("solid-ice", (uint64_t)seed, "8000");
     double thrown = porous.sph.ejecta.mass_fraction * porous.sph.target_mass;
     double of_solid = solid.sph.ejecta.mass_fraction * solid.sph.target_mass, ratio = log(thrown / of_solid);
     sum += ratio;
@@ -81,9 +81,10 @@ static void ice(void **state) {
     for (size_t k = 0; seed == 1 && k < porous.layers; k++)
       print_message("  depth %.3f m: alpha %.4f, D %.2f\n", porous.axis[k].depth, porous.axis[k].distention,
                     porous.axis[k].damage);
-    /* alpha = 1 near the crater only: within 3 cm of the first surface, while pores were lost far beyond. Layers refer
-     * to the depth at the start. Matter above was pushed aside, so alpha need not rise from layer to layer. */
-    assert_true(porous.sph.palpha.compaction.mass_fraction > 0 && porous.sph.palpha.compaction.depth < 0.03);
+    /* alpha = 1 near the crater only: not deeper than its bottom, while pores were lost far beyond. Layers refer to the
+     * depth at the start. Matter above was pushed aside, so alpha need not rise from layer to layer. */
+    assert_true(porous.sph.palpha.compaction.mass_fraction > 0);
+    assert_true(porous.sph.palpha.compaction.depth < porous.sph.crater.depth);
     assert_true(porous.sph.palpha.compaction.reach > 3 * porous.sph.palpha.compaction.depth);
     assert_true(porous.layers > 5);
     double lowest = 1.5, last = porous.axis[porous.layers - 1].distention; /* rising to alpha_0 = 1.5 */
