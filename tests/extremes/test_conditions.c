@@ -185,7 +185,7 @@ static const struct twin {
     {"plateau",
      "porous-plate",
      {"fidelity.points=100"},
-     {"target.material.name=perlite-mix", "piston.speed=200 m/s"},
+     {"target.material.name=pumice", "piston.speed=400 m/s"},
      {NULL}},
     {"front",
      "pumice-sphere",
