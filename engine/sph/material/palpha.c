@@ -333,7 +333,8 @@ struct sph_palpha_state sph_palpha_update(const struct sph_palpha_law *law, doub
   s.wave_speed = s.sound_speed;
   if (crush) {
     const double plastic = sqrt(fmax(s.by_density + t.pressure / (rho * rho) * s.by_energy, 0));
-    const double over = within((t.pressure - law->given.elastic_pressure) / (BLEND * law->given.elastic_pressure), 0, 1);
+    const double over = within((t.pressure - law->given.elastic_pressure) / (BLEND * law->given.elastic_pressure), 0,
+                               1);
     s.wave_speed += (plastic - s.sound_speed) * over;
   }
   return s;
