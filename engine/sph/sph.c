@@ -90,6 +90,8 @@ static const struct knob knobs[] = {
 
     KNOB("smoothing", MODEL, .inputs = {{"fidelity.smoothing", 1}}, .factors = {0.9, 1, 1.15, 1.3}, .pairs = true,
          .meaning = "smoothing length over the spacing: number of neighbours"),
+    KNOB("viscosity", MODEL, .inputs = {{"viscosity.alpha", 1}, {"viscosity.beta", 1}}, .factors = {2, 1, 0.5},
+         .step_power = 1, .pairs = true, .meaning = "artificial viscosity, linear and quadratic together"),
     KNOB("strength", MODEL, .inputs = {{"target.strength"}}, KNOB_ON_OFF, .pairs = true,
          .meaning = "the target resists shear"),
     KNOB("fracture", MODEL, .inputs = {{"target.fracture"}}, .choices = {"off"}, .pairs = true,
