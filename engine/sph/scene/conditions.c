@@ -158,9 +158,13 @@ static double front(const void *inputs) {
 
 /* ---- contact ---- */
 
+/* Speed of an impact over that of waves in the softer body, of bodies that both have strength. */
 static double approach(const void *inputs) {
   const struct sph_inputs *in = inputs;
-  return in->contact.rule == SPH_CONTACT_WELDED ? sph_derived_approach(in) : (double)NAN;
+  if (in->kind != SPH_IMPACT || in->contact.rule != SPH_CONTACT_WELDED || !in->target.strength ||
+      !in->projectile.strength)
+    return NAN;
+  return in->impact.speed / fmin(sph_derived_wave_speed(&in->target), sph_derived_wave_speed(&in->projectile));
 }
 
 /* ---- what a result needs to have happened ---- */
@@ -398,7 +402,7 @@ const struct condition sph_conditions[] = {
      .before = front},
     {.word = "stick",
      .number = "the speed of the impact over that of waves",
-     .bound = SPH_DERIVED_SLOW,
+     .bound = 0.03,
      .least = true,
      .doubt = "intact bodies that touch stick together with method.contact: welded, since a pair of two bodies acts as "
               "in one",

@@ -13,12 +13,6 @@ double sph_derived_wave_speed(const struct sph_body_inputs *b) {
   return sph_material_longitudinal_speed(&b->material, b->strength);
 }
 
-double sph_derived_approach(const struct sph_inputs *in) {
-  if (in->kind != SPH_IMPACT || !in->target.strength || !in->projectile.strength)
-    return NAN;
-  return in->impact.speed / fmin(sph_derived_wave_speed(&in->target), sph_derived_wave_speed(&in->projectile));
-}
-
 bool sph_derived_cracks(const struct sph_body_inputs *b) {
   if (!b->strength || b->fracture == SPH_FRACTURE_OFF)
     return false;

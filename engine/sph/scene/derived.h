@@ -38,11 +38,6 @@ double sph_derived_smallest_spacing(const struct sph_inputs *inputs); /* m, of a
  * is z; the angle between flight and normal is impact.angle, whatever the gap. STATUS_CONTENT. */
 status sph_derived_aim(const struct sph_inputs *inputs, struct sph_shape shape[2], double flight[3],
                        struct error *error);
-/* Speed of an impact over that of waves in the softer body; NaN unless both bodies have strength. Below
- * SPH_DERIVED_SLOW bodies that are welded on contact stick: elastic spheres of basalt part with 0.62 of their speed at
- * 0.02. */
-double sph_derived_approach(const struct sph_inputs *inputs);
-#define SPH_DERIVED_SLOW 0.03
 /* Specific impact energy Q = (m v^2 / 2) / M, J/kg; NaN without an impact. */
 double sph_derived_specific_energy(const struct sph_inputs *inputs);
 

@@ -81,7 +81,6 @@ void sph_inputs_complete(struct sph_inputs *in, const bool *given) {
   COMPLETE(sides.depth, 0.1 * sph_derived_shortest_side(&in->target));
   COMPLETE(fidelity.fine_spacing, 0.5 * spacing);
   COMPLETE(fidelity.fine_radius, 4 * in->fidelity.fine_spacing);
-  COMPLETE(contact.rule, sph_derived_approach(in) < SPH_DERIVED_SLOW ? SPH_CONTACT_OVERLAP : SPH_CONTACT_WELDED);
   COMPLETE(impact.gap, sph_derived_fine_spacing(in));
   COMPLETE(collision.gap, 2 * spacing);
   COMPLETE(stretch.grip, fmax(in->target.length / 20, 3 * spacing));
