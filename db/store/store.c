@@ -523,7 +523,10 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   if (result == STATUS_OK)
     result = check_second_name(path, store->lacks_wal, error);
   if (result != STATUS_OK) {
+    const bool locked = store->lock >= 0;
     release(store);
+    if (locked)
+      leave_empty(path, before);
     return held ? refuse_held(path, error) : result;
   }
 
