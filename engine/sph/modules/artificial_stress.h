@@ -154,12 +154,14 @@ static void artificial_stress_make(const struct sph_pair_options *options, const
 
 INLINE void TYPED(artificial_stress_pack)(const struct sph_pair_source *source, size_t first, const uint32_t *which,
                                           vec_double base[], vec_double own[]) {
-  const vec_double density = base[PAIR_DENSITY], one = {0};
-  const vec_double factor = source->volume_weights ? density * density : source->geometric_weights ? density : one + 1;
+  const vec_double density = base[PAIR_DENSITY];
   UNROLL
   for (size_t c = 0; c < PAIR_RECORD_artificial_stress; c++) {
-    const vec_double r = column_load(source->made[MADE_artificial_stress + c], source->unit.per_specific, first, which);
-    own[c] = r * factor;
+    own[c] = column_load(source->made[MADE_artificial_stress + c], source->unit.per_specific, first, which);
+    if (source->volume_weights)
+      own[c] *= density * density;
+    else if (source->geometric_weights)
+      own[c] *= density;
   }
 }
 

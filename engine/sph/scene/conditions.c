@@ -407,7 +407,7 @@ const struct condition sph_conditions[] = {
      .doubt = "intact bodies that touch stick together with method.contact: welded, since a pair of two bodies acts as "
               "in one",
      .reason = "two elastic spheres of basalt part with 0.62 of their speed at 0.02, and 0.016 of it at 0.002",
-     .remedy = "set method.contact: overlap",
+     .remedy = "set method.contact: overlap, with five spacings or more in the projectile's radius",
      .results = ALL_OF_AN_IMPACT,
      .before = approach},
     {.word = "early",
