@@ -57,6 +57,14 @@ struct farm_result {
   uint64_t size;
 };
 
+/* How a job ended: the parts of a RESULT payload. */
+struct farm_ended {
+  struct farm_result result;
+  const uint8_t *bytes; /* result.size of them; all pointers are borrowed */
+  const char *message;
+  size_t message_size;
+};
+
 /* A growing byte queue. data[begin..end) is its content; `begin` moves by whole frames, so that it stays aligned. */
 struct farm_bytes {
   uint8_t *data;
@@ -77,6 +85,8 @@ bool farm_frame_append(struct farm_bytes *bytes, enum farm_frame_kind kind, uint
 /* Takes the first frame out of the queue. 1: found; its payload is borrowed until the next reserve or append. 0: the
  * frame is incomplete. -1: damaged. */
 int farm_frame_next(struct farm_bytes *bytes, struct farm_frame *frame, const uint8_t **payload);
+/* Finds the parts of a RESULT frame. False: it is damaged, or another frame. */
+bool farm_frame_result(const struct farm_frame *frame, const uint8_t *payload, struct farm_ended *ended);
 /* Bytes to reserve before reading: the missing bytes of the first, incomplete frame, at least `minimum`. */
 size_t farm_frame_missing(const struct farm_bytes *bytes, size_t minimum);
 
@@ -86,12 +96,12 @@ size_t farm_frame_missing(const struct farm_bytes *bytes, size_t minimum);
 #include <uthash.h>
 
 struct farm_job {
-  struct farm_job *next; /* next job in the same queue */
-  uint64_t handle;       /* set by the farm, never used twice */
-  uint64_t id;           /* the caller's number of the task */
-  int rank;              /* rank that it was sent to (manager only) */
-  uint16_t ticket;       /* while it is in a slot */
-  UT_hash_handle hh;     /* in the manager's table */
+  struct farm_job *prev, *next; /* in the same queue (utlist) */
+  uint64_t handle;              /* set by the farm, never used twice */
+  uint64_t id;                  /* the caller's number of the task */
+  int rank;                     /* rank that it was sent to (manager only) */
+  uint16_t ticket;              /* while it is in a slot */
+  UT_hash_handle hh;            /* in the manager's table */
   size_t size;
   _Alignas(16) uint8_t bytes[];
 };
@@ -100,7 +110,7 @@ struct farm_job {
 struct farm_job *farm_job_new(uint64_t handle, const uint8_t *bytes, size_t size);
 
 struct farm_job_queue {
-  struct farm_job *first, *last;
+  struct farm_job *first; /* first->prev is the last one */
   size_t count;
 };
 void farm_job_push(struct farm_job_queue *queue, struct farm_job *job);
@@ -148,6 +158,7 @@ _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, in
 
 /* Makes the kernel kill this process when `parent` dies. Then checks `parent`, which may have died before the call. */
 void farm_slot_die_with(pid_t parent);
+void farm_slot_unblock(void); /* all signals of this process */
 
 /* Ending of a run whose process was killed by this signal. The run itself raises only the signals of a crash (SIGSEGV,
  * SIGABRT and the like). All others come from outside: from a user, a batch system, or the kernel out of memory. */
@@ -188,8 +199,7 @@ struct farm_pool;
 /* A job has ended. Called from farm_pool_listen only. The receiver owns the job and frees it; all else is borrowed. */
 struct farm_pool_sink {
   void *context;
-  void (*ended)(void *context, struct farm_job *job, const struct farm_result *result, const uint8_t *bytes,
-                const char *message, size_t message_size);
+  void (*ended)(void *context, struct farm_job *job, const struct farm_ended *ended);
 };
 
 status farm_pool_start(const struct farm_options *options, farm_work work, struct farm_pool **out, struct error *error);

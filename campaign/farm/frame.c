@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <utlist.h>
 
 static size_t padded(size_t size) {
   return (size + 15) & ~(size_t)15;
@@ -113,6 +114,19 @@ int farm_frame_next(struct farm_bytes *bytes, struct farm_frame *frame, const ui
   return 1;
 }
 
+bool farm_frame_result(const struct farm_frame *frame, const uint8_t *payload, struct farm_ended *ended) {
+  struct farm_result *const result = &ended->result;
+  if (frame->kind != FARM_FRAME_RESULT || frame->size < sizeof *result)
+    return false;
+  memcpy(result, payload, sizeof *result);
+  if (result->size > frame->size - sizeof *result)
+    return false;
+  ended->bytes = payload + sizeof *result;
+  ended->message = (const char *)ended->bytes + result->size;
+  ended->message_size = frame->size - sizeof *result - result->size;
+  return true;
+}
+
 size_t farm_frame_missing(const struct farm_bytes *bytes, size_t minimum) {
   const size_t used = bytes->end - bytes->begin;
   struct farm_frame frame;
@@ -138,20 +152,12 @@ struct farm_job *farm_job_new(uint64_t handle, const uint8_t *bytes, size_t size
 }
 
 void farm_job_push(struct farm_job_queue *queue, struct farm_job *job) {
-  job->next = NULL;
-  if (queue->last)
-    queue->last->next = job;
-  else
-    queue->first = job;
-  queue->last = job;
+  DL_APPEND(queue->first, job);
   queue->count++;
 }
 
 void farm_job_push_front(struct farm_job_queue *queue, struct farm_job *job) {
-  job->next = queue->first;
-  queue->first = job;
-  if (!queue->last)
-    queue->last = job;
+  DL_PREPEND(queue->first, job);
   queue->count++;
 }
 
@@ -160,21 +166,13 @@ struct farm_job *farm_job_pop(struct farm_job_queue *queue) {
 }
 
 struct farm_job *farm_job_take(struct farm_job_queue *queue, uint64_t handle) {
-  struct farm_job *before = NULL;
-  for (struct farm_job *job = queue->first; job; before = job, job = job->next) {
-    if (job->handle != handle)
-      continue;
-    if (before)
-      before->next = job->next;
-    else
-      queue->first = job->next;
-    if (queue->last == job)
-      queue->last = before;
-    job->next = NULL;
+  struct farm_job *found;
+  DL_SEARCH_SCALAR(queue->first, found, handle, handle);
+  if (found) {
+    DL_DELETE(queue->first, found);
     queue->count--;
-    return job;
   }
-  return NULL;
+  return found;
 }
 
 void farm_job_clear(struct farm_job_queue *queue) {
@@ -183,10 +181,8 @@ void farm_job_clear(struct farm_job_queue *queue) {
 }
 
 bool farm_job_table_add(struct farm_job_table *table, struct farm_job *job) {
-  struct farm_job *jobs = table->jobs;
   job->handle = ++table->last_handle;
-  HASH_ADD(hh, jobs, handle, sizeof job->handle, job);
-  table->jobs = jobs;
+  HASH_ADD(hh, table->jobs, handle, sizeof job->handle, job);
   if (!farm_job_table_find(table, job->handle))
     return false;
   table->count++;

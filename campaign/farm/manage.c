@@ -99,17 +99,6 @@ static int least_loaded(const struct manager *m) {
   return best;
 }
 
-static void assign(struct manager *m, int rank, struct farm_job *job) {
-  job->rank = rank;
-  m->farm->peers[rank].out++;
-  if (m->first_ns == 0)
-    m->first_ns = m->last_ns = clock_ns();
-  if (rank == 0)
-    farm_pool_submit(m->farm->pool, job);
-  else
-    send(m, rank, FARM_FRAME_TASK, job->handle, 1, &(struct iovec){job->bytes, job->size});
-}
-
 /* The next task as a job: a returned job, or a new task of the caller. NULL: there is none, or an error. */
 static struct farm_job *next_job(struct manager *m) {
   struct farm_job *job = farm_job_pop(&m->returned);
@@ -139,12 +128,17 @@ static struct farm_job *next_job(struct manager *m) {
 static void send_tasks(struct manager *m) {
   while (!m->draining) {
     const int rank = least_loaded(m);
-    if (rank < 0)
-      return;
-    struct farm_job *job = next_job(m);
+    struct farm_job *job = rank < 0 ? NULL : next_job(m);
     if (!job)
       return;
-    assign(m, rank, job);
+    job->rank = rank;
+    m->farm->peers[rank].out++;
+    if (m->first_ns == 0)
+      m->first_ns = m->last_ns = clock_ns();
+    if (rank == 0)
+      farm_pool_submit(m->farm->pool, job);
+    else
+      send(m, rank, FARM_FRAME_TASK, job->handle, 1, &(struct iovec){job->bytes, job->size});
   }
 }
 
@@ -179,51 +173,37 @@ static void recall(struct manager *m, int rank, size_t most) {
     take_back(m, job);
 }
 
-static void drop_returned(struct manager *m) {
-  for (struct farm_job *job; (job = farm_job_pop(&m->returned)); free(job))
-    farm_job_table_remove(&m->table, job->handle);
-}
-
-/* The rank with the most waiting jobs per slot, or -1. Very short jobs are not worth the messages. */
-static int most_loaded(const struct manager *m) {
-  int best = -1;
-  for (int rank = 0; rank < m->farm->ranks; rank++) {
-    const struct farm_peer *peer = &m->farm->peers[rank];
-    if (peer->lost || peer->slots <= 0 || peer->out <= (size_t)peer->slots || peer->recalling ||
-        peer->mean_wall_s <= 1e-3)
-      continue;
-    const struct farm_peer *other = best < 0 ? NULL : &m->farm->peers[best];
-    if (!other || peer->out * (size_t)other->slots > other->out * (size_t)peer->slots)
-      best = rank;
-  }
-  return best;
-}
-
-static size_t idle_slots(const struct manager *m) {
-  size_t idle = 0;
-  for (int rank = 0; rank < m->farm->ranks; rank++) {
-    const struct farm_peer *peer = &m->farm->peers[rank];
-    if (!peer->lost && peer->slots > 0 && peer->out < (size_t)peer->slots)
-      idle += (size_t)peer->slots - peer->out;
-  }
-  return idle;
-}
-
-/* Moves jobs that wait at one rank to idle slots of another, at the end of a campaign. */
+/* Moves jobs that wait at one rank, that with the most of them per slot, to idle slots of another, at the end of a
+ * campaign. Very short jobs are not worth the messages. */
 static void balance(struct manager *m) {
-  if (m->draining) {
-    drop_returned(m);
-    return;
-  }
+  size_t idle = 0;
+  int loaded = -1;
   if (!m->dry || m->returned.first || m->farm->ranks == 1)
     return;
-  const size_t idle = idle_slots(m);
-  const int loaded = most_loaded(m);
+  for (int rank = 0; rank < m->farm->ranks; rank++) {
+    const struct farm_peer *peer = &m->farm->peers[rank], *other = loaded < 0 ? NULL : &m->farm->peers[loaded];
+    if (peer->lost || peer->slots <= 0)
+      continue;
+    if (peer->out <= (size_t)peer->slots)
+      idle += (size_t)peer->slots - peer->out;
+    else if (!peer->recalling && peer->mean_wall_s > 1e-3 &&
+             (!other || peer->out * (size_t)other->slots > other->out * (size_t)peer->slots))
+      loaded = rank;
+  }
   if (idle == 0 || loaded < 0)
     return;
-  const struct farm_peer *peer = &m->farm->peers[loaded];
-  const size_t waiting = peer->out - (size_t)peer->slots;
+  const size_t waiting = m->farm->peers[loaded].out - (size_t)m->farm->peers[loaded].slots;
   recall(m, loaded, waiting < idle ? waiting : idle);
+}
+
+/* The rank has so many slots left. */
+static void set_slots(struct manager *m, int rank, int slots) {
+  struct farm_peer *const peer = &m->farm->peers[rank];
+  if (slots >= peer->slots)
+    return;
+  if (slots == 0)
+    recall(m, rank, ALL);
+  peer->slots = slots;
 }
 
 /* Asks all ranks for all jobs that they have not begun. */
@@ -257,16 +237,16 @@ static void stop(struct manager *m, int number) {
 
 /* ---- results, signals and other messages come from the ranks and from the manager's own pool ---- */
 
-static void report(void *context, struct farm_job *job, const struct farm_result *result, const uint8_t *bytes,
-                   const char *message, size_t message_size) {
+static void report(void *context, struct farm_job *job, const struct farm_ended *ended) {
   struct manager *m = context;
   char text[1024];
+  const struct farm_result *const result = &ended->result;
   struct farm_peer *const peer = &m->farm->peers[job->rank];
-  snprintf(text, sizeof text, "%.*s", (int)(message_size < sizeof text ? message_size : sizeof text - 1),
-           message_size ? message : "");
+  snprintf(text, sizeof text, "%.*s", (int)(ended->message_size < sizeof text ? ended->message_size : sizeof text - 1),
+           ended->message_size ? ended->message : "");
   const struct farm_report it = {.id = job->id,
                                  .ending = (enum farm_ending)result->ending,
-                                 .bytes = bytes,
+                                 .bytes = ended->bytes,
                                  .size = result->size,
                                  .exit_code = result->exit_code,
                                  .signal = result->signal,
@@ -295,7 +275,6 @@ static void report(void *context, struct farm_job *job, const struct farm_result
  * rank has slots, are reported as lost; the others go to other ranks. */
 static void lose_rank(struct manager *m, int rank) {
   struct farm_peer *const peer = &m->farm->peers[rank];
-  const struct farm_result lost = {.ending = FARM_LOST};
   char why[160];
   snprintf(why, sizeof why, "rank %d on %s has said nothing for %g s: frozen or gone", rank, peer->host,
            m->farm->options.lost_after_s);
@@ -303,10 +282,11 @@ static void lose_rank(struct manager *m, int rank) {
   if (m->calls->stopping)
     m->calls->stopping(m->calls->context, 0);
 
+  const struct farm_ended lost = {{.ending = FARM_LOST}, NULL, why, strlen(why)};
   struct farm_job *job;
   for (int reported = 0; peer->out > 0 && (job = farm_job_table_oldest(&m->table, rank));) {
     if (reported++ < peer->slots)
-      report(m, job, &lost, NULL, why, strlen(why));
+      report(m, job, &lost);
     else
       take_back(m, job);
   }
@@ -316,29 +296,13 @@ static void lose_rank(struct manager *m, int rank) {
 
 static status take_result(struct manager *m, int rank, const struct farm_frame *frame, const uint8_t *payload,
                           struct error *error) {
-  struct farm_result result;
-  if (frame->size < sizeof result)
+  struct farm_ended ended;
+  if (!farm_frame_result(frame, payload, &ended))
     return status_fail(error, STATUS_INTERNAL, "rank %d sent a damaged result", rank);
-  memcpy(&result, payload, sizeof result);
-  const size_t left = frame->size - sizeof result;
-  if (result.size > left)
-    return status_fail(error, STATUS_INTERNAL, "rank %d sent a damaged result", rank);
-
-  const uint8_t *bytes = payload + sizeof result;
   struct farm_job *job = farm_job_table_find(&m->table, frame->handle);
   if (job && job->rank == rank)
-    report(m, job, &result, bytes, (const char *)bytes + result.size, left - result.size);
+    report(m, job, &ended);
   return STATUS_OK;
-}
-
-/* The rank tells how many slots it has left. */
-static void take_alive(struct manager *m, int rank, int slots) {
-  struct farm_peer *const peer = &m->farm->peers[rank];
-  if (slots >= peer->slots)
-    return;
-  if (slots == 0)
-    recall(m, rank, ALL);
-  peer->slots = slots;
 }
 
 /* Handles a stop signal that another rank received. If the whole group was signalled, this rank receives it as well. */
@@ -369,7 +333,7 @@ static status take_message(void *context, int rank, const struct farm_frame *fra
     return STATUS_OK;
   }
   case FARM_FRAME_RECALLED: peer->recalling = false; return STATUS_OK;
-  case FARM_FRAME_ALIVE: take_alive(m, rank, (int)frame->handle); return STATUS_OK;
+  case FARM_FRAME_ALIVE: set_slots(m, rank, (int)frame->handle); return STATUS_OK;
   case FARM_FRAME_SIGNAL: take_signal(m, rank, (int)frame->handle); return STATUS_OK;
   case FARM_FRAME_BYE:
     peer->bye = true;
@@ -405,13 +369,7 @@ static void take_own_signals(struct manager *m) {
 static void watch_ranks(struct manager *m, int64_t now, int64_t late_ns) {
   const int64_t limit = clock_from_s(m->farm->options.lost_after_s);
   struct farm_peer *peers = m->farm->peers;
-  const int own = farm_pool_slots(m->farm->pool);
-  if (peers[0].slots != own) {
-    peers[0].slots = own;
-    if (own == 0)
-      recall(m, 0, ALL);
-  }
-
+  set_slots(m, 0, farm_pool_slots(m->farm->pool));
   int alive = 0;
   for (int rank = 0; rank < m->farm->ranks; rank++) {
     if (rank > 0 && !peers[rank].lost) {
@@ -437,14 +395,6 @@ static bool finished(const struct manager *m) {
       return false;
   }
   return !m->returned.first && (m->draining || (m->dry && !m->calls->orders));
-}
-
-/* Ends this rank's pool and its running tasks. The pool frees its jobs. */
-static void drop_pool(struct manager *m) {
-  for (struct farm_job *job; (job = farm_job_table_oldest(&m->table, 0));)
-    farm_job_table_remove(&m->table, job->handle);
-  farm_pool_end(m->farm->pool);
-  m->farm->pool = NULL;
 }
 
 static void send_end(struct manager *m) {
@@ -518,7 +468,11 @@ static void begin(struct manager *m) {
 static void send_all(struct manager *m) {
   take_own_signals(m);
   send_tasks(m);
-  balance(m);
+  if (!m->draining)
+    balance(m);
+  else
+    for (struct farm_job *job; (job = farm_job_pop(&m->returned)); free(job))
+      farm_job_table_remove(&m->table, job->handle);
   farm_pool_dispatch(m->farm->pool);
   if (m->farm->link)
     fail(m, farm_link_flush(m->farm->link, m->error));
@@ -572,8 +526,12 @@ status farm_manage(struct farm *farm, const struct farm_manager *calls, struct e
     m.looped_ns = now;
     tick(&m, now);
   }
-  if (m.dropping)
-    drop_pool(&m);
+  if (m.dropping) { /* ends the running tasks of this rank; the pool frees its jobs */
+    for (struct farm_job *job; (job = farm_job_table_oldest(&m.table, 0));)
+      farm_job_table_remove(&m.table, job->handle);
+    farm_pool_end(farm->pool);
+    farm->pool = NULL;
+  }
   end_ranks(&m);
   if (m.watched != farm->signals && m.watched >= 0)
     close(m.watched);

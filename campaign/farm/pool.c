@@ -209,8 +209,8 @@ void farm_pool_dispatch(struct farm_pool *pool) {
 }
 
 void farm_pool_withdraw(struct farm_pool *pool, size_t most, struct farm_job_queue *into) {
-  while (most > 0 && pool->queue.last) {
-    struct farm_job *job = farm_job_take(&pool->queue, pool->queue.last->handle);
+  while (most > 0 && pool->queue.first) {
+    struct farm_job *job = farm_job_take(&pool->queue, pool->queue.first->prev->handle);
     farm_job_push_front(into, job);
     pool->count--;
     most--;
@@ -248,10 +248,9 @@ void farm_pool_end(struct farm_pool *pool) {
 
 enum { IDLE_ENDS = 5 }; /* a slot that ends this many times in a row without a task is not replaced */
 
-static void ended(struct farm_pool *pool, struct farm_job *job, const struct farm_result *result, const uint8_t *bytes,
-                  const char *message, size_t message_size) {
+static void ended(struct farm_pool *pool, struct farm_job *job, const struct farm_ended *how) {
   pool->count--;
-  pool->sink.ended(pool->sink.context, job, result, bytes, message, message_size);
+  pool->sink.ended(pool->sink.context, job, how);
 }
 
 /* Reads the bytes that the slot has written so far. False: its channel is closed. */
@@ -273,35 +272,22 @@ static bool read_slot(struct slot *slot) {
   }
 }
 
-/* Takes one result from the slot's buffer. 1: taken; 0: none is complete; -1: invalid data. */
-static int take_result(struct farm_pool *pool, struct slot *slot) {
-  struct farm_frame frame;
-  struct farm_result result;
-  const uint8_t *payload;
-  const int got = farm_frame_next(&slot->in, &frame, &payload);
-  if (got <= 0)
-    return got;
-  if (frame.kind != FARM_FRAME_RESULT || frame.size < sizeof result)
-    return -1;
-  memcpy(&result, payload, sizeof result);
-  if (result.size > frame.size - sizeof result)
-    return -1;
-
-  struct farm_job *job = farm_job_take(&slot->jobs, frame.handle);
-  if (!job)
-    return 1; /* unreachable: a job that the slot ran is in its queue */
-  slot->idle_ends = 0;
-  pool->mean_wall_s += 0.1 * (result.wall_s - pool->mean_wall_s);
-  ended(pool, job, &result, payload + sizeof result, (const char *)payload + sizeof result + result.size,
-        frame.size - sizeof result - result.size);
-  return 1;
-}
-
 /* Takes the results that the slot has written. False: its channel is closed, or it wrote invalid data. */
 static bool listen_to(struct farm_pool *pool, struct slot *slot) {
   const bool open = read_slot(slot);
+  struct farm_frame frame;
+  const uint8_t *payload;
   int got;
-  while ((got = take_result(pool, slot)) > 0) {
+  while ((got = farm_frame_next(&slot->in, &frame, &payload)) > 0) {
+    struct farm_ended how;
+    if (!farm_frame_result(&frame, payload, &how))
+      return false;
+    struct farm_job *job = farm_job_take(&slot->jobs, frame.handle);
+    if (!job)
+      continue; /* unreachable: a job that the slot ran is in its queue */
+    slot->idle_ends = 0;
+    pool->mean_wall_s += 0.1 * (how.result.wall_s - pool->mean_wall_s);
+    ended(pool, job, &how);
   }
   if (got < 0)
     return false;
@@ -320,16 +306,7 @@ static struct farm_job *take_running(struct slot *slot, struct farm_slot_record 
   return NULL;
 }
 
-/* Puts all jobs of the slot at the head of the pool's queue, in their order. */
-static void queue_again(struct farm_pool *pool, struct slot *slot) {
-  struct farm_job_queue back = {0};
-  for (struct farm_job *job; (job = farm_job_pop(&slot->jobs));)
-    farm_job_push_front(&back, job);
-  for (struct farm_job *job; (job = farm_job_pop(&back));)
-    farm_job_push_front(&pool->queue, job);
-}
-
-/* The slot's process has ended: its running job gets the verdict, the others are queued again. */
+/* The slot's process has ended: its running job gets the verdict. */
 static void slot_ended(struct farm_pool *pool, int index, const struct farm_result *verdict, const char *text) {
   struct slot *const slot = &pool->slots[index];
   struct farm_slot_record *const record = &pool->setup.records[index];
@@ -345,7 +322,10 @@ static void slot_ended(struct farm_pool *pool, int index, const struct farm_resu
   const int64_t started = atomic_load(&record->started_ns);
   const bool timed_out = running && slot->killed == running;
   struct farm_job *job = take_running(slot, record);
-  queue_again(pool, slot);
+  for (struct farm_job *last; slot->jobs.first;) { /* the others are next in the pool, in their order */
+    last = farm_job_take(&slot->jobs, slot->jobs.first->prev->handle);
+    farm_job_push_front(&pool->queue, last);
+  }
   slot->idle_ends = job ? 0 : slot->idle_ends + 1;
   slot->killed = slot->forgiven = 0;
   for (int i = 0; i < FARM_SLOT_TICKETS; i++)
@@ -354,16 +334,18 @@ static void slot_ended(struct farm_pool *pool, int index, const struct farm_resu
   if (!job)
     return;
 
-  struct farm_result result = *verdict;
+  struct farm_ended how = {.result = *verdict};
   char limit[96];
   if (timed_out) {
-    result.ending = FARM_TIME_LIMIT;
+    how.result.ending = FARM_TIME_LIMIT;
     snprintf(limit, sizeof limit, "ended at its time limit of %g s", pool->setup.options.time_limit_s);
     text = limit;
   }
-  result.wall_s = 1e-9 * (double)(clock_ns() - started);
-  result.slot = index;
-  ended(pool, job, &result, NULL, text, strlen(text));
+  how.result.wall_s = 1e-9 * (double)(clock_ns() - started);
+  how.result.slot = index;
+  how.message = text;
+  how.message_size = strlen(text);
+  ended(pool, job, &how);
 }
 
 /* The fork server reports that a slot's process has ended, or could not be made. Requests a new one. */
@@ -491,16 +473,6 @@ static struct timespec sleep_time(struct farm_pool *pool, int64_t timeout_ns) {
   return (struct timespec){timeout_ns / CLOCK_S, (long)(timeout_ns % CLOCK_S)};
 }
 
-/* Closed channel: the slot has ended, and the server reports why. Invalid data: the slot is killed, and the server
- * reports that. */
-static void close_slot(struct farm_pool *pool, int index) {
-  struct slot *const slot = &pool->slots[index];
-  if (pool->control >= 0)
-    farm_server_ask(pool->control, FARM_SERVER_KILL, index, slot->pid);
-  close(slot->channel);
-  slot->channel = -1;
-}
-
 bool farm_pool_listen(struct farm_pool *pool, int signals, int64_t timeout_ns) {
   const int slots = pool->setup.options.slots;
   const struct timespec timeout = sleep_time(pool, timeout_ns);
@@ -511,8 +483,14 @@ bool farm_pool_listen(struct farm_pool *pool, int signals, int64_t timeout_ns) {
     const short events = pool->fds[i].revents;
     if (events & POLLOUT)
       flush(&pool->slots[i]);
-    if ((events & (POLLIN | POLLHUP | POLLERR)) && !listen_to(pool, &pool->slots[i]))
-      close_slot(pool, i);
+    if (!(events & (POLLIN | POLLHUP | POLLERR)) || listen_to(pool, &pool->slots[i]))
+      continue;
+    /* A closed channel: the slot has ended, and the server reports why. Invalid data: the slot is killed, and the
+     * server reports that. */
+    if (pool->control >= 0)
+      farm_server_ask(pool->control, FARM_SERVER_KILL, i, pool->slots[i].pid);
+    close(pool->slots[i].channel);
+    pool->slots[i].channel = -1;
   }
   if (pool->control >= 0 && pool->fds[slots].revents)
     hear_server(pool);

@@ -30,24 +30,6 @@ int farm_launched(void) {
   return 1;
 }
 
-/* A launcher without a common PMI starts programs without a connection. All would write one store: one would
- * work, and the others' errors would hide how it ended. */
-static status refuse_singletons(const struct farm *farm, struct error *error) {
-  const int launched = farm_launched();
-  if (farm->ranks > 1 || launched <= 1)
-    return STATUS_OK;
-  return status_fail(error, STATUS_USAGE,
-                     "the launcher started %d programs, but MPI does not connect them. Under Slurm use `srun "
-                     "--mpi=pmix`, or start one program; programs that work on stores of their own need `env -u "
-                     "SLURM_STEP_NUM_TASKS -u PMI_SIZE`",
-                     launched);
-}
-
-static int usable_cores(void) {
-  cpu_set_t set;
-  return sched_getaffinity(0, sizeof set, &set) == 0 && CPU_COUNT(&set) > 0 ? CPU_COUNT(&set) : 1;
-}
-
 const int farm_stop_signals[FARM_STOP_SIGNALS] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
 
 static status watch_signals(struct farm *farm, struct error *error) {
@@ -101,15 +83,13 @@ static status introduce(struct farm *farm, struct error *error) {
   if (!farm->link)
     return STATUS_OK;
   if (farm->rank > 0) {
-    status sent = farm_link_send(farm->link, 0, FARM_FRAME_HELLO, 0, 1, &(struct iovec){&it, sizeof it}, error);
-    return sent == STATUS_OK ? farm_link_flush(farm->link, error) : sent;
+    TRY(farm_link_send(farm->link, 0, FARM_FRAME_HELLO, 0, 1, &(struct iovec){&it, sizeof it}, error));
+    return farm_link_flush(farm->link, error);
   }
   const int64_t until = clock_ns() + HELLO_NS;
   for (int missing = farm->ranks - 1; missing > 0;) {
     int count;
-    const status drained = farm_link_drain(farm->link, hello, farm, &count, error);
-    if (drained != STATUS_OK)
-      return drained;
+    TRY(farm_link_drain(farm->link, hello, farm, &count, error));
     missing = 0;
     for (int rank = 1; rank < farm->ranks; rank++)
       missing += farm->peers[rank].slots == 0;
@@ -124,10 +104,13 @@ static status introduce(struct farm *farm, struct error *error) {
 
 /* Fills in what the caller left at zero. */
 static status complete_options(struct farm_options *o, struct error *error) {
+  cpu_set_t cores;
   if (o->slots < 0 || o->slots > 4096)
     return status_fail(error, STATUS_USAGE, "%d slots asked for: from 1 to 4096, or 0 for one per core", o->slots);
+  if (o->slots == 0 && !o->use_mpi && sched_getaffinity(0, sizeof cores, &cores) == 0)
+    o->slots = CPU_COUNT(&cores);
   if (o->slots == 0)
-    o->slots = o->use_mpi ? 1 : usable_cores();
+    o->slots = 1;
   if (!(o->grace_s > 0))
     o->grace_s = o->use_mpi ? 0.5 : 2;
   if (!(o->drain_s > 0))
@@ -137,43 +120,44 @@ static status complete_options(struct farm_options *o, struct error *error) {
   return STATUS_OK;
 }
 
-status farm_start(const struct farm_options *options, farm_work work, struct farm **out, struct error *error) {
-  const int64_t start = clock_ns();
-  struct farm *farm = memory_small(1, sizeof *farm);
-  *farm = (struct farm){.options = *options, .ranks = 1, .signals = -1};
-  struct farm_options *const o = &farm->options;
-  status result = complete_options(o, error);
-  if (result == STATUS_OK)
-    result = farm_pool_start(o, work, &farm->pool, error); /* forks: before MPI and its threads */
-  if (result == STATUS_OK)
-    result = watch_signals(farm, error);
-  if (result != STATUS_OK)
-    goto cleanup;
+/* Makes the parts of the farm. After an error the caller frees those that are made. */
+static status start(struct farm *farm, farm_work work, struct error *error) {
+  const int launched = farm_launched();
+  TRY(complete_options(&farm->options, error));
+  TRY(farm_pool_start(&farm->options, work, &farm->pool, error)); /* forks: before MPI and its threads */
+  TRY(watch_signals(farm, error));
   prctl(PR_SET_TIMERSLACK, 1000UL); /* or a sleep of 50 us takes 100 */
-  if (o->use_mpi) {
+  if (farm->options.use_mpi) {
     farm->launcher = getppid();
     farm_leftovers_remove();
-    result = farm_link_open(&farm->link, &farm->rank, &farm->ranks, error);
-    if (result != STATUS_OK)
-      goto cleanup;
+    TRY(farm_link_open(&farm->link, &farm->rank, &farm->ranks, error));
   }
-  result = refuse_singletons(farm, error);
-  if (result != STATUS_OK)
-    goto cleanup;
+  /* A launcher without a common PMI starts programs without a connection. All would write one store: one would work,
+   * and the others' errors would hide how it ended. */
+  if (farm->ranks == 1 && launched > 1)
+    return status_fail(error, STATUS_USAGE,
+                       "the launcher started %d programs, but MPI does not connect them. Under Slurm use `srun "
+                       "--mpi=pmix`, or start one program; programs that work on stores of their own need `env -u "
+                       "SLURM_STEP_NUM_TASKS -u PMI_SIZE`",
+                       launched);
   farm->peers = calloc((size_t)farm->ranks, sizeof *farm->peers);
-  if (!farm->peers) {
-    result = status_fail(error, STATUS_MEMORY, "no memory for %d ranks", farm->ranks);
-    goto cleanup;
-  }
+  if (!farm->peers)
+    return status_fail(error, STATUS_MEMORY, "no memory for %d ranks", farm->ranks);
   for (int rank = 0; rank < farm->ranks; rank++)
     farm->peers[rank].mean_wall_s = 1;
-  result = introduce(farm, error);
-  if (result != STATUS_OK)
-    goto cleanup;
-  farm->usage.start_up_s = 1e-9 * (double)(clock_ns() - start);
-  *out = farm;
-  return STATUS_OK;
-cleanup:
+  return introduce(farm, error);
+}
+
+status farm_start(const struct farm_options *options, farm_work work, struct farm **out, struct error *error) {
+  const int64_t begin = clock_ns();
+  struct farm *farm = memory_small(1, sizeof *farm);
+  *farm = (struct farm){.options = *options, .ranks = 1, .signals = -1};
+  const status result = start(farm, work, error);
+  if (result == STATUS_OK) {
+    farm->usage.start_up_s = 1e-9 * (double)(clock_ns() - begin);
+    *out = farm;
+    return STATUS_OK;
+  }
   if (farm->ranks == 1)
     farm_link_close(farm->link, true, 0); /* no other rank waits */
   farm->link = NULL; /* MPI stays open, so that the caller can report the error; mpirun ends the other ranks */
@@ -230,32 +214,12 @@ static void say(struct server *server, enum farm_frame_kind kind, uint64_t handl
   server->said_ns = clock_ns();
 }
 
-static void job_ended(void *context, struct farm_job *job, const struct farm_result *result, const uint8_t *bytes,
-                      const char *message, size_t message_size) {
-  struct server *server = context;
-  say(server, FARM_FRAME_RESULT, job->handle, 3,
-      (struct iovec[]){{(void *)result, sizeof *result},
-                       {(void *)bytes, result->size},
-                       {(void *)message, message_size}});
+static void job_ended(void *context, struct farm_job *job, const struct farm_ended *ended) {
+  say(context, FARM_FRAME_RESULT, job->handle, 3,
+      (struct iovec[]){{(void *)&ended->result, sizeof ended->result},
+                       {(void *)ended->bytes, ended->result.size},
+                       {(void *)ended->message, ended->message_size}});
   free(job);
-}
-
-static status take_task(struct server *server, const struct farm_frame *frame, const uint8_t *payload,
-                        struct error *error) {
-  struct farm_job *job = farm_job_new(frame->handle, payload, frame->size);
-  if (!job)
-    return status_fail(error, STATUS_MEMORY, "no memory for a task of %zu bytes", (size_t)frame->size);
-  farm_pool_submit(server->farm->pool, job);
-  return STATUS_OK;
-}
-
-/* Gives back up to `most` jobs that are not begun. */
-static void give_back(struct server *server, uint64_t most) {
-  struct farm_job_queue back = {0};
-  farm_pool_withdraw(server->farm->pool, most, &back);
-  for (struct farm_job *job; (job = farm_job_pop(&back)); free(job))
-    say(server, FARM_FRAME_RETURNED, job->handle, 0, NULL);
-  say(server, FARM_FRAME_RECALLED, 0, 0, NULL);
 }
 
 static status take_end(struct server *server, const struct farm_frame *frame, const uint8_t *payload,
@@ -276,10 +240,22 @@ static status take_end(struct server *server, const struct farm_frame *frame, co
 static status take(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
                    struct error *error) {
   struct server *server = context;
+  struct farm_job_queue back = {0};
+  struct farm_job *job;
   (void)rank;
   switch (frame->kind) {
-  case FARM_FRAME_TASK: return take_task(server, frame, payload, error);
-  case FARM_FRAME_RECALL: give_back(server, frame->handle); return STATUS_OK;
+  case FARM_FRAME_TASK:
+    job = farm_job_new(frame->handle, payload, frame->size);
+    if (!job)
+      return status_fail(error, STATUS_MEMORY, "no memory for a task of %zu bytes", (size_t)frame->size);
+    farm_pool_submit(server->farm->pool, job);
+    return STATUS_OK;
+  case FARM_FRAME_RECALL:
+    farm_pool_withdraw(server->farm->pool, frame->handle, &back);
+    for (; (job = farm_job_pop(&back)); free(job))
+      say(server, FARM_FRAME_RETURNED, job->handle, 0, NULL);
+    say(server, FARM_FRAME_RECALLED, 0, 0, NULL);
+    return STATUS_OK;
   case FARM_FRAME_END: return take_end(server, frame, payload, error);
   default: return status_fail(error, STATUS_INTERNAL, "the manager sent a message of unknown kind %d", frame->kind);
   }

@@ -58,9 +58,7 @@ static void spawn(struct server *server, int slot) {
       close(server->control);
       close(server->child_signal);
       close(ends[0]);
-      sigset_t none;
-      sigemptyset(&none);
-      sigprocmask(SIG_SETMASK, &none, NULL);
+      farm_slot_unblock();
       farm_slot_serve(server->setup, slot, ends[1], self);
     }
     const int why = errno;

@@ -23,12 +23,19 @@
  * executable that loads HDF5 takes 5 ms. The answer comes through a pipe. Exit code, signal, CPU seconds and peak
  * memory come from wait4. */
 
-/* Kept by a slot between runs. */
+/* Kept between runs. */
 struct isolate {
-  int channel;      /* the slot's: when it closes, the child is killed and the slot ends */
   int child_signal; /* signalfd of SIGCHLD */
   int result[2];    /* pipe; renewed after a run that may have left something in it */
   struct farm_bytes in;
+};
+
+struct serving {
+  const struct farm_slot_setup *setup;
+  int slot, channel; /* when the channel closes, the child is killed and the slot ends */
+  struct isolate isolate;
+  struct farm_bytes in, out;
+  int64_t memory_floor, flushed_ns;
 };
 
 static size_t address_space(void) {
@@ -76,8 +83,8 @@ static bool renew_pipe(struct isolate *isolate) {
   return fcntl(isolate->result[0], F_SETFL, O_NONBLOCK) == 0;
 }
 
-static bool open_isolate(struct isolate *isolate, int channel) {
-  *isolate = (struct isolate){.channel = channel, .child_signal = -1, .result = {-1, -1}};
+static bool open_isolate(struct isolate *isolate) {
+  *isolate = (struct isolate){.child_signal = -1, .result = {-1, -1}};
   sigset_t set;
   sigemptyset(&set);
   sigaddset(&set, SIGCHLD);
@@ -100,24 +107,23 @@ static void write_all(int file, const uint8_t *bytes, size_t size) {
   }
 }
 
-static _Noreturn void compute(const struct isolate *isolate, const struct farm_slot_setup *setup, uint64_t handle,
-                              const uint8_t *task, size_t size, pid_t parent) {
+static _Noreturn void compute(const struct serving *s, uint64_t handle, const uint8_t *task, size_t size,
+                              pid_t parent) {
+  const size_t memory_limit = s->setup->options.memory_limit;
   farm_slot_die_with(parent);
-  close(isolate->channel); /* so that the main process sees a dead slot as a closed channel */
-  close(isolate->child_signal);
-  close(isolate->result[0]);
-  sigset_t none;
-  sigemptyset(&none);
-  sigprocmask(SIG_SETMASK, &none, NULL);
+  close(s->channel); /* so that the main process sees a dead slot as a closed channel */
+  close(s->isolate.child_signal);
+  close(s->isolate.result[0]);
+  farm_slot_unblock();
   setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0}); /* core files of a thousand crashes would fill the disk */
-  if (setup->options.memory_limit)
-    limit_memory(setup->options.memory_limit);
+  if (memory_limit)
+    limit_memory(memory_limit);
 
   uint8_t *result = NULL;
   size_t result_size = 0;
   struct error error = {0};
-  const int64_t verdict = setup->work(task, size, &result, &result_size, &error);
-  if (setup->options.memory_limit)
+  const int64_t verdict = s->setup->work(task, size, &result, &result_size, &error);
+  if (memory_limit)
     limit_memory(0); /* the limit holds for the work, not for its answer */
 
   struct iovec part[2] = {{.iov_base = (void *)&verdict, .iov_len = sizeof verdict},
@@ -127,25 +133,20 @@ static _Noreturn void compute(const struct isolate *isolate, const struct farm_s
   struct farm_bytes out = {0};
   if (!farm_frame_append(&out, FARM_FRAME_ANSWER, 0, handle, 2, part))
     _exit(STATUS_MEMORY);
-  write_all(isolate->result[1], out.data, out.end);
+  write_all(s->isolate.result[1], out.data, out.end);
   _exit(STATUS_OK);
 }
 
 /* ---- its parent, the slot ---- */
 
-static bool drain_pipe(struct isolate *isolate) {
-  for (;;) {
-    if (!farm_frame_reserve(&isolate->in, farm_frame_missing(&isolate->in, 4096)))
-      return false;
-    const ssize_t n = read(isolate->result[0], isolate->in.data + isolate->in.end,
-                           isolate->in.capacity - isolate->in.end);
-    if (n > 0) {
-      isolate->in.end += (size_t)n;
-      continue;
-    }
-    if (n < 0 && errno == EINTR)
-      continue;
-    return true;
+static void drain_pipe(struct isolate *isolate) {
+  struct farm_bytes *const in = &isolate->in;
+  while (farm_frame_reserve(in, farm_frame_missing(in, 4096))) {
+    const ssize_t n = read(isolate->result[0], in->data + in->end, in->capacity - in->end);
+    if (n > 0)
+      in->end += (size_t)n;
+    else if (n == 0 || errno != EINTR)
+      return;
   }
 }
 
@@ -172,14 +173,15 @@ static bool has_ended(const struct isolate *isolate, pid_t child, int *wait_stat
 }
 
 /* Waits for the child's end; false: it was killed at its deadline. */
-static bool await_child(struct isolate *isolate, pid_t child, int64_t limit_ns, int *wait_status,
-                        struct rusage *usage) {
+static bool await_child(struct serving *s, pid_t child, int *wait_status, struct rusage *usage) {
+  struct isolate *const isolate = &s->isolate;
+  const int64_t limit_ns = clock_from_s(s->setup->options.time_limit_s);
   bool in_time = true;
   int64_t until = limit_ns > 0 ? clock_ns() + limit_ns : INT64_MAX;
   for (;;) {
     struct pollfd fds[3] = {{.fd = isolate->child_signal, .events = POLLIN},
                             {.fd = isolate->result[0], .events = POLLIN},
-                            {.fd = isolate->channel, .events = POLLRDHUP}};
+                            {.fd = s->channel, .events = POLLRDHUP}};
     const int asked_ms = timeout_ms(until);
     const int64_t before = clock_ns();
     if (poll(fds, 3, asked_ms) <= 0)
@@ -213,7 +215,7 @@ static bool append_failure(struct farm_bytes *out, uint64_t handle, const struct
                            (struct iovec[]){{(void *)head, sizeof *head}, {(void *)text, strlen(text)}});
 }
 
-struct answer { /* the child's, borrowed from the pipe's buffer */
+struct answer { /* of a run; the child's is borrowed from the pipe's buffer */
   bool there;
   int64_t verdict;
   struct iovec bytes; /* the result, or with a verdict other than STATUS_OK the message */
@@ -271,13 +273,11 @@ static void judge_end(struct farm_result *head, bool in_time, int ended, double 
 
 static bool append_answer(struct farm_bytes *out, uint64_t handle, struct farm_result *head,
                           const struct answer *answer, bool limited) {
-  const struct iovec nothing = {NULL, 0};
   const bool done = answer->verdict == STATUS_OK;
   head->exit_code = (int)answer->verdict;
   head->ending = ending_of(answer->verdict, limited);
   head->size = done ? answer->bytes.iov_len : 0;
-  const struct iovec part[3] = {{head, sizeof *head}, done ? answer->bytes : nothing, done ? nothing : answer->bytes};
-  if (farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 3, part))
+  if (farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2, (struct iovec[]){{head, sizeof *head}, answer->bytes}))
     return true;
   if (!done)
     return false;
@@ -292,23 +292,24 @@ static bool append_answer(struct farm_bytes *out, uint64_t handle, struct farm_r
 }
 
 /* Runs the task in a child and appends the RESULT frame to `out`. False when memory or processes are refused. */
-static bool run_isolated(struct isolate *isolate, const struct farm_slot_setup *setup, int slot, uint64_t handle,
-                         const uint8_t *task, size_t size, struct farm_bytes *out) {
+static bool run_isolated(struct serving *s, uint64_t handle, const uint8_t *task, size_t size) {
+  struct isolate *const isolate = &s->isolate;
+  const struct farm_options *options = &s->setup->options;
   char text[256];
   const pid_t self = getpid();
   const int64_t start = clock_ns();
   const pid_t child = fork();
   if (child < 0) {
     snprintf(text, sizeof text, "the system refused a process for the run: %s", strerror(errno));
-    return append_failure(out, handle, &(struct farm_result){.ending = FARM_LOST, .slot = slot}, text);
+    return append_failure(&s->out, handle, &(struct farm_result){.ending = FARM_LOST, .slot = s->slot}, text);
   }
   if (child == 0)
-    compute(isolate, setup, handle, task, size, self);
+    compute(s, handle, task, size, self);
 
   int ended = 0;
   struct rusage usage = {0};
-  const bool in_time = await_child(isolate, child, clock_from_s(setup->options.time_limit_s), &ended, &usage);
-  struct farm_result head = {.slot = slot,
+  const bool in_time = await_child(s, child, &ended, &usage);
+  struct farm_result head = {.slot = s->slot,
                              .exit_code = WIFEXITED(ended) ? WEXITSTATUS(ended) : 0,
                              .signal = WIFSIGNALED(ended) ? WTERMSIG(ended) : 0,
                              .wall_s = 1e-9 * (double)(clock_ns() - start),
@@ -319,10 +320,10 @@ static bool run_isolated(struct isolate *isolate, const struct farm_slot_setup *
   const bool clean = answer.there && isolate->in.begin == isolate->in.end;
   bool written;
   if (answer.there) {
-    written = append_answer(out, handle, &head, &answer, setup->options.memory_limit > 0);
+    written = append_answer(&s->out, handle, &head, &answer, options->memory_limit > 0);
   } else {
-    judge_end(&head, in_time, ended, setup->options.time_limit_s, text, sizeof text);
-    written = append_failure(out, handle, &head, text);
+    judge_end(&head, in_time, ended, options->time_limit_s, text, sizeof text);
+    written = append_failure(&s->out, handle, &head, text);
   }
 
   /* After half an answer, or more than one, the pipe is renewed. */
@@ -338,15 +339,22 @@ static bool run_isolated(struct isolate *isolate, const struct farm_slot_setup *
 #define FLUSH_AFTER_NS (200 * CLOCK_MS / 1000)
 #define FLUSH_AT_BYTES 32768
 
+void farm_slot_unblock(void) {
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, NULL);
+}
+
 void farm_slot_die_with(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent)
     _exit(STATUS_OK);
 }
 
-static void flush(int channel, struct farm_bytes *out) {
+static void flush(struct serving *s) {
+  struct farm_bytes *const out = &s->out;
   while (out->begin < out->end) {
-    const ssize_t n = send(channel, out->data + out->begin, out->end - out->begin, MSG_NOSIGNAL);
+    const ssize_t n = send(s->channel, out->data + out->begin, out->end - out->begin, MSG_NOSIGNAL);
     if (n < 0 && errno == EINTR)
       continue;
     if (n <= 0)
@@ -377,41 +385,25 @@ static int64_t peak_memory(int64_t *floor) {
   return peak;
 }
 
-static bool run_here(const struct farm_slot_setup *setup, int slot, uint64_t handle, const uint8_t *task, size_t size,
-                     int64_t *floor, struct farm_bytes *out) {
+static bool run_here(struct serving *s, uint64_t handle, const uint8_t *task, size_t size) {
   uint8_t *result = NULL;
   size_t result_size = 0;
   struct error error = {0};
-  const size_t memory_limit = setup->options.memory_limit;
+  const size_t memory_limit = s->setup->options.memory_limit;
   if (memory_limit)
     limit_memory(memory_limit);
   const int64_t start = clock_ns();
   const double cpu = clock_cpu_s();
-  const status verdict = setup->work(task, size, &result, &result_size, &error);
-  struct farm_result head = {.slot = slot,
+  struct answer answer = {.there = true, .verdict = s->setup->work(task, size, &result, &result_size, &error)};
+  struct farm_result head = {.slot = s->slot,
                              .cpu_s = clock_cpu_s() - cpu,
                              .wall_s = 1e-9 * (double)(clock_ns() - start),
-                             .exit_code = verdict,
-                             .peak_memory = peak_memory(floor)};
+                             .peak_memory = peak_memory(&s->memory_floor)};
   if (memory_limit)
     limit_memory(0);
-  struct iovec part[2] = {{&head, sizeof head}, {result, result_size}};
-  head.size = result_size;
-  if (verdict != STATUS_OK) {
-    head.ending = ending_of(verdict, memory_limit > 0);
-    head.size = 0;
-    part[1] = (struct iovec){error.message, strlen(error.message)};
-  }
-  bool written = farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2, part);
-  if (!written) {
-    head.ending = FARM_LOST;
-    head.exit_code = STATUS_MEMORY;
-    head.size = 0;
-    char text[128];
-    snprintf(text, sizeof text, "no memory to pass on a result of %zu bytes", result_size);
-    part[1] = (struct iovec){text, strlen(text)};
-    written = farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2, part);
-  }
+  answer.bytes = answer.verdict == STATUS_OK ? (struct iovec){result, result_size}
+                                             : (struct iovec){error.message, strlen(error.message)};
+  const bool written = append_answer(&s->out, handle, &head, &answer, memory_limit > 0);
   free(result);
   return written;
 }
@@ -447,14 +439,6 @@ static void end_of_process(int code, void *unused) {
     _exit(STATUS_MEMORY);
 }
 
-struct serving {
-  const struct farm_slot_setup *setup;
-  int slot, channel;
-  struct isolate isolate;
-  struct farm_bytes in, out;
-  int64_t memory_floor, flushed_ns;
-};
-
 /* Computes every task in the buffer, sending results now and then. */
 static void run_tasks(struct serving *s) {
   struct farm_slot_record *const record = &s->setup->records[s->slot];
@@ -464,21 +448,18 @@ static void run_tasks(struct serving *s) {
   while ((got = farm_frame_next(&s->in, &frame, &payload)) == 1) {
     if (frame.kind != FARM_FRAME_TASK || !claim(record, &frame))
       continue;
-    const bool written = s->setup->options.in_process
-                             ? run_here(s->setup, s->slot, frame.handle, payload, frame.size, &s->memory_floor, &s->out)
-                             : run_isolated(&s->isolate, s->setup, s->slot, frame.handle, payload, frame.size, &s->out);
-    if (!written)
+    if (!(s->setup->options.in_process ? run_here : run_isolated)(s, frame.handle, payload, frame.size))
       _exit(STATUS_MEMORY);
     atomic_store(&record->running, 0);
     const int64_t now = clock_ns();
     if (now - s->flushed_ns > FLUSH_AFTER_NS || s->out.end - s->out.begin > FLUSH_AT_BYTES) {
-      flush(s->channel, &s->out);
+      flush(s);
       s->flushed_ns = now;
     }
   }
   if (got < 0)
     _exit(STATUS_INTERNAL);
-  flush(s->channel, &s->out);
+  flush(s);
 }
 
 /* Waits for more bytes. The end of the channel ends the slot. */
@@ -503,7 +484,7 @@ _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, in
   on_exit(end_of_process, NULL);
   struct serving serving = {.setup = setup, .slot = slot, .channel = channel, .flushed_ns = clock_ns()};
   peak_memory(&serving.memory_floor);
-  if (!setup->options.in_process && !open_isolate(&serving.isolate, channel))
+  if (!setup->options.in_process && !open_isolate(&serving.isolate))
     _exit(STATUS_MEMORY);
   for (;;) {
     run_tasks(&serving);
