@@ -2,13 +2,19 @@
 #include "campaign/serve/serve.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 
 #include "campaign/commands/commands.h"
 #include "campaign/launch/launch.h"
+#include "schemas/file.h"
+
+enum { SHORTEST_TOKEN = 8 };
 
 struct options {
   struct launch_options launch;
-  const char *store, *address, *quantity, *knob;
+  const char *store, *address, *token, *quantity, *knob;
   int64_t port, wait;
 };
 
@@ -22,7 +28,7 @@ static void tell(void *context, const struct serve_http *http) {
   const struct serving *serving = context;
   fprintf(stderr, "clast: serving at port %d with %d slot%s, store %s; Ctrl-C ends\n", serve_http_port(http),
           serving->slots, serving->slots == 1 ? "" : "s", serving->options.store);
-  if (!serve_http_loopback(http))
+  if (serve_http_open_to_all(http))
     fputs("clast: warning: other machines can reach this port, and nobody is asked for a password\n", stderr);
 }
 
@@ -40,19 +46,45 @@ static status serve_all(void *context, struct launch *launch, struct error *erro
   return code;
 }
 
+/* The first line of the file, malloc'd. It is a file because command lines are no secret. */
+static status read_token(const char *path, char **token, struct error *error) {
+  unsigned char *bytes = NULL;
+  size_t size = 0;
+  struct stat file;
+  *token = NULL;
+  if (!path)
+    return STATUS_OK;
+  TRY(file_read(path, "file of the token", &bytes, &size, error));
+  char *text = (char *)bytes;
+  text[strcspn(text, "\r\n")] = '\0';
+  const bool others = stat(path, &file) == 0 && (file.st_mode & (S_IRWXG | S_IRWXO));
+  if (!others && strlen(text) >= SHORTEST_TOKEN) {
+    *token = text;
+    return STATUS_OK;
+  }
+  free(bytes);
+  return others ? status_fail(error, STATUS_USAGE, "%s: others can read the token: `chmod 600 %s`", path, path)
+                : status_fail(error, STATUS_CONTENT, "%s: the token in its first line needs %d characters or more",
+                              path, SHORTEST_TOKEN);
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   struct launch_options launch = options->launch;
   struct campaign *campaign = NULL;
   struct serve_model model = {0};
   launch.quiet = true; /* there is no progress to show */
-  status code = campaign_load(line->arguments[0], &campaign, error);
+  char *token = NULL;
+  status code = read_token(options->token, &token, error);
+  if (!code)
+    code = campaign_load(line->arguments[0], &campaign, error);
   if (!code)
     code = serve_model_make(campaign, options->quantity, options->knob, &model, error);
   if (!code) {
     struct serving serving = {.model = &model,
                               .options = {.store = options->store ? options->store : campaign->store,
                                           .address = options->address,
+                                          .token = token,
                                           .port = (int)options->port,
                                           .wait_s = (double)options->wait,
                                           .ready = tell}};
@@ -61,12 +93,14 @@ static status run(const struct command_line *line, struct error *error) {
   }
   serve_model_clear(&model);
   campaign_free(campaign);
+  free(token);
   return launch_quiet_ranks(code, error);
 }
 
 static const struct option_row rows[] = {
     OPTION_ROW_INTEGER("port", 'p', "N", struct options, port, 0, 65535, "4242"),
     OPTION_ROW_TEXT("listen", 0, "ADDRESS", struct options, address, "127.0.0.1"),
+    OPTION_ROW_TEXT("token", 0, "FILE", struct options, token, NULL),
     OPTION_ROW_TEXT("quantity", 'q', "NAMES", struct options, quantity, NULL),
     OPTION_ROW_TEXT("knob", 'k', "NAME[=VALUES]", struct options, knob, NULL),
     OPTION_ROW_INTEGER("wait", 0, "S", struct options, wait, 0, 1000000, "3600"),

@@ -17,6 +17,7 @@ struct serve_http {
   struct MHD_Daemon *daemon;
   const struct serve_model *model;
   struct serve *serve;
+  const char *token;
   size_t exchanges; /* requests whose answers are not completely sent */
   uint64_t events;  /* counts pieces of requests received and answers sent */
   bool loopback;
@@ -43,6 +44,8 @@ static enum MHD_Result send_answer(struct exchange *exchange) {
   MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, "application/json");
   if (answer->http == 405)
     MHD_add_response_header(response, MHD_HTTP_HEADER_ALLOW, "GET, HEAD, POST");
+  if (answer->http == MHD_HTTP_UNAUTHORIZED)
+    MHD_add_response_header(response, MHD_HTTP_HEADER_WWW_AUTHENTICATE, "Basic realm=\"clast\"");
   const enum MHD_Result queued = MHD_queue_response(exchange->connection, answer->http, response);
   MHD_destroy_response(response);
   return queued;
@@ -67,11 +70,36 @@ static bool is_address(const char *host) {
                  : strcasecmp(name, "localhost") == 0 || inet_pton(AF_INET, name, bytes) == 1;
 }
 
+static bool same_word(const char *a, const char *b) { /* its time does not tell where they differ */
+  const size_t size = strlen(b);
+  unsigned char other = strlen(a) != size;
+  for (size_t i = 0; i < size && a[i]; i++)
+    other |= (unsigned char)(a[i] ^ b[i]);
+  return other == 0;
+}
+
+/* The token as `Authorization: Bearer TOKEN`, or as password of a URL: http://clast:TOKEN@localhost:4242. */
+static bool has_token(const char *token, struct MHD_Connection *connection) {
+  static const char bearer[] = "Bearer ";
+  const char *given = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_AUTHORIZATION);
+  char *password = NULL;
+  if (given && strncasecmp(given, bearer, strlen(bearer)) == 0)
+    return same_word(given + strlen(bearer), token);
+  char *user = MHD_basic_auth_get_username_password(connection, &password);
+  const bool right = password && same_word(password, token);
+  MHD_free(user);
+  MHD_free(password);
+  return right;
+}
+
 /* A web page in a browser on this machine could also send requests to a loopback port. Browsers send the origin of the
  * page, other clients do not. */
 static const char *refused_at_once(const struct serve_http *server, struct MHD_Connection *connection, unsigned *http) {
   const char *length = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
   const char *host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_HOST);
+  *http = MHD_HTTP_UNAUTHORIZED;
+  if (server->token && !has_token(server->token, connection))
+    return "the request needs the token of the server, as bearer token or as password";
   *http = MHD_HTTP_FORBIDDEN;
   if (MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN))
     return "requests of web pages (with an Origin) are refused";
@@ -178,15 +206,17 @@ static bool read_address(const char *text, int port, struct sockaddr_storage *ad
   return true;
 }
 
-status serve_http_open(const struct serve_model *model, struct serve *serve, const char *address, int port,
+status serve_http_open(const struct serve_model *model, struct serve *serve, const struct serve_options *options,
                        struct serve_http **out, struct error *error) {
+  const char *address = options->address;
+  const int port = options->port;
   struct sockaddr_storage place;
   bool loopback;
   if (!read_address(address, port, &place, &loopback))
     return status_fail(error, STATUS_USAGE,
                        "--listen expects an address such as 127.0.0.1, ::1 or 0.0.0.0, got \"%.64s\"", address);
   struct serve_http *http = *out = memory_small(1, sizeof *http);
-  *http = (struct serve_http){.model = model, .serve = serve, .loopback = loopback};
+  *http = (struct serve_http){.model = model, .serve = serve, .token = options->token, .loopback = loopback};
   const unsigned flags = MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | (place.ss_family == AF_INET6 ? MHD_USE_IPv6 : 0);
   errno = 0;
   http->daemon = MHD_start_daemon(flags, (uint16_t)port, NULL, NULL, handle, http, MHD_OPTION_SOCK_ADDR, &place,
@@ -208,20 +238,21 @@ int serve_http_file(const struct serve_http *http) {
   return MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_EPOLL_FD)->epoll_fd;
 }
 
-bool serve_http_loopback(const struct serve_http *http) {
-  return http->loopback;
+bool serve_http_open_to_all(const struct serve_http *http) {
+  return !http->loopback && !http->token;
 }
 
-/* Repeats while anything is received or sent: the library takes a body in pieces, but its file descriptor is readable
- * only for the first one. */
+/* Repeats while the library has work: it takes a request in pieces, also one that it received together with an earlier
+ * one, but its file descriptor is readable only for the first piece. */
 void serve_http_run(struct serve_http *http) {
-  enum { MOST = 256 }; /* the number is limited so that the farm also gets its turn */
-  for (int i = 0; i < MOST; i++) {
-    const uint64_t before = http->events;
+  const int64_t until = clock_ns() + CLOCK_S / 20; /* then the farm gets its turn */
+  uint64_t before;
+  MHD_UNSIGNED_LONG_LONG wait_ms = 0;
+  do {
+    before = http->events;
     MHD_run(http->daemon);
-    if (http->events == before)
-      return;
-  }
+  } while ((http->events != before || (MHD_get_timeout(http->daemon, &wait_ms) == MHD_YES && wait_ms == 0)) &&
+           clock_ns() < until);
 }
 
 void serve_http_close(struct serve_http *http) {

@@ -310,7 +310,7 @@ status serve_run(const struct serve_model *model, struct farm *farm, const struc
   status code = STATUS_OK;
   *counts = (struct serve_counts){0};
   if (farm_rank(farm) == 0)
-    code = serve_http_open(model, &serve, options->address, options->port, &serve.http, error);
+    code = serve_http_open(model, &serve, options, &serve.http, error);
   if (code) {
     scheduler_release_ranks(farm);
   } else {

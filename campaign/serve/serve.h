@@ -53,6 +53,7 @@ struct serve_http;
 struct serve_options {
   const char *store, *facts;
   const char *address;
+  const char *token; /* a word that each request must have, as bearer token or as password; NULL: none */
   int port;
   double wait_s; /* an evaluation is answered with 503 after this time, s; its runs go on. 0: never */
   /* Called when the server listens. May be NULL. */
@@ -69,7 +70,7 @@ struct serve_counts {
 status serve_run(const struct serve_model *model, struct farm *farm, const struct serve_options *options,
                  struct serve_counts *counts, struct error *error);
 int serve_http_port(const struct serve_http *http);
-bool serve_http_loopback(const struct serve_http *http);
+bool serve_http_open_to_all(const struct serve_http *http); /* other machines reach it, and there is no token */
 
 /* ---- requests as JSON, answers as JSON: request.c. Pure: no socket, no store ----
  *
@@ -131,9 +132,9 @@ enum {
   SERVE_HTTP_IDLE_S = 60,       /* a connection that sends nothing is closed */
 };
 
-/* Listens at `address` ("127.0.0.1", "::1", "0.0.0.0") and `port` (0: any free one). Evaluations go to `serve`.
- * STATUS_USAGE: no such address; STATUS_IO: it is taken. */
-status serve_http_open(const struct serve_model *model, struct serve *serve, const char *address, int port,
+/* Listens at the address of the options ("127.0.0.1", "::1", "0.0.0.0") and their port (0: any free one). Evaluations
+ * go to `serve`. STATUS_USAGE: no such address; STATUS_IO: it is taken. */
+status serve_http_open(const struct serve_model *model, struct serve *serve, const struct serve_options *options,
                        struct serve_http **out, struct error *error);
 int serve_http_file(const struct serve_http *http); /* readable when there is something to do */
 void serve_http_run(struct serve_http *http);       /* reads and writes without waiting */

@@ -1,5 +1,6 @@
 """The client of serve.sh: URL and what to try. Written from the text of the UM-Bridge protocol 1.0, with the standard
 library and jsonschema alone."""
+import base64
 import http.client
 import json
 import socket
@@ -204,9 +205,39 @@ def slow():
         assert "the same request finds them" in waits.result()
 
 
+def pipelined():
+    """Requests sent together, a long header and readers that stop are served at once, not one in 0.1 s."""
+    begin = time.time()
+    get = b"GET /Info HTTP/1.1\r\nHost: localhost\r\n\r\n"
+    silent = [socket.create_connection((host, int(port))) for _ in range(20)]
+    for one in silent:
+        one.sendall(get[:7])
+    with socket.create_connection((host, int(port)), timeout=60) as one:
+        one.sendall(get * 100 + get[:-2] + b"X-Pad: " + 25000 * b"a" + b"\r\n\r\n")
+        received = b""
+        while received.count(b"200 OK") < 101:
+            piece = one.recv(1 << 16)
+            assert piece, received[-300:]
+            received += piece
+    assert time.time() - begin < 5, time.time() - begin
+
+
+def token():
+    path, given = "/Info", sys.argv[3]
+    basic = lambda word: {"Authorization": "Basic " + base64.b64encode(f"any:{word}".encode()).decode()}
+    bearer = lambda word: {"Authorization": f"Bearer {word}"}
+    assert ask("GET", path, headers=bearer(given)) == ask("GET", path, headers=basic(given))
+    evaluation = {"name": "disc", "input": [[0.02, 0.05, 1e9]], "config": {"replicates": 1}}
+    assert ask("POST", "/Evaluate", evaluation, headers=basic(given))["output"]
+    for headers in ({}, *(form(word) for form in (bearer, basic) for word in ("", given[:-1], given + "x", given.upper())), {"Authorization": given}):
+        for method, place, body in (("GET", path, None), ("POST", "/Evaluate", evaluation)):
+            assert "token" in ask(method, place, body, headers=headers, code=401, error="InvalidInput")
+
+
 def hopeless():
     assert "0 of 1 runs" in wrong({"name": "long", "input": [[0.02]]}, code=500, error="InvalidOutput")
     assert "0 of 1 runs" in wrong({"name": "long", "input": [[0.02]]}, code=500, error="InvalidOutput")  # not tried again
 
 
-{"protocol": protocol, "again": again, "slow": slow, "hopeless": hopeless}[what]()
+{"protocol": protocol, "again": again, "slow": slow, "hopeless": hopeless, "pipelined": pipelined,
+ "token": token}[what]()

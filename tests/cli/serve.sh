@@ -63,6 +63,7 @@ runs=$(number disc.db "select count(*) from runs")
 # ---- a second server answers from the store
 served disc --knob grains=1.2cm,1.07cm
 client again points.jsonl
+client pipelined
 ended 0 "0 runs computed"
 same "$(number disc.db "select count(*) from runs")" "$runs" "runs after the second server"
 expect 0 "$clast" run disc.yaml -j 2 # a campaign continues with the served runs
@@ -103,7 +104,21 @@ says "error: no slot is left"
 says "the same command resumes"
 same "$(number disc.db "select outcome from session order by session_id desc limit 1")" stopped "session without a fork server"
 
+# ---- a token, where several users share a machine
+printf 'open-Sesame-7\n' >token
+chmod 600 token
+served disc --token token
+client token open-Sesame-7
+ended 0 "evaluations:"
+
 # ---- what cannot be served
+chmod 644 token
+expect 64 "$clast" serve disc.yaml --port 0 --token token
+says "others can read the token"
+chmod 600 token
+printf '\nlonger\n' >token
+expect 65 "$clast" serve disc.yaml --port 0 --token token
+expect 66 "$clast" serve disc.yaml --port 0 --token no-such-file
 served disc --listen 127.0.0.1
 expect 74 "$clast" serve disc.yaml --port "$port"
 says "cannot listen at 127.0.0.1, port $port"
@@ -119,4 +134,4 @@ expect 65 "$clast" serve still.yaml --port 0
 says "varies nothing"
 sed 's/threshold.angle: \[2 deg, 6 deg\]/contact.law: [conservative, printed]/' disc.yaml >law.yaml
 expect 65 "$clast" serve law.yaml --port 0
-done_after 27
+done_after 33
