@@ -74,13 +74,12 @@ static status run_command_line(int argc, char **argv, struct error *error) {
 }
 
 /* Opens /dev/null for standard files that are closed. Otherwise the first file opened, the store, would get the number
- * of a standard file, and messages would be printed into it. */
+ * of a standard file, and messages would be printed into it. Standard output is then open for reading only: a command
+ * that prints its answer there fails. */
 static void keep_standard_files(void) {
-  int file = open("/dev/null", O_RDWR);
-  while (file >= 0 && file <= STDERR_FILENO)
-    file = open("/dev/null", O_RDWR);
-  if (file > STDERR_FILENO)
-    close(file);
+  for (int file = STDIN_FILENO; file <= STDERR_FILENO; file++)
+    if (fcntl(file, F_GETFD) < 0)
+      (void)open("/dev/null", file == STDERR_FILENO ? O_WRONLY : O_RDONLY);
 }
 
 int main(int argc, char **argv) {

@@ -1,11 +1,9 @@
 /* Takes a CSV text apart, in place. */
 #include "schemas/csv.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "schemas/file.h"
 
@@ -27,14 +25,9 @@ static status begin(struct csv *csv, const char *name, struct error *error) {
 }
 
 status csv_open(struct csv *csv, const char *path, const char *what, struct error *error) {
-  struct stat facts;
   unsigned char *bytes = NULL;
   *csv = (struct csv){0};
   TRY(file_input(path, error));
-  if (stat(path, &facts) != 0)
-    return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "%s: %s", path, strerror(errno));
-  if (!S_ISREG(facts.st_mode) && !S_ISFIFO(facts.st_mode)) /* a device may never end */
-    return status_fail(error, STATUS_IO, "%s: the %s is no plain file", path, what);
   TRY(file_read(path, what, &bytes, &csv->size, error));
   csv->bytes = (char *)bytes;
   return begin(csv, path, error);

@@ -106,6 +106,7 @@ status file_input(const char *path, struct error *error) {
 status file_read(const char *path, const char *what, unsigned char **bytes, size_t *size, struct error *error) {
   char block[BLOCK], *text = NULL;
   size_t got;
+  struct stat about;
   *bytes = NULL;
   FILE *file = fopen(path, "rbe");
   if (!file)
@@ -114,6 +115,10 @@ status file_read(const char *path, const char *what, unsigned char **bytes, size
                        : errno == ENOMEM ? STATUS_MEMORY
                                          : STATUS_IO,
                        "cannot read the %s '%s': %s", what, path, strerror(errno));
+  if (fstat(fileno(file), &about) != 0 || !(S_ISREG(about.st_mode) || S_ISFIFO(about.st_mode))) {
+    fclose(file);
+    return status_fail(error, STATUS_IO, "cannot read the %s '%s': it is no plain file", what, path);
+  }
   FILE *copy = text_open(&text, size);
   while (copy && (got = fread(block, 1, sizeof block, file)) > 0)
     fwrite(block, 1, got, copy);

@@ -29,7 +29,7 @@ bool file_is_companion(const char *path);
 status file_input(const char *path, struct error *error);
 
 /* Reads a whole file. *bytes is malloc'd and owned by the caller; `what` names the file's purpose in messages ("restart
- * file"). STATUS_MISSING, STATUS_IO, STATUS_MEMORY. */
+ * file"). STATUS_MISSING, STATUS_IO (also for a folder or a device, which may never end), STATUS_MEMORY. */
 status file_read(const char *path, const char *what, unsigned char **bytes, size_t *size, struct error *error);
 
 /* Before a command computes: checks that an output can be written when it has ended. STATUS_IO: the file may not be

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "campaign/document/campaign.h"
 #include "schemas/limits.h"
@@ -64,7 +65,9 @@ static status load_scene(struct study_subject *subject, const char *reference, c
 static bool is_campaign(const char *path) { /* whoever opens it next notes it as an input */
   bool found = false;
   char line[4096];
-  FILE *in = scene_builtin_text(path) ? NULL : fopen(path, "r");
+  struct stat file; /* a device may never end, and a pipe can be read once */
+  const bool plain = !scene_builtin_text(path) && stat(path, &file) == 0 && S_ISREG(file.st_mode);
+  FILE *in = plain ? fopen(path, "r") : NULL;
   while (in && !found && fgets(line, sizeof line, in))
     found = strncmp(line, "scene:", 6) == 0 || strstr(line, "\"scene\"");
   if (in)

@@ -80,5 +80,14 @@ says "standard output"
 one_error
 expect 74 bash -c "'$clast' explain --json >/dev/full"
 expect 74 bash -c "'$clast' help >/dev/full"
-expect 0 bash -c "'$clast' help >&-"
-done_after 31
+for words in help "explain disc-explosion" "scenes --json"; do
+  expect 74 bash -c "'$clast' $words >&-"
+  says "standard output"
+done
+expect 0 bash -c "'$clast' help <&- 2>&-"
+
+# a device that never ends is no input
+for words in "converge /dev/zero" "plan /dev/zero" "materials /dev/zero" "simulate /dev/zero"; do
+  expect 65 bash -c "ulimit -t 10 -v 20000000; exec '$clast' $words"
+done
+done_after 38
