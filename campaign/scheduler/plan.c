@@ -173,9 +173,22 @@ struct looking {
   double work, work_most;
   struct scene *sample[SAMPLED]; /* points spread over the design; owned */
   size_t sampled;
-  struct scene *costliest; /* the point with the most work; owned */
-  uint64_t asked, there;   /* runs looked up in the store */
+  struct scene *costliest;     /* the point with the most work; owned */
+  uint64_t asked, there;       /* runs looked up in the store */
+  uint8_t seen[LOOKED_AT][16]; /* identities of the points' first runs */
+  size_t seen_count;
 };
+
+/* Equal points of a list or a file are computed once. */
+static bool is_new(const struct campaign *campaign, const struct scene *scene, struct looking *looking) {
+  uint8_t *identity = looking->seen[looking->seen_count];
+  scene_identity(scene, campaign_seed(campaign, scene, 0), identity);
+  for (size_t i = 0; i < looking->seen_count; i++)
+    if (memcmp(looking->seen[i], identity, sizeof looking->seen[i]) == 0)
+      return false;
+  looking->seen_count++;
+  return true;
+}
 
 /* Looks up the point's runs in the store, at most ASKED runs for all points together. */
 static void ask(const struct campaign *campaign, const struct scene *scene, struct store *store,
@@ -223,6 +236,11 @@ static status look(const struct campaign *campaign, struct store *store, struct 
     struct scene *scene = i % stride ? NULL : campaign_walk_scene(&walk, &first);
     if (!scene)
       continue;
+    if (stride == 1 && !is_new(campaign, scene, looking)) {
+      plan->points--;
+      scene_free(scene);
+      continue;
+    }
     ask(campaign, scene, store, looking);
     take_point(plan, looking, scene, looking->sampled < SAMPLED && i >= looking->sampled * (walked / SAMPLED));
   }

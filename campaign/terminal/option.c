@@ -241,17 +241,26 @@ status option_parse(const struct command *command, int argc, char **argv, void *
 }
 
 /* Sets one PATH=VALUE. */
-static status set_input(struct scene *scene, const char *text, struct error *error) {
-  char path[FIELD_TEXT_SIZE];
+static status set_input(struct scene *scene, const char *text, char path[FIELD_TEXT_SIZE], struct error *error) {
   const char *value = NULL;
   TRY(campaign_change_split(text, path, &value, error));
   const status code = scene_set_text(scene, path, value, error);
   return code == STATUS_CONTENT ? STATUS_USAGE : code; /* the wrong content is on the command line */
 }
 
+/* Of two changes under one name the last holds. Two names of one input are a mistake, as in a campaign. */
 status option_set_inputs(struct scene *scene, const struct option_list *set, struct error *error) {
-  for (size_t i = 0; i < set->count; i++)
-    TRY(set_input(scene, set->items[i], error));
+  const struct field_table *inputs = scene->kind->inputs;
+  for (size_t i = 0; i < set->count; i++) {
+    char path[FIELD_TEXT_SIZE], before[FIELD_TEXT_SIZE];
+    TRY(set_input(scene, set->items[i], path, error));
+    for (size_t k = 0; k < i; k++) {
+      snprintf(before, sizeof before, "%.*s", (int)strcspn(set->items[k], "="), set->items[k]);
+      if (strcmp(path, before) != 0 && field_find(inputs, path, NULL) == field_find(inputs, before, NULL))
+        return status_fail(error, STATUS_USAGE, "--set %s: the same input as --set %s; leave one of them out", path,
+                           before);
+    }
+  }
   return scene_check(scene, error);
 }
 

@@ -101,6 +101,13 @@ expect 0 "$clast" run in/design.yaml --store european.db -j 2 --quiet
 "$clast" query european.db "select identity, largest_fraction from runs order by 1" --csv | cmp -s - grid.csv ||
   fail "points with decimal commas are not those of the grid"
 ok "semicolons and decimal commas mean the same points"
+# equal points are one, in the plan as in the run
+printf 'strain [%%];threshold.angle [deg]\n2;2\n5;2\n2,0;2,00\n2 %%;2 deg\n' >in/points.csv
+expect 0 "$clast" plan in/design.yaml --store equal.db --no-trial
+prints "design    list, 2 points"
+planned=$(sed -n 's/^runs *\([0-9]*\),.*/\1/p' out)
+expect 0 "$clast" run in/design.yaml --store equal.db -j 2 --quiet
+same "$(number equal.db "select count(*) from run")" "$planned" "runs of equal points"
 rm in/points.csv
 expect 65 "$clast" plan in/design.yaml --no-trial
 says "cannot open 'in/points.csv'"
@@ -138,4 +145,4 @@ done
 cd ..
 [ "$(ls guide/block-*.sh | wc -l)" -ge 2 ] && [ "$(ls guide/block-*.python | wc -l)" -ge 2 ] || fail "too few blocks in the guide"
 ok "blocks of the guide"
-done_after 46
+done_after 49

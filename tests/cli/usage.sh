@@ -86,8 +86,15 @@ for words in help "explain disc-explosion" "scenes --json"; do
 done
 expect 0 bash -c "'$clast' help <&- 2>&-"
 
+# one input under two names
+for words in "simulate disc-explosion" "explain disc-explosion" "converge disc-explosion --knob grains=2cm,1cm"; do
+  expect 64 bash -c "'$clast' $words --set contact.friction=0.1 --set friction=0.2"
+  says "--set friction: the same input as --set contact.friction"
+done
+expect 0 "$clast" explain disc-explosion --set friction=0.1 --set friction=0.2
+
 # a device that never ends is no input
 for words in "converge /dev/zero" "plan /dev/zero" "materials /dev/zero" "simulate /dev/zero"; do
   expect 65 bash -c "ulimit -t 10 -v 20000000; exec '$clast' $words"
 done
-done_after 38
+done_after 42
