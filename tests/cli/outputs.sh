@@ -127,7 +127,7 @@ for command in commands:
             line[place] = victim
             attempt([command, *base, *line], victim, must)
     for name, value in re.findall(r"^  (?:-\w,|   ) --([a-z-]+) (\S+)", text, re.M):
-        is_file = re.search(r"FILE|PAGE", value) and name not in ("with", "store")
+        is_file = re.search(r"FILE|PAGE", value) and name not in ("with", "store", "token")
         if name == "store":  # a store of this name is its purpose
             for victim in ("self.yaml", "scene.yaml", "campaign.png", "x-wal", "x-shm", "x-journal"):
                 if command != "plan":
