@@ -230,10 +230,14 @@ RESULT_REAL(energy.contact, contact.energy, "J", 0,
 #endif
 
 #ifdef SPH_MODULE_INPUT_ROWS
-    INPUT_CHOICE(method.contact, contact.rule,
-                 FIELD_WORDS_HERE(SPH_CONTACTS, [SPH_CONTACT_WELDED] = "welded", [SPH_CONTACT_OVERLAP] = "overlap"),
-                 .absent = "welded", .when = "kind=impact|collision",
-                 .choice_docs = "a pair of two bodies acts as in one body: intact bodies that touch stick together\n"
-                                "bodies press on each other where they overlap, and part freely",
-                 .doc = "How different bodies act on each other.", .source = "BA95 for `welded`; `overlap` is ours"),
+    INPUT_CHOICE(
+        method.contact, contact.rule,
+        FIELD_WORDS_HERE(SPH_CONTACTS, [SPH_CONTACT_WELDED] = "welded", [SPH_CONTACT_OVERLAP] = "overlap"),
+        .absent = "welded", .flags = FIELD_DERIVED, .when = "kind=impact|collision",
+        .choice_docs = "a pair of two bodies acts as in one body: intact bodies that touch stick together\n"
+                       "bodies press on each other where they overlap, and part freely",
+        .doc =
+            "How different bodies act on each other. Unless given it is `overlap` where two bodies with strength meet "
+            "below 0.03 of the speed of waves, else `welded`.",
+        .source = "BA95 for `welded`; `overlap` is ours"),
 #endif

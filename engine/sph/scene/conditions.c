@@ -158,16 +158,29 @@ static double front(const void *inputs) {
 
 /* ---- contact ---- */
 
-/* Speed of an impact over that of waves in the softer body, of bodies that both have strength. */
 static double approach(const void *inputs) {
   const struct sph_inputs *in = inputs;
-  if (in->kind != SPH_IMPACT || in->contact.rule != SPH_CONTACT_WELDED || !in->target.strength ||
-      !in->projectile.strength)
-    return NAN;
-  return in->impact.speed / fmin(sph_derived_wave_speed(&in->target), sph_derived_wave_speed(&in->projectile));
+  return in->contact.rule == SPH_CONTACT_WELDED ? sph_derived_approach(in) : (double)NAN;
 }
 
 /* ---- what a result needs to have happened ---- */
+
+/* Has the other body changed the target's momentum? Few particles overlap, and press, later than their surfaces meet.
+ */
+static bool is_hit(const struct sph_run *run) {
+  const struct sph_inputs *in = &run->inputs;
+  const struct sph_particles *now = run->now;
+  const double start = in->kind == SPH_COLLISION ? 0.5 * in->collision.speed : 0,
+               speed = in->kind == SPH_COLLISION ? in->collision.speed : in->impact.speed;
+  double gained[3] = {0, 0, 0}, mass = 0;
+  for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
+    gained[0] += now->mass[i] * (now->vx[i] - start);
+    gained[1] += now->mass[i] * now->vy[i];
+    gained[2] += now->mass[i] * now->vz[i];
+    mass += now->mass[i];
+  }
+  return sqrt(gained[0] * gained[0] + gained[1] * gained[1] + gained[2] * gained[2]) > 1e-9 * mass * speed;
+}
 
 /* The time at which a wave has crossed the target once after the hit, over the simulated time; of a run without damage.
  * Bodies that do not crack need the hit alone. */
@@ -175,6 +188,8 @@ static double unfinished(const struct condition_run *r) {
   const struct sph_inputs *in = r->inputs;
   if ((in->kind != SPH_IMPACT && in->kind != SPH_COLLISION) || !isnan(run_of(r)->state.first_damage))
     return NAN;
+  if (!is_hit(run_of(r)))
+    return HUGE_VAL;
   const double crossing = sph_derived_cracks(&in->target) ? sph_derived_crossing(in) : 0;
   return (sph_derived_arrival(in) + crossing) / r->outcome->time;
 }
@@ -402,7 +417,7 @@ const struct condition sph_conditions[] = {
      .before = front},
     {.word = "stick",
      .number = "the speed of the impact over that of waves",
-     .bound = 0.03,
+     .bound = SPH_DERIVED_SLOW,
      .least = true,
      .doubt = "intact bodies that touch stick together with method.contact: welded, since a pair of two bodies acts as "
               "in one",

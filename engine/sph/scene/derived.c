@@ -204,6 +204,17 @@ double sph_derived_arrival(const struct sph_inputs *in) {
   return in->kind == SPH_COLLISION ? in->collision.gap / in->collision.speed : 0;
 }
 
+double sph_derived_approach(const struct sph_inputs *in) {
+  if (!in->target.strength)
+    return NAN;
+  const double waves = sph_derived_wave_speed(&in->target);
+  if (in->kind == SPH_COLLISION)
+    return in->collision.speed / waves;
+  if (in->kind != SPH_IMPACT || !in->projectile.strength)
+    return NAN;
+  return in->impact.speed / fmin(waves, sph_derived_wave_speed(&in->projectile));
+}
+
 double sph_derived_crossing(const struct sph_inputs *in) {
   struct sph_shape shape = sph_derived_target(in);
   double extent = in->kind == SPH_COLLISION ? 2 * shape.radius : longest(&shape);

@@ -220,7 +220,8 @@ static const struct field rows[] = {
          .source = "Jutzi & Benz, section 3.2, for 0"),
     REAL(stop.end_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
          .doc = "End time of the run, also if fracture continues; unless given, ten times the time of a longitudinal "
-                "wave through the target, plus the time until the bodies touch. Of a plate: when its first front, by "
+                "wave through the target, plus the time until the bodies touch (one spacing later with method.contact: "
+                "overlap). Of a plate: when its first front, by "
                 "the jump conditions, has gone 0.94 of its width."),
     REAL(stop.quiet_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
          .when = "target.fracture=auto|on",

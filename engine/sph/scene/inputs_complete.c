@@ -64,6 +64,18 @@ static double plate_time(const struct sph_inputs *in) {
   return 0.94 * in->target.width / (exact.has_precursor ? exact.precursor.speed : exact.shock.speed);
 }
 
+/* Can a body with strength turn? Damped sides hold the target. */
+static bool can_turn(const struct sph_inputs *in) {
+  return in->target.strength && (in->target.spin != 0 || in->kind == SPH_COLLISION ||
+                                 (in->kind == SPH_IMPACT && in->sides.far != SPH_FAR_DAMPED));
+}
+
+/* Time, s, by which few particles may press later than their surfaces meet: that of one spacing. */
+static double late(const struct sph_inputs *in) {
+  const double speed = in->kind == SPH_COLLISION ? in->collision.speed : in->impact.speed * cos(in->impact.angle);
+  return in->contact.rule == SPH_CONTACT_OVERLAP && speed > 0 ? sph_derived_fine_spacing(in) / speed : 0;
+}
+
 /* A value that follows from others, unless the scene gives it. */
 #define COMPLETE(member, value)                                                                                        \
   do {                                                                                                                 \
@@ -81,6 +93,8 @@ void sph_inputs_complete(struct sph_inputs *in, const bool *given) {
   COMPLETE(sides.depth, 0.1 * sph_derived_shortest_side(&in->target));
   COMPLETE(fidelity.fine_spacing, 0.5 * spacing);
   COMPLETE(fidelity.fine_radius, 4 * in->fidelity.fine_spacing);
+  COMPLETE(gradient_correction.on, can_turn(in));
+  COMPLETE(contact.rule, sph_derived_approach(in) < SPH_DERIVED_SLOW ? SPH_CONTACT_OVERLAP : SPH_CONTACT_WELDED);
   COMPLETE(impact.gap, sph_derived_fine_spacing(in));
   COMPLETE(collision.gap, 2 * spacing);
   COMPLETE(stretch.grip, fmax(in->target.length / 20, 3 * spacing));
@@ -89,5 +103,5 @@ void sph_inputs_complete(struct sph_inputs *in, const bool *given) {
   COMPLETE(fragments.layer_width, in->crack_cell.width);
   COMPLETE(fragments.dust_mass, 1e-3 * sph_derived_target_mass(in));
   COMPLETE(stop.quiet_time, 2 * crossing);
-  COMPLETE(stop.end_time, in->kind == SPH_PISTON ? plate_time(in) : 10 * crossing + sph_derived_arrival(in));
+  COMPLETE(stop.end_time, in->kind == SPH_PISTON ? plate_time(in) : 10 * crossing + sph_derived_arrival(in) + late(in));
 }
