@@ -210,6 +210,8 @@ void sql_write_name(const char *name, FILE *out) {
 }
 
 struct sql_value sql_of_text(const char *text) {
+  if (!text)
+    return (struct sql_value){.type = SQLITE_NULL};
   return (struct sql_value){.type = SQLITE_TEXT, .bytes = text, .size = strlen(text)};
 }
 
@@ -239,17 +241,17 @@ struct sql_value sql_of_field(const struct field *row, const void *object, bool 
   return sql_of_text(place);
 }
 
-struct sql_value sql_of_column(sqlite3_stmt *statement, int column) {
-  struct sql_value value = {.type = sqlite3_column_type(statement, column)};
+struct sql_value sql_of_argument(sqlite3_value *argument) {
+  struct sql_value value = {.type = sqlite3_value_type(argument)};
   switch (value.type) {
-  case SQLITE_INTEGER: value.integer = sqlite3_column_int64(statement, column); break;
-  case SQLITE_FLOAT: value.real = sqlite3_column_double(statement, column); break;
-  case SQLITE_TEXT: value.bytes = sqlite3_column_text(statement, column); break;
-  case SQLITE_BLOB: value.bytes = sqlite3_column_blob(statement, column); break;
+  case SQLITE_INTEGER: value.integer = sqlite3_value_int64(argument); break;
+  case SQLITE_FLOAT: value.real = sqlite3_value_double(argument); break;
+  case SQLITE_TEXT: value.bytes = sqlite3_value_text(argument); break;
+  case SQLITE_BLOB: value.bytes = sqlite3_value_blob(argument); break;
   default: return value;
   }
   if (value.bytes)
-    value.size = (size_t)sqlite3_column_bytes(statement, column);
+    value.size = (size_t)sqlite3_value_bytes(argument);
   return value;
 }
 
@@ -263,11 +265,13 @@ void sql_bind(sqlite3_stmt *statement, int index, struct sql_value value) {
   }
 }
 
+void sql_bind_all(sqlite3_stmt *statement, size_t count, const struct sql_value *values) {
+  for (size_t i = 0; i < count; i++)
+    sql_bind(statement, (int)i + 1, values[i]);
+}
+
 void sql_bind_text(sqlite3_stmt *statement, int index, const char *text) {
-  if (text)
-    sqlite3_bind_text(statement, index, text, -1, SQLITE_STATIC);
-  else
-    sqlite3_bind_null(statement, index);
+  sql_bind(statement, index, sql_of_text(text));
 }
 
 static void bind_column(sqlite3_stmt *statement, int index, const struct sql_column *column, const void *object) {

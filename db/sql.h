@@ -64,17 +64,30 @@ struct sql_value {
 static inline struct sql_value sql_of_integer(int64_t value) {
   return (struct sql_value){.type = SQLITE_INTEGER, .integer = value};
 }
+static inline struct sql_value sql_of_real(double value) {
+  return (struct sql_value){.type = SQLITE_FLOAT, .real = value}; /* SQLite stores NaN as NULL */
+}
 static inline struct sql_value sql_of_bytes(const void *bytes, size_t size) {
   return (struct sql_value){.type = SQLITE_BLOB, .bytes = bytes, .size = size};
 }
-struct sql_value sql_of_text(const char *text);
+struct sql_value sql_of_text(const char *text); /* NULL is NULL */
 /* The value that `row` describes in *object: NaN as NULL (as the text 'off' with off_as_text), choices by name. Texts
  * are those of *object. */
 struct sql_value sql_of_field(const struct field *row, const void *object, bool off_as_text);
+/* An argument of a function, valid until it returns. */
+struct sql_value sql_of_argument(sqlite3_value *argument);
 /* A column of the current row, valid until the next step. */
-struct sql_value sql_of_column(sqlite3_stmt *statement, int column);
+static inline struct sql_value sql_of_column(sqlite3_stmt *statement, int column) {
+  return sql_of_argument(sqlite3_column_value(statement, column)); /* one thread uses a connection: no lock is needed */
+}
 /* Binds it by reference: its bytes must stay valid until the statement has run. */
 void sql_bind(sqlite3_stmt *statement, int index, struct sql_value value);
+/* Binds values to the parameters from the first one on: SQL_BIND(statement, sql_of_integer(run_id), sql_of_text(name)).
+ */
+#define SQL_BIND(statement, ...)                                                                                       \
+  sql_bind_all(statement, sizeof((const struct sql_value[]){__VA_ARGS__}) / sizeof(struct sql_value),                  \
+               (const struct sql_value[]){__VA_ARGS__})
+void sql_bind_all(sqlite3_stmt *statement, size_t count, const struct sql_value *values);
 /* A text bound by reference; NULL binds NULL. */
 void sql_bind_text(sqlite3_stmt *statement, int index, const char *text);
 

@@ -119,11 +119,9 @@ struct modes {
 
 static status add_mode(const struct modes *modes, int64_t point, const char *quantity, const struct scatter *s,
                        struct error *error) {
-  const double numbers[] = {s->lower_mode, s->upper_mode, s->between, s->upper_share, s->upper_low, s->upper_high};
-  sqlite3_bind_int64(modes->insert, 1, point);
-  sql_bind_text(modes->insert, 2, quantity);
-  for (int k = 0; k < 6; k++)
-    sqlite3_bind_double(modes->insert, 3 + k, numbers[k]);
+  SQL_BIND(modes->insert, sql_of_integer(point), sql_of_text(quantity), sql_of_real(s->lower_mode),
+           sql_of_real(s->upper_mode), sql_of_real(s->between), sql_of_real(s->upper_share), sql_of_real(s->upper_low),
+           sql_of_real(s->upper_high));
   return sql_run(modes->insert, doing, error);
 }
 
@@ -187,15 +185,16 @@ static struct sample_summary summary_of(const struct column *column) {
   return summary;
 }
 
+/* To single precision, as copy() does. NaN is NULL. */
+static struct sql_value rounded(double number) {
+  return sql_of_real((double)(float)number);
+}
+
 static status add_mean(struct reading *reading, const struct column *column, struct error *error) {
   const struct sample_summary summary = summary_of(column);
-  sqlite3_bind_int64(reading->insert, 1, reading->point_id);
-  sqlite3_bind_int64(reading->insert, 2, reading->results_version);
-  sqlite3_bind_text(reading->insert, 3, column->name, -1, SQLITE_STATIC);
-  sqlite3_bind_int64(reading->insert, 4, (int64_t)summary.n);
-  sqlite3_bind_double(reading->insert, 5, (double)(float)summary.mean); /* NaN is NULL */
-  sqlite3_bind_double(reading->insert, 6, (double)(float)summary.standard_deviation);
-  sqlite3_bind_double(reading->insert, 7, (double)(float)summary.half_width);
+  SQL_BIND(reading->insert, sql_of_integer(reading->point_id), sql_of_integer(reading->results_version),
+           sql_of_text(column->name), sql_of_integer((int64_t)summary.n), rounded(summary.mean),
+           rounded(summary.standard_deviation), rounded(summary.half_width));
   return sql_run(reading->insert, doing, error);
 }
 
@@ -203,15 +202,14 @@ static status add_mean(struct reading *reading, const struct column *column, str
 static status correct_point(struct reading *reading, const struct column *column, struct error *error) {
   STATEMENT update = NULL;
   const struct sample_summary of = summary_of(column);
-  const double numbers[] = {of.mean, of.standard_deviation, of.standard_error, of.half_width, of.low, of.high};
   TRY(sql_preparef(
       reading->page->store.db, &update, doing, error,
       "UPDATE points SET \"%w_mean\" = ?1, \"%w_sd\" = ?2, \"%w_se\" = ?3, \"%w_hw95\" = ?4, \"%w_low95\" = "
       "?5, \"%w_high95\" = ?6 WHERE point_id = %lld AND results_version = %lld",
       column->name, column->name, column->name, column->name, column->name, column->name, (long long)reading->point_id,
       (long long)reading->results_version));
-  for (int k = 0; k < 6; k++)
-    sqlite3_bind_double(update, 1 + k, (double)(float)numbers[k]); /* NaN is NULL */
+  SQL_BIND(update, rounded(of.mean), rounded(of.standard_deviation), rounded(of.standard_error), rounded(of.half_width),
+           rounded(of.low), rounded(of.high));
   return sql_run(update, doing, error);
 }
 
@@ -472,11 +470,8 @@ static status add_scatter(sqlite3_stmt *insert, int64_t point, const struct scat
   status code = STATUS_OK;
   for (size_t i = 0; code == STATUS_OK && i < SCATTER_QUANTILES; i++) {
     const struct scatter_quantile *quantile = &scatter->quantile[i];
-    const double numbers[] = {scatter_shares[i], quantile->value, quantile->low, quantile->high};
-    sqlite3_bind_int64(insert, 1, point);
-    sql_bind_text(insert, 2, OUTCOME_DEFAULT);
-    for (int k = 0; k < 4; k++)
-      sqlite3_bind_double(insert, 3 + k, numbers[k]); /* NaN is NULL */
+    SQL_BIND(insert, sql_of_integer(point), sql_of_text(OUTCOME_DEFAULT), sql_of_real(scatter_shares[i]),
+             sql_of_real(quantile->value), sql_of_real(quantile->low), sql_of_real(quantile->high));
     code = sql_run(insert, doing, error);
   }
   return code;
@@ -522,9 +517,7 @@ static status add_fit(sqlite3_stmt *insert, const struct ask_pool *pool, int64_t
   if (*enough)
     return STATUS_OK;
   TRY(pooled_goodness(runs, lower, DRAWS, &goodness, error));
-  sqlite3_bind_int64(insert, 1, pool->data.point_id);
-  sqlite3_bind_int64(insert, 2, fit.fit.n);
-  sqlite3_bind_double(insert, 3, goodness.p); /* NaN is NULL */
+  SQL_BIND(insert, sql_of_integer(pool->data.point_id), sql_of_integer(fit.fit.n), sql_of_real(goodness.p));
   return sql_run(insert, doing, error);
 }
 
@@ -551,10 +544,8 @@ static status add_questions(struct ask_page *page, struct error *error) {
     STATEMENT trial = NULL;
     if (sqlite3_prepare_v2(page->store.db, query->sql, -1, &trial, NULL) != SQLITE_OK)
       continue;
-    sql_bind_text(insert, 1, query->name);
-    sql_bind_text(insert, 2, query->doc);
-    sql_bind_text(insert, 3, query->sql);
-    sql_bind_text(insert, 4, query->parameters);
+    SQL_BIND(insert, sql_of_text(query->name), sql_of_text(query->doc), sql_of_text(query->sql),
+             sql_of_text(query->parameters));
     TRY(sql_run(insert, doing, error));
   }
   return STATUS_OK;
@@ -648,10 +639,8 @@ status ask_page_picture(struct ask_page *page, const struct answer *kept, const 
                         struct error *error) {
   STATEMENT insert = NULL;
   TRY(sql_prepare(page->store.db, "INSERT INTO picture VALUES (?1, ?2, ?3, ?4)", &insert, doing, error));
-  sqlite3_bind_int64(insert, 1, answer_integer(kept, 0));
-  sqlite3_bind_int64(insert, 2, answer_integer(kept, 1));
-  sqlite3_bind_double(insert, 3, answer_real(kept, 2));
-  sqlite3_bind_blob64(insert, 4, png, size, SQLITE_STATIC);
+  SQL_BIND(insert, sql_of_integer(answer_integer(kept, 0)), sql_of_integer(answer_integer(kept, 1)),
+           sql_of_real(answer_real(kept, 2)), sql_of_bytes(png, size));
   return sql_run(insert, doing, error);
 }
 
@@ -659,12 +648,9 @@ status ask_page_difference(struct ask_page *page, const char *quantity, int64_t 
                            const struct difference *difference, struct error *error) {
   STATEMENT insert = NULL;
   TRY(sql_prepare(page->store.db, "INSERT INTO difference VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &insert, doing, error));
-  sql_bind_text(insert, 1, quantity);
-  sqlite3_bind_int64(insert, 2, first_point);
-  sqlite3_bind_int64(insert, 3, point);
-  sqlite3_bind_int64(insert, 4, (int64_t)difference->pairs);
-  sqlite3_bind_double(insert, 5, difference->difference); /* NaN is NULL */
-  sqlite3_bind_double(insert, 6, difference->half_width);
+  SQL_BIND(insert, sql_of_text(quantity), sql_of_integer(first_point), sql_of_integer(point),
+           sql_of_integer((int64_t)difference->pairs), sql_of_real(difference->difference),
+           sql_of_real(difference->half_width));
   return sql_run(insert, doing, error);
 }
 

@@ -126,11 +126,8 @@ static void hist_sum_step(sqlite3_context *context, int count, sqlite3_value **v
   size_t size = (size_t)sqlite3_value_bytes(values[0]);
   h->wrong = h->wrong || sqlite3_value_type(values[0]) != SQLITE_BLOB || size % 8 != 0;
   for (size_t i = 0; !h->wrong && i < size; i += 8) {
-    uint64_t bits = 0;
-    double mass;
-    for (int k = 7; k >= 0; k--)
-      bits = bits << 8 | bytes[i + (size_t)k];
-    memcpy(&mass, &bits, sizeof mass);
+    double mass; /* little-endian (db/store/add.c) */
+    memcpy(&mass, bytes + i, sizeof mass);
     int bin = spectrum_bin(mass);
     if (bin < LOWEST || bin >= LOWEST + BINS)
       continue;
@@ -168,25 +165,32 @@ static void hist_sum_final(sqlite3_context *context) {
   free(text);
 }
 
+static const struct {
+  const char *name;
+  int arguments;
+  void (*call)(sqlite3_context *, int, sqlite3_value **);
+  void (*step)(sqlite3_context *, int, sqlite3_value **); /* of an aggregate */
+  void (*final)(sqlite3_context *);
+} functions[] = {
+    {"stdev", 1, NULL, stdev_step, stdev_final},
+    {"median", 1, NULL, median_step, median_final},
+    {"hist_sum", 1, NULL, hist_sum_step, hist_sum_final},
+    {"pooled_hw95", 3, pooled_hw95, NULL, NULL},
+    {"meant", 4, meant, NULL, NULL},
+    {"doubts", 3, doubts, NULL, NULL},
+    {"words", 1, NULL, words_step, words_final},
+};
+
 status ask_register_functions(struct store *store, struct error *error) {
   const int flags = SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS;
   if (store->functions)
     return STATUS_OK;
-  int code = sqlite3_create_function(store->db, "stdev", 1, flags, NULL, NULL, stdev_step, stdev_final);
-  if (code == SQLITE_OK)
-    code = sqlite3_create_function(store->db, "median", 1, flags, NULL, NULL, median_step, median_final);
-  if (code == SQLITE_OK)
-    code = sqlite3_create_function(store->db, "hist_sum", 1, flags, NULL, NULL, hist_sum_step, hist_sum_final);
-  if (code == SQLITE_OK)
-    code = sqlite3_create_function(store->db, "pooled_hw95", 3, flags, NULL, pooled_hw95, NULL, NULL);
-  if (code == SQLITE_OK)
-    code = sqlite3_create_function(store->db, "meant", 4, flags, NULL, meant, NULL, NULL);
-  if (code == SQLITE_OK)
-    code = sqlite3_create_function(store->db, "doubts", 3, flags, NULL, doubts, NULL, NULL);
-  if (code == SQLITE_OK)
-    code = sqlite3_create_function(store->db, "words", 1, flags, NULL, NULL, words_step, words_final);
-  if (code != SQLITE_OK)
-    return sql_fail(store->db, code, "registering functions", error);
+  for (size_t i = 0; i < sizeof functions / sizeof functions[0]; i++) {
+    const int code = sqlite3_create_function(store->db, functions[i].name, functions[i].arguments, flags, NULL,
+                                             functions[i].call, functions[i].step, functions[i].final);
+    if (code != SQLITE_OK)
+      return sql_fail(store->db, code, "registering functions", error);
+  }
   store->functions = true;
   return STATUS_OK;
 }

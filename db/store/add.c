@@ -1,6 +1,5 @@
 /* Adding rows: campaigns, points with their inputs and shape files, axes, runs with everything that follows from them,
  * and attempts. Statements are prepared once; adding a run needs no further SQL text or JSON. */
-#include <endian.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -77,31 +76,21 @@ static status find_kind(struct store *store, const struct engine_kind *kind, str
 
 /* ---- campaigns ---- */
 
-/* *campaign_id: 0 when the campaign is not stored yet. */
-static status find_campaign(struct store *store, const char *name, const char *document_text, int64_t *campaign_id,
-                            struct error *error) {
-  STATEMENT statement = NULL;
-  TRY(sql_prepare(store->db, "SELECT campaign_id FROM campaign WHERE name = ?1 AND document = ?2", &statement,
-                  adding_campaign, error));
-  sql_bind_text(statement, 1, name);
-  sql_bind_text(statement, 2, document_text);
-  *campaign_id = sqlite3_step(statement) == SQLITE_ROW ? sqlite3_column_int64(statement, 0) : 0;
-  return STATUS_OK;
-}
-
 static status find_or_add_campaign(struct store *store, const char *name, const char *document_text,
                                    const char *plan_json, int64_t *campaign_id, struct error *error) {
-  TRY(find_campaign(store, name, document_text, campaign_id, error));
+  STATEMENT found = NULL;
+  STATEMENT statement = NULL;
+  TRY(sql_prepare(store->db, "SELECT campaign_id FROM campaign WHERE name = ?1 AND document = ?2", &found,
+                  adding_campaign, error));
+  SQL_BIND(found, sql_of_text(name), sql_of_text(document_text));
+  *campaign_id = sqlite3_step(found) == SQLITE_ROW ? sqlite3_column_int64(found, 0) : 0;
   if (*campaign_id != 0)
     return STATUS_OK;
-  STATEMENT statement = NULL;
   TRY(sql_prepare(store->db,
                   "INSERT INTO campaign (name, document, plan, added_at) VALUES (?1, ?2, ?3, "
                   "strftime('%Y-%m-%dT%H:%M:%fZ', 'now'))",
                   &statement, adding_campaign, error));
-  sql_bind_text(statement, 1, name);
-  sql_bind_text(statement, 2, document_text);
-  sql_bind_text(statement, 3, plan_json);
+  SQL_BIND(statement, sql_of_text(name), sql_of_text(document_text), sql_of_text(plan_json));
   const status result = sql_run(statement, adding_campaign, error);
   *campaign_id = sqlite3_last_insert_rowid(store->db);
   return result;
@@ -123,9 +112,8 @@ static status add_inputs(struct store *store, int64_t point_id, const struct sce
     const struct field *row = &inputs->rows[i];
     if (!field_is_active(inputs, row, scene->inputs))
       continue;
-    sqlite3_bind_int64(store->point_input, 1, point_id);
-    sql_bind_text(store->point_input, 2, row->path);
-    sql_bind(store->point_input, 3, sql_of_field(row, scene->inputs, true));
+    SQL_BIND(store->point_input, sql_of_integer(point_id), sql_of_text(row->path),
+             sql_of_field(row, scene->inputs, true));
     TRY(sql_run(store->point_input, adding_point, error));
   }
   return STATUS_OK;
@@ -140,8 +128,7 @@ static status add_shapes(struct store *store, const struct scene *scene, struct 
     STATEMENT statement = NULL;
     TRY(sql_prepare(store->db, "INSERT OR IGNORE INTO shape_file (hash, bytes) VALUES (?1, ?2)", &statement, doing,
                     error));
-    sql_bind_text(statement, 1, files[i]->hash);
-    sqlite3_bind_blob(statement, 2, files[i]->bytes, (int)files[i]->size, SQLITE_STATIC);
+    SQL_BIND(statement, sql_of_text(files[i]->hash), sql_of_bytes(files[i]->bytes, files[i]->size));
     TRY(sql_run(statement, doing, error));
   }
   return STATUS_OK;
@@ -170,11 +157,8 @@ static status add_point_row(struct store *store, const struct scene *scene, cons
                        adding_point, error));
   store_point_hash(scene, hash);
   digest_point(scene, hash, json, digest);
-  sqlite3_bind_blob(store->point, 1, hash, sizeof hash, SQLITE_STATIC);
-  sql_bind_text(store->point, 2, scene->kind->name);
-  sql_bind_text(store->point, 3, scene->name);
-  sql_bind_text(store->point, 4, json);
-  sqlite3_bind_blob(store->point, 5, digest, sizeof digest, SQLITE_STATIC);
+  SQL_BIND(store->point, sql_of_bytes(hash, sizeof hash), sql_of_text(scene->kind->name), sql_of_text(scene->name),
+           sql_of_text(json), sql_of_bytes(digest, sizeof digest));
   const status result = sql_run(store->point, adding_point, error);
   *point_id = sqlite3_last_insert_rowid(store->db);
   return result;
@@ -228,8 +212,7 @@ static status add_to_campaign(struct store *store, int64_t campaign_id, int64_t 
   TRY(sql_prepare_once(store->db, &store->campaign_point,
                        "INSERT OR IGNORE INTO campaign_point (campaign_id, point_id) VALUES (?1, ?2)", adding_point,
                        error));
-  sqlite3_bind_int64(store->campaign_point, 1, campaign_id);
-  sqlite3_bind_int64(store->campaign_point, 2, point_id);
+  SQL_BIND(store->campaign_point, sql_of_integer(campaign_id), sql_of_integer(point_id));
   return sql_run(store->campaign_point, adding_point, error);
 }
 
@@ -256,57 +239,64 @@ status store_add_point(struct store *store, int64_t campaign_id, const struct sc
 
 /* ---- what follows from a run's fragments: masses, spectrum, and their part of the point's running sums ---- */
 
-/* Fills store->blob with the masses of a run, little-endian float64. */
-static status encode_masses(struct store *store, const struct store_run *run, struct error *error) {
-  if (!grow_room(&store->blob, &store->blob_capacity, 8 * run->fragment_count + 8, sizeof *store->blob))
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
-  for (size_t i = 0; i < run->fragment_count; i++) {
-    uint64_t bits;
-    memcpy(&bits, &run->fragments[i].mass, sizeof bits);
-    bits = htole64(bits);
-    memcpy(store->blob + 8 * i, &bits, sizeof bits);
-  }
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "masses are stored as little-endian float64");
+
+/* Makes room in store->masses. */
+static status make_room(struct store *store, size_t count, struct error *error) {
+  return grow_room(&store->masses, &store->mass_capacity, count + 1, sizeof *store->masses)
+             ? STATUS_OK
+             : status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+}
+
+status store_take_masses(struct store *store, sqlite3_stmt *row, int column, size_t *count, struct error *error) {
+  const void *bytes = sqlite3_column_blob(row, column);
+  *count = (size_t)sqlite3_column_bytes(row, column) / sizeof *store->masses;
+  TRY(make_room(store, *count, error));
+  if (*count)
+    memcpy(store->masses, bytes, *count * sizeof *store->masses);
   return STATUS_OK;
 }
 
-static status add_masses(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
-  TRY(sql_prepare_once(store->db, &store->masses, "INSERT INTO fragment_mass (run_id, masses) VALUES (?1, ?2)",
-                       adding_run, error));
-  sqlite3_bind_int64(store->masses, 1, run_id);
-  sqlite3_bind_blob64(store->masses, 2, store->blob, 8 * run->fragment_count, SQLITE_STATIC);
-  return sql_run(store->masses, adding_run, error);
-}
-
-/* Fills store->bins with the bins of the run. */
-static status fill_bins(struct store *store, size_t *count, const struct store_run *run, struct error *error) {
-  double *masses = malloc((run->fragment_count + 1) * sizeof *masses);
-  if (!masses)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+static status take_fragments(struct store *store, const struct store_run *run, struct error *error) {
+  TRY(make_room(store, run->fragment_count, error));
   for (size_t i = 0; i < run->fragment_count; i++)
-    masses[i] = run->fragments[i].mass;
-  *count = spectrum_fill(run->fragment_count, masses, store->bins, store->bin_capacity);
-  if (*count > store->bin_capacity) {
-    free(store->bins);
-    store->bin_capacity = *count + 64;
-    store->bins = calloc(store->bin_capacity, sizeof *store->bins);
-    if (store->bins)
-      *count = spectrum_fill(run->fragment_count, masses, store->bins, store->bin_capacity);
-    else
-      store->bin_capacity = 0;
-  }
-  free(masses);
-  return store->bins || *count == 0 ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+    store->masses[i] = run->fragments[i].mass;
+  return STATUS_OK;
 }
 
-static status cover_bins(struct store *store, int64_t lowest, int64_t highest, struct error *error) {
-  bool none = store->lowest_bin > store->highest_bin;
-  if (!none && lowest >= store->lowest_bin && highest <= store->highest_bin)
+/* store->masses as the value of a row. */
+static struct sql_value masses_of(const struct store *store, const struct store_run *run) {
+  return sql_of_bytes(store->masses, run->fragment_count * sizeof *store->masses);
+}
+
+static status add_masses(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
+  TRY(sql_prepare_once(store->db, &store->mass_row, "INSERT INTO fragment_mass (run_id, masses) VALUES (?1, ?2)",
+                       adding_run, error));
+  SQL_BIND(store->mass_row, sql_of_integer(run_id), masses_of(store, run));
+  return sql_run(store->mass_row, adding_run, error);
+}
+
+status store_make_bins(struct store *store, size_t n, size_t *count, struct error *error) {
+  *count = spectrum_fill(n, store->masses, store->bins, store->bin_capacity);
+  if (*count <= store->bin_capacity)
+    return STATUS_OK;
+  if (!grow_room(&store->bins, &store->bin_capacity, *count, sizeof *store->bins))
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+  *count = spectrum_fill(n, store->masses, store->bins, store->bin_capacity);
+  return STATUS_OK;
+}
+
+/* Table bin covers the `count` bins of a run, in ascending order, from now on. */
+static status cover_bins(struct store *store, size_t count, struct error *error) {
+  int64_t lowest = count ? store->bins[0].bin : INT64_MAX, highest = count ? store->bins[count - 1].bin : INT64_MIN;
+  const bool none = store->lowest_bin > store->highest_bin;
+  if (count == 0 || (!none && lowest >= store->lowest_bin && highest <= store->highest_bin))
     return STATUS_OK;
   if (!none && store->lowest_bin < lowest)
     lowest = store->lowest_bin;
   if (!none && store->highest_bin > highest)
     highest = store->highest_bin;
-  status result = sums_cover_bins(store->db, lowest, highest, error);
+  const status result = sums_cover_bins(store->db, lowest, highest, error);
   store->lowest_bin = lowest;
   store->highest_bin = highest;
   return result;
@@ -314,15 +304,8 @@ static status cover_bins(struct store *store, int64_t lowest, int64_t highest, s
 
 enum { TOGETHER = 10 }; /* rows per INSERT: starting a statement costs as much as inserting three rows */
 
-static void bind_bin(sqlite3_stmt *statement, int index, int64_t run_id, const struct spectrum_bin_row *bin) {
-  sqlite3_bind_int64(statement, index, run_id);
-  sqlite3_bind_int(statement, index + 1, bin->bin);
-  sqlite3_bind_int64(statement, index + 2, bin->count);
-  sqlite3_bind_double(statement, index + 3, bin->mass);
-}
-
 static status insert_bins(struct store *store, int64_t run_id, size_t count, struct error *error) {
-#define INSERT_SPECTRUM "INSERT INTO spectrum (run_id, bin, count, mass) VALUES (?, ?, ?, ?)"
+#define INSERT_SPECTRUM "INSERT INTO main.spectrum (run_id, bin, count, mass) VALUES (?, ?, ?, ?)"
 #define TWO_MORE        ", (?, ?, ?, ?), (?, ?, ?, ?)"
   TRY(sql_prepare_once(store->db, &store->spectrum, INSERT_SPECTRUM, adding_run, error));
   TRY(sql_prepare_once(store->db, &store->spectrum_together,
@@ -330,50 +313,26 @@ static status insert_bins(struct store *store, int64_t run_id, size_t count, str
   for (size_t i = 0, together; i < count; i += together) {
     together = i + TOGETHER <= count ? TOGETHER : 1;
     sqlite3_stmt *statement = together > 1 ? store->spectrum_together : store->spectrum;
-    for (size_t k = 0; k < together; k++)
-      bind_bin(statement, 1 + 4 * (int)k, run_id, &store->bins[i + k]);
+    for (size_t k = 0; k < together; k++) {
+      const struct spectrum_bin_row *bin = &store->bins[i + k];
+      const int first = 1 + 4 * (int)k;
+      sqlite3_bind_int64(statement, first, run_id);
+      sqlite3_bind_int(statement, first + 1, bin->bin);
+      sqlite3_bind_int64(statement, first + 2, bin->count);
+      sqlite3_bind_double(statement, first + 3, bin->mass);
+    }
     TRY(sql_run(statement, adding_run, error));
   }
   return STATUS_OK;
 }
 
-/* Adds the run to its point's running sums. */
-static status add_sums(struct store *store, const struct store_run *run, size_t count, struct error *error) {
-  bool counted = store_run_counts(run);
-  int version = run->kind->results_version;
-  int64_t fragments = 0;
-  double mass = 0;
-  for (size_t i = 0; counted && i < count; i++) {
-    const struct spectrum_bin_row *bin = &store->bins[i];
-    struct sums_row *row = sums_at(&store->sums, run->point_id, version, bin->bin);
-    if (!row)
-      return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
-    row->runs++;
-    row->count += bin->count;
-    row->count_squared += bin->count * bin->count;
-    row->mass += bin->mass;
-    fragments += bin->count;
-    mass += bin->mass;
-  }
-  struct sums_row *total = sums_at(&store->sums, run->point_id, version, SPECTRUM_NO_BIN);
-  if (!total)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
-  total->runs += counted;
-  total->censored += counted && run->outcome->state == OUTCOME_END_TIME;
-  total->surplus += run->surplus;
-  total->failed += !counted && !run->surplus;
-  total->count += fragments;
-  total->mass += mass;
-  return STATUS_OK;
-}
-
-static status add_spectrum(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
-  size_t count = 0;
-  TRY(fill_bins(store, &count, run, error));
-  if (count)
-    TRY(cover_bins(store, store->bins[0].bin, store->bins[count - 1].bin, error));
+status store_add_spectrum(struct store *store, int64_t run_id, const struct sums_run *run, size_t count,
+                          struct error *error) {
+  TRY(cover_bins(store, count, error));
   TRY(insert_bins(store, run_id, count, error));
-  return add_sums(store, run, count, error);
+  return sums_add(&store->sums, run, count, store->bins)
+             ? STATUS_OK
+             : status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
 }
 
 /* ---- runs ---- */
@@ -423,7 +382,7 @@ static void digest_run(const struct store *store, const struct store_kind *kind,
   digest_add_fields(&sum, &store->outcome_names, &outcome_table, 0, run->outcome);
   if (run->result)
     digest_add_fields(&sum, &kind->names, run->kind->results, 0, run->result);
-  digest_add(&sum, store->name_of.masses, 0, sql_of_bytes(store->blob, 8 * run->fragment_count));
+  digest_add(&sum, store->name_of.masses, 0, masses_of(store, run));
   for (size_t i = 0; i < run->estimate_count; i++)
     digest_add_fields(&sum, &store->estimate_names, &estimates_table, i, &run->estimates[i]);
   digest_write(sum, digest);
@@ -461,15 +420,19 @@ static status add_result(struct store *store, struct store_kind *kind, int64_t r
 static status add_run(struct store *store, const struct store_run *run, struct error *error) {
   bool grown = false;
   int64_t run_id = 0;
+  size_t bins = 0;
   struct store_kind *kind = NULL;
   TRY(find_kind(store, run->kind, &kind, &grown, error));
   if (grown)
     TRY(views_regenerate(store->db, error));
-  TRY(encode_masses(store, run, error));
+  TRY(take_fragments(store, run, error));
   TRY(add_row(store, kind, run, &run_id, error));
   TRY(add_result(store, kind, run_id, run->result, error));
   TRY(add_masses(store, run_id, run, error));
-  TRY(add_spectrum(store, run_id, run, error));
+  const struct sums_run sums = {run->point_id, run->kind->results_version, store_run_counts(run),
+                                run->outcome->state == OUTCOME_END_TIME, run->surplus};
+  TRY(store_make_bins(store, run->fragment_count, &bins, error));
+  TRY(store_add_spectrum(store, run_id, &sums, bins, error));
   if (run->estimate_count > 0)
     TRY(store_set_estimates_rows(store, run_id, run->estimate_count, run->estimates, error));
 

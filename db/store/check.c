@@ -10,7 +10,6 @@
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "db/store/views.h"
-#include "engine/grow.h"
 #include "engine/scene.h"
 #include "schemas/text.h"
 
@@ -179,69 +178,37 @@ static status check_files(struct report *report, struct error *error) {
   return result;
 }
 
-/* Compares the spectrum of a run with its masses, bit by bit. */
-static status check_spectrum(struct report *report, int64_t run_id, size_t n, const double *masses, sqlite3_stmt *rows,
-                             struct error *error) {
-  struct spectrum_bin_row bins[512];
-  size_t count = spectrum_fill(n, masses, bins, 512), i = 0;
-  bool same = count <= 512;
+status store_compare_bins(const struct store *store, sqlite3_stmt *rows, int64_t run_id, size_t count, bool *same,
+                          const char *doing, struct error *error) {
+  size_t i = 0;
   status result = STATUS_OK;
+  *same = true;
   sqlite3_bind_int64(rows, 1, run_id);
-  while (sql_next(rows, &result, checking, error)) {
-    same = same && i < count && sqlite3_column_int64(rows, 0) == bins[i].bin &&
-           sqlite3_column_int64(rows, 1) == bins[i].count && sqlite3_column_double(rows, 2) == bins[i].mass;
-    i++;
-  }
+  for (; sql_next(rows, &result, doing, error); i++)
+    *same = *same && i < count && sqlite3_column_int64(rows, 0) == store->bins[i].bin &&
+            sqlite3_column_int64(rows, 1) == store->bins[i].count &&
+            sqlite3_column_double(rows, 2) == store->bins[i].mass;
   sqlite3_reset(rows);
-  if (result == STATUS_OK && (!same || i != count))
-    say(report, "run %lld: its spectrum is not that of its masses", (long long)run_id);
+  *same = *same && i == count;
   return result;
 }
 
-/* Little-endian float64 from a blob. */
-static double mass_at(const unsigned char *bytes, size_t i) {
-  uint64_t bits = 0;
-  double mass;
-  for (size_t k = 8; k-- > 0;)
-    bits = bits << 8 | bytes[8 * i + k];
-  memcpy(&mass, &bits, sizeof mass);
-  return mass;
-}
-
-struct mass_list { /* grows to the longest run */
-  double *masses;
-  size_t count, capacity; /* bytes */
-};
-
-/* Reads the masses in column 1 of a row; the length is that of the blob, not from another column. */
-static status read_masses(struct mass_list *list, sqlite3_stmt *run, struct error *error) {
-  const unsigned char *bytes = sqlite3_column_blob(run, 1);
-  const size_t size = (size_t)sqlite3_column_bytes(run, 1);
-  if (size + sizeof(double) > list->capacity) {
-    if (!grow_block(&list->masses, 2 * size + sizeof(double)))
-      return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
-    list->capacity = 2 * size + sizeof(double);
-  }
-  list->count = size / sizeof(double);
-  for (size_t i = 0; i < list->count; i++)
-    list->masses[i] = mass_at(bytes, i);
-  return STATUS_OK;
-}
-
 /* Checks one run. Columns of `run`: run_id, masses, total mass, counts. */
-static status check_run(struct report *report, sqlite3_stmt *run, struct mass_list *list, sqlite3_stmt *spectrum,
-                        struct error *error) {
+static status check_run(struct report *report, sqlite3_stmt *run, sqlite3_stmt *spectrum, struct error *error) {
   const int64_t run_id = sqlite3_column_int64(run, 0);
+  const double *masses;
+  size_t n = 0, count = 0;
   if (sqlite3_column_type(run, 1) != SQLITE_BLOB || sqlite3_column_bytes(run, 1) % 8 != 0) {
     say(report, "run %lld: its masses are not a list of float64", (long long)run_id);
     return STATUS_OK;
   }
-  TRY(read_masses(list, run, error));
+  TRY(store_take_masses(report->store, run, 1, &n, error));
+  masses = report->store->masses;
   double total = 0, stored = sqlite3_column_double(run, 2);
-  bool descending = true;
-  for (size_t i = 0; i < list->count; i++) {
-    total += list->masses[i];
-    descending = descending && (i == 0 || list->masses[i] <= list->masses[i - 1]);
+  bool descending = true, same = false;
+  for (size_t i = 0; i < n; i++) {
+    total += masses[i];
+    descending = descending && (i == 0 || masses[i] <= masses[i - 1]);
   }
   if (!descending)
     say(report, "run %lld: its masses are not in descending order", (long long)run_id);
@@ -249,34 +216,24 @@ static status check_run(struct report *report, sqlite3_stmt *run, struct mass_li
   if (sqlite3_column_int(run, 3) && !(fabs(total - stored) <= 1e-9 * stored))
     say(report, "run %lld: its masses sum to %.17g kg, but its total mass is %.17g kg", (long long)run_id, total,
         stored);
-  return check_spectrum(report, run_id, list->count, list->masses, spectrum, error);
+  TRY(store_make_bins(report->store, n, &count, error));
+  TRY(store_compare_bins(report->store, spectrum, run_id, count, &same, checking, error));
+  if (!same)
+    say(report, "run %lld: its spectrum is not that of its masses", (long long)run_id);
+  return STATUS_OK;
 }
 
 static status check_masses(struct report *report, struct error *error) {
   STATEMENT runs = NULL;
   STATEMENT spectrum = NULL;
-  struct mass_list list = {0};
-  status result = sql_preparef(report->store->db, &runs, checking, error,
-                               "SELECT run_id, masses, %s, counts FROM fragment_mass JOIN run USING (run_id)",
-                               OUTCOME_NAME(total_mass));
-  if (result == STATUS_OK)
-    result = sql_prepare(report->store->db, "SELECT bin, count, mass FROM spectrum WHERE run_id = ?1 ORDER BY bin",
-                         &spectrum, checking, error);
-  while (sql_next(runs, &result, checking, error))
-    result = check_run(report, runs, &list, spectrum, error);
-  free(list.masses);
-  return result;
-}
-
-static status check_point_identities(struct report *report, const struct scene *scene, sqlite3_stmt *runs,
-                                     struct error *error) {
+  TRY(sql_preparef(report->store->db, &runs, checking, error,
+                   "SELECT run_id, masses, %s, counts FROM fragment_mass JOIN run USING (run_id)",
+                   OUTCOME_NAME(total_mass)));
+  TRY(sql_prepare(report->store->db, "SELECT bin, count, mass FROM spectrum WHERE run_id = ?1 ORDER BY bin", &spectrum,
+                  checking, error));
   status result = STATUS_OK;
-  while (sql_next(runs, &result, checking, error)) {
-    uint8_t identity[16];
-    scene_identity(scene, (uint64_t)sqlite3_column_int64(runs, 1), identity);
-    if (sqlite3_column_bytes(runs, 2) != 16 || memcmp(identity, sqlite3_column_blob(runs, 2), 16) != 0)
-      say(report, "run %lld: its identity is not that of its scene and seed", (long long)sqlite3_column_int64(runs, 0));
-  }
+  while (sql_next(runs, &result, checking, error))
+    result = check_run(report, runs, spectrum, error);
   return result;
 }
 
@@ -288,12 +245,12 @@ static status check_identities(struct report *report, struct error *error) {
   struct error damaged = {0};
   if (store_point_shapes(report->store, 0, &damaged) != STATUS_OK)
     say(report, "%.600s", damaged.message);
-  status result = sql_prepare(report->store->db, "SELECT point_id, scene, scene_name, engine FROM point", &points,
-                              checking, error);
-  if (result == STATUS_OK)
-    result = sql_prepare(report->store->db,
-                         "SELECT run_id, seed, identity FROM run WHERE point_id = ?1 AND results_version = ?2", &runs,
-                         checking, error);
+  TRY(sql_prepare(report->store->db, "SELECT point_id, scene, scene_name, engine FROM point", &points, checking,
+                  error));
+  TRY(sql_prepare(report->store->db,
+                  "SELECT run_id, seed, identity FROM run WHERE point_id = ?1 AND results_version = ?2", &runs,
+                  checking, error));
+  status result = STATUS_OK;
   while (sql_next(points, &result, checking, error)) {
     struct scene *scene = NULL;
     struct error why = {0};
@@ -304,9 +261,14 @@ static status check_identities(struct report *report, struct error *error) {
       say(report, "point %lld: its scene cannot be read: %.600s", (long long)point_id, why.message);
       continue;
     }
-    sqlite3_bind_int64(runs, 1, point_id);
-    sqlite3_bind_int(runs, 2, scene->kind->results_version);
-    result = check_point_identities(report, scene, runs, error);
+    SQL_BIND(runs, sql_of_integer(point_id), sql_of_integer(scene->kind->results_version));
+    while (sql_next(runs, &result, checking, error)) {
+      uint8_t identity[16];
+      scene_identity(scene, (uint64_t)sqlite3_column_int64(runs, 1), identity);
+      if (sqlite3_column_bytes(runs, 2) != 16 || memcmp(identity, sqlite3_column_blob(runs, 2), 16) != 0)
+        say(report, "run %lld: its identity is not that of its scene and seed",
+            (long long)sqlite3_column_int64(runs, 0));
+    }
     sqlite3_reset(runs);
     scene_free(scene);
   }
@@ -410,11 +372,11 @@ static status check_units(struct report *report, struct error *error) {
 
 static status check_sums(struct report *report, struct error *error) {
   int64_t wrong = 0;
-  status result = sums_mismatches(report->store->db, &wrong, error);
-  if (result == STATUS_OK && wrong > 0)
+  TRY(sums_mismatches(report->store->db, &wrong, error));
+  if (wrong > 0)
     say(report, "running sums: %lld rows of point_total and point_spectrum differ from the runs they sum",
         (long long)wrong);
-  return result;
+  return STATUS_OK;
 }
 
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,

@@ -147,20 +147,6 @@ status store_digest_fields(const char *path, char digest[STORE_DIGEST_SIZE], str
 
 /* ---- digests of single rows, in their column `digest` ---- */
 
-static struct sql_value value_of(sqlite3_value *from) {
-  struct sql_value value = {.type = sqlite3_value_type(from)};
-  switch (value.type) {
-  case SQLITE_INTEGER: value.integer = sqlite3_value_int64(from); break;
-  case SQLITE_FLOAT: value.real = sqlite3_value_double(from); break;
-  case SQLITE_TEXT: value.bytes = sqlite3_value_text(from); break;
-  case SQLITE_BLOB: value.bytes = sqlite3_value_blob(from); break;
-  default: return value;
-  }
-  if (value.bytes)
-    value.size = (size_t)sqlite3_value_bytes(from);
-  return value;
-}
-
 /* row_digest(table, column, value, column, value, ...) */
 static void row_digest(sqlite3_context *context, int count, sqlite3_value **values) {
   const char *table = (const char *)sqlite3_value_text(values[0]);
@@ -172,7 +158,7 @@ static void row_digest(sqlite3_context *context, int count, sqlite3_value **valu
       sqlite3_result_error_nomem(context);
       return;
     }
-    digest_add(&sum, digest_name(table, column), 0, value_of(values[i + 1]));
+    digest_add(&sum, digest_name(table, column), 0, sql_of_argument(values[i + 1]));
   }
   write_text(sum, text);
   sqlite3_result_text(context, text, -1, SQLITE_TRANSIENT);
@@ -345,15 +331,10 @@ status digest_rows_fill(sqlite3 *db, int64_t run_id, struct error *error) {
   TRY(sql_prepare(db, "UPDATE main.run SET digest = ?2 WHERE run_id = ?1", &update, doing, error));
   DIGEST_ROWS rows = digest_rows(db, DIGEST_RUNS, run_id, false, error);
   if (digest_rows_next(&rows)) {
-    sqlite3_bind_int64(update, 1, run_id);
-    sqlite3_bind_blob(update, 2, rows.digest, sizeof rows.digest, SQLITE_STATIC);
+    SQL_BIND(update, sql_of_integer(run_id), sql_of_bytes(rows.digest, sizeof rows.digest));
     TRY(sql_run(update, doing, error));
   }
   return digest_rows_end(&rows);
-}
-
-static struct digest digest_of_bytes(const uint8_t *bytes) {
-  return (struct digest){word_at(bytes, 8), word_at(bytes + 8, 8)};
 }
 
 status digest_set_fields(sqlite3 *db, int64_t run_id, const char *path, struct sql_value digest, struct error *error) {
@@ -370,11 +351,10 @@ status digest_set_fields(sqlite3 *db, int64_t run_id, const char *path, struct s
   status result = STATUS_OK;
   if (!sql_next(run, &result, noting, error))
     return result;
-  sqlite3_bind_int64(update, 1, run_id);
-  sql_bind_text(update, 2, path);
-  sql_bind(update, 3, digest);
+  SQL_BIND(update, sql_of_integer(run_id), sql_of_text(path), digest);
   if (sqlite3_column_bytes(run, 0) == sizeof bytes) {
-    sum = digest_of_bytes(sqlite3_column_blob(run, 0));
+    const uint8_t *stored = sqlite3_column_blob(run, 0);
+    sum = (struct digest){word_at(stored, 8), word_at(stored + 8, 8)};
     digest_add(&before, name, 0, sql_of_column(run, 1));
     sum.a -= before.a;
     sum.b -= before.b;

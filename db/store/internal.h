@@ -138,18 +138,19 @@ struct sums { /* all zero: empty */
   sqlite3_stmt *stale;       /* deletes the pooled estimates of a point with new runs */
 };
 
-/* The row to add to, zeros when new. NULL when memory ran out. Valid until the sums are written or forgotten. */
-struct sums_row *sums_at(struct sums *sums, int64_t point_id, int results_version, int bin);
+/* What the sums count of a run. */
+struct sums_run {
+  int64_t point_id;
+  int results_version;
+  bool counts, at_end_time, surplus;
+};
+/* Adds a run and its spectrum. False: memory ran out. */
+bool sums_add(struct sums *sums, const struct sums_run *run, size_t count, const struct spectrum_bin_row *bins);
 /* Writes everything gathered, in ascending order of its key, and sets it to zero. */
 status sums_write(struct sums *sums, sqlite3 *db, struct error *error);
 void sums_forget(struct sums *sums); /* what was gathered, after a rollback */
 void sums_clear(struct sums *sums);  /* everything, statements too */
 
-/* For a merge, within its transaction. The runs first..last and their masses are already copied; table temp.merge_run
- * maps their numbers (ours) to those in the attached store `other` (theirs). Copies their spectra, adds them to the
- * sums and covers their bins, with a bounded number of sums in memory. STATUS_CONTENT: a spectrum does not match the
- * masses. */
-status sums_copy(struct sums *sums, sqlite3 *db, int64_t first, int64_t last, struct error *error);
 /* Rebuilds the sums of one point from the rows of run and spectrum. Within the caller's transaction. */
 status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error);
 /* *count: rows whose running sums differ from the sums of their rows (doubles: by more than rounding). */
@@ -231,14 +232,14 @@ struct store {
     struct digest identity, replicate, seed, results_version, fields_digest, masses;
   } name_of; /* columns of a run's digest */
   struct sql_insert run, attempt, estimate;
-  sqlite3_stmt *masses, *spectrum, *spectrum_together;
+  sqlite3_stmt *mass_row, *spectrum, *spectrum_together;
   sqlite3_stmt *point_find, *point, *point_input, *campaign_point, *axis_find;
   struct store_kind kinds[LIMITS_ENGINES];
   size_t kind_count;
 
-  uint8_t *blob; /* scratch for masses */
-  size_t blob_capacity;
-  struct spectrum_bin_row *bins;
+  double *masses; /* scratch: of one run */
+  size_t mass_capacity;
+  struct spectrum_bin_row *bins; /* scratch: spectrum of these masses */
   size_t bin_capacity;
 };
 
@@ -253,6 +254,18 @@ static inline bool store_run_counts(const struct store_run *run) {
   return !run->surplus && outcome_counts(run->outcome);
 }
 
+/* Fills store->masses with a column of fragment_mass. STATUS_MEMORY. */
+status store_take_masses(struct store *store, sqlite3_stmt *row, int column, size_t *count, struct error *error);
+/* Fills store->bins with the spectrum of the first n of store->masses: `count` bins. STATUS_MEMORY. */
+status store_make_bins(struct store *store, size_t n, size_t *count, struct error *error);
+/* Is the spectrum that is stored for a run the one in store->bins, bit by bit? `rows` selects bin, count and mass of
+ * run ?1, ordered by bin. */
+status store_compare_bins(const struct store *store, sqlite3_stmt *rows, int64_t run_id, size_t count, bool *same,
+                          const char *doing, struct error *error);
+/* Adds the rows of the spectrum in store->bins for a run, and its part of the point's running sums. Covers its bins in
+ * table bin. Within the open transaction. STATUS_CONTENT: no mass lies in such bins. */
+status store_add_spectrum(struct store *store, int64_t run_id, const struct sums_run *run, size_t count,
+                          struct error *error);
 /* The hash that identifies a point. */
 void store_point_hash(const struct scene *scene, uint8_t hash[16]);
 /* Reads the identities of the store, and its range of bins. error may be NULL. */

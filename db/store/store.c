@@ -376,7 +376,7 @@ static struct store *allocate(const char *path) {
 
 static void release(struct store *store) {
   sqlite3_stmt *const statements[] = {
-      store->run.statement, store->attempt.statement, store->estimate.statement, store->masses,
+      store->run.statement, store->attempt.statement, store->estimate.statement, store->mass_row,
       store->spectrum,      store->spectrum_together, store->point_find,         store->point,
       store->point_input,   store->campaign_point,    store->axis_find,
   };
@@ -394,7 +394,7 @@ static void release(struct store *store) {
   sqlite3_close(store->db);
   if (store->lock >= 0)
     close(store->lock); /* after SQLite has closed the file (take_lock) */
-  free(store->blob);
+  free(store->masses);
   free(store->bins);
   free(store->path);
   free(store);
@@ -732,9 +732,7 @@ int store_attempts(struct store *store, const uint8_t identity[16], double time_
                   "'time_limit' AND (?2 = 0 OR "
                   "limited_to < ?2)) AND NOT (reason = 'memory_limit' AND (?3 = 0 OR limited_to < ?3))",
                   &statement, "counting attempts", NULL) == STATUS_OK) {
-    sqlite3_bind_blob(statement, 1, identity, 16, SQLITE_STATIC);
-    sqlite3_bind_double(statement, 2, time_limit);
-    sqlite3_bind_double(statement, 3, memory_limit);
+    SQL_BIND(statement, sql_of_bytes(identity, 16), sql_of_real(time_limit), sql_of_real(memory_limit));
     if (sqlite3_step(statement) == SQLITE_ROW)
       count = sqlite3_column_int(statement, 0);
   }
