@@ -125,6 +125,11 @@ static void figures_by_hand(void **state) {
     assert_true(fabs(ran.outcome.energy_error - drift / input) < 1e-12 && ran.outcome.energy_error > 1e-7);
     assert_true(fabs(ran.outcome.kinetic_energy_share - translation / input) < 1e-12 &&
                 (c == 2 || translation > 0.01 * input));
+    if (c == 0) /* all momentum of the start is the projectile's */
+      assert_true(r->ejecta.momentum > 0 &&
+                  fabs(r->ejecta.momentum_enhancement - (1 + r->ejecta.momentum / -momentum[0][2])) < 1e-9);
+    else
+      assert_true(isnan(r->ejecta.momentum_enhancement));
     if (c == 2) {
       const double largest = fmax(scale[0], scale[1]) * sph_run_extent(run);
       assert_true(scale[1] < 0.7 * scale[0] && fabs(ran.outcome.momentum_error / (sqrt(change) / scale[0]) - 1) < 1e-4);

@@ -174,12 +174,16 @@ struct sph_crater_options sph_report_crater_options(const struct sph_run *run) {
 
 /* The results that only one protocol has. */
 static status report_protocol(const struct sph_run *run, struct sph_results *results, struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
   struct sph_crater_options options;
-  switch (run->inputs.kind) {
+  switch (in->kind) {
   case SPH_STRETCH: return report_stretch(run, results, error);
   case SPH_IMPACT:
     options = sph_report_crater_options(run);
-    return sph_crater_measure(run->start, run->now, &options, results, error);
+    TRY(sph_crater_measure(run->start, run->now, &options, results, error));
+    results->ejecta.momentum_enhancement = sph_results_finite(
+        1 + results->ejecta.momentum / (run->range[1].mass * in->impact.speed * cos(in->impact.angle)));
+    return STATUS_OK;
   case SPH_COLLISION: results->rebound = rebound(run); return STATUS_OK;
   case SPH_PISTON: sph_plate_report(run, results); return STATUS_OK;
   case SPH_VIBRATION: /* half a period between two crossings of zero */

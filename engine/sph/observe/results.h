@@ -24,7 +24,7 @@ struct sph_results {
     double mass, angle;
   } second;
   struct {
-    double mass_fraction, momentum;
+    double mass_fraction, momentum, momentum_enhancement;
   } ejecta;
   struct {
     double depth, radius, volume, compaction_share;

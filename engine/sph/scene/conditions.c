@@ -280,7 +280,8 @@ static double crush(const void *inputs) {
   "largest_fraction second_fraction dust_fraction mean_fragment_mass mean_fragment_mass_rest kinetic_energy_share "    \
   "first_damage undamaged_fraction mean_damage largest.bare_fraction largest.veneer_fraction "                         \
   "largest.dynamic_fraction largest.axis_middle largest.axis_short largest.speed second.mass second.angle "            \
-  "ejecta.mass_fraction ejecta.momentum crater.depth crater.radius crater.volume crater.compaction_share "             \
+  "ejecta.mass_fraction ejecta.momentum ejecta.momentum_enhancement crater.depth crater.radius crater.volume "         \
+  "crater.compaction_share "                                                                                           \
   "energy.kinetic energy.internal mean_distention compaction.mass_fraction compaction.volume compaction.depth "        \
   "compaction.reach"
 
