@@ -363,6 +363,28 @@ static void the_total_of_a_rule_is_met(void **state) {
   campaign_free(campaign);
 }
 
+/* Every line of progress tells all runs, also those of points that nobody has met yet. */
+static void the_total_counts_points_not_met(void **state) {
+  (void)state;
+  char *text = NULL, *rest = NULL;
+  size_t size = 0;
+  int lines = 0;
+  struct driver_summary summary;
+  struct campaign *campaign = play_campaign(30, 1, 4);
+  FILE *out = open_memstream(&text, &size);
+  struct play play = {.slots = 2, .order = 3, .progress = progress_create(out, PROGRESS_PLAIN, false, 0)};
+  assert_int_equal(play_once(&play, campaign, in("unmet.db"), &summary), STATUS_OK);
+  progress_free(play.progress);
+  fclose(out);
+  for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest), lines++)
+    if (!strstr(line, " of 120 runs"))
+      fail_msg("not of 120 runs: %s", line);
+  assert_int_equal(lines, 21); /* one for each 5 %, and the last one */
+  free(text);
+  free(play.says);
+  campaign_free(campaign);
+}
+
 static void equal_points_are_computed_once(void **state) {
   (void)state;
   const char *path = in("equal.db");
@@ -426,6 +448,7 @@ int main(void) {
       cmocka_unit_test(fields_are_kept_as_asked),
       cmocka_unit_test(fields_that_cannot_be_written_stop_the_campaign),
       cmocka_unit_test(the_total_of_a_rule_is_met),
+      cmocka_unit_test(the_total_counts_points_not_met),
       cmocka_unit_test(equal_points_are_computed_once),
       cmocka_unit_test(broken_answers_are_refused),
   };

@@ -188,6 +188,27 @@ static void what_cannot_run_is_refused(void **state) {
   scene_free(scene);
 }
 
+/* The longest step of a run is that of its system, which test_dem_motion knows; the search for it ends within 1e-7 of
+ * its square. It is accepted, and anything longer is refused. */
+static void the_longest_step_is_the_systems(void **state) {
+  (void)state;
+  const char *const integrators[] = {"fidelity.integrator=verlet", "fidelity.integrator=gear"};
+  for (int i = 0; i < 2; i++) {
+    struct dem_inputs inputs = DEM_CASE("uniaxial", integrators[i]);
+    struct dem_run *run;
+    struct error error = {0};
+    assert_int_equal(dem_run_create(&inputs, 1, &run, &error), STATUS_OK);
+    const double longest = run->stable_time_step;
+    assert_true(fabs(dem_system_stable_time_step(run->system) / longest - 1) < 1e-7);
+    dem_run_free(run);
+    inputs.fidelity.time_step = longest;
+    assert_int_equal(dem_run_create(&inputs, 1, &run, &error), STATUS_OK);
+    dem_run_free(run);
+    inputs.fidelity.time_step = nextafter(longest, 1);
+    refuse(inputs, "unstable above");
+  }
+}
+
 /* A small disc whose run ends soon. */
 static struct dem_inputs small(void) {
   return DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m", "stop.end_time=2 ms");
@@ -450,6 +471,7 @@ int main(void) {
                                      cmocka_unit_test(explosion_starts_as_the_paper_says),
                                      cmocka_unit_test(impact_and_collision_start),
                                      cmocka_unit_test(what_cannot_run_is_refused),
+                                     cmocka_unit_test(the_longest_step_is_the_systems),
                                      cmocka_unit_test(chunks_do_not_matter),
                                      cmocka_unit_test(stop_rules),
                                      cmocka_unit_test(completed_needs_the_least_time),

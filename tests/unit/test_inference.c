@@ -334,6 +334,35 @@ static void directions_of_a_linear_model(void **state) {
   assert_true(identify_mixed(&parts, 1, 0) && !identify_mixed(&parts, 1, 1) && identify_mixed(&parts, 1, 2));
 }
 
+/* y = z^2, known within 0.5, at 64 nodes: information (2 z)^2 / 0.25, whose median is that of the two in the middle. */
+static void information_is_a_median_over_nodes(void **state) {
+  (void)state;
+  enum { POINTS_OF_CURVE = 9, MIDDLE = 64 / 2 };
+  double x[POINTS_OF_CURVE], y[POINTS_OF_CURVE], z[64], weight[64];
+  for (size_t i = 0; i < POINTS_OF_CURVE; i++) {
+    x[i] = 0.5 * (double)i - 2;
+    y[i] = x[i] * x[i];
+  }
+  for (size_t n = 0; n < 64; n++) {
+    z[n] = 0.2 + 0.02 * (double)(37 * n % 64); /* every rank once, in no order */
+    weight[n] = 1 / 64.0;
+  }
+  const struct seed_scatter none = {.constant = -100, .inputs = 1};
+  const struct posterior_datum data = {.error = 0.5,
+                                       .specimens = 1,
+                                       .surface = surface_of(POINTS_OF_CURVE, x, y, 0, 0),
+                                       .scatter = &none};
+  const struct posterior_model model = {.inputs = 1, .outputs = 1, .data = &data, .correlation = &(double){1}};
+  const struct posterior posterior = {.count = 64, .inputs = 1, .z = z, .weight = weight};
+  struct identify found;
+  identify_find(&model, &posterior, &found);
+  const double low = 2 * (0.2 + 0.02 * (MIDDLE - 1)), high = 2 * (0.2 + 0.02 * MIDDLE);
+  const double expected = (low * low + high * high) / 2 / 0.25;
+  /* The next rank is 5 % away, so half of it 2.4 %. */
+  assert_near(found.direction[0].information, expected, 0.005 * expected);
+  kriging_free(data.surface);
+}
+
 /* A product and a sum: only u0 + u1 is determined, or only a ring. */
 static double sum_only(const double *u, size_t k, uint64_t seed) {
   (void)k;
@@ -514,6 +543,7 @@ int main(void) {
       cmocka_unit_test(kriging_of_noise_keeps_its_priors),
       cmocka_unit_test(statistics_of_weighted_nodes),
       cmocka_unit_test(directions_of_a_linear_model),
+      cmocka_unit_test(information_is_a_median_over_nodes),
       cmocka_unit_test(posterior_is_that_of_a_linear_model),
       cmocka_unit_test(ridges_are_seen),
       cmocka_unit_test(ridges_follow_unequal_slopes),

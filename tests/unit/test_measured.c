@@ -202,7 +202,11 @@ static void distances(void **state) {
   near(match.distance, 0.5);
   near(match.fragments, 2);
   near(match.simulated.mean, 2);
-  near(match.share + 1, 1); /* no run differs from the others at all */
+  near(match.share + 1, 1);         /* no run differs from the others at all */
+  for (size_t n = 1; n <= 4; n++) { /* a share of one or two runs says nothing */
+    assert_int_equal(measured_compare(&m, &(struct pooled_runs){n, first, masses}, NAN, &match, &error), STATUS_OK);
+    assert_true(n < 3 ? isnan(match.share) : match.share == 0);
+  }
 
   /* From 1 kg: shares of 1, 3/4, 1/2, 1/4 at 1, 2, 3, 4; measured 1, 1, 1/2, 1/2. Greatest just below 2.5 */
   assert_int_equal(measured_compare(&m, &runs, 1, &match, &error), STATUS_OK);
