@@ -491,6 +491,10 @@ void scene_free(struct scene *scene) {
   free(scene);
 }
 
+void scene_drop(struct scene **scene) {
+  scene_free(*scene);
+}
+
 /* ---- overrides ---- */
 
 /* Another material in place of the document's own one (`custom`): all values of that one go, also those from its file.

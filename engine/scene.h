@@ -49,6 +49,9 @@ status scene_parse(const char *name, const char *text, struct scene **out, struc
 status scene_parse_json(const char *name, const char *json, struct scene **out, struct error *error);
 struct scene *scene_copy(const struct scene *scene);
 void scene_free(struct scene *scene);
+/* A scene that frees itself where its block is left: SCENE scene = NULL; */
+#define SCENE __attribute__((cleanup(scene_drop))) struct scene *
+void scene_drop(struct scene **scene); /* for SCENE */
 
 /* Overrides one input by path or unique suffix, from text ("5 km/s") or as a value. Inputs that follow from it and were
  * not given are completed again. The name of a material replaces the document's own material with all its values.

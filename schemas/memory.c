@@ -14,6 +14,12 @@ void memory_refused(void) {
   _exit(STATUS_MEMORY); /* exit() would run handlers that need memory, also those of MPI and HDF5 */
 }
 
+void memory_free(void *pointer) {
+  void *owned;
+  memcpy(&owned, pointer, sizeof owned);
+  free(owned);
+}
+
 void *memory_small(size_t count, size_t size) {
   assert(size == 0 || count <= MEMORY_SMALL / size);
   void *memory = calloc(count ? count : 1, size ? size : 1);

@@ -13,6 +13,10 @@ enum { MEMORY_SMALL = 1 << 16 }; /* bytes, the largest allocation here */
 void *memory_small(size_t count, size_t size) __attribute__((malloc, returns_nonnull));
 /* A copy of a text of less than MEMORY_SMALL bytes; never NULL. The caller frees it. */
 char *memory_small_text(const char *text) __attribute__((malloc, returns_nonnull));
+/* A pointer declared OWNED is freed where its block is left, so that TRY and return are allowed anywhere:
+ *   OWNED char *text = NULL; */
+#define OWNED __attribute__((cleanup(memory_free)))
+void memory_free(void *pointer); /* for OWNED: frees what the pointer at this address points to */
 /* Ends the process as above, where memory that constants bound was refused elsewhere. */
 void memory_refused(void) __attribute__((noreturn));
 

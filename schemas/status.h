@@ -39,7 +39,7 @@ status status_fail(struct error *error, status code, const char *format, ...) __
 const char *status_meaning(status code);
 
 /* Returns from the calling function with the status of `call` unless it is STATUS_OK. Only where that function owns
- * nothing which it would have to free. */
+ * nothing, or what it owns releases itself (OWNED in schemas/memory.h). */
 #define TRY(call)                                                                                                      \
   do {                                                                                                                 \
     const status try_status = (call);                                                                                  \

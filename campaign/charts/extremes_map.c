@@ -6,6 +6,7 @@
 
 #include "analysis/pictures/picture.h"
 #include "db/ask/ask.h"
+#include "schemas/memory.h"
 
 enum { TILES = 10, MOST_ROWS = 400, NAME = 128 };
 
@@ -71,7 +72,7 @@ static size_t make_tiles(struct row *row) {
 }
 
 static status draw(const struct collecting *all, const char *path, double width, struct error *error) {
-  struct picture_margin *margin = calloc(all->count + 1, sizeof *margin);
+  OWNED struct picture_margin *margin = calloc(all->count + 1, sizeof *margin);
   if (!margin)
     return status_fail(error, STATUS_MEMORY, "no memory for the picture");
   for (size_t k = 0; k < all->count; k++) {
@@ -81,10 +82,7 @@ static status draw(const struct collecting *all, const char *path, double width,
     margin[k].count = make_tiles(row);
     margin[k].tile = row->tile;
   }
-  const status code = picture_margins(path, width, "Safe, warned and refused runs by input (SI units)", all->count,
-                                      margin, error);
-  free(margin);
-  return code;
+  return picture_margins(path, width, "Safe, warned and refused runs by input (SI units)", all->count, margin, error);
 }
 
 status extremes_map_draw(struct store *store, const char *path, double width, struct error *error) {

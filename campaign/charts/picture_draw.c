@@ -145,9 +145,8 @@ static status draw_profile(const char *fields, const char *picture, const struct
   double *depth = NULL;
   char unit[32] = "", title[FIELD_TEXT_SIZE];
   size_t count = 0;
-  status code = picture_cloud_read(fields, &cloud, error);
-  if (!code)
-    code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error);
+  TRY(picture_cloud_read(fields, &cloud, error));
+  status code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error);
   for (size_t k = 0; !code && k < panels; k++) {
     code = read_panel(fields, names[k], count, &panel[k], error);
     const bool share = strcmp(names[k], "damage") == 0;

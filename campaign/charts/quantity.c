@@ -12,6 +12,7 @@
 #include "db/ask/ask.h"
 #include "engine/grow.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 
 /* Columns of ask_group after the axes. */
 enum { VERSION = 1, MEAN = 6, LOW = 10, HIGH = 11, RESOLUTION = 13, DOUBTFUL = 16, COLUMNS = 18 };
@@ -208,13 +209,8 @@ static status find_line(struct plot *plot, const struct row *row, struct line **
   if (plot->count == MOST_LINES)
     return status_fail(error, STATUS_USAGE, "a chart has at most %d lines: choose a --by with fewer values",
                        MOST_LINES);
-  struct line *line = &plot->line[plot->count];
-  line->means = malloc(MOST_MEANS * sizeof *line->means);
-  if (!line->means)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
-  line->first = row;
-  plot->count++;
-  *found = line;
+  *found = &plot->line[plot->count++];
+  **found = (struct line){.first = row, .means = memory_small(MOST_MEANS, sizeof *(*found)->means)};
   return STATUS_OK;
 }
 
@@ -276,8 +272,11 @@ static status add_doubts(struct store *store, const char *quantity, char *captio
   return STATUS_OK;
 }
 
+/* Takes the rows of a quantity as lines and draws them. */
 static status draw_lines(struct store *store, struct plot *plot, const struct picture_page *page, struct error *error) {
   const struct quantity *quantity = &plot->quantity;
+  for (size_t i = 0; i < quantity->count; i++)
+    TRY(add_mean(plot, &quantity->row[i], error));
   char x[CHARTS_LABEL], by[CHARTS_LABEL] = "", y[CHARTS_LABEL], name[CHARTS_LABEL], over[CHARTS_LABEL];
   char title[ASK_GROUP_POOLED + 3 * CHARTS_LABEL], caption[1200], intervals[600], resolution[400];
   char made[ASK_GROUP_POOLED + 40];
@@ -312,8 +311,6 @@ status quantity_plot(struct store *store, const char *x, const char *by, const c
                               "a plot has one axis below (--x), at most one input that tells its lines apart (--by, "
                               "another one), and one quantity",
                               &plot.quantity, error);
-  for (size_t i = 0; code == STATUS_OK && i < plot.quantity.count; i++)
-    code = add_mean(&plot, &plot.quantity.row[i], error);
   if (code == STATUS_OK)
     code = draw_lines(store, &plot, page, error);
   if (code == STATUS_OK)
@@ -374,12 +371,11 @@ status quantity_map(struct store *store, const char *x, const char *y, const cha
   struct quantity quantity = {0};
   status code = read_quantity(store, x, y, name, true, "a map needs two different inputs (--x, --y) and one quantity",
                               &quantity, error);
-  double(*tile)[4] = calloc(quantity.count + 1, sizeof *tile);
+  OWNED double(*tile)[4] = calloc(quantity.count + 1, sizeof *tile);
   if (code == STATUS_OK)
     code = tile ? make_tiles(store, &quantity, tile, page, error) : status_fail(error, STATUS_MEMORY, "out of memory");
   if (code == STATUS_OK)
     quantity_tell_resolution(store, name, quantity.pooled);
-  free(tile);
   free(quantity.row);
   return code;
 }

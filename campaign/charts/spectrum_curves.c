@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "campaign/terminal/uncertainty.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum { COLUMNS = 100 };
@@ -167,7 +168,7 @@ static status draw_picture(struct store *store, const struct curves *curves, con
   const struct measured *measured = choice->measured;
   const bool sizes = choice->density > 0;
   struct picture_series series[PICTURE_SERIES];
-  struct pooled_bin *bins = NULL;
+  OWNED struct pooled_bin *bins = NULL;
   size_t count = 0;
   char caption[CAPTION], label[300];
   struct pooled_form form = {.cumulative = choice->cumulative, .size = {choice->density, 3}};
@@ -186,9 +187,7 @@ static status draw_picture(struct store *store, const struct curves *curves, con
   const struct picture_words words = {sizes ? "Fragment sizes, pooled over runs" : "Fragment masses, pooled over runs",
                                       caption, sizes ? "fragment size L (m)" : "fragment mass m (kg)",
                                       names[sizes][choice->cumulative]};
-  const status code = picture_spectrum(page, &words, &form, count, series, error);
-  free(bins);
-  return code;
+  return picture_spectrum(page, &words, &form, count, series, error);
 }
 
 static void print_plots(const struct curves *curves, bool ascii) {
@@ -225,9 +224,7 @@ static status take_curves(struct store *store, bool with_rivals, struct curves *
 
 status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice,
                             const struct spectrum_drawing *drawing, struct error *error) {
-  struct curves *curves = calloc(1, sizeof *curves);
-  if (!curves)
-    return status_fail(error, STATUS_MEMORY, "no memory for the spectra");
+  OWNED struct curves *curves = memory_small(1, sizeof *curves);
   curves->choice = choice;
   curves->most = choice->measured ? PICTURE_SERIES - 1 : PICTURE_SERIES;
   status code = take_curves(store, drawing->text, curves, error);
@@ -247,6 +244,5 @@ status spectrum_curves_draw(struct store *store, const struct spectrum_choice *c
     free(curve->thin);
     free(curve->bins);
   }
-  free(curves);
   return code;
 }

@@ -152,23 +152,18 @@ static status print_bibtex(const struct scene *scene, struct error *error) {
   return table_flush(stdout, error);
 }
 
-static status print_table(const struct scene *scene, enum table_format format, struct error *error) {
-  struct citing citing = {.table = table_new(format, stdout)};
-  table_columns(citing.table, (const char *const[]){"what", "source", "doi", NULL});
-  cite_scene(scene, &citing);
-  return table_end(citing.table, error);
-}
-
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  struct scene *scene = NULL;
+  SCENE scene = NULL;
   if (options->bibtex)
     TRY(table_text_only(line->format, "BibTeX", error));
-  status code = option_load_scene(line->arguments[0], &options->set, &scene, error);
-  if (code == STATUS_OK)
-    code = options->bibtex ? print_bibtex(scene, error) : print_table(scene, line->format, error);
-  scene_free(scene);
-  return code;
+  TRY(option_load_scene(line->arguments[0], &options->set, &scene, error));
+  if (options->bibtex)
+    return print_bibtex(scene, error);
+  TABLE table = table_new(line->format, stdout);
+  table_columns(table, (const char *const[]){"what", "source", "doi", NULL});
+  cite_scene(scene, &(struct citing){.table = table});
+  return table_end(table, error);
 }
 
 static const struct option_row rows[] = {

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "campaign/launch/launch.h"
 #include "db/store/store.h"
 
 #define COMMAND_ADDRESS(name_) &name_##_command,
@@ -32,19 +33,16 @@ const struct command *commands_find(const char *name, struct error *error) {
 status commands_ask(const struct command_line *line,
                     status (*ask)(struct store *store, const struct command_line *line, struct error *error),
                     struct error *error) {
-  struct store *store = NULL;
+  STORE store = NULL;
   TRY(store_open_reader(line->arguments[0], &store, error));
-  const status code = ask(store, line, error);
-  store_close(store, NULL);
-  return code;
+  return ask(store, line, error);
 }
 
 status commands_run(const struct command *command, const struct command_line *line, struct error *error) {
-  if (command->run)
-    return command->run(line, error);
   if (command->check)
     TRY(command->check(line, error));
-  return commands_ask(line, command->ask, error);
+  const status code = command->run ? command->run(line, error) : commands_ask(line, command->ask, error);
+  return command->has_farm ? launch_quiet_ranks(code, error) : code;
 }
 
 void commands_headline(const char *text, char *line, size_t size) {

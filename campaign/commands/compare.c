@@ -31,26 +31,25 @@ static void print(struct table *table, const struct ask_pairs_row *row, struct a
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  struct ask_pairs *pairs = NULL;
+  ASK_PAIRS pairs = NULL;
   TRY(ask_pairs_read(line->arguments[0], line->arguments[1], options->quantity, &pairs, error));
-  struct table *table = table_new(line->format, stdout);
+  TABLE table = table_new(line->format, stdout);
   table_columns(table, (const char *const[]){"point_a", "point_b", "inputs", "n_a", "n_b", "pairs", "mean_a", "mean_b",
                                              "difference", "hw95", NULL});
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
   for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
     print(table, &row, &doubts);
-  status code = ask_pairs_end(pairs, error);
-  code = table_finish(table, code, error);
-  if (code == STATUS_OK && line->format == TABLE_TEXT) {
+  TRY(ask_pairs_end(pairs, error));
+  TRY(table_end(table, error));
+  if (line->format == TABLE_TEXT) {
     uncertainty_doubts(&doubts, stderr);
     fprintf(stderr,
             "clast: %s: b less a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "
             "runs. It does not hold the error of the resolution\n",
             options->quantity);
   }
-  ask_pairs_free(pairs);
-  return code;
+  return STATUS_OK;
 }
 
 static const struct option_row rows[] = {

@@ -1,8 +1,7 @@
 /* `clast converge SCENE|CAMPAIGN`: differences between results and those of finer settings, and their cost. */
-#include <stdlib.h>
-
 #include "campaign/commands/commands.h"
 #include "campaign/converge/study.h"
+#include "schemas/memory.h"
 
 struct options {
   struct launch_options launch;
@@ -19,9 +18,7 @@ static status run(const struct command_line *line, struct error *error) {
     return status_fail(error, STATUS_USAGE, "name a scene or a campaign, or give --list");
   struct study_request request = options->request;
   request.quiet = options->launch.quiet;
-  struct study_subject *subject = calloc(1, sizeof *subject);
-  if (!subject)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
+  OWNED struct study_subject *subject = memory_small(1, sizeof *subject);
   const struct study_launch launch = {.options = &options->launch,
                                       .line = line,
                                       .format = line->format,
@@ -31,8 +28,7 @@ static status run(const struct command_line *line, struct error *error) {
   if (code == STATUS_OK)
     code = study_rounds_launch(&subject->study, &launch, error);
   study_request_clear(subject);
-  free(subject);
-  return launch_quiet_ranks(code, error);
+  return code;
 }
 
 static const struct option_row rows[] = {
@@ -51,5 +47,5 @@ static const struct option_row rows[] = {
     LAUNCH_OPTIONS(struct options, launch),
 };
 
-COMMAND(converge, "running", "[SCENE|CAMPAIGN.yaml]", .has_runs = true, COMMAND_OPTIONS(struct options, rows),
-        .has_table = true, .run = run);
+COMMAND(converge, "running", "[SCENE|CAMPAIGN.yaml]", .has_runs = true, .has_farm = true,
+        COMMAND_OPTIONS(struct options, rows), .has_table = true, .run = run);

@@ -11,12 +11,11 @@ struct options {
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const struct ask_points_choice choice = {.campaign = options->campaign, .point = options->point};
-  status code = ask_points_known(store, options->point, error);
-  if (code == STATUS_OK)
-    code = print_estimates(store, &choice, line->format, stdout, error);
-  if (code == STATUS_OK && line->format == TABLE_TEXT)
+  TRY(ask_points_known(store, options->point, error));
+  TRY(print_estimates(store, &choice, line->format, stdout, error));
+  if (line->format == TABLE_TEXT)
     print_estimates_legend(store);
-  return code;
+  return STATUS_OK;
 }
 
 static const struct option_row option_rows[] = {

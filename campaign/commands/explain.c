@@ -1,6 +1,5 @@
 /* `clast explain [PATH|WORD|SCENE]`: every path that has a row (of engines, the outcome, estimates and campaigns), the
  * words of the glossary, the columns of the store, and the model of a scene with its cost and its active inputs. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
@@ -10,6 +9,7 @@
 #include "db/store/schema.h"
 #include "engine/scene.h"
 #include "schemas/file.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 struct options {
@@ -302,7 +302,7 @@ static void list_row(struct table *table, const char *of, const char *path, cons
 static status explain_path_list(enum table_format format, struct error *error) {
   const struct field_table *list[TABLES_MAXIMUM];
   size_t count = tables(list);
-  struct table *table = table_new(format, stdout);
+  TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"of", "path", "unit", "default", "meaning", NULL});
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < list[i]->count; k++) {
@@ -352,7 +352,7 @@ static void print_inputs(const struct scene *scene, FILE *out) {
 /* The same for programs. */
 static status list_inputs(const struct scene *scene, enum table_format format, struct error *error) {
   const struct field_table *inputs = scene->kind->inputs;
-  struct table *table = table_new(format, stdout);
+  TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"path", "value", "unit", "meaning", NULL});
   for (size_t i = 0; i < inputs->count; i++)
     if (field_is_active(inputs, &inputs->rows[i], scene->inputs))
@@ -380,12 +380,11 @@ static void list_settings(const struct scene *scene) {
 static status explain_scene(const struct scene *scene, enum table_format format, struct error *error) {
   if (format != TABLE_TEXT)
     return list_inputs(scene, format, error);
-  char *description = scene->kind->describe(scene->inputs);
+  OWNED char *description = scene->kind->describe(scene->inputs);
   if (!description)
     return status_fail(error, STATUS_MEMORY, "out of memory");
   printf("%s, engine %s\n\n%s%s\ninputs:\n", scene->name, scene->kind->name, description,
          *description && description[strlen(description) - 1] == '\n' ? "" : "\n");
-  free(description);
   print_inputs(scene, stdout);
   if (scene->settings_count > 0)
     puts("\nnamed settings (campaign/accuracy.md):");
@@ -407,12 +406,9 @@ static status run(const struct command_line *line, struct error *error) {
     TRY(table_text_only(line->format, "the explanation of a path", error));
     return explain_path(name, error);
   }
-  struct scene *scene = NULL;
-  status code = option_load_scene(name, &options->set, &scene, error);
-  if (code == STATUS_OK)
-    code = explain_scene(scene, line->format, error);
-  scene_free(scene);
-  return code;
+  SCENE scene = NULL;
+  TRY(option_load_scene(name, &options->set, &scene, error));
+  return explain_scene(scene, line->format, error);
 }
 
 static const struct option_row rows[] = {

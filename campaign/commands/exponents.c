@@ -21,13 +21,9 @@ static status print_pool(struct table *table, size_t draws, const struct ask_poo
   if (!(lower > 0))
     return STATUS_OK; /* the store has no estimates of its runs */
   const struct pooled_runs *runs = &pool->data.runs;
-  status code = pooled_exponent(runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &fit, error);
-  if (code == STATUS_OK)
-    code = pooled_goodness(runs, lower, draws, &goodness, error);
-  if (code == STATUS_OK)
-    code = pooled_rivals(runs, lower, &rivals, error);
-  if (code)
-    return code;
+  TRY(pooled_exponent(runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &fit, error));
+  TRY(pooled_goodness(runs, lower, draws, &goodness, error));
+  TRY(pooled_rivals(runs, lower, &rivals, error));
   table_integer(table, pool->data.point_id);
   table_real(table, lower);
   table_real(table, pool->data.complete_mass);
@@ -54,7 +50,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct options *options = line->options;
   const struct ask_pool_choice choice = {.point = options->point, .where = options->where};
   TRY(ask_points_known(store, options->point, error));
-  struct table *table = table_new(line->format, stdout);
+  TABLE table = table_new(line->format, stdout);
   table_column(table, "point_id", NULL);
   table_column(table, "from", "kg");
   table_column(table, OUTCOME_NAME(complete_mass), "kg");
@@ -64,21 +60,19 @@ static status ask(struct store *store, const struct command_line *line, struct e
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
   ASK_POOLS pools = ask_pools(store, &choice, NULL, error);
-  status code = STATUS_OK;
-  for (const struct ask_pool *pool; code == STATUS_OK && !table_broken(table) && (pool = ask_pools_next(&pools));) {
+  for (const struct ask_pool *pool; !table_broken(table) && (pool = ask_pools_next(&pools));) {
     ask_doubts_add(&doubts, &pool->doubts);
-    code = print_pool(table, (size_t)options->draws, pool, error);
+    TRY(print_pool(table, (size_t)options->draws, pool, error));
   }
-  if (code == STATUS_OK)
-    code = ask_pools_end(&pools);
-  code = table_finish(table, code, error);
-  if (code == STATUS_OK && line->format == TABLE_TEXT) {
+  TRY(ask_pools_end(&pools));
+  TRY(table_end(table, error));
+  if (line->format == TABLE_TEXT) {
     uncertainty_doubts(&doubts, stderr);
     fputs("clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete mass. "
           "p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better\n",
           stderr);
   }
-  return code;
+  return STATUS_OK;
 }
 
 static const struct option_row option_rows[] = {

@@ -3,8 +3,7 @@
 #include "campaign/commands/commands.h"
 
 static status run(const struct command_line *line, struct error *error) {
-  const struct fit_launch *options = line->options;
-  return launch_quiet_ranks(fit_rounds_launch(line, options, line->format, error), error);
+  return fit_rounds_launch(line, line->options, line->format, error);
 }
 
 static const struct option_row rows[] = {
@@ -17,5 +16,5 @@ static const struct option_row rows[] = {
     LAUNCH_OPTIONS(struct fit_launch, launch),
 };
 
-COMMAND(fit, "running", "MEASURED.yaml CAMPAIGN.yaml", .has_runs = true, COMMAND_OPTIONS(struct fit_launch, rows),
-        .has_table = true, .run = run);
+COMMAND(fit, "running", "MEASURED.yaml CAMPAIGN.yaml", .has_runs = true, .has_farm = true,
+        COMMAND_OPTIONS(struct fit_launch, rows), .has_table = true, .run = run);

@@ -1,18 +1,15 @@
 /* `clast materials [NAME|FILE]`: the built-in materials, or one as a document with its sources. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "campaign/commands/commands.h"
 #include "engine/engine.h"
+#include "schemas/memory.h"
 
 /* The materials of one engine. */
 static status list(const struct engine_materials *materials, enum table_format format, struct error *error) {
   const struct field_table *values = materials->values;
-  void *material = calloc(1, values->size);
-  if (!material)
-    return status_fail(error, STATUS_MEMORY, "no memory for a material");
-  struct table *table = table_new(format, stdout);
-  status code = STATUS_OK;
+  OWNED void *material = memory_small(1, values->size);
+  TABLE table = table_new(format, stdout);
   table_column(table, "name", NULL);
   for (size_t k = 0; materials->overview[k][0]; k++) {
     const char *unit = field_find(values, materials->overview[k][1], NULL)->unit;
@@ -21,9 +18,7 @@ static status list(const struct engine_materials *materials, enum table_format f
   table_column(table, "what", NULL);
   for (size_t i = 0; materials->name(i); i++) {
     char what[256];
-    code = materials->load(materials->name(i), material, error);
-    if (code)
-      break;
+    TRY(materials->load(materials->name(i), material, error));
     commands_headline(materials->text(materials->name(i)), what, sizeof what);
     table_text(table, materials->name(i));
     for (size_t k = 0; materials->overview[k][0]; k++) {
@@ -33,24 +28,18 @@ static status list(const struct engine_materials *materials, enum table_format f
     }
     table_text(table, what);
   }
-  free(material);
-  return table_finish(table, code, error);
+  return table_end(table, error);
 }
 
 /* Prints the document of a named material, or checks a file and prints it unchanged. */
 static status print_document(const struct engine_materials *materials, const char *name, struct error *error) {
-  void *material = calloc(1, materials->values->size);
-  char *text = NULL;
-  if (!material)
-    return status_fail(error, STATUS_MEMORY, "no memory for a material");
+  OWNED void *material = memory_small(1, materials->values->size);
+  OWNED char *text = NULL;
   const bool file = strchr(name, '/') || strchr(name, '.');
-  const status code = file ? materials->load_file(name, material, &text, error)
-                           : materials->load(name, material, error); /* names the nearest one */
-  if (code == STATUS_OK)
-    fputs(file ? text : materials->text(name), stdout);
-  free(text);
-  free(material);
-  return code;
+  TRY(file ? materials->load_file(name, material, &text, error)
+           : materials->load(name, material, error)); /* names the nearest one */
+  fputs(file ? text : materials->text(name), stdout);
+  return STATUS_OK;
 }
 
 /* The first engine with materials, or the one that has this name. */

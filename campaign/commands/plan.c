@@ -1,10 +1,10 @@
 /* `clast plan CAMPAIGN`: predicts the runs and the cost of a campaign. */
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "campaign/commands/commands.h"
 #include "campaign/converge/accuracy.h"
 #include "campaign/scheduler/plan.h"
+#include "schemas/memory.h"
 
 struct options {
   struct campaign_option campaign;
@@ -19,18 +19,17 @@ static status print(const struct campaign *campaign, const struct plan *plan, in
     plan_print(campaign, plan, slots, stdout);
     return STATUS_OK;
   }
-  char *text = plan_print_json(campaign, plan, slots);
+  OWNED char *text = plan_print_json(campaign, plan, slots);
   if (!text)
     return status_fail(error, STATUS_MEMORY, "out of memory");
   puts(text);
-  free(text);
   return STATUS_OK;
 }
 
 status plan_campaign(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
                      bool no_trial, bool json, struct error *error) {
-  struct campaign *campaign = NULL;
-  char *alternatives = NULL;
+  CAMPAIGN campaign = NULL;
+  OWNED char *alternatives = NULL;
   TRY(option_load_campaign(path, changes, &campaign, error));
   struct plan plan;
   struct plan_options options = {.store_path = store, .no_trial = no_trial, .slots = (int)slots};
@@ -38,20 +37,13 @@ status plan_campaign(const char *path, const struct campaign_option *changes, co
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     options.slots = cores > 0 ? (int)cores : 1;
   }
-  status code = accuracy_settle(campaign, path, store ? store : campaign->store, json ? ACCURACY_JSON : ACCURACY_TEXT,
-                                &alternatives, error);
-  if (code != STATUS_OK)
-    goto cleanup;
-  code = plan_make(campaign, &options, &plan, error);
-  if (code != STATUS_OK)
-    goto cleanup;
+  TRY(accuracy_settle(campaign, path, store ? store : campaign->store, json ? ACCURACY_JSON : ACCURACY_TEXT,
+                      &alternatives, error));
+  TRY(plan_make(campaign, &options, &plan, error));
   plan.alternatives = alternatives;
   alternatives = NULL;
-  code = print(campaign, &plan, options.slots, json, error);
+  const status code = print(campaign, &plan, options.slots, json, error);
   plan_clear(&plan);
-cleanup:
-  free(alternatives);
-  campaign_free(campaign);
   return code;
 }
 

@@ -45,7 +45,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
 
 /* Lists the canned queries: name, parameters and meaning; for programs also the SQL. */
 static status print_canned(enum table_format format, struct error *error) {
-  struct table *table = table_new(format, stdout);
+  TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"name", "with", "answers", NULL});
   if (format != TABLE_TEXT)
     table_column(table, "sql", NULL);

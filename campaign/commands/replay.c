@@ -16,14 +16,10 @@ struct options {
 static status print_differences(struct store *store, int64_t run_id, const struct engine_kind *kind,
                                 const struct run_result *result, enum table_format format,
                                 struct replay_compare *comparison, struct error *error) {
-  struct table *table = table_new(format, stdout);
+  TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"result", "stored", "recomputed", NULL});
-  status code = replay_compare(store, run_id, kind, result, table, comparison, error);
-  if (format == TABLE_TEXT && comparison->different == 0) {
-    table_drop(table);
-    return code;
-  }
-  return table_finish(table, code, error);
+  TRY(replay_compare(store, run_id, kind, result, table, comparison, error));
+  return format == TABLE_TEXT && comparison->different == 0 ? STATUS_OK : table_end(table, error);
 }
 
 /* Explains the result of the comparison to people. */
@@ -46,7 +42,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct options *options = line->options;
   const int64_t run_id = strtoll(line->arguments[1], NULL, 10);
   struct ask_run stored;
-  struct scene *scene = NULL;
+  SCENE scene = NULL;
   struct run_result result = {0};
   struct replay_compare comparison = {0};
   status code = ask_run_read(store, run_id, &stored, error);
@@ -62,7 +58,6 @@ static status ask(struct store *store, const struct command_line *line, struct e
     fprintf(stderr, "clast: the run is invalid and has no fields: %s is not written\n", options->fields);
   ask_run_release(&stored);
   run_result_clear(&result);
-  scene_free(scene);
   return code;
 }
 

@@ -17,17 +17,14 @@ static status run(const struct command_line *line, struct error *error) {
   if (options->dry_run)
     return plan_campaign(path, &options->campaign, options->store, options->launch.slots, false,
                          line->format == TABLE_JSON, error);
-  struct campaign *campaign = NULL;
-  status code = option_load_campaign(path, &options->campaign, &campaign, error);
-  const char *store = options->store || code ? options->store : campaign->store;
-  if (!code && !launch_other_rank()) /* only the manager takes runs from the campaign */
-    code = accuracy_settle(campaign, path, store, ACCURACY_SILENT, NULL, error);
-  if (!code && !launch_other_rank())
+  CAMPAIGN campaign = NULL;
+  TRY(option_load_campaign(path, &options->campaign, &campaign, error));
+  const char *store = options->store ? options->store : campaign->store;
+  if (!launch_other_rank()) { /* only the manager takes runs from the campaign */
+    TRY(accuracy_settle(campaign, path, store, ACCURACY_SILENT, NULL, error));
     campaign_warn(campaign, "clast: warning: ", stderr);
-  if (!code)
-    code = launch_campaign(campaign, store, &options->launch, line->format, line, error);
-  campaign_free(campaign);
-  return launch_quiet_ranks(code, error);
+  }
+  return launch_campaign(campaign, store, &options->launch, line->format, line, error);
 }
 
 static const struct option_row rows[] = {
@@ -37,5 +34,5 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("dry-run", 'n', struct options, dry_run),
 };
 
-COMMAND(run, "running", "CAMPAIGN.yaml", .has_runs = true, COMMAND_OPTIONS(struct options, rows), .has_table = true,
-        .run = run);
+COMMAND(run, "running", "CAMPAIGN.yaml", .has_runs = true, .has_farm = true, COMMAND_OPTIONS(struct options, rows),
+        .has_table = true, .run = run);

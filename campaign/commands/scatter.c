@@ -29,17 +29,14 @@ static status read_half_width(const char *text, double *half_width, struct error
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   struct scatter_choice choice = {{options->point, options->where, options->by}, options->quantity, NAN};
-  status code = read_half_width(options->half_width, &choice.half_width, error);
-  if (code == STATUS_OK)
-    code = ask_points_known(store, options->point, error);
-  if (code)
-    return code;
+  TRY(read_half_width(options->half_width, &choice.half_width, error));
+  TRY(ask_points_known(store, options->point, error));
   if (options->split)
     return print_shares_variance(store, &choice, line->format, error);
-  code = options->plot ? print_scatter_plots(store, &choice, options->ascii, error)
-                       : print_scatter_rows(store, &choice, line->format, error);
-  if (code || !options->picture)
-    return code;
+  TRY(options->plot ? print_scatter_plots(store, &choice, options->ascii, error)
+                    : print_scatter_rows(store, &choice, line->format, error));
+  if (!options->picture)
+    return STATUS_OK;
   const struct picture_page page = charts_page(options->picture, &options->chart);
   return print_scatter_picture(store, &choice, &page, error);
 }

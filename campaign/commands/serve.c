@@ -9,6 +9,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/launch/launch.h"
 #include "schemas/file.h"
+#include "schemas/memory.h"
 
 enum { SHORTEST_TOKEN = 8 };
 
@@ -71,30 +72,25 @@ static status read_token(const char *path, char **token, struct error *error) {
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   struct launch_options launch = options->launch;
-  struct campaign *campaign = NULL;
+  CAMPAIGN campaign = NULL;
   struct serve_model model = {0};
   launch.quiet = true; /* there is no progress to show */
-  char *token = NULL;
-  status code = read_token(options->token, &token, error);
+  OWNED char *token = NULL;
+  TRY(read_token(options->token, &token, error));
+  TRY(campaign_load(line->arguments[0], &campaign, error));
+  struct serving serving = {.model = &model,
+                            .options = {.store = options->store ? options->store : campaign->store,
+                                        .address = options->address,
+                                        .token = token,
+                                        .port = (int)options->port,
+                                        .wait_s = (double)options->wait,
+                                        .ready = tell}};
+  serving.options.context = &serving;
+  status code = serve_model_make(campaign, options->quantity, options->knob, &model, error);
   if (!code)
-    code = campaign_load(line->arguments[0], &campaign, error);
-  if (!code)
-    code = serve_model_make(campaign, options->quantity, options->knob, &model, error);
-  if (!code) {
-    struct serving serving = {.model = &model,
-                              .options = {.store = options->store ? options->store : campaign->store,
-                                          .address = options->address,
-                                          .token = token,
-                                          .port = (int)options->port,
-                                          .wait_s = (double)options->wait,
-                                          .ready = tell}};
-    serving.options.context = &serving;
     code = launch_farm(campaign, &launch, line, serve_all, &serving, error);
-  }
   serve_model_clear(&model);
-  campaign_free(campaign);
-  free(token);
-  return launch_quiet_ranks(code, error);
+  return code;
 }
 
 static const struct option_row rows[] = {
@@ -109,4 +105,4 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("in-process", 0, struct options, launch.in_process),
 };
 
-COMMAND(serve, "running", "CAMPAIGN.yaml", COMMAND_OPTIONS(struct options, rows), .run = run);
+COMMAND(serve, "running", "CAMPAIGN.yaml", .has_farm = true, COMMAND_OPTIONS(struct options, rows), .run = run);

@@ -36,12 +36,9 @@ cleanup:
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  struct scene *scene = NULL;
-  status code = option_load_scene(line->arguments[0], &options->set, &scene, error);
-  if (code == STATUS_OK)
-    code = simulate(scene, &options->run, line->format, error);
-  scene_free(scene);
-  return code;
+  SCENE scene = NULL;
+  TRY(option_load_scene(line->arguments[0], &options->set, &scene, error));
+  return simulate(scene, &options->run, line->format, error);
 }
 
 static const struct option_row rows[] = {

@@ -15,14 +15,12 @@ static status print(struct store *store, const struct options *options, const st
                     enum table_format format, struct error *error) {
   const struct picture_page page = charts_page(options->picture, &options->chart);
   const struct spectrum_drawing drawing = {options->picture ? &page : NULL, options->plot, options->ascii};
-  status code = ask_points_known(store, options->point, error);
-  if (code == STATUS_OK && choice->measured)
-    code = print_spectrum_match(store, choice, format, error);
-  else if (code == STATUS_OK && !options->plot)
-    code = print_spectrum(store, choice, format, error);
-  if (code == STATUS_OK && (drawing.page || drawing.text))
-    code = spectrum_curves_draw(store, choice, &drawing, error);
-  return code;
+  TRY(ask_points_known(store, options->point, error));
+  if (choice->measured)
+    TRY(print_spectrum_match(store, choice, format, error));
+  else if (!options->plot)
+    TRY(print_spectrum(store, choice, format, error));
+  return drawing.page || drawing.text ? spectrum_curves_draw(store, choice, &drawing, error) : STATUS_OK;
 }
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {

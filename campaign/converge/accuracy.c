@@ -223,7 +223,7 @@ status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign
 static status print_alternatives(const struct accuracy *accuracy, enum table_format format, FILE *out,
                                  struct error *error) {
   const struct accuracy_option *reference = &accuracy->options[accuracy->reference];
-  struct table *table = table_new(format, out);
+  TABLE table = table_new(format, out);
   table_columns(table, (const char *const[]){"choice", "knob", "setting", "error", "known", "seeds", NULL});
   table_column(table, "run_cpu", "s");
   table_column(table, "point_cpu", "s");

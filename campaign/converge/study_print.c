@@ -9,9 +9,10 @@
 #include "campaign/charts/charts.h"
 #include "campaign/terminal/uncertainty.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 
 status study_print_knobs(enum table_format format, struct error *error) {
-  struct table *table = table_new(format, stdout);
+  TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"engine", "knob", "group", "input", "meaning", NULL});
   for (size_t i = 0; i < engine_count(); i++)
     for (const struct knob *knob = engine_at(i)->knobs; knob && knob->name; knob++) {
@@ -132,22 +133,21 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   const bool named = unit && strcmp(unit, "1") != 0;
   printf("%s%s, quantity %s%s%s%s\n", from || quantity ? "\n" : "", study->ladder[from].base->name, what->name,
          named ? " (" : "", named ? unit : "", named ? ")" : "");
-  struct table *table = table_new(TABLE_TEXT, stdout);
+  TABLE table = table_new(TABLE_TEXT, stdout);
   table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skew", "upper_mode", "cpu_s",
                                              "bias", "bias_hw95", "corr", "corr_low", "corr_high", "break_even",
                                              "error", "frontier", NULL});
-  status code = STATUS_OK;
   for (size_t i = 0; i < count; i++)
-    for (size_t l = 0; l < found[i].count && code == STATUS_OK; l++) {
+    for (size_t l = 0; l < found[i].count; l++) {
       struct ask_doubts doubts;
-      code = read_doubts(printing, &study->ladder[from + i], l, quantity, &doubts, error);
+      TRY(read_doubts(printing, &study->ladder[from + i], l, quantity, &doubts, error));
       print_level(table, &found[i].rows[l], &doubts);
     }
-  code = table_finish(table, code, error);
+  TRY(table_end(table, error));
   for (size_t i = 0; i < count; i++)
     print_limit(&study->ladder[from + i], &found[i]);
   print_gain(count, found);
-  return code;
+  return STATUS_OK;
 }
 
 static status print_rows(struct printing *printing, size_t from, size_t quantity, size_t count,
@@ -182,35 +182,30 @@ static const char legend[] =
     "upper of two modes.\n";
 
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error) {
-  struct study_found *found = malloc(LIMITS_STUDY_KNOBS * sizeof *found);
+  OWNED struct study_found *found = malloc(LIMITS_STUDY_KNOBS * sizeof *found);
   if (!found)
     return status_fail(error, STATUS_MEMORY, "out of memory");
-  struct printing printing = {.study = study};
-  status code = store_open_reader(study->limits.store, &printing.store, error);
-  struct table *table = format == TABLE_TEXT || code ? NULL : table_new(format, stdout);
+  STORE store = NULL;
+  TRY(store_open_reader(study->limits.store, &store, error));
+  struct printing printing = {.study = study, .store = store};
+  TABLE table = format == TABLE_TEXT ? NULL : table_new(format, stdout);
   for (size_t c = 0; table && c < convergence_table.count; c++)
     table_column(table, convergence_table.rows[c].path, convergence_table.rows[c].unit);
   if (table)
     table_doubt_columns(table);
-  for (size_t from = 0, count = 0; code == STATUS_OK && from < study->ladder_count; from += count)
-    for (size_t q = 0; code == STATUS_OK && q < study->quantity_count; q++) {
+  for (size_t from = 0, count = 0; from < study->ladder_count; from += count)
+    for (size_t q = 0; q < study->quantity_count; q++) {
       count = study_of_scene(study, from, q, found);
-      if (table)
-        code = print_rows(&printing, from, q, count, found, table, error);
-      else
-        code = print_quantity(&printing, from, q, count, found, error);
+      TRY(table ? print_rows(&printing, from, q, count, found, table, error)
+                : print_quantity(&printing, from, q, count, found, error));
     }
   if (table)
-    code = table_finish(table, code, error);
-  else if (code == STATUS_OK) {
-    fflush(stdout);
-    uncertainty_doubts(&printing.sum, stderr);
-    if (!quiet)
-      fputs(legend, stderr);
-  }
-  store_close(printing.store, NULL);
-  free(found);
-  return code;
+    return table_end(table, error);
+  fflush(stdout);
+  uncertainty_doubts(&printing.sum, stderr);
+  if (!quiet)
+    fputs(legend, stderr);
+  return STATUS_OK;
 }
 
 /* ---- pictures: results over cost, and the error over cost with the frontier ---- */

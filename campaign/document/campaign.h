@@ -103,6 +103,9 @@ status campaign_parse(const char *name, const char *text, size_t size, const cha
 status campaign_parse_stored(const char *name, const char *text, const char *folder, struct campaign **out,
                              struct error *error);
 void campaign_free(struct campaign *campaign); /* NULL is fine */
+/* A campaign that frees itself where its block is left: CAMPAIGN campaign = NULL; */
+#define CAMPAIGN __attribute__((cleanup(campaign_drop))) struct campaign *
+void campaign_drop(struct campaign **campaign); /* for CAMPAIGN */
 
 /* The axis of an input; NULL: it does not vary. */
 const struct design_axis *campaign_axis(const struct campaign *campaign, const struct field *row);

@@ -267,6 +267,10 @@ void campaign_free(struct campaign *campaign) {
   free(campaign);
 }
 
+void campaign_drop(struct campaign **campaign) {
+  campaign_free(*campaign);
+}
+
 int64_t campaign_replicates_least(const struct campaign *campaign) {
   return campaign->per_point ? campaign->per_point : campaign->until_minimum;
 }

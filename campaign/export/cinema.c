@@ -3,12 +3,12 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "campaign/charts/charts.h"
 #include "db/ask/ask.h"
 #include "schemas/file.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 
 enum { WIDTH = 600 };
 
@@ -48,11 +48,10 @@ static status write_run(struct cinema *cinema, const struct answer *runs, struct
     TRY(draw_spectrum(cinema, point, error));
   cinema->point = point;
   snprintf(path, sizeof path, "%s/run%" PRId64 ".png", cinema->folder, run);
-  char *file = ask_run_fields(runs, fields);
+  OWNED char *file = ask_run_fields(runs, fields);
   if (!file)
     return status_fail(error, STATUS_MEMORY, "no memory for the runs");
   const status code = picture_draw(file, path, &(struct picture_choice){.width = WIDTH}, error);
-  free(file);
   if (code == STATUS_IO)
     return code;
   cinema->rows++;
@@ -67,17 +66,17 @@ static status write_run(struct cinema *cinema, const struct answer *runs, struct
 }
 
 /* Writes the table, and during this draws the pictures that it names. */
-static status write_table(struct cinema *cinema, struct error *error) {
+static status write_table(struct cinema *cinema, FILE *out, struct error *error) {
+  TABLE table = table_new(TABLE_CSV, out);
   ANSWER runs = ask_run_kept(cinema->store, error);
-  status code = STATUS_OK;
+  cinema->table = table;
   for (size_t i = 0; i + 1 < answer_count(&runs); i++)
-    table_column(cinema->table, answer_name(&runs, i), NULL);
-  table_columns(cinema->table, (const char *const[]){"FILE", "FILE_spectrum", NULL});
-  while (code == STATUS_OK && answer_next(&runs))
-    code = write_run(cinema, &runs, error);
-  if (code == STATUS_OK)
-    code = answer_end(&runs);
-  TRY(table_finish(cinema->table, code, error));
+    table_column(table, answer_name(&runs, i), NULL);
+  table_columns(table, (const char *const[]){"FILE", "FILE_spectrum", NULL});
+  while (answer_next(&runs))
+    TRY(write_run(cinema, &runs, error));
+  TRY(answer_end(&runs));
+  TRY(table_end(table, error));
   if (cinema->rows > 0)
     return STATUS_OK;
   return status_fail(error, STATUS_USAGE,
@@ -92,8 +91,8 @@ status cinema_write(struct store *store, const char *folder, struct error *error
   if (snprintf(path, sizeof path, "%s/data.csv", folder) >= (int)sizeof path - 64)
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
   TRY(file_begin(&file, path, "table", error));
-  struct cinema cinema = {.store = store, .folder = folder, .table = table_new(TABLE_CSV, file.out)};
-  const status code = file_end(&file, write_table(&cinema, error), error);
+  struct cinema cinema = {.store = store, .folder = folder};
+  const status code = file_end(&file, write_table(&cinema, file.out, error), error);
   if (!code && cinema.not_drawn > 0)
     fprintf(stderr, "clast: %zu of %zu runs have no picture: their fields files are gone or damaged\n",
             cinema.not_drawn, cinema.rows);

@@ -8,7 +8,6 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <jansson.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -17,11 +16,12 @@
 #include "db/ask/ask.h"
 #include "schemas/file.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 #define SPECIFICATION "https://w3id.org/ro/crate/1.1"
 #define PROFILE       "https://w3id.org/ro/wfrun/process/0.5"
-#define STORE         "store.db"
+#define STORE_COPY    "store.db"
 #define METADATA      "ro-crate-metadata.json"
 
 struct crate {
@@ -39,7 +39,7 @@ static bool join(char path[LIMITS_PATH], const char *folder, const char *name) {
 /* A text from a user: bytes that are not UTF-8 become U+FFFD. */
 static json_t *text_of(const char *text) {
   json_t *made = json_string(text);
-  char *quoted = NULL;
+  OWNED char *quoted = NULL;
   size_t size = 0;
   FILE *out = made ? NULL : text_open(&quoted, &size);
   if (!out)
@@ -47,7 +47,6 @@ static json_t *text_of(const char *text) {
   text_json_string(text, out);
   if (text_close(out, &quoted))
     made = json_loads(quoted, JSON_DECODE_ANY, NULL);
-  free(quoted);
   return made;
 }
 
@@ -117,7 +116,7 @@ static void add_session(struct crate *crate, const struct answer *row) {
                    "name", name, "description", text_of(answer_text(row, 7)), "startTime", text_of(answer_text(row, 2)),
                    "endTime", *answer_text(row, 3) ? text_of(answer_text(row, 3)) : NULL, "instrument", id_of(program),
                    "object", answer_value(row, 1).kind == QUERY_INTEGER ? id_of(campaign) : NULL, "result",
-                   id_of(STORE), "agent", crate->options->author ? id_of("#author") : NULL, "actionStatus",
+                   id_of(STORE_COPY), "agent", crate->options->author ? id_of("#author") : NULL, "actionStatus",
                    id_of(failed ? "http://schema.org/FailedActionStatus" : "http://schema.org/CompletedActionStatus")));
   append(crate, crate->actions, id_of(id));
 }
@@ -150,7 +149,7 @@ static status add_tables(struct crate *crate, struct store *store, struct error 
   append(crate, crate->graph,
          json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o}", "@id", "#export", "@type", "CreateAction", "name",
                    "Export of the tables", "description", "clast export --crate", "endTime", date, "instrument",
-                   id_of(program), "object", id_of(STORE), "result", tables));
+                   id_of(program), "object", id_of(STORE_COPY), "result", tables));
   append(crate, crate->actions, id_of("#export"));
   return STATUS_OK;
 }
@@ -174,7 +173,7 @@ static status finish(struct crate *crate, const char *title, struct error *error
   now_text(date);
   if (!join(path, crate->options->folder, METADATA))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
-  json_t *root = json_pack(
+  json_auto_t *root = json_pack(
       "{s:[s, s], s:[{s:s, s:s, s:o, s:o}, {s:s, s:s, s:o, s:o, s:s, s:s, s:o, s:o*, s:O, s:O}, {s:s, s:s, s:s, s:s}]}",
       "@context", SPECIFICATION "/context", "https://w3id.org/ro/terms/workflow-run/context", "@graph",   /* */
       "@id", METADATA, "@type", "CreativeWork", "conformsTo", id_of(SPECIFICATION), "about", id_of("./"), /* */
@@ -186,18 +185,12 @@ static status finish(struct crate *crate, const char *title, struct error *error
                                : text_of(license),
       "author", crate->options->author ? id_of("#author") : NULL, "hasPart", crate->parts, "mentions", crate->actions,
       "@id", PROFILE, "@type", "CreativeWork", "name", "Process Run Crate", "version", "0.5");
-  status code = STATUS_OK;
   struct file_output file;
   if (!root || crate->failed || json_array_extend(json_object_get(root, "@graph"), crate->graph))
-    code = status_fail(error, STATUS_MEMORY, "no memory for the metadata");
-  if (code == STATUS_OK)
-    code = file_begin(&file, path, "metadata", error);
-  if (code == STATUS_OK) {
-    const bool written = json_dumpf(root, file.out, JSON_INDENT(1)) == 0 && fputc('\n', file.out) != EOF;
-    code = file_end(&file, written ? STATUS_OK : status_fail(error, STATUS_IO, "cannot write %s", path), error);
-  }
-  json_decref(root);
-  return code;
+    return status_fail(error, STATUS_MEMORY, "no memory for the metadata");
+  TRY(file_begin(&file, path, "metadata", error));
+  const bool written = json_dumpf(root, file.out, JSON_INDENT(1)) == 0 && fputc('\n', file.out) != EOF;
+  return file_end(&file, written ? STATUS_OK : status_fail(error, STATUS_IO, "cannot write %s", path), error);
 }
 
 /* Makes the folder, or checks that it is empty. */
@@ -215,10 +208,10 @@ static status take_folder(const char *folder, struct error *error) {
 
 static status fill(struct crate *crate, struct store *store, const char *title, struct error *error) {
   char path[LIMITS_PATH];
-  if (!join(path, crate->options->folder, STORE))
+  if (!join(path, crate->options->folder, STORE_COPY))
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
   TRY(store_export(store, path, error));
-  add_file(crate, STORE, "application/vnd.sqlite3",
+  add_file(crate, STORE_COPY, "application/vnd.sqlite3",
            "Every run with its inputs, results and fragment masses; any SQLite tool reads it, and its table "
            "column_doc explains it");
   ANSWER campaigns = ask_campaign_documents(store, error);

@@ -44,7 +44,7 @@ static const char *const input_columns[] = {"input",  "unit", "prior_05", "prior
                                             "median", "q95",  "kept",     NULL};
 
 static status print_inputs(const struct fit *fit, bool check, struct error *error) {
-  struct table *table = table_new(TABLE_TEXT, stdout);
+  TABLE table = table_new(TABLE_TEXT, stdout);
   table_columns(table, input_columns);
   const struct ask_doubts doubts = all_doubts(fit);
   for (size_t i = 0; i < fit->inputs; i++) {
@@ -99,7 +99,7 @@ static const char *const datum_columns[] = {"measured", "value",  "error", "sd_s
                                             "q05",      "median", "q95",   "below",    NULL};
 
 static status print_data(const struct fit *fit, struct error *error) {
-  struct table *table = table_new(TABLE_TEXT, stdout);
+  TABLE table = table_new(TABLE_TEXT, stdout);
   char label[2 * FIELD_TEXT_SIZE];
   table_columns(table, datum_columns);
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
@@ -128,7 +128,7 @@ static void input_row(const struct fit *fit, size_t i, bool check, struct table 
 }
 
 static status print_rows(const struct fit *fit, enum table_format format, struct error *error) {
-  struct table *table = table_new(format, stdout);
+  TABLE table = table_new(format, stdout);
   char label[2 * FIELD_TEXT_SIZE];
   table_columns(table, (const char *const[]){"kind", "name", "unit", "prior_05", "prior_95", "q05", "median", "q95",
                                              "kept", "value", "error", "sd_seeds", "sd_resolution", "below", NULL});

@@ -10,6 +10,7 @@
 #include "campaign/scheduler/provenance.h"
 #include "campaign/scheduler/run.h"
 #include "schemas/clock.h"
+#include "schemas/memory.h"
 
 void launch_note(void *context, const char *text) {
   const struct launch_notes *notes = context;
@@ -54,14 +55,13 @@ status launch_farm(const struct campaign *limits, const struct launch_options *o
   scheduler_limits(limits, &farm_options);
   TRY(farm_start(&farm_options, run_work, &farm, error));
   struct launch launch = {.farm = farm, .manager = farm_rank(farm) == 0, .notes = {.quiet = options->quiet}};
-  char *facts = provenance_json(farm_ranks(farm), farm_slots_total(farm), line->argc, line->argv);
+  OWNED char *facts = provenance_json(farm_ranks(farm), farm_slots_total(farm), line->argc, line->argv);
   launch.scheduler = (struct scheduler_options){.facts = facts,
                                                 .note = launch_note,
                                                 .note_context = &launch.notes,
                                                 .slots = farm_slots_total(farm)};
   launch.begin_s = clock_s();
   status code = facts ? body(context, &launch, error) : status_fail(error, STATUS_MEMORY, "out of memory");
-  free(facts);
   const status stopped = farm_stop(farm, code ? NULL : error);
   return code ? code : stopped;
 }
@@ -114,32 +114,25 @@ static void print_summary(const struct driver_summary *summary, const char *stor
     fputs("stopped; the same command goes on\n", stderr);
 }
 
-static status print_table(struct store *store, const char *path, const struct ask_points_choice *choice,
-                          enum table_format format, bool quiet, struct error *error) {
-  int64_t points = 0;
-  TRY(ask_points_count(store, choice, &points, error));
-  if (format == TABLE_TEXT && points > MANY_POINTS) {
-    fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
-            choice->campaign);
-    return STATUS_OK;
-  }
-  status code = print_estimates(store, choice, format, stdout, error);
-  if (!code && format == TABLE_TEXT && !quiet) {
-    fflush(stdout); /* the legend comes below the table */
-    print_estimates_legend(store);
-  }
-  return code;
-}
-
 /* Reads the store again, so that it prints what any later reader will find. */
 static status print_answers(const char *path, int64_t campaign, enum table_format format, bool quiet,
                             struct error *error) {
-  struct store *store = NULL;
+  STORE store = NULL;
   const struct ask_points_choice choice = {.campaign = campaign};
+  int64_t points = 0;
   TRY(store_open_reader(path, &store, error));
-  status code = print_table(store, path, &choice, format, quiet, error);
-  store_close(store, NULL);
-  return code;
+  TRY(ask_points_count(store, &choice, &points, error));
+  if (format == TABLE_TEXT && points > MANY_POINTS) {
+    fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
+            campaign);
+    return STATUS_OK;
+  }
+  TRY(print_estimates(store, &choice, format, stdout, error));
+  if (format == TABLE_TEXT && !quiet) {
+    fflush(stdout); /* the legend comes below the table */
+    print_estimates_legend(store);
+  }
+  return STATUS_OK;
 }
 
 struct launching {

@@ -17,6 +17,7 @@
 #include "schemas/clock.h"
 #include "schemas/field.h"
 #include "schemas/file.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 /* ---- a restart file: a run that can be stopped and goes on later ----
@@ -114,7 +115,8 @@ static void find_earlier(struct snapshots *s, double progress) {
 
 /* ParaView's list of files with their times (style: JSON, version 1.0). Names are relative to it. */
 static status write_series(const struct snapshots *s, struct error *error) {
-  char *text = NULL, path[PATH];
+  OWNED char *text = NULL;
+  char path[PATH];
   size_t size = 0;
   FILE *out = text_open(&text, &size);
   if (!out)
@@ -137,9 +139,7 @@ static status write_series(const struct snapshots *s, struct error *error) {
   if (!text_close(out, &text))
     return status_fail(error, STATUS_MEMORY, "no memory for the list of snapshots");
   path_of_list(s, path);
-  status code = file_write(path, "list of snapshots", text, size, error);
-  free(text);
-  return code;
+  return file_write(path, "list of snapshots", text, size, error);
 }
 
 /* Between blocks of steps. Writes the snapshot that is due, if there is one, and NAME.hdf.series again. Both files are

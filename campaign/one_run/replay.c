@@ -8,6 +8,7 @@
 
 #include "campaign/scheduler/provenance.h"
 #include "engine/cpu_class.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 status replay_compute(const struct ask_run *from, int64_t run_id, const char *fields, struct scene **scene,
@@ -105,29 +106,25 @@ static void compare_table(struct comparison *comparison, const struct field_tabl
 }
 
 static status compare_results(struct comparison *comparison, struct store *store, int64_t run_id, struct error *error) {
-  ANSWER stored = ask_run_results(store, run_id, comparison->kind->name, error);
-  if (answer_next(&stored)) {
-    comparison->doubtful = calloc(answer_count(&stored), sizeof *comparison->doubtful);
-    if (!comparison->doubtful)
-      return status_fail(error, STATUS_MEMORY, "out of memory");
-    compare_table(comparison, &outcome_table, &comparison->result->outcome, &stored);
-    compare_table(comparison, comparison->kind->results, comparison->result->result, &stored);
-  }
-  return answer_end(&stored);
-}
-
-/* Judges results without a value in the store. If some stored run has a value of the result, the program knew the
- * result then, and this run differs. */
-static status judge_doubtful(struct comparison *comparison, struct store *store, int64_t run_id, struct error *error) {
   struct replay_compare *out = comparison->out;
+  ANSWER stored = ask_run_results(store, run_id, comparison->kind->name, error);
+  if (!answer_next(&stored))
+    return answer_end(&stored);
+  OWNED const struct field **doubtful = calloc(answer_count(&stored), sizeof *doubtful);
+  if (!doubtful)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  comparison->doubtful = doubtful;
+  compare_table(comparison, &outcome_table, &comparison->result->outcome, &stored);
+  compare_table(comparison, comparison->kind->results, comparison->result->result, &stored);
+  TRY(answer_end(&stored));
   for (size_t i = 0; i < comparison->doubtful_count; i++) {
     char name[FIELD_TEXT_SIZE];
     bool used = false;
-    field_column_name(comparison->doubtful[i]->path, name, sizeof name);
+    field_column_name(doubtful[i]->path, name, sizeof name);
     TRY(ask_run_column_used(store, run_id, comparison->kind->name, name, &used, error));
-    if (used) {
+    if (used) { /* of some stored run: the program knew the result then, and this run differs */
       out->compared++;
-      difference(comparison, comparison->doubtful[i]->path, NULL, "a value");
+      difference(comparison, doubtful[i]->path, NULL, "a value");
       continue;
     }
     text_append(out->absent_names, sizeof out->absent_names, "%s%s", *out->absent_names ? ", " : "", name);
@@ -151,20 +148,15 @@ status replay_compare(struct store *store, int64_t run_id, const struct engine_k
                       struct error *error) {
   *out = (struct replay_compare){0};
   struct comparison comparison = {.result = result, .kind = kind, .out = out, .table = table};
-  double *masses = NULL;
+  OWNED double *masses = NULL;
   size_t count = 0;
-  status code = compare_results(&comparison, store, run_id, error);
-  if (code == STATUS_OK)
-    code = judge_doubtful(&comparison, store, run_id, error);
-  if (code == STATUS_OK)
-    code = ask_run_masses(store, run_id, &masses, &count, error);
-  if (code == STATUS_OK && masses)
+  TRY(compare_results(&comparison, store, run_id, error));
+  TRY(ask_run_masses(store, run_id, &masses, &count, error));
+  if (masses)
     compare_masses(&comparison, masses, count);
-  free(masses);
-  free(comparison.doubtful);
-  if (code == STATUS_OK && out->compared < 3)
+  if (out->compared < 3)
     return status_fail(error, STATUS_CONTENT, "the store keeps no results of run %" PRId64, run_id);
-  return code;
+  return STATUS_OK;
 }
 
 status replay_verdict(struct store *store, int64_t run_id, const struct ask_run *stored,

@@ -311,22 +311,20 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
   for (size_t i = 0; i < printing.axes; i++)
     inputs[i] = printing.axis[i].name;
 
-  printing.table = table_new(format, out);
+  TABLE table = table_new(format, out);
+  printing.table = table;
   if (format == TABLE_TEXT)
     columns_for_people(&printing);
   else
     columns_for_programs(&printing);
-  status code = STATUS_OK;
   ANSWER points = ask_points_rows(store, choice, true, printing.axes, inputs, error);
-  for (struct ask_points_row row; code == STATUS_OK && !table_broken(printing.table) && ask_points_next(&points, &row);)
-    code = print_point(&printing, &row, error);
-  if (code == STATUS_OK)
-    code = answer_end(&points);
-  code = table_finish(printing.table, code, error);
+  for (struct ask_points_row row; !table_broken(table) && ask_points_next(&points, &row);)
+    TRY(print_point(&printing, &row, error));
+  TRY(answer_end(&points));
+  TRY(table_end(table, error));
   tell_left_out(&printing);
-  if (code == STATUS_OK && format == TABLE_TEXT)
-    code = quantity_tell_doubts(store,
-                                &(struct ask_doubts_choice){.campaign = choice->campaign, .point = choice->point},
-                                OUTCOME_DEFAULT ",beta", error);
-  return code;
+  if (format != TABLE_TEXT)
+    return STATUS_OK;
+  const struct ask_doubts_choice doubts = {.campaign = choice->campaign, .point = choice->point};
+  return quantity_tell_doubts(store, &doubts, OUTCOME_DEFAULT ",beta", error);
 }

@@ -69,7 +69,7 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
                          enum table_format format, struct error *error) {
   const struct field_table *tables[] = {&outcome_table, kind->results};
   const void *objects[] = {&result->outcome, result->result};
-  struct table *table = table_new(format, stdout);
+  TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"engine", "seed", NULL});
   for (size_t t = 0; t < 2; t++)
     for (size_t i = 0; i < tables[t]->count; i++) { /* columns have the same names as in the store */
@@ -99,13 +99,13 @@ static status print_long(const char *scene, const struct engine_kind *kind, cons
                          struct error *error) {
   const enum condition_mark masses = condition_mark(kind->conditions, result->outcome.warnings,
                                                     OUTCOME_NAME(mean_fragment_mass));
-  struct table *table = table_new(TABLE_TEXT, stdout);
-  table_columns(table, (const char *const[]){"result", "value", "unit", "meaning", NULL});
-  list(table, &outcome_table, &result->outcome, kind->conditions, result->outcome.warnings);
-  list(table, kind->results, result->result, kind->conditions, result->outcome.warnings);
-  TRY(table_end(table, error));
+  TABLE results = table_new(TABLE_TEXT, stdout);
+  table_columns(results, (const char *const[]){"result", "value", "unit", "meaning", NULL});
+  list(results, &outcome_table, &result->outcome, kind->conditions, result->outcome.warnings);
+  list(results, kind->results, result->result, kind->conditions, result->outcome.warnings);
+  TRY(table_end(results, error));
   fputs("\nexponent beta of F(m) ~ m^-beta, of this run alone:\n", stdout);
-  table = table_new(TABLE_TEXT, stdout);
+  TABLE table = table_new(TABLE_TEXT, stdout);
   table_columns(table, (const char *const[]){"method", "window", "fragments", "beta", NULL});
   for (size_t i = 0; i < result->estimate_count; i++) {
     table_text(table, exponent_method_names[result->estimates[i].fit.method]);

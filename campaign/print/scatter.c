@@ -3,8 +3,9 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "schemas/memory.h"
 
 enum { COLUMNS = 100 };
 
@@ -60,38 +61,35 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
                           struct error *error) {
   ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
   TRY(pools.code);
-  struct printing printing = {.choice = choice, .table = table_new(format, stdout), .pools = &pools};
-  print_pool_columns(printing.table, &pools);
-  table_columns(printing.table, (const char *const[]){"statistic", "value", "low", "high", NULL});
-  table_doubt_columns(printing.table);
+  TABLE table = table_new(format, stdout);
+  struct printing printing = {.choice = choice, .table = table, .pools = &pools};
+  print_pool_columns(table, &pools);
+  table_columns(table, (const char *const[]){"statistic", "value", "low", "high", NULL});
+  table_doubt_columns(table);
   struct ask_doubts doubts = {0};
   bool several = false; /* a pool has more than one point */
-  status code = STATUS_OK;
-  while (code == STATUS_OK && !table_broken(printing.table) && (printing.pool = ask_pools_next(&pools))) {
+  while (!table_broken(table) && (printing.pool = ask_pools_next(&pools))) {
     struct scatter scatter;
     several |= printing.pool->points > 1;
     ask_doubts_add(&doubts, &printing.pool->doubts);
-    code = scatter_make(printing.pool->data.runs.count, printing.pool->value, &scatter, error);
-    if (code)
-      break;
+    TRY(scatter_make(printing.pool->data.runs.count, printing.pool->value, &scatter, error));
     print_scatter(&printing, &scatter);
     scatter_release(&scatter);
   }
-  if (code == STATUS_OK)
-    code = ask_pools_end(&pools);
-  code = table_finish(printing.table, code, error);
-  if (code == STATUS_OK && format == TABLE_TEXT) {
+  TRY(ask_pools_end(&pools));
+  TRY(table_end(table, error));
+  if (format == TABLE_TEXT) {
     uncertainty_doubts(&doubts, stderr);
     fputs(
         "clast: low and high: 95 % intervals over runs; of modes the values that belong to them. dip p below 0.05: the "
         "runs have two modes\n",
         stderr);
   }
-  if (code == STATUS_OK && several)
+  if (several)
     fputs("clast: pooled over points: the scatter holds that of the inputs; the intervals take the runs as "
           "independent\n",
           stderr);
-  return code;
+  return STATUS_OK;
 }
 
 static status plot_pool(bool ascii, const struct ask_pool *pool, struct error *error) {
@@ -171,18 +169,13 @@ static status draw_samples(const struct samples *samples, const char *axis, cons
 status print_scatter_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
                              struct error *error) {
   char column[ASK_GROUP_NAME], axis[CHARTS_LABEL] = "";
-  struct samples *samples = calloc(1, sizeof *samples);
-  if (!samples)
-    return status_fail(error, STATUS_MEMORY, "no memory for a picture");
-  status code = ask_group_quantity(store, choice->quantity, column, error);
-  if (code == STATUS_OK)
-    code = charts_axis(store, column, axis, error);
-  if (code == STATUS_OK)
-    code = take_samples(store, choice, samples, error);
+  OWNED struct samples *samples = memory_small(1, sizeof *samples);
+  TRY(ask_group_quantity(store, choice->quantity, column, error));
+  TRY(charts_axis(store, column, axis, error));
+  status code = take_samples(store, choice, samples, error);
   if (code == STATUS_OK)
     code = draw_samples(samples, axis, page, error);
   for (size_t i = 0; i < samples->count; i++)
     scatter_release(&samples->scatter[i]);
-  free(samples);
   return code;
 }

@@ -11,6 +11,7 @@
 #include "db/ask/ask.h"
 #include "engine/grow.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 struct run_cells_run {
@@ -81,8 +82,8 @@ static void run_cells_release(struct run_cells *cells) {
       free(cells->cell[c].input[a]);
   }
   free(cells->cell);
-  *cells = (struct run_cells){0};
 }
+#define RUN_CELLS __attribute__((cleanup(run_cells_release))) struct run_cells
 
 /* Runs of the first cell whose seed every cell has; *shared has room for them. */
 static size_t find_shared(size_t count, struct run_cell *const *cell, struct run_cells_run *shared) {
@@ -118,12 +119,11 @@ static size_t run_cells_balance(size_t count, struct run_cell *const *cell, bool
     least = cell[c]->runs < least ? cell[c]->runs : least;
   if (count == 0 || least == 0)
     return 0;
-  struct run_cells_run *shared = malloc(cell[0]->runs * sizeof *shared);
+  OWNED struct run_cells_run *shared = malloc(cell[0]->runs * sizeof *shared);
   const size_t common = shared ? find_shared(count, cell, shared) : 0;
   *same_seeds = common >= 2 || (common == 1 && least == 1);
   for (size_t c = 0; *same_seeds && c < count; c++)
     keep_shared(cell[c], shared, common);
-  free(shared);
   return *same_seeds ? common : least;
 }
 
@@ -143,37 +143,31 @@ static void number_levels(const struct run_cells *cells, uint32_t *level) {
 }
 
 static status split(struct run_cells *cells, struct scatter_part *parts, size_t *runs, struct error *error) {
-  struct run_cell **all = calloc(cells->count + 1, sizeof *all);
+  OWNED struct run_cell **all = calloc(cells->count + 1, sizeof *all);
   bool same_seeds;
   if (!all)
     return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
   for (size_t c = 0; c < cells->count; c++)
     all[c] = &cells->cell[c];
   *runs = run_cells_balance(cells->count, all, &same_seeds);
-  free(all);
   if (cells->count < 2 || *runs < 2)
     return status_fail(error, STATUS_USAGE, "splitting a variance needs at least two points with two runs each");
-  uint32_t *level = malloc((cells->count * cells->axes + 1) * sizeof *level);
-  double *value = malloc(cells->count * *runs * sizeof *value);
-  status code = level && value ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory to split a variance");
-  for (size_t c = 0; code == STATUS_OK && c < cells->count; c++)
+  OWNED uint32_t *level = malloc((cells->count * cells->axes + 1) * sizeof *level);
+  OWNED double *value = malloc(cells->count * *runs * sizeof *value);
+  if (!level || !value)
+    return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
+  for (size_t c = 0; c < cells->count; c++)
     for (size_t r = 0; r < *runs; r++)
       value[c * *runs + r] = cells->cell[c].run[r].value;
-  if (code == STATUS_OK) {
-    number_levels(cells, level);
-    const struct scatter_table table = {cells->count, *runs, cells->axes, level, value};
-    code = scatter_split(&table, parts, error);
-  }
-  free(level);
-  free(value);
-  return code;
+  number_levels(cells, level);
+  return scatter_split(&(struct scatter_table){cells->count, *runs, cells->axes, level, value}, parts, error);
 }
 
 static status print_parts(const struct run_cells *cells, const struct scatter_part *parts, enum table_format format,
                           struct error *error) {
   static const char *const names[SCATTER_PARTS] = {"all inputs together", "seeds", "seeds, in all points alike",
                                                    "whole"};
-  struct table *table = table_new(format, stdout);
+  TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"part", "variance", "share", "low", "high", NULL});
   table_doubt_columns(table);
   for (size_t i = 0; i < cells->axes + SCATTER_PARTS; i++) {
@@ -192,23 +186,20 @@ static status print_parts(const struct run_cells *cells, const struct scatter_pa
 status print_shares_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
                              struct error *error) {
   struct ask_column axis[LIMITS_AXES_OF_POOL];
-  struct run_cells cells = {0};
+  RUN_CELLS cells = {0};
   struct scatter_part parts[LIMITS_AXES_OF_POOL + SCATTER_PARTS];
   char by[LIMITS_AXES_OF_POOL * (sizeof axis[0].name + 1)] = "";
   size_t axes = 0, runs = 0;
   struct ask_pool_choice pool = choice->pool;
-  status code = ask_columns_axes(store, false, LIMITS_AXES_OF_POOL, axis, &axes, error);
+  TRY(ask_columns_axes(store, false, LIMITS_AXES_OF_POOL, axis, &axes, error));
   for (size_t a = 0; a < axes; a++)
     text_append(by, sizeof by, "%s%s", a ? "," : "", axis[a].name);
   if (!pool.by)
     pool.by = by;
-  if (code == STATUS_OK)
-    code = run_cells_read(store, &pool, choice->quantity, &cells, error);
-  if (code == STATUS_OK)
-    code = split(&cells, parts, &runs, error);
-  if (code == STATUS_OK)
-    code = print_parts(&cells, parts, format, error);
-  if (code == STATUS_OK && format == TABLE_TEXT) {
+  TRY(run_cells_read(store, &pool, choice->quantity, &cells, error));
+  TRY(split(&cells, parts, &runs, error));
+  TRY(print_parts(&cells, parts, format, error));
+  if (format == TABLE_TEXT) {
     uncertainty_doubts(&cells.doubts, stderr);
     fprintf(stderr,
             "clast: %zu points with %zu seeds each, which count alike. An input: variance of its means over the other "
@@ -216,14 +207,13 @@ status print_shares_variance(struct store *store, const struct scatter_choice *c
             "their interplay. Low, high: 95 %% interval over seeds\n",
             cells.count, runs);
   }
-  run_cells_release(&cells);
-  return code;
+  return STATUS_OK;
 }
 
 /* ---- sensitivity indices ---- */
 
 struct reading {
-  const struct campaign *campaign;
+  struct campaign *campaign;
   enum design_sensitivity_kind kind;
   size_t blocks, points; /* points of a block */
   struct run_cells cells;
@@ -233,6 +223,14 @@ struct reading {
   double *value;
   struct sensitivity_table table;
 };
+
+static void release_reading(struct reading *r) {
+  run_cells_release(&r->cells);
+  free(r->place);
+  free(r->block);
+  free(r->value);
+  campaign_free(r->campaign);
+}
 
 /* Writes an input in the same form as run_cells. */
 static void write_input(const struct campaign *campaign, size_t a, size_t i, char text[ASK_POOL_TEXT]) {
@@ -289,7 +287,7 @@ static int by_address(const void *a, const void *b) {
 
 static status fill_table(struct reading *r, struct error *error) {
   const size_t rows = r->whole * r->points;
-  struct run_cell **used = malloc((rows + 1) * sizeof *used);
+  OWNED struct run_cell **used = malloc((rows + 1) * sizeof *used);
   size_t count = 0;
   if (!used)
     return status_fail(error, STATUS_MEMORY, "no memory for %zu points", rows);
@@ -301,7 +299,6 @@ static status fill_table(struct reading *r, struct error *error) {
       used[count++] = used[i];
   r->table = (struct sensitivity_table){.inputs = r->campaign->axis_count, .blocks = r->whole};
   r->table.seeds = run_cells_balance(count, used, &r->table.same_seeds);
-  free(used);
   r->value = malloc((rows * r->table.seeds + 1) * sizeof *r->value);
   if (!r->value)
     return status_fail(error, STATUS_MEMORY, "no memory for %zu points", rows);
@@ -345,7 +342,7 @@ static status print_sobol(const struct reading *r, enum table_format format, str
   struct sensitivity_index index[LIMITS_AXES_OF_POOL + 1];
   const size_t n = r->table.inputs;
   TRY(sensitivity_sobol(&r->table, index, error));
-  struct table *table = table_new(format, stdout);
+  TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"input", "first", "first_hw95", "total", "total_hw95", NULL});
   table_doubt_columns(table);
   for (size_t i = 0; i <= n; i++) {
@@ -369,65 +366,48 @@ static status print_sobol(const struct reading *r, enum table_format format, str
 static status print_morris(const struct reading *r, enum table_format format, struct error *error) {
   const size_t n = r->table.inputs;
   struct sensitivity_effect effect[LIMITS_AXES_OF_POOL];
-  size_t *order = malloc(n * r->blocks * sizeof *order);
-  double *step = malloc(n * r->blocks * sizeof *step);
-  status code = order && step ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a design");
-  if (code == STATUS_OK) {
-    sensitivity_design_steps(r->campaign, r->blocks, order, step);
-    for (size_t b = 0; b < r->whole; b++) { /* the complete blocks move to the front */
-      memmove(order + b * n, order + r->block[b] * n, n * sizeof *order);
-      memmove(step + b * n, step + r->block[b] * n, n * sizeof *step);
-    }
-    code = sensitivity_morris(&r->table, order, step, effect, error);
+  OWNED size_t *order = malloc(n * r->blocks * sizeof *order);
+  OWNED double *step = malloc(n * r->blocks * sizeof *step);
+  if (!order || !step)
+    return status_fail(error, STATUS_MEMORY, "no memory for a design");
+  sensitivity_design_steps(r->campaign, r->blocks, order, step);
+  for (size_t b = 0; b < r->whole; b++) { /* the complete blocks move to the front */
+    memmove(order + b * n, order + r->block[b] * n, n * sizeof *order);
+    memmove(step + b * n, step + r->block[b] * n, n * sizeof *step);
   }
-  struct table *table = code == STATUS_OK ? table_new(format, stdout) : NULL;
-  if (table) {
-    table_columns(table, (const char *const[]){"input", "mean_absolute", "mean_absolute_hw95", "mean", "deviation",
-                                               "noise", NULL});
-    table_doubt_columns(table);
-    for (size_t i = 0; i < n; i++) {
-      table_text(table, r->campaign->axes[i].row->path);
-      interval(table, &effect[i].mean_absolute, &r->cells.doubts);
-      table_rests_on(table, &r->cells.doubts);
-      table_real(table, effect[i].mean);
-      table_real(table, effect[i].deviation);
-      table_real(table, effect[i].noise);
-      table_doubt_cells(table, &r->cells.doubts);
-    }
-    if (format == TABLE_TEXT)
-      fprintf(stderr,
-              "clast: elementary effects of %zu trajectories, for the whole range of an input. deviation: large beside "
-              "mean_absolute if the input is curved or acts with others; noise: what seeds alone would make\n",
-              r->whole);
-    code = table_end(table, error);
+  TRY(sensitivity_morris(&r->table, order, step, effect, error));
+  TABLE table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"input", "mean_absolute", "mean_absolute_hw95", "mean", "deviation",
+                                             "noise", NULL});
+  table_doubt_columns(table);
+  for (size_t i = 0; i < n; i++) {
+    table_text(table, r->campaign->axes[i].row->path);
+    interval(table, &effect[i].mean_absolute, &r->cells.doubts);
+    table_rests_on(table, &r->cells.doubts);
+    table_real(table, effect[i].mean);
+    table_real(table, effect[i].deviation);
+    table_real(table, effect[i].noise);
+    table_doubt_cells(table, &r->cells.doubts);
   }
-  free(order);
-  free(step);
-  return code;
+  if (format == TABLE_TEXT)
+    fprintf(stderr,
+            "clast: elementary effects of %zu trajectories, for the whole range of an input. deviation: large beside "
+            "mean_absolute if the input is curved or acts with others; noise: what seeds alone would make\n",
+            r->whole);
+  return table_end(table, error);
 }
 
 status print_shares_sensitivity(struct store *store, const char *path, const char *quantity, enum table_format format,
                                 struct error *error) {
-  struct campaign *campaign = NULL;
-  struct reading r = {0};
-  status code = campaign_load(path, &campaign, error);
-  if (code)
-    return code;
-  r.campaign = campaign;
-  code = sensitivity_design_find(campaign, &r.kind, &r.blocks, error);
-  r.points = campaign->axis_count + (r.kind == DESIGN_SENSITIVITY_SALTELLI ? 2 : 1);
-  if (code == STATUS_OK)
-    code = read_runs(store, quantity, &r, error);
-  if (code == STATUS_OK && r.whole < r.blocks)
+  __attribute__((cleanup(release_reading))) struct reading r = {0};
+  TRY(campaign_load(path, &r.campaign, error));
+  TRY(sensitivity_design_find(r.campaign, &r.kind, &r.blocks, error));
+  r.points = r.campaign->axis_count + (r.kind == DESIGN_SENSITIVITY_SALTELLI ? 2 : 1);
+  TRY(read_runs(store, quantity, &r, error));
+  if (r.whole < r.blocks)
     fprintf(stderr, "clast: %zu of %zu blocks lack a finished run and are left out\n", r.blocks - r.whole, r.blocks);
-  if (code == STATUS_OK)
-    code = r.kind == DESIGN_SENSITIVITY_SALTELLI ? print_sobol(&r, format, error) : print_morris(&r, format, error);
-  if (code == STATUS_OK && format == TABLE_TEXT)
+  TRY(r.kind == DESIGN_SENSITIVITY_SALTELLI ? print_sobol(&r, format, error) : print_morris(&r, format, error));
+  if (format == TABLE_TEXT)
     uncertainty_doubts(&r.cells.doubts, stderr);
-  run_cells_release(&r.cells);
-  free(r.place);
-  free(r.block);
-  free(r.value);
-  campaign_free(campaign);
-  return code;
+  return STATUS_OK;
 }

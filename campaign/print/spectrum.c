@@ -4,12 +4,14 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "schemas/memory.h"
+
 /* Prints the bins of a pool, or with run_id those of one of its runs. */
 static status print_bins(struct table *table, const struct spectrum_choice *choice, const struct ask_pools *pools,
                          const struct ask_pool *pool, const struct pooled_runs *runs, const int64_t *run_id,
                          const struct ask_doubts *doubts, struct error *error) {
   struct pooled_form form = ask_pool_form(pool, choice->cumulative, choice->density);
-  struct pooled_bin *bins;
+  OWNED struct pooled_bin *bins = NULL;
   size_t count;
   double mass = 0;
   if (run_id)
@@ -32,8 +34,7 @@ static status print_bins(struct table *table, const struct spectrum_choice *choi
     table_real(table, bins[b].mass / mass);
     table_doubt_cells(table, doubts);
   }
-  free(bins);
-  return table_broken(table) ? STATUS_IO : STATUS_OK;
+  return STATUS_OK;
 }
 
 status print_spectrum(struct store *store, const struct spectrum_choice *choice, enum table_format format,
@@ -42,7 +43,7 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   const char *unit = sizes ? "m" : "kg", *per_unit = choice->cumulative ? NULL : sizes ? "1/m" : "1/kg";
   ASK_POOLS pools = ask_pools(store, &choice->pool, NULL, error);
   TRY(pools.code);
-  struct table *table = table_new(format, stdout);
+  TABLE table = table_new(format, stdout);
   print_pool_columns(table, &pools);
   if (choice->runs)
     table_column(table, "run_id", NULL);
@@ -55,27 +56,24 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   table_column(table, "mass_share", NULL);
   table_doubt_columns(table);
   struct ask_doubts sum = {0};
-  status code = STATUS_OK;
-  for (const struct ask_pool *pool; code == STATUS_OK && (pool = ask_pools_next(&pools));) {
+  for (const struct ask_pool *pool; !table_broken(table) && (pool = ask_pools_next(&pools));) {
     const struct pooled_runs *runs = &pool->data.runs;
     ask_doubts_add(&sum, &pool->doubts);
     if (!choice->runs)
-      code = print_bins(table, choice, &pools, pool, runs, NULL, &pool->doubts, error);
-    for (size_t r = 0; choice->runs && r < runs->count && code == STATUS_OK; r++) {
+      TRY(print_bins(table, choice, &pools, pool, runs, NULL, &pool->doubts, error));
+    for (size_t r = 0; choice->runs && r < runs->count && !table_broken(table); r++) {
       struct ask_doubts doubts = {0};
-      code = ask_doubts(store, &(struct ask_doubts_choice){.run = pool->data.run_id[r]},
-                        OUTCOME_NAME(mean_fragment_mass), &doubts, error);
-      if (code == STATUS_OK)
-        code = print_bins(table, choice, &pools, pool, &(struct pooled_runs){1, runs->first + r, runs->masses},
-                          &pool->data.run_id[r], &doubts, error);
+      TRY(ask_doubts(store, &(struct ask_doubts_choice){.run = pool->data.run_id[r]}, OUTCOME_NAME(mean_fragment_mass),
+                     &doubts, error));
+      TRY(print_bins(table, choice, &pools, pool, &(struct pooled_runs){1, runs->first + r, runs->masses},
+                     &pool->data.run_id[r], &doubts, error));
     }
   }
-  if (code == STATUS_OK)
-    code = ask_pools_end(&pools);
-  code = table_finish(table, code, error);
-  if (code == STATUS_OK && format == TABLE_TEXT)
+  TRY(ask_pools_end(&pools));
+  TRY(table_end(table, error));
+  if (format == TABLE_TEXT)
     uncertainty_doubts(&sum, stderr);
-  return code;
+  return STATUS_OK;
 }
 
 status print_spectrum_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
@@ -87,19 +85,16 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   TRY(ask_pools_end(&before));
   ASK_POOLS pools = ask_pools(store, &choice->pool, NULL, error);
   TRY(pools.code);
-  struct table *table = table_new(format, stdout);
+  TABLE table = table_new(format, stdout);
   print_pool_columns(table, &pools);
   table_column(table, "from", "kg");
   table_columns(table, (const char *const[]){"measured", "runs", "fragments_mean", "fragments_hw95", "distance",
                                              "runs_as_far", "log_likelihood", NULL});
   table_doubt_columns(table);
   struct ask_doubts sum = {0};
-  status code = STATUS_OK;
-  for (const struct ask_pool *pool; code == STATUS_OK && (pool = ask_pools_next(&pools));) {
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
     struct measured_match match;
-    code = measured_compare(choice->measured, &pool->data.runs, complete, &match, error);
-    if (code)
-      break;
+    TRY(measured_compare(choice->measured, &pool->data.runs, complete, &match, error));
     print_pool_cells(table, &pools, pool);
     table_real(table, match.from);
     table_real(table, match.fragments);
@@ -116,10 +111,9 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
     table_doubt_cells(table, &pool->doubts);
     ask_doubts_add(&sum, &pool->doubts);
   }
-  if (code == STATUS_OK)
-    code = ask_pools_end(&pools);
-  code = table_finish(table, code, error);
-  if (code == STATUS_OK && format == TABLE_TEXT) {
+  TRY(ask_pools_end(&pools));
+  TRY(table_end(table, error));
+  if (format == TABLE_TEXT) {
     uncertainty_doubts(&sum, stderr);
     fprintf(stderr,
             "clast: fragments from %.3g kg on, where the measured and all simulated spectra are complete. distance: "
@@ -127,5 +121,5 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
             "measured one (one experiment is one specimen; below 0.05 speaks against the point)\n",
             complete, choice->measured->weighed ? "the shares of mass" : "the shapes");
   }
-  return code;
+  return STATUS_OK;
 }

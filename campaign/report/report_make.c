@@ -14,6 +14,7 @@
 #include "engine/outcome.h"
 #include "schemas/file.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 
 enum { PICTURES = 24, PICTURE_WIDTH = 400, PICTURE_BYTES = 330000 /* most pictures of one page */ };
 
@@ -51,51 +52,46 @@ static status add_label(struct making *making, const char *column, struct error 
 /* The main results less those of the first store, as `clast compare` has them. Stores without common points have no
  * differences. */
 static status add_differences(struct making *making, const char *name, struct error *error) {
-  status code = STATUS_OK;
   const char *first = making->choice->stores[0];
-  for (size_t i = 0; code == STATUS_OK && name != first && outcome_main(i); i++) {
-    struct ask_pairs *pairs = NULL;
+  for (size_t i = 0; name != first && outcome_main(i); i++) {
+    ASK_PAIRS pairs = NULL;
     const char *quantity = outcome_main(i)->path;
-    code = ask_pairs_read(first, name, quantity, &pairs, error);
-    for (struct ask_pairs_row row; code == STATUS_OK && ask_pairs_next(pairs, &row);)
-      code = ask_page_difference(making->page, quantity, row.point[0], row.point[1], &row.difference, error);
-    if (code == STATUS_OK)
-      code = ask_pairs_end(pairs, error);
-    ask_pairs_free(pairs);
+    const status code = ask_pairs_read(first, name, quantity, &pairs, error);
+    if (code)
+      return code == STATUS_USAGE ? STATUS_OK : code;
+    for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
+      TRY(ask_page_difference(making->page, quantity, row.point[0], row.point[1], &row.difference, error));
+    TRY(ask_pairs_end(pairs, error));
   }
-  return code == STATUS_USAGE ? STATUS_OK : code;
+  return STATUS_OK;
 }
 
 /* Draws into a file beside the page. For a missing or damaged fields file the page reports that there is no picture. */
 static status add_picture(struct making *making, const struct answer *kept, struct error *error) {
-  unsigned char *png = NULL;
+  OWNED unsigned char *png = NULL;
   size_t size = 0;
   char path[LIMITS_PATH];
   if (making->picture_bytes >= PICTURE_BYTES)
     return STATUS_OK;
   snprintf(path, sizeof path, "%s.%ld.png", making->choice->output, (long)getpid());
-  char *fields = ask_run_fields(kept, 3);
+  OWNED char *fields = ask_run_fields(kept, 3);
   if (!fields)
     return status_fail(error, STATUS_MEMORY, "no memory for the page");
   status code = picture_draw(fields, path, &(struct picture_choice){.width = PICTURE_WIDTH}, NULL);
-  free(fields);
   if (code) {
     making->not_drawn++;
     return STATUS_OK;
   }
   code = file_read(path, "picture", &png, &size, error);
   unlink(path);
-  if (code == STATUS_OK && making->picture_bytes + size <= PICTURE_BYTES) {
-    making->picture_bytes += size;
-    code = ask_page_picture(making->page, kept, png, size, error);
-  }
-  free(png);
-  return code;
+  if (code || making->picture_bytes + size > PICTURE_BYTES)
+    return code;
+  making->picture_bytes += size;
+  return ask_page_picture(making->page, kept, png, size, error);
 }
 
 static status fill_page(struct making *making, const char *name, struct page_data *data, struct error *error) {
   char not_drawn[32];
-  making->not_drawn = 0;
   TRY(add_facts(making, name, error));
   ANSWER columns = ask_page_columns(making->page, error);
   while (answer_next(&columns))
@@ -111,30 +107,29 @@ static status fill_page(struct making *making, const char *name, struct page_dat
   return ask_page_file(making->page, &data->bytes, &data->size, error);
 }
 
-static status add_store(struct making *making, const char *name, struct page_data *data, struct error *error) {
-  TRY(store_open_reader(name, &making->store, error));
-  status code = ask_page_make(making->store, &making->page, error);
+static status add_store(const struct report_choice *choice, const char *name, struct page_data *data,
+                        struct error *error) {
+  STORE store = NULL;
+  TRY(store_open_reader(name, &store, error));
+  struct making making = {.choice = choice, .store = store};
+  status code = ask_page_make(store, &making.page, error);
   if (code == STATUS_OK)
-    code = fill_page(making, name, data, error);
-  ask_page_free(making->page);
-  making->page = NULL;
-  store_close(making->store, NULL);
+    code = fill_page(&making, name, data, error);
+  ask_page_free(making.page);
   return code;
 }
 
 status report_make(const struct report_choice *choice, size_t *size, struct error *error) {
-  struct making making = {.choice = choice};
   struct page_data data[REPORT_STORES] = {{0}};
-  unsigned char *html = NULL;
+  OWNED unsigned char *html = NULL;
   size_t html_size = 0;
   status code = page_empty(&html, &html_size, error);
   for (size_t i = 0; code == STATUS_OK && i < choice->count; i++)
-    code = add_store(&making, choice->stores[i], &data[i], error);
+    code = add_store(choice, choice->stores[i], &data[i], error);
   if (code == STATUS_OK)
     code = page_write(choice->output, html, html_size, choice->count, data, size, error);
   for (size_t i = 0; i < choice->count; i++)
     free(data[i].bytes);
-  free(html);
   return code;
 }
 

@@ -83,9 +83,10 @@ struct command {
   size_t options_size; /* sizeof the options struct */
   bool has_table;      /* prints a table: has --json and --csv, too */
   bool has_runs;       /* exits 1 and 75 apply */
+  bool has_farm;       /* computes with a farm: under mpirun only rank 0 prints an error (launch_quiet_ranks()) */
   /* Data goes to stdout, remarks to stderr; an error is returned, not printed. A command has `run` or `ask`. */
   status (*run)(const struct command_line *line, struct error *error);
-  /* Checks the options before `ask`; NULL: there is nothing to check. */
+  /* Checks the options before that; NULL: there is nothing to check. */
   status (*check)(const struct command_line *line, struct error *error);
   /* Asks the store that the first argument names, opened as a reader, and prints the answer. */
   status (*ask)(struct store *store, const struct command_line *line, struct error *error);

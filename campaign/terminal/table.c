@@ -11,6 +11,7 @@
 #include "campaign/terminal/uncertainty.h"
 #include "schemas/csv.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum { SAMPLE_ROWS = 500, COLUMNS_MAXIMUM = 2000 }; /* SQLite's own limit on columns is 2000 */
@@ -34,15 +35,12 @@ struct table {
   } * kept;
   size_t kept_count;
   char mark[UNCERTAINTY_TEXT]; /* behind the next cell */
-  bool out_of_memory, broken;
+  bool out_of_memory, broken, ended;
   int write_error;
 };
 
 struct table *table_new(enum table_format format, FILE *out) {
-  static const struct table failed = {.out_of_memory = true, .broken = true};
-  struct table *table = calloc(1, sizeof *table);
-  if (!table)
-    return (struct table *)&failed; /* never written: every call below returns at once when `broken` */
+  struct table *table = memory_small(1, sizeof *table);
   table->format = format;
   table->out = out;
   return table;
@@ -396,24 +394,7 @@ status table_flush(FILE *out, struct error *error) {
   return verdict(out, code, error);
 }
 
-void table_drop(struct table *table) {
-  if (!table->out)
-    return; /* the copy that could not be made */
-  for (size_t i = 0; i < table->kept_count; i++)
-    free(table->kept[i].text);
-  for (size_t c = 0; c < table->column_count; c++) {
-    free(table->columns[c].name);
-    free(table->columns[c].unit);
-  }
-  free(table->kept);
-  free(table->columns);
-  free(table);
-}
-
 status table_end(struct table *table, struct error *error) {
-  bool out_of_memory = table->out_of_memory;
-  if (!table->out)
-    return status_fail(error, STATUS_MEMORY, "out of memory while printing a table");
   if (!table->broken) {
     bool nothing_yet = table->rows == 0 || (table->format == TABLE_TEXT && table->rows <= SAMPLE_ROWS);
     if (nothing_yet)
@@ -424,23 +405,28 @@ status table_end(struct table *table, struct error *error) {
     (void)fflush(table->out); /* sets the stream's error flag */
     check_output(table);
   }
-  int write_error = table->write_error;
-  const FILE *out = table->out;
+  table->ended = true;
   clearerr(table->out); /* reported here, once */
-  table_drop(table);
-  if (out_of_memory)
+  if (table->out_of_memory)
     return status_fail(error, STATUS_MEMORY, "out of memory while printing a table");
-  return verdict(out, write_error, error);
+  return verdict(table->out, table->write_error, error);
 }
 
-status table_finish(struct table *table, status code, struct error *error) {
-  if (code == STATUS_OK || table_broken(table))
-    return table_end(table, error);
-  if (table->rows == 0)
-    table_drop(table);
-  else
+void table_drop(struct table **variable) {
+  struct table *table = *variable;
+  if (!table)
+    return;
+  if (!table->ended && table->rows > 0)
     (void)table_end(table, NULL);
-  return code;
+  for (size_t i = 0; i < table->kept_count; i++)
+    free(table->kept[i].text);
+  for (size_t c = 0; c < table->column_count; c++) {
+    free(table->columns[c].name);
+    free(table->columns[c].unit);
+  }
+  free(table->kept);
+  free(table->columns);
+  free(table);
 }
 
 status table_text_only(enum table_format format, const char *what, struct error *error) {
@@ -464,7 +450,7 @@ struct rows {
     const struct ask_column *written; /* the varied input that it is; NULL: shown as stored */
     bool hidden;
     size_t doubtful; /* of a mean: its column _doubtful, behind its column _n; 0: none */
-  } * shown;         /* per column; owned */
+  } * shown;         /* per column */
   size_t n;          /* the column of the number of runs */
 };
 
@@ -501,13 +487,10 @@ static void find_marks(struct rows *rows, const struct answer *answer) {
 }
 
 /* The headings, with the units of the store's columns: people see varied inputs in the campaign's units (`written`). */
-static status name_columns(struct rows *rows, const struct answer *answer, bool written) {
+static void name_columns(struct rows *rows, const struct answer *answer, bool written) {
   const bool people = rows->format == TABLE_TEXT;
-  struct ask_column *units = NULL;
+  OWNED struct ask_column *units = NULL;
   size_t unit_count = 0;
-  rows->shown = calloc(answer_count(answer) + 1, sizeof *rows->shown);
-  if (!rows->shown)
-    return status_fail(answer->error, STATUS_MEMORY, "no memory for a table");
   if (people) /* on an error headings have no units, and values stay in SI */
     (void)ask_columns_units(answer->store, &units, &unit_count, NULL);
   if (people && written) {
@@ -527,8 +510,6 @@ static status name_columns(struct rows *rows, const struct answer *answer, bool 
     if (!shown->hidden)
       table_column(rows->table, name, unit);
   }
-  free(units);
-  return STATUS_OK;
 }
 
 static void print_blob(struct rows *rows, const unsigned char *bytes, size_t size) {
@@ -579,16 +560,17 @@ static void print_row(struct rows *rows, const struct answer *answer) {
   }
 }
 
-status table_answer(struct answer answer, bool written, enum table_format format, FILE *out) {
-  struct rows rows = {.format = format};
-  if (answer_status(&answer)) /* the question itself failed: no table */
-    return answer_end(&answer);
-  rows.table = table_new(format, out);
-  status code = name_columns(&rows, &answer, written);
-  while (code == STATUS_OK && !table_broken(rows.table) && answer_next(&answer))
+status table_answer(struct answer question, bool written, enum table_format format, FILE *out) {
+  ANSWER answer = question;
+  TRY(answer_status(&answer)); /* the question itself failed: no table */
+  TABLE table = table_new(format, out);
+  OWNED struct shown *shown = calloc(answer_count(&answer) + 1, sizeof *shown);
+  struct rows rows = {.format = format, .table = table, .shown = shown};
+  if (!shown)
+    return status_fail(answer.error, STATUS_MEMORY, "no memory for a table");
+  name_columns(&rows, &answer, written);
+  while (!table_broken(table) && answer_next(&answer))
     print_row(&rows, &answer);
-  free(rows.shown);
-  const status end = answer_end(&answer);
-  code = code ? code : end;
-  return table_finish(rows.table, code, answer.error);
+  TRY(answer_end(&answer));
+  return table_end(table, answer.error);
 }

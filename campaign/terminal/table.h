@@ -19,7 +19,12 @@ enum table_format { TABLE_TEXT, TABLE_CSV, TABLE_JSON, TABLE_JSON_LINES };
 
 struct table;
 
-/* Never NULL: a failed allocation is remembered and returned by table_end. `out` is borrowed. */
+/* A variable of type TABLE frees itself where its block is left, so that TRY and return are allowed anywhere. Without
+ * table_end(), after an error, it prints the rows so far first, and nothing if there is none. */
+#define TABLE __attribute__((cleanup(table_drop))) struct table *
+void table_drop(struct table **table); /* for TABLE */
+
+/* Never NULL: memory that a cell or a column lacks is remembered and returned by table_end. `out` is borrowed. */
 struct table *table_new(enum table_format format, FILE *out);
 
 /* Before the first cell. unit: NULL or "1" for none. Texts are copied. */
@@ -43,15 +48,9 @@ void table_rests_on(struct table *table, const struct ask_doubts *doubts);
 void table_doubt_columns(struct table *table);
 void table_doubt_cells(struct table *table, const struct ask_doubts *doubts);
 
-/* Writes the remaining rows and frees the table. STATUS_IO when writing failed (disk full). A closed pipe (EPIPE: `|
+/* Writes the remaining rows: the last call. STATUS_IO when writing failed (disk full). A closed pipe (EPIPE: `|
  * head`) is not an error. */
 status table_end(struct table *table, struct error *error);
-
-/* The same after a loop that ended with the status `code`: after an error the rows so far are printed, and nothing if
- * there is none. Returns `code`, or for a table that could not be written what table_end returns. */
-status table_finish(struct table *table, status code, struct error *error);
-
-void table_drop(struct table *table); /* frees the table without printing the remaining rows */
 
 /* True when the pipe is closed or writing has failed: more rows are not needed. */
 bool table_broken(const struct table *table);

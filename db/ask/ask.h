@@ -365,6 +365,9 @@ bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row);
 /* After the last pair. STATUS_USAGE: the sides have no point in common. */
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error);
 void ask_pairs_free(struct ask_pairs *pairs); /* NULL is fine */
+/* Pairs that free themselves where their block is left: ASK_PAIRS pairs = NULL; */
+#define ASK_PAIRS __attribute__((cleanup(ask_pairs_drop))) struct ask_pairs *
+void ask_pairs_drop(struct ask_pairs **pairs); /* for ASK_PAIRS */
 
 /* ---- One point of a store: the fragment masses of all its runs that count, and the standard estimates made from them.
  * ---- */

@@ -201,6 +201,10 @@ void ask_pairs_free(struct ask_pairs *pairs) {
   free(pairs);
 }
 
+void ask_pairs_drop(struct ask_pairs **pairs) {
+  ask_pairs_free(*pairs);
+}
+
 /* Both sides are in the order of their inputs. */
 bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
   const struct side *a = &pairs->side[0], *b = &pairs->side[1];

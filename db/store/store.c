@@ -608,6 +608,10 @@ status store_close(struct store *store, struct error *error) {
   return result;
 }
 
+void store_drop(struct store **store) {
+  (void)store_close(*store, NULL);
+}
+
 /* ---- batches and sessions ---- */
 
 /* Undoes the open batch. */

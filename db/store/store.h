@@ -38,6 +38,9 @@ const char *store_path(const struct store *store);
 bool store_is_being_written(const char *path);
 /* Commits and leaves one plain file in journal_mode=DELETE when writing. NULL is fine. */
 status store_close(struct store *store, struct error *error);
+/* A store that is only read, and closes itself where its block is left: STORE store = NULL; */
+#define STORE __attribute__((cleanup(store_drop))) struct store *
+void store_drop(struct store **store); /* for STORE */
 
 /* Provenance: one row per invocation of `clast run`. `facts` is a JSON object (version, commit, compiler, flags, cpu
  * class, libraries, host, ranks, slots, command line). */

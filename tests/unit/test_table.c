@@ -16,7 +16,7 @@ static char *print_rows(enum table_format format, int rows) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
-  struct table *table = table_new(format, out);
+  TABLE table = table_new(format, out);
   table_column(table, "name", NULL);
   table_column(table, "speed", "m/s");
   table_column(table, "n", "1");
@@ -72,7 +72,7 @@ static void test_text_is_harmless(void **state) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
-  struct table *table = table_new(TABLE_TEXT, out);
+  TABLE table = table_new(TABLE_TEXT, out);
   for (int i = 0; i < 4; i++)
     table_column(table, hostile[i], hostile[i]);
   for (int i = 0; i < 4; i++)
@@ -118,7 +118,7 @@ static void test_csv_is_harmless(void **state) {
     size_t size = 0;
     struct csv csv;
     FILE *out = open_memstream(&text, &size);
-    struct table *table = table_new(TABLE_CSV, out);
+    TABLE table = table_new(TABLE_CSV, out);
     table_column(table, cases[i].text, NULL);
     table_text(table, cases[i].text);
     assert_int_equal(table_end(table, NULL), STATUS_OK);
@@ -142,7 +142,7 @@ static void test_numbers_round_trip(void **state) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
-    struct table *table = table_new(TABLE_CSV, out);
+    TABLE table = table_new(TABLE_CSV, out);
     table_column(table, "x", NULL);
     table_real(table, numbers[i]);
     assert_int_equal(table_end(table, NULL), STATUS_OK);
@@ -183,7 +183,7 @@ static void test_full_disk(void **state) {
   (void)state;
   FILE *out = fopen("/dev/full", "w");
   assert_non_null(out);
-  struct table *table = table_new(TABLE_CSV, out);
+  TABLE table = table_new(TABLE_CSV, out);
   table_column(table, "x", NULL);
   for (int i = 0; i < 10000; i++)
     table_integer(table, i);
