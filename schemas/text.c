@@ -198,6 +198,15 @@ bool text_has_word(const char *words, const char *word) {
   return false;
 }
 
+const char *text_next_item(const char *list, char *item, size_t size) {
+  const size_t length = strcspn(list, ",");
+  const char *begin = list + strspn(list, " "), *end = list + length;
+  while (end > begin && end[-1] == ' ')
+    end--;
+  snprintf(item, size, "%.*s", begin < end ? (int)(end - begin) : 0, begin);
+  return list + length + (list[length] == ',');
+}
+
 bool text_is_one_of(const char *text, const char *const *words) {
   for (; words && *words; words++)
     if (strcmp(text, *words) == 0)

@@ -47,6 +47,9 @@ void text_sentence(const char *doc, char *text, size_t size);
 /* Is `word` one of the words in `words`, which single spaces separate? */
 bool text_has_word(const char *words, const char *word);
 
+/* Copies the next item of a comma-separated list, without blanks around it. Returns the rest of the list. */
+const char *text_next_item(const char *list, char *item, size_t size);
+
 /* A stream that makes *text, which the caller frees: open_memstream() that does not cut the text where memory runs out.
  * *text and *size are right after fflush() or the end; *text is NULL after the end when memory ran out, and fclose()
  * tells so. ftell() gives the length so far. NULL: no memory. */

@@ -1,14 +1,16 @@
-/* Names of quantities and the page of a chart. */
+/* Names of quantities, the page of a chart, and the stability map of a store. */
 #include "campaign/charts/charts.h"
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/ask.h"
 #include "engine/engine.h"
 #include "engine/outcome.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum { WIDTH = 900 };
@@ -61,12 +63,9 @@ void charts_labels(const char *paths, char *labels, size_t size) {
   labels[0] = '\0';
   while (*paths) {
     char path[256], label[CHARTS_LABEL];
-    const size_t length = strcspn(paths, ",");
-    snprintf(path, sizeof path, "%.*s", (int)length, paths);
+    paths = text_next_item(paths, path, sizeof path);
     charts_label(path, label);
     text_append(labels, size, "%s%s", *labels ? ", " : "", label);
-    paths += length;
-    paths += strspn(paths, ", ");
   }
 }
 
@@ -95,4 +94,52 @@ void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size) {
   ask_doubts_words(doubts, words, sizeof words);
   text_append(text, size, "%s! in doubt, %" PRId64 " of %" PRId64 " runs: %s", *text ? "; " : "", doubts->doubtful,
               doubts->runs, words);
+}
+
+/* ---- the stability map of a store ---- */
+
+enum { TILES = 10, MOST_ROWS = 400, NAME = 128 };
+struct row { /* one input of one campaign */
+  char campaign[NAME], path[NAME];
+  size_t count;
+  struct picture_margin_tile tile[TILES];
+};
+
+/* Adds a tile: a value of an input, or a range of values, which its first value stands for. */
+static status add_tile(struct row *rows, size_t *count, const struct answer *runs, struct error *error) {
+  const char *campaign = answer_text(runs, 0), *path = answer_text(runs, 1);
+  struct row *row = *count ? &rows[*count - 1] : NULL;
+  if (!row || strncmp(row->campaign, campaign, NAME - 1) != 0 || strncmp(row->path, path, NAME - 1) != 0) {
+    if (*count == MOST_ROWS)
+      return status_fail(error, STATUS_USAGE, "more than %d varied inputs in one picture", MOST_ROWS);
+    row = &rows[(*count)++];
+    snprintf(row->campaign, sizeof row->campaign, "%s", campaign);
+    snprintf(row->path, sizeof row->path, "%s", path);
+  }
+  struct picture_margin_tile *tile = &row->tile[row->count++];
+  const bool is_range = answer_integer(runs, 2) != 0;
+  if (answer_value(runs, 3).kind == QUERY_TEXT)
+    snprintf(tile->text, sizeof tile->text, "%s%.23s", is_range ? "from " : "", answer_text(runs, 3));
+  else
+    snprintf(tile->text, sizeof tile->text, is_range ? "from %.3g" : "%.8g", answer_real(runs, 3));
+  for (size_t c = 0; c < 3; c++)
+    tile->runs[c] = answer_real(runs, 4 + c);
+  return STATUS_OK;
+}
+
+status charts_extremes(struct store *store, const char *path, double width, struct error *error) {
+  size_t count = 0;
+  OWNED struct row *rows = calloc(MOST_ROWS, sizeof *rows);
+  OWNED struct picture_margin *margin = calloc(MOST_ROWS, sizeof *margin);
+  if (!rows || !margin)
+    return status_fail(error, STATUS_MEMORY, "no memory for the picture");
+  ANSWER runs = ask_campaign_values(store, error);
+  while (answer_next(&runs))
+    TRY(add_tile(rows, &count, &runs, error));
+  TRY(answer_end(&runs));
+  for (size_t k = 0; k < count; k++) {
+    const bool begins = k == 0 || strcmp(rows[k].campaign, rows[k - 1].campaign) != 0;
+    margin[k] = (struct picture_margin){begins ? rows[k].campaign : NULL, rows[k].path, rows[k].count, rows[k].tile};
+  }
+  return picture_margins(path, width, "Safe, warned and refused runs by input (SI units)", count, margin, error);
 }

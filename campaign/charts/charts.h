@@ -109,6 +109,6 @@ status picture_draw(const char *fields, const char *picture, const struct pictur
 
 /* The stability map of a store as a picture: how many runs are safe, warned and refused, for each value of each varied
  * input. */
-status extremes_map_draw(struct store *store, const char *path, double width, struct error *error);
+status charts_extremes(struct store *store, const char *path, double width, struct error *error);
 
 #endif

@@ -13,6 +13,7 @@
 #include "engine/grow.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
+#include "schemas/text.h"
 
 /* Columns of ask_group after the axes. */
 enum { VERSION = 1, MEAN = 6, LOW = 10, HIGH = 11, RESOLUTION = 13, DOUBTFUL = 16, COLUMNS = 18 };
@@ -144,14 +145,22 @@ static status read_quantity(struct store *store, const char *x, const char *y, c
   return read_exponents(store, quantity, method, window, newest, error);
 }
 
-status quantity_tell_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *quantities,
-                            struct error *error) {
+/* Tells on stderr what the runs behind the quantities leave in doubt, and at the end of a caption. */
+static status add_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *quantities,
+                         char *caption, size_t size, struct error *error) {
   char results[ASK_DOUBTS_RESULTS];
   struct ask_doubts doubts = {0};
   TRY(ask_doubts_results(store, quantities, results, error));
   TRY(ask_doubts(store, choice, results, &doubts, error));
+  charts_doubts(&doubts, caption, size);
   uncertainty_doubts(&doubts, stderr);
   return STATUS_OK;
+}
+
+status quantity_tell_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *quantities,
+                            struct error *error) {
+  char caption[CHARTS_LABEL] = "";
+  return add_doubts(store, choice, quantities, caption, sizeof caption, error);
 }
 
 void quantity_tell_resolution(struct store *store, const char *name, const char *pooled) {
@@ -168,10 +177,8 @@ void quantity_tell_resolutions(struct store *store, const char *names, const cha
   if (strcmp(names, "main") == 0)
     names = OUTCOME_DEFAULT;
   while (*names) {
-    const size_t length = strcspn(names, ",");
-    snprintf(name, sizeof name, "%.*s", (int)length, names);
-    quantity_tell_resolution(store, name + strspn(name, " "), pooled);
-    names += length + (names[length] == ',');
+    names = text_next_item(names, name, sizeof name);
+    quantity_tell_resolution(store, name, pooled);
   }
 }
 
@@ -261,17 +268,6 @@ static void label_lines(struct plot *plot, const char *by) {
   }
 }
 
-/* Says in the caption, and at length on stderr, what the runs behind the quantity leave in doubt. */
-static status add_doubts(struct store *store, const char *quantity, char *caption, size_t size, struct error *error) {
-  char results[ASK_DOUBTS_RESULTS];
-  struct ask_doubts doubts = {0};
-  TRY(ask_doubts_results(store, quantity, results, error));
-  TRY(ask_doubts(store, &(struct ask_doubts_choice){0}, results, &doubts, error));
-  charts_doubts(&doubts, caption, size);
-  uncertainty_doubts(&doubts, stderr);
-  return STATUS_OK;
-}
-
 /* Takes the rows of a quantity as lines and draws them. */
 static status draw_lines(struct store *store, struct plot *plot, const struct picture_page *page, struct error *error) {
   const struct quantity *quantity = &plot->quantity;
@@ -300,7 +296,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   charts_intervals(quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "thin bars add ", resolution, sizeof resolution);
   snprintf(caption, sizeof caption, "Bars: %s; %s", intervals, resolution);
-  TRY(add_doubts(store, quantity->name, caption, sizeof caption, error));
+  TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
   return picture_curves(page, &(struct picture_words){title, caption, x, y}, plot->count, curves, error);
 }
 
@@ -339,7 +335,7 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
     snprintf(caption, sizeof caption, "At most \xc2\xb1 %.2g: %s; %s", widest, intervals, resolution);
   else
     snprintf(caption, sizeof caption, "No interval: one run a point; %s", resolution);
-  TRY(add_doubts(store, quantity->name, caption, sizeof caption, error));
+  TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
   return picture_map(page, &(struct picture_words){title, caption, x, y}, z, count, tile, error);
 }
 

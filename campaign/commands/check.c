@@ -1,14 +1,9 @@
 /* `clast check STORE`: checks that the store is complete and consistent. */
-#include <stdio.h>
-
 #include "campaign/commands/commands.h"
-#include "db/store/store.h"
-#include "schemas/text.h"
 
 static void print_problem(void *context, const char *text) {
-  size_t *count = context;
   char line[4096];
-  ++*count;
+  ++*(size_t *)context;
   snprintf(line, sizeof line, "%s", text);
   text_make_plain(line, "");
   puts(line);

@@ -1,10 +1,8 @@
 /* `clast cite SCENE`: the papers of the modules that are on, from the sources of field tables and materials. */
 #include <ctype.h>
 #include <math.h>
-#include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "schemas/text.h"
 
 struct options {
   struct option_list set;

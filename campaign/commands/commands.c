@@ -1,11 +1,6 @@
 /* The list of commands, and how one is run. */
 #include "campaign/commands/commands.h"
 
-#include <string.h>
-
-#include "campaign/launch/launch.h"
-#include "db/store/store.h"
-
 #define COMMAND_ADDRESS(name_) &name_##_command,
 static const struct command *const all[] = {COMMANDS(COMMAND_ADDRESS)};
 

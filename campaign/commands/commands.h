@@ -2,7 +2,24 @@
 #ifndef CLAST_CAMPAIGN_COMMANDS_COMMANDS_H
 #define CLAST_CAMPAIGN_COMMANDS_COMMANDS_H
 
+/* What a command may need: standard headers, options and tables, questions, what is printed and drawn, the farm. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "campaign/document/campaign.h"
+#include "campaign/launch/launch.h"
+#include "campaign/print/print.h"
 #include "campaign/terminal/option.h"
+#include "campaign/terminal/uncertainty.h"
+#include "db/ask/ask.h"
+#include "db/store/store.h"
+#include "engine/engine.h"
+#include "engine/outcome.h"
+#include "engine/scene.h"
+#include "schemas/memory.h"
+#include "schemas/text.h"
 
 /* The commands in the order of `clast help`. */
 #define COMMANDS(ENTRY)                                                                                                \

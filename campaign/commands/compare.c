@@ -1,9 +1,5 @@
 /* `clast compare A B`: the difference of a quantity between points, campaigns or stores. */
-#include <stdio.h>
-
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/uncertainty.h"
-#include "db/ask/ask.h"
 
 struct options {
   const char *quantity;

@@ -1,10 +1,6 @@
 /* `clast completion SHELL`: the script that lets bash, zsh or fish complete. The script calls `clast completion SHELL
  * -- WORD...`, which prints what may stand in place of the last word. */
-#include <string.h>
-
 #include "campaign/commands/commands.h"
-#include "engine/engine.h"
-#include "schemas/text.h"
 
 extern const char completion_bash_text[], completion_zsh_text[], completion_fish_text[]; /* completion.SHELL */
 

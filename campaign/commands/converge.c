@@ -1,7 +1,6 @@
 /* `clast converge SCENE|CAMPAIGN`: differences between results and those of finer settings, and their cost. */
 #include "campaign/commands/commands.h"
 #include "campaign/converge/study.h"
-#include "schemas/memory.h"
 
 struct options {
   struct launch_options launch;

@@ -1,7 +1,5 @@
 /* `clast estimates STORE`: the share of the largest fragment and the exponents of every point, pooled over seeds.
  * Computed from the masses in the store each time, so that they include all present runs. */
-#include "campaign/print/print.h"
-
 #include "campaign/commands/commands.h"
 
 struct options {

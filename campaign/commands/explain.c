@@ -1,16 +1,9 @@
 /* `clast explain [PATH|WORD|SCENE]`: every path that has a row (of engines, the outcome, estimates and campaigns), the
  * words of the glossary, the columns of the store, and the model of a scene with its cost and its active inputs. */
-#include <string.h>
-
 #include "analysis/statistics/estimates.h"
 #include "campaign/commands/commands.h"
-#include "campaign/document/campaign.h"
-#include "campaign/print/print.h"
 #include "db/store/schema.h"
-#include "engine/scene.h"
 #include "schemas/file.h"
-#include "schemas/memory.h"
-#include "schemas/text.h"
 
 struct options {
   struct option_list set;

@@ -1,10 +1,5 @@
 /* `clast exponents STORE`: the exponent of every point under its four names, and a test of the power law. */
-#include <stdio.h>
-
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/uncertainty.h"
-#include "db/ask/ask.h"
-#include "engine/outcome.h"
 
 struct options {
   int64_t point, draws;

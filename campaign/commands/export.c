@@ -1,8 +1,6 @@
 /* `clast export STORE [TARGET]`: one compact file for hand-over, rows for other programs, or a folder of CSV files. */
-#include <string.h>
-
-#include "campaign/commands/commands.h"
 #include "campaign/export/export.h"
+#include "campaign/commands/commands.h"
 
 struct options {
   const char *per, *license, *author;
@@ -44,7 +42,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   else if (options->csv)
     TRY(export_files_folder(store, target, error));
   else if (options->cinema)
-    TRY(cinema_write(store, target, error));
+    TRY(export_cinema(store, target, error));
   else if (options->crate)
     TRY(export_crate(store, line->arguments[0], &crate, error));
   else if (options->bits)

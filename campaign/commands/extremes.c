@@ -1,7 +1,5 @@
 /* `clast extremes STORE`: which runs of a store are safe, warned or refused, and why. */
-#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
-#include "db/ask/ask.h"
 
 enum { PICTURE_WIDTH = 1200 };
 
@@ -19,7 +17,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
     putchar('\n');
   if (both || options->why)
     TRY(table_answer(ask_campaign_reasons(store, error), false, line->format, stdout));
-  return options->picture ? extremes_map_draw(store, options->picture, PICTURE_WIDTH, error) : STATUS_OK;
+  return options->picture ? charts_extremes(store, options->picture, PICTURE_WIDTH, error) : STATUS_OK;
 }
 
 static const struct option_row rows[] = {

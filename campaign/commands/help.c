@@ -1,10 +1,8 @@
 /* `clast help [COMMAND]`: the list of commands, one command's help, and the manual page, from the command tables. */
 #include <ctype.h>
-#include <string.h>
 
 #include "campaign/build_facts.h"
 #include "campaign/commands/commands.h"
-#include "schemas/text.h"
 
 #define EXIT_CODE(constant, value, meaning) constant,
 static const status exits[] = {STATUS_LIST(EXIT_CODE)};

@@ -1,5 +1,4 @@
 /* `clast map STORE PICTURE`: a quantity over two varied inputs, as a picture. */
-#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
 
 struct options {

@@ -1,9 +1,5 @@
 /* `clast materials [NAME|FILE]`: the built-in materials, or one as a document with its sources. */
-#include <string.h>
-
 #include "campaign/commands/commands.h"
-#include "engine/engine.h"
-#include "schemas/memory.h"
 
 /* The materials of one engine. */
 static status list(const struct engine_materials *materials, enum table_format format, struct error *error) {

@@ -1,9 +1,6 @@
 /* `clast merge TARGET SOURCE...`: merges stores from several machines into one. */
-#include <inttypes.h>
-
 #include "campaign/commands/commands.h"
 #include "campaign/scheduler/scheduler.h"
-#include "db/store/store.h"
 
 static const char *plural(int64_t count) {
   return count == 1 ? "" : "s";

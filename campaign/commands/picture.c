@@ -1,5 +1,4 @@
 /* `clast picture FIELDS PICTURE`: draws the body of a fields file, whichever engine wrote it. */
-#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
 
 static status run(const struct command_line *line, struct error *error) {

@@ -4,7 +4,6 @@
 #include "campaign/commands/commands.h"
 #include "campaign/converge/accuracy.h"
 #include "campaign/scheduler/plan.h"
-#include "schemas/memory.h"
 
 struct options {
   struct campaign_option campaign;
@@ -12,19 +11,6 @@ struct options {
   int64_t slots;
   bool no_trial, json;
 };
-
-static status print(const struct campaign *campaign, const struct plan *plan, int slots, bool json,
-                    struct error *error) {
-  if (!json) {
-    plan_print(campaign, plan, slots, stdout);
-    return STATUS_OK;
-  }
-  OWNED char *text = plan_print_json(campaign, plan, slots);
-  if (!text)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
-  puts(text);
-  return STATUS_OK;
-}
 
 status plan_campaign(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
                      bool no_trial, bool json, struct error *error) {
@@ -42,9 +28,13 @@ status plan_campaign(const char *path, const struct campaign_option *changes, co
   TRY(plan_make(campaign, &options, &plan, error));
   plan.alternatives = alternatives;
   alternatives = NULL;
-  const status code = print(campaign, &plan, options.slots, json, error);
+  OWNED char *text = json ? plan_print_json(campaign, &plan, options.slots) : NULL;
+  if (text)
+    puts(text);
+  else if (!json)
+    plan_print(campaign, &plan, options.slots, stdout);
   plan_clear(&plan);
-  return code;
+  return text || !json ? STATUS_OK : status_fail(error, STATUS_MEMORY, "out of memory");
 }
 
 static status run(const struct command_line *line, struct error *error) {

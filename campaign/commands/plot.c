@@ -1,5 +1,4 @@
 /* `clast plot STORE PICTURE`: a result or an exponent over one varied input, a line for each value of another. */
-#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
 
 struct options {

@@ -1,8 +1,5 @@
 /* `clast query STORE [SQL]`: any SQL that only reads, and canned queries by name. */
-#include <string.h>
-
 #include "campaign/commands/commands.h"
-#include "db/ask/ask.h"
 
 enum { PARAMETERS_MAXIMUM = 64 };
 

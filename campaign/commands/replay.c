@@ -1,12 +1,7 @@
 /* `clast replay STORE RUN`: computes a stored run again and compares every bit. */
-#include <inttypes.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "campaign/commands/commands.h"
 #include "campaign/one_run/one_run.h"
 #include "campaign/scheduler/provenance.h"
-#include "db/ask/ask.h"
 
 struct options {
   const char *fields;

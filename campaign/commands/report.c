@@ -1,20 +1,153 @@
-/* `clast report STORE...`: a page for a browser, in one file. */
-#include <stdio.h>
-#include <string.h>
+/* `clast report STORE...`: a page for a browser, in one file: the stores' data, the names of their columns, and
+ * pictures of runs whose fields are kept. */
+#include <time.h>
 #include <unistd.h>
 
+#include "analysis/report/page.h"
+#include "campaign/build_facts.h"
 #include "campaign/commands/commands.h"
-#include "campaign/report/report_make.h"
 #include "schemas/file.h"
 #include "schemas/limits.h"
 
-enum { EVERY_MOST = 86400 };
+enum { STORES = 8, EVERY_MOST = 86400 };
+enum { PICTURES = 24, PICTURE_WIDTH = 400, PICTURE_BYTES = 330000 /* most pictures of one page */ };
 
 struct options {
   const char *output;
   bool watch;
   int64_t every;
 };
+
+struct report_choice {
+  size_t count; /* paths of stores, at most STORES */
+  char *const *stores;
+  const char *output;
+  int64_t refresh; /* s, after which an open page loads itself again; 0: never */
+};
+
+struct making {
+  const struct report_choice *choice;
+  struct store *store;
+  struct ask_page *page;
+  size_t picture_bytes, not_drawn;
+};
+
+static status add_facts(struct making *making, const char *name, struct error *error) {
+  char now[32], refresh[32];
+  const time_t seconds = time(NULL);
+  strftime(now, sizeof now, "%Y-%m-%d %H:%M:%S UTC", gmtime(&seconds));
+  snprintf(refresh, sizeof refresh, "%lld", (long long)making->choice->refresh);
+  const char *facts[][2] = {{"store", name},
+                            {"made_at", now},
+                            {"program", "clast " BUILD_VERSION ", commit " BUILD_COMMIT},
+                            {"default_quantity", OUTCOME_DEFAULT},
+                            {"refresh", refresh}};
+  for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
+    TRY(ask_page_fact(making->page, facts[i][0], facts[i][1], error));
+  return STATUS_OK;
+}
+
+static status add_label(struct making *making, const char *column, struct error *error) {
+  struct ask_column written;
+  char label[CHARTS_LABEL], unit[96];
+  TRY(ask_columns_written(making->store, column, &written, error));
+  charts_label(column, label);
+  field_label_unit(written.unit, unit, sizeof unit);
+  return ask_page_label(making->page, column, label, unit, written.factor, error);
+}
+
+/* The main results less those of the first store, as `clast compare` has them. Stores without common points have no
+ * differences. */
+static status add_differences(struct making *making, const char *name, struct error *error) {
+  const char *first = making->choice->stores[0];
+  for (size_t i = 0; name != first && outcome_main(i); i++) {
+    ASK_PAIRS pairs = NULL;
+    const char *quantity = outcome_main(i)->path;
+    const status code = ask_pairs_read(first, name, quantity, &pairs, error);
+    if (code)
+      return code == STATUS_USAGE ? STATUS_OK : code;
+    for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
+      TRY(ask_page_difference(making->page, quantity, row.point[0], row.point[1], &row.difference, error));
+    TRY(ask_pairs_end(pairs, error));
+  }
+  return STATUS_OK;
+}
+
+/* Draws into a file beside the page. For a missing or damaged fields file the page reports that there is no picture. */
+static status add_picture(struct making *making, const struct answer *kept, struct error *error) {
+  OWNED unsigned char *png = NULL;
+  size_t size = 0;
+  char path[LIMITS_PATH];
+  if (making->picture_bytes >= PICTURE_BYTES)
+    return STATUS_OK;
+  snprintf(path, sizeof path, "%s.%ld.png", making->choice->output, (long)getpid());
+  OWNED char *fields = ask_run_fields(kept, 3);
+  if (!fields)
+    return status_fail(error, STATUS_MEMORY, "no memory for the page");
+  status code = picture_draw(fields, path, &(struct picture_choice){.width = PICTURE_WIDTH}, NULL);
+  if (code) {
+    making->not_drawn++;
+    return STATUS_OK;
+  }
+  code = file_read(path, "picture", &png, &size, error);
+  unlink(path);
+  if (code || making->picture_bytes + size > PICTURE_BYTES)
+    return code;
+  making->picture_bytes += size;
+  return ask_page_picture(making->page, kept, png, size, error);
+}
+
+static status fill_page(struct making *making, const char *name, struct page_data *data, struct error *error) {
+  char not_drawn[32];
+  TRY(add_facts(making, name, error));
+  ANSWER columns = ask_page_columns(making->page, error);
+  while (answer_next(&columns))
+    TRY(add_label(making, answer_text(&columns, 0), error));
+  TRY(answer_end(&columns));
+  TRY(add_differences(making, name, error));
+  ANSWER kept = ask_page_kept(making->store, PICTURES, error);
+  while (answer_next(&kept))
+    TRY(add_picture(making, &kept, error));
+  TRY(answer_end(&kept));
+  snprintf(not_drawn, sizeof not_drawn, "%zu", making->not_drawn);
+  TRY(ask_page_fact(making->page, "pictures_not_drawn", not_drawn, error));
+  return ask_page_file(making->page, &data->bytes, &data->size, error);
+}
+
+static status add_store(const struct report_choice *choice, const char *name, struct page_data *data,
+                        struct error *error) {
+  STORE store = NULL;
+  TRY(store_open_reader(name, &store, error));
+  struct making making = {.choice = choice, .store = store};
+  status code = ask_page_make(store, &making.page, error);
+  if (code == STATUS_OK)
+    code = fill_page(&making, name, data, error);
+  ask_page_free(making.page);
+  return code;
+}
+
+/* Makes the page. *size: its bytes. */
+static status make(const struct report_choice *choice, size_t *size, struct error *error) {
+  struct page_data data[STORES] = {{0}};
+  OWNED unsigned char *html = NULL;
+  size_t html_size = 0;
+  status code = page_empty(&html, &html_size, error);
+  for (size_t i = 0; code == STATUS_OK && i < choice->count; i++)
+    code = add_store(choice, choice->stores[i], &data[i], error);
+  if (code == STATUS_OK)
+    code = page_write(choice->output, html, html_size, choice->count, data, size, error);
+  for (size_t i = 0; i < choice->count; i++)
+    free(data[i].bytes);
+  return code;
+}
+
+/* True while a campaign writes one of the stores. */
+static bool is_running(const struct report_choice *choice) {
+  bool running = false;
+  for (size_t i = 0; i < choice->count; i++)
+    running = running || store_is_being_written(choice->stores[i]);
+  return running;
+}
 
 /* demo.html in the current folder for the store folder/demo.db. */
 static void name_page(const char *store, char *name, size_t size) {
@@ -27,9 +160,9 @@ static void name_page(const char *store, char *name, size_t size) {
 static status watch(struct report_choice *choice, int64_t every, size_t *size, struct error *error) {
   bool running;
   do {
-    running = report_make_running(choice);
+    running = is_running(choice);
     choice->refresh = running ? every : 0;
-    TRY(report_make(choice, size, error));
+    TRY(make(choice, size, error));
     if (running) {
       fprintf(stderr, "%s written; again in %lld s, while the campaign runs\n", choice->output, (long long)every);
       sleep((unsigned)every);
@@ -42,16 +175,15 @@ static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   char name[LIMITS_PATH];
   size_t size = 0;
-  if (line->count > REPORT_STORES)
-    return status_fail(error, STATUS_USAGE, "a page shows at most %d stores", REPORT_STORES);
+  if (line->count > STORES)
+    return status_fail(error, STATUS_USAGE, "a page shows at most %d stores", STORES);
   name_page(line->arguments[0], name, sizeof name);
   struct report_choice choice = {.count = line->count,
                                  .stores = line->arguments,
                                  .output = options->output ? options->output : name};
   if (!options->output)
     TRY(file_claim(name, "page", error));
-  const status code = options->watch ? watch(&choice, options->every, &size, error)
-                                     : report_make(&choice, &size, error);
+  const status code = options->watch ? watch(&choice, options->every, &size, error) : make(&choice, &size, error);
   if (code == STATUS_OK)
     fprintf(stderr, "%s written (%.2f MB); open it in a browser\n", choice.output, 1e-6 * (double)size);
   return code;

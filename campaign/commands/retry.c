@@ -1,12 +1,6 @@
 /* `clast retry STORE`: tries again the runs that were given up, with raised limits. */
-#include <string.h>
-
 #include "campaign/commands/commands.h"
 #include "campaign/converge/accuracy.h"
-#include "campaign/document/campaign.h"
-#include "campaign/launch/launch.h"
-#include "db/ask/ask.h"
-#include "schemas/memory.h"
 
 struct options {
   struct launch_options launch;

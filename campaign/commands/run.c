@@ -1,8 +1,6 @@
 /* `clast run CAMPAIGN`: runs or resumes a campaign, alone or under mpirun and srun. */
 #include "campaign/commands/commands.h"
 #include "campaign/converge/accuracy.h"
-#include "campaign/document/campaign.h"
-#include "campaign/launch/launch.h"
 
 struct options {
   struct launch_options launch;

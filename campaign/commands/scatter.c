@@ -1,11 +1,7 @@
 /* `clast scatter STORE`: the scatter of runs over seeds, and the shares of seeds and inputs in a variance. */
 #include <math.h>
-#include <stdlib.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/print/print.h"
-#include "db/ask/ask.h"
-#include "engine/outcome.h"
 
 struct options {
   int64_t point;
@@ -32,7 +28,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   TRY(read_half_width(options->half_width, &choice.half_width, error));
   TRY(ask_points_known(store, options->point, error));
   if (options->split)
-    return print_shares_variance(store, &choice, line->format, error);
+    return print_variance(store, &choice, line->format, error);
   TRY(options->plot ? print_scatter_plots(store, &choice, options->ascii, error)
                     : print_scatter_rows(store, &choice, line->format, error));
   if (!options->picture)

@@ -1,8 +1,5 @@
 /* `clast scenes [NAME]`: the built-in scenes, or one as a document to start from. */
-#include <string.h>
-
 #include "campaign/commands/commands.h"
-#include "engine/scene.h"
 
 static status print_document(const char *name, struct error *error) {
   const char *text = scene_builtin_text(name);
@@ -15,17 +12,6 @@ static status print_document(const char *name, struct error *error) {
   return status_fail(error, STATUS_USAGE, "%s is a file, not a built-in scene", name);
 }
 
-static status add_row(struct table *table, const char *name, struct error *error) {
-  SCENE scene = NULL;
-  char what[256];
-  TRY(scene_load(name, NULL, &scene, error));
-  commands_headline(scene_builtin_text(name), what, sizeof what);
-  table_text(table, name);
-  table_text(table, scene->kind->name);
-  table_text(table, what);
-  return STATUS_OK;
-}
-
 static status run(const struct command_line *line, struct error *error) {
   if (line->count == 1) {
     TRY(table_text_only(line->format, "a scene's document", error));
@@ -33,8 +19,16 @@ static status run(const struct command_line *line, struct error *error) {
   }
   TABLE table = table_new(line->format, stdout);
   table_columns(table, (const char *const[]){"name", "engine", "what", NULL});
-  for (size_t i = 0; i < scene_builtin_count(); i++)
-    TRY(add_row(table, scene_builtin_name(i), error));
+  for (size_t i = 0; i < scene_builtin_count(); i++) {
+    const char *name = scene_builtin_name(i);
+    char what[256];
+    SCENE scene = NULL;
+    TRY(scene_load(name, NULL, &scene, error));
+    commands_headline(scene_builtin_text(name), what, sizeof what);
+    table_text(table, name);
+    table_text(table, scene->kind->name);
+    table_text(table, what);
+  }
   return table_end(table, error);
 }
 

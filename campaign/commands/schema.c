@@ -1,9 +1,5 @@
 /* `clast schema scene|campaign`: JSON Schemas, for editors that complete and check YAML. */
-#include <string.h>
-
 #include "campaign/commands/commands.h"
-#include "campaign/document/campaign.h"
-#include "engine/scene.h"
 #include "schemas/json_schema.h"
 
 struct options {

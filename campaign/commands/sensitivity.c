@@ -1,11 +1,5 @@
 /* `clast sensitivity`: writes a design for sensitivity indices, and computes the indices from a store. */
-#include <stdio.h>
-#include <string.h>
-
 #include "campaign/commands/commands.h"
-#include "campaign/document/campaign.h"
-#include "campaign/print/print.h"
-#include "engine/outcome.h"
 
 struct options {
   const char *design, *quantity;
@@ -28,7 +22,7 @@ static status write_design(const struct command_line *line, struct error *error)
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  return print_shares_sensitivity(store, line->arguments[1], options->quantity, line->format, error);
+  return print_sensitivity(store, line->arguments[1], options->quantity, line->format, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {

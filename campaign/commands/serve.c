@@ -1,15 +1,9 @@
 /* `clast serve CAMPAIGN`: the campaign as a model that UQ packages evaluate over HTTP (UM-Bridge). */
-#include "campaign/serve/serve.h"
-
-#include <inttypes.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/launch/launch.h"
+#include "campaign/serve/serve.h"
 #include "schemas/file.h"
-#include "schemas/memory.h"
 
 enum { SHORTEST_TOKEN = 8 };
 

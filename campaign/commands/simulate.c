@@ -1,8 +1,6 @@
 /* `clast simulate SCENE`: one run, without a store. */
 #include "campaign/commands/commands.h"
-#include "campaign/document/campaign.h"
 #include "campaign/one_run/one_run.h"
-#include "campaign/print/print.h"
 
 struct options {
   struct one_run_options run;

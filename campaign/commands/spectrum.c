@@ -1,7 +1,5 @@
 /* `clast spectrum STORE`: fragment spectra, pooled over seeds or inputs, beside a measured spectrum. */
 #include "campaign/commands/commands.h"
-#include "campaign/print/print.h"
-#include "db/ask/ask.h"
 #include "schemas/unit.h"
 
 struct options {

@@ -1,12 +1,6 @@
 /* `clast stats STORE --by AXES`: means over seeds, with their errors. */
-#include <inttypes.h>
-#include <string.h>
-
 #include "analysis/statistics/estimates.h"
-#include "campaign/charts/charts.h"
 #include "campaign/commands/commands.h"
-#include "db/ask/ask.h"
-#include "engine/outcome.h"
 
 struct options {
   const char *by, *quantity;
@@ -15,19 +9,20 @@ struct options {
 /* Exponents are fitted to all runs of a point together: they have no mean over runs. */
 static status check(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  for (const char *name = options->quantity; *name; name += strcspn(name, ","), name += *name == ',') {
+  char name[ASK_GROUP_NAME];
+  for (const char *names = options->quantity; *names;) {
     enum exponent_method method;
     enum estimates_window window;
     struct error ignored;
     bool is;
-    name += strspn(name, " ");
+    names = text_next_item(names, name, sizeof name);
     (void)estimates_named(name, &is, &method, &window, &ignored);
     if (is)
       return status_fail(
           error, STATUS_USAGE,
-          "%.*s: exponents are fitted to all runs of a point together, not averaged: `clast estimates %s` has them, "
+          "%s: exponents are fitted to all runs of a point together, not averaged: `clast estimates %s` has them, "
           "`clast plot` and `clast map` draw them with -q beta",
-          (int)strcspn(name, ", "), name, line->arguments[0]);
+          name, line->arguments[0]);
   }
   return STATUS_OK;
 }

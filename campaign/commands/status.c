@@ -1,6 +1,5 @@
 /* `clast status STORE`: the progress of each campaign of a store. */
 #include "campaign/commands/commands.h"
-#include "db/ask/ask.h"
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const bool writing = store_is_being_written(line->arguments[0]);

@@ -34,6 +34,6 @@ status export_crate(struct store *store, const char *store_path, const struct ex
 /* One row per run whose fields are kept: its inputs and main results, FILE (its broken body) and FILE_spectrum
  * (spectrum of its point). data.csv is written last. Reports how many runs have no picture because their fields cannot
  * be read. STATUS_USAGE: the store has no run with fields. STATUS_MISSING: no gnuplot. STATUS_IO. */
-status cinema_write(struct store *store, const char *folder, struct error *error);
+status export_cinema(struct store *store, const char *folder, struct error *error);
 
 #endif

@@ -141,19 +141,13 @@ struct launching {
   enum table_format format;
 };
 
-/* NULL: nothing is shown. */
-static struct progress *make_progress(const struct launch *launch) {
-  if (!launch->manager || launch->notes.quiet)
-    return NULL;
-  const enum progress_style style = progress_style_of(stderr);
-  const char *no_colour = getenv("NO_COLOR");
-  return progress_create(stderr, style, style == PROGRESS_BAR && !(no_colour && *no_colour), 0);
-}
-
 static status run_campaign(void *context, struct launch *launch, struct error *error) {
   const struct launching *launching = context;
   const bool quiet = launch->notes.quiet;
-  struct progress *progress = make_progress(launch);
+  const enum progress_style style = progress_style_of(stderr);
+  const char *no_colour = getenv("NO_COLOR");
+  const bool colour = style == PROGRESS_BAR && !(no_colour && *no_colour);
+  struct progress *progress = launch->manager && !quiet ? progress_create(stderr, style, colour, 0) : NULL;
   struct driver_summary summary = {0};
   launch->notes.progress = launch->scheduler.progress = progress;
   launch->scheduler.store_path = launching->store;

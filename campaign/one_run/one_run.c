@@ -211,15 +211,6 @@ static status compute(const struct scene *scene, const struct one_run_options *o
   return code;
 }
 
-static status draw(const struct scene *scene, const struct one_run_options *options, const char *fields,
-                   const struct run_result *result, struct error *error) {
-  if (!options->picture || result->outcome.state == OUTCOME_INVALID)
-    return STATUS_OK; /* an invalid run has no body, and writes no fields */
-  char caption[FIELD_TEXT_SIZE + 64];
-  snprintf(caption, sizeof caption, "%s, seed %lld", scene->name, (long long)options->seed);
-  return picture_draw(fields, options->picture, &(struct picture_choice){.caption = caption}, error);
-}
-
 status one_run(const struct scene *scene, const struct one_run_options *options, struct run_result *result,
                struct error *error) {
   char temporary[FIELD_TEXT_SIZE] = "";
@@ -229,8 +220,11 @@ status one_run(const struct scene *scene, const struct one_run_options *options,
     fields = temporary;
   }
   status code = compute(scene, options, fields, result, error);
-  if (code == STATUS_OK)
-    code = draw(scene, options, fields, result, error);
+  if (code == STATUS_OK && options->picture && result->outcome.state != OUTCOME_INVALID) { /* else there is no body */
+    char caption[FIELD_TEXT_SIZE + 64];
+    snprintf(caption, sizeof caption, "%s, seed %lld", scene->name, (long long)options->seed);
+    code = picture_draw(fields, options->picture, &(struct picture_choice){.caption = caption}, error);
+  }
   if (*temporary)
     remove(temporary);
   return code;

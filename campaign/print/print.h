@@ -57,13 +57,13 @@ status print_scatter_plots(struct store *store, const struct scatter_choice *cho
 status print_scatter_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
                              struct error *error);
 /* Prints a row per part of the variance over all points. */
-status print_shares_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
-                             struct error *error);
+status print_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
+                      struct error *error);
 
 /* campaign: path of the campaign whose runs are in the store. Prints a row for each input and one for the seed. Blocks
  * of the design that lack a point are left out and reported. STATUS_USAGE: the campaign's points are not such a design,
  * or the store lacks them. */
-status print_shares_sensitivity(struct store *store, const char *campaign, const char *quantity,
-                                enum table_format format, struct error *error);
+status print_sensitivity(struct store *store, const char *campaign, const char *quantity, enum table_format format,
+                         struct error *error);
 
 #endif

@@ -1,11 +1,16 @@
-/* Prints and draws how runs scatter. */
-#include "campaign/print/print.h"
-
+/* How runs scatter, as rows, text and a picture; and the shares of inputs and seeds in the variance of a result: over
+ * all points of a store, and as the sensitivity indices of a design. */
 #include <math.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/sensitivity.h"
+#include "campaign/document/campaign.h"
+#include "campaign/print/print.h"
+#include "engine/grow.h"
+#include "schemas/limits.h"
 #include "schemas/memory.h"
+#include "schemas/text.h"
 
 enum { COLUMNS = 100 };
 
@@ -178,4 +183,404 @@ status print_scatter_picture(struct store *store, const struct scatter_choice *c
   for (size_t i = 0; i < samples->count; i++)
     scatter_release(&samples->scatter[i]);
   return code;
+}
+
+/* ---- runs in cells, one for each set of varied inputs, with the seeds that the cells share ---- */
+
+struct run_cells_run {
+  int64_t seed;
+  double value;
+};
+struct run_cell {
+  size_t runs;
+  struct run_cells_run *run;        /* by seed */
+  char *input[LIMITS_AXES_OF_POOL]; /* as text: a number with 17 digits, a choice, "off" */
+};
+struct run_cells {
+  size_t axes, count, room;
+  struct ask_doubts doubts; /* of all runs */
+  char column[LIMITS_AXES_OF_POOL][ASK_GROUP_NAME];
+  struct run_cell *cell;
+};
+
+static int by_seed(const void *a, const void *b) {
+  const int64_t p = ((const struct run_cells_run *)a)->seed, q = ((const struct run_cells_run *)b)->seed;
+  return p < q ? -1 : p > q;
+}
+
+static status no_memory(struct error *error) {
+  return status_fail(error, STATUS_MEMORY, "no memory for the runs of the points");
+}
+
+static status add_cell(struct run_cells *cells, const struct ask_pool *pool, struct error *error) {
+  if (!grow_room(&cells->cell, &cells->room, cells->count + 1, sizeof *cells->cell))
+    return no_memory(error);
+  struct run_cell *cell = &cells->cell[cells->count++];
+  *cell = (struct run_cell){.run = malloc((pool->data.runs.count + 1) * sizeof *cell->run)};
+  cells->axes = pool->axes;
+  ask_doubts_add(&cells->doubts, &pool->doubts);
+  memcpy(cells->column, pool->column, sizeof cells->column);
+  for (size_t a = 0; a < pool->axes; a++) {
+    char text[ASK_POOL_TEXT] = "off";
+    if (pool->input[a].kind == QUERY_TEXT)
+      snprintf(text, sizeof text, "%s", pool->input[a].text);
+    else if (pool->input[a].kind != QUERY_NULL)
+      snprintf(text, sizeof text, "%.17g", pool->input[a].real);
+    cell->input[a] = strdup(text);
+    if (!cell->input[a])
+      return no_memory(error);
+  }
+  if (!cell->run)
+    return no_memory(error);
+  for (size_t r = 0; r < pool->data.runs.count; r++)
+    if (isfinite(pool->value[r]))
+      cell->run[cell->runs++] = (struct run_cells_run){pool->seed[r], pool->value[r]};
+  qsort(cell->run, cell->runs, sizeof *cell->run, by_seed);
+  return STATUS_OK;
+}
+
+/* Adds a cell per pool of ask_pools to `cells`, which is zeroed before the first call. */
+static status run_cells_read(struct store *store, const struct ask_pool_choice *choice, const char *quantity,
+                             struct run_cells *cells, struct error *error) {
+  ASK_POOLS pools = ask_pools(store, choice, quantity, error);
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));)
+    TRY(add_cell(cells, pool, error));
+  return ask_pools_end(&pools);
+}
+
+static void run_cells_release(struct run_cells *cells) {
+  for (size_t c = 0; c < cells->count; c++) {
+    free(cells->cell[c].run);
+    for (size_t a = 0; a < cells->axes; a++)
+      free(cells->cell[c].input[a]);
+  }
+  free(cells->cell);
+}
+#define RUN_CELLS __attribute__((cleanup(run_cells_release))) struct run_cells
+
+/* Runs of the first cell whose seed every cell has; *shared has room for them. */
+static size_t find_shared(size_t count, struct run_cell *const *cell, struct run_cells_run *shared) {
+  size_t common = 0;
+  for (size_t r = 0; r < cell[0]->runs; r++) {
+    size_t c = 1;
+    while (c < count && bsearch(&cell[0]->run[r], cell[c]->run, cell[c]->runs, sizeof *shared, by_seed))
+      c++;
+    if (c >= count)
+      shared[common++] = cell[0]->run[r];
+  }
+  return common;
+}
+
+/* Keeps the runs of a cell with these seeds. The cell has all of them; both lists are ascending. */
+static void keep_shared(struct run_cell *cell, const struct run_cells_run *shared, size_t common) {
+  size_t from = 0;
+  for (size_t r = 0; r < common; r++, from++) {
+    while (cell->run[from].seed != shared[r].seed)
+      from++;
+    cell->run[r] = cell->run[from];
+  }
+  cell->runs = common;
+}
+
+/* Puts runs with the same seeds first in all cells: the seeds that all cells have, if there are at least two (or one,
+ * and some cell has only one run). Otherwise takes as many runs as every cell has, with any seeds. Returns the number
+ * of runs per cell. */
+static size_t run_cells_balance(size_t count, struct run_cell *const *cell, bool *same_seeds) {
+  size_t least = SIZE_MAX;
+  *same_seeds = false;
+  for (size_t c = 0; c < count; c++)
+    least = cell[c]->runs < least ? cell[c]->runs : least;
+  if (count == 0 || least == 0)
+    return 0;
+  OWNED struct run_cells_run *shared = malloc(cell[0]->runs * sizeof *shared);
+  const size_t common = shared ? find_shared(count, cell, shared) : 0;
+  *same_seeds = common >= 2 || (common == 1 && least == 1);
+  for (size_t c = 0; *same_seeds && c < count; c++)
+    keep_shared(cell[c], shared, common);
+  return *same_seeds ? common : least;
+}
+
+/* ---- the split of a variance ---- */
+
+/* Numbers the values of each axis in the order of their first points. */
+static void number_levels(const struct run_cells *cells, uint32_t *level) {
+  for (size_t a = 0; a < cells->axes; a++) {
+    uint32_t next = 0;
+    for (size_t c = 0; c < cells->count; c++) {
+      size_t same = 0;
+      while (strcmp(cells->cell[same].input[a], cells->cell[c].input[a]) != 0)
+        same++;
+      level[c * cells->axes + a] = same < c ? level[same * cells->axes + a] : next++;
+    }
+  }
+}
+
+static status split(struct run_cells *cells, struct scatter_part *parts, size_t *runs, struct error *error) {
+  OWNED struct run_cell **all = calloc(cells->count + 1, sizeof *all);
+  bool same_seeds;
+  if (!all)
+    return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
+  for (size_t c = 0; c < cells->count; c++)
+    all[c] = &cells->cell[c];
+  *runs = run_cells_balance(cells->count, all, &same_seeds);
+  if (cells->count < 2 || *runs < 2)
+    return status_fail(error, STATUS_USAGE, "splitting a variance needs at least two points with two runs each");
+  OWNED uint32_t *level = malloc((cells->count * cells->axes + 1) * sizeof *level);
+  OWNED double *value = malloc(cells->count * *runs * sizeof *value);
+  if (!level || !value)
+    return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
+  for (size_t c = 0; c < cells->count; c++)
+    for (size_t r = 0; r < *runs; r++)
+      value[c * *runs + r] = cells->cell[c].run[r].value;
+  number_levels(cells, level);
+  return scatter_split(&(struct scatter_table){cells->count, *runs, cells->axes, level, value}, parts, error);
+}
+
+static status print_parts(const struct run_cells *cells, const struct scatter_part *parts, enum table_format format,
+                          struct error *error) {
+  static const char *const names[SCATTER_PARTS] = {"all inputs together", "seeds", "seeds, in all points alike",
+                                                   "whole"};
+  TABLE table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"part", "variance", "share", "low", "high", NULL});
+  table_doubt_columns(table);
+  for (size_t i = 0; i < cells->axes + SCATTER_PARTS; i++) {
+    table_text(table, i < cells->axes ? cells->column[i] : names[i - cells->axes]);
+    table_rests_on(table, &cells->doubts);
+    table_real(table, parts[i].variance);
+    table_rests_on(table, &cells->doubts);
+    table_real(table, parts[i].share);
+    table_real(table, parts[i].share - parts[i].half_width);
+    table_real(table, parts[i].share + parts[i].half_width);
+    table_doubt_cells(table, &cells->doubts);
+  }
+  return table_end(table, error);
+}
+
+status print_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
+                      struct error *error) {
+  struct ask_column axis[LIMITS_AXES_OF_POOL];
+  RUN_CELLS cells = {0};
+  struct scatter_part parts[LIMITS_AXES_OF_POOL + SCATTER_PARTS];
+  char by[LIMITS_AXES_OF_POOL * (sizeof axis[0].name + 1)] = "";
+  size_t axes = 0, runs = 0;
+  struct ask_pool_choice pool = choice->pool;
+  TRY(ask_columns_axes(store, false, LIMITS_AXES_OF_POOL, axis, &axes, error));
+  for (size_t a = 0; a < axes; a++)
+    text_append(by, sizeof by, "%s%s", a ? "," : "", axis[a].name);
+  if (!pool.by)
+    pool.by = by;
+  TRY(run_cells_read(store, &pool, choice->quantity, &cells, error));
+  TRY(split(&cells, parts, &runs, error));
+  TRY(print_parts(&cells, parts, format, error));
+  if (format == TABLE_TEXT) {
+    uncertainty_doubts(&cells.doubts, stderr);
+    fprintf(stderr,
+            "clast: %zu points with %zu seeds each, which count alike. An input: variance of its means over the other "
+            "inputs (in a full grid; else ask `clast sensitivity`); what the inputs together have beyond their sum is "
+            "their interplay. Low, high: 95 %% interval over seeds\n",
+            cells.count, runs);
+  }
+  return STATUS_OK;
+}
+
+/* ---- sensitivity indices ---- */
+
+struct reading {
+  struct campaign *campaign;
+  enum design_sensitivity_kind kind;
+  size_t blocks, points; /* points of a block */
+  struct run_cells cells;
+  struct run_cell **place; /* cell of each row of the design; NULL: the store has no run of it */
+  size_t *block;           /* the complete blocks, in their order */
+  size_t whole;
+  double *value;
+  struct sensitivity_table table;
+};
+
+static void release_reading(struct reading *r) {
+  run_cells_release(&r->cells);
+  free(r->place);
+  free(r->block);
+  free(r->value);
+  campaign_free(r->campaign);
+}
+
+/* Writes an input in the same form as run_cells. */
+static void write_input(const struct campaign *campaign, size_t a, size_t i, char text[ASK_POOL_TEXT]) {
+  const struct design_axis *axis = &campaign->axes[a];
+  const struct field_value *value = &axis->levels[i];
+  if (axis->row->kind == FIELD_REAL && field_is_off(value->number))
+    snprintf(text, ASK_POOL_TEXT, "off");
+  else if (axis->row->kind == FIELD_REAL || axis->row->kind == FIELD_BOOLEAN)
+    snprintf(text, ASK_POOL_TEXT, "%.17g", value->number);
+  else if (axis->row->kind == FIELD_INTEGER)
+    snprintf(text, ASK_POOL_TEXT, "%.17g", (double)value->integer);
+  else
+    snprintf(text, ASK_POOL_TEXT, "%.63s", value->text);
+}
+
+static int by_inputs(const void *a, const void *b) {
+  const struct run_cell *p = a, *q = b;
+  for (size_t i = 0; i < LIMITS_AXES_OF_POOL && p->input[i] && q->input[i]; i++) {
+    const int order = strcmp(p->input[i], q->input[i]);
+    if (order)
+      return order;
+  }
+  return 0;
+}
+
+/* Finds the cell of every row, and the blocks of which all cells exist. */
+static void find_places(struct reading *r) {
+  const size_t n = r->campaign->axis_count;
+  char text[LIMITS_AXES_OF_POOL][ASK_POOL_TEXT];
+  if (r->cells.count > 0)
+    qsort(r->cells.cell, r->cells.count, sizeof *r->cells.cell, by_inputs);
+  for (size_t b = 0; b < r->blocks; b++) {
+    bool whole = true;
+    for (size_t i = b * r->points; i < (b + 1) * r->points; i++) {
+      struct run_cell wanted = {.input = {NULL}};
+      for (size_t a = 0; a < n; a++) {
+        write_input(r->campaign, a, i, text[a]);
+        wanted.input[a] = text[a];
+      }
+      r->place[i] = r->cells.count ? bsearch(&wanted, r->cells.cell, r->cells.count, sizeof *r->cells.cell, by_inputs)
+                                   : NULL;
+      whole = whole && r->place[i] && r->place[i]->runs > 0;
+    }
+    if (whole)
+      r->block[r->whole++] = b;
+  }
+}
+
+/* Two rows may be the same point, which run_cells_balance may get only once. */
+static int by_address(const void *a, const void *b) {
+  const struct run_cell *p = *(struct run_cell *const *)a, *q = *(struct run_cell *const *)b;
+  return p < q ? -1 : p > q;
+}
+
+static status fill_table(struct reading *r, struct error *error) {
+  const size_t rows = r->whole * r->points;
+  OWNED struct run_cell **used = malloc((rows + 1) * sizeof *used);
+  size_t count = 0;
+  if (!used)
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu points", rows);
+  for (size_t i = 0; i < rows; i++)
+    used[i] = r->place[r->block[i / r->points] * r->points + i % r->points];
+  qsort(used, rows, sizeof *used, by_address);
+  for (size_t i = 0; i < rows; i++)
+    if (i == 0 || used[i] != used[i - 1])
+      used[count++] = used[i];
+  r->table = (struct sensitivity_table){.inputs = r->campaign->axis_count, .blocks = r->whole};
+  r->table.seeds = run_cells_balance(count, used, &r->table.same_seeds);
+  r->value = malloc((rows * r->table.seeds + 1) * sizeof *r->value);
+  if (!r->value)
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu points", rows);
+  for (size_t i = 0; i < rows; i++)
+    for (size_t s = 0; s < r->table.seeds; s++)
+      r->value[i * r->table.seeds + s] = r->place[r->block[i / r->points] * r->points + i % r->points]->run[s].value;
+  r->table.value = r->value;
+  return STATUS_OK;
+}
+
+static status read_runs(struct store *store, const char *quantity, struct reading *r, struct error *error) {
+  const struct campaign *campaign = r->campaign;
+  const size_t n = campaign->axis_count;
+  char by[LIMITS_AXES_OF_POOL * ASK_GROUP_NAME] = "";
+  if (n > LIMITS_AXES_OF_POOL)
+    return status_fail(error, STATUS_USAGE, "at most %d inputs, not %zu", LIMITS_AXES_OF_POOL, n);
+  for (size_t a = 0; a < n; a++)
+    text_append(by, sizeof by, "%s%s", a ? "," : "", campaign->axes[a].row->path);
+  const struct ask_pool_choice choice = {.by = by};
+  TRY(run_cells_read(store, &choice, quantity, &r->cells, error));
+  r->place = calloc(r->blocks * r->points + 1, sizeof *r->place);
+  r->block = calloc(r->blocks + 1, sizeof *r->block);
+  if (!r->place || !r->block)
+    return status_fail(error, STATUS_MEMORY, "no memory for a design");
+  find_places(r);
+  if (r->whole < 2)
+    return status_fail(error, STATUS_USAGE,
+                       "the store has finished runs of %zu of the %zu blocks of this design, and the indices need two: "
+                       "compute it with `clast run` into this store",
+                       r->whole, r->blocks);
+  return fill_table(r, error);
+}
+
+static void interval(struct table *table, const struct sample_interval *i, const struct ask_doubts *doubts) {
+  table_rests_on(table, doubts);
+  table_real(table, i->estimate);
+  table_real(table, i->half_width);
+}
+
+static status print_sobol(const struct reading *r, enum table_format format, struct error *error) {
+  struct sensitivity_index index[LIMITS_AXES_OF_POOL + 1];
+  const size_t n = r->table.inputs;
+  TRY(sensitivity_sobol(&r->table, index, error));
+  TABLE table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"input", "first", "first_hw95", "total", "total_hw95", NULL});
+  table_doubt_columns(table);
+  for (size_t i = 0; i <= n; i++) {
+    table_text(table, i < n ? r->campaign->axes[i].row->path : "seed");
+    interval(table, &index[i].first, &r->cells.doubts);
+    interval(table, &index[i].total, &r->cells.doubts);
+    table_doubt_cells(table, &r->cells.doubts);
+  }
+  if (format == TABLE_TEXT)
+    fprintf(
+        stderr,
+        "clast: Sobol indices, shares of the variance, of %zu blocks with %zu %s. first: of the input alone; total: "
+        "with what it does together with others\n",
+        r->whole, r->table.seeds,
+        r->table.seeds == 1   ? "seed: a total would hold all the scatter of the runs; give the campaign several seeds"
+        : r->table.same_seeds ? "seeds, the same at all points"
+                              : "seeds, different ones at each point");
+  return table_end(table, error);
+}
+
+static status print_morris(const struct reading *r, enum table_format format, struct error *error) {
+  const size_t n = r->table.inputs;
+  struct sensitivity_effect effect[LIMITS_AXES_OF_POOL];
+  OWNED size_t *order = malloc(n * r->blocks * sizeof *order);
+  OWNED double *step = malloc(n * r->blocks * sizeof *step);
+  if (!order || !step)
+    return status_fail(error, STATUS_MEMORY, "no memory for a design");
+  sensitivity_design_steps(r->campaign, r->blocks, order, step);
+  for (size_t b = 0; b < r->whole; b++) { /* the complete blocks move to the front */
+    memmove(order + b * n, order + r->block[b] * n, n * sizeof *order);
+    memmove(step + b * n, step + r->block[b] * n, n * sizeof *step);
+  }
+  TRY(sensitivity_morris(&r->table, order, step, effect, error));
+  TABLE table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"input", "mean_absolute", "mean_absolute_hw95", "mean", "deviation",
+                                             "noise", NULL});
+  table_doubt_columns(table);
+  for (size_t i = 0; i < n; i++) {
+    table_text(table, r->campaign->axes[i].row->path);
+    interval(table, &effect[i].mean_absolute, &r->cells.doubts);
+    table_rests_on(table, &r->cells.doubts);
+    table_real(table, effect[i].mean);
+    table_real(table, effect[i].deviation);
+    table_real(table, effect[i].noise);
+    table_doubt_cells(table, &r->cells.doubts);
+  }
+  if (format == TABLE_TEXT)
+    fprintf(stderr,
+            "clast: elementary effects of %zu trajectories, for the whole range of an input. deviation: large beside "
+            "mean_absolute if the input is curved or acts with others; noise: what seeds alone would make\n",
+            r->whole);
+  return table_end(table, error);
+}
+
+status print_sensitivity(struct store *store, const char *path, const char *quantity, enum table_format format,
+                         struct error *error) {
+  __attribute__((cleanup(release_reading))) struct reading r = {0};
+  TRY(campaign_load(path, &r.campaign, error));
+  TRY(sensitivity_design_find(r.campaign, &r.kind, &r.blocks, error));
+  r.points = r.campaign->axis_count + (r.kind == DESIGN_SENSITIVITY_SALTELLI ? 2 : 1);
+  TRY(read_runs(store, quantity, &r, error));
+  if (r.whole < r.blocks)
+    fprintf(stderr, "clast: %zu of %zu blocks lack a finished run and are left out\n", r.blocks - r.whole, r.blocks);
+  TRY(r.kind == DESIGN_SENSITIVITY_SALTELLI ? print_sobol(&r, format, error) : print_morris(&r, format, error));
+  if (format == TABLE_TEXT)
+    uncertainty_doubts(&r.cells.doubts, stderr);
+  return STATUS_OK;
 }

@@ -1,5 +1,6 @@
 /* Checks that a campaign can be served, and makes scenes from vectors of numbers. */
 #include "campaign/serve/serve.h"
+#include "schemas/text.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -41,9 +42,8 @@ status serve_model_result(const struct serve_model *model, const char *name, str
 
 static status take_results(struct serve_model *model, const char *names, struct error *error) {
   char name[FIELD_TEXT_SIZE];
-  for (const char *at = names; *at; at += strcspn(at, ","), at += *at == ',') {
-    at += strspn(at, " ");
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(at, ", "), at);
+  while (*names) {
+    names = text_next_item(names, name, sizeof name);
     if (model->result_count == SERVE_MODEL_RESULTS)
       return status_fail(error, STATUS_USAGE, "--quantity: more than %d results", SERVE_MODEL_RESULTS);
     TRY(serve_model_result(model, name, &model->results[model->result_count], error));

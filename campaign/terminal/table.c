@@ -347,22 +347,14 @@ void table_real(struct table *table, double number) {
   table_fixed(table, number, -1);
 }
 
-/* JSON has no infinity. The largest double in its place would be wrong, so it is a text there. */
-static void add_infinity(struct table *table, bool positive) {
-  const char *shown = positive ? "inf" : "-inf";
-  if (is_json(table))
-    add_cell(table, (struct cell){CELL_TEXT, positive ? "Infinity" : "-Infinity", shown});
-  else
-    add_cell(table, (struct cell){CELL_NUMBER, shown, shown});
-}
-
 void table_fixed(struct table *table, double number, int decimals) {
   if (isnan(number)) {
     table_missing(table);
     return;
   }
-  if (isinf(number)) {
-    add_infinity(table, number > 0);
+  if (isinf(number)) { /* JSON has no infinity. The largest double would be wrong, so it is a text there */
+    const char *inf = number > 0 ? "inf" : "-inf", *infinity = number > 0 ? "Infinity" : "-Infinity";
+    add_cell(table, is_json(table) ? (struct cell){CELL_TEXT, infinity, inf} : (struct cell){CELL_NUMBER, inf, inf});
     return;
   }
   char digits[40], shown[40] = "";
@@ -464,11 +456,6 @@ static size_t mean_of(const struct answer *answer, size_t i) {
   return 0;
 }
 
-static bool is_end_of_interval(const char *name) {
-  const char *end = strrchr(name, '_');
-  return end && (strcmp(end, "_low95") == 0 || strcmp(end, "_high95") == 0);
-}
-
 /* People see marks, not the columns that they come from, and the half width of an interval, not its ends. */
 static void find_marks(struct rows *rows, const struct answer *answer) {
   const size_t count = answer_count(answer);
@@ -480,7 +467,8 @@ static void find_marks(struct rows *rows, const struct answer *answer) {
     }
     if (strcmp(answer_name(answer, i), "n") == 0)
       rows->n = i;
-    if (is_end_of_interval(answer_name(answer, i)))
+    const char *end = strrchr(answer_name(answer, i), '_');
+    if (end && (strcmp(end, "_low95") == 0 || strcmp(end, "_high95") == 0))
       rows->shown[i].hidden = true;
   }
   rows->shown[count - 1].hidden = true;

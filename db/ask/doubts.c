@@ -78,14 +78,12 @@ status ask_doubts_results(struct store *store, const char *quantities, char resu
   const char *names[VIEWS_STATISTICS_MAIN];
   for (size_t i = 0; all && i < views_statistics_main(names); i++)
     text_append(results, ASK_DOUBTS_RESULTS, "%s ", names[i]);
-  for (size_t length; !all && *quantities; quantities += length + (quantities[length] == ',')) {
+  while (!all && *quantities) {
     char name[ASK_GROUP_NAME];
     enum exponent_method method;
     enum estimates_window window;
     bool exponent;
-    quantities += strspn(quantities, " ");
-    length = strcspn(quantities, ",");
-    snprintf(name, sizeof name, "%.*s", (int)length, quantities);
+    quantities = text_next_item(quantities, name, sizeof name);
     TRY(estimates_named(name, &exponent, &method, &window, error));
     if (exponent)
       snprintf(name, sizeof name, "%s", OUTCOME_NAME(mean_fragment_mass));

@@ -95,23 +95,12 @@ static status judge(const struct choice *choice, const char *what, const char *n
                      choice->known[0] ? choice->known : "none");
 }
 
-/* The next word of a comma-separated list, without blanks around it. Returns the rest of the list. */
-static const char *next_word(const char *list, char word[NAME]) {
-  const size_t length = strcspn(list, ",");
-  const char *rest = list + length + (list[length] == ',');
-  const char *begin = list + strspn(list, " "), *end = list + length;
-  while (end > begin && end[-1] == ' ')
-    end--;
-  snprintf(word, NAME, "%.*s", begin < end ? (int)(end - begin) : 0, begin);
-  return rest;
-}
-
 static status resolve(struct store *store, const char *list, const char *what, const char *columns_sql,
                       struct names *out, struct error *error) {
   while (*list) {
     char word[NAME];
     struct choice choice;
-    list = next_word(list, word);
+    list = text_next_item(list, word, sizeof word);
     if (!*word)
       continue;
     TRY(look_for(store, columns_sql, word, &choice, error));

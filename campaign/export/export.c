@@ -1,7 +1,4 @@
-/* Writes the files of a crate and their metadata (JSON-LD).
- *
- * The graph has the crate; the program, one entity for each version that computed; an action for each session, from the
- * campaign's file to the store; and one for this export, from the store to the tables. */
+/* What `clast export` writes: views and bits of a store as text, a crate for an archive, and a Cinema database. */
 #include "campaign/export/export.h"
 
 #include <dirent.h>
@@ -13,11 +10,50 @@
 #include <time.h>
 
 #include "campaign/build_facts.h"
+#include "campaign/charts/charts.h"
 #include "db/ask/ask.h"
 #include "schemas/file.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
+
+/* ---- views and bits as text ---- */
+
+static const char *const exported[] = {"runs", "points", "spectra", "estimates", "column_doc"};
+
+static status write_rows(struct store *store, const char *view, enum table_format format, FILE *out,
+                         struct error *error) {
+  return view ? table_answer(ask_columns_view(store, view, error), false, format, out)
+              : store_export_digests(store, out, error);
+}
+
+status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
+                          struct error *error) {
+  struct file_output file;
+  if (!path)
+    return write_rows(store, view, format, stdout, error);
+  TRY(file_begin(&file, path, "rows", error));
+  return file_end(&file, write_rows(store, view, format, file.out, error), error);
+}
+
+status export_files_folder(struct store *store, const char *folder, struct error *error) {
+  enum { TABLES = sizeof exported / sizeof exported[0] };
+  char path[TABLES][LIMITS_PATH];
+  TRY(file_folder(folder, error));
+  for (size_t i = 0; i < TABLES; i++) { /* all before the first is written */
+    if (snprintf(path[i], sizeof path[i], "%s/%s.csv", folder, exported[i]) >= (int)sizeof path[i])
+      return status_fail(error, STATUS_USAGE, "the folder's name is too long");
+    TRY(file_may_replace(path[i], "table", error));
+  }
+  for (size_t i = 0; i < TABLES; i++)
+    TRY(export_files_write(store, path[i], exported[i], TABLE_CSV, error));
+  return STATUS_OK;
+}
+
+/* ---- a crate: files and their metadata (JSON-LD) ----
+ *
+ * The graph has the crate; the program, one entity for each version that computed; an action for each session, from the
+ * campaign's file to the store; and one for this export, from the store to the tables. */
 
 #define SPECIFICATION "https://w3id.org/ro/crate/1.1"
 #define PROFILE       "https://w3id.org/ro/wfrun/process/0.5"
@@ -33,8 +69,6 @@ struct crate {
 static bool join(char path[LIMITS_PATH], const char *folder, const char *name) {
   return snprintf(path, LIMITS_PATH, "%s/%s", folder, name) < LIMITS_PATH;
 }
-
-/* ---- JSON ---- */
 
 /* A text from a user: bytes that are not UTF-8 become U+FFFD. */
 static json_t *text_of(const char *text) {
@@ -89,8 +123,6 @@ static void add_program(struct crate *crate, const char *version, const char *co
                    "Ensembles of simulations of brittle fragmentation", "identifier", text_of(commit)));
 }
 
-/* ---- from the store ---- */
-
 /* campaign, name, document */
 static status add_campaign(struct crate *crate, const struct answer *row, struct error *error) {
   char name[64], path[LIMITS_PATH], description[512];
@@ -120,8 +152,6 @@ static void add_session(struct crate *crate, const struct answer *row) {
                    id_of(failed ? "http://schema.org/FailedActionStatus" : "http://schema.org/CompletedActionStatus")));
   append(crate, crate->actions, id_of(id));
 }
-
-/* ---- the crate ---- */
 
 static void now_text(char text[32]) {
   const time_t now = time(NULL);
@@ -237,5 +267,96 @@ status export_crate(struct store *store, const char *store_path, const struct ex
   json_decref(crate.graph);
   json_decref(crate.parts);
   json_decref(crate.actions);
+  return code;
+}
+
+/* ---- a Cinema database: pictures and a table of them ---- */
+
+enum { WIDTH = 600 };
+
+struct cinema {
+  struct store *store;
+  const char *folder;
+  struct table *table;
+  int64_t point; /* point whose spectrum is drawn */
+  bool spectrum; /* the point has a spectrum */
+  size_t rows, not_drawn;
+};
+
+/* Draws the spectrum of a point. A point without fragments has none. */
+static status draw_spectrum(struct cinema *cinema, int64_t point, struct error *error) {
+  char path[LIMITS_PATH];
+  snprintf(path, sizeof path, "%s/point%" PRId64 ".png", cinema->folder, point);
+  const struct spectrum_choice choice = {.pool = {.point = point}};
+  const struct picture_page page = {.path = path, .width = WIDTH};
+  const status code = spectrum_curves_draw(cinema->store, &choice, &(struct spectrum_drawing){.page = &page}, error);
+  cinema->spectrum = code == STATUS_OK;
+  return code == STATUS_USAGE ? STATUS_OK : code;
+}
+
+static void file_cell(struct cinema *cinema, bool there, const char *kind, int64_t number) {
+  char name[64];
+  snprintf(name, sizeof name, "%s%" PRId64 ".png", kind, number);
+  table_text(cinema->table, there ? name : NULL);
+}
+
+/* Draws a run, and the spectrum of its point if the run is the first of it; then writes their row. `runs`: run_id,
+ * point_id, ..., fields. */
+static status write_run(struct cinema *cinema, const struct answer *runs, struct error *error) {
+  const int64_t run = answer_integer(runs, 0), point = answer_integer(runs, 1);
+  const size_t fields = answer_count(runs) - 1;
+  char path[LIMITS_PATH];
+  if (point != cinema->point)
+    TRY(draw_spectrum(cinema, point, error));
+  cinema->point = point;
+  snprintf(path, sizeof path, "%s/run%" PRId64 ".png", cinema->folder, run);
+  OWNED char *file = ask_run_fields(runs, fields);
+  if (!file)
+    return status_fail(error, STATUS_MEMORY, "no memory for the runs");
+  const status code = picture_draw(file, path, &(struct picture_choice){.width = WIDTH}, error);
+  if (code == STATUS_IO)
+    return code;
+  cinema->rows++;
+  cinema->not_drawn += code != STATUS_OK;
+  for (size_t i = 0; i < fields; i++) {
+    const struct query_value value = answer_value(runs, i);
+    table_value(cinema->table, &value);
+  }
+  file_cell(cinema, code == STATUS_OK, "run", run);
+  file_cell(cinema, cinema->spectrum, "point", point);
+  return STATUS_OK;
+}
+
+/* Writes the table, and during this draws the pictures that it names. */
+static status write_table(struct cinema *cinema, FILE *out, struct error *error) {
+  TABLE table = table_new(TABLE_CSV, out);
+  ANSWER runs = ask_run_kept(cinema->store, error);
+  cinema->table = table;
+  for (size_t i = 0; i + 1 < answer_count(&runs); i++)
+    table_column(table, answer_name(&runs, i), NULL);
+  table_columns(table, (const char *const[]){"FILE", "FILE_spectrum", NULL});
+  while (answer_next(&runs))
+    TRY(write_run(cinema, &runs, error));
+  TRY(answer_end(&runs));
+  TRY(table_end(table, error));
+  if (cinema->rows > 0)
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE,
+                     "no run of the store has its fields kept, so there is nothing to draw: give the campaign keep: "
+                     "{fields: first 1} and run it again");
+}
+
+status export_cinema(struct store *store, const char *folder, struct error *error) {
+  char path[LIMITS_PATH];
+  struct file_output file;
+  TRY(file_folder(folder, error));
+  if (snprintf(path, sizeof path, "%s/data.csv", folder) >= (int)sizeof path - 64)
+    return status_fail(error, STATUS_USAGE, "the folder's name is too long");
+  TRY(file_begin(&file, path, "table", error));
+  struct cinema cinema = {.store = store, .folder = folder};
+  const status code = file_end(&file, write_table(&cinema, file.out, error), error);
+  if (!code && cinema.not_drawn > 0)
+    fprintf(stderr, "clast: %zu of %zu runs have no picture: their fields files are gone or damaged\n",
+            cinema.not_drawn, cinema.rows);
   return code;
 }
