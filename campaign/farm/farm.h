@@ -110,6 +110,8 @@ struct farm_manager {
    * again. It goes on without tasks until a signal or a status ends it. 0: no outside requests; the farm ends when
    * next() gives no task and no task is out. */
   int orders;
+  /* True: reports are not yet taken in, and next() may give tasks later. NULL: never. */
+  bool (*waits)(void *context);
 };
 
 /* Runs until next() gives no task and no task is out. Rank 0 manages; the other ranks serve until it ends them, and

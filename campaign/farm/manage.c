@@ -394,7 +394,8 @@ static bool finished(const struct manager *m) {
     if (!peer->lost && (peer->out > 0 || peer->recalling))
       return false;
   }
-  return !m->returned.first && (m->draining || (m->dry && !m->calls->orders));
+  const bool waits = m->calls->waits && m->calls->waits(m->calls->context);
+  return !m->returned.first && (m->draining || (m->dry && !m->calls->orders && !waits));
 }
 
 static void send_end(struct manager *m) {

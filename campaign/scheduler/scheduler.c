@@ -6,10 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <utlist.h>
+
 #include "engine/grow.h"
 #include "schemas/clock.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
+
+enum { HELD_BYTES = 64 << 20 }; /* of reports while another program holds the store; then no new runs start */
+#define HELD_NOTED_S 10.0
 
 void scheduler_limits(const struct campaign *campaign, struct farm_options *options) {
   options->time_limit_s = isnan(campaign->time_limit) ? 0 : campaign->time_limit;
@@ -116,6 +122,8 @@ static bool next_task(void *context, struct farm_task *task) {
   struct scheduler *scheduler = context;
   if (scheduler->error.status != STATUS_OK || scheduler->stop.status != STATUS_OK)
     return false; /* tick() passes the error to the farm */
+  if (scheduler->held_bytes > HELD_BYTES)
+    return false;
   scheduler->error.status = send(scheduler, task, &scheduler->error);
   return scheduler->error.status == STATUS_OK && task->bytes;
 }
@@ -233,15 +241,11 @@ static status stop_without_fields(struct scheduler *scheduler, const struct erro
   return store_flush(scheduler->store, error);
 }
 
-static status take_report(void *context, const struct farm_report *report, struct error *error) {
-  struct scheduler *scheduler = context;
+static status take(struct scheduler *scheduler, struct scheduler_run run, const struct farm_report *report,
+                   struct error *error) {
   const struct scheduler_planner *planner = &scheduler->planner;
-  if (report->id >= scheduler->places || !scheduler->out[report->id].scene)
-    return status_fail(error, STATUS_INTERNAL, "the farm reported a task that it was not given");
-  struct scheduler_run run = scheduler->out[report->id];
   struct scheduler_end end = {.report = report};
   struct run_result result = {0};
-  scheduler->out[report->id].scene = NULL;
 
   status code = STATUS_OK;
   if (report->ending != FARM_DONE) {
@@ -261,6 +265,92 @@ static status take_report(void *context, const struct farm_report *report, struc
   return code;
 }
 
+/* ---- another program holds the store: reports wait in memory, and the slots go on ---- */
+
+struct scheduler_held {
+  struct scheduler_run run;
+  struct farm_report report; /* bytes and message: owned */
+  struct scheduler_held *prev, *next;
+};
+
+static status hold(struct scheduler *scheduler, const struct scheduler_run *run, const struct farm_report *report,
+                   struct error *error) {
+  struct scheduler_held *held = memory_small(1, sizeof *held);
+  *held = (struct scheduler_held){.run = *run, .report = *report};
+  uint8_t *bytes = malloc(report->size + 1);
+  char *message = strdup(report->message ? report->message : "");
+  held->report.bytes = bytes;
+  held->report.message = message;
+  if (!bytes || !message) {
+    free(bytes);
+    free(message);
+    free(held);
+    return status_fail(error, STATUS_MEMORY, "no memory for results while another program holds the store");
+  }
+  if (report->size)
+    memcpy(bytes, report->bytes, report->size);
+  if (!scheduler->held)
+    scheduler->held_since = clock_s();
+  DL_APPEND(scheduler->held, held);
+  scheduler->held_bytes += sizeof *held + report->size;
+  return STATUS_OK;
+}
+
+static void drop_held(struct scheduler *scheduler, struct scheduler_held *held) {
+  DL_DELETE(scheduler->held, held);
+  scheduler->held_bytes -= sizeof *held + held->report.size;
+  free((void *)held->report.bytes);
+  free((void *)held->report.message);
+  free(held);
+}
+
+/* Takes in what waits, as long as the store is free. `last`: waits for the store as long as SQLite does. */
+static status take_held(struct scheduler *scheduler, bool last, struct error *error) {
+  status code = STATUS_OK;
+  while (code == STATUS_OK && scheduler->held && (last || store_is_free(scheduler->store))) {
+    struct scheduler_held *held = scheduler->held;
+    code = take(scheduler, held->run, &held->report, error);
+    drop_held(scheduler, held);
+  }
+  const bool long_held = scheduler->held && clock_s() - scheduler->held_since > HELD_NOTED_S;
+  if (long_held && !scheduler->held_noted)
+    scheduler_note(scheduler, "another program holds the store (a database browser with unsaved changes?): results "
+                              "wait in memory until it lets go");
+  scheduler->held_noted = long_held;
+  return code;
+}
+
+/* After a signal: results that cannot be stored now are lost. */
+static void end_held(struct scheduler *scheduler) {
+  struct error ignored = {0};
+  size_t lost = 0;
+  char text[160];
+  (void)take_held(scheduler, true, &ignored);
+  for (; scheduler->held; lost++)
+    drop_held(scheduler, scheduler->held);
+  snprintf(text, sizeof text,
+           "%zu results were not stored, because another program holds the store; the same command computes them again",
+           lost);
+  if (lost)
+    scheduler_note(scheduler, text);
+}
+
+static status take_report(void *context, const struct farm_report *report, struct error *error) {
+  struct scheduler *scheduler = context;
+  if (report->id >= scheduler->places || !scheduler->out[report->id].scene)
+    return status_fail(error, STATUS_INTERNAL, "the farm reported a task that it was not given");
+  const struct scheduler_run run = scheduler->out[report->id];
+  scheduler->out[report->id].scene = NULL;
+  TRY(take_held(scheduler, false, error));
+  if (scheduler->held || !store_is_free(scheduler->store))
+    return hold(scheduler, &run, report, error);
+  return take(scheduler, run, report, error);
+}
+
+static bool waits(void *context) {
+  return ((const struct scheduler *)context)->held != NULL;
+}
+
 /* ---- the farm's other callbacks ---- */
 
 static status tick(void *context, int running, struct error *error) {
@@ -270,6 +360,7 @@ static status tick(void *context, int running, struct error *error) {
       *error = scheduler->error;
     return scheduler->error.status;
   }
+  TRY(take_held(scheduler, false, error));
   if (scheduler->planner.tick)
     scheduler->planner.tick(scheduler->planner.context, running, false);
   return store_tick(scheduler->store, error);
@@ -295,7 +386,8 @@ struct farm_manager scheduler_manager(struct scheduler *scheduler) {
                                .report = take_report,
                                .tick = tick,
                                .stopping = stopping,
-                               .orders = scheduler->planner.orders};
+                               .orders = scheduler->planner.orders,
+                               .waits = waits};
 }
 
 status scheduler_end(struct scheduler *scheduler, status code, struct error *error) {
@@ -304,6 +396,7 @@ status scheduler_end(struct scheduler *scheduler, status code, struct error *err
   /* The disk that refused fields may refuse the last commit, too, which is then the error. */
   const bool refused = code == STATUS_STOPPED && scheduler->stop.status != STATUS_OK;
   const bool good = code == STATUS_OK || refused;
+  end_held(scheduler);
   const status flushed = store_flush(scheduler->store, good ? error : NULL);
   const struct error *why = NULL;
   if (scheduler->error.status != STATUS_OK)

@@ -83,6 +83,7 @@ struct scheduler_options {
   int slots; /* for estimates of the time left; scheduler_compute takes it from the farm */
 };
 
+struct scheduler_held;
 struct scheduler { /* planners read the first members and the list of the runs that are out */
   struct scheduler_planner planner;
   struct store *store;
@@ -92,6 +93,11 @@ struct scheduler { /* planners read the first members and the list of the runs t
   uint8_t *task;      /* bytes of the last task given out. Owned */
   struct error error; /* of the planner's next(), which the farm's next() cannot return */
   struct error stop;  /* why no new runs start; results of running ones are still stored */
+  /* Reports that wait while another program holds the store, and the first of their instants. */
+  struct scheduler_held *held; /* utlist */
+  size_t held_bytes;
+  double held_since; /* s, clock_s() */
+  bool held_noted;
 };
 
 /* Computes all that the planner asks for. Every rank calls it: ranks other than 0 compute runs and return the manager's

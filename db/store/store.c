@@ -18,6 +18,8 @@
 #include "schemas/file.h"
 #include "schemas/limits.h"
 
+enum { BUSY_MS = 10000 }; /* SQLite waits so long for another program's lock */
+
 /* ---- the place: names that are no files, a file that is moved while it is written, a copy without its -wal file ----
  */
 
@@ -405,7 +407,7 @@ static status open_database(struct store *store, int flags, struct error *error)
                              flags | SQLITE_OPEN_URI | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_NOMUTEX, NULL);
   if (code != SQLITE_OK)
     return sql_fail(store->db, code, "opening", error);
-  sqlite3_busy_timeout(store->db, 10000);
+  sqlite3_busy_timeout(store->db, BUSY_MS);
   guard_connection(store->db);
   digest_function(store->db);
   return sql_execute(store->db, "PRAGMA cell_size_check = ON", "opening", error);
@@ -648,6 +650,15 @@ status store_begin(struct store *store, struct error *error) {
   store->batch_identity_count = 0;
   store->batch_started = clock_s();
   return STATUS_OK;
+}
+
+bool store_is_free(struct store *store) {
+  if (store->in_batch || store->broken)
+    return true;
+  sqlite3_busy_timeout(store->db, 0);
+  const int code = sqlite3_exec(store->db, "BEGIN IMMEDIATE; COMMIT", NULL, NULL, NULL);
+  sqlite3_busy_timeout(store->db, BUSY_MS);
+  return (code & 0xff) != SQLITE_BUSY;
 }
 
 status store_end(struct store *store, status result, int rows, struct error *error) {

@@ -117,4 +117,31 @@ rm -f slow.db*
 expect 0 "$clast" run slow.yaml --quiet
 bits slow.db >slow.bits
 if [ -s x.db ]; then expect 0 "$clast" run slow.yaml --store x.db --quiet; same_bits x.db slow.bits "after room was made"; else ok "nothing"; ok "committed"; ok "yet"; fi
-done_after 40
+
+# ---- another program holds the store for longer than SQLite waits: the runs go on, and their results wait in memory
+waiting held
+cat >hold.py <<'PY'
+import sqlite3, time
+while True:
+    try:
+        store = sqlite3.connect("file:held.db?mode=rw", uri=True, timeout=30, isolation_level=None)
+        if store.execute("select count(*) from run").fetchone()[0]:
+            break
+    except sqlite3.OperationalError:
+        pass
+    time.sleep(0.05)
+store.execute("begin immediate")
+time.sleep(14)
+before = store.execute("select count(*) from run").fetchone()[0]
+store.execute("commit")
+print(before)
+PY
+python hold.py >before &
+holder=$!
+expect 0 "$toy" run held.yaml -j 2
+wait $holder
+says "another program holds the store"
+[ "$(cat before)" -lt 290 ] || fail "the store was held too late: $(cat before) runs"
+same "$(number held.db "select count(*) from run")" 300 "runs of a store that was held"
+expect 0 "$toy" check held.db
+done_after 43
