@@ -12,6 +12,7 @@
 
 #include "analysis/pictures/snapshot_read.h"
 #include "campaign/charts/charts.h"
+#include "campaign/farm/farm.h"
 #include "engine/engine.h"
 #include "engine/restart.h"
 #include "schemas/clock.h"
@@ -21,7 +22,7 @@
 #include "schemas/text.h"
 
 /* ---- a restart file: a run that can be stopped and goes on later ----
- * SIGINT, SIGTERM and SIGHUP write it and end the command with exit code 75. It is also written every few minutes, for
+ * The stop signals of a farm write it and end the command with exit code 75. It is also written every few minutes, for
  * ends without a signal. */
 
 struct resume {
@@ -39,10 +40,10 @@ static void note(int number) {
 
 /* From now on the first signal is only noted. A second one ends the process at once. */
 static void resume_begin(struct resume *resume, const char *path) {
-  const int wanted[] = {SIGINT, SIGTERM, SIGHUP};
-  struct sigaction action = {.sa_handler = note, .sa_flags = (int)SA_RESETHAND};
-  for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++)
-    sigaction(wanted[k], &action, NULL);
+  struct sigaction action = {.sa_handler = note, .sa_flags = (int)SA_RESETHAND}, now;
+  for (size_t k = 0; k < FARM_STOP_SIGNALS; k++)
+    if (sigaction(farm_stop_signals[k], NULL, &now) != 0 || now.sa_handler != SIG_IGN) /* nohup, or `&` in a script */
+      sigaction(farm_stop_signals[k], &action, NULL);
   *resume = (struct resume){path, clock_s()};
 }
 

@@ -84,6 +84,17 @@ done
 same $code 75 "stopped by a signal"
 says "the same command goes on from there"
 [ -s run.bin ] || fail "no restart file"
+for signal in USR1 USR2 XCPU; do # of batch systems
+  rm -f disc*
+  "$clast" simulate disc-explosion --restart disc.bin --snapshots 1000 --quiet >out 2>err &
+  pid=$!
+  for _ in $(seq 6000); do [ -e disc-explosion.hdf.series ] && break; sleep 0.01; done
+  code=0
+  kill -$signal $pid
+  wait $pid || code=$?
+  same $code 75 "stopped by SIG$signal"
+  [ -s disc.bin ] || fail "no restart file after SIG$signal"
+done
 expect 65 "$clast" "${run[@]}" --json --restart run.bin --seed 4
 says "of seed 3"
 expect 65 "$clast" "${run[@]}" --json --restart run.bin --set fidelity.cfl=0.2
@@ -113,4 +124,4 @@ got=0 # the disk fills up at the end (a limit on file size gives such an error):
 same $got 74 "fields file too large"
 cmp -s out whole.json || fail "the results are lost with the fields file"
 [ -z "$(find . -name 'full.hdf*')" ] || fail "half a fields file is left"
-done_after 49
+done_after 52
