@@ -3,10 +3,12 @@
 #include "campaign/fit/fit.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include <stdarg.h>
 
 #include "campaign/terminal/uncertainty.h"
 #include "schemas/text.h"
+
+enum { WIDTH = 110, LABEL = 2 * FIELD_TEXT_SIZE, PARAGRAPH = (OBSERVED_DATA + 4) * LABEL };
 
 static const double levels[PICTURE_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
@@ -81,18 +83,14 @@ static double predicted(const struct fit *fit, size_t k, double level) {
   return value;
 }
 
-static void datum_cells(const struct fit *fit, size_t k, struct table *table) {
+/* The value and its errors: sd_seeds and sd_resolution, in the unit of the measurement. */
+static void value_cells(const struct fit *fit, size_t k, struct table *table) {
   const struct observed_datum *datum = &fit->observed->data[k];
   const double slope = datum->ask.kind == ASK_SPECIMENS_COUNT ? 1 + datum->value : 1;
   table_real(table, datum->value);
   table_real(table, datum->error);
   table_real(table, seeds_of(fit, k));
   table_real(table, fit->data[k].resolution * slope);
-  for (int q = 0; q < 3; q++) {
-    table_rests_on(table, &fit->doubts[k]);
-    table_real(table, predicted(fit, k, levels[2 * q]));
-  }
-  table_real(table, posterior_below(&fit->surfaces.model, &fit->posterior, k));
 }
 
 static const char *const datum_columns[] = {"measured", "value",  "error", "sd_seeds", "sd_resolution",
@@ -100,12 +98,17 @@ static const char *const datum_columns[] = {"measured", "value",  "error", "sd_s
 
 static status print_data(const struct fit *fit, struct error *error) {
   TABLE table = table_new(TABLE_TEXT, stdout);
-  char label[2 * FIELD_TEXT_SIZE];
+  char label[LABEL];
   table_columns(table, datum_columns);
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     observed_label(fit->observed, k, label, sizeof label);
     table_text(table, label);
-    datum_cells(fit, k, table);
+    value_cells(fit, k, table);
+    for (int q = 0; q < 3; q++) {
+      table_rests_on(table, &fit->doubts[k]);
+      table_real(table, predicted(fit, k, levels[2 * q]));
+    }
+    table_real(table, posterior_below(&fit->surfaces.model, &fit->posterior, k));
   }
   return table_end(table, error);
 }
@@ -129,27 +132,23 @@ static void input_row(const struct fit *fit, size_t i, bool check, struct table 
 
 static status print_rows(const struct fit *fit, enum table_format format, struct error *error) {
   TABLE table = table_new(format, stdout);
-  char label[2 * FIELD_TEXT_SIZE];
+  char label[LABEL];
   table_columns(table, (const char *const[]){"kind", "name", "unit", "prior_05", "prior_95", "q05", "median", "q95",
                                              "kept", "value", "error", "sd_seeds", "sd_resolution", "below", NULL});
   table_doubt_columns(table);
   for (size_t i = 0; i < fit->inputs; i++)
     input_row(fit, i, false, table);
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
-    const struct observed_datum *datum = &fit->observed->data[k];
-    const double slope = datum->ask.kind == ASK_SPECIMENS_COUNT ? 1 + datum->value : 1;
+    const struct field *row = fit->observed->data[k].ask.row;
     observed_label(fit->observed, k, label, sizeof label);
     table_text(table, "measured");
     table_text(table, label);
-    table_text(table, datum->ask.row ? datum->ask.row->unit : "1");
+    table_text(table, row ? row->unit : "1");
     skip(table, 2);
     for (int q = 0; q < 3; q++)
       table_real(table, predicted(fit, k, levels[2 * q]));
     skip(table, 1);
-    table_real(table, datum->value);
-    table_real(table, datum->error);
-    table_real(table, seeds_of(fit, k));
-    table_real(table, fit->data[k].resolution * slope);
+    value_cells(fit, k, table);
     table_real(table, posterior_below(&fit->surfaces.model, &fit->posterior, k));
     table_doubt_cells(table, &fit->doubts[k]);
   }
@@ -160,14 +159,15 @@ static status print_rows(const struct fit *fit, enum table_format format, struct
 
 /* ---- the sentences under the tables ---- */
 
-enum { WIDTH = 110 };
-
-static const char *name_of(const struct fit *fit, size_t input) {
-  return fit->campaign->axes[fit->axis[input]].row->path;
-}
+static void say(FILE *out, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* A paragraph of words, wrapped. */
-static void say(FILE *out, const char *text) {
+static void say(FILE *out, const char *format, ...) {
+  char text[PARAGRAPH];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
   text_wrap(text, 0, 0, WIDTH, out);
 }
 
@@ -179,75 +179,67 @@ static size_t count_mixed(const struct fit *fit, size_t direction) {
 }
 
 /* "a, b and c" of the inputs that are part of a direction. */
-static void list_mixed(const struct fit *fit, size_t direction, FILE *text) {
+static const char *list_mixed(const struct fit *fit, size_t direction, char text[PARAGRAPH]) {
   const size_t count = count_mixed(fit, direction);
   size_t written = 0;
-  for (size_t i = 0; i < fit->inputs; i++)
-    if (identify_mixed(&fit->found, direction, i))
-      fprintf(text, "%s%s", written == 0 ? "" : written + 1 == count ? " and " : ", ", name_of(fit, i)), written++;
+  text[0] = '\0';
+  for (size_t i = 0; i < fit->inputs; i++) {
+    if (!identify_mixed(&fit->found, direction, i))
+      continue;
+    text_append(text, PARAGRAPH, "%s%s",
+                written == 0           ? ""
+                : written + 1 == count ? " and "
+                                       : ", ",
+                row_of(fit, i)->path);
+    written++;
+  }
+  return text;
 }
 
 /* The inputs at both ends of a direction: a standard deviation along it from the middle of the posterior. */
-static void list_ends(const struct fit *fit, size_t direction, FILE *text) {
+static const char *list_ends(const struct fit *fit, size_t direction, char text[PARAGRAPH]) {
   const struct identify_direction *d = &fit->found.direction[direction];
-  size_t written = 0;
+  text[0] = '\0';
   for (size_t i = 0; i < fit->inputs; i++) {
     if (!identify_mixed(&fit->found, direction, i))
       continue;
     const double z = fit->found.centre[i], step = d->deviation * d->along[i];
-    fprintf(text, "%s%s from %.3g to %.3g", written++ ? ", " : "", name_of(fit, i), fit_number(fit, i, z - step),
-            fit_number(fit, i, z + step));
+    text_append(text, PARAGRAPH, "%s%s from %.3g to %.3g", *text ? ", " : "", row_of(fit, i)->path,
+                fit_number(fit, i, z - step), fit_number(fit, i, z + step));
   }
+  return text;
 }
 
 /* The interval of an input counts as that of its prior when it keeps this share of the prior's width. */
 static const double AS_WIDE = 0.9;
 
 static void tell_open_direction(const struct fit *fit, size_t direction, FILE *out) {
-  char *text = NULL;
-  size_t size = 0;
-  FILE *words = text_open(&text, &size);
-  if (!words)
-    return;
+  char names[PARAGRAPH], ends[PARAGRAPH];
+  const double information = fit->found.direction[direction].information;
+  list_mixed(fit, direction, names);
   if (count_mixed(fit, direction) > 1) {
-    fputs("RIDGE: these data cannot tell ", words);
-    list_mixed(fit, direction, words);
-    fputs(" apart. What was measured hardly changes while they change together: ", words);
-    list_ends(fit, direction, words);
-    fprintf(words,
-            ". Along this line the data tell %.2g times what the priors tell; its ends are set by the priors. "
-            "Quote the inputs together, or measure something that changes along it.",
-            fit->found.direction[direction].information);
-  } else {
-    fputs("NOT DETERMINED: ", words);
-    list_mixed(fit, direction, words);
-    size_t input = 0;
-    while (input + 1 < fit->inputs && !identify_mixed(&fit->found, direction, input))
-      input++;
-    fprintf(words, ". The data tell %.2g times what its prior tells%s", fit->found.direction[direction].information,
-            fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (kept)."
-                                             : "; its interval is that of the prior.");
+    say(out,
+        "RIDGE: these data cannot tell %s apart. What was measured hardly changes while they change together: %s. "
+        "Along "
+        "this line the data tell %.2g times what the priors tell; its ends are set by the priors. Quote the inputs "
+        "together, or measure something that changes along it.",
+        names, list_ends(fit, direction, ends), information);
+    return;
   }
-  if (text_close(words, &text))
-    say(out, text);
-  free(text);
+  size_t input = 0;
+  while (input + 1 < fit->inputs && !identify_mixed(&fit->found, direction, input))
+    input++;
+  say(out, "NOT DETERMINED: %s. The data tell %.2g times what its prior tells%s", names, information,
+      fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (kept)."
+                                       : "; its interval is that of the prior.");
 }
 
 /* What the data determine of several inputs together, though not of each. */
 static void tell_together(const struct fit *fit, size_t direction, FILE *out) {
-  char *text = NULL;
-  size_t size = 0;
-  FILE *words = count_mixed(fit, direction) > 1 ? text_open(&text, &size) : NULL;
-  if (!words)
-    return;
-  fputs("TOGETHER: the data determine ", words);
-  list_mixed(fit, direction, words);
-  fputs(" together, to one standard deviation on either side: ", words);
-  list_ends(fit, direction, words);
-  fputs(".", words);
-  if (text_close(words, &text))
-    say(out, text);
-  free(text);
+  char names[PARAGRAPH], ends[PARAGRAPH];
+  if (count_mixed(fit, direction) > 1)
+    say(out, "TOGETHER: the data determine %s together, to one standard deviation on either side: %s.",
+        list_mixed(fit, direction, names), list_ends(fit, direction, ends));
 }
 
 /* Share of predicted experiments beyond this datum, on the side where fewer are. */
@@ -257,7 +249,6 @@ static double beyond(const struct fit *fit, size_t k) {
 }
 
 static void tell_determined(const struct fit *fit, FILE *out) {
-  char text[512];
   const size_t known = fit->found.determined, p = fit->inputs;
   bool missed = false, as_wide = false;
   for (size_t k = 0; k < fit->observed->datum_count; k++) /* of many data some are far off by chance */
@@ -271,16 +262,14 @@ static void tell_determined(const struct fit *fit, FILE *out) {
     return;
   }
   if (known == p && as_wide)
-    snprintf(text, sizeof text,
-             "The data tell more than the priors at most places, and yet they leave an input its whole range (kept): "
+    say(out, "The data tell more than the priors at most places, and yet they leave an input its whole range (kept): "
              "inputs that are far apart give what was measured.");
   else if (known == p)
-    snprintf(text, sizeof text, "The data determine %s: in every direction they tell more than the priors.",
-             p == 1 ? "the input" : "all inputs");
+    say(out, "The data determine %s: in every direction they tell more than the priors.",
+        p == 1 ? "the input" : "all inputs");
   else
-    snprintf(text, sizeof text, "The data determine %zu combination%s of the %zu unknown input%s.", known,
-             known == 1 ? "" : "s", p, p == 1 ? "" : "s");
-  say(out, text);
+    say(out, "The data determine %zu combination%s of the %zu unknown input%s.", known, known == 1 ? "" : "s", p,
+        p == 1 ? "" : "s");
   for (size_t i = 0; known < p && i < known; i++)
     tell_together(fit, i, out);
   for (size_t i = known; i < p; i++)
@@ -289,26 +278,19 @@ static void tell_determined(const struct fit *fit, FILE *out) {
 
 /* Names the data whose error of resolution is unknown. */
 static void tell_not_studied(const struct fit *fit, FILE *out) {
-  char *text = NULL, label[2 * FIELD_TEXT_SIZE];
-  size_t size = 0, count = 0;
-  FILE *words = text_open(&text, &size);
-  if (!words)
-    return;
-  fputs("RESOLUTION: what a finer resolution would change is not known and counts as 0 for", words);
+  char names[PARAGRAPH] = "", label[LABEL];
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     if (!isnan(fit->observed->data[k].resolution) || fit->resolution[k].verdict != ASK_RESOLUTION_NOT_STUDIED)
       continue;
     observed_label(fit->observed, k, label, sizeof label);
-    fprintf(words, "%s %s", count++ ? "," : "", label);
+    text_append(names, sizeof names, "%s %s", *names ? "," : "", label);
   }
-  fprintf(words,
-          ". The intervals are too narrow. Give `resolution` with the value, or study it: `clast converge %s --store "
-          "%s` with what "
-          "the campaign sets (--set).",
-          fit->scene_reference, fit->campaign->store);
-  if (text_close(words, &text) && count)
-    say(out, text);
-  free(text);
+  if (*names)
+    say(out,
+        "RESOLUTION: what a finer resolution would change is not known and counts as 0 for%s. The intervals are too "
+        "narrow. Give `resolution` with the value, or study it: `clast converge %s --store %s` with what the campaign "
+        "sets (--set).",
+        names, fit->scene_reference, fit->campaign->store);
 }
 
 static void tell_errors(const struct fit *fit, FILE *out) {
@@ -320,67 +302,53 @@ static void tell_errors(const struct fit *fit, FILE *out) {
              "and the intervals hold it.");
   tell_not_studied(fit, out);
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
-    char label[2 * FIELD_TEXT_SIZE], text[4 * FIELD_TEXT_SIZE];
+    char label[LABEL];
     const struct ask_resolution *r = &fit->resolution[k];
     if (!isnan(fit->observed->data[k].resolution) || r->verdict == ASK_RESOLUTION_KNOWN ||
         r->verdict == ASK_RESOLUTION_NOT_STUDIED)
       continue;
     observed_label(fit->observed, k, label, sizeof label);
-    snprintf(
-        text, sizeof text,
+    say(out,
         "RESOLUTION: %s %s with resolution; the study in the store tells an error of at least %.2g, which is in the "
         "intervals.",
         label, r->verdict == ASK_RESOLUTION_DIVERGES ? "does not converge" : "has no limit in sight", r->half_width);
-    say(out, text);
   }
 }
 
 /* Names the assumptions of the algebra that do not hold. */
 static void tell_doubts(const struct fit *fit, FILE *out) {
-  char label[2 * FIELD_TEXT_SIZE], text[6 * FIELD_TEXT_SIZE];
+  char label[LABEL];
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct seed_scatter *scatter = &fit->surfaces.scatter[k];
     const double below = posterior_below(&fit->surfaces.model, &fit->posterior, k);
     observed_label(fit->observed, k, label, sizeof label);
     /* For a normal law, skewness and excess have standard errors sqrt(6/n) and sqrt(24/n). */
     const double n = (double)scatter->freedom;
-    if (fabs(scatter->skewness) > 4 * sqrt(6 / n) || fabs(scatter->excess) > 4 * sqrt(24 / n)) {
-      snprintf(
-          text, sizeof text,
+    if (fabs(scatter->skewness) > 4 * sqrt(6 / n) || fabs(scatter->excess) > 4 * sqrt(24 / n))
+      say(out,
           "SCATTER: %s is not normal over seeds (skewness %.2g, excess kurtosis %.2g%s), as the likelihood takes it "
           "to be. `--check` fits without that.",
           label, scatter->skewness, scatter->excess, scatter->excess < -1 ? ": two heaps" : "");
-      say(out, text);
-    }
-    if (beyond(fit, k) < 0.025) {
-      snprintf(text, sizeof text,
-               "MISFIT: no inputs within the priors predict %s well: only %.2g of predicted experiments lie %s it.",
-               label, below < 0.5 ? below : 1 - below, below < 0.5 ? "below" : "above");
-      say(out, text);
-    }
-    if (fit->surfaces.left_out[k] > 1.5) {
-      snprintf(
-          text, sizeof text,
+    if (beyond(fit, k) < 0.025)
+      say(out, "MISFIT: no inputs within the priors predict %s well: only %.2g of predicted experiments lie %s it.",
+          label, below < 0.5 ? below : 1 - below, below < 0.5 ? "below" : "above");
+    if (fit->surfaces.left_out[k] > 1.5)
+      say(out,
           "SURFACE: for %s the points are missed by %.2g times what the surface says of its own error; more members "
           "or more seeds help.",
           label, fit->surfaces.left_out[k]);
-      say(out, text);
-    }
   }
 }
 
 static void tell(const struct fit *fit, FILE *out) {
-  char text[512];
   tell_determined(fit, out);
   tell_errors(fit, out);
   tell_doubts(fit, out);
-  snprintf(
-      text, sizeof text,
+  say(out,
       "Surfaces through %zu points of %zu seeds in %zu rounds; posterior %s. kept: width of the 90 %% interval over "
       "that of the prior. below: share of predicted experiments below the value. Source of the data: %.200s",
       fit->points, fit->replicates, fit->rounds, fit->posterior.sampled ? "sampled" : "on a grid",
       fit->observed->source);
-  say(out, text);
 }
 
 /* ---- the whole report ---- */
@@ -418,9 +386,9 @@ static void label_of(const struct fit *fit, size_t k, char *label, size_t size) 
 
 status fit_print_picture(const struct fit *fit, const char *path, const struct chart_options *chart,
                          struct error *error) {
-  static char labels[OBSERVED_DATA][2 * FIELD_TEXT_SIZE];
+  static char labels[OBSERVED_DATA][LABEL];
   struct picture_prediction rows[OBSERVED_DATA];
-  char title[2 * FIELD_TEXT_SIZE];
+  char title[LABEL];
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct observed_datum *datum = &fit->observed->data[k];
     label_of(fit, k, labels[k], sizeof labels[k]);

@@ -38,9 +38,14 @@ struct serve_answer serve_request_error(unsigned http, const char *type, const c
 
 /* ---- config ---- */
 
-static bool refuse(struct serve_answer *answer, const char *message) {
-  *answer = serve_request_error(400, "InvalidInput", "%s", message);
+/* The request has this answer and is no evaluation: false, for the caller to return. */
+static bool answered(struct serve_answer *answer, struct serve_answer given) {
+  *answer = given;
   return false;
+}
+
+static bool refuse(struct serve_answer *answer, const char *message) {
+  return answered(answer, serve_request_error(400, "InvalidInput", "%s", message));
 }
 
 static bool read_results(const struct serve_model *model, json_t *value, struct serve_config *config,
@@ -85,11 +90,10 @@ static bool read_statistics(json_t *value, struct serve_config *config, struct s
 static bool read_count(const char *name, json_t *value, int64_t least, int64_t most, int64_t *count,
                        struct serve_answer *answer) {
   const double number = json_is_number(value) ? json_number_value(value) : (double)NAN;
-  if (!(number >= (double)least && number <= (double)most) || number != floor(number)) {
-    *answer = serve_request_error(400, "InvalidInput",
-                                  "config.%s: expected a whole number from %" PRId64 " to %" PRId64, name, least, most);
-    return false;
-  }
+  if (!(number >= (double)least && number <= (double)most) || number != floor(number))
+    return answered(answer, serve_request_error(400, "InvalidInput",
+                                                "config.%s: expected a whole number from %" PRId64 " to %" PRId64, name,
+                                                least, most));
   *count = (int64_t)number;
   return true;
 }
@@ -115,9 +119,10 @@ static bool read_key(const struct serve_model *model, const char *key, json_t *v
     config->level = (size_t)level;
     return true;
   }
-  *answer = serve_request_error(400, "InvalidInput",
-                                "config.%s: unknown; known are results, statistic, replicates, replicate, level", key);
-  return false;
+  return answered(answer,
+                  serve_request_error(400, "InvalidInput",
+                                      "config.%s: unknown; known are results, statistic, replicates, replicate, level",
+                                      key));
 }
 
 /* Checks statistic and replicates: a single replicate has no statistic, and a scatter needs two replicates. */
@@ -160,16 +165,13 @@ static bool read_inputs(const struct serve_model *model, json_t *root, struct se
   json_t *outer = json_object_get(root, "input"), *inner = json_array_get(outer, 0), *value;
   size_t i;
   if (!json_is_array(outer) || json_array_size(outer) != 1 || !json_is_array(inner) ||
-      json_array_size(inner) != model->input_count) {
-    *answer = serve_request_error(400, "InvalidInput", "input: expected one vector of %zu numbers in a list",
-                                  model->input_count);
-    return false;
-  }
+      json_array_size(inner) != model->input_count)
+    return answered(answer,
+                    serve_request_error(400, "InvalidInput", "input: expected one vector of %zu numbers in a list",
+                                        model->input_count));
   request->inputs = calloc(model->input_count, sizeof *request->inputs);
-  if (!request->inputs) {
-    *answer = serve_request_error(503, "Unavailable", "out of memory");
-    return false;
-  }
+  if (!request->inputs)
+    return answered(answer, serve_request_error(503, "Unavailable", "out of memory"));
   json_array_foreach(inner, i, value) {
     if (!json_is_number(value))
       return refuse(answer, "input: expected numbers");
@@ -209,34 +211,27 @@ static bool read_call(const struct serve_model *model, const struct route *route
   const char *name = json_string_value(json_object_get(root, "name"));
   if (!json_is_object(root) || !name)
     return refuse(answer, "expected a JSON object with the model's name: {\"name\": ...}");
-  if (strcmp(name, model->campaign->name) != 0) {
-    *answer = serve_request_error(400, "ModelNotFound", "there is no model \"%.100s\"; this server has \"%s\"", name,
-                                  model->campaign->name);
-    return false;
-  }
-  if (route->call == CALL_UNSUPPORTED) {
-    *answer = serve_request_error(400, "UnsupportedFeature",
-                                  "%s: runs have no derivatives; this model supports Evaluate", route->path + 1);
-    return false;
-  }
-  if (route->call == CALL_MODEL_INFO) {
-    *answer = answer_json(200, json_pack("{s:{s:b, s:b, s:b, s:b}}", "support", "Evaluate", 1, "Gradient", 0,
-                                         "ApplyJacobian", 0, "ApplyHessian", 0));
-    return false;
-  }
+  if (strcmp(name, model->campaign->name) != 0)
+    return answered(answer,
+                    serve_request_error(400, "ModelNotFound", "there is no model \"%.100s\"; this server has \"%s\"",
+                                        name, model->campaign->name));
+  if (route->call == CALL_UNSUPPORTED)
+    return answered(answer,
+                    serve_request_error(400, "UnsupportedFeature",
+                                        "%s: runs have no derivatives; this model supports Evaluate", route->path + 1));
+  if (route->call == CALL_MODEL_INFO)
+    return answered(answer, answer_json(200, json_pack("{s:{s:b, s:b, s:b, s:b}}", "support", "Evaluate", 1, "Gradient",
+                                                       0, "ApplyJacobian", 0, "ApplyHessian", 0)));
   if (!read_config(model, root, &request->config, answer))
     return false;
   if (route->call == CALL_EVALUATE)
     return read_inputs(model, root, request, answer);
-  if (route->call == CALL_INPUT_SIZES) {
-    *answer = answer_json(200, json_pack("{s:[I]}", "inputSizes", (json_int_t)model->input_count));
-    return false;
-  }
+  if (route->call == CALL_INPUT_SIZES)
+    return answered(answer, answer_json(200, json_pack("{s:[I]}", "inputSizes", (json_int_t)model->input_count)));
   json_t *sizes = json_array();
   for (size_t i = 0; i < (request->config.single ? 1 : request->config.statistic_count); i++)
     json_array_append_new(sizes, json_integer((json_int_t)request->config.result_count));
-  *answer = answer_json(200, json_pack("{s:o}", "outputSizes", sizes));
-  return false;
+  return answered(answer, answer_json(200, json_pack("{s:o}", "outputSizes", sizes)));
 }
 
 bool serve_request_read(const struct serve_model *model, const char *method, const char *path, const char *body,
@@ -245,32 +240,25 @@ bool serve_request_read(const struct serve_model *model, const char *method, con
   for (size_t i = 0; !route && i < sizeof routes / sizeof routes[0]; i++)
     route = strcmp(path, routes[i].path) == 0 ? &routes[i] : NULL;
   *request = (struct serve_request){0};
-  if (!route) {
-    *answer = serve_request_error(404, "UnsupportedFeature", "there is no %.100s; see GET /", path);
-    return false;
-  }
+  if (!route)
+    return answered(answer, serve_request_error(404, "UnsupportedFeature", "there is no %.100s; see GET /", path));
   const bool right = route->get ? strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0
                                 : strcmp(method, "POST") == 0;
-  if (!right) {
-    *answer = serve_request_error(405, "InvalidInput", "%s: expected the method %s", path, route->get ? "GET" : "POST");
-    return false;
-  }
-  if (route->call == CALL_DESCRIBE) {
-    *answer = (struct serve_answer){200, serve_model_describe(model)};
-    return false;
-  }
-  if (route->call == CALL_INFO) {
-    *answer = answer_json(200, json_pack("{s:f, s:[s]}", "protocolVersion", 1.0, "models", model->campaign->name));
-    return false;
-  }
+  if (!right)
+    return answered(answer, serve_request_error(405, "InvalidInput", "%s: expected the method %s", path,
+                                                route->get ? "GET" : "POST"));
+  if (route->call == CALL_DESCRIBE)
+    return answered(answer, (struct serve_answer){200, serve_model_describe(model)});
+  if (route->call == CALL_INFO)
+    return answered(answer, answer_json(200, json_pack("{s:f, s:[s]}", "protocolVersion", 1.0, "models",
+                                                       model->campaign->name)));
 
   json_error_t where;
   json_t *root = json_loadb(body, size, JSON_REJECT_DUPLICATES, &where);
-  bool evaluate = false;
-  if (root)
-    evaluate = read_call(model, route, root, request, answer);
-  else
-    *answer = serve_request_error(400, "InvalidInput", "the body is no JSON: line %d: %s", where.line, where.text);
+  if (!root)
+    return answered(answer, serve_request_error(400, "InvalidInput", "the body is no JSON: line %d: %s", where.line,
+                                                where.text));
+  const bool evaluate = read_call(model, route, root, request, answer);
   json_decref(root);
   if (!evaluate)
     serve_request_clear(request);

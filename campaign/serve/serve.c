@@ -8,6 +8,7 @@
 
 #define HASH_NONFATAL_OOM 1
 #include <uthash.h>
+#include <utlist.h>
 
 #include "schemas/clock.h"
 #include "schemas/memory.h"
@@ -33,8 +34,8 @@ struct wanted { /* a run that waits or is on a slot */
   uint8_t identity[16];
   struct scene *scene;
   struct wish *wishes;
-  struct wanted *next; /* in the queue */
-  UT_hash_handle hh;   /* by identity */
+  struct wanted *prev, *next; /* in the queue */
+  UT_hash_handle hh;          /* by identity */
 };
 
 struct serve {
@@ -46,8 +47,8 @@ struct serve {
   const char **paths; /* paths of the varied inputs, for the store */
   size_t path_count;
   struct job *jobs;
-  struct wanted *runs;               /* uthash */
-  struct wanted *queue, *queue_last; /* those on no slot */
+  struct wanted *runs;  /* uthash */
+  struct wanted *queue; /* those on no slot */
   struct serve_counts counts;
   bool stopping;
 };
@@ -59,8 +60,8 @@ static void free_job(struct job *job) {
 }
 
 static void free_wanted(struct wanted *wanted) {
-  for (struct wish *wish = wanted->wishes, *next; wish; wish = next) {
-    next = wish->next;
+  struct wish *wish, *next;
+  LL_FOREACH_SAFE(wanted->wishes, wish, next) {
     free(wish);
   }
   scene_free(wanted->scene);
@@ -122,15 +123,6 @@ static struct serve_answer answer_of(struct serve *serve, const struct job *job)
 
 /* ---- evaluations in ---- */
 
-static void push(struct serve *serve, struct wanted *wanted) {
-  wanted->next = NULL;
-  if (serve->queue)
-    serve->queue_last->next = wanted;
-  else
-    serve->queue = wanted;
-  serve->queue_last = wanted;
-}
-
 /* The job waits for this run, unless the run has used up its attempts. */
 static status want(struct serve *serve, struct job *job, int64_t replicate, struct error *error) {
   struct wanted *wanted = NULL;
@@ -153,15 +145,15 @@ static status want(struct serve *serve, struct job *job, int64_t replicate, stru
                                          .seed = seed,
                                          .place = wanted};
     HASH_ADD(hh, serve->runs, identity, sizeof identity, wanted);
-    push(serve, wanted);
+    DL_APPEND(serve->queue, wanted);
   }
   if (!wanted || !wish) {
     scene_free(scene);
     free(wish);
     return status_fail(error, STATUS_MEMORY, "out of memory");
   }
-  *wish = (struct wish){job, wanted->wishes};
-  wanted->wishes = wish;
+  wish->job = job;
+  LL_PREPEND(wanted->wishes, wish);
   job->missing++;
   return STATUS_OK;
 }
@@ -208,8 +200,7 @@ struct serve_answer serve_submit(struct serve *serve, struct serve_request *requ
     return answer;
   }
   job->answered = answer.http != 0; /* runs may point to the job: it is freed when they are done */
-  job->next = serve->jobs;
-  serve->jobs = job;
+  LL_PREPEND(serve->jobs, job);
   return answer;
 }
 
@@ -221,21 +212,19 @@ static status next(void *context, struct scheduler_run *run, struct error *error
   if (!serve->queue || serve->stopping)
     return STATUS_OK;
   *run = serve->queue->run;
-  serve->queue = serve->queue->next;
+  DL_DELETE(serve->queue, serve->queue);
   return STATUS_OK;
 }
 
 /* Answers the jobs that waited only for this run, which has ended. */
 static void settle(struct serve *serve, struct wanted *wanted) {
   for (struct wish *wish = wanted->wishes; wish; wish = wish->next) {
-    struct job *job = wish->job, **at = &serve->jobs;
+    struct job *job = wish->job;
     if (--job->missing > 0)
       continue;
     if (!job->answered)
       serve_http_answer(job->ticket, answer_of(serve, job));
-    while (*at != job)
-      at = &(*at)->next;
-    *at = job->next;
+    LL_DELETE(serve->jobs, job);
     free_job(job);
   }
   HASH_DELETE(hh, serve->runs, wanted);
@@ -249,7 +238,7 @@ static status ended(void *context, const struct scheduler_run *run, const struct
   (void)error;
   if (end->ending == SCHEDULER_AGAIN && !serve->stopping) {
     wanted->run.lost = run->lost;
-    push(serve, wanted);
+    DL_APPEND(serve->queue, wanted);
   } else {
     serve->counts.computed += end->ending == SCHEDULER_DONE;
     serve->counts.failed += end->ending != SCHEDULER_DONE;
@@ -333,8 +322,8 @@ status serve_run(const struct serve_model *model, struct farm *farm, const struc
     HASH_DELETE(hh, serve.runs, wanted);
     free_wanted(wanted);
   }
-  for (struct job *job = serve.jobs, *after; job; job = after) {
-    after = job->next;
+  struct job *job, *after;
+  LL_FOREACH_SAFE(serve.jobs, job, after) {
     free_job(job);
   }
   free(serve.paths);
