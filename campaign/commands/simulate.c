@@ -21,7 +21,7 @@ static status simulate(const struct scene *scene, const struct one_run_options *
     goto cleanup;
   if (options->restart)
     remove(options->restart); /* the run has ended */
-  if (!campaign_usable(&result.outcome))
+  if (!outcome_is_usable(result.outcome.state))
     code = status_fail(error, STATUS_FAILED_RUNS, "the run ended without a usable result: %s", result.outcome.message);
   else if (*result.outcome.message && !options->quiet)
     fprintf(stderr, "clast: %s\n", result.outcome.message);

@@ -131,8 +131,6 @@ const struct field *campaign_quantity(const struct engine_kind *kind, const char
                                       struct error *error);
 /* Value of a quantity in a finished run; NaN when the run failed (outcome states other than completed and end_time). */
 double campaign_value(const struct field *row, bool of_outcome, const struct outcome *outcome, const void *result);
-/* True when a finished run is a usable result. */
-bool campaign_usable(const struct outcome *outcome);
 
 /* The keys of a campaign that have several forms (vary, set, design, keep), for `clast explain`. The plain keys are
  * rows of campaign_table. */

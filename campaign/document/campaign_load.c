@@ -103,10 +103,6 @@ const struct design_axis *campaign_axis(const struct campaign *campaign, const s
   return NULL;
 }
 
-bool campaign_usable(const struct outcome *outcome) {
-  return outcome_is_usable(outcome->state);
-}
-
 const struct field *campaign_quantity(const struct engine_kind *kind, const char *path, bool *of_outcome,
                                       struct error *error) {
   struct error first, second;
@@ -133,7 +129,7 @@ const struct field *campaign_quantity(const struct engine_kind *kind, const char
 }
 
 double campaign_value(const struct field *row, bool of_outcome, const struct outcome *outcome, const void *result) {
-  if (!campaign_usable(outcome))
+  if (!outcome_is_usable(outcome->state))
     return NAN;
   struct field_value value;
   field_get(row, of_outcome ? (const void *)outcome : result, &value);
@@ -170,20 +166,16 @@ status campaign_change_split(const char *text, char path[FIELD_TEXT_SIZE], const
   return STATUS_OK;
 }
 
-static status change_input(struct document *document, const char *text, struct error *error) {
-  char path[FIELD_TEXT_SIZE];
-  const char *value = NULL;
-  const status code = campaign_change_split(text, path, &value, error);
-  return code ? code : document_change_put(document, (const char *const[]){"set", path}, value, origin, error);
-}
-
 /* STATUS_USAGE: no PATH=VALUE. */
 static status change(struct document *document, const struct campaign_changes *changes, struct error *error) {
-  status code = STATUS_OK;
-  for (size_t i = 0; code == STATUS_OK && i < changes->input_count; i++)
-    code = change_input(document, changes->inputs[i], error);
-  if (code || changes->seeds == 0)
-    return code;
+  for (size_t i = 0; i < changes->input_count; i++) {
+    char path[FIELD_TEXT_SIZE];
+    const char *value = NULL;
+    TRY(campaign_change_split(changes->inputs[i], path, &value, error));
+    TRY(document_change_put(document, (const char *const[]){"set", path}, value, origin, error));
+  }
+  if (changes->seeds == 0)
+    return STATUS_OK;
   char number[32];
   snprintf(number, sizeof number, "%" PRId64, changes->seeds);
   return document_change_put(document, (const char *const[]){"seeds", "per_point"}, number, origin, error);
@@ -287,20 +279,15 @@ struct scene *campaign_point_scene(const struct campaign *campaign, const struct
 struct scene *campaign_point_scene_from(const struct scene *base, const struct campaign *campaign,
                                         const struct field_value *values, struct error *error) {
   struct scene *scene = scene_copy(base);
-  if (!scene) {
-    status_fail(error, STATUS_MEMORY, "no memory for a point");
-    return NULL;
-  }
-  for (size_t i = 0; i < campaign->axis_count; i++)
-    if (scene_set(scene, campaign->axes[i].row->path, &values[i], error) != STATUS_OK) {
-      scene_free(scene);
-      return NULL;
-    }
-  if (scene_check(scene, error) != STATUS_OK) {
-    scene_free(scene);
-    return NULL;
-  }
-  return scene;
+  status code = scene ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a point");
+  for (size_t i = 0; code == STATUS_OK && i < campaign->axis_count; i++)
+    code = scene_set(scene, campaign->axes[i].row->path, &values[i], error);
+  if (code == STATUS_OK)
+    code = scene_check(scene, error);
+  if (code == STATUS_OK)
+    return scene;
+  scene_free(scene);
+  return NULL;
 }
 
 uint64_t campaign_seed(const struct campaign *campaign, const struct scene *point, int64_t replicate) {

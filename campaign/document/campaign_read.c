@@ -159,75 +159,49 @@ static void check_quantity(document_node *node, const char *path, const char *na
     document_report_error(node, path, &error);
 }
 
-/* Exponents are refused, although a study of convergence has them: an exponent belongs to a point and has no mean over
- * runs. */
-static void check_accuracy_quantity(document_node *node, const struct campaign *campaign) {
+static void check_quantities(document_node *root, const struct campaign *campaign) {
   struct error error;
   bool exponent;
   enum exponent_method method;
   enum estimates_window window;
-  if (estimates_named(campaign->accuracy_quantity, &exponent, &method, &window, &error) != STATUS_OK)
-    document_report_error(node, "accuracy.quantity", &error);
-  else if (!exponent)
-    check_quantity(node, "accuracy.quantity", campaign->accuracy_quantity, campaign);
-}
-
-static void check_quantities(document_node *root, const struct campaign *campaign) {
   document_node *quantity = document_key(root, "quantity");
   document_node *until = key_of(key_of(key_of(root, "seeds"), "until"), "quantity");
   document_node *accuracy = key_of(document_key(root, "accuracy"), "quantity");
-  if (accuracy)
-    check_accuracy_quantity(accuracy, campaign);
+  /* Exponents are refused, although a study of convergence has them: an exponent belongs to a point and has no mean
+   * over runs. */
+  if (accuracy && estimates_named(campaign->accuracy_quantity, &exponent, &method, &window, &error) != STATUS_OK)
+    document_report_error(accuracy, "accuracy.quantity", &error);
+  else if (accuracy && !exponent)
+    check_quantity(accuracy, "accuracy.quantity", campaign->accuracy_quantity, campaign);
   check_quantity(quantity ? quantity : document_key(root, "scene"), "quantity", campaign->quantity, campaign);
   if (until)
     check_quantity(until, "seeds.until.quantity", campaign->until_quantity, campaign);
 }
 
-/* The varied inputs, from `vary` or from a file. */
-static bool read_axes(document_node *root, const char *folder, struct campaign *campaign) {
-  document_node *vary = document_key(root, "vary"), *file = key_of(document_key(root, "design"), "file");
-  if (!file)
-    return campaign_vary_read(vary, campaign);
-  if (vary)
-    document_report(vary, "vary", "the columns of design.file are the varied inputs; leave vary out");
-  return campaign_points_read(file, folder, campaign) && !vary;
-}
-
-/* Reports a point that cannot be run, with its line in the file or the key that made it. */
-static void report_point(document_node *root, int64_t index, const char *why, const struct campaign *campaign) {
-  document_node *vary = document_key(root, "vary");
-  if (campaign->point_lines)
-    document_report(document_key(root, "design"), "design.file", "%s:%lld: %s", campaign->design.file,
-                    (long long)campaign->point_lines[index], why);
-  else
-    document_report(vary ? vary : root, vary ? "vary" : "scene", "%s", why);
-}
-
-/* Tries every point of a small design, or the first ones of a large one. The driver writes notes about the others. */
+/* Tries every point of a small design, or the first ones of a large one. The driver writes notes about the others. A
+ * point that cannot be run is reported with its line in the file, or at the key that made it. */
 static void check_points(document_node *root, struct campaign *campaign) {
   enum { TRIED = 1000 };
   struct error error = {0};
   struct campaign_walk walk;
-  if (campaign_walk_begin(&walk, campaign, &error) != STATUS_OK) {
-    document_node *design = document_key(root, "design"), *vary = document_key(root, "vary");
-    if (!design)
-      design = vary ? vary : root;
-    document_report_error(design, "design", &error);
-    goto cleanup;
-  }
-  for (int64_t i = 0; i < TRIED && campaign_walk_next(&walk); i++) {
+  document_node *design = document_key(root, "design"), *vary = document_key(root, "vary");
+  bool good = campaign_walk_begin(&walk, campaign, &error) == STATUS_OK;
+  if (!good)
+    document_report_error(design ? design : vary ? vary : root, "design", &error);
+  for (int64_t i = 0; good && i < TRIED && campaign_walk_next(&walk); i++) {
     struct scene *scene = campaign_walk_scene(&walk, &error);
-    if (!scene && error.status == STATUS_MEMORY) {
-      document_report_error(root, NULL, &error);
-      break;
-    }
-    if (!scene) {
-      report_point(root, i, error.message, campaign);
-      break;
-    }
+    good = scene != NULL;
     scene_free(scene);
+    if (good)
+      continue;
+    if (error.status == STATUS_MEMORY)
+      document_report_error(root, NULL, &error);
+    else if (campaign->point_lines)
+      document_report(design, "design.file", "%s:%lld: %s", campaign->design.file, (long long)campaign->point_lines[i],
+                      error.message);
+    else
+      document_report(vary ? vary : root, vary ? "vary" : "scene", "%s", error.message);
   }
-cleanup:
   campaign_walk_end(&walk);
 }
 
@@ -245,17 +219,6 @@ static void check_store(document_node *root, struct campaign *campaign) {
     document_report(store, "store", "%s", store_name_refused(campaign->store));
 }
 
-static bool read_scene(document_node *root, const char *folder, struct campaign *campaign) {
-  struct error error = {0};
-  document_node *scene = document_key(root, "scene");
-  if (!scene || !campaign->scene_reference[0])
-    return false; /* document_read has reported it */
-  if (scene_load(campaign->scene_reference, folder, &campaign->scene, &error) == STATUS_OK)
-    return true;
-  document_report_error(scene, "scene", &error);
-  return false;
-}
-
 void campaign_read(document_node *root, const char *folder, bool stored, struct campaign *campaign) {
   static const char *const also[] = {"vary", "set", "design", "keep", NULL};
   field_defaults(&campaign_table, campaign);
@@ -266,9 +229,23 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
   check_seeds(root, campaign);
   check_accuracy(root, campaign);
   check_store(root, campaign);
-  if (!read_scene(root, folder, campaign))
-    return; /* the other keys cannot be read without a scene */
-  const bool varied = read_axes(root, folder, campaign);
+
+  struct error error = {0};
+  document_node *scene = document_key(root, "scene"), *vary = document_key(root, "vary");
+  document_node *file = key_of(document_key(root, "design"), "file");
+  if (!scene || !campaign->scene_reference[0])
+    return; /* document_read has reported it; the other keys cannot be read without a scene */
+  if (scene_load(campaign->scene_reference, folder, &campaign->scene, &error) != STATUS_OK) {
+    document_report_error(scene, "scene", &error);
+    return;
+  }
+  bool varied = true;
+  if (file && vary)
+    document_report(vary, "vary", "the columns of design.file are the varied inputs; leave vary out");
+  if (file)
+    varied = campaign_points_read(file, folder, campaign) && !vary;
+  else
+    varied = campaign_vary_read(vary, campaign);
   campaign_read_set(set, campaign, campaign->scene, stored, "set here and varied in `vary`; leave one of them out");
   check_quantities(root, campaign);
   if (plain && varied)

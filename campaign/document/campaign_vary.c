@@ -16,6 +16,7 @@ struct reading { /* one axis being read */
   char path[PATH_SIZE]; /* "vary.threshold.strain", for messages */
 };
 
+/* Reports an error at the node (NULL: at the axis). */
 static bool wrong(struct reading *r, document_node *node, const char *text) {
   document_report(node ? node : r->node, r->path, "%s", text);
   return false;
@@ -55,21 +56,16 @@ static bool read_number(struct reading *r, document_node *node, const char *what
   if (!document_value(node, row, &value))
     return false;
   note_unit(r, node, row->unit);
-  *x = value.number;
+  *x = row->kind == FIELD_INTEGER ? (double)value.integer : value.number;
   return true;
 }
 
 /* Reads a value by the axis' own row, as a number. */
 static bool read_own(struct reading *r, document_node *node, double *x) {
-  struct field_value value;
   struct field row = *r->axis->row;
   row.path = r->path;
   row.flags &= ~(unsigned)FIELD_MAY_BE_OFF; /* an end of a range cannot be off */
-  if (!document_value(node, &row, &value))
-    return false;
-  note_unit(r, node, row.unit);
-  *x = row.kind == FIELD_INTEGER ? (double)value.integer : value.number;
-  return true;
+  return read_number(r, node, "", &row, x);
 }
 
 static bool is_number(const struct field *row) {

@@ -126,17 +126,6 @@ static void read_datum(struct reading *r, document_node *node) {
     document_report(share, "share", "only " COUNT_ABOVE " and " SHARE_ABOVE " have a share");
 }
 
-static void read_data(struct reading *r, document_node *list) {
-  if (!list)
-    return;
-  if (document_kind(list) != DOCUMENT_SEQUENCE || document_count(list) == 0) {
-    document_report(list, "measured", "expected a list of {quantity: NAME, value: NUMBER, error: NUMBER}");
-    return;
-  }
-  for (size_t i = 0; i < document_count(list); i++)
-    read_datum(r, document_item(list, i, NULL));
-}
-
 /* ---- a list of masses ---- */
 
 static int descending(const void *a, const void *b) {
@@ -224,7 +213,11 @@ static void read_shot(struct reading *r, document_node *node) {
   document_node *data = document_key(node, "measured"), *fragments = document_key(node, "fragments");
   campaign_read_set(document_key(node, "set"), r->campaign, shot->scene, false,
                     "known here and unknown in the campaign (`vary`); leave one of them out");
-  read_data(r, data);
+  if (data && (document_kind(data) != DOCUMENT_SEQUENCE || document_count(data) == 0))
+    document_report(data, "measured", "expected a list of {quantity: NAME, value: NUMBER, error: NUMBER}");
+  else
+    for (size_t i = 0; data && i < document_count(data); i++)
+      read_datum(r, document_item(data, i, NULL));
   if (fragments)
     read_fragments(r, fragments);
   if (!data && !fragments)

@@ -94,7 +94,8 @@ struct farm_report {
 /* The manager's callbacks, called from farm_run on rank 0 only. */
 struct farm_manager {
   void *context;
-  /* Gives the next task (true), or returns false when there is none now. The farm calls it again after every report. */
+  /* Gives the next task (true), or returns false when there is none now. The farm calls it again after every report.
+   * NULL: there are no tasks. */
   bool (*next)(void *context, struct farm_task *task);
   /* A task has ended. Called exactly once per task, but not for tasks that had not begun when the farm stopped.
    * STATUS_OK: the farm goes on. STATUS_STOPPED: no new tasks start, and running ones have drain_s to finish and are

@@ -105,7 +105,7 @@ static struct farm_job *next_job(struct manager *m) {
   struct farm_task task = {0};
   if (job)
     return job;
-  if (m->dry || !m->calls->next(m->calls->context, &task)) {
+  if (m->dry || !m->calls->next || !m->calls->next(m->calls->context, &task)) {
     m->dry = true;
     return NULL;
   }

@@ -115,17 +115,28 @@ static bool remember(struct driver *driver, int64_t id) {
   HASH_FIND(hh, driver->seen, &id, sizeof id, seen);
   if (seen)
     return false;
-  seen = calloc(1, sizeof *seen);
-  if (!seen)
-    return true;
+  seen = memory_small(1, sizeof *seen);
   seen->id = id;
   HASH_ADD(hh, driver->seen, id, sizeof seen->id, seen);
   return true;
 }
 
-/* Do a run's words mark the main quantity? */
-static bool is_doubtful(const struct driver *driver, const struct scene *scene, const char *words) {
-  return condition_mark(scene->kind->conditions, words, driver->row->path) != CONDITION_SOUND;
+/* Counts a run that has results, stored or new. */
+static void count_run(struct driver *driver, struct point *point, int64_t r, const struct ask_run_of_point *run,
+                      bool fields) {
+  struct driver_summary *summary = &driver->summary;
+  const bool usable = outcome_is_usable(run->state);
+  const double value = usable ? run->value : NOTHING;
+  point_finish_replicate(point, r, POINT_DONE, value);
+  point->replicates[r].surplus = run->surplus;
+  point->replicates[r].fields = fields || run->state == OUTCOME_INVALID;
+  point_cost_learn(&driver->cost, &point->cost, run->wall_s);
+  sample_add(&driver->moments, value);
+  summary->runs_failed += !usable;
+  summary->runs_surplus += run->surplus;
+  summary->runs_censored += run->state == OUTCOME_END_TIME;
+  summary->runs_doubtful += condition_mark(point->scene->kind->conditions, run->warnings, driver->row->path) !=
+                            CONDITION_SOUND;
 }
 
 /* Takes over a stored run. */
@@ -136,14 +147,10 @@ static status take_stored(struct driver *driver, struct point *point, const stru
     return STATUS_OK;
   if (!point_reserve(point, r))
     return status_fail(error, STATUS_MEMORY, "no memory for a point's runs");
-  const bool usable = outcome_is_usable(run->state), keeps = driver->campaign->keep != CAMPAIGN_KEEP_NONE;
+  const bool keeps = driver->campaign->keep != CAMPAIGN_KEEP_NONE;
   bool kept = run->fields_path && !run->fields_missing;
   if (keeps && kept)
     TRY(store_check_fields(driver->scheduler->store, run->identity, &kept, error));
-  const double value = usable ? run->value : NOTHING;
-  point_finish_replicate(point, r, POINT_DONE, value);
-  point->replicates[r].surplus = run->surplus;
-  point->replicates[r].fields = kept || run->state == OUTCOME_INVALID;
   if (keeps && run->fields_path && !kept && driver->fields_missing++ == 0) {
     char text[4400];
     snprintf(text, sizeof text,
@@ -152,13 +159,8 @@ static status take_stored(struct driver *driver, struct point *point, const stru
              run->fields_path, run->fields_missing ? "missing" : "damaged");
     scheduler_note(driver->scheduler, text);
   }
-  point_cost_learn(&driver->cost, &point->cost, run->wall_s);
   driver->summary.runs_reused++;
-  driver->summary.runs_surplus += run->surplus;
-  driver->summary.runs_failed += !usable;
-  driver->summary.runs_censored += run->state == OUTCOME_END_TIME;
-  driver->summary.runs_doubtful += is_doubtful(driver, point->scene, run->warnings);
-  sample_add(&driver->moments, value);
+  count_run(driver, point, r, run, kept);
   return STATUS_OK;
 }
 
@@ -285,8 +287,6 @@ static status expand(struct driver *driver, bool *more, struct error *error) {
     return code;
   }
   struct point *point = point_create(driver->campaign, scene);
-  if (!point)
-    return status_fail(error, STATUS_MEMORY, "no memory for a point");
   point->id = id;
   driver->summary.points++;
   driver->wanted += point->prefix;
@@ -415,24 +415,18 @@ static status judge_failures(struct driver *driver, bool failed, struct error *e
 
 static status take_result(struct driver *driver, const struct scheduler_run *run, const struct scheduler_end *end,
                           struct error *error) {
-  struct point *point = run->place;
-  struct driver_summary *summary = &driver->summary;
   const struct outcome *outcome = &end->result->outcome;
-  const bool usable = campaign_usable(outcome), surplus = is_surplus(driver, run);
-  const double value = campaign_value(driver->row, driver->row_of_outcome, outcome, end->result->result);
-  point_finish_replicate(point, run->replicate, POINT_DONE, value);
-  point->replicates[run->replicate].surplus = surplus;
-  point->replicates[run->replicate].fields = end->fields || outcome->state == OUTCOME_INVALID;
-  point_cost_learn(&driver->cost, &point->cost, end->report->wall_s);
-  sample_add(&driver->moments, value);
-  summary->runs_done++;
-  summary->runs_failed += !usable;
-  summary->runs_surplus += surplus;
-  summary->runs_censored += outcome->state == OUTCOME_END_TIME;
-  summary->runs_doubtful += is_doubtful(driver, point->scene, outcome->warnings);
-  summary->fields_written += end->fields;
-  summary->cpu_s += end->report->cpu_s;
-  return judge_failures(driver, !usable, error);
+  const struct ask_run_of_point row = {.surplus = is_surplus(driver, run),
+                                       .state = outcome->state,
+                                       .value = campaign_value(driver->row, driver->row_of_outcome, outcome,
+                                                               end->result->result),
+                                       .warnings = outcome->warnings,
+                                       .wall_s = end->report->wall_s};
+  driver->summary.runs_done++;
+  driver->summary.fields_written += end->fields;
+  driver->summary.cpu_s += end->report->cpu_s;
+  count_run(driver, run->place, run->replicate, &row, end->fields);
+  return judge_failures(driver, !outcome_is_usable(outcome->state), error);
 }
 
 static status take_run(struct driver *driver, const struct scheduler_run *run, const struct scheduler_end *end,

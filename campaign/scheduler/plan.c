@@ -12,6 +12,7 @@
 #include "db/ask/ask.h"
 #include "db/store/store.h"
 #include "schemas/clock.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 /* ---- trials ---- */
@@ -68,11 +69,7 @@ status plan_try(const struct scene *scene, uint64_t seed, double seconds, struct
   code = step(kind, state, begin + seconds, run, error);
   if (code != STATUS_OK)
     goto cleanup;
-  result = calloc(1, kind->results->size);
-  if (!result) {
-    code = status_fail(error, STATUS_MEMORY, "no memory for the trial's result");
-    goto cleanup;
-  }
+  result = memory_small(1, kind->results->size);
   const double stepped = clock_cpu_s();
   code = kind->finish(state, &outcome, result, &list, &run->fragments, error);
   run->finish_s = clock_cpu_s() - stepped;
@@ -285,9 +282,9 @@ static void extrapolate(const struct looking *looking, uint64_t seed, double sec
                         struct plan *plan, char setting[64], double *one) {
   struct error ignored;
   struct scene *coarse = NULL;
-  struct plan_trial *coarse_run = calloc(1, sizeof *coarse_run);
+  struct plan_trial *coarse_run = memory_small(1, sizeof *coarse_run);
   plan->run_s_most = plan_to_hard_end(run);
-  if (coarse_run && looking->work_most > 0)
+  if (looking->work_most > 0)
     plan_coarsen(looking->costliest, plan->run_s_most / looking->work_most, seconds / 4, &coarse, setting);
   if (coarse && plan_try(coarse, seed, seconds / 2, coarse_run, &ignored) == STATUS_OK) {
     const double whole = plan_whole(run, coarse_run);
@@ -307,9 +304,7 @@ static status try_run(const struct campaign *campaign, const struct looking *loo
   const uint64_t seed = campaign_seed(campaign, looking->costliest, 0);
   const double begin = clock_cpu_s();
   char setting[64] = "";
-  struct plan_trial *run = calloc(1, sizeof *run);
-  if (!run)
-    return status_fail(error, STATUS_MEMORY, "no memory for the trial");
+  struct plan_trial *run = memory_small(1, sizeof *run);
   const status code = plan_try(looking->costliest, seed, seconds / 2, run, error);
   if (code != STATUS_OK)
     goto cleanup;

@@ -6,13 +6,10 @@
 #include <stdlib.h>
 
 #include "engine/grow.h"
+#include "schemas/memory.h"
 
 struct point *point_create(const struct campaign *campaign, struct scene *scene) {
-  struct point *point = calloc(1, sizeof *point);
-  if (!point) {
-    scene_free(scene);
-    return NULL;
-  }
+  struct point *point = memory_small(1, sizeof *point);
   point->scene = scene;
   point->rule = (struct design_stopping){.minimum = campaign_replicates_least(campaign),
                                          .maximum = campaign_replicates_most(campaign),
@@ -22,10 +19,8 @@ struct point *point_create(const struct campaign *campaign, struct scene *scene)
   point->rule.fixed = campaign->per_point > 0;
   point->prefix = point->rule.minimum;
   point->cost.work = scene->kind->work ? scene->kind->work(scene->inputs) : 1;
-  if (!point_reserve(point, 0)) {
-    point_free(point);
-    return NULL;
-  }
+  if (!point_reserve(point, 0))
+    memory_refused();
   return point;
 }
 
@@ -127,18 +122,14 @@ static void want_extremes(struct point *point) {
   want(point, most);
 }
 
-static void want_first(struct point *point, int64_t count) {
-  for (int64_t r = 0; r < point->prefix && r < count; r++)
-    want(point, r);
-}
-
 void point_want_fields(struct point *point, const struct campaign *campaign) {
-  switch (campaign->keep) {
-  case CAMPAIGN_KEEP_ALL: want_first(point, INT64_MAX); break;
-  case CAMPAIGN_KEEP_FIRST: want_first(point, campaign->keep_first); break;
-  case CAMPAIGN_KEEP_EXTREMES: want_extremes(point); break;
-  default: break;
-  }
+  const int64_t first = campaign->keep == CAMPAIGN_KEEP_ALL     ? INT64_MAX
+                        : campaign->keep == CAMPAIGN_KEEP_FIRST ? campaign->keep_first
+                                                                : 0;
+  for (int64_t r = 0; r < point->prefix && r < first; r++)
+    want(point, r);
+  if (campaign->keep == CAMPAIGN_KEEP_EXTREMES)
+    want_extremes(point);
 }
 
 void point_leave(struct point *point, int64_t replicate) {

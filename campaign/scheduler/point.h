@@ -70,7 +70,7 @@ struct point {
   struct point_cost cost;
 };
 
-/* Takes ownership of the scene. NULL when memory is out (the scene is freed). */
+/* Takes ownership of the scene. Never NULL. */
 struct point *point_create(const struct campaign *campaign, struct scene *scene);
 void point_free(struct point *point); /* NULL is fine */
 

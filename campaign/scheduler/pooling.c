@@ -59,36 +59,25 @@ static status end(struct store *store, struct fit *fit, status code, struct erro
   return code;
 }
 
-static status pool_all(struct store *store, const struct ask_points_version *points, size_t count,
-                       struct error *error) {
-  struct fit *fit = calloc(1, sizeof *fit);
-  if (!fit)
-    return status_fail(error, STATUS_MEMORY, "memory ran out: the exponents of the points were not fitted");
-  status code = STATUS_OK;
+status pooling_store(struct store *store, int64_t campaign_id, struct error *error) {
+  struct ask_points_version *points = NULL;
+  size_t count = 0;
+  struct fit fit = {0};
+  TRY(store_flush(store, error)); /* the sums of the open batch */
+  status code = ask_points_without_estimates(store, campaign_id, &points, &count, error);
   for (size_t i = 0; i < count && code == STATUS_OK; i++) {
     struct point_data point = {0};
     code = point_read(store, points[i].point_id, points[i].results_version, &point, error);
-    code = end(store, fit, code, error);
+    code = end(store, &fit, code, error);
     if (code == STATUS_OK) {
-      fit->which = &points[i];
-      fit->point = point;
-      begin(fit);
+      fit.which = &points[i];
+      fit.point = point;
+      begin(&fit);
     } else {
       point_release(&point);
     }
   }
-  code = end(store, fit, code, error);
-  free(fit);
-  return code;
-}
-
-status pooling_store(struct store *store, int64_t campaign_id, struct error *error) {
-  struct ask_points_version *points = NULL;
-  size_t count = 0;
-  TRY(store_flush(store, error)); /* the sums of the open batch */
-  status code = ask_points_without_estimates(store, campaign_id, &points, &count, error);
-  if (code == STATUS_OK)
-    code = pool_all(store, points, count, error);
+  code = end(store, &fit, code, error);
   free(points);
   return code ? code : store_flush(store, error);
 }

@@ -122,214 +122,173 @@ cleanup:
   return code;
 }
 
-/* Writes bytes. A first pass with bytes = NULL counts them. */
-struct writer {
+/* The bytes of a task or a result: the same functions write and read them, so that a layout stands once. Writing, a
+ * first pass with bytes = NULL counts. Reading, missing or unexpected bytes set `good` to false, and all later reads
+ * give zero. */
+struct wire {
   uint8_t *bytes;
-  size_t size;
+  size_t at, size;
+  bool reads, good;
 };
-static void put(struct writer *writer, const void *data, size_t size) {
-  if (writer->bytes && size)
-    memcpy(writer->bytes + writer->size, data, size);
-  writer->size += size;
-}
-static void put_count(struct writer *writer, uint64_t count) {
-  put(writer, &count, sizeof count);
-}
-static void put_text(struct writer *writer, const char *text) {
-  put_count(writer, strlen(text));
-  put(writer, text, strlen(text));
-}
-static void put_object(struct writer *writer, const struct field_table *table, const void *object) {
-  size_t size = field_encoded_size(table, object);
-  put_count(writer, size);
-  if (writer->bytes)
-    field_encode(table, object, writer->bytes + writer->size);
-  writer->size += size;
-}
 
-/* Reads bytes. Missing or unexpected bytes set `good` to false, and all later reads give zero. */
-struct reader {
-  const uint8_t *bytes;
-  size_t left;
-  bool good;
-};
-static const uint8_t *take(struct reader *reader, uint64_t size) {
-  if (!reader->good || size > reader->left) {
-    reader->good = false;
+/* The place of the next `size` bytes. NULL: there is none. */
+static uint8_t *next_bytes(struct wire *wire, uint64_t size) {
+  if (wire->reads && (!wire->good || size > wire->size - wire->at)) {
+    wire->good = false;
     return NULL;
   }
-  const uint8_t *here = reader->bytes;
-  reader->bytes += size;
-  reader->left -= (size_t)size;
+  uint8_t *here = wire->bytes ? wire->bytes + wire->at : NULL;
+  wire->at += (size_t)size;
   return here;
 }
-static uint64_t take_count(struct reader *reader) {
-  uint64_t count = 0;
-  const uint8_t *bytes = take(reader, sizeof count);
-  if (bytes)
-    memcpy(&count, bytes, sizeof count);
-  return count;
-}
-static bool take_text(struct reader *reader, char *text, size_t size) {
-  uint64_t length = take_count(reader);
-  const uint8_t *bytes = take(reader, length);
-  if (!bytes || length >= size)
-    return reader->good = false;
-  memcpy(text, bytes, (size_t)length);
-  text[length] = '\0';
-  return true;
-}
-static void take_mark(struct reader *reader, const char *mark) {
-  char text[32];
-  if (!take_text(reader, text, sizeof text) || strcmp(text, mark) != 0)
-    reader->good = false;
-}
-static void take_object(struct reader *reader, const struct field_table *table, void *object) {
-  uint64_t size = take_count(reader);
-  const uint8_t *bytes = take(reader, size);
-  if (bytes && (!object || field_decode(table, bytes, (size_t)size, object) != size))
-    reader->good = false;
+
+/* Written, or filled when reading. */
+static void pass(struct wire *wire, void *data, size_t size) {
+  uint8_t *here = next_bytes(wire, size);
+  if (here && size)
+    memcpy(wire->reads ? data : here, wire->reads ? here : data, size);
 }
 
-static void write_task(struct writer *writer, const struct run_request *request) {
-  put_text(writer, TASK_MARK);
-  put_text(writer, request->kind->name);
-  put_count(writer, request->seed);
-  put_text(writer, request->fields_path ? request->fields_path : "");
-  put_object(writer, request->kind->inputs, request->inputs);
+static uint64_t pass_count(struct wire *wire, uint64_t count) {
+  if (wire->reads)
+    count = 0;
+  pass(wire, &count, sizeof count);
+  return count;
+}
+
+/* `room`: size of the array. */
+static void pass_text(struct wire *wire, char *text, size_t room) {
+  const uint64_t length = pass_count(wire, wire->reads ? 0 : strlen(text));
+  wire->good = wire->good && length < room;
+  if (!wire->reads || wire->good)
+    pass(wire, text, (size_t)length);
+  if (wire->reads)
+    text[wire->good ? length : 0] = '\0';
+}
+
+static void pass_mark(struct wire *wire, const char *mark) {
+  char text[64];
+  snprintf(text, sizeof text, "%s", mark);
+  pass_text(wire, text, sizeof text);
+  wire->good = wire->good && strcmp(text, mark) == 0;
+}
+
+static void pass_object(struct wire *wire, const struct field_table *table, void *object) {
+  const uint64_t size = pass_count(wire, wire->reads ? 0 : field_encoded_size(table, object));
+  uint8_t *here = next_bytes(wire, size);
+  if (here && !wire->reads)
+    field_encode(table, object, here);
+  else if (here && field_decode(table, here, (size_t)size, object) != size)
+    wire->good = false;
+}
+
+/* How many structs follow. The other process must have the same struct size, and send at most `most`. */
+static size_t pass_array_count(struct wire *wire, size_t count, size_t size, size_t most) {
+  const uint64_t their_size = pass_count(wire, size), theirs = pass_count(wire, count);
+  wire->good = wire->good && their_size == size && theirs <= most;
+  return wire->good ? (size_t)theirs : 0;
+}
+
+static void write_task(struct wire *wire, const struct run_request *request) {
+  char path[LIMITS_PATH];
+  snprintf(path, sizeof path, "%s", request->fields_path ? request->fields_path : "");
+  pass_mark(wire, TASK_MARK);
+  pass_mark(wire, request->kind->name);
+  pass_count(wire, request->seed);
+  pass_text(wire, path, sizeof path);
+  pass_object(wire, request->kind->inputs, (void *)request->inputs);
 
   const struct mesh_file *files[SCENE_FILES_MOST]; /* another process has not read them */
   const size_t count = scene_files_of(request->kind->inputs, request->inputs, files);
-  put_count(writer, count);
+  pass_count(wire, count);
   for (size_t i = 0; i < count; i++) {
-    put_count(writer, files[i]->size);
-    put(writer, files[i]->bytes, files[i]->size);
+    pass_count(wire, files[i]->size);
+    pass(wire, (void *)files[i]->bytes, files[i]->size);
   }
 }
 
 uint8_t *run_encode_task(const struct run_request *request, size_t *size) {
-  struct writer writer = {0};
-  write_task(&writer, request);
-  writer = (struct writer){.bytes = malloc(writer.size)};
-  if (writer.bytes)
-    write_task(&writer, request);
-  *size = writer.size;
-  return writer.bytes;
-}
-
-static void write_result(struct writer *writer, const struct engine_kind *kind, const struct run_result *result) {
-  put_text(writer, RESULT_MARK);
-  put_object(writer, &outcome_table, &result->outcome);
-  put_object(writer, kind->results, result->result);
-  put_count(writer, sizeof(struct fragment));
-  put_count(writer, result->fragment_count);
-  put(writer, result->fragments, result->fragment_count * sizeof(struct fragment));
-  put_count(writer, sizeof(struct estimate));
-  put_count(writer, result->estimate_count);
-  put(writer, result->estimates, result->estimate_count * sizeof(struct estimate));
-  put_text(writer, result->fields_digest);
-  put_count(writer, result->unwritten.status);
-  put_text(writer, result->unwritten.status != STATUS_OK ? result->unwritten.message : "");
-}
-
-static uint8_t *encode_result(const struct engine_kind *kind, const struct run_result *result, size_t *size) {
-  struct writer writer = {0};
-  write_result(&writer, kind, result);
-  writer = (struct writer){.bytes = malloc(writer.size)};
-  if (writer.bytes)
-    write_result(&writer, kind, result);
-  *size = writer.size;
-  return writer.bytes;
-}
-
-/* Reads how many structs follow. The other process must have the same struct size, and send at most `most`. */
-static size_t take_array_count(struct reader *reader, size_t size, size_t most) {
-  const uint64_t their_size = take_count(reader), count = take_count(reader);
-  if (their_size != size || count > most)
-    reader->good = false;
-  return reader->good ? (size_t)count : 0;
+  struct wire wire = {.good = true};
+  write_task(&wire, request);
+  *size = wire.at;
+  wire = (struct wire){.bytes = malloc(*size), .good = true};
+  if (wire.bytes)
+    write_task(&wire, request);
+  return wire.bytes;
 }
 
 /* False: no memory. */
-static bool take_fragments(struct reader *reader, struct run_result *result) {
-  const size_t one = sizeof(struct fragment), count = take_array_count(reader, one, reader->left / one);
-  const uint8_t *bytes = take(reader, count * one);
-  if (!bytes || count == 0)
-    return true;
-  result->fragments = malloc(count * one);
-  if (!result->fragments)
-    return false;
-  memcpy(result->fragments, bytes, count * one);
-  result->fragment_count = count;
+static bool pass_result(struct wire *wire, const struct engine_kind *kind, struct run_result *result) {
+  const size_t fragment = sizeof *result->fragments, estimate = sizeof *result->estimates;
+  pass_mark(wire, RESULT_MARK);
+  pass_object(wire, &outcome_table, &result->outcome);
+  pass_object(wire, kind->results, result->result);
+  const size_t most = wire->reads ? (wire->size - wire->at) / fragment : SIZE_MAX;
+  result->fragment_count = pass_array_count(wire, result->fragment_count, fragment, most);
+  if (wire->reads && result->fragment_count > 0) {
+    result->fragments = malloc(result->fragment_count * fragment);
+    if (!result->fragments)
+      return false;
+  }
+  pass(wire, result->fragments, result->fragment_count * fragment);
+  result->estimate_count = pass_array_count(wire, result->estimate_count, estimate, ESTIMATES_COUNT);
+  pass(wire, result->estimates, result->estimate_count * estimate);
+  pass_text(wire, result->fields_digest, sizeof result->fields_digest);
+  result->unwritten.status = (status)pass_count(wire, result->unwritten.status);
+  pass_text(wire, result->unwritten.message, sizeof result->unwritten.message);
   return true;
 }
 
-static void take_estimates(struct reader *reader, struct run_result *result) {
-  const size_t one = sizeof(struct estimate), count = take_array_count(reader, one, ESTIMATES_COUNT);
-  const uint8_t *bytes = take(reader, count * one);
-  if (!bytes)
-    return;
-  memcpy(result->estimates, bytes, count * one);
-  result->estimate_count = count;
+static uint8_t *encode_result(const struct engine_kind *kind, struct run_result *result, size_t *size) {
+  struct wire wire = {.good = true};
+  pass_result(&wire, kind, result);
+  *size = wire.at;
+  wire = (struct wire){.bytes = malloc(*size), .good = true};
+  if (wire.bytes)
+    pass_result(&wire, kind, result);
+  return wire.bytes;
 }
 
 status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, size_t size, struct run_result *result,
                          struct error *error) {
-  struct reader reader = {bytes, size, true};
-  *result = (struct run_result){0};
-  result->result = calloc(1, kind->results->size);
-  if (!result->result)
-    return status_fail(error, STATUS_MEMORY, "no memory for a result");
-  take_mark(&reader, RESULT_MARK);
-  take_object(&reader, &outcome_table, &result->outcome);
-  take_object(&reader, kind->results, result->result);
-  if (!take_fragments(&reader, result)) {
-    run_result_clear(result);
-    return status_fail(error, STATUS_MEMORY, "no memory for a result");
-  }
-  take_estimates(&reader, result);
-  take_text(&reader, result->fields_digest, sizeof result->fields_digest);
-  result->unwritten.status = (status)take_count(&reader);
-  take_text(&reader, result->unwritten.message, sizeof result->unwritten.message);
-  if (reader.good && reader.left == 0)
+  struct wire wire = {(uint8_t *)bytes, 0, size, true, true};
+  *result = (struct run_result){.result = calloc(1, kind->results->size)};
+  const bool has_memory = result->result && pass_result(&wire, kind, result);
+  if (has_memory && wire.good && wire.at == size)
     return STATUS_OK;
   run_result_clear(result);
+  if (!has_memory)
+    return status_fail(error, STATUS_MEMORY, "no memory for a result");
   return status_fail(error, STATUS_INTERNAL,
                      "a worker's answer cannot be read: it was damaged, or comes from another version of clast");
 }
 
-/* Reads the files of the inputs into the list of this process. */
-static status take_files(struct reader *reader, struct error *error) {
-  for (uint64_t left = take_count(reader); left > 0 && reader->good; left--) {
-    const uint64_t size = take_count(reader);
-    const uint8_t *bytes = take(reader, size);
-    const struct mesh_file *file;
-    if (bytes)
-      TRY(mesh_files_add("a task's shape file", bytes, (size_t)size, &file, error));
-  }
-  return STATUS_OK;
-}
-
 /* Reads a task; the caller frees the inputs. */
 static status decode_task(const uint8_t *task, size_t size, struct run_request *request, void **inputs,
-                          char *fields_path, size_t path_size, struct error *error) {
-  struct reader reader = {task, size, true};
+                          char fields_path[LIMITS_PATH], struct error *error) {
+  struct wire wire = {(uint8_t *)task, 0, size, true, true};
   char name[64];
-  take_mark(&reader, TASK_MARK);
-  take_text(&reader, name, sizeof name);
-  request->seed = take_count(&reader);
-  take_text(&reader, fields_path, path_size);
-  if (reader.good) {
+  pass_mark(&wire, TASK_MARK);
+  pass_text(&wire, name, sizeof name);
+  request->seed = pass_count(&wire, 0);
+  pass_text(&wire, fields_path, LIMITS_PATH);
+  if (wire.good) {
     request->kind = engine_find(name, error);
     if (!request->kind)
       return STATUS_INTERNAL;
     *inputs = calloc(1, request->kind->inputs->size);
     if (!*inputs)
       return status_fail(error, STATUS_MEMORY, "no memory for the inputs");
-    take_object(&reader, request->kind->inputs, *inputs);
-    TRY(take_files(&reader, error));
+    pass_object(&wire, request->kind->inputs, *inputs);
   }
-  if (!reader.good || reader.left)
+  for (uint64_t left = pass_count(&wire, 0); left > 0 && wire.good; left--) { /* files that the inputs name */
+    const uint64_t bytes = pass_count(&wire, 0);
+    const uint8_t *here = next_bytes(&wire, bytes);
+    const struct mesh_file *file;
+    if (here)
+      TRY(mesh_files_add("a task's shape file", here, (size_t)bytes, &file, error));
+  }
+  if (!wire.good || wire.at != size)
     return status_fail(error, STATUS_INTERNAL, "the task cannot be read: it comes from another version of clast");
   request->inputs = *inputs;
   request->fields_path = *fields_path ? fields_path : NULL;
@@ -343,7 +302,7 @@ status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t 
   void *inputs = NULL;
   *result = NULL;
   *result_size = 0;
-  status code = decode_task(task, task_size, &request, &inputs, fields_path, sizeof fields_path, error);
+  status code = decode_task(task, task_size, &request, &inputs, fields_path, error);
   if (code != STATUS_OK)
     goto cleanup;
   if (request.kind->threads)

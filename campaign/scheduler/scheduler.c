@@ -415,23 +415,9 @@ status scheduler_end(struct scheduler *scheduler, status code, struct error *err
   return why ? why->status : flushed;
 }
 
-static bool no_task(void *context, struct farm_task *task) {
-  (void)context, (void)task;
-  return false;
-}
-static status no_report(void *context, const struct farm_report *report, struct error *error) {
-  (void)context, (void)report, (void)error;
-  return STATUS_OK;
-}
-static status no_tick(void *context, int running, struct error *error) {
-  (void)context, (void)running, (void)error;
-  return STATUS_OK;
-}
-
 void scheduler_release_ranks(struct farm *farm) {
-  const struct farm_manager nobody = {.next = no_task, .report = no_report, .tick = no_tick};
   struct error ignored;
-  farm_run(farm, &nobody, &ignored);
+  farm_run(farm, &(struct farm_manager){0}, &ignored);
 }
 
 status scheduler_compute(const struct scheduler_planner *planner, struct farm *farm,
