@@ -5,14 +5,10 @@
 
 #include <signal.h>
 #include <stdatomic.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <sys/types.h>
 #include <sys/uio.h>
 
 #include "campaign/farm/farm.h"
-#include "schemas/status.h"
 
 /* The message format between manager, slots, children (pipes and sockets) and ranks (MPI).
  *

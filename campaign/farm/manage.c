@@ -413,13 +413,6 @@ static void send_end(struct manager *m) {
     farm->broken = true;
 }
 
-static int unanswered(const struct farm *farm) {
-  int count = 0;
-  for (int rank = 1; rank < farm->ranks; rank++)
-    count += !farm->peers[rank].bye && !farm->peers[rank].lost;
-  return count;
-}
-
 /* Tells all ranks that the farm ends and waits for their answer. A rank that does not answer in time makes MPI_Finalize
  * impossible. */
 static void end_ranks(struct manager *m) {
@@ -430,10 +423,14 @@ static void end_ranks(struct manager *m) {
   const int64_t until = clock_ns() + (m->signal_ns ? CLOCK_S / 2 : LAST_ANSWER_NS);
   struct error ignored;
   int count;
-  while (clock_ns() < until) {
-    if (farm_link_drain(farm->link, take_message, m, &count, &ignored) != STATUS_OK || unanswered(farm) == 0)
+  for (bool waits = true; waits && clock_ns() < until;) {
+    if (farm_link_drain(farm->link, take_message, m, &count, &ignored) != STATUS_OK)
       break;
-    nanosleep(&(struct timespec){.tv_nsec = FARM_SLEEP_LEAST_NS}, NULL);
+    waits = false;
+    for (int rank = 1; rank < farm->ranks; rank++)
+      waits = waits || !(farm->peers[rank].bye || farm->peers[rank].lost);
+    if (waits)
+      nanosleep(&(struct timespec){.tv_nsec = FARM_SLEEP_LEAST_NS}, NULL);
   }
   for (int rank = 1; rank < farm->ranks; rank++) {
     if (!farm->peers[rank].bye)
@@ -442,20 +439,7 @@ static void end_ranks(struct manager *m) {
   }
 }
 
-/* With outside requests, one file descriptor reports both signals and requests. */
-static void watch(struct manager *m) {
-  m->watched = m->farm->signals;
-  if (!m->calls->orders)
-    return;
-  m->watched = epoll_create1(EPOLL_CLOEXEC);
-  struct epoll_event event = {.events = EPOLLIN};
-  if (m->watched < 0 || epoll_ctl(m->watched, EPOLL_CTL_ADD, m->farm->signals, &event) != 0 ||
-      epoll_ctl(m->watched, EPOLL_CTL_ADD, m->calls->orders, &event) != 0)
-    fail(m, status_fail(m->error, STATUS_MEMORY, "cannot watch for orders: %s", strerror(errno)));
-}
-
 static void begin(struct manager *m) {
-  watch(m);
   m->ticked_ns = m->looped_ns = clock_ns();
   m->sleep_ns = FARM_SLEEP_LEAST_NS;
   for (int rank = 0; rank < m->farm->ranks; rank++) {
@@ -463,6 +447,15 @@ static void begin(struct manager *m) {
     m->farm->peers[rank].out = 0;
     m->farm->peers[rank].recalling = false;
   }
+  m->watched = m->farm->signals;
+  if (!m->calls->orders)
+    return;
+  /* With outside requests, one file descriptor reports both signals and requests. */
+  m->watched = epoll_create1(EPOLL_CLOEXEC);
+  struct epoll_event event = {.events = EPOLLIN};
+  if (m->watched < 0 || epoll_ctl(m->watched, EPOLL_CTL_ADD, m->farm->signals, &event) != 0 ||
+      epoll_ctl(m->watched, EPOLL_CTL_ADD, m->calls->orders, &event) != 0)
+    fail(m, status_fail(m->error, STATUS_MEMORY, "cannot watch for orders: %s", strerror(errno)));
 }
 
 /* Sends all outgoing messages and jobs. */

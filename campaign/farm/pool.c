@@ -4,13 +4,11 @@
 
 #include <errno.h>
 #include <poll.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
-#include <sys/types.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -66,29 +64,25 @@ static void flush(struct slot *slot) {
 status farm_pool_start(const struct farm_options *options, farm_work work, struct farm_pool **out,
                        struct error *error) {
   const size_t slots = (size_t)options->slots;
-  status result = STATUS_MEMORY;
   struct farm_pool *pool = memory_small(1, sizeof *pool);
   *pool = (struct farm_pool){.setup = {.options = *options, .work = work}, .control = -1, .mean_wall_s = 1};
   pool->looked_ns = clock_ns();
   pool->slots = calloc(slots, sizeof *pool->slots);
   pool->fds = calloc(slots + 2, sizeof *pool->fds);
   pool->records_size = slots * sizeof *pool->setup.records;
-  pool->setup.records = mmap(NULL, pool->records_size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (!pool->slots || !pool->fds || pool->setup.records == MAP_FAILED) {
-    if (pool->setup.records == MAP_FAILED)
-      pool->setup.records = NULL;
-    status_fail(error, STATUS_MEMORY, "no memory for %zu slots", slots);
-    goto cleanup;
-  }
-  for (size_t i = 0; i < slots; i++)
+  void *records = mmap(NULL, pool->records_size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  pool->setup.records = records == MAP_FAILED ? NULL : records;
+  for (size_t i = 0; pool->slots && i < slots; i++)
     pool->slots[i].channel = -1;
-  result = farm_server_start(&pool->setup, &pool->server, &pool->control, error);
-  if (result != STATUS_OK)
-    goto cleanup;
-  *out = pool;
-  return STATUS_OK;
-cleanup:
-  farm_pool_end(pool);
+  status result = STATUS_OK;
+  if (!pool->slots || !pool->fds || !pool->setup.records)
+    result = status_fail(error, STATUS_MEMORY, "no memory for %zu slots", slots);
+  if (result == STATUS_OK)
+    result = farm_server_start(&pool->setup, &pool->server, &pool->control, error);
+  if (result == STATUS_OK)
+    *out = pool;
+  else
+    farm_pool_end(pool);
   return result;
 }
 
@@ -377,30 +371,12 @@ static void hear_slot_ended(struct farm_pool *pool, const struct farm_server_mes
     slot->given_up = true;
 }
 
-static void server_ended(struct farm_pool *pool) {
-  const struct farm_result verdict = {.ending = FARM_LOST};
-  for (int i = 0; i < pool->setup.options.slots; i++) {
-    slot_ended(pool, i, &verdict, "the fork server of this rank is gone, and its slots with it");
-    pool->slots[i].given_up = true;
-  }
-  farm_server_end(pool->server, pool->control);
-  pool->control = -1;
-  pool->server = 0;
-}
-
 static void hear_server(struct farm_pool *pool) {
-  for (;;) {
-    struct farm_server_message message;
-    int channel;
-    const int got = farm_server_hear(pool->control, &message, &channel);
-    if (got == 0)
-      return;
-    if (got < 0 || message.slot < 0 || message.slot >= pool->setup.options.slots) {
-      if (channel >= 0)
-        close(channel);
-      server_ended(pool);
-      return;
-    }
+  static const struct farm_result lost = {.ending = FARM_LOST};
+  struct farm_server_message message;
+  int channel, got;
+  while ((got = farm_server_hear(pool->control, &message, &channel)) > 0 && message.slot >= 0 &&
+         message.slot < pool->setup.options.slots) {
     if (message.verb == FARM_SERVER_SPAWNED) {
       pool->slots[message.slot].channel = channel;
       pool->slots[message.slot].pid = message.pid;
@@ -408,6 +384,18 @@ static void hear_server(struct farm_pool *pool) {
       hear_slot_ended(pool, &message);
     }
   }
+  if (got == 0)
+    return;
+
+  if (channel >= 0)
+    close(channel);
+  for (int i = 0; i < pool->setup.options.slots; i++) {
+    slot_ended(pool, i, &lost, "the fork server of this rank is gone, and its slots with it");
+    pool->slots[i].given_up = true;
+  }
+  farm_server_end(pool->server, pool->control);
+  pool->control = -1;
+  pool->server = 0;
 }
 
 /* Returns the deadline of the slot's running job, and kills the slot if the deadline has passed. `late`: time since the
@@ -450,33 +438,20 @@ static int64_t keep_deadlines(struct farm_pool *pool) {
   return next;
 }
 
-/* Lists the files to wait for: the channel of each slot, the server, and the signals. */
-static void watch_files(struct farm_pool *pool, int signals) {
+bool farm_pool_listen(struct farm_pool *pool, int signals, int64_t timeout_ns) {
   const int slots = pool->setup.options.slots;
-  for (int i = 0; i < slots; i++) {
-    const struct slot *slot = &pool->slots[i];
-    pool->fds[i] = (struct pollfd){.fd = slot->channel, .events = POLLIN};
-    if (slot->out.begin < slot->out.end)
-      pool->fds[i].events |= POLLOUT;
-  }
-  pool->fds[slots] = (struct pollfd){.fd = pool->control, .events = POLLIN};
-  pool->fds[slots + 1] = (struct pollfd){.fd = signals, .events = POLLIN};
-}
-
-/* Time to sleep: at most a second, and at most until the next deadline. */
-static struct timespec sleep_time(struct farm_pool *pool, int64_t timeout_ns) {
   const int64_t deadline = pool->control >= 0 ? keep_deadlines(pool) : INT64_MAX, now = clock_ns();
   if (timeout_ns > CLOCK_S)
     timeout_ns = CLOCK_S;
   if (deadline - now < timeout_ns)
     timeout_ns = deadline > now ? deadline - now : 0;
-  return (struct timespec){timeout_ns / CLOCK_S, (long)(timeout_ns % CLOCK_S)};
-}
-
-bool farm_pool_listen(struct farm_pool *pool, int signals, int64_t timeout_ns) {
-  const int slots = pool->setup.options.slots;
-  const struct timespec timeout = sleep_time(pool, timeout_ns);
-  watch_files(pool, signals);
+  for (int i = 0; i < slots; i++) {
+    const bool waits = pool->slots[i].out.begin < pool->slots[i].out.end;
+    pool->fds[i] = (struct pollfd){.fd = pool->slots[i].channel, .events = waits ? POLLIN | POLLOUT : POLLIN};
+  }
+  pool->fds[slots] = (struct pollfd){.fd = pool->control, .events = POLLIN};
+  pool->fds[slots + 1] = (struct pollfd){.fd = signals, .events = POLLIN};
+  const struct timespec timeout = {timeout_ns / CLOCK_S, (long)(timeout_ns % CLOCK_S)};
   if (ppoll(pool->fds, (nfds_t)slots + 2, &timeout, NULL) <= 0)
     return false;
   for (int i = 0; i < slots; i++) {

@@ -9,7 +9,6 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
-#include "campaign/farm/farm.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"
 
@@ -199,7 +198,7 @@ struct server {
   status final;
   struct error final_error;
   int64_t said_ns, looked_ns;
-  int64_t leave_ns; /* time at which this rank ends without the manager; 0: it does not */
+  int64_t leave_ns; /* time at which this rank ends without the manager, as the launcher has died; 0: it does not */
   bool empty_said;
 };
 
@@ -261,29 +260,6 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
   }
 }
 
-/* Passes signals on to the manager, at most every 50 ms unless a message came. True: the launcher has died and the
- * manager has not ended this rank within 2 s, so that the rank must end without it. */
-static bool leave_alone(struct server *server, int64_t now, bool heard) {
-  if (!heard && now - server->looked_ns <= 50 * CLOCK_MS)
-    return false;
-  server->looked_ns = now;
-  const int number = farm_signal(server->farm);
-  if (number)
-    say(server, FARM_FRAME_SIGNAL, (uint64_t)number, 0, NULL);
-  if (server->farm->broken && server->leave_ns == 0)
-    server->leave_ns = clock_ns() + 2 * CLOCK_S;
-  return server->leave_ns != 0 && clock_ns() > server->leave_ns;
-}
-
-/* Sends the heartbeat to the manager: every ALIVE_EVERY_NS, and immediately when the last slot is gone. */
-static void say_alive(struct server *server, int64_t now) {
-  const int slots = farm_pool_slots(server->farm->pool);
-  if (now - server->said_ns <= ALIVE_EVERY_NS && (slots > 0 || server->empty_said))
-    return;
-  server->empty_said = slots == 0;
-  say(server, FARM_FRAME_ALIVE, (uint64_t)slots, 0, NULL);
-}
-
 /* Serves until the manager ends this rank. An error is kept in server->failed. */
 static void serve(struct server *server) {
   struct farm *const farm = server->farm;
@@ -294,11 +270,24 @@ static void serve(struct server *server) {
     keep(server, farm_link_drain(farm->link, take, server, &count, server->error));
     farm_pool_dispatch(farm->pool);
     const int64_t now = clock_ns();
-    if (leave_alone(server, now, heard)) {
+    if (heard || now - server->looked_ns > 50 * CLOCK_MS) { /* passes signals on to the manager */
+      const int number = farm_signal(farm);
+      if (number)
+        say(server, FARM_FRAME_SIGNAL, (uint64_t)number, 0, NULL);
+      server->looked_ns = now;
+    }
+    if (farm->broken && server->leave_ns == 0)
+      server->leave_ns = now + 2 * CLOCK_S;
+    if (server->leave_ns != 0 && now > server->leave_ns) {
       keep(server, status_fail(server->error, STATUS_STOPPED, "the launcher of this rank has died"));
       return;
     }
-    say_alive(server, now);
+    /* The heartbeat. The manager hears at once that the last slot is gone. */
+    const int slots = farm_pool_slots(farm->pool);
+    if (now - server->said_ns > ALIVE_EVERY_NS || (slots == 0 && !server->empty_said)) {
+      server->empty_said = slots == 0;
+      say(server, FARM_FRAME_ALIVE, (uint64_t)slots, 0, NULL);
+    }
     keep(server, farm_link_flush(farm->link, server->error));
     if (server->failed != STATUS_OK) {
       farm->broken = true;

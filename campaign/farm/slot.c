@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,29 +106,42 @@ static void write_all(int file, const uint8_t *bytes, size_t size) {
   }
 }
 
-static _Noreturn void compute(const struct serving *s, uint64_t handle, const uint8_t *task, size_t size,
-                              pid_t parent) {
+struct answer { /* of a run; the child's is borrowed from the pipe's buffer */
+  bool there;
+  int64_t verdict;
+  struct iovec bytes; /* the result, or with a verdict other than STATUS_OK the message */
+};
+
+/* Computes the task in this process. The bytes of a result are malloc'd, those of a message are in *error. */
+static struct answer compute(const struct serving *s, const uint8_t *task, size_t size, struct error *error) {
   const size_t memory_limit = s->setup->options.memory_limit;
+  struct answer answer = {.there = true};
+  uint8_t *result = NULL;
+  if (memory_limit)
+    limit_memory(memory_limit);
+  answer.verdict = s->setup->work(task, size, &result, &answer.bytes.iov_len, error);
+  if (memory_limit)
+    limit_memory(0); /* the limit holds for the work, not for its answer */
+  answer.bytes.iov_base = result;
+  if (answer.verdict != STATUS_OK) {
+    free(result);
+    answer.bytes = (struct iovec){error->message, strlen(error->message)};
+  }
+  return answer;
+}
+
+static _Noreturn void serve_child(const struct serving *s, uint64_t handle, const uint8_t *task, size_t size,
+                                  pid_t parent) {
   farm_slot_die_with(parent);
   close(s->channel); /* so that the main process sees a dead slot as a closed channel */
   close(s->isolate.child_signal);
   close(s->isolate.result[0]);
   farm_slot_unblock();
   setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0}); /* core files of a thousand crashes would fill the disk */
-  if (memory_limit)
-    limit_memory(memory_limit);
 
-  uint8_t *result = NULL;
-  size_t result_size = 0;
   struct error error = {0};
-  const int64_t verdict = s->setup->work(task, size, &result, &result_size, &error);
-  if (memory_limit)
-    limit_memory(0); /* the limit holds for the work, not for its answer */
-
-  struct iovec part[2] = {{.iov_base = (void *)&verdict, .iov_len = sizeof verdict},
-                          {.iov_base = result, .iov_len = result_size}};
-  if (verdict != STATUS_OK)
-    part[1] = (struct iovec){.iov_base = error.message, .iov_len = strlen(error.message)};
+  struct answer answer = compute(s, task, size, &error);
+  const struct iovec part[2] = {{&answer.verdict, sizeof answer.verdict}, answer.bytes};
   struct farm_bytes out = {0};
   if (!farm_frame_append(&out, FARM_FRAME_ANSWER, 0, handle, 2, part))
     _exit(STATUS_MEMORY);
@@ -215,12 +227,6 @@ static bool append_failure(struct farm_bytes *out, uint64_t handle, const struct
                            (struct iovec[]){{(void *)head, sizeof *head}, {(void *)text, strlen(text)}});
 }
 
-struct answer { /* of a run; the child's is borrowed from the pipe's buffer */
-  bool there;
-  int64_t verdict;
-  struct iovec bytes; /* the result, or with a verdict other than STATUS_OK the message */
-};
-
 static struct answer read_answer(struct isolate *isolate, uint64_t handle, int ended) {
   struct farm_frame frame;
   const uint8_t *payload = NULL;
@@ -304,7 +310,7 @@ static bool run_isolated(struct serving *s, uint64_t handle, const uint8_t *task
     return append_failure(&s->out, handle, &(struct farm_result){.ending = FARM_LOST, .slot = s->slot}, text);
   }
   if (child == 0)
-    compute(s, handle, task, size, self);
+    serve_child(s, handle, task, size, self);
 
   int ended = 0;
   struct rusage usage = {0};
@@ -386,25 +392,17 @@ static int64_t peak_memory(int64_t *floor) {
 }
 
 static bool run_here(struct serving *s, uint64_t handle, const uint8_t *task, size_t size) {
-  uint8_t *result = NULL;
-  size_t result_size = 0;
   struct error error = {0};
-  const size_t memory_limit = s->setup->options.memory_limit;
-  if (memory_limit)
-    limit_memory(memory_limit);
   const int64_t start = clock_ns();
   const double cpu = clock_cpu_s();
-  struct answer answer = {.there = true, .verdict = s->setup->work(task, size, &result, &result_size, &error)};
+  const struct answer answer = compute(s, task, size, &error);
   struct farm_result head = {.slot = s->slot,
                              .cpu_s = clock_cpu_s() - cpu,
                              .wall_s = 1e-9 * (double)(clock_ns() - start),
                              .peak_memory = peak_memory(&s->memory_floor)};
-  if (memory_limit)
-    limit_memory(0);
-  answer.bytes = answer.verdict == STATUS_OK ? (struct iovec){result, result_size}
-                                             : (struct iovec){error.message, strlen(error.message)};
-  const bool written = append_answer(&s->out, handle, &head, &answer, memory_limit > 0);
-  free(result);
+  const bool written = append_answer(&s->out, handle, &head, &answer, s->setup->options.memory_limit > 0);
+  if (answer.verdict == STATUS_OK)
+    free(answer.bytes.iov_base);
   return written;
 }
 
@@ -418,17 +416,6 @@ static bool claim(struct farm_slot_record *record, const struct farm_frame *fram
     return true;
   atomic_store(&record->running, 0);
   return false;
-}
-
-/* If the machine runs out of memory, the kernel should kill a run and not the manager. A process may always raise its
- * own OOM score. */
-static void offer_to_oom_killer(void) {
-  const int score = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
-  if (score < 0)
-    return;
-  if (write(score, "500", 3) != 3)
-    errno = 0;
-  close(score);
 }
 
 /* A library that ends the process of a run with EXIT_FAILURE is one, such as OpenMP, that the system refused memory or
@@ -480,7 +467,13 @@ static void read_tasks(struct serving *s) {
 
 _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, int channel, pid_t parent) {
   farm_slot_die_with(parent);
-  offer_to_oom_killer();
+  /* If the machine runs out of memory, the kernel should kill a run and not the manager. A process may always raise its
+   * own OOM score. */
+  const int score = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  if (score >= 0) {
+    (void)!write(score, "500", 3);
+    close(score);
+  }
   on_exit(end_of_process, NULL);
   struct serving serving = {.setup = setup, .slot = slot, .channel = channel, .flushed_ns = clock_ns()};
   peak_memory(&serving.memory_floor);
