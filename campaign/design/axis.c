@@ -3,11 +3,11 @@
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/text.h"
 #include "schemas/unit.h"
 
 void design_axis_free_all(struct design_axis *axes, size_t count) {
@@ -52,6 +52,10 @@ double design_axis_spaced(const char *from, const char *to, const char *si, size
   return value + 0.0; /* -0 becomes 0 */
 }
 
+double design_axis_deviations(const struct design_axis *axis, double x) {
+  return axis->kind == DESIGN_AXIS_LOGNORMAL ? log(fmax(x, 0) / axis->a) / axis->b : (x - axis->a) / axis->b;
+}
+
 /* Quantile of the standard normal law cut to (lower, upper). In the upper half the survival function is used: its small
  * values keep their digits where 1 - p loses them. */
 static double truncated_normal(double lower, double upper, double u) {
@@ -93,12 +97,10 @@ void design_axis_quantile(const struct design_axis *axis, double u, struct field
     break;
   case DESIGN_AXIS_LOG_UNIFORM: x = exp(log(axis->a) + u * (log(axis->b) - log(axis->a))); break;
   case DESIGN_AXIS_NORMAL:
-    x = axis->a + axis->b * truncated_normal((axis->lower - axis->a) / axis->b, (axis->upper - axis->a) / axis->b, u);
-    break;
   case DESIGN_AXIS_LOGNORMAL: {
-    double lower = axis->lower > 0 ? log(axis->lower / axis->a) / axis->b : -HUGE_VAL;
-    double upper = log(axis->upper / axis->a) / axis->b;
-    x = axis->a * exp(axis->b * truncated_normal(lower, upper, u));
+    const double z = truncated_normal(design_axis_deviations(axis, axis->lower),
+                                      design_axis_deviations(axis, axis->upper), u);
+    x = axis->kind == DESIGN_AXIS_NORMAL ? axis->a + axis->b * z : axis->a * exp(axis->b * z);
     break;
   }
   default: break;
@@ -134,12 +136,9 @@ double design_axis_share(const struct design_axis *axis, const struct field_valu
     break;
   case DESIGN_AXIS_LOG_UNIFORM: share = log(x / axis->a) / log(axis->b / axis->a); break;
   case DESIGN_AXIS_NORMAL:
-    share = truncated_share((axis->lower - axis->a) / axis->b, (axis->upper - axis->a) / axis->b,
-                            (x - axis->a) / axis->b);
-    break;
   case DESIGN_AXIS_LOGNORMAL:
-    share = truncated_share(axis->lower > 0 ? log(axis->lower / axis->a) / axis->b : -HUGE_VAL,
-                            log(axis->upper / axis->a) / axis->b, log(x / axis->a) / axis->b);
+    share = truncated_share(design_axis_deviations(axis, axis->lower), design_axis_deviations(axis, axis->upper),
+                            design_axis_deviations(axis, x));
     break;
   default: break;
   }
@@ -162,86 +161,62 @@ enum { SHOWN = 12, VALUE_SIZE = FIELD_TEXT_SIZE + 64 };
 
 /* "0.0698132 rad (4 deg)": degrees are easier to read than radians. Six digits: levels of a range carry rounding
  * errors. */
-static void print_value(const struct field *row, const struct field_value *value, FILE *out) {
-  char text[VALUE_SIZE], digits[32];
+static const char *value_text(const struct field *row, const struct field_value *value, char text[VALUE_SIZE]) {
+  char digits[32];
   struct field_value shown = *value;
   snprintf(digits, sizeof digits, "%.6g", value->number);
   if (row->kind == FIELD_REAL)
     shown.number = strtod(digits, NULL);
-  field_print(row, &shown, text, sizeof text);
-  fputs(text, out);
+  field_print(row, &shown, text, VALUE_SIZE);
   if (row->kind == FIELD_REAL && row->unit && strcmp(row->unit, "rad") == 0 && !isnan(value->number))
-    fprintf(out, " (%.4g deg)", value->number * 180 / M_PI);
+    text_append(text, VALUE_SIZE, " (%.4g deg)", value->number * 180 / M_PI);
+  return text;
 }
 
-static void print_number(const struct field *row, double number, FILE *out) {
-  struct field real = *row; /* the mean of an integer's law need not be an integer */
+/* The mean of an integer's law need not be an integer. */
+static const char *number_text(const struct field *row, double number, char text[VALUE_SIZE]) {
+  struct field real = *row;
   real.kind = FIELD_REAL;
-  print_value(&real, &(struct field_value){.kind = FIELD_REAL, .number = number}, out);
+  return value_text(&real, &(struct field_value){.kind = FIELD_REAL, .number = number}, text);
 }
 
 static void print_levels(const struct design_axis *axis, FILE *out) {
+  char text[VALUE_SIZE];
   const size_t n = axis->level_count, shown = n > SHOWN ? SHOWN - 1 : n;
-  for (size_t i = 0; i < shown; i++) {
-    fputs(i ? ", " : "", out);
-    print_value(axis->row, &axis->levels[i], out);
-  }
-  if (shown == n)
-    return;
-  fputs(" ... ", out);
-  print_value(axis->row, &axis->levels[n - 1], out);
-  fprintf(out, ": %zu values", n);
-}
-
-static void print_pair(const struct field *row, const char *before, double a, const char *between, double b,
-                       FILE *out) {
-  fputs(before, out);
-  print_number(row, a, out);
-  fputs(between, out);
-  print_number(row, b, out);
-}
-
-static void print_linked(const struct design_axis *axis, const struct design_axis *other, FILE *out) {
-  fprintf(out, "follows %s: ", other->row->path);
-  if (axis->level_count) {
-    print_levels(axis, out);
-    return;
-  }
-  fprintf(out, "%g times it", axis->a);
-  if (axis->b == 0)
-    return;
-  fputs(" plus ", out);
-  print_number(axis->row, axis->b, out);
-}
-
-static void print_cut(const struct design_axis *axis, FILE *out) {
-  const bool low = axis->lower > axis->row->minimum, high = axis->upper < axis->row->maximum;
-  fputs(low ? ", not below " : "", out);
-  if (low)
-    print_number(axis->row, axis->lower, out);
-  fputs(high ? ", not above " : "", out);
-  if (high)
-    print_number(axis->row, axis->upper, out);
+  for (size_t i = 0; i < shown; i++)
+    fprintf(out, "%s%s", i ? ", " : "", value_text(axis->row, &axis->levels[i], text));
+  if (shown < n)
+    fprintf(out, " ... %s: %zu values", value_text(axis->row, &axis->levels[n - 1], text), n);
 }
 
 void design_axis_describe(const struct design_axis *axes, size_t index, FILE *out) {
   const struct design_axis *axis = &axes[index];
-  switch ((enum design_axis_kind)axis->kind) {
-  case DESIGN_AXIS_LEVELS: print_levels(axis, out); break;
-  case DESIGN_AXIS_UNIFORM: print_pair(axis->row, "uniform from ", axis->a, " to ", axis->b, out); break;
-  case DESIGN_AXIS_LOG_UNIFORM:
-    print_pair(axis->row, "uniform in the logarithm from ", axis->a, " to ", axis->b, out);
-    break;
-  case DESIGN_AXIS_NORMAL:
-    print_pair(axis->row, "normal, mean ", axis->a, ", standard deviation ", axis->b, out);
-    print_cut(axis, out);
-    break;
-  case DESIGN_AXIS_LOGNORMAL:
-    fputs("lognormal, median ", out);
-    print_number(axis->row, axis->a, out);
-    fprintf(out, ", sigma of the natural logarithm %g", axis->b);
-    print_cut(axis, out);
-    break;
-  case DESIGN_AXIS_LINKED: print_linked(axis, &axes[axis->linked], out); break;
+  const struct field *row = axis->row;
+  char a[VALUE_SIZE], b[VALUE_SIZE];
+  if (axis->kind == DESIGN_AXIS_LINKED)
+    fprintf(out, "follows %s: ", axes[axis->linked].row->path);
+  if (axis->level_count) {
+    print_levels(axis, out);
+    return;
   }
+  number_text(row, axis->a, a);
+  number_text(row, axis->b, b);
+  switch ((enum design_axis_kind)axis->kind) {
+  case DESIGN_AXIS_LEVELS: break;
+  case DESIGN_AXIS_UNIFORM: fprintf(out, "uniform from %s to %s", a, b); return;
+  case DESIGN_AXIS_LOG_UNIFORM: fprintf(out, "uniform in the logarithm from %s to %s", a, b); return;
+  case DESIGN_AXIS_LINKED:
+    fprintf(out, "%g times it", axis->a);
+    if (axis->b != 0)
+      fprintf(out, " plus %s", b);
+    return;
+  case DESIGN_AXIS_NORMAL: fprintf(out, "normal, mean %s, standard deviation %s", a, b); break;
+  case DESIGN_AXIS_LOGNORMAL:
+    fprintf(out, "lognormal, median %s, sigma of the natural logarithm %g", a, axis->b);
+    break;
+  }
+  if (axis->lower > row->minimum)
+    fprintf(out, ", not below %s", number_text(row, axis->lower, a));
+  if (axis->upper < row->maximum)
+    fprintf(out, ", not above %s", number_text(row, axis->upper, b));
 }

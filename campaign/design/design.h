@@ -42,6 +42,8 @@ void design_axis_quantile(const struct design_axis *axis, double u, struct field
 /* The inverse: the share of the law below a value, in [0, 1]; for an integer the middle of its step. NaN: the axis has
  * no law. */
 double design_axis_share(const struct design_axis *axis, const struct field_value *value);
+/* Place of a value in a normal or lognormal law: standard deviations from its middle. */
+double design_axis_deviations(const struct design_axis *axis, double value);
 /* Value of a linked axis when the axis it follows has `value` at `level` (its level for LEVELS, else 0). */
 void design_axis_follow(const struct design_axis *axis, const struct field_value *followed, size_t level,
                         struct field_value *value);

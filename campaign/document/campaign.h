@@ -18,12 +18,9 @@
 #ifndef CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_H
 #define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_H
 
-#include <stddef.h>
-
 #include "campaign/design/design.h"
 #include "engine/scene.h"
 #include "schemas/document.h"
-#include "schemas/field.h"
 
 enum campaign_design {
   CAMPAIGN_GRID,
@@ -157,10 +154,10 @@ struct campaign_walk {
   struct field_value *values; /* values of the current point, one for each axis */
 };
 
-/* Begins a walk before the first point. STATUS_MEMORY; STATUS_CONTENT: no such design. End the walk also after an
- * error. */
+/* Begins a walk before the first point. STATUS_MEMORY; STATUS_CONTENT: no such design. After an error there is nothing
+ * to end. */
 status campaign_walk_begin(struct campaign_walk *walk, const struct campaign *campaign, struct error *error);
-void campaign_walk_end(struct campaign_walk *walk);
+void campaign_walk_end(struct campaign_walk *walk); /* twice is fine */
 /* Goes to the next point. False after the last one. */
 bool campaign_walk_next(struct campaign_walk *walk);
 /* The scene of the current point, owned by the caller. NULL with *error when its values cannot be run together. */

@@ -1,5 +1,4 @@
 /* The keys of a campaign, and a campaign from a document and changes of it. */
-#include "campaign/document/campaign.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -8,7 +7,6 @@
 
 #include "campaign/document/campaign_read.h"
 #include "engine/random.h"
-#include "schemas/document.h"
 #include "schemas/memory.h"
 #include "schemas/rows.h"
 #include "schemas/text.h"

@@ -3,7 +3,6 @@
 #define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_READ_H
 
 #include "campaign/document/campaign.h"
-#include "schemas/document.h"
 
 /* Fills the whole struct, text excepted. Errors are reported to the document: see document_finish(). The paths of scene
  * and design.file are relative to `folder` (NULL: the current one). `stored`: the document is

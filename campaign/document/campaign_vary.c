@@ -2,6 +2,7 @@
 #include "campaign/document/campaign_read.h"
 
 #include <math.h>
+#include <search.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -151,13 +152,10 @@ static bool read_truncation(struct reading *r, bool positive) {
   document_node *node = document_key(r->node, "truncated");
   if (node && !read_pair(r, node, positive, &r->axis->lower, &r->axis->upper))
     return false;
-  /* Position in a distribution, in standard deviations from its centre. */
   struct design_axis *axis = r->axis;
   const struct field *row = axis->row;
-#define DEVIATIONS(x) (positive ? log(fmax(x, 0) / axis->a) / axis->b : ((x)-axis->a) / axis->b)
-  double from = DEVIATIONS(axis->lower), to = DEVIATIONS(axis->upper);
-  double least = DEVIATIONS(row->minimum), most = DEVIATIONS(row->maximum);
-#undef DEVIATIONS
+  const double from = design_axis_deviations(axis, axis->lower), to = design_axis_deviations(axis, axis->upper);
+  const double least = design_axis_deviations(axis, row->minimum), most = design_axis_deviations(axis, row->maximum);
   /* beyond 37 standard deviations the mass of a normal law underflows */
   if (from > 37 || to < -37)
     return wrong(r, node, "the law has nothing there: more than 37 standard deviations from its middle");
@@ -268,16 +266,6 @@ static bool read_form(struct reading *r) {
   return read_linked(r, first);
 }
 
-static bool read_axis(struct reading *r) {
-  if (r->axis->row->flags & FIELD_FILE)
-    return wrong(r, NULL, "a shape file cannot be varied: write a scene, and a campaign, for each shape");
-  switch (document_kind(r->node)) {
-  case DOCUMENT_SEQUENCE: return read_values(r, r->node);
-  case DOCUMENT_MAPPING: return read_form(r);
-  default: return wrong(r, NULL, "expected a list of values or a range; a single value belongs in `set`");
-  }
-}
-
 /* Checks that every linked axis follows a free axis, and that linked lists have the same length. */
 static bool check_links(struct reading *readings, struct campaign *campaign) {
   for (size_t i = 0; i < campaign->axis_count; i++) {
@@ -295,20 +283,18 @@ static bool check_links(struct reading *readings, struct campaign *campaign) {
   return true;
 }
 
-static int by_place(const void *a, const void *b) {
-  const struct field_value *x = *(const struct field_value *const *)a, *y = *(const struct field_value *const *)b;
-  return (x > y) - (x < y);
-}
-
-/* Any order that has equal values side by side, the first of them first. */
+/* Any order in which equal values of a row are equal. */
 static int by_value(const void *a, const void *b) {
-  const struct field_value *x = *(const struct field_value *const *)a, *y = *(const struct field_value *const *)b;
-  int order = memcmp(&x->number, &y->number, sizeof x->number);
+  const struct field_value *x = a, *y = b;
+  const double left = x->number + 0.0, right = y->number + 0.0; /* -0 is 0 */
+  int order = memcmp(&left, &right, sizeof left);
   if (order == 0)
     order = memcmp(&x->integer, &y->integer, sizeof x->integer);
-  if (order == 0)
-    order = strcmp(x->text, y->text);
-  return order ? order : by_place(a, b);
+  return order ? order : strcmp(x->text, y->text);
+}
+
+static void keep_value(void *value) {
+  (void)value; /* values belong to their axis */
 }
 
 /* Equal values of a grid are one point: 7 % and 0.07 m/m. Keeps the first of them, unless the values of another input
@@ -320,24 +306,21 @@ static bool drop_equal(struct reading *r) {
     if (other->kind == DESIGN_AXIS_LINKED && other->level_count && &r->campaign->axes[other->linked] == axis)
       return true;
   }
-  const struct field_value **sorted = calloc(axis->level_count, sizeof *sorted);
-  if (!sorted) {
-    document_report_memory(r->node, r->path);
-    return false;
-  }
-  for (size_t i = 0; i < axis->level_count; i++)
-    sorted[i] = &axis->levels[i];
-  qsort(sorted, axis->level_count, sizeof *sorted, by_value);
+  void *tree = NULL; /* of the values that are kept */
   size_t kept = 0;
-  for (size_t i = 0; i < axis->level_count; i++)
-    if (kept == 0 || !field_same_value(axis->row, sorted[i], sorted[kept - 1]))
-      sorted[kept++] = sorted[i];
-  qsort(sorted, kept, sizeof *sorted, by_place);
-  for (size_t i = 0; i < kept; i++)
-    axis->levels[i] = *sorted[i]; /* which is level i or a later one */
+  bool good = true;
+  for (size_t i = 0; good && i < axis->level_count; i++) {
+    struct field_value *place = &axis->levels[kept];
+    *place = axis->levels[i];
+    struct field_value **found = tsearch(place, &tree, by_value);
+    good = found != NULL;
+    kept += good && *found == place;
+  }
+  tdestroy(tree, keep_value);
   axis->level_count = kept;
-  free(sorted);
-  return true;
+  if (!good)
+    document_report_memory(r->node, r->path);
+  return good;
 }
 
 /* Finds the input of the index-th key and makes its axis. */
@@ -366,8 +349,17 @@ static bool read_axes(struct reading *readings, size_t count, document_node *var
     if (!begin_axis(readings, i, vary, campaign))
       return false;
   bool good = true;
-  for (size_t i = 0; i < count; i++)
-    good &= read_axis(&readings[i]);
+  for (size_t i = 0; i < count; i++) {
+    struct reading *r = &readings[i];
+    if (r->axis->row->flags & FIELD_FILE)
+      good = wrong(r, NULL, "a shape file cannot be varied: write a scene, and a campaign, for each shape");
+    else if (document_kind(r->node) == DOCUMENT_SEQUENCE)
+      good &= read_values(r, r->node);
+    else if (document_kind(r->node) == DOCUMENT_MAPPING)
+      good &= read_form(r);
+    else
+      good = wrong(r, NULL, "expected a list of values or a range; a single value belongs in `set`");
+  }
   good = good && check_links(readings, campaign);
   for (size_t i = 0; good && campaign->design.kind == CAMPAIGN_GRID && i < count; i++)
     if (campaign->axes[i].kind == DESIGN_AXIS_LEVELS)

@@ -13,8 +13,12 @@ status campaign_walk_begin(struct campaign_walk *walk, const struct campaign *ca
   walk->values = calloc(campaign->axis_count + 1, sizeof *walk->values);
   if (!walk->values)
     return status_fail(error, STATUS_MEMORY, "no memory for the points of a campaign");
-  return design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
-                       (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &walk->design, error);
+  const status code = design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
+                                    (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &walk->design,
+                                    error);
+  if (code)
+    campaign_walk_end(walk);
+  return code;
 }
 
 void campaign_walk_end(struct campaign_walk *walk) {

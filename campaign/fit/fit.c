@@ -109,21 +109,16 @@ static status allocate(struct fit *fit, struct error *error) {
 
 /* Makes the first ensemble: the points of `clast run` for this campaign. */
 static status draw_members(struct fit *fit, struct error *error) {
-  const struct campaign *campaign = fit->campaign;
-  struct design *design = NULL;
-  struct field_value *values = calloc(campaign->axis_count + 1, sizeof *values);
-  if (!values)
-    return status_fail(error, STATUS_MEMORY, "no memory for a fit");
-  const status code = design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
-                                    (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, error);
-  for (size_t j = 0; code == STATUS_OK && j < fit->members && design_next(design, values); j++)
+  struct campaign_walk walk;
+  TRY(campaign_walk_begin(&walk, fit->campaign, error));
+  for (size_t j = 0; j < fit->members && campaign_walk_next(&walk); j++)
     for (size_t i = 0; i < fit->inputs; i++) {
-      const double share = design_axis_share(&campaign->axes[fit->axis[i]], &values[fit->axis[i]]);
-      fit->place[j * fit->inputs + i] = posterior_coordinate(share);
+      const size_t a = fit->axis[i];
+      fit->place[j * fit->inputs + i] = posterior_coordinate(
+          design_axis_share(&fit->campaign->axes[a], &walk.values[a]));
     }
-  design_free(design);
-  free(values);
-  return code;
+  campaign_walk_end(&walk);
+  return STATUS_OK;
 }
 
 status fit_create(const struct campaign *campaign, const struct observed *observed, const struct fit_rule *rule,

@@ -12,7 +12,6 @@
 #include "campaign/charts/charts.h"
 #include "campaign/document/observed.h"
 #include "campaign/launch/launch.h"
-#include "db/ask/ask.h"
 
 enum { FIT_FEWEST_MEMBERS = 8, FIT_MOST_ROUNDS = 10, FIT_CHECK_ROUNDS = 12 };
 

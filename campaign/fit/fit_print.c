@@ -186,11 +186,8 @@ static const char *list_mixed(const struct fit *fit, size_t direction, char text
   for (size_t i = 0; i < fit->inputs; i++) {
     if (!identify_mixed(&fit->found, direction, i))
       continue;
-    text_append(text, PARAGRAPH, "%s%s",
-                written == 0           ? ""
-                : written + 1 == count ? " and "
-                                       : ", ",
-                row_of(fit, i)->path);
+    const char *before = written == 0 ? "" : written + 1 == count ? " and " : ", ";
+    text_append(text, PARAGRAPH, "%s%s", before, row_of(fit, i)->path);
     written++;
   }
   return text;
@@ -220,9 +217,8 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
   if (count_mixed(fit, direction) > 1) {
     say(out,
         "RIDGE: these data cannot tell %s apart. What was measured hardly changes while they change together: %s. "
-        "Along "
-        "this line the data tell %.2g times what the priors tell; its ends are set by the priors. Quote the inputs "
-        "together, or measure something that changes along it.",
+        "Along this line the data tell %.2g times what the priors tell; its ends are set by the priors. Quote the "
+        "inputs together, or measure something that changes along it.",
         names, list_ends(fit, direction, ends), information);
     return;
   }

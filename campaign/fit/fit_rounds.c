@@ -80,19 +80,17 @@ static status next_round(void *context, const struct scheduler *scheduler, struc
 /* The scene of a member of the shot. NULL with *error. */
 static struct scene *scene_of(const struct fit *fit, const double *z, struct error *error) {
   const struct campaign *campaign = fit->campaign;
-  struct campaign shot = *campaign;
   struct field_value *values = calloc(campaign->axis_count, sizeof *values);
-  if (!values) {
-    status_fail(error, STATUS_MEMORY, "no memory for a point");
-    return NULL;
-  }
-  shot.scene = fit->observed->shots[fit->shot].scene;
-  for (size_t i = 0; i < fit->inputs; i++)
+  struct scene *scene = NULL;
+  for (size_t i = 0; values && i < fit->inputs; i++)
     fit_value(fit, i, z[i], &values[fit->axis[i]]);
-  for (size_t i = 0; i < campaign->axis_count; i++)
+  for (size_t i = 0; values && i < campaign->axis_count; i++)
     if (campaign->axes[i].kind == DESIGN_AXIS_LINKED)
       design_axis_follow(&campaign->axes[i], &values[campaign->axes[i].linked], 0, &values[i]);
-  struct scene *scene = campaign_point_scene(&shot, values, error);
+  if (values)
+    scene = campaign_point_scene_from(fit->observed->shots[fit->shot].scene, campaign, values, error);
+  else
+    status_fail(error, STATUS_MEMORY, "no memory for a point");
   free(values);
   return scene;
 }
@@ -304,33 +302,10 @@ static status end_round(void *context, const struct scheduler *scheduler, struct
 
 /* ---- from the documents to the report ---- */
 
-/* The two documents, and the objects made from them. */
-struct subject {
+struct launching { /* the two documents, and what is made from them */
   struct campaign *campaign;
   struct observed *observed;
   struct fit *fit;
-  char reference[2 * FIELD_TEXT_SIZE]; /* path of the scene from the current folder */
-};
-
-static status load(struct subject *subject, const struct command_line *line, const struct fit_launch *options,
-                   struct launch_notes *notes, struct error *error) {
-  const char *path = line->arguments[1];
-  TRY(campaign_load(path, &subject->campaign, error));
-  TRY(observed_load(line->arguments[0], subject->campaign, &subject->observed, error));
-  struct campaign *campaign = subject->campaign;
-  driver_list_reference(campaign, path, subject->reference, sizeof subject->reference);
-  if (options->store)
-    snprintf(campaign->store, sizeof campaign->store, "%s", options->store);
-  const struct fit_rule rule = {.rounds = options->rounds,
-                                .check = options->check,
-                                .seed = (uint64_t)options->seed,
-                                .note = launch_note,
-                                .note_context = notes};
-  return fit_create(campaign, subject->observed, &rule, subject->reference, &subject->fit, error);
-}
-
-struct launching {
-  struct subject subject;
   const struct fit_launch *options;
   enum table_format format;
 };
@@ -338,17 +313,16 @@ struct launching {
 static status run_fit(void *context, struct launch *launch, struct error *error) {
   const struct launching *launching = context;
   const struct fit_launch *options = launching->options;
-  struct fit *fit = launching->subject.fit;
-  const struct campaign *campaign = fit->campaign;
-  const struct series series = {.context = fit, .limits = campaign, .next = next_round, .done = end_round};
+  struct fit *fit = launching->fit;
+  const struct series series = {.context = fit, .limits = fit->campaign, .next = next_round, .done = end_round};
+  const char *store = launch->scheduler.store_path = fit->campaign->store;
   struct series_summary summary;
-  launch->scheduler.store_path = campaign->store;
   if (launch->manager && !launch->notes.quiet)
     fprintf(stderr, "clast: at most %" PRId64 " runs in %" PRId64 " rounds%s\n",
             (int64_t)(fit->observed->shot_count * fit->members * fit->replicates) * options->rounds, options->rounds,
             options->check ? ", and those of the check" : "");
   const status code = driver_run_series(&series, launch->farm, &launch->scheduler, &summary, error);
-  launch_tell_series(launch, code, campaign->store, &summary, true);
+  launch_tell_series(launch, code, store, &summary, true);
   if (!launch->manager || code != STATUS_OK)
     return code;
   TRY(fit_find(fit, error));
@@ -359,13 +333,27 @@ static status run_fit(void *context, struct launch *launch, struct error *error)
 status fit_rounds_launch(const struct command_line *line, const struct fit_launch *options, enum table_format format,
                          struct error *error) {
   struct launching launching = {.options = options, .format = format};
-  struct subject *subject = &launching.subject;
   struct launch_notes notes = {.quiet = options->launch.quiet};
-  status code = load(subject, line, options, &notes, error);
+  const struct fit_rule rule = {.rounds = options->rounds,
+                                .check = options->check,
+                                .seed = (uint64_t)options->seed,
+                                .note = launch_note,
+                                .note_context = &notes};
+  char scene[2 * FIELD_TEXT_SIZE]; /* path from the current folder */
+  status code = campaign_load(line->arguments[1], &launching.campaign, error);
+  struct campaign *campaign = launching.campaign;
   if (code == STATUS_OK)
-    code = launch_farm(subject->campaign, &options->launch, line, run_fit, &launching, error);
-  fit_free(subject->fit);
-  observed_free(subject->observed);
-  campaign_free(subject->campaign);
+    code = observed_load(line->arguments[0], campaign, &launching.observed, error);
+  if (code == STATUS_OK) {
+    driver_list_reference(campaign, line->arguments[1], scene, sizeof scene);
+    if (options->store)
+      snprintf(campaign->store, sizeof campaign->store, "%s", options->store);
+    code = fit_create(campaign, launching.observed, &rule, scene, &launching.fit, error);
+  }
+  if (code == STATUS_OK)
+    code = launch_farm(campaign, &options->launch, line, run_fit, &launching, error);
+  fit_free(launching.fit);
+  observed_free(launching.observed);
+  campaign_free(campaign);
   return code;
 }

@@ -11,7 +11,6 @@
 #include <uthash.h>
 
 #include "analysis/statistics/sample.h"
-#include "campaign/document/campaign.h"
 #include "campaign/scheduler/point.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"
@@ -301,17 +300,6 @@ static status expand(struct driver *driver, bool *more, struct error *error) {
   return code;
 }
 
-static void drop(struct driver *driver, struct point *point) {
-  for (size_t i = 0; i < driver->point_count; i++)
-    if (driver->points[i] == point) {
-      /* Keeps the order: points of equal cost start in the order of the design. */
-      memmove(&driver->points[i], &driver->points[i + 1], (driver->point_count - i - 1) * sizeof *driver->points);
-      driver->point_count--;
-      break;
-    }
-  point_free(point);
-}
-
 /* ---- runs out ---- */
 
 /* The most expensive point that has a run to send out. The run is in the point's prefix, or with `ahead` may be beyond
@@ -472,8 +460,14 @@ static status ended(void *context, const struct scheduler_run *run, const struct
     code = judge(driver, point, error);
   else
     (void)judge(driver, point, NULL); /* the stop keeps its own message */
-  if (point_over(point))
-    drop(driver, point);
+  if (!point_over(point))
+    return code;
+  size_t place = 0;
+  while (driver->points[place] != point)
+    place++;
+  driver->point_count--; /* the order stays: points of equal cost start in the order of the design */
+  memmove(&driver->points[place], &driver->points[place + 1], (driver->point_count - place) * sizeof *driver->points);
+  point_free(point);
   return code;
 }
 

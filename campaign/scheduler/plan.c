@@ -2,12 +2,10 @@
 #include "campaign/scheduler/plan.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "campaign/converge/ladder.h"
-#include "campaign/document/campaign.h"
 #include "campaign/terminal/progress.h"
 #include "db/ask/ask.h"
 #include "db/store/store.h"
@@ -67,13 +65,12 @@ status plan_try(const struct scene *scene, uint64_t seed, double seconds, struct
     return code;
   run->prepare_s = clock_cpu_s() - begin;
   code = step(kind, state, begin + seconds, run, error);
-  if (code != STATUS_OK)
-    goto cleanup;
-  result = memory_small(1, kind->results->size);
-  const double stepped = clock_cpu_s();
-  code = kind->finish(state, &outcome, result, &list, &run->fragments, error);
-  run->finish_s = clock_cpu_s() - stepped;
-cleanup:
+  if (code == STATUS_OK) {
+    const double stepped = clock_cpu_s();
+    result = memory_small(1, kind->results->size);
+    code = kind->finish(state, &outcome, result, &list, &run->fragments, error);
+    run->finish_s = clock_cpu_s() - stepped;
+  }
   free(list);
   free(result);
   kind->free(state);
@@ -223,9 +220,7 @@ static status look(const struct campaign *campaign, struct store *store, struct 
                    struct error *error) {
   struct campaign_walk walk;
   struct error first = {0};
-  status code = campaign_walk_begin(&walk, campaign, error);
-  if (code != STATUS_OK)
-    goto cleanup;
+  TRY(campaign_walk_begin(&walk, campaign, error));
   plan->points = design_points(walk.design);
   const uint64_t walked = plan->points < WALKED ? plan->points : WALKED;
   const uint64_t stride = (walked + LOOKED_AT - 1) / LOOKED_AT;
@@ -241,11 +236,10 @@ static status look(const struct campaign *campaign, struct store *store, struct 
     ask(campaign, scene, store, looking);
     take_point(plan, looking, scene, looking->sampled < SAMPLED && i >= looking->sampled * (walked / SAMPLED));
   }
-  if (!looking->costliest)
-    code = status_fail(error, STATUS_CONTENT, "no point of the design can be run: %s", first.message);
-cleanup:
   campaign_walk_end(&walk);
-  return code;
+  return looking->costliest
+             ? STATUS_OK
+             : status_fail(error, STATUS_CONTENT, "no point of the design can be run: %s", first.message);
 }
 
 static double whole_s(const struct plan_trial *run) {
@@ -282,18 +276,17 @@ static void extrapolate(const struct looking *looking, uint64_t seed, double sec
                         struct plan *plan, char setting[64], double *one) {
   struct error ignored;
   struct scene *coarse = NULL;
-  struct plan_trial *coarse_run = memory_small(1, sizeof *coarse_run);
+  struct plan_trial coarse_run = {0};
   plan->run_s_most = plan_to_hard_end(run);
   if (looking->work_most > 0)
     plan_coarsen(looking->costliest, plan->run_s_most / looking->work_most, seconds / 4, &coarse, setting);
-  if (coarse && plan_try(coarse, seed, seconds / 2, coarse_run, &ignored) == STATUS_OK) {
-    const double whole = plan_whole(run, coarse_run);
+  if (coarse && plan_try(coarse, seed, seconds / 2, &coarse_run, &ignored) == STATUS_OK) {
+    const double whole = plan_whole(run, &coarse_run);
     plan->trial_whole = !isnan(whole);
     plan->run_s_most = plan->trial_whole ? whole : plan->run_s_most;
-    *one = whole_s(coarse_run);
+    *one = whole_s(&coarse_run);
   }
   scene_free(coarse);
-  free(coarse_run);
 }
 
 /* Runs the most expensive point for half of the time. If the run does not end, a coarse run of the same point tells
@@ -301,29 +294,24 @@ static void extrapolate(const struct looking *looking, uint64_t seed, double sec
  * not reach. The rest of the time is used for runs of other points. */
 static status try_run(const struct campaign *campaign, const struct looking *looking, double seconds, struct plan *plan,
                       size_t *fragments, struct error *error) {
-  const uint64_t seed = campaign_seed(campaign, looking->costliest, 0);
+  const struct scene *scene = looking->costliest;
+  const uint64_t seed = campaign_seed(campaign, scene, 0);
   const double begin = clock_cpu_s();
   char setting[64] = "";
-  struct plan_trial *run = memory_small(1, sizeof *run);
-  const status code = plan_try(looking->costliest, seed, seconds / 2, run, error);
-  if (code != STATUS_OK)
-    goto cleanup;
+  struct plan_trial run = {0};
+  TRY(plan_try(scene, seed, seconds / 2, &run, error));
   plan->trial_made = true;
-  if (looking->costliest->kind->threads)
-    plan->threads = (double)*looking->costliest->kind->threads(looking->costliest->inputs);
-  plan->trial_finished = plan->trial_whole = run->finished;
-  plan->trial_progress = run->finished ? 1 : run->progress;
-  *fragments = run->fragments;
-  plan->run_s_most = whole_s(run);
+  if (scene->kind->threads)
+    plan->threads = (double)*scene->kind->threads(scene->inputs);
+  plan->trial_finished = plan->trial_whole = run.finished;
+  *fragments = run.fragments;
+  plan->run_s_most = whole_s(&run);
   double one = plan->run_s_most;
-  if (!run->finished)
-    extrapolate(looking, seed, seconds, run, plan, setting, &one);
+  if (!run.finished)
+    extrapolate(looking, seed, seconds, &run, plan, setting, &one);
   if (plan->trial_whole)
-    plan->share_of_most = time_points(campaign, looking, run->finished ? NULL : setting, one, begin + seconds);
-  plan->trial_s = clock_cpu_s() - begin;
-cleanup:
-  free(run);
-  return code;
+    plan->share_of_most = time_points(campaign, looking, run.finished ? NULL : setting, one, begin + seconds);
+  return STATUS_OK;
 }
 
 static double kept_runs(const struct campaign *campaign, const struct plan *plan) {
@@ -387,21 +375,15 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
     return code;
 
   code = look(campaign, store, plan, &looking, error);
-  if (code != STATUS_OK)
-    goto cleanup;
   const struct scene *scene = looking.costliest;
-  if (options->no_trial) {
-    if (store)
-      ask_run_wall_times(store, &plan->run_s_mean, &plan->run_s_most, &ignored);
-  } else {
+  if (code == STATUS_OK && !options->no_trial)
     code = try_run(campaign, &looking, options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
-    if (code != STATUS_OK)
-      goto cleanup;
+  else if (code == STATUS_OK && store)
+    ask_run_wall_times(store, &plan->run_s_mean, &plan->run_s_most, &ignored);
+  if (code == STATUS_OK) {
+    plan->model = scene->kind->describe ? scene->kind->describe(scene->inputs) : NULL;
+    add_up(campaign, options, &looking, fragments, plan);
   }
-  if (scene->kind->describe)
-    plan->model = scene->kind->describe(scene->inputs);
-  add_up(campaign, options, &looking, fragments, plan);
-cleanup:
   for (size_t i = 0; i < looking.sampled; i++)
     scene_free(looking.sample[i]);
   scene_free(looking.costliest);
@@ -453,15 +435,6 @@ static void print_design(const struct campaign *campaign, const struct plan *pla
   fputc('\n', out);
 }
 
-static void print_runs(const struct campaign *campaign, const struct plan *plan, FILE *out) {
-  fprintf(out, "runs      %llu", (unsigned long long)plan->runs_least);
-  if (plan->runs_most != plan->runs_least)
-    fprintf(out, " to %llu (%s to ±%g)", (unsigned long long)plan->runs_most, campaign->until_quantity,
-            campaign->until_half_width);
-  fprintf(out, ", %llu of them in the store%s\n", (unsigned long long)plan->runs_there,
-          plan->store_exists ? "" : " (there is none yet)");
-}
-
 static void print_times(const struct plan *plan, int slots, FILE *out) {
   char a[64], b[64];
   progress_duration(plan->run_s_mean, a, sizeof a);
@@ -480,24 +453,27 @@ static void print_times(const struct plan *plan, int slots, FILE *out) {
   fprintf(out, " (%s of processor time)\n", a);
 }
 
-static void print_bytes(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
+void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
   char a[64], b[64];
+  print_design(campaign, plan, out);
+  campaign_warn(campaign, "warning   ", out);
+
+  fprintf(out, "runs      %llu", (unsigned long long)plan->runs_least);
+  if (plan->runs_most != plan->runs_least)
+    fprintf(out, " to %llu (%s to ±%g)", (unsigned long long)plan->runs_most, campaign->until_quantity,
+            campaign->until_half_width);
+  fprintf(out, ", %llu of them in the store%s\n", (unsigned long long)plan->runs_there,
+          plan->store_exists ? "" : " (there is none yet)");
+  print_times(plan, slots, out);
   fprintf(out, "memory    %s per run, %s on all slots\n", bytes(plan->memory_most, a, sizeof a),
           bytes(plan->memory_most * slots, b, sizeof b));
   fprintf(out, "disk      %s for the store %s", bytes(plan->disk_bytes, a, sizeof a), campaign->store);
   if (campaign->keep != CAMPAIGN_KEEP_NONE)
     fprintf(out, ", at most %s for fields", bytes(plan->fields_bytes, b, sizeof b));
   fputc('\n', out);
-}
-
-void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
-  print_design(campaign, plan, out);
-  campaign_warn(campaign, "warning   ", out);
-  print_runs(campaign, plan, out);
-  print_times(plan, slots, out);
-  print_bytes(campaign, plan, slots, out);
   if (plan->points_looked_at < plan->points)
     fprintf(out, "          (averages over %llu of the points)\n", (unsigned long long)plan->points_looked_at);
+
   if (plan->model)
     fprintf(out, "\n%s%s", plan->model, plan->model[0] && plan->model[strlen(plan->model) - 1] == '\n' ? "" : "\n");
 }

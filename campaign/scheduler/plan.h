@@ -21,7 +21,6 @@ struct plan {
   bool trial_whole;     /* times are of whole runs, measured or estimated from a coarse run; else upper bounds */
   double share_of_most; /* mean time of a run divided by that of the most expensive point; NaN: taken from the engine's
                            measure of work */
-  double trial_s, trial_progress;
   double run_s_mean,
       run_s_most; /* per run; NaN without trial and without finished runs. An upper bound unless finished */
   double cpu_s_least, cpu_s_most;   /* processor time of the remaining runs */

@@ -3,7 +3,6 @@
 #ifndef CLAST_CAMPAIGN_SCHEDULER_POINT_H
 #define CLAST_CAMPAIGN_SCHEDULER_POINT_H
 
-#include "campaign/design/design.h"
 #include "campaign/document/campaign.h"
 
 /* ---- cost ----

@@ -5,8 +5,6 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-#include "db/ask/ask.h"
-
 struct fit {
   const struct ask_points_version *which;
   struct point_data point;
@@ -21,13 +19,6 @@ static void *make_fit(void *context) {
   struct fit *fit = context;
   fit->result = point_estimates(&fit->point, 0.95, fit->fits, &fit->error);
   return NULL;
-}
-
-static void begin(struct fit *fit) {
-  fit->begun = true;
-  fit->has_thread = pthread_create(&fit->thread, NULL, make_fit, fit) == 0;
-  if (!fit->has_thread)
-    make_fit(fit);
 }
 
 static status write_fit(struct store *store, const struct fit *fit, struct error *error) {
@@ -72,7 +63,10 @@ status pooling_store(struct store *store, int64_t campaign_id, struct error *err
     if (code == STATUS_OK) {
       fit.which = &points[i];
       fit.point = point;
-      begin(&fit);
+      fit.begun = true;
+      fit.has_thread = pthread_create(&fit.thread, NULL, make_fit, &fit) == 0;
+      if (!fit.has_thread)
+        make_fit(&fit);
     } else {
       point_release(&point);
     }

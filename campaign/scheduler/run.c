@@ -7,7 +7,6 @@
 
 #include "campaign/farm/farm.h"
 #include "engine/restart.h"
-#include "engine/scene.h"
 #include "engine/threads.h"
 #include "schemas/file.h"
 #include "schemas/limits.h"
@@ -110,14 +109,12 @@ status run_simulate(const struct run_request *request, run_watch watch, void *co
   }
 
   code = step_to_end(kind, run, watch, context, block, error);
-  if (code != STATUS_OK)
-    goto cleanup;
-  code = finish(kind, run, result, error);
+  if (code == STATUS_OK)
+    code = finish(kind, run, result, error);
   if (code != STATUS_OK)
     run_result_clear(result);
   else if (request->fields_path)
     code = write_snapshot(kind, run, request->fields_path, error);
-cleanup:
   kind->free(run);
   return code;
 }

@@ -29,7 +29,6 @@ struct exchange { /* one request */
   char *body;
   size_t size, capacity;
   struct serve_answer answer;
-  bool suspended;
 };
 
 static enum MHD_Result send_answer(struct exchange *exchange) {
@@ -51,9 +50,8 @@ static enum MHD_Result send_answer(struct exchange *exchange) {
   return queued;
 }
 
-static enum MHD_Result refuse(struct exchange *exchange, unsigned http, const char *why) {
-  exchange->answer = serve_request_error(http, "InvalidInput", "%s", why);
-  return send_answer(exchange);
+static struct serve_answer too_large(void) {
+  return serve_request_error(MHD_HTTP_CONTENT_TOO_LARGE, "InvalidInput", "the body is larger than 1 MiB");
 }
 
 /* Is the Host of a request an address or localhost, with a port or without? A web page can make the name of its own
@@ -94,31 +92,21 @@ static bool has_token(const char *token, struct MHD_Connection *connection) {
 
 /* A web page in a browser on this machine could also send requests to a loopback port. Browsers send the origin of the
  * page, other clients do not. */
-static const char *refused_at_once(const struct serve_http *server, struct MHD_Connection *connection, unsigned *http) {
+static struct serve_answer refused_at_once(const struct serve_http *server, struct MHD_Connection *connection) {
   const char *length = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
   const char *host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_HOST);
-  *http = MHD_HTTP_UNAUTHORIZED;
   if (server->token && !has_token(server->token, connection))
-    return "the request needs the token of the server, as bearer token or as password";
-  *http = MHD_HTTP_FORBIDDEN;
+    return serve_request_error(MHD_HTTP_UNAUTHORIZED, "InvalidInput",
+                               "the request needs the token of the server, as bearer token or as password");
   if (MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN))
-    return "requests of web pages (with an Origin) are refused";
+    return serve_request_error(MHD_HTTP_FORBIDDEN, "InvalidInput",
+                               "requests of web pages (with an Origin) are refused");
   if (server->loopback && host && !is_address(host))
-    return "the server is for this machine alone: call it localhost or by its address";
-  if (length && strtoull(length, NULL, 10) > SERVE_HTTP_BODY) {
-    *http = MHD_HTTP_CONTENT_TOO_LARGE;
-    return "the body is larger than 1 MiB";
-  }
-  return NULL;
-}
-
-/* False: no memory. */
-static bool take_body(struct exchange *exchange, const char *bytes, size_t size) {
-  if (!grow_room(&exchange->body, &exchange->capacity, exchange->size + size, sizeof *exchange->body))
-    return false;
-  memcpy(exchange->body + exchange->size, bytes, size);
-  exchange->size += size;
-  return true;
+    return serve_request_error(MHD_HTTP_FORBIDDEN, "InvalidInput",
+                               "the server is for this machine alone: call it localhost or by its address");
+  if (length && strtoull(length, NULL, 10) > SERVE_HTTP_BODY)
+    return too_large();
+  return (struct serve_answer){0};
 }
 
 static enum MHD_Result begin(struct serve_http *http, struct MHD_Connection *connection, void **context) {
@@ -127,9 +115,8 @@ static enum MHD_Result begin(struct serve_http *http, struct MHD_Connection *con
     return MHD_NO;
   *exchange = (struct exchange){.http = http, .connection = connection};
   http->exchanges++;
-  unsigned code = 0;
-  const char *why = refused_at_once(http, connection, &code);
-  return why ? refuse(exchange, code, why) : MHD_YES;
+  exchange->answer = refused_at_once(http, connection);
+  return exchange->answer.http ? send_answer(exchange) : MHD_YES;
 }
 
 /* Answers a complete request, or suspends the connection. */
@@ -140,7 +127,6 @@ static enum MHD_Result judge(struct exchange *exchange, const char *method, cons
     exchange->answer = serve_submit(exchange->http->serve, &request, exchange);
   if (exchange->answer.http)
     return send_answer(exchange);
-  exchange->suspended = true;
   MHD_suspend_connection(exchange->connection);
   return MHD_YES;
 }
@@ -153,14 +139,20 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
   if (!exchange)
     return begin(context, connection, own);
   if (*upload_size > 0) {
-    const size_t size = *upload_size;
+    const size_t size = *upload_size, whole = exchange->size + size;
     *upload_size = 0;
-    if (exchange->size + size > SERVE_HTTP_BODY) /* sent without a length: the rest is read and discarded */
+    if (whole > SERVE_HTTP_BODY) /* sent without a length: the rest is read and discarded */
       exchange->answer.http = MHD_HTTP_CONTENT_TOO_LARGE;
-    return exchange->answer.http || take_body(exchange, upload, size) ? MHD_YES : MHD_NO;
+    if (exchange->answer.http)
+      return MHD_YES;
+    if (!grow_room(&exchange->body, &exchange->capacity, whole, sizeof *exchange->body))
+      return MHD_NO;
+    memcpy(exchange->body + exchange->size, upload, size);
+    exchange->size = whole;
+    return MHD_YES;
   }
   if (exchange->answer.http == MHD_HTTP_CONTENT_TOO_LARGE && !exchange->answer.body)
-    return refuse(exchange, MHD_HTTP_CONTENT_TOO_LARGE, "the body is larger than 1 MiB");
+    exchange->answer = too_large();
   return exchange->answer.http ? send_answer(exchange) : judge(exchange, method, url);
 }
 
@@ -182,7 +174,6 @@ static void completed(void *context, struct MHD_Connection *connection, void **o
 void serve_http_answer(void *ticket, struct serve_answer answer) {
   struct exchange *exchange = ticket;
   exchange->answer = answer;
-  exchange->suspended = false;
   MHD_resume_connection(exchange->connection);
 }
 

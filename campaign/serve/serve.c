@@ -132,9 +132,10 @@ static status want(struct serve *serve, struct job *job, int64_t replicate, stru
   HASH_FIND(hh, serve->runs, identity, sizeof identity, wanted);
   if (!wanted && scheduler_attempts(serve->scheduler, identity) >= serve->model->campaign->attempts)
     return STATUS_OK;
-  struct wish *wish = malloc(sizeof *wish);
-  struct scene *scene = wanted ? NULL : scene_copy(job->scene);
-  if (!wanted && wish && scene) {
+  if (!wanted) {
+    struct scene *scene = scene_copy(job->scene);
+    if (!scene)
+      return status_fail(error, STATUS_MEMORY, "out of memory");
     wanted = memory_small(1, sizeof *wanted);
     memcpy(wanted->identity, identity, sizeof identity);
     wanted->scene = scene;
@@ -147,11 +148,7 @@ static status want(struct serve *serve, struct job *job, int64_t replicate, stru
     HASH_ADD(hh, serve->runs, identity, sizeof identity, wanted);
     DL_APPEND(serve->queue, wanted);
   }
-  if (!wanted || !wish) {
-    scene_free(scene);
-    free(wish);
-    return status_fail(error, STATUS_MEMORY, "out of memory");
-  }
+  struct wish *wish = memory_small(1, sizeof *wish);
   wish->job = job;
   LL_PREPEND(wanted->wishes, wish);
   job->missing++;
@@ -163,9 +160,7 @@ static status open_job(struct serve *serve, struct job *job, struct error *error
   const struct serve_config *config = &job->request.config;
   TRY(store_add_point(serve->scheduler->store, serve->campaign_id, job->scene, serve->path_count, serve->paths,
                       &job->point_id, error));
-  bool *there = calloc((size_t)config->count, sizeof *there);
-  if (!there)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
+  bool *there = memory_small((size_t)config->count, sizeof *there);
   status code = read_store(serve, job, &config->results[0], NULL, there, error);
   for (int64_t r = 0; !code && r < config->count; r++) {
     serve->counts.found += there[r];

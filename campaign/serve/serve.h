@@ -6,7 +6,6 @@
 #define CLAST_CAMPAIGN_SERVE_SERVE_H
 
 #include "campaign/converge/ladder.h"
-#include "campaign/document/campaign.h"
 #include "campaign/scheduler/scheduler.h"
 
 /* ---- the model: the varied inputs as numbers, results by name, levels of a knob ---- */
