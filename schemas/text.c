@@ -158,8 +158,14 @@ FILE *text_open(char **text, size_t *size) {
     *g = (struct growing){.text = text, .size = size, .room = 1};
     out = fopencookie(g, "w", (cookie_io_functions_t){.write = grow_text, .seek = place_in_text, .close = end_text});
   }
-  if (!out) {
+  if (!out)
     free(g);
+  /* The stream's buffer is made here: where the first write makes it and memory is refused, that text is lost. */
+  if (out && setvbuf(out, NULL, _IOFBF, 0) != 0) {
+    (void)fclose(out); /* frees g */
+    out = NULL;
+  }
+  if (!out) {
     free(*text);
     *text = NULL;
   }
