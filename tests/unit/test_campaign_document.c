@@ -98,6 +98,11 @@ static void every_kind_of_axis(void **state) {
   assert_int_equal(campaign->axes[0].level_count, 4);
   assert_true(fabs(campaign->axes[0].levels[1].number / 0.02 - 1) < 1e-13);
   assert_int_equal(campaign->axes[1].kind, DESIGN_AXIS_NORMAL);
+  assert_true(fabs(campaign->axes[1].lower / (M_PI / 180) - 1) < 1e-13);
+  assert_true(fabs(campaign->axes[1].upper / (7 * M_PI / 180) - 1) < 1e-13);
+  /* A law without ends of its own ends where the input does. */
+  assert_true(campaign->axes[2].lower == campaign->axes[2].row->minimum);
+  assert_true(campaign->axes[2].upper == campaign->axes[2].row->maximum && isfinite(campaign->axes[2].upper));
   assert_int_equal(campaign->axes[3].kind, DESIGN_AXIS_LINKED);
   assert_int_equal(campaign->axes[3].linked, 2);
   assert_true(campaign->axes[3].b == 1e6);

@@ -140,10 +140,26 @@ static void queues_keep_order(void **state) {
   assert_null(farm_job_pop(&queue));
 }
 
+/* A rank that waits sleeps twice as long each time, up to 5 ms, and within half a second up to 10 ms. */
+static void sleeps_grow_to_their_end(void **state) {
+  (void)state;
+  int64_t sleep = FARM_SLEEP_LEAST_NS, slept = 0;
+  for (; sleep < FARM_SLEEP_USUAL_NS; sleep = farm_sleep_longer(sleep), slept += sleep)
+    assert_int_equal(farm_sleep_longer(sleep), 2 * sleep);
+  for (; sleep < FARM_SLEEP_MOST_NS; sleep = farm_sleep_longer(sleep), slept += sleep) {
+    assert_true(farm_sleep_longer(sleep) > sleep);
+    assert_true(slept < 500 * INT64_C(1000000));
+  }
+  assert_int_equal(sleep, FARM_SLEEP_MOST_NS);
+  assert_int_equal(farm_sleep_longer(sleep), FARM_SLEEP_MOST_NS);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(any_cut), cmocka_unit_test(any_flipped_bit),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(any_cut),
+                                     cmocka_unit_test(any_flipped_bit),
                                      cmocka_unit_test(foreign_and_oversized),
                                      cmocka_unit_test(handles_are_never_used_twice),
-                                     cmocka_unit_test(queues_keep_order)};
+                                     cmocka_unit_test(queues_keep_order),
+                                     cmocka_unit_test(sleeps_grow_to_their_end)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

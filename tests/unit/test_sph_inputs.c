@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "engine/builtin.h"
+#include "engine/scene.h"
 #include "engine/sph/material/material.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/scene/inputs.h"
@@ -160,6 +161,30 @@ static void a_name_gives_the_values(void **state) {
 
   in = good("target: {material: {name: custom, density: 1000 kg/m^3}}");
   assert_true(in.target.material.density == 1000 && isnan(in.target.material.tillotson.A));
+}
+
+/* Another material in place of a document's own one: none of its values stays, but those that overrides gave. */
+static void another_material_drops_those_of_the_document(void **state) {
+  (void)state;
+  static const char *const rows[] = {"target.material.density", "target.material.shear_modulus", "target.radius"};
+  struct scene *scene;
+  struct error error = {0};
+  if (scene_parse(
+          "custom",
+          "engine: sph\ntarget: {radius: 3 cm, material: {name: custom, density: 3 g/cm^3, shear_modulus: 20 GPa,\n"
+          "  tillotson: {A: 20 GPa, B: 20 GPa, a: 0.5, b: 1.5, alpha: 5, beta: 5, E0: 5e8 J/kg, E_iv: 5e6 J/kg,\n"
+          "  E_cv: 2e7 J/kg}, weibull: {m: 9, k: 1e35 1/m^3}, yield_stress: 3 GPa, melt_energy: off, tension_limit: "
+          "off}}\n",
+          &scene, &error))
+    fail_msg("%s", error.message);
+  assert_int_equal(scene_set_text(scene, "target.material.shear_modulus", "2 GPa", &error), STATUS_OK);
+  assert_int_equal(scene_set_text(scene, "target.material.name", "ice", &error), STATUS_OK);
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    const struct field *row = field_find(scene->kind->inputs, rows[i], &error);
+    assert_non_null(row);
+    assert_int_equal(scene->given[row - scene->kind->inputs->rows], i > 0);
+  }
+  scene_free(scene);
 }
 
 /* The law of yield under pressure is in the identity only where it is on: a run without it keeps its identity. */
@@ -323,6 +348,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(table_is_whole),
                                      cmocka_unit_test(every_material_is_sound),
                                      cmocka_unit_test(a_name_gives_the_values),
+                                     cmocka_unit_test(another_material_drops_those_of_the_document),
                                      cmocka_unit_test(pressure_strength),
                                      cmocka_unit_test(missing_values_are_named),
                                      cmocka_unit_test(what_cannot_be_run_is_refused),
