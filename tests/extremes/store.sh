@@ -122,15 +122,19 @@ if [ -s x.db ]; then expect 0 "$clast" run slow.yaml --store x.db --quiet; same_
 waiting held
 cat >hold.py <<'PY'
 import sqlite3, time
-while True:
+while True:  # the writer lets go for some milliseconds between two batches: SQLite's own waiting would miss them
     try:
-        store = sqlite3.connect("file:held.db?mode=rw", uri=True, timeout=30, isolation_level=None)
-        if store.execute("select count(*) from run").fetchone()[0]:
-            break
+        store = sqlite3.connect("file:held.db?mode=rw", uri=True, timeout=0, isolation_level=None)
+        while not store.execute("select count(*) from run").fetchone()[0]:
+            time.sleep(0.05)
+        break
     except sqlite3.OperationalError:
-        pass
-    time.sleep(0.05)
-store.execute("begin immediate")
+        time.sleep(0.05)
+while not store.in_transaction:
+    try:
+        store.execute("begin immediate")
+    except sqlite3.OperationalError:
+        time.sleep(0.001)
 time.sleep(14)
 before = store.execute("select count(*) from run").fetchone()[0]
 store.execute("commit")
