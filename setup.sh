@@ -13,7 +13,7 @@ cd "$(dirname "$0")"
 packages="build-essential cmake ninja-build pkg-config
 libfyaml-dev libopenmpi-dev openmpi-bin libsqlite3-dev libhdf5-dev libgsl-dev librandom123-dev
 libcairo2-dev zlib1g-dev libcmocka-dev libqhull-dev uthash-dev clang-format
-libmicrohttpd-dev libjansson-dev
+libmicrohttpd-dev libjansson-dev nettle-dev
 gnuplot-nox
 python3 python3-jsonschema python3-ruamel.yaml sqlite3"
 # The page of `clast report` is bundled by npm; its tests open it in a browser. The demo needs neither.

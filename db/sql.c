@@ -89,6 +89,10 @@ void sql_finalize(sqlite3_stmt **statement) {
   sqlite3_finalize(*statement);
 }
 
+void sql_free_text(char **text) {
+  sqlite3_free(*text);
+}
+
 const char *sql_skip(const char *text, const char *blanks) {
   for (;;) {
     text += strspn(text, blanks);
@@ -115,21 +119,17 @@ static status no_memory(const char *doing, struct error *error) {
 status sql_executef(sqlite3 *db, const char *doing, struct error *error, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  char *sql = sqlite3_vmprintf(format, arguments);
+  SQL_TEXT sql = sqlite3_vmprintf(format, arguments);
   va_end(arguments);
-  const status result = sql ? sql_execute(db, sql, doing, error) : no_memory(doing, error);
-  sqlite3_free(sql);
-  return result;
+  return sql ? sql_execute(db, sql, doing, error) : no_memory(doing, error);
 }
 
 status sql_preparef(sqlite3 *db, sqlite3_stmt **out, const char *doing, struct error *error, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  char *sql = sqlite3_vmprintf(format, arguments);
+  SQL_TEXT sql = sqlite3_vmprintf(format, arguments);
   va_end(arguments);
-  const status result = sql ? sql_prepare(db, sql, out, doing, error) : no_memory(doing, error);
-  sqlite3_free(sql);
-  return result;
+  return sql ? sql_prepare(db, sql, out, doing, error) : no_memory(doing, error);
 }
 
 status sql_prepare(sqlite3 *db, const char *sql, sqlite3_stmt **out, const char *doing, struct error *error) {
@@ -177,26 +177,23 @@ status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out
 status sql_integerf(sqlite3 *db, int64_t *out, struct error *error, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  char *sql = sqlite3_vmprintf(format, arguments);
+  SQL_TEXT sql = sqlite3_vmprintf(format, arguments);
   va_end(arguments);
-  const status result = sql ? sql_integer(db, sql, 0, out, error) : no_memory("reading", error);
-  sqlite3_free(sql);
-  return result;
+  return sql ? sql_integer(db, sql, 0, out, error) : no_memory("reading", error);
 }
 
-char *sql_name_list(sqlite3 *db, const char *sql, const char *first, const char *second) {
+status sql_textf(sqlite3 *db, char **text, const char *doing, struct error *error, const char *format, ...) {
   STATEMENT statement = NULL;
-  sqlite3_str *list = sqlite3_str_new(db);
-  if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) == SQLITE_OK) {
-    sql_bind_text(statement, 1, first);
-    if (second)
-      sql_bind_text(statement, 2, second);
-    while (sqlite3_step(statement) == SQLITE_ROW)
-      sqlite3_str_appendf(list, ", \"%w\"", sql_text(statement, 0));
-  }
-  const bool whole = sqlite3_str_errcode(list) == SQLITE_OK;
-  char *text = sqlite3_str_finish(list); /* NULL for an empty one, too */
-  return text || !whole ? text : sqlite3_mprintf("");
+  status result = STATUS_OK;
+  va_list arguments;
+  va_start(arguments, format);
+  SQL_TEXT sql = sqlite3_vmprintf(format, arguments);
+  va_end(arguments);
+  TRY(sql ? sql_prepare(db, sql, &statement, doing, error) : no_memory(doing, error));
+  const bool there = sql_next(statement, &result, doing, error);
+  TRY(result);
+  *text = sqlite3_mprintf("%s", there ? sql_text(statement, 0) : "");
+  return *text ? STATUS_OK : no_memory(doing, error);
 }
 
 void sql_write_name(const char *name, FILE *out) {

@@ -22,6 +22,10 @@ bool sql_values_are_wrong(sqlite3 *db, int code);
 #define STATEMENT __attribute__((cleanup(sql_finalize))) sqlite3_stmt *
 void sql_finalize(sqlite3_stmt **statement); /* for STATEMENT */
 
+/* A text of sqlite3_mprintf() that is freed where its block is left. */
+#define SQL_TEXT __attribute__((cleanup(sql_free_text))) char *
+void sql_free_text(char **text); /* for SQL_TEXT */
+
 /* The first character of a text of SQL that is neither in `blanks` nor in a comment. */
 const char *sql_skip(const char *text, const char *blanks);
 
@@ -45,10 +49,9 @@ const char *sql_text(sqlite3_stmt *statement, int column);
 status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out, struct error *error);
 /* The same, with 0 otherwise and the text made by sqlite3_mprintf. */
 status sql_integerf(sqlite3 *db, int64_t *out, struct error *error, const char *format, ...);
-/* The first column of all rows, each quoted as a name, with a comma before it. `first` and `second` are the texts ?1
- * and ?2 (NULL: there is no ?2). Free the result with sqlite3_free(). NULL when memory ran out; empty when `sql` is
- * invalid. */
-char *sql_name_list(sqlite3 *db, const char *sql, const char *first, const char *second);
+/* *text: the first column of the first row, "" if there is none; free it with sqlite3_free(). The SQL is made by
+ * sqlite3_mprintf. */
+status sql_textf(sqlite3 *db, char **text, const char *doing, struct error *error, const char *format, ...);
 
 /* Writes a name within double quotes; double quotes inside the name are doubled. */
 void sql_write_name(const char *name, FILE *out);

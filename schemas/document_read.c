@@ -341,14 +341,6 @@ static void report_missing(document_node *node, const struct field *row) {
                      row->doc ? row->doc : "give it");
 }
 
-/* A row was given whose condition is not met. */
-static void report_inactive(const struct reading *r, const struct field *row, const struct place *place) {
-  char path[PATH_SIZE], why[600];
-  field_describe_inactive(r->table, row, r->object, why, sizeof why);
-  document_value_path(place->value, path, sizeof path);
-  document_report(place->key, path, "has no effect: it is %s; remove one or change the other", why);
-}
-
 static void judge_conditions(const struct reading *r, document_node *node) {
   for (size_t i = 0; i < r->table->count; i++) {
     const struct field *row = &r->table->rows[i];
@@ -358,8 +350,12 @@ static void judge_conditions(const struct reading *r, document_node *node) {
     const bool active = field_is_active(r->table, row, r->object);
     if (active && row->flags & FIELD_REQUIRED && !place->key)
       report_missing(node, row);
-    if (!active && place->key)
-      report_inactive(r, row, place);
+    if (active || !place->key)
+      continue;
+    char path[PATH_SIZE], why[600];
+    field_describe_inactive(r->table, row, r->object, why, sizeof why);
+    document_value_path(place->value, path, sizeof path);
+    document_report(place->key, path, "has no effect: it is %s; remove one or change the other", why);
   }
 }
 

@@ -9,11 +9,6 @@
 
 enum { NUMBER = 32 }; /* bytes of a number as text; the longest has 25 */
 
-/* 0.00012 */
-static void print_small(char text[NUMBER], const char *mantissa, long exponent) {
-  text_append(text, NUMBER, "0.%.*s%s", (int)(-exponent - 1), "00000", mantissa);
-}
-
 /* 5000, 12.5 */
 static void print_plain(char text[NUMBER], const char *mantissa, size_t count, long exponent) {
   const int whole = (int)exponent + 1, missing = whole > (int)count ? whole - (int)count : 0;
@@ -45,12 +40,6 @@ static struct digits shortest_digits(double number) {
   return d;
 }
 
-/* Is the number written without an exponent? 5000 and 1234567 are, 5e8 is not. */
-static bool is_plain(const struct digits *d) {
-  const long most = d->count > 4 ? 9 : 6;
-  return d->exponent >= 0 && d->exponent < most;
-}
-
 /* Prints the number times 10^ten: its own shortest digits, with the decimal point moved. */
 static void print_shifted(double number, long ten, char text[NUMBER]) {
   text[0] = '\0';
@@ -64,8 +53,8 @@ static void print_shifted(double number, long ten, char text[NUMBER]) {
   if (number != 0)
     d.exponent += ten;
   if (d.exponent >= -5 && d.exponent < 0)
-    print_small(text, d.mantissa, d.exponent);
-  else if (is_plain(&d))
+    text_append(text, NUMBER, "0.%.*s%s", (int)(-d.exponent - 1), "00000", d.mantissa); /* 0.00012 */
+  else if (d.exponent >= 0 && d.exponent < (d.count > 4 ? 9 : 6)) /* 5000 and 1234567, but not 5e8 */
     print_plain(text, d.mantissa, d.count, d.exponent);
   else if (d.count == 1)
     text_append(text, NUMBER, "%ce%ld", d.mantissa[0], d.exponent);

@@ -153,27 +153,23 @@ static bool named_before(const struct field_table *table, size_t i, size_t end) 
   return false;
 }
 
-/* The words of one level that lead to a required row without a condition. */
+/* The words of one level that lead to a required row without a condition; returns how many. `out` NULL: counts only. */
 static int required(const struct field_table *table, const char *prefix, size_t length, FILE *out) {
   int count = 0;
   for (size_t i = 0; i < table->count; i++) {
     const char *path = table->rows[i].path;
     const size_t word = is_required(&table->rows[i], prefix, length) ? strcspn(path + length, ".") : 0;
-    if (word && !named_before(table, i, length + word))
-      fprintf(out, "%s\"%.*s\"", count++ ? ", " : "", (int)word, path + length);
+    if (!word || named_before(table, i, length + word))
+      continue;
+    if (out)
+      fprintf(out, "%s\"%.*s\"", count ? ", " : "", (int)word, path + length);
+    count++;
   }
   return count;
 }
 
 int json_schema_required(const struct field_table *table, FILE *out) {
   return required(table, "", 0, out);
-}
-
-static bool requires(const struct field_table *table, const char *prefix, size_t length) {
-  for (size_t i = 0; i < table->count; i++)
-    if (is_required(&table->rows[i], prefix, length))
-      return true;
-  return false;
 }
 
 static void properties(const struct field_table *table, const char *prefix, size_t length, int indent, FILE *out);
@@ -191,7 +187,7 @@ static void write_section(const struct field_table *table, const char *path, siz
   const bool named = is_named(table, path, whole);
   fprintf(out, "\"type\": %s, \"additionalProperties\": false,", named ? "[\"object\", \"string\"]" : "\"object\"");
   margin(indent, out);
-  if (requires(table, path, whole)) {
+  if (required(table, path, whole, NULL) > 0) {
     fputs("\"required\": [", out);
     required(table, path, whole, out);
     fputs("],", out);
@@ -206,16 +202,6 @@ static void write_section(const struct field_table *table, const char *path, siz
   properties(table, path, whole, indent + 1, out);
   margin(indent, out);
   fputs("}}", out);
-}
-
-static void write_row(const struct field *row, int indent, FILE *out) {
-  type(row, out);
-  default_value(row, out);
-  fputc(',', out);
-  margin(indent, out);
-  fputs("\"description\": ", out);
-  description(row, out);
-  fputc('}', out);
 }
 
 /* Every section is written once, at its first row. */
@@ -238,10 +224,17 @@ static void properties(const struct field_table *table, const char *prefix, size
     first = false;
     margin(indent, out);
     fprintf(out, "\"%.*s\": {", (int)word, row->path + length);
-    if (section)
+    if (section) {
       write_section(table, row->path, whole, indent + 1, out);
-    else
-      write_row(row, indent + 1, out);
+      continue;
+    }
+    type(row, out);
+    default_value(row, out);
+    fputc(',', out);
+    margin(indent + 1, out);
+    fputs("\"description\": ", out);
+    description(row, out);
+    fputc('}', out);
   }
 }
 
@@ -364,7 +357,7 @@ void json_schema_write(const struct field_table *table, const char *title, const
   fputs(",\n  \"type\": \"object\",\n  \"additionalProperties\": false,\n  \"required\": [", out);
   if (extra_required)
     text_json_string(extra_required, out);
-  if (extra_required && requires(table, "", 0))
+  if (extra_required && required(table, "", 0, NULL) > 0)
     fputs(", ", out);
   json_schema_required(table, out);
   fputs("],\n  \"properties\": {", out);

@@ -2,6 +2,7 @@
 #include "schemas/text.h"
 
 #include <math.h>
+#include <nettle/sha2.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -256,6 +257,15 @@ void text_hex(const void *bytes, size_t size, char *text) {
     *text++ = digits[at[k] & 15];
   }
   *text = '\0';
+}
+
+void text_sha256(const void *bytes, size_t size, char text[65]) {
+  struct sha256_ctx hash;
+  uint8_t digest[SHA256_DIGEST_SIZE];
+  sha256_init(&hash);
+  sha256_update(&hash, size, bytes);
+  sha256_digest(&hash, sizeof digest, digest);
+  text_hex(digest, sizeof digest, text);
 }
 
 void text_sentence(const char *doc, char *text, size_t size) {

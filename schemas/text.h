@@ -41,6 +41,9 @@ void text_append_fixed(char *text, size_t size, double number, int decimals);
 /* Writes 2 * `size` hexadecimal digits and a NUL. */
 void text_hex(const void *bytes, size_t size, char *text);
 
+/* SHA-256 (FIPS 180-4) of `size` bytes as 64 hexadecimal digits and a NUL: what `sha256sum FILE` gives. */
+void text_sha256(const void *bytes, size_t size, char text[65]);
+
 /* The first sentence of `doc` without its full stop. */
 void text_sentence(const char *doc, char *text, size_t size);
 

@@ -12,7 +12,7 @@
 #include "schemas/csv.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/sha256.h"
+#include "schemas/text.h"
 #include "schemas/unit.h"
 
 enum { LARGEST = 16 << 20, MOST_REPORTS = 10, CELL = 256 };
@@ -179,7 +179,7 @@ bool campaign_points_read(document_node *node, const char *folder, struct campai
   r->campaign = campaign;
   r->node = node;
   if (open_points(r, folder)) {
-    sha256_text(r->csv.bytes, r->csv.size, campaign->points_sha256);
+    text_sha256(r->csv.bytes, r->csv.size, campaign->points_sha256);
     good = read_items(r);
     csv_close(&r->csv);
   }

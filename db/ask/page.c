@@ -102,13 +102,6 @@ static status copy_spectra(struct ask_page *page, struct store *store, struct er
   return set_fact(page, "spectra_of_every_nth_point", (size_t)every, error);
 }
 
-/* Points: exact inputs, rounded statistics. The inputs come first in the view. */
-static status copy_points(struct ask_page *page, struct store *store, struct error *error) {
-  double axes = 0;
-  TRY(answer_number(store, &axes, error, "SELECT count(*) FROM axis"));
-  return copy(page, answer_to(store, error, "SELECT * FROM points"), "points", 3 + (size_t)axes);
-}
-
 /* ---- results whose runs have two modes at a point, by the rule of `clast scatter` ---- */
 
 struct modes {
@@ -117,18 +110,10 @@ struct modes {
   double limit; /* dip above which a sample of that size has two modes */
 };
 
-static status add_mode(const struct modes *modes, int64_t point, const char *quantity, const struct scatter *s,
-                       struct error *error) {
-  SQL_BIND(modes->insert, sql_of_integer(point), sql_of_text(quantity), sql_of_real(s->lower_mode),
-           sql_of_real(s->upper_mode), sql_of_real(s->between), sql_of_real(s->upper_share), sql_of_real(s->upper_low),
-           sql_of_real(s->upper_high));
-  return sql_run(modes->insert, doing, error);
-}
-
 /* One result of the counted runs of a point; sorts the values. */
 static status add_modes(struct modes *modes, int64_t point, const char *quantity, size_t n, double *values,
                         struct error *error) {
-  struct scatter scatter = {.n = n, .sorted = values};
+  struct scatter s = {.n = n, .sorted = values};
   if (n < 4)
     return STATUS_OK;
   qsort(values, n, sizeof *values, sample_ascending);
@@ -140,8 +125,11 @@ static status add_modes(struct modes *modes, int64_t point, const char *quantity
   }
   if (!(scatter_dip(n, values) > modes->limit))
     return STATUS_OK;
-  scatter_find_modes(&scatter);
-  return add_mode(modes, point, quantity, &scatter, error);
+  scatter_find_modes(&s);
+  SQL_BIND(modes->insert, sql_of_integer(point), sql_of_text(quantity), sql_of_real(s.lower_mode),
+           sql_of_real(s.upper_mode), sql_of_real(s.between), sql_of_real(s.upper_share), sql_of_real(s.upper_low),
+           sql_of_real(s.upper_high));
+  return sql_run(modes->insert, doing, error);
 }
 
 /* ---- the runs of a page, thinned, and the statistics of all of their results ---- */
@@ -552,6 +540,7 @@ static status add_questions(struct ask_page *page, struct error *error) {
 }
 
 static status fill(struct ask_page *page, struct store *store, struct error *error) {
+  double axes = 0;
   TRY(sql_execute(page->store.db,
                   "PRAGMA page_size = 4096;"
                   "CREATE TABLE fact (name TEXT PRIMARY KEY, value) WITHOUT ROWID;"
@@ -563,7 +552,9 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
                   doing, error));
   for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++)
     TRY(copy(page, answer_to(store, error, "%s", tables[i].sql), tables[i].name, EXACT));
-  TRY(copy_points(page, store, error));
+  /* exact inputs, which come first in the view, and rounded statistics */
+  TRY(answer_number(store, &axes, error, "SELECT count(*) FROM axis"));
+  TRY(copy(page, answer_to(store, error, "SELECT * FROM points"), "points", 3 + (size_t)axes));
   TRY(copy_spectra(page, store, error));
   TRY(copy(
       page,

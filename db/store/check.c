@@ -80,14 +80,11 @@ static status check_pages(struct report *report, struct error *error) {
 /* Every fragment of a run that counts has a mass. */
 static status check_fragment_counts(struct report *report, struct error *error) {
   const char *count = OUTCOME_NAME(fragment_count);
-  char
-      *sql = sqlite3_mprintf("SELECT 'run ' || run_id || ': ' || (length(masses) / 8.0) || ' masses, but %s is ' || %s "
-                             "FROM run JOIN fragment_mass USING (run_id) WHERE counts AND length(masses) <> 8 * %s",
-                             count, count, count);
-  const status result = sql ? no_rows(report, sql, error)
-                            : status_fail(error, STATUS_MEMORY, "%s: memory ran out", checking);
-  sqlite3_free(sql);
-  return result;
+  SQL_TEXT sql = NULL;
+  sql = sqlite3_mprintf("SELECT 'run ' || run_id || ': ' || (length(masses) / 8.0) || ' masses, but %s is ' || %s "
+                        "FROM run JOIN fragment_mass USING (run_id) WHERE counts AND length(masses) <> 8 * %s",
+                        count, count, count);
+  return sql ? no_rows(report, sql, error) : status_fail(error, STATUS_MEMORY, "%s: memory ran out", checking);
 }
 
 /* Runs without a row in the table of their engine, for every engine in the store. */
@@ -314,13 +311,11 @@ static status check_rows(struct report *report, struct error *error) {
     if (!schema_has_column(report->store->db, tables[i].table, "digest"))
       continue;
     TRY(digest_expression(report->store->db, tables[i].table, &expression, error));
-    char *sql = sqlite3_mprintf("SELECT DISTINCT 'point ' || %s || ': a bit of %s has changed since they were stored' "
-                                "FROM %s WHERE digest <> %z",
-                                tables[i].point, tables[i].what, tables[i].table, expression);
-    const status result = sql ? no_rows(report, sql, error)
-                              : status_fail(error, STATUS_MEMORY, "%s: memory ran out", checking);
-    sqlite3_free(sql);
-    TRY(result);
+    SQL_TEXT sql = NULL;
+    sql = sqlite3_mprintf("SELECT DISTINCT 'point ' || %s || ': a bit of %s has changed since they were stored' "
+                          "FROM %s WHERE digest <> %z",
+                          tables[i].point, tables[i].what, tables[i].table, expression);
+    TRY(sql ? no_rows(report, sql, error) : status_fail(error, STATUS_MEMORY, "%s: memory ran out", checking));
   }
   return STATUS_OK;
 }

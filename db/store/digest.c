@@ -170,20 +170,16 @@ void digest_function(sqlite3 *db) {
 }
 
 status digest_expression(sqlite3 *db, const char *table, char **sql, struct error *error) {
-  static const char doing[] = "listing columns";
   enum { MOST_COLUMNS = 60 }; /* SQLite's functions have at most 127 arguments */
-  STATEMENT columns = NULL;
-  status result = sql_prepare(db,
-                              "SELECT group_concat(format('%Q, \"%w\"', name, name), ', '), count(*) FROM "
-                              "pragma_table_info(?1, 'main') WHERE name <> 'digest'",
-                              &columns, doing, error);
-  sql_bind_text(columns, 1, table);
-  if (!sql_next(columns, &result, doing, error))
-    return result;
-  if (sqlite3_column_int(columns, 1) > MOST_COLUMNS)
+  int64_t count = 0;
+  TRY(sql_integerf(db, &count, error, "SELECT count(*) FROM pragma_table_info(%Q, 'main') WHERE name <> 'digest'",
+                   table));
+  if (count > MOST_COLUMNS)
     return status_fail(error, STATUS_CONTENT, "table %s has more than %d columns", table, MOST_COLUMNS);
-  *sql = sqlite3_mprintf("row_digest(%Q, %s)", table, sql_text(columns, 0));
-  return *sql ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  return sql_textf(db, sql, "listing columns", error,
+                   "SELECT format('row_digest(%%Q, %%s)', %Q, group_concat(format('%%Q, \"%%w\"', name, name), ', ')) "
+                   "FROM pragma_table_info(%Q, 'main') WHERE name <> 'digest'",
+                   table, table);
 }
 
 status digest_fill(sqlite3 *db, const char *table, const char *where, struct error *error) {
@@ -223,18 +219,14 @@ static const struct source of_points[] = {
 static status open_table(struct digest_rows *rows, const struct source *source, bool to_print, struct error *error) {
   if (rows->count == DIGEST_TABLES)
     return status_fail(error, STATUS_CONTENT, "more than %d tables of results in one store", DIGEST_TABLES);
-  char *question = sqlite3_mprintf("SELECT name FROM pragma_table_info(?1, 'main') WHERE name NOT IN (%s%s)",
-                                   source->but, to_print ? ", 'fields_digest'" : "");
-  char *columns = question ? sql_name_list(rows->db, question, source->table, NULL) : NULL;
-  sqlite3_free(question);
-  if (!columns)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  SQL_TEXT columns = NULL;
+  TRY(sql_textf(rows->db, &columns, doing, rows->error,
+                "SELECT group_concat(format(', \"%%w\"', name), '') FROM pragma_table_info(%Q, 'main') WHERE name NOT "
+                "IN (%s%s)",
+                source->table, source->but, to_print ? ", 'fields_digest'" : ""));
   struct digest_table *table = &rows->tables[rows->count++];
-  const status result = sql_preparef(rows->db, &table->rows, doing, error, "SELECT %s%s FROM main.\"%w\" WHERE %s = ?1",
-                                     source->row, columns, source->table, rows->key);
-  sqlite3_free(columns);
-  if (result != STATUS_OK)
-    return result;
+  TRY(sql_preparef(rows->db, &table->rows, doing, error, "SELECT %s%s FROM main.\"%w\" WHERE %s = ?1", source->row,
+                   columns, source->table, rows->key));
   const int count = sqlite3_column_count(table->rows);
   table->names = calloc((size_t)count, sizeof *table->names);
   if (!table->names)

@@ -10,6 +10,9 @@
 
 static const char doing[] = "merging";
 
+/* Documents that the build embeds: db/store/merge_parents.sql, db/store/merge_rest.sql. */
+extern const char merge_parents_sql[], merge_rest_sql[];
+
 /* ---- inspecting the source: all pages, then the digests of all rows. A thread does this with a connection of its own
  * while the caller copies the rows. It takes about a third of the time of a merge ---- */
 
@@ -53,15 +56,11 @@ static status compare(const struct inspection *inspection, enum digest_kind kind
                      inspection->source, rows.table, (long long)first, (long long)count);
 }
 
-static status inspect(struct inspection *inspection, struct error *error) {
-  TRY(check_pages(inspection->store, inspection->source, error));
-  TRY(compare(inspection, DIGEST_RUNS, error));
-  return compare(inspection, DIGEST_POINTS, error);
-}
-
 static void *inspect_all(void *context) {
   struct inspection *inspection = context;
-  inspection->result = inspect(inspection, &inspection->error);
+  inspection->result = check_pages(inspection->store, inspection->source, &inspection->error);
+  for (enum digest_kind kind = DIGEST_RUNS; inspection->result == STATUS_OK && kind <= DIGEST_POINTS; kind++)
+    inspection->result = compare(inspection, kind, &inspection->error);
   inspection->failed = inspection->result != STATUS_OK;
   return NULL;
 }
@@ -70,16 +69,6 @@ static void *inspect_all(void *context) {
  * statement endless. */
 static int has_failed(void *inspection) {
   return ((struct inspection *)inspection)->failed;
-}
-
-/* Opens the source, which refuses a missing, foreign, newer or older file and one with unexpected objects, and starts
- * the thread. Call end_inspection() in any case. */
-static status begin_inspection(struct inspection *inspection, struct error *error) {
-  TRY(store_open_reader(inspection->source, &inspection->store, error));
-  inspection->has_thread = pthread_create(&inspection->thread, NULL, inspect_all, inspection) == 0;
-  if (!inspection->has_thread)
-    inspect_all(inspection);
-  return STATUS_OK;
 }
 
 /* Waits for the end of the thread. STATUS_CONTENT: the source is damaged, so nothing that was copied may be kept. */
@@ -99,51 +88,12 @@ struct merged {
   int64_t common; /* number of runs that both stores have */
 };
 
-/* The columns of a table that both stores have, but the listed ones ("'a', 'b'"), each with a comma before it. Free
- * with sqlite3_free(). NULL: memory ran out. */
-static char *common_columns(sqlite3 *db, const char *table, const char *but) {
-  char *question = sqlite3_mprintf("SELECT a.name FROM pragma_table_info(?1, 'main') a JOIN pragma_table_info(?1, "
-                                   "'other') b USING (name) WHERE name NOT IN (%s)",
-                                   but);
-  char *columns = question ? sql_name_list(db, question, table, NULL) : NULL;
-  sqlite3_free(question);
-  return columns;
-}
-
-/* Adds the points, inputs, axes, campaigns and sessions that are missing. The temporary tables merge_point and
- * merge_session map the other store's ids to the ids here. Sessions are the same when the same process started them at
- * the same time. */
-static status map_parents(sqlite3 *db, struct error *error) {
-  return sql_execute(
-      db,
-      "CREATE TEMP TABLE merge_point AS SELECT b.point_id AS theirs, a.point_id AS ours FROM other.point b LEFT JOIN "
-      "main.point a USING (hash);"
-      "INSERT INTO main.point (hash, digest, engine, scene_name, scene) SELECT hash, digest, engine, scene_name, "
-      "scene FROM other.point WHERE point_id IN (SELECT theirs FROM merge_point WHERE ours IS NULL);"
-      "DROP TABLE merge_point; CREATE TEMP TABLE merge_point (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
-      "INSERT INTO merge_point SELECT b.point_id, a.point_id FROM other.point b JOIN main.point a USING (hash);"
-      "INSERT OR IGNORE INTO main.point_input (point_id, path, value) SELECT m.ours, i.path, i.value FROM "
-      "other.point_input i JOIN merge_point m ON m.theirs = i.point_id WHERE m.ours NOT IN (SELECT point_id FROM "
-      "main.point_input);"
-      "INSERT OR IGNORE INTO main.axis (path, column_name, unit, meaning) SELECT path, column_name, unit, meaning FROM "
-      "other.axis;"
-
-      "INSERT INTO main.campaign (name, document, plan, added_at) SELECT name, document, plan, added_at FROM "
-      "other.campaign b WHERE NOT EXISTS (SELECT 1 FROM main.campaign a WHERE a.name = b.name AND a.document = "
-      "b.document);"
-      "INSERT OR IGNORE INTO main.campaign_point (campaign_id, point_id) SELECT a.campaign_id, m.ours FROM "
-      "other.campaign_point c JOIN "
-      "other.campaign b ON b.campaign_id = c.campaign_id JOIN main.campaign a ON a.name = b.name AND a.document = "
-      "b.document JOIN merge_point m ON m.theirs = c.point_id;"
-
-      "INSERT INTO main.session (started_at, ended_at, outcome, host, pid, facts) SELECT started_at, ended_at, "
-      "outcome, host, pid, facts FROM other.session b WHERE NOT EXISTS (SELECT 1 FROM main.session a WHERE "
-      "(a.started_at, a.host, "
-      "a.pid) = (b.started_at, b.host, b.pid));"
-      "CREATE TEMP TABLE merge_session (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
-      "INSERT OR IGNORE INTO merge_session SELECT b.session_id, a.session_id FROM other.session b JOIN main.session a "
-      "ON (a.started_at, a.host, a.pid) = (b.started_at, b.host, b.pid);",
-      doing, error);
+/* The columns of a table that both stores have, but the listed ones ("'a', 'b'"), each with a comma before it. */
+static status list_columns(sqlite3 *db, const char *table, const char *but, char **columns, struct error *error) {
+  return sql_textf(db, columns, doing, error,
+                   "SELECT group_concat(format(', \"%%w\"', a.name), '') FROM pragma_table_info(%Q, 'main') a JOIN "
+                   "pragma_table_info(%Q, 'other') b USING (name) WHERE name NOT IN (%s)",
+                   table, table, but);
 }
 
 /* Lists the runs that are missing here in the temporary table merge_run, with new numbers after the last one. Numbers
@@ -162,43 +112,24 @@ static status find_runs(sqlite3 *db, struct merged *merged, struct error *error)
 }
 
 static status copy_runs(sqlite3 *db, struct error *error) {
-  char *columns = common_columns(db, "run", "'run_id', 'point_id', 'session_id'");
-  if (!columns)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  status result = sql_executef(
+  SQL_TEXT columns = NULL;
+  TRY(list_columns(db, "run", "'run_id', 'point_id', 'session_id'", &columns, error));
+  return sql_executef(
       db, doing, error,
       "INSERT OR FAIL INTO main.run (run_id, point_id, session_id%s) SELECT m.ours, (SELECT ours FROM merge_point p "
       "WHERE p.theirs = o.point_id), (SELECT ours FROM merge_session s WHERE s.theirs = o.session_id)%s FROM merge_run "
       "m CROSS JOIN other.run o ON o.run_id = m.theirs ORDER BY m.ours",
       columns, columns);
-  sqlite3_free(columns);
-  return result;
 }
 
 /* Rows of a table that belong to the runs that were copied. */
 static status copy_of_runs(sqlite3 *db, const char *table, struct error *error) {
-  char *columns = common_columns(db, table, "'run_id'");
-  if (!columns)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  status result = sql_executef(db, doing, error,
-                               "INSERT OR FAIL INTO main.\"%w\" (run_id%s) SELECT m.ours%s FROM merge_run m CROSS JOIN "
-                               "other.\"%w\" o ON o.run_id = m.theirs ORDER BY m.ours",
-                               table, columns, columns, table);
-  sqlite3_free(columns);
-  return result;
-}
-
-static status copy_attempts(sqlite3 *db, struct error *error) {
-  return sql_execute(
-      db,
-      "INSERT INTO main.attempt (identity, point_id, replicate, seed, session_id, number, reason, exit_code, signal, "
-      "wall_time, peak_memory, limited_to, message, host, rank, failed_at) SELECT b.identity, m.ours, b.replicate, "
-      "b.seed, s.ours, b.number, b.reason, b.exit_code, b.signal, b.wall_time, b.peak_memory, b.limited_to, b.message, "
-      "b.host, "
-      "b.rank, b.failed_at FROM other.attempt b JOIN merge_point m ON m.theirs = b.point_id LEFT JOIN merge_session s "
-      "ON s.theirs = b.session_id WHERE NOT EXISTS (SELECT 1 FROM main.attempt a WHERE (a.identity, a.number, "
-      "a.failed_at) = (b.identity, b.number, b.failed_at))",
-      doing, error);
+  SQL_TEXT columns = NULL;
+  TRY(list_columns(db, table, "'run_id'", &columns, error));
+  return sql_executef(db, doing, error,
+                      "INSERT OR FAIL INTO main.\"%w\" (run_id%s) SELECT m.ours%s FROM merge_run m CROSS JOIN "
+                      "other.\"%w\" o ON o.run_id = m.theirs ORDER BY m.ours",
+                      table, columns, columns, table);
 }
 
 static const char copying_spectra[] = "copying spectra";
@@ -253,32 +184,15 @@ static status copy_spectra(struct store *store, struct error *error) {
 /* Creates result tables of engines that this program lacks from the list of their columns. No SQL text of the other
  * store is run: its names are quoted, and its types are compared with those that a store allows. */
 static status make_tables(sqlite3 *db, struct error *error) {
-  STATEMENT tables = NULL;
-  status result = sql_prepare(
-      db,
-      "SELECT format('CREATE TABLE main.\"%w\" (run_id INTEGER PRIMARY KEY REFERENCES run (run_id)', t.name) || "
-      "(SELECT ifnull(group_concat(format(', \"%w\" %s', c.name, iif(c.type IN ('REAL', 'INTEGER'), c.type, 'TEXT')), "
-      "''), '') FROM pragma_table_info(t.name, 'other') c WHERE c.name <> 'run_id') || ') STRICT' FROM "
-      "other.sqlite_schema t WHERE t.type = 'table' AND t.name GLOB 'result_*' AND t.name NOT IN (SELECT name FROM "
-      "main.sqlite_schema)",
-      &tables, doing, error);
-  char *sql = NULL; /* SQL for all tables: no table can be created while the statement runs */
-  size_t size = 0;
-  FILE *out = text_open(&sql, &size);
-  while (out && sql_next(tables, &result, doing, error))
-    fprintf(out, "%s;\n", sql_text(tables, 0));
-  if (!out || !text_close(out, &sql))
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  if (result == STATUS_OK)
-    result = sql_execute(db, sql, doing, error);
-  free(sql);
-  if (result == STATUS_OK)
-    result =
-        sql_execute(db,
-                    "INSERT OR IGNORE INTO main.column_doc (table_name, column_name, unit, meaning, deterministic) "
-                    "SELECT table_name, column_name, unit, meaning, deterministic FROM other.column_doc",
-                    doing, error);
-  return result;
+  SQL_TEXT tables = NULL;
+  TRY(sql_textf(
+      db, &tables, doing, error,
+      "SELECT group_concat(format('CREATE TABLE main.\"%%w\" (run_id INTEGER PRIMARY KEY REFERENCES run (run_id)', "
+      "t.name) || (SELECT ifnull(group_concat(format(', \"%%w\" %%s', c.name, iif(c.type IN ('REAL', 'INTEGER'), "
+      "c.type, 'TEXT')), ''), '') FROM pragma_table_info(t.name, 'other') c WHERE c.name <> 'run_id') || ') STRICT;', "
+      "'') FROM other.sqlite_schema t WHERE t.type = 'table' AND t.name GLOB 'result_*' AND t.name NOT IN (SELECT name "
+      "FROM main.sqlite_schema)"));
+  return sql_execute(db, tables, doing, error);
 }
 
 static status copy_results(sqlite3 *db, struct error *error) {
@@ -292,47 +206,17 @@ static status copy_results(sqlite3 *db, struct error *error) {
   return result;
 }
 
-/* The campaigns of the sessions that were copied, shape files that are missing here, and units that only the other
- * store knows. */
-static const char copy_rest[] =
-    "UPDATE main.session SET campaign_id = of.campaign_id FROM (SELECT m.ours, a.campaign_id FROM merge_session m JOIN "
-    "other.session b ON b.session_id = m.theirs JOIN other.campaign c USING (campaign_id) JOIN main.campaign a ON "
-    "a.name = c.name AND a.document = c.document) AS of WHERE of.ours = session.session_id AND session.campaign_id IS "
-    "NULL;"
-    "INSERT OR IGNORE INTO main.shape_file (hash, bytes) SELECT hash, bytes FROM other.shape_file;"
-    "UPDATE main.axis SET written_unit = b.written_unit FROM other.axis b WHERE b.path = axis.path AND "
-    "axis.written_unit IS NULL";
-
 /* Copies tables, then rows in the order of their references. The pooled estimates of the points with new runs are stale
  * and go with the old sums. */
 static status copy_all(struct store *store, struct error *error) {
   sqlite3 *db = store->db;
   TRY(make_tables(db, error));
-  TRY(map_parents(db, error));
+  TRY(sql_execute(db, merge_parents_sql, doing, error));
   TRY(copy_runs(db, error));
   TRY(copy_results(db, error));
   TRY(copy_spectra(store, error));
-  TRY(copy_attempts(db, error));
-  TRY(sql_execute(db, copy_rest, doing, error));
+  TRY(sql_execute(db, merge_rest_sql, doing, error));
   return views_regenerate(db, error);
-}
-
-/* Runs of the same identity must have the same bits. A difference comes from another machine or a bug. */
-static status count_differing(sqlite3 *db, int64_t *differing, struct error *error) {
-  return sql_integer(
-      db,
-      "SELECT count(*) FROM other.run b CROSS JOIN main.run a USING (identity) WHERE a.state IS NOT b.state OR "
-      "(SELECT masses FROM main.fragment_mass m WHERE m.run_id = a.run_id) IS NOT "
-      "(SELECT masses FROM other.fragment_mass m WHERE m.run_id = b.run_id)",
-      0, differing, error);
-}
-
-/* Fields files are not moved: the paths of the added runs are made relative to the folder of this store. */
-static status keep_paths(struct store *store, const char *way, struct error *error) {
-  return sql_executef(store->db, doing, error,
-                      "UPDATE main.run SET fields_path = %Q || fields_path WHERE run_id IN (SELECT ours FROM "
-                      "merge_run) AND fields_path NOT LIKE '/%%'",
-                      way);
 }
 
 /* For a run in both stores, only the other store may name a fields file, or only the other store's file may exist. */
@@ -358,12 +242,16 @@ static status take_paths(struct store *store, const char *way, struct error *err
   return result;
 }
 
+/* Fields files are not moved: the paths of the added runs are made relative to the folder of this store. */
 static status merge_paths(struct store *store, const char *source, const struct merged *merged, struct error *error) {
   char *followed = paths_followed(source), *way = followed ? paths_between(store->path, followed) : NULL;
   free(followed);
   if (!way)
     return status_fail(error, STATUS_IO, "%s: the path of its folder cannot be resolved", source);
-  status result = keep_paths(store, way, error);
+  status result = sql_executef(store->db, doing, error,
+                               "UPDATE main.run SET fields_path = %Q || fields_path WHERE run_id IN (SELECT ours FROM "
+                               "merge_run) AND fields_path NOT LIKE '/%%'",
+                               way);
   if (result == STATUS_OK && merged->common)
     result = take_paths(store, way, error);
   free(way);
@@ -374,8 +262,13 @@ static status merge_paths(struct store *store, const char *source, const struct 
 static status copy_missing(struct store *store, const char *source, struct merged *merged, int64_t *differing,
                            struct error *error) {
   TRY(find_runs(store->db, merged, error));
-  if (merged->common)
-    TRY(count_differing(store->db, differing, error));
+  if (merged->common) /* Runs of the same identity must have the same bits. A difference comes from another machine or a
+                         bug */
+    TRY(sql_integer(store->db,
+                    "SELECT count(*) FROM other.run b CROSS JOIN main.run a USING (identity) WHERE a.state IS NOT "
+                    "b.state OR (SELECT masses FROM main.fragment_mass m WHERE m.run_id = a.run_id) IS NOT (SELECT "
+                    "masses FROM other.fragment_mass m WHERE m.run_id = b.run_id)",
+                    0, differing, error));
   TRY(copy_all(store, error));
   return merge_paths(store, source, merged, error);
 }
@@ -427,7 +320,11 @@ static status merge(struct store *store, const char *source, struct inspection *
   struct merged merged = {0};
   TRY(check_names(store, source, error));
   TRY(store_flush(store, error));
-  TRY(begin_inspection(inspection, error));
+  /* refuses a missing, foreign, newer or older file, and one with unexpected objects */
+  TRY(store_open_reader(source, &inspection->store, error));
+  inspection->has_thread = pthread_create(&inspection->thread, NULL, inspect_all, inspection) == 0;
+  if (!inspection->has_thread)
+    inspect_all(inspection);
   TRY(merge_inspected(store, source, inspection, &merged, differing, error));
   *added = merged.added;
   return STATUS_OK;

@@ -141,18 +141,15 @@ static status replace_rows(struct store *store, const struct store_convergence *
 }
 
 static status replace_study(struct store *store, const struct store_convergence *study, struct error *error) {
-  char *where = sqlite3_mprintf("base_point_id = %lld AND results_version = %d AND knob = %Q AND quantity = %Q",
-                                (long long)study->base_point_id, study->results_version, study->limit->knob,
-                                study->limit->quantity);
+  SQL_TEXT where = sqlite3_mprintf("base_point_id = %lld AND results_version = %d AND knob = %Q AND quantity = %Q",
+                                   (long long)study->base_point_id, study->results_version, study->limit->knob,
+                                   study->limit->quantity);
   if (!where)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", writing_study);
-  status result = replace_rows(store, study, where, "convergence", LEVEL_COLUMNS, &convergence_table, study->count,
-                               sizeof *study->rows, study->rows, error);
-  if (result == STATUS_OK)
-    result = replace_rows(store, study, where, "convergence_limit", LIMIT_COLUMNS, &convergence_limit_table, 1, 0,
-                          study->limit, error);
-  sqlite3_free(where);
-  return result;
+  TRY(replace_rows(store, study, where, "convergence", LEVEL_COLUMNS, &convergence_table, study->count,
+                   sizeof *study->rows, study->rows, error));
+  return replace_rows(store, study, where, "convergence_limit", LIMIT_COLUMNS, &convergence_limit_table, 1, 0,
+                      study->limit, error);
 }
 
 status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error) {

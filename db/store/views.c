@@ -182,32 +182,24 @@ static void write_axes(struct view *view) {
              "\"%w\",' || char(10), path, column_name) FROM axis ORDER BY path");
 }
 
-/* Does the result table of an engine hold a row? */
-static bool is_filled(sqlite3 *db, const char *table) {
-  int64_t filled = 0;
-  return sql_integerf(db, &filled, NULL, "SELECT EXISTS (SELECT 1 FROM main.\"%w\")", table) == STATUS_OK && filled;
-}
-
-/* The names of the result tables, or of those that hold a row, as the inside of IN (...). NULL: there is none. Free
- * with sqlite3_free(). */
-static char *list_tables(struct view *view, bool filled_only) {
+/* The result tables of the engines that have runs, as the inside of IN (...); of all engines while there are no runs.
+ * Free with sqlite3_free(). */
+static char *result_tables(struct view *view) {
   STATEMENT names = NULL;
-  char *list = NULL;
+  char *filled = NULL, *all = NULL;
   view->result = sql_prepare(
       view->db, "SELECT name FROM main.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*' ORDER BY 1", &names,
       doing, view->error);
-  while (view->result == STATUS_OK && sql_next(names, &view->result, doing, view->error))
-    if (!filled_only || is_filled(view->db, sql_text(names, 0)))
-      list = sqlite3_mprintf("%z%s%Q", list, list ? ", " : "", sql_text(names, 0));
-  return list;
-}
-
-/* The result tables of the engines that have runs; of all engines while there are no runs. */
-static char *result_tables(struct view *view) {
-  char *list = list_tables(view, true);
-  if (!list && view->result == STATUS_OK)
-    list = list_tables(view, false);
-  return list ? list : sqlite3_mprintf("''");
+  while (view->result == STATUS_OK && sql_next(names, &view->result, doing, view->error)) {
+    const char *name = sql_text(names, 0);
+    int64_t rows = 0;
+    all = sqlite3_mprintf("%z%s%Q", all, all ? ", " : "", name);
+    view->result = sql_integerf(view->db, &rows, view->error, "SELECT EXISTS (SELECT 1 FROM main.\"%w\")", name);
+    if (rows)
+      filled = sqlite3_mprintf("%z%s%Q", filled, filled ? ", " : "", name);
+  }
+  sqlite3_free(filled ? all : NULL);
+  return filled ? filled : all ? all : sqlite3_mprintf("''");
 }
 
 /* Writes the columns of run, then of the engines' result tables. An engine's column with the name of another column
@@ -227,7 +219,7 @@ static void write_result_columns(struct view *view, const char *tables) {
 }
 
 static void write_runs(struct view *view) {
-  char *tables = result_tables(view);
+  SQL_TEXT tables = result_tables(view);
   fputs("runs AS -- every run with its varied inputs and all results of its engine\n"
         "SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.seed,\n",
         view->out);
@@ -239,7 +231,6 @@ static void write_runs(struct view *view) {
                             "FROM main.sqlite_schema WHERE type = 'table' AND name IN (%s) ORDER BY name",
                             tables));
   fputs(";\n", view->out);
-  sqlite3_free(tables);
 }
 
 /* For every point and quantity with a study: the sum over the knobs of the error that each knob leaves, taken at the
@@ -364,17 +355,14 @@ status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size,
   char plain[256];
   STATEMENT statement = NULL;
   field_column_name(path, plain, sizeof plain);
-  status result =
-      sql_prepare(db,
+  TRY(sql_prepare(db,
                   "SELECT 1 FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, "
                   "pragma_table_info(v.column1) c WHERE c.name = ?1 COLLATE NOCASE UNION ALL SELECT 1 FROM axis WHERE "
                   "column_name = ?1 COLLATE NOCASE UNION ALL SELECT 1 FROM main.sqlite_schema t, "
                   "pragma_table_xinfo(t.name, 'main') c WHERE t.type = 'table' AND t.name GLOB 'result_*' "
                   "AND c.name = ?1 COLLATE NOCASE",
-                  &statement, doing, error);
-  if (result != STATUS_OK)
-    return result;
-  sqlite3_bind_text(statement, 1, plain, -1, SQLITE_STATIC);
+                  &statement, doing, error));
+  sql_bind_text(statement, 1, plain);
   bool taken = sqlite3_step(statement) == SQLITE_ROW;
   snprintf(name, size, "%s%s", taken ? "input_" : "", plain);
   return STATUS_OK;

@@ -13,7 +13,7 @@
 #include "engine/mesh/build.h"
 #include "engine/vector3.h"
 #include "schemas/file.h"
-#include "schemas/sha256.h"
+#include "schemas/text.h"
 
 /* Least share of its box that a body fills (drawing points from a smaller one takes too long); largest coordinate, in
  * units of the file. */
@@ -408,7 +408,7 @@ const struct mesh_file *mesh_files_find(const char *hash) {
 static status add(const char *name, unsigned char *bytes, size_t size, const struct mesh_file **out,
                   struct error *error) {
   char hash[MESH_HASH_SIZE];
-  sha256_text(bytes, size, hash);
+  text_sha256(bytes, size, hash);
   *out = mesh_files_find(hash);
   if (*out) {
     free(bytes);

@@ -42,7 +42,7 @@ if [ "$sanitized" -eq 0 ]; then
   (cd "$build" && cpack -G DEB -B "$work/package") >out 2>err || fail "cpack"
   package=$(echo package/*.deb)
   dpkg-deb -f "$package" Depends >depends
-  for library in libc6 libfyaml0 libhdf5 libgsl27 libsqlite3-0 libmicrohttpd12 libjansson4 libcairo2 libopenmpi3; do
+  for library in libc6 libfyaml0 libhdf5 libgsl27 libsqlite3-0 libmicrohttpd12 libjansson4 libnettle8 libcairo2 libopenmpi3; do
     grep -q "$library" depends || fail "the package does not depend on $library: $(cat depends)"
   done
   dpkg-deb -x "$package" unpacked

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "schemas/csv.h"
-#include "schemas/sha256.h"
 #include "schemas/text.h"
 
 static struct error error;
@@ -174,10 +173,10 @@ static void sums(void **state) {
   for (size_t i = 0; i < sizeof bytes; i++)
     bytes[i] = (unsigned char)i;
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    sha256_text(bytes, cases[i].size, text);
+    text_sha256(bytes, cases[i].size, text);
     assert_string_equal(text, cases[i].sum);
   }
-  sha256_text("abc", 3, text);
+  text_sha256("abc", 3, text);
   assert_string_equal(text, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
