@@ -8,7 +8,6 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     OPTION_ROW_INTEGER("rounds", 'r', "N", struct fit_launch, rounds, 3, FIT_MOST_ROUNDS, "8"),
-    OPTION_ROW_INTEGER("check", 0, "N", struct fit_launch, check, 0, 100000, "0"),
     OPTION_ROW_INTEGER("seed", 0, "N", struct fit_launch, seed, 0, INT64_MAX, "1"),
     OPTION_ROW_TEXT("store", 0, "FILE", struct fit_launch, store, NULL),
     OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE", struct fit_launch, picture),

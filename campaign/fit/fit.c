@@ -97,14 +97,11 @@ static status allocate(struct fit *fit, struct error *error) {
   fit->members = (size_t)fit->campaign->design.points;
   fit->replicates = (size_t)fit->campaign->per_point;
   fit->capacity = fit->members * (size_t)fit->rule.rounds;
-  const size_t d = fit->observed->datum_count, particles = (size_t)fit->rule.check;
+  const size_t d = fit->observed->datum_count;
   fit->z = calloc(fit->capacity * fit->inputs, sizeof(double));
   fit->values = calloc(fit->capacity * d * fit->replicates, sizeof(double));
   fit->place = calloc(fit->members * fit->inputs, sizeof(double));
-  fit->specimens = calloc((particles + 1) * d, sizeof(double));
-  if (!fit->z || !fit->values || !fit->place || !fit->specimens)
-    return status_fail(error, STATUS_MEMORY, "no memory for a fit");
-  return particles ? approximate_begin(&fit->check, particles, fit->inputs, fit->rule.seed, error) : STATUS_OK;
+  return fit->z && fit->values && fit->place ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a fit");
 }
 
 /* Makes the first ensemble: the points of `clast run` for this campaign. */
@@ -159,8 +156,6 @@ void fit_free(struct fit *fit) {
   free(fit->z);
   free(fit->values);
   free(fit->place);
-  free(fit->specimens);
-  approximate_clear(&fit->check);
   surfaces_clear(&fit->surfaces);
   posterior_clear(&fit->posterior);
   free(fit);

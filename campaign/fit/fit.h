@@ -13,11 +13,10 @@
 #include "campaign/document/observed.h"
 #include "campaign/launch/launch.h"
 
-enum { FIT_FEWEST_MEMBERS = 8, FIT_MOST_ROUNDS = 10, FIT_CHECK_ROUNDS = 12 };
+enum { FIT_FEWEST_MEMBERS = 8, FIT_MOST_ROUNDS = 10 };
 
 struct fit_rule {
   int64_t rounds; /* most rounds of the ensemble, including the last round at its end and one from the posterior */
-  int64_t check;  /* particles of the approximate Bayesian computation; 0: none */
   uint64_t seed;  /* seed of the algebra's random numbers; the runs' seeds are the campaign's */
   void (*note)(void *context, const char *text); /* a line after each round; may be NULL */
   void *note_context;
@@ -27,7 +26,6 @@ enum fit_phase {
   FIT_ENSEMBLE, /* members move towards the data */
   FIT_ARRIVED,  /* one round at their last places */
   FIT_REFINED,  /* one round at places drawn from the posterior */
-  FIT_CHECKED,  /* rounds of the approximate Bayesian computation */
   FIT_DONE,
 };
 
@@ -53,9 +51,6 @@ struct fit {
   double *place; /* owned: members x inputs, of the current round */
   double gamma[OBSERVED_DATA * OBSERVED_DATA];
   size_t rounds; /* rounds of the ensemble that were run, all phases */
-  struct approximate check;
-  double *specimens; /* owned: particles x data, of the current round of the check */
-  size_t proposed, check_rounds;
 
   /* What was found. */
   struct surfaces surfaces;
@@ -90,7 +85,7 @@ struct fit_launch {
   struct launch_options launch;
   struct chart_options chart;
   const char *store, *picture;
-  int64_t rounds, check, seed;
+  int64_t rounds, seed;
 };
 
 /* Reads both documents (line->arguments), runs the rounds, prints the report on rank 0. */
@@ -100,7 +95,7 @@ status fit_rounds_launch(const struct command_line *line, const struct fit_launc
 /* ---- fit_print.c ---- */
 
 /* For people a table of the inputs, a table of the measurements, and conclusions in sentences. For programs one table:
- * rows of kind input, then of kind measured, then of kind check. */
+ * rows of kind input, then of kind measured. */
 status fit_print(const struct fit *fit, enum table_format format, struct error *error);
 
 /* Draws the measurements beside the predictions for one more experiment. */

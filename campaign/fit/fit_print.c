@@ -26,13 +26,11 @@ static struct ask_doubts all_doubts(const struct fit *fit) {
 
 /* ---- inputs ---- */
 
-static void input_cells(const struct fit *fit, size_t i, bool check, const struct ask_doubts *doubts,
-                        struct table *table) {
+static void input_cells(const struct fit *fit, size_t i, const struct ask_doubts *doubts, struct table *table) {
   const double z05 = posterior_coordinate(0.05), z95 = posterior_coordinate(0.95);
   double z[3];
   for (int q = 0; q < 3; q++)
-    z[q] = check ? approximate_quantile(&fit->check, i, levels[2 * q])
-                 : posterior_quantile(&fit->posterior, i, levels[2 * q]);
+    z[q] = posterior_quantile(&fit->posterior, i, levels[2 * q]);
   table_real(table, fit_number(fit, i, z05));
   table_real(table, fit_number(fit, i, z95));
   for (int q = 0; q < 3; q++) {
@@ -45,14 +43,14 @@ static void input_cells(const struct fit *fit, size_t i, bool check, const struc
 static const char *const input_columns[] = {"input",  "unit", "prior_05", "prior_95", "q05",
                                             "median", "q95",  "kept",     NULL};
 
-static status print_inputs(const struct fit *fit, bool check, struct error *error) {
+static status print_inputs(const struct fit *fit, struct error *error) {
   TABLE table = table_new(TABLE_TEXT, stdout);
   table_columns(table, input_columns);
   const struct ask_doubts doubts = all_doubts(fit);
   for (size_t i = 0; i < fit->inputs; i++) {
     table_text(table, row_of(fit, i)->path);
     table_text(table, row_of(fit, i)->unit);
-    input_cells(fit, i, check, &doubts, table);
+    input_cells(fit, i, &doubts, table);
   }
   return table_end(table, error);
 }
@@ -120,24 +118,21 @@ static void skip(struct table *table, int cells) {
     table_missing(table);
 }
 
-static void input_row(const struct fit *fit, size_t i, bool check, struct table *table) {
-  table_text(table, check ? "check" : "input");
-  table_text(table, row_of(fit, i)->path);
-  table_text(table, row_of(fit, i)->unit);
-  const struct ask_doubts doubts = all_doubts(fit);
-  input_cells(fit, i, check, &doubts, table);
-  skip(table, 5);
-  table_doubt_cells(table, &doubts);
-}
-
 static status print_rows(const struct fit *fit, enum table_format format, struct error *error) {
   TABLE table = table_new(format, stdout);
   char label[LABEL];
   table_columns(table, (const char *const[]){"kind", "name", "unit", "prior_05", "prior_95", "q05", "median", "q95",
                                              "kept", "value", "error", "sd_seeds", "sd_resolution", "below", NULL});
   table_doubt_columns(table);
-  for (size_t i = 0; i < fit->inputs; i++)
-    input_row(fit, i, false, table);
+  const struct ask_doubts doubts = all_doubts(fit);
+  for (size_t i = 0; i < fit->inputs; i++) {
+    table_text(table, "input");
+    table_text(table, row_of(fit, i)->path);
+    table_text(table, row_of(fit, i)->unit);
+    input_cells(fit, i, &doubts, table);
+    skip(table, 5);
+    table_doubt_cells(table, &doubts);
+  }
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct field *row = fit->observed->data[k].ask.row;
     observed_label(fit->observed, k, label, sizeof label);
@@ -152,8 +147,6 @@ static status print_rows(const struct fit *fit, enum table_format format, struct
     table_real(table, posterior_below(&fit->surfaces.model, &fit->posterior, k));
     table_doubt_cells(table, &fit->doubts[k]);
   }
-  for (size_t i = 0; fit->check.kept && i < fit->inputs; i++)
-    input_row(fit, i, true, table);
   return table_end(table, error);
 }
 
@@ -323,7 +316,7 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
     if (fabs(scatter->skewness) > 4 * sqrt(6 / n) || fabs(scatter->excess) > 4 * sqrt(24 / n))
       say(out,
           "SCATTER: %s is not normal over seeds (skewness %.2g, excess kurtosis %.2g%s), as the likelihood takes it "
-          "to be. `--check` fits without that.",
+          "to be. A sampler without a formula (pyabc, on `clast serve`) fits without that.",
           label, scatter->skewness, scatter->excess, scatter->excess < -1 ? ": two heaps" : "");
     if (beyond(fit, k) < 0.025)
       say(out, "MISFIT: no inputs within the priors predict %s well: only %.2g of predicted experiments lie %s it.",
@@ -352,18 +345,14 @@ static void tell(const struct fit *fit, FILE *out) {
 status fit_print(const struct fit *fit, enum table_format format, struct error *error) {
   if (format != TABLE_TEXT)
     return print_rows(fit, format, error);
-  TRY(print_inputs(fit, false, error));
+  TRY(print_inputs(fit, error));
   putchar('\n');
   TRY(print_data(fit, error));
   putchar('\n');
   tell(fit, stdout);
   const struct ask_doubts doubts = all_doubts(fit);
   uncertainty_doubts(&doubts, stderr);
-  if (!fit->check.kept)
-    return STATUS_OK;
-  printf("\nCheck without a formula for the likelihood (ABC, %zu runs nearest to the data, distance up to %.3g):\n",
-         fit->check.kept, fit->check.tolerance);
-  return print_inputs(fit, true, error);
+  return STATUS_OK;
 }
 
 /* "shot 1: mass share of the largest fragment M1/M = 0.31". */

@@ -10,40 +10,23 @@
 
 /* ---- a round as campaigns ---- */
 
-static bool is_check(const struct fit *fit) {
-  return fit->phase == FIT_CHECKED;
-}
-
-/* The places of the current round, and their number. */
-static const double *places(const struct fit *fit, size_t *count) {
-  *count = is_check(fit) ? fit->proposed : fit->members;
-  return is_check(fit) ? fit->check.z + fit->check.kept * fit->inputs : fit->place;
-}
-
 static status make_campaign(const struct fit *fit, struct campaign **out, struct error *error) {
   const struct observed_shot *shot = &fit->observed->shots[fit->shot];
   const struct campaign *from = fit->campaign;
-  size_t count;
-  const double *z = places(fit, &count);
-  TRY(driver_list_begin(from, shot->scene, from->axis_count, count, out, error));
+  TRY(driver_list_begin(from, shot->scene, from->axis_count, fit->members, out, error));
   struct campaign *campaign = *out;
   for (size_t i = 0; i < from->axis_count; i++)
     campaign->axes[i].row = from->axes[i].row;
-  for (size_t j = 0; j < count; j++) {
+  for (size_t j = 0; j < fit->members; j++) {
     for (size_t i = 0; i < fit->inputs; i++)
-      fit_value(fit, i, z[j * fit->inputs + i], &campaign->axes[fit->axis[i]].levels[j]);
+      fit_value(fit, i, fit->place[j * fit->inputs + i], &campaign->axes[fit->axis[i]].levels[j]);
     for (size_t i = 0; i < from->axis_count; i++) {
       const struct design_axis *axis = &from->axes[i];
       if (axis->kind == DESIGN_AXIS_LINKED)
         design_axis_follow(axis, &campaign->axes[axis->linked].levels[j], 0, &campaign->axes[i].levels[j]);
     }
   }
-  if (is_check(fit)) {
-    campaign->per_point = shot->specimens;
-    campaign->independent = true; /* each particle is a specimen of its own */
-  }
-  snprintf(campaign->name, sizeof campaign->name, "%.100s %s %zu, %.100s", from->name, is_check(fit) ? "check" : "fit",
-           is_check(fit) ? fit->check_rounds + 1 : fit->rounds + 1, shot->name);
+  snprintf(campaign->name, sizeof campaign->name, "%.100s fit %zu, %.100s", from->name, fit->rounds + 1, shot->name);
   return driver_list_end(campaign, fit->scene_reference, "Written by clast fit: a round of its runs.", error);
 }
 
@@ -95,14 +78,15 @@ static struct scene *scene_of(const struct fit *fit, const double *z, struct err
   return scene;
 }
 
-/* Reads the values of the shot's data at a point of the store; point 0: it has none. */
+/* Reads the values of the shot's data at a point of the store: data x replicates. Point 0: it has none. */
 static status read_data(struct fit *fit, struct store *store, const struct scene *scene, int64_t point,
-                        const uint64_t *seeds, size_t count, double *values, size_t stride, struct error *error) {
+                        const uint64_t *seeds, double *values, struct error *error) {
+  const size_t count = fit->replicates;
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct observed_datum *datum = &fit->observed->data[k];
     if (datum->shot != fit->shot)
       continue;
-    double *of_datum = values + k * stride, value;
+    double *of_datum = values + k * count, value;
     uint64_t seed;
     for (size_t r = 0; r < count; r++)
       of_datum[r] = NAN;
@@ -118,54 +102,22 @@ static status read_data(struct fit *fit, struct store *store, const struct scene
   return STATUS_OK;
 }
 
-/* Reads `count` replicates of the shot's data at z; the values of datum k begin at values + k * stride. A point that
- * cannot be run has no values. */
-static status read_point(struct fit *fit, struct store *store, const double *z, bool independent, size_t count,
-                         double *values, size_t stride, struct error *error) {
+/* Reads the replicates of the shot's data at z. A point that cannot be run has no values. */
+static status read_point(struct fit *fit, struct store *store, const double *z, double *values, struct error *error) {
+  const size_t count = fit->replicates;
   struct error invalid = {0};
-  struct campaign own = *fit->campaign;
   struct scene *scene = scene_of(fit, z, &invalid);
   uint64_t *seeds = calloc(count, sizeof *seeds);
   int64_t point = 0;
   status code = seeds ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a point");
-  own.independent = independent;
   for (size_t r = 0; seeds && scene && r < count; r++)
-    seeds[r] = campaign_seed(&own, scene, (int64_t)r);
+    seeds[r] = campaign_seed(fit->campaign, scene, (int64_t)r);
   if (code == STATUS_OK && scene)
     code = store_point_find(store, scene, &point, error);
   if (code == STATUS_OK)
-    code = read_data(fit, store, scene, point, seeds, count, values, stride, error);
+    code = read_data(fit, store, scene, point, seeds, values, error);
   free(seeds);
   scene_free(scene);
-  return code;
-}
-
-/* Reads the values of the shot under way for the members at z into fit->values, after the existing points. */
-static status read_members(struct fit *fit, struct store *store, const double *z, struct error *error) {
-  const size_t d = fit->observed->datum_count, r = fit->replicates;
-  for (size_t j = 0; j < fit->members; j++)
-    TRY(read_point(fit, store, z + j * fit->inputs, fit->campaign->independent, r,
-                   fit->values + (fit->points + j) * d * r, r, error));
-  return STATUS_OK;
-}
-
-/* Reads the values of the particles at z into fit->specimens: means over the shot's specimens. */
-static status read_particles(struct fit *fit, struct store *store, const double *z, struct error *error) {
-  const size_t d = fit->observed->datum_count, n = (size_t)fit->observed->shots[fit->shot].specimens;
-  double *values = calloc(n * d, sizeof *values);
-  status code = values ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a check");
-  for (size_t j = 0; code == STATUS_OK && j < fit->proposed; j++) {
-    code = read_point(fit, store, z + j * fit->inputs, true, n, values, n, error);
-    for (size_t k = 0; code == STATUS_OK && k < d; k++) {
-      if (fit->observed->data[k].shot != fit->shot)
-        continue;
-      double sum = 0;
-      for (size_t r = 0; r < n; r++)
-        sum += values[k * n + r];
-      fit->specimens[j * d + k] = sum / (double)n;
-    }
-  }
-  free(values);
   return code;
 }
 
@@ -215,12 +167,8 @@ static void tell(const struct fit *fit) {
   char text[256];
   if (!fit->rule.note)
     return;
-  if (is_check(fit))
-    snprintf(text, sizeof text, "check %zu: distance %.3g, %.0f %% of the particles came nearer", fit->check_rounds,
-             fit->check.tolerance, 100 * fit->check.accepted);
-  else
-    snprintf(text, sizeof text, "round %zu: %zu points, %.0f %% of the data taken in", fit->rounds, fit->points,
-             100 * fit->ensemble.tempered);
+  snprintf(text, sizeof text, "round %zu: %zu points, %.0f %% of the data taken in", fit->rounds, fit->points,
+           100 * fit->ensemble.tempered);
   fit->rule.note(fit->rule.note_context, text);
 }
 
@@ -239,64 +187,19 @@ static status after_ensemble(struct fit *fit, struct error *error) {
   default: fit->phase = FIT_DONE; break;
   }
   tell(fit);
-  if (fit->phase == FIT_DONE && fit->rule.check) {
-    fit->phase = FIT_CHECKED;
-    TRY(fit_solve(fit, error)); /* its errors scale the distances */
-    fit->proposed = approximate_propose(&fit->check);
-  }
-  return STATUS_OK;
-}
-
-/* Distance of each particle from the data, in units of the scatter and errors at the middle of the posterior. The
- * errors of measurement and resolution are drawn at random for each particle. */
-static void find_distances(struct fit *fit, double *distance) {
-  const size_t d = fit->observed->datum_count;
-  double middle[INFERENCE_INPUTS], c[INFERENCE_INPUTS * INFERENCE_INPUTS];
-  double mean[INFERENCE_OUTPUTS], spread[INFERENCE_OUTPUTS * INFERENCE_OUTPUTS];
-  posterior_moments(&fit->posterior, middle, c);
-  posterior_expect(&fit->surfaces.model, middle, mean, spread);
-  for (size_t n = 0; n < fit->proposed; n++) {
-    double squares = 0;
-    for (size_t k = 0; k < d; k++) {
-      const double own = hypot(fit->data[k].error, fit->data[k].resolution);
-      const double u = random_draw(fit->rule.seed, RANDOM_INFERENCE, UINT64_C(1) << 59 | fit->check_rounds << 32 | n,
-                                   k);
-      const double value = fit->specimens[n * d + k] + own * posterior_coordinate(u);
-      const double step = (value - fit->data[k].value) / sqrt(spread[k * d + k]);
-      squares += step * step;
-    }
-    distance[n] = sqrt(squares);
-  }
-}
-
-static status after_check(struct fit *fit, struct error *error) {
-  double *distance = calloc(fit->proposed + 1, sizeof *distance);
-  if (!distance)
-    return status_fail(error, STATUS_MEMORY, "no memory for a check");
-  find_distances(fit, distance);
-  approximate_take(&fit->check, distance);
-  free(distance);
-  fit->check_rounds++;
-  tell(fit);
-  if (fit->check_rounds >= FIT_CHECK_ROUNDS || fit->check.accepted < 0.1)
-    fit->phase = FIT_DONE;
-  else
-    fit->proposed = approximate_propose(&fit->check);
   return STATUS_OK;
 }
 
 static status end_round(void *context, const struct scheduler *scheduler, struct error *error) {
   struct fit *fit = context;
-  size_t count;
-  const double *z = places(fit, &count);
-  TRY((is_check(fit) ? read_particles : read_members)(fit, scheduler->store, z, error));
+  const size_t size = fit->observed->datum_count * fit->replicates; /* values of a point */
+  for (size_t j = 0; j < fit->members; j++)
+    TRY(read_point(fit, scheduler->store, fit->place + j * fit->inputs, fit->values + (fit->points + j) * size, error));
   if (++fit->shot < fit->observed->shot_count)
     return STATUS_OK;
   fit->shot = 0;
-  if (is_check(fit))
-    return after_check(fit, error);
-  memcpy(fit->z + fit->points * fit->inputs, fit->place, count * fit->inputs * sizeof *fit->z);
-  fit->points += count;
+  memcpy(fit->z + fit->points * fit->inputs, fit->place, fit->members * fit->inputs * sizeof *fit->z);
+  fit->points += fit->members;
   return after_ensemble(fit, error);
 }
 
@@ -318,9 +221,8 @@ static status run_fit(void *context, struct launch *launch, struct error *error)
   const char *store = launch->scheduler.store_path = fit->campaign->store;
   struct series_summary summary;
   if (launch->manager && !launch->notes.quiet)
-    fprintf(stderr, "clast: at most %" PRId64 " runs in %" PRId64 " rounds%s\n",
-            (int64_t)(fit->observed->shot_count * fit->members * fit->replicates) * options->rounds, options->rounds,
-            options->check ? ", and those of the check" : "");
+    fprintf(stderr, "clast: at most %" PRId64 " runs in %" PRId64 " rounds\n",
+            (int64_t)(fit->observed->shot_count * fit->members * fit->replicates) * options->rounds, options->rounds);
   const status code = driver_run_series(&series, launch->farm, &launch->scheduler, &summary, error);
   launch_tell_series(launch, code, store, &summary, true);
   if (!launch->manager || code != STATUS_OK)
@@ -335,7 +237,6 @@ status fit_rounds_launch(const struct command_line *line, const struct fit_launc
   struct launching launching = {.options = options, .format = format};
   struct launch_notes notes = {.quiet = options->launch.quiet};
   const struct fit_rule rule = {.rounds = options->rounds,
-                                .check = options->check,
                                 .seed = (uint64_t)options->seed,
                                 .note = launch_note,
                                 .note_context = &notes};

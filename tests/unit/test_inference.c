@@ -459,36 +459,6 @@ static void five_inputs_are_sampled(void **state) {
   case_clear(&fit);
 }
 
-/* y = z + two clusters at -1 and +1, y = 0 measured: the posterior has two modes, unlike any normal law. */
-static void approximation_finds_two_modes(void **state) {
-  (void)state;
-  enum { PARTICLES = 1000 };
-  static double distance[PARTICLES];
-  struct approximate a;
-  struct error error;
-  assert_int_equal(approximate_begin(&a, PARTICLES, 1, 5, &error), STATUS_OK);
-  for (uint64_t round = 0; round < 12 && a.accepted > 0.05; round++) {
-    const size_t n = approximate_propose(&a);
-    for (size_t i = 0; i < n; i++) {
-      const double heap = random_draw(round, 100, i, 1) < 0.5 ? -1 : 1;
-      distance[i] = fabs(a.z[a.kept + i] + heap + 0.2 * case_normal(round, i, 0));
-    }
-    approximate_take(&a, distance);
-  }
-  assert_true(a.tolerance < 0.25); /* of the order of the scatter in a cluster */
-  double inside = 0, sum = 0, upper = 0;
-  for (size_t n = 0; n < a.kept; n++) {
-    sum += a.weight[n];
-    inside += fabs(a.z[n]) < 0.4 ? a.weight[n] : 0;
-    upper += a.z[n] > 0 ? a.weight[n] : 0;
-  }
-  assert_true(inside / sum < 0.05);
-  assert_near(upper / sum, 0.5, 0.12);
-  /* Each mode: prior 1 about 0, data 0.2 about +-1. */
-  assert_near(approximate_quantile(&a, 0, 0.75), 1 / 1.04, 0.1);
-  approximate_clear(&a);
-}
-
 static int start(void **state) {
   (void)state;
   analysis_init();
@@ -548,7 +518,6 @@ int main(void) {
       cmocka_unit_test(ridges_are_seen),
       cmocka_unit_test(ridges_follow_unequal_slopes),
       cmocka_unit_test(five_inputs_are_sampled),
-      cmocka_unit_test(approximation_finds_two_modes),
   };
   return cmocka_run_group_tests(tests, start, NULL);
 }
