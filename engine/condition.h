@@ -38,6 +38,10 @@ struct condition {
   double (*after)(const struct condition_run *run);
 };
 
+/* A row of an engine's list. */
+#define CONDITION(word_, ...)                                                                                          \
+  { .word = word_, __VA_ARGS__ }
+
 /* Is a number beyond the bound? Not when it is NaN. */
 bool condition_broken(const struct condition *condition, double number);
 
