@@ -1,31 +1,8 @@
-/* The descriptor of engine `sph`: its hooks call the run and its reports. */
+/* The descriptor of engine `sph`: its calls are those of the run and its reports. */
 #include "engine/sph/sph.h"
 
 #include "engine/sph/material/material.h"
 #include "engine/sph/run/run.h"
-
-static void complete(void *inputs, const bool *given) {
-  sph_inputs_complete(inputs, given);
-}
-
-static status check_given(const void *inputs, const bool *given, struct error *error) {
-  return sph_inputs_check_given(inputs, given, error);
-}
-static status check(const void *inputs, struct error *error) {
-  return sph_inputs_check(inputs, error);
-}
-
-static char *describe(const void *inputs) {
-  return sph_describe_scene(inputs);
-}
-
-static size_t memory(const void *inputs) {
-  return sph_describe_memory(inputs);
-}
-
-static double work(const void *inputs) {
-  return sph_describe_work(inputs);
-}
 
 static int64_t *threads(void *inputs) {
   return &((struct sph_inputs *)inputs)->fidelity.threads;
@@ -36,15 +13,6 @@ static status prepare(const void *inputs, uint64_t seed, void **run, struct erro
   status code = sph_run_create(inputs, seed, &made, error);
   *run = made;
   return code;
-}
-
-static status finish(void *run, struct outcome *outcome, void *result, struct fragment **fragments,
-                     size_t *fragment_count, struct error *error) {
-  return sph_report_finish(run, outcome, result, fragments, fragment_count, error);
-}
-
-static status write_snapshot(void *run, const char *path, struct error *error) {
-  return sph_snapshot_write(run, path, error);
 }
 
 static size_t system_size(const void *run) {
@@ -61,10 +29,6 @@ static status load_system(void *run, const void *bytes, size_t size, struct erro
     return STATUS_OK;
   status code = r->system->fault == SPH_FAULT_MEMORY ? STATUS_MEMORY : STATUS_CONTENT;
   return status_fail(error, code, "%s", r->system->failure);
-}
-
-static void release(void *run) {
-  sph_run_free(run);
 }
 
 static const struct knob knobs[] = {
@@ -120,22 +84,22 @@ const struct engine_kind sph_engine = {
     .results = &sph_results,
     .knobs = knobs,
     .materials = &sph_materials,
-    .complete = complete,
-    .check_given = check_given,
-    .check = check,
+    .complete = sph_inputs_complete,
+    .check_given = sph_inputs_check_given,
+    .check = sph_inputs_check,
     .conditions = sph_conditions,
-    .describe = describe,
-    .memory = memory,
-    .work = work,
+    .describe = sph_describe_scene,
+    .memory = sph_describe_memory,
+    .work = sph_describe_work,
     .threads = threads,
     .prepare = prepare,
     .step = frame_step,
     .progress = frame_progress,
     .time = frame_time,
-    .finish = finish,
-    .write_snapshot = write_snapshot,
+    .finish = sph_report_finish,
+    .write_snapshot = sph_snapshot_write,
     .system_size = system_size,
     .save_system = save_system,
     .load_system = load_system,
-    .free = release,
+    .free = sph_run_free,
 };

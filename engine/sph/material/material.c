@@ -105,7 +105,7 @@ status sph_materials_parse(const char *name, const char *text, struct sph_materi
   return code ? code : read_material(document, out, error);
 }
 
-status sph_materials_open(const char *path, struct sph_material *out, char **text, struct error *error) {
+status sph_materials_open(const char *path, void *out, char **text, struct error *error) {
   struct document *document = NULL;
   *text = NULL;
   TRY(document_open(path, &document, error));
@@ -142,7 +142,7 @@ status sph_materials_source(const char *name, const char *path, char source[FIEL
   return source[0] ? STATUS_OK : STATUS_MISSING;
 }
 
-status sph_materials_load(const char *name, struct sph_material *out, struct error *error) {
+status sph_materials_load(const char *name, void *out, struct error *error) {
   const char *text = sph_materials_text(name);
   if (text)
     return sph_materials_parse(name, text, out, error);
@@ -152,13 +152,6 @@ status sph_materials_load(const char *name, struct sph_material *out, struct err
   const char *near = guess.nearest;
   return status_fail(error, STATUS_MISSING, "there is no material '%.100s'%s%s%s `clast materials` lists them", name,
                      near ? "; did you mean '" : ";", near ? near : "", near ? "'?" : "");
-}
-
-static status load(const char *name, void *material, struct error *error) {
-  return sph_materials_load(name, material, error);
-}
-static status load_file(const char *path, void *material, char **text, struct error *error) {
-  return sph_materials_open(path, material, text, error);
 }
 
 static const char *const overview[][2] = {{"density", "density"},
@@ -171,8 +164,8 @@ const struct engine_materials sph_materials = {.values = &sph_materials_table,
                                                .overview = overview,
                                                .name = sph_materials_name,
                                                .text = sph_materials_text,
-                                               .load = load,
-                                               .load_file = load_file,
+                                               .load = sph_materials_load,
+                                               .load_file = sph_materials_open,
                                                .source = sph_materials_source};
 
 /* Elastic constants, wave speeds and crack speeds that follow from a material. */

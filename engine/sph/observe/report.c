@@ -299,8 +299,9 @@ static void fill_outcome(const struct sph_run *run, const struct sph_ledger *led
   outcome->momentum_error = closed(run) ? sph_results_share(norm(change), momentum_scale(run, ledger)) : (double)NAN;
 }
 
-status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,
-                         struct fragment **fragments, size_t *count, struct error *error) {
+status sph_report_finish(void *of, struct outcome *outcome, void *results, struct fragment **fragments, size_t *count,
+                         struct error *error) {
+  struct sph_run *run = of;
   *fragments = NULL;
   *count = 0;
   sph_run_read(run);

@@ -161,7 +161,8 @@ static void add_profile(struct snapshot_file *file, const struct sph_run *run) {
   free(layers);
 }
 
-status sph_snapshot_write(struct sph_run *run, const char *path, struct error *error) {
+status sph_snapshot_write(void *of, const char *path, struct error *error) {
+  struct sph_run *run = of;
   const struct sph_inputs *in = &run->inputs;
   struct outcome outcome;
   struct sph_results results;

@@ -217,7 +217,8 @@ status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph
   return STATUS_OK;
 }
 
-void sph_run_free(struct sph_run *run) {
+void sph_run_free(void *of) {
+  struct sph_run *run = of;
   if (!run)
     return;
   sph_system_free(run->system);

@@ -64,8 +64,9 @@ struct sph_run {
   bool has_gaps;
 };
 
+/* Calls of struct engine_kind have its types: the run is a struct sph_run, inputs are a struct sph_inputs. */
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error);
-void sph_run_free(struct sph_run *run); /* NULL is fine */
+void sph_run_free(void *run); /* NULL is fine */
 /* The particles as they are now, in the order of their ids; owned by the run, valid until the next call. */
 const struct sph_particles *sph_run_read(struct sph_run *run);
 double sph_run_closed(const struct sph_ledger *ledger); /* the sum that must stay constant, J; `clamped` is not in it */
@@ -76,9 +77,9 @@ double sph_run_extent(const struct sph_run *run);       /* m, the target's reach
 status sph_protocol_bodies(struct sph_run *run, struct error *error);
 
 /* describe.c */
-char *sph_describe_scene(const struct sph_inputs *inputs);
-size_t sph_describe_memory(const struct sph_inputs *inputs); /* bytes a run will need */
-double sph_describe_work(const struct sph_inputs *inputs);   /* particle-steps, an estimate */
+char *sph_describe_scene(const void *inputs);
+size_t sph_describe_memory(const void *inputs); /* bytes a run will need */
+double sph_describe_work(const void *inputs);   /* particle-steps, an estimate */
 
 /* conditions.c */
 extern const struct condition sph_conditions[]; /* engine_kind.conditions */
@@ -118,12 +119,12 @@ struct sph_crater_options sph_report_crater_options(const struct sph_run *run);
 /* The target's fragments by the inputs' rules, except for the two choices given. Uses the particles last read. */
 status sph_report_fragments(const struct sph_run *run, double static_strength, bool layer, struct sph_fragments *out,
                             struct error *error);
-/* *fragments: by descending mass, malloc'd. */
-status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,
-                         struct fragment **fragments, size_t *count, struct error *error);
+/* results: struct sph_results. *fragments: by descending mass, malloc'd. */
+status sph_report_finish(void *run, struct outcome *outcome, void *results, struct fragment **fragments, size_t *count,
+                         struct error *error);
 
 /* snapshot.c: a fields file of the run as it is now. */
-status sph_snapshot_write(struct sph_run *run, const char *path, struct error *error);
+status sph_snapshot_write(void *run, const char *path, struct error *error);
 /* Particles as a VTKHDF 1.0 grid of vertices, row i particle i, and the table /fragments. It needs no run. flaws:
  * number of flaws of each particle, or NULL. */
 void sph_snapshot_particles(struct snapshot_file *file, const struct sph_particles *particles,

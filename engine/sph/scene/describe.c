@@ -60,7 +60,8 @@ static struct need need_of(const struct sph_inputs *in) {
   return need;
 }
 
-size_t sph_describe_memory(const struct sph_inputs *in) {
+size_t sph_describe_memory(const void *inputs) {
+  const struct sph_inputs *in = inputs;
   const struct need need = need_of(in);
   const double particles = sph_derived_particles(in);
   double bytes = BYTES_ANYWAY + particles * (sph_system_columns_bytes(&need.columns, need.pairs, &in->fidelity) +
@@ -87,8 +88,8 @@ static double speed_expected(const struct sph_inputs *in) {
   return 1e9 / cost;
 }
 
-double sph_describe_work(const struct sph_inputs *in) {
-  return sph_derived_particles(in) * steps_expected(in);
+double sph_describe_work(const void *inputs) {
+  return sph_derived_particles(inputs) * steps_expected(inputs);
 }
 
 /* ---- text ---- */
@@ -206,7 +207,8 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
             sqrt(sph_material_young_modulus(&target->material) / target->material.density) / (2 * target->length));
 }
 
-char *sph_describe_scene(const struct sph_inputs *in) {
+char *sph_describe_scene(const void *inputs) {
+  const struct sph_inputs *in = inputs;
   char *text = NULL;
   size_t size = 0;
   FILE *out = text_open(&text, &size);

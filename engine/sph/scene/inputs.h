@@ -110,12 +110,13 @@ struct sph_inputs {
 
 extern struct field_table sph_inputs; /* constant once main() begins */
 
-/* inputs_complete.c: sets inputs that were not given and follow from others (engine_kind.complete). */
-void sph_inputs_complete(struct sph_inputs *inputs, const bool *given);
-/* inputs_check.c: values that a custom material must give (engine_kind.check_given). STATUS_CONTENT. */
-status sph_inputs_check_given(const struct sph_inputs *inputs, const bool *given, struct error *error);
+/* Calls of struct engine_kind have its types: inputs are a struct sph_inputs.
+ * inputs_complete.c: sets inputs that were not given and follow from others. */
+void sph_inputs_complete(void *inputs, const bool *given);
+/* inputs_check.c: values that a custom material must give. STATUS_CONTENT. */
+status sph_inputs_check_given(const void *inputs, const bool *given, struct error *error);
 /* inputs_check.c: conditions across fields. STATUS_CONTENT with a remedy. */
-status sph_inputs_check(const struct sph_inputs *inputs, struct error *error);
+status sph_inputs_check(const void *inputs, struct error *error);
 /* How to have fewer particles: "lower fidelity.particles". */
 const char *sph_inputs_check_fewer(const struct sph_inputs *inputs);
 

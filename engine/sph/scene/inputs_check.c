@@ -91,7 +91,8 @@ static status check_material(const struct sph_inputs *in, const char *body_name,
 }
 
 /* Values that may be off must be set to off explicitly: without a yield stress a body is elastic at any stress. */
-status sph_inputs_check_given(const struct sph_inputs *in, const bool *given, struct error *error) {
+status sph_inputs_check_given(const void *scene, const bool *given, struct error *error) {
+  const struct sph_inputs *in = scene;
   static const char *const must[] = {"yield_stress", "melt_energy", "tension_limit", "weibull.m", "weibull.k"};
   for (int b = 0; b < 2; b++) {
     const char *body = b ? "projectile" : "target";
@@ -319,11 +320,11 @@ static status check_cost(const struct sph_inputs *in, struct error *error) {
   return STATUS_OK;
 }
 
-status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
+status sph_inputs_check(const void *inputs, struct error *error) {
   static status (*const checks[])(const struct sph_inputs *, struct error *) = {check_bodies, check_protocol,
                                                                                 check_cracks, check_lengths,
                                                                                 check_cost};
   for (size_t k = 0; k < sizeof checks / sizeof checks[0]; k++)
-    TRY(checks[k](in, error));
+    TRY(checks[k](inputs, error));
   return STATUS_OK;
 }

@@ -83,7 +83,8 @@ static double late(const struct sph_inputs *in) {
       in->member = (value);                                                                                            \
   } while (0)
 
-void sph_inputs_complete(struct sph_inputs *in, const bool *given) {
+void sph_inputs_complete(void *inputs, const bool *given) {
+  struct sph_inputs *in = inputs;
   complete_material(in, &in->target, "basalt", given);
   complete_material(in, &in->projectile, "nylon", given);
   const bool specimens = in->kind == SPH_IMPACT || in->kind == SPH_STRETCH;
