@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "analysis/inference/covariance.h"
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 
 enum { NODES = 64 };
 static const double STEP = 0.05; /* step of the slopes, in normal coordinates */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "analysis/inference/covariance.h"
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 
 static struct sample_moments moments_of(const struct seed_scatter_runs *runs, size_t point) {
   const double *v = runs->values + point * runs->replicates;

@@ -13,8 +13,7 @@
 #include <stdio.h>
 
 #include "analysis/pictures/chart.h"
-#include "analysis/statistics/pooled.h"
-#include "analysis/statistics/scatter.h"
+#include "analysis/statistics/statistics.h"
 
 enum { PICTURE_SERIES = 8 }; /* more series in one chart are hard to tell apart */
 

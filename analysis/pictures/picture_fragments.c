@@ -3,7 +3,7 @@
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/snapshot_read.h"
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 
 #include <math.h>
 #include <stdbool.h>

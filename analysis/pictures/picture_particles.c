@@ -2,7 +2,7 @@
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/picture_layout.h"
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -12,7 +12,7 @@ export function student(degrees) {
   return 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 * x) * x) * x) * x;
 }
 
-// The 95 % interval of a mean, as clast makes it; the numbers and their reasons are in analysis/statistics/sample.h.
+// The 95 % interval of a mean, as clast makes it; the numbers and their reasons are in analysis/statistics/statistics.h.
 export function interval(mean, sd, n, share = false) {
   const none = {hw95: null, low95: null, high95: null, weak: null};
   if (!(n > 1) || sd === null) return none;

@@ -82,7 +82,7 @@ struct convergence_row { /* one level of one knob, for one quantity */
   double step; /* NaN: the knob has none */
   int64_t n;
   double mean, half_width, deviation, skew;
-  double upper_mode; /* share of the runs in the upper of two modes (scatter.h); NaN: one mode */
+  double upper_mode; /* share of the runs in the upper of two modes (scatter_find_modes); NaN: one mode */
   double cpu;
   double bias, bias_half_width;
   double correlation, correlation_low, correlation_high; /* with the next finer level */

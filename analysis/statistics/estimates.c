@@ -1,5 +1,5 @@
 /* The standard set of exponents of a run, and the table that describes a row of it. */
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 
 #include <math.h>
 #include <stdio.h>

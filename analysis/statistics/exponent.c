@@ -1,12 +1,9 @@
 /* Exponents of one sample, by method. */
-#include "analysis/statistics/exponent.h"
+#include "analysis/statistics/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "analysis/statistics/power_law.h"
-#include "analysis/statistics/sample.h"
 
 FIELD_WORDS(exponent_method_names, EXPONENT_METHODS, [EXPONENT_LEAST_SQUARES] = "least_squares",
             [EXPONENT_MASSES] = "masses", [EXPONENT_UPPER_CUTOFF] = "cutoff");

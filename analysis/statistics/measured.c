@@ -1,5 +1,5 @@
 /* Compares a measured spectrum with simulated ones: Kolmogorov's distance and a likelihood, above the complete mass. */
-#include "analysis/statistics/measured.h"
+#include "analysis/statistics/statistics.h"
 
 #include <ctype.h>
 #include <math.h>

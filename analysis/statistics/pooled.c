@@ -1,5 +1,5 @@
 /* Exponents of a point from all its runs, with the jackknife over runs; pooled spectra; the test of a power law. */
-#include "analysis/statistics/pooled.h"
+#include "analysis/statistics/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +7,6 @@
 #include <omp.h>
 #endif
 
-#include "analysis/statistics/power_law.h"
 #include "engine/random.h"
 #include "engine/threads.h"
 

@@ -1,5 +1,5 @@
 /* The likelihood equation of a power law and its root; its rivals by Newton's method on quadrature. */
-#include "analysis/statistics/power_law.h"
+#include "analysis/statistics/statistics.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Means, scatters, intervals, the jackknife, the stopping rule, and differences of means. */
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>

@@ -1,12 +1,11 @@
 /* Moments, quantiles, modes and a histogram of a sample; the split of a variance; the dip. */
-#include "analysis/statistics/scatter.h"
+#include "analysis/statistics/statistics.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "analysis/statistics/sample.h"
 #include "engine/random.h"
 
 const double scatter_shares[SCATTER_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
@@ -170,7 +169,7 @@ struct split {
   size_t axis; /* `axes`: all inputs together */
   size_t levels;
   double *sum, *product, *weight; /* by level */
-  int part;                       /* parts after the axes: enum in scatter.h */
+  int part;                       /* parts after the axes: enum in statistics.h */
 };
 
 static size_t level_of(const struct split *s, size_t p) {

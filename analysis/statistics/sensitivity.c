@@ -1,5 +1,5 @@
 /* Sobol indices and elementary effects with their intervals. */
-#include "analysis/statistics/sensitivity.h"
+#include "analysis/statistics/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Mass bins with exact edges. */
-#include "analysis/statistics/spectrum.h"
+#include "analysis/statistics/statistics.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,8 +4,7 @@
 #define CLAST_CAMPAIGN_CHARTS_CHARTS_H
 
 #include "analysis/pictures/picture.h"
-#include "analysis/statistics/exponent.h"
-#include "analysis/statistics/measured.h"
+#include "analysis/statistics/statistics.h"
 #include "campaign/terminal/option.h"
 #include "db/ask/ask.h"
 #include "engine/outcome.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 #include "campaign/charts/charts.h"
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/ask.h"

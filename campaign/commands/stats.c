@@ -1,5 +1,5 @@
 /* `clast stats STORE --by AXES`: means over seeds, with their errors. */
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 #include "campaign/commands/commands.h"
 
 struct options {

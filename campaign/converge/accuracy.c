@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "campaign/converge/study.h"
 #include "campaign/document/campaign.h"
 #include "campaign/terminal/table.h"

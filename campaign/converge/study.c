@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/sample.h"
-#include "analysis/statistics/scatter.h"
+#include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
 #include "schemas/limits.h"
 

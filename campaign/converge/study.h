@@ -9,7 +9,7 @@
 #define CLAST_CAMPAIGN_CONVERGE_STUDY_H
 
 #include "analysis/statistics/convergence.h"
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 #include "campaign/converge/ladder.h"
 #include "campaign/document/campaign.h"
 #include "campaign/launch/launch.h"

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "schemas/memory.h"
 

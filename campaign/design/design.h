@@ -89,7 +89,7 @@ enum { DESIGN_SOBOL_BITS = 30 }; /* GSL's resolution */
 uint32_t design_sobol_shift(uint64_t seed,
                             size_t dimension); /* DESIGN_SOBOL_BITS bits, XORed into the integer coordinate */
 
-/* Designs for sensitivity indices: blocks of points in the form that analysis/statistics/sensitivity.h needs. */
+/* Designs for sensitivity indices: blocks of points in the form that sensitivity_sobol() needs. */
 
 enum design_sensitivity_kind {
   DESIGN_SENSITIVITY_SALTELLI, /* A, B, and A with one input of B for each input; A and B are Sobol numbers */

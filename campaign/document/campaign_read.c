@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 #include "db/store/store.h"
 #include "schemas/memory.h"
 

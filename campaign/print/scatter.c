@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/sensitivity.h"
+#include "analysis/statistics/statistics.h"
 #include "campaign/document/campaign.h"
 #include "campaign/print/print.h"
 #include "engine/grow.h"

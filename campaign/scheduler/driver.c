@@ -10,7 +10,7 @@
 #define uthash_nonfatal_oom(seen) free(seen)
 #include <uthash.h>
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "campaign/scheduler/point.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"

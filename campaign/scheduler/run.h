@@ -4,7 +4,7 @@
 #ifndef CLAST_CAMPAIGN_SCHEDULER_RUN_H
 #define CLAST_CAMPAIGN_SCHEDULER_RUN_H
 
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 #include "db/store/store.h"
 #include "engine/scene.h"
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 
 static const char *const statistic_names[SERVE_STATISTICS] = {"mean", "sd", "se", "hw95"};
 

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 
 struct progress_state {
   int64_t done; /* finished runs, including those found in the store */

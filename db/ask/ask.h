@@ -3,9 +3,7 @@
 #define CLAST_DB_ASK_ASK_H
 
 #include "analysis/statistics/convergence.h"
-#include "analysis/statistics/estimates.h"
-#include "analysis/statistics/pooled.h"
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "db/ask/answer.h"
 #include "engine/outcome.h"
 #include "schemas/limits.h"

@@ -1,7 +1,7 @@
 /* Counts the runs behind a number whose words mark or withhold it. */
 #include <string.h>
 
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
 #include "db/sql.h"
 #include "db/store/views.h"

@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/sample.h"
-#include "analysis/statistics/scatter.h"
+#include "analysis/statistics/statistics.h"
 #include "db/sql.h"
 #include "db/store/internal.h"
 #include "db/store/views.h"

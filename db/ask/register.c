@@ -2,9 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/pooled.h"
-#include "analysis/statistics/sample.h"
-#include "analysis/statistics/spectrum.h"
+#include "analysis/statistics/statistics.h"
 #include "db/ask/answer.h"
 #include "db/store/internal.h"
 #include "engine/engine.h"

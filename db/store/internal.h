@@ -3,7 +3,7 @@
 #ifndef CLAST_DB_STORE_INTERNAL_H
 #define CLAST_DB_STORE_INTERNAL_H
 
-#include "analysis/statistics/spectrum.h"
+#include "analysis/statistics/statistics.h"
 #include "db/sql.h"
 #include "db/store/store.h"
 #include "schemas/limits.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "analysis/statistics/convergence.h"
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/outcome.h"
 #include "schemas/text.h"
 

@@ -11,7 +11,7 @@
 #include <stdio.h>
 
 #include "analysis/statistics/convergence.h"
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/outcome.h"
 #include "engine/scene.h"
 #include "schemas/status.h"

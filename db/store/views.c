@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "db/store/schema.h"
 #include "engine/engine.h"
 #include "engine/outcome.h"

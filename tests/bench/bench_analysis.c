@@ -6,9 +6,7 @@
 #include <time.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/estimates.h"
-#include "analysis/statistics/pooled.h"
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 
 static double seconds(void) {

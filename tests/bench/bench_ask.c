@@ -5,8 +5,7 @@
 #include <time.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/sample.h"
-#include "analysis/statistics/scatter.h"
+#include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
 #include "schemas/clock.h"
 #include "tests/support/store_fixture.h"

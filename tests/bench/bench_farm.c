@@ -71,16 +71,16 @@ static double ideal(double sum) {
   return sum / (SLOTS * since(start));
 }
 
-struct measured {
+struct timing {
   struct farm_usage usage;
   double utilisation, of_given;
 };
 
-static struct measured farm_over(const double *cost, int count, bool in_process, struct farm_manager *manager) {
+static struct timing farm_over(const double *cost, int count, bool in_process, struct farm_manager *manager) {
   struct task_list list;
   struct error error = {0};
   struct farm *farm = NULL;
-  struct measured measured = {0};
+  struct timing measured = {0};
   double sum = 0;
   tasks_from(&list, cost, count);
   for (int i = 0; i < count; i++)
@@ -261,7 +261,7 @@ int main(int argc, char **argv) {
          one_s = NAN, waiting = NAN;
   for (int round = 0; round < rounds; round++) {
     best(&best_ideal, ideal(cost_sum));
-    struct measured it = farm_over(costs, TASKS, true, NULL);
+    struct timing it = farm_over(costs, TASKS, true, NULL);
     best(&in_process, it.utilisation);
     best(&given_in, it.of_given);
     best(&manager, -it.usage.manager_cpu_s / it.usage.wall_s);

@@ -2,7 +2,7 @@
  * `name value unit`; times are the best of several. Usage: bench_store [runs [folder]]. */
 #include <time.h>
 
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
 #include "schemas/clock.h"
 #include "tests/support/store_fixture.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "analysis/statistics/measured.h"
+#include "analysis/statistics/statistics.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 
 static void pairs_are_used(void **state) {
   (void)state;

@@ -8,8 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "analysis/statistics/sample.h"
-#include "analysis/statistics/scatter.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 
 /* The definition, by all pairs and triples of knots. A distribution function G is within d of F at both sides of every

@@ -8,7 +8,7 @@
 #include <math.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 
 static void rows_of_a_run(void **state) {
   (void)state;

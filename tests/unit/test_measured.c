@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "analysis/statistics/measured.h"
+#include "analysis/statistics/statistics.h"
 
 static const struct spectrum_size no_size = {0, 3};
 static const char path[] = "test-measured.csv";

@@ -10,7 +10,7 @@
 #include <sqlite3.h>
 
 #include "analysis/report/page.h"
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
 #include "tests/support/store_checks.h"
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/scatter.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 
 static double normal(uint64_t a, uint64_t b, uint64_t c) {

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/sensitivity.h"
+#include "analysis/statistics/statistics.h"
 #include "campaign/design/design.h"
 #include "engine/random.h"
 

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "analysis/statistics/spectrum.h"
+#include "analysis/statistics/statistics.h"
 
 static void edges_are_exact(void **state) {
   (void)state;

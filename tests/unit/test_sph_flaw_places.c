@@ -9,7 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "engine/sph/body/flaws.h"
 #include "engine/sph/body/kd_tree.h"

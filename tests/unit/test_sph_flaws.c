@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "tests/support/grady_kipp.h"
 
 static struct sph_flaws *make(double m, double k, int draw, uint64_t seed, size_t n) {

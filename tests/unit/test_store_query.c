@@ -9,7 +9,7 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "db/store/internal.h"
 #include "db/store/views.h"
 #include "tests/support/store_checks.h"

@@ -8,7 +8,7 @@
 
 #include <sqlite3.h>
 
-#include "analysis/statistics/estimates.h"
+#include "analysis/statistics/statistics.h"
 #include "tests/support/store_checks.h"
 
 static void line(void *context, const char *text) {

@@ -8,7 +8,7 @@
 
 #include <sqlite3.h>
 
-#include "analysis/statistics/spectrum.h"
+#include "analysis/statistics/statistics.h"
 #include "db/store/internal.h"
 #include "tests/support/store_checks.h"
 

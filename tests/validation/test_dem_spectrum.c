@@ -9,8 +9,7 @@
  * CLAST_SEEDS=n changes the number. */
 #include "tests/support/run_case.h"
 
-#include "analysis/statistics/exponent.h"
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/dem/run/run.h"
 
 enum { MOST_RUNS = 1000, WINDOWS = 3, BANDS = 10 };

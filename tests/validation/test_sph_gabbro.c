@@ -18,7 +18,7 @@
  * takes the mean of n seeds for m = 3 in the half-space. */
 #include "tests/support/run_case.h"
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 

@@ -10,7 +10,7 @@
  * of this code. */
 #include "tests/support/run_case.h"
 
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/sph/run/run.h"
 
 enum { MOST_RUNS = 1000 };

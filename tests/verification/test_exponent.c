@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/exponent.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 
 enum { SAMPLES = 200, MOST = 1001 };
@@ -117,7 +117,7 @@ static void equal_grains_are_discrete(void **state) {
   (void)state;
   enum { N = 2000, SETS = 60 };
   /* From one grain up as if continuous: 1 + 1/mean(ln N) = 2.755, the sum done by hand (2.77 was measured). From
-   * N - 1/2 the windows of estimates.h: 1.955, 1.996, 2.004. */
+   * N - 1/2 the windows of estimates: 1.955, 1.996, 2.004. */
   const double lower[4] = {1, 1.5, 4.5, 9.5}, expected[4] = {2.755, 1.955, 1.996, 2.004};
   double mean[4] = {0}, squares[4] = {0};
   static double masses[N];

@@ -16,8 +16,7 @@
 #include <string.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/estimates.h"
-#include "analysis/statistics/pooled.h"
+#include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
 #include "engine/random.h"
 #include "tests/support/run_case.h"

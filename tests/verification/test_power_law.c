@@ -10,8 +10,7 @@
 #include <stdio.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/exponent.h"
-#include "analysis/statistics/power_law.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 
 /* The sample mean of a cut exponential, straight from its definition; the fit must return the rate. */

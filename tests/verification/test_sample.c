@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 
 static double normal(uint64_t stream, uint64_t sample, uint64_t i) {

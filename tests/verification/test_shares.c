@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "tests/support/run_case.h"
 

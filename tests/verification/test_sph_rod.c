@@ -13,7 +13,7 @@
  * With fracture.front: plane the speed is within 5 % from 12 000 particles on.
  *
  * CLAST_FULL=1: other options and resolutions, 50 000 particles in 2 and three seeds; else 12 000 there. */
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/sph/body/flaws.h"
 #include "tests/support/grady_kipp.h"
 #include "tests/support/sph_solid.h"

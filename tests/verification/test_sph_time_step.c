@@ -3,7 +3,7 @@
  * (fracture.h says how damage is advanced now).
  *
  * Quick: two scenes, small bodies. CLAST_FULL=1: the six scenes of sph_time_step.md, and steps between. */
-#include "analysis/statistics/sample.h"
+#include "analysis/statistics/statistics.h"
 #include "engine/sph/observe/results.h"
 #include "tests/support/run_case.h"
 
