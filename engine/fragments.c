@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "schemas/memory.h"
+
 /* Path halving. The root is the lowest index of its set, so labels do not depend on the order of the links. */
 uint32_t fragments_root(uint32_t *parent, uint32_t i) {
   while (parent[i] != i) {
@@ -44,13 +46,10 @@ size_t fragments_label(size_t n, const double *mass, size_t link_count, const ui
   for (size_t i = 0; i < n; i++)
     count += label[i] == i;
   /* number[root]: the number of its fragment. Without memory the labels stay roots and the count is 0. */
-  struct component *components = malloc((count ? count : 1) * sizeof *components);
-  uint32_t *number = malloc((n ? n : 1) * sizeof *number);
-  if (!components || !number) {
-    free(components);
-    free(number);
+  OWNED struct component *components = malloc((count ? count : 1) * sizeof *components);
+  OWNED uint32_t *number = malloc((n ? n : 1) * sizeof *number);
+  if (!components || !number)
     return 0;
-  }
   size_t next = 0;
   for (size_t i = 0; i < n; i++) {
     uint32_t root = fragments_root(label, (uint32_t)i);
@@ -67,8 +66,6 @@ size_t fragments_label(size_t n, const double *mass, size_t link_count, const ui
    * its set, so the loop goes downwards. */
   for (size_t i = n; i-- > 0;)
     label[i] = number[fragments_root(label, (uint32_t)i)];
-  free(components);
-  free(number);
   return count;
 }
 
@@ -79,13 +76,12 @@ static status no_memory(size_t n, struct error *error) {
 /* Quantities common to 2D and 3D: labels, masses, centres of mass, velocities, kinetic energies, counts. */
 static status gather(size_t n, const struct fragment_member *members, size_t link_count, const uint32_t (*links)[2],
                      uint32_t *label, struct fragment **out, size_t *count, struct error *error) {
-  double *mass = malloc(n * sizeof *mass);
+  OWNED double *mass = malloc(n * sizeof *mass);
   if (!mass)
     return no_memory(n, error);
   for (size_t i = 0; i < n; i++)
     mass[i] = members[i].mass;
   size_t found = fragments_label(n, mass, link_count, links, label);
-  free(mass);
   struct fragment *fragments = found ? calloc(found, sizeof *fragments) : NULL;
   if (!fragments)
     return no_memory(n, error);

@@ -9,6 +9,7 @@
 
 #include "engine/cpu_class.h"
 #include "schemas/file.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 static const char magic[8] = "CLASTRUN";
@@ -103,15 +104,13 @@ static bool get_exactly(struct bytes *b, uint64_t number) {
 /* Writes a file of these parts. */
 static status write_parts(const struct engine_kind *kind, const void *inputs, uint64_t seed,
                           const struct part parts[PARTS], const char *path, struct error *error) {
-  char *text = identity(kind, inputs);
+  OWNED char *text = identity(kind, inputs);
   struct bytes b = {.size = text ? sizeof magic + 8 * 7 + strlen(text) : 0};
   for (size_t k = 0; k < PARTS; k++)
     b.size += 8 + parts[k].size;
-  b.at = text ? malloc(b.size) : NULL;
-  if (!b.at) {
-    free(text);
+  OWNED unsigned char *whole = b.at = text ? malloc(b.size) : NULL;
+  if (!whole)
     return status_fail(error, STATUS_MEMORY, "no memory to save '%s'", path);
-  }
   put(&b, magic, sizeof magic);
   put_number(&b, VERSION);
   put_number(&b, seed);
@@ -125,16 +124,13 @@ static status write_parts(const struct engine_kind *kind, const void *inputs, ui
     put(&b, parts[k].at, parts[k].size);
   }
   put_number(&b, text_hash(TEXT_HASH_START, b.at, b.used));
-  status code = file_write(path, "restart file", b.at, b.used, error);
-  free(b.at);
-  free(text);
-  return code;
+  return file_write(path, "restart file", whole, b.used, error);
 }
 
 status restart_save(const struct engine_kind *kind, void *run, const char *path, struct error *error) {
   const struct frame *frame = run;
   const size_t size = kind->system_size(run);
-  void *system = malloc(size);
+  OWNED void *system = malloc(size);
   if (!system)
     return status_fail(error, STATUS_MEMORY, "no memory to save '%s'", path);
   kind->save_system(run, system);
@@ -143,9 +139,7 @@ status restart_save(const struct engine_kind *kind, void *run, const char *path,
       [SAMPLES] = {frame->sample, frame->state->samples * frame->sample_size},
       [SYSTEM] = {system, size},
   };
-  status code = write_parts(kind, frame->inputs, frame->seed, parts, path, error);
-  free(system);
-  return code;
+  return write_parts(kind, frame->inputs, frame->seed, parts, path, error);
 }
 
 /* Reads everything between head and checksum. */
@@ -247,28 +241,23 @@ static status load_parts(const struct engine_kind *kind, void *run, const struct
 status restart_load(const struct engine_kind *kind, const void *inputs, const char *path, void **out,
                     struct error *error) {
   *out = NULL;
+  OWNED unsigned char *whole = NULL;
+  OWNED char *text = identity(kind, inputs);
   struct bytes b = {0};
   struct part parts[PARTS];
   uint64_t seed = 0;
-  void *run = NULL;
-  status code = STATUS_OK;
-  char *text = identity(kind, inputs);
   if (!text)
     return status_fail(error, STATUS_MEMORY, "no memory to read '%s'", path);
-  if ((code = file_read(path, "restart file", &b.at, &b.size, error)) ||
-      (code = read_head(&b, text, path, &seed, error)))
-    goto cleanup;
-  if (!read_parts(&b, parts)) {
-    code = refuse(path, error);
-    goto cleanup;
+  TRY(file_read(path, "restart file", &whole, &b.size, error));
+  b.at = whole;
+  TRY(read_head(&b, text, path, &seed, error));
+  if (!read_parts(&b, parts))
+    return refuse(path, error);
+  TRY(kind->prepare(inputs, seed, out, error));
+  const status code = load_parts(kind, *out, parts, path, error);
+  if (code) {
+    kind->free(*out);
+    *out = NULL;
   }
-  if ((code = kind->prepare(inputs, seed, &run, error)) || (code = load_parts(kind, run, parts, path, error)))
-    goto cleanup;
-  *out = run;
-  run = NULL;
-cleanup:
-  kind->free(run);
-  free(b.at);
-  free(text);
   return code;
 }

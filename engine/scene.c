@@ -76,7 +76,7 @@ static void include_material(document_node *section, document_node *place, const
                              const char *folder) {
   struct document *other = NULL;
   struct error error;
-  char *whole = file_name_in(folder, file);
+  OWNED char *whole = file_name_in(folder, file);
   if (!whole) {
     document_report_memory(place, path);
     return;
@@ -86,7 +86,6 @@ static void include_material(document_node *section, document_node *place, const
   else if (!document_graft(section, other, material_words) || !document_graft_word(section, "name", "custom"))
     document_report_memory(place, path);
   (void)document_graft_word(section, "name", "custom"); /* after an error: prevents further errors about the section */
-  free(whole);
 }
 
 /* `material: {file: ./my-rock.yaml, ...}` */
@@ -280,14 +279,9 @@ static void read_settings(document_node *node, struct scene *scene) {
                     SCENE_SETTINGS_MOST);
     return;
   }
-  const size_t count = document_count(node);
-  scene->settings = calloc(count ? count : 1, sizeof *scene->settings);
-  if (!scene->settings) {
-    document_report_memory(node, "settings");
-    return;
-  }
-  scene->settings_count = count;
-  for (size_t i = 0; i < count; i++) {
+  scene->settings_count = document_count(node);
+  scene->settings = memory_small(scene->settings_count, sizeof *scene->settings);
+  for (size_t i = 0; i < scene->settings_count; i++) {
     const char *name = NULL;
     document_node *item = document_item(node, i, &name);
     read_setting(item, name, scene->kind->inputs, &scene->settings[i]);
@@ -304,17 +298,11 @@ static const struct field source_row = {.path = "source",
                                         .doc = "Where it comes from: paper, section, figure"};
 
 static struct scene *create(const struct engine_kind *kind) {
-  struct scene *scene = calloc(1, sizeof *scene);
-  if (!scene)
-    return NULL;
+  struct scene *scene = memory_small(1, sizeof *scene);
   scene->kind = kind;
-  scene->inputs = calloc(1, kind->inputs->size);
-  scene->given = calloc(kind->inputs->count + 1, sizeof *scene->given);
-  scene->overridden = calloc(kind->inputs->count + 1, sizeof *scene->overridden);
-  if (!scene->inputs || !scene->given || !scene->overridden) {
-    scene_free(scene);
-    return NULL;
-  }
+  scene->inputs = memory_small(1, kind->inputs->size);
+  scene->given = memory_small(kind->inputs->count, sizeof *scene->given);
+  scene->overridden = memory_small(kind->inputs->count, sizeof *scene->overridden);
   field_defaults(kind->inputs, scene->inputs);
   return scene;
 }
@@ -352,22 +340,18 @@ static void read_name(document_node *root, const char *fallback, struct field_va
 }
 
 /* Reads the scene; errors of its content go into the document's report. */
-static status read_scene(document_node *root, const char *folder, const char *fallback, struct scene **out,
-                         struct error *error) {
+static void read_scene(document_node *root, const char *folder, const char *fallback, struct scene **out) {
   struct field_value name;
   const struct engine_kind *kind = read_engine(root);
   read_name(root, fallback, &name);
   if (!kind)
-    return STATUS_OK;
+    return;
   struct scene *scene = *out = create(kind);
-  if (!scene)
-    return status_fail(error, STATUS_MEMORY, "no memory for a scene");
   take_materials(root, kind->inputs, "", folder);
   take_files(root, kind->inputs, folder);
   document_read_given(root, kind->inputs, own_keys, scene->inputs, scene->given, kind->complete);
   snprintf(scene->name, sizeof scene->name, "%s", name.text);
   read_settings(document_key(root, "settings"), scene);
-  return STATUS_OK;
 }
 
 /* Frees the document. */
@@ -375,17 +359,14 @@ static status read_document(struct document *document, const char *folder, const
                             struct error *error) {
   const char *report;
   *out = NULL;
-  status code = read_scene(document_root(document), folder, fallback, out, error);
-  if (!code) {
-    code = document_finish(document, &report);
-    if (code)
-      status_fail(error, code, "%s", report);
-  }
-  document_free(document);
+  read_scene(document_root(document), folder, fallback, out);
+  const status code = document_finish(document, &report);
   if (code) {
+    status_fail(error, code, "%s", report);
     scene_free(*out);
     *out = NULL;
   }
+  document_free(document);
   return code;
 }
 
@@ -393,24 +374,16 @@ static status read_document(struct document *document, const char *folder, const
 static status load_file(const char *path, struct scene **out, struct error *error) {
   const char *slash = strrchr(path, '/');
   const size_t length = slash ? (size_t)(slash - path) : 0;
-  char *folder = strndup(path, slash == path ? 1 : length); /* "/" for "/scene.yaml" */
-  char *stem = strdup(slash ? slash + 1 : path);
+  OWNED char *folder = strndup(path, slash == path ? 1 : length); /* "/" for "/scene.yaml" */
+  OWNED char *stem = strdup(slash ? slash + 1 : path);
   struct document *document = NULL;
-  status code;
-  if (!folder || !stem) {
-    code = status_fail(error, STATUS_MEMORY, "no memory for a path");
-    goto cleanup;
-  }
+  if (!folder || !stem)
+    return status_fail(error, STATUS_MEMORY, "no memory for a path");
   char *dot = strrchr(stem, '.');
   if (dot && dot != stem)
     *dot = 0;
-  code = document_open(path, &document, error);
-  if (!code)
-    code = read_document(document, folder, stem, out, error);
-cleanup:
-  free(folder);
-  free(stem);
-  return code;
+  TRY(document_open(path, &document, error));
+  return read_document(document, folder, stem, out, error);
 }
 
 static status load_standard(const char *reference, const char *folder, struct scene **out, struct error *error) {
@@ -419,12 +392,8 @@ static status load_standard(const char *reference, const char *folder, struct sc
     const char *text = scene_builtin_text(reference);
     return text ? scene_parse(reference, text, out, error) : unknown_builtin(reference, error);
   }
-  char *path = file_name_in(folder, reference);
-  if (!path)
-    return status_fail(error, STATUS_MEMORY, "no memory for a path");
-  const status code = load_file(path, out, error);
-  free(path);
-  return code;
+  OWNED char *path = file_name_in(folder, reference);
+  return path ? load_file(path, out, error) : status_fail(error, STATUS_MEMORY, "no memory for a path");
 }
 
 status scene_load(const char *reference, const char *folder, struct scene **out, struct error *error) {
@@ -432,12 +401,11 @@ status scene_load(const char *reference, const char *folder, struct scene **out,
   if (!at || strchr(at, '/'))
     return load_standard(reference, folder, out, error);
 
-  char *standard = strndup(reference, (size_t)(at - reference));
-  status code = standard ? load_standard(standard, folder, out, error)
-                         : status_fail(error, STATUS_MEMORY, "no memory for a path");
-  free(standard);
-  if (code == STATUS_OK)
-    code = scene_settings_use(*out, at + 1, error);
+  OWNED char *standard = strndup(reference, (size_t)(at - reference));
+  if (!standard)
+    return status_fail(error, STATUS_MEMORY, "no memory for a path");
+  TRY(load_standard(standard, folder, out, error));
+  const status code = scene_settings_use(*out, at + 1, error);
   if (code != STATUS_OK) {
     scene_free(*out);
     *out = NULL;
@@ -448,8 +416,8 @@ status scene_load(const char *reference, const char *folder, struct scene **out,
 status scene_parse(const char *name, const char *text, struct scene **out, struct error *error) {
   *out = NULL;
   struct document *document = NULL;
-  status code = document_parse(name, text, strlen(text), &document, error);
-  return code ? code : read_document(document, NULL, name, out, error);
+  TRY(document_parse(name, text, strlen(text), &document, error));
+  return read_document(document, NULL, name, out, error);
 }
 
 status scene_parse_json(const char *name, const char *json, struct scene **out, struct error *error) {
@@ -462,22 +430,15 @@ status scene_parse_json(const char *name, const char *json, struct scene **out, 
 
 struct scene *scene_copy(const struct scene *scene) {
   struct scene *copy = create(scene->kind);
-  if (!copy)
-    return NULL;
   memcpy(copy->inputs, scene->inputs, scene->kind->inputs->size);
   memcpy(copy->given, scene->given, scene->kind->inputs->count * sizeof *scene->given);
   memcpy(copy->overridden, scene->overridden, scene->kind->inputs->count * sizeof *scene->overridden);
   memcpy(copy->name, scene->name, sizeof copy->name);
   if (scene->settings_count == 0)
     return copy;
-  const size_t size = scene->settings_count * sizeof *scene->settings;
-  copy->settings = malloc(size);
-  if (!copy->settings) {
-    scene_free(copy);
-    return NULL;
-  }
   copy->settings_count = scene->settings_count;
-  memcpy(copy->settings, scene->settings, size);
+  copy->settings = memory_small(copy->settings_count, sizeof *copy->settings);
+  memcpy(copy->settings, scene->settings, copy->settings_count * sizeof *copy->settings);
   return copy;
 }
 
@@ -534,25 +495,21 @@ status scene_set_text(struct scene *scene, const char *path, const char *text, s
   const struct field *row = field_find(scene->kind->inputs, path, error);
   if (!row)
     return STATUS_CONTENT;
-  status code = field_parse(row, text, &value, error);
-  return code ? code : scene_set(scene, row->path, &value, error);
+  TRY(field_parse(row, text, &value, error));
+  return scene_set(scene, row->path, &value, error);
 }
 
 /* Resets a row to its default when an override makes its line in the document ineffective. */
-static status set_back(struct scene *scene, size_t row, struct error *error) {
+static void set_back(struct scene *scene, size_t row) {
   const struct field_table *table = scene->kind->inputs;
-  void *untouched = calloc(1, table->size);
-  if (!untouched)
-    return status_fail(error, STATUS_MEMORY, "no memory for a scene");
+  OWNED void *untouched = memory_small(1, table->size);
   struct field_value value;
   field_defaults(table, untouched);
   field_get(&table->rows[row], untouched, &value);
   field_set_unchecked(&table->rows[row], scene->inputs, &value);
   scene->given[row] = false;
-  free(untouched);
   if (scene->kind->complete)
     scene->kind->complete(scene->inputs, scene->given);
-  return STATUS_OK;
 }
 
 status scene_check(struct scene *scene, struct error *error) {
@@ -568,13 +525,12 @@ status scene_check(struct scene *scene, struct error *error) {
       return status_fail(error, STATUS_CONTENT, "%s: has no effect: it is %s; remove one or change the other",
                          row->path, why);
     } else if (scene->given[i]) {
-      TRY(set_back(scene, i, error));
+      set_back(scene, i);
     }
   }
-  const status code = scene->kind->check ? scene->kind->check(scene->inputs, error) : STATUS_OK;
-  if (code || !scene->kind->check_given)
-    return code;
-  return scene->kind->check_given(scene->inputs, scene->given, error);
+  if (scene->kind->check)
+    TRY(scene->kind->check(scene->inputs, error));
+  return scene->kind->check_given ? scene->kind->check_given(scene->inputs, scene->given, error) : STATUS_OK;
 }
 
 /* ---- using named settings ---- */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "schemas/file.h"
+#include "schemas/memory.h"
 
 enum { COMPRESSED_FROM = 4096, CHUNK = 16384 }; /* rows */
 
@@ -59,10 +60,6 @@ static void integer_attribute(struct snapshot_file *f, const char *at, const cha
   attribute(f, at, name, H5T_STD_I64LE, H5T_NATIVE_INT64, count, values);
 }
 
-void snapshot_file_real(struct snapshot_file *f, const char *at, const char *name, double value) {
-  attribute(f, at, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1, &value);
-}
-
 static void data(struct snapshot_file *f, const char *name, hid_t type, bool compress, size_t rows, size_t width,
                  const void *values, const char *units, const char *long_name) {
   hsize_t size[2] = {rows, width}, chunk[2] = {CHUNK, width};
@@ -96,8 +93,8 @@ void snapshot_file_data(struct snapshot_file *f, const char *name, enum snapshot
   data(f, name, types[kind], kind != SNAPSHOT_FILE_REAL, rows, width, values, units, long_name);
 }
 
-void snapshot_file_table(struct snapshot_file *f, const char *group, const struct field_table *table,
-                         const void *object) {
+/* Every active row of a field table as a scalar under `group`, with its unit and documentation. */
+static void add_table(struct snapshot_file *f, const char *group, const struct field_table *table, const void *object) {
   for (size_t r = 0; r < table->count; r++) {
     const struct field *row = &table->rows[r];
     if (!field_is_active(table, row, object))
@@ -136,7 +133,7 @@ void snapshot_file_columns(struct snapshot_file *f, const char *group, size_t ro
                            size_t count, const struct snapshot_file_column *column) {
   for (size_t c = 0; c < count; c++) {
     size_t width = column[c].width ? column[c].width : 1;
-    double *values = malloc((rows ? rows : 1) * width * sizeof *values);
+    OWNED double *values = malloc((rows ? rows : 1) * width * sizeof *values);
     char name[100];
     if (!values) {
       snapshot_file_fail(f);
@@ -148,7 +145,6 @@ void snapshot_file_columns(struct snapshot_file *f, const char *group, size_t ro
     snprintf(name, sizeof name, "%s/%s", group, column[c].name);
     snapshot_file_data(f, name, SNAPSHOT_FILE_REAL, rows, column[c].width, values, column[c].units,
                        column[c].long_name);
-    free(values);
   }
 }
 
@@ -162,30 +158,28 @@ void snapshot_file_vtk(struct snapshot_file *f, size_t points, size_t cells, siz
   snapshot_file_data(f, "VTKHDF/NumberOfConnectivityIds", SNAPSHOT_FILE_INTEGER, 1, 0, &counts[2], NULL, NULL);
 }
 
-static void head(struct snapshot_file *f, const char *engine, const char *doc, int results_version, uint64_t seed,
-                 const struct field_table *table, const void *inputs) {
-  const int64_t format = 1, version = results_version, number = (int64_t)seed;
-  char *scene = field_json(table, inputs);
+static void head(struct snapshot_file *f, const struct engine_kind *engine, uint64_t seed, const void *inputs,
+                 double time) {
+  const int64_t format = 1, version = engine->results_version, number = (int64_t)seed;
+  OWNED char *scene = field_json(engine->inputs, inputs);
   make_group(f, "run");
   integer_attribute(f, "run", "format", 1, &format);
-  text_attribute(f, "run", "engine", engine);
-  text_attribute(f, "run", "doc", doc);
+  text_attribute(f, "run", "engine", engine->name);
+  text_attribute(f, "run", "doc", engine->doc);
   integer_attribute(f, "run", "results_version", 1, &version);
   integer_attribute(f, "run", "seed", 1, &number);
   if (scene)
     text_attribute(f, "run", "scene", scene);
   else
     snapshot_file_fail(f);
-  free(scene);
+  attribute(f, "run", "time", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1, &time);
 }
 
-status snapshot_file_open(const char *engine, const char *doc, int results_version, uint64_t seed,
-                          const struct field_table *table, const void *inputs, struct snapshot_file **out,
+status snapshot_file_open(const struct engine_kind *engine, uint64_t seed, const void *inputs,
+                          const struct outcome *outcome, const void *results, struct snapshot_file **out,
                           struct error *error) {
-  struct snapshot_file *f = calloc(1, sizeof *f);
+  struct snapshot_file *f = memory_small(1, sizeof *f);
   *out = NULL;
-  if (!f)
-    return status_fail(error, STATUS_MEMORY, "no memory for a fields file");
   H5dont_atexit(); /* HDF5's exit handler prints when a damaged file could not be closed */
   H5Eget_auto2(H5E_DEFAULT, &f->printing, &f->printing_to);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
@@ -194,13 +188,16 @@ status snapshot_file_open(const char *engine, const char *doc, int results_versi
   f->failed |= H5Pset_fapl_core(f->access, 1 << 20, 0) < 0; /* in memory, never written by HDF5 itself */
   f->file = checked(f, H5Fcreate("fields", H5F_ACC_TRUNC, H5P_DEFAULT, f->access));
   if (!f->failed)
-    head(f, engine, doc, results_version, seed, table, inputs);
+    head(f, engine, seed, inputs, outcome->time);
   if (f->failed) {
     const bool memory = f->memory;
     snapshot_file_close(f);
     return status_fail(error, memory ? STATUS_MEMORY : STATUS_INTERNAL, "cannot begin a fields file%s",
                        memory ? ": no memory" : "");
   }
+  add_table(f, "inputs", engine->inputs, inputs);
+  add_table(f, "outcome", &outcome_table, outcome);
+  add_table(f, "results", engine->results, results);
   *out = f;
   return STATUS_OK;
 }
@@ -208,15 +205,11 @@ status snapshot_file_open(const char *engine, const char *doc, int results_versi
 status snapshot_file_save(struct snapshot_file *f, const char *path, struct error *error) {
   f->failed |= H5Fflush(f->file, H5F_SCOPE_GLOBAL) < 0;
   ssize_t size = f->failed ? -1 : H5Fget_file_image(f->file, NULL, 0);
-  void *image = size > 0 ? malloc((size_t)size) : NULL;
-  status code;
+  OWNED void *image = size > 0 ? malloc((size_t)size) : NULL;
   if (!image || H5Fget_file_image(f->file, image, (size_t)size) != size)
-    code = status_fail(error, f->failed && !f->memory ? STATUS_INTERNAL : STATUS_MEMORY,
+    return status_fail(error, f->failed && !f->memory ? STATUS_INTERNAL : STATUS_MEMORY,
                        "cannot make the fields for '%s'%s", path, f->failed && !f->memory ? "" : ": no memory");
-  else
-    code = file_write(path, "fields file", image, (size_t)size, error);
-  free(image);
-  return code;
+  return file_write(path, "fields file", image, (size_t)size, error);
 }
 
 void snapshot_file_close(struct snapshot_file *f) {

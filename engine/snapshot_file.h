@@ -11,14 +11,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "schemas/field.h"
+#include "engine/engine.h"
 
 struct snapshot_file; /* opaque */
 
-/* The file's head, group /run: `engine` (name), `doc`, results_version, seed, scene (resolved JSON of `inputs`).
- * STATUS_MEMORY or STATUS_INTERNAL. HDF5's own printing is off until the file is closed. */
-status snapshot_file_open(const char *engine, const char *doc, int results_version, uint64_t seed,
-                          const struct field_table *table, const void *inputs, struct snapshot_file **out,
+/* The file's head. Group /run: engine (name), doc, results_version, seed, scene (resolved JSON of `inputs`), time.
+ * Groups /inputs, /outcome and /results: the rows of their tables. STATUS_MEMORY or STATUS_INTERNAL. HDF5's own
+ * printing is off until the file is closed. */
+status snapshot_file_open(const struct engine_kind *engine, uint64_t seed, const void *inputs,
+                          const struct outcome *outcome, const void *results, struct snapshot_file **out,
                           struct error *error);
 void snapshot_file_close(struct snapshot_file *file); /* NULL is fine */
 /* STATUS_IO with the system's reason: no file is left behind. STATUS_INTERNAL, STATUS_MEMORY. */
@@ -26,19 +27,12 @@ status snapshot_file_save(struct snapshot_file *file, const char *path, struct e
 /* Records that the caller had no memory for its data: save then returns STATUS_MEMORY. */
 void snapshot_file_fail(struct snapshot_file *file);
 
-/* An attribute of a group or data set that exists. */
-void snapshot_file_real(struct snapshot_file *file, const char *at, const char *name, double value);
-
 /* double, int64_t, unsigned char */
 enum snapshot_file_kind { SNAPSHOT_FILE_REAL, SNAPSHOT_FILE_INTEGER, SNAPSHOT_FILE_BYTE };
 /* rows x width values; width 0: rows values in one dimension. Integers and bytes of many rows are compressed. Missing
  * groups of the path are created. units and long_name may be NULL (VTK's own bookkeeping). */
 void snapshot_file_data(struct snapshot_file *file, const char *name, enum snapshot_file_kind kind, size_t rows,
                         size_t width, const void *values, const char *units, const char *long_name);
-/* Every active row of a field table as a scalar under `group`, with its unit and documentation. */
-void snapshot_file_table(struct snapshot_file *file, const char *group, const struct field_table *table,
-                         const void *object);
-
 /* One column of a table whose rows are structs: a member (a number, or `width` numbers in a row), written as double. */
 struct snapshot_file_column {
   const char *name, *units, *long_name;

@@ -9,35 +9,20 @@
 
 #include "analysis/inference/covariance.h"
 #include "engine/random.h"
+#include "schemas/memory.h"
 
 /* Limit of normal coordinates: 0.05 % of the prior lies beyond 3.5. */
 static const double FARTHEST = 3.5;
 
 struct work {
   size_t good;                   /* number of members with results */
-  size_t *member;                /* indices of these members; owned */
+  size_t *member;                /* indices of these members */
   double *mean_z, *mean_g;       /* of the good members */
   double *cross, *spread;        /* covariances: inputs x outputs, outputs x outputs */
   double *root;                  /* Cholesky factor of gamma */
   double *innovation, *weighted; /* outputs */
-  double *misfit;                /* of each good member; owned, with all arrays above */
+  double *misfit;                /* of each good member; all arrays above follow it */
 };
-
-static bool allocate(const struct ensemble_kalman *e, struct work *w) {
-  const size_t n = e->members, p = e->inputs, d = e->outputs;
-  w->member = calloc(n, sizeof *w->member);
-  w->misfit = calloc(n + p + 3 * d + p * d + 2 * d * d, sizeof *w->misfit);
-  if (!w->member || !w->misfit)
-    return false;
-  w->mean_z = w->misfit + n;
-  w->mean_g = w->mean_z + p;
-  w->innovation = w->mean_g + d;
-  w->weighted = w->innovation + d;
-  w->cross = w->weighted + d;
-  w->spread = w->cross + p * d;
-  w->root = w->spread + d * d;
-  return true;
-}
 
 static double normal(const struct ensemble_kalman *e, uint64_t member, uint64_t draw) {
   const double u = random_draw(e->seed, RANDOM_INFERENCE, e->round << 32 | member, draw);
@@ -145,11 +130,18 @@ static status step(struct ensemble_kalman *e, struct work *w, struct error *erro
   return STATUS_OK;
 }
 
-status ensemble_kalman_step(struct ensemble_kalman *ensemble, struct error *error) {
-  struct work w = {0};
-  const status code = allocate(ensemble, &w) ? step(ensemble, &w, error)
-                                             : status_fail(error, STATUS_MEMORY, "no memory for the ensemble");
-  free(w.member);
-  free(w.misfit);
-  return code;
+status ensemble_kalman_step(struct ensemble_kalman *e, struct error *error) {
+  const size_t n = e->members, p = e->inputs, d = e->outputs;
+  OWNED size_t *member = calloc(n, sizeof *member);
+  OWNED double *numbers = calloc(n + p + 3 * d + p * d + 2 * d * d, sizeof *numbers);
+  if (!member || !numbers)
+    return status_fail(error, STATUS_MEMORY, "no memory for the ensemble");
+  struct work w = {.member = member, .misfit = numbers, .mean_z = numbers + n};
+  w.mean_g = w.mean_z + p;
+  w.innovation = w.mean_g + d;
+  w.weighted = w.innovation + d;
+  w.cross = w.weighted + d;
+  w.spread = w.cross + p * d;
+  w.root = w.spread + d * d;
+  return step(e, &w, error);
 }

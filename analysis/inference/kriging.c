@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "analysis/inference/covariance.h"
+#include "schemas/memory.h"
 
 /* Prior variance of the trend's constant and slopes, in variances of the means: wide. */
 static const double TREND = 10;
@@ -69,29 +70,24 @@ static double cost(const gsl_vector *v, void *context) {
   return isfinite(sum) ? sum : 1e30;
 }
 
-static status maximise(struct kriging *k, struct error *error) {
+static void maximise(struct kriging *k) {
   const size_t n = k->inputs + 1;
   gsl_vector *start = gsl_vector_alloc(n), *size = gsl_vector_alloc(n);
   gsl_multimin_fminimizer *m = gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, n);
-  status code = STATUS_OK;
-  if (start && size && m) {
-    gsl_multimin_function f = {.f = cost, .n = n, .params = k};
-    gsl_vector_set_all(start, LENGTH);
-    gsl_vector_set(start, 0, 0);
-    gsl_vector_set_all(size, 0.7);
-    gsl_multimin_fminimizer_set(m, &f, start, size);
-    for (int i = 0; i < MOST_STEPS && gsl_multimin_fminimizer_size(m) > 0.02; i++)
-      if (gsl_multimin_fminimizer_iterate(m))
-        break;
-    set_parameters(k, gsl_multimin_fminimizer_x(m));
-  } else {
-    code = status_fail(error, STATUS_MEMORY, "no memory for a surface");
-  }
-  if (m)
-    gsl_multimin_fminimizer_free(m);
+  if (!start || !size || !m)
+    memory_refused(); /* a few numbers for each input */
+  gsl_multimin_function f = {.f = cost, .n = n, .params = k};
+  gsl_vector_set_all(start, LENGTH);
+  gsl_vector_set(start, 0, 0);
+  gsl_vector_set_all(size, 0.7);
+  gsl_multimin_fminimizer_set(m, &f, start, size);
+  for (int i = 0; i < MOST_STEPS && gsl_multimin_fminimizer_size(m) > 0.02; i++)
+    if (gsl_multimin_fminimizer_iterate(m))
+      break;
+  set_parameters(k, gsl_multimin_fminimizer_x(m));
+  gsl_multimin_fminimizer_free(m);
   gsl_vector_free(start);
   gsl_vector_free(size);
-  return code;
 }
 
 /* NULL: no memory. */
@@ -131,7 +127,7 @@ static void copy(const struct kriging_data *data, struct kriging *k) {
 /* Finds hyperparameters from every s-th point, with s so large that the search is cheap. */
 static status maximise_on_part(struct kriging *k, struct error *error) {
   const size_t step = (k->points + MOST_POINTS - 1) / MOST_POINTS, n = (k->points + step - 1) / step;
-  struct kriging *part = make(n, k->inputs, error);
+  OWNED struct kriging *part = make(n, k->inputs, error);
   if (!part)
     return STATUS_MEMORY;
   for (size_t i = 0; i < n; i++) {
@@ -140,11 +136,10 @@ static status maximise_on_part(struct kriging *k, struct error *error) {
     for (size_t j = 0; j < n; j++)
       part->noise[i * n + j] = k->noise[i * step * k->points + j * step];
   }
-  const status code = maximise(part, error);
+  maximise(part);
   k->variance = part->variance;
   memcpy(k->length, part->length, sizeof k->length);
-  kriging_free(part);
-  return code;
+  return STATUS_OK;
 }
 
 status kriging_fit(const struct kriging_data *data, struct kriging **out, struct error *error) {
@@ -153,22 +148,19 @@ status kriging_fit(const struct kriging_data *data, struct kriging **out, struct
     return status_fail(error, STATUS_CONTENT,
                        "kriging needs three points or more, and 1 to %d inputs; there are %zu points and %zu inputs",
                        INFERENCE_INPUTS, data->points, data->inputs);
-  struct kriging *k = make(data->points, data->inputs, error);
+  OWNED struct kriging *k = make(data->points, data->inputs, error);
   if (!k)
     return STATUS_MEMORY;
   copy(data, k);
-  status code = maximise_on_part(k, error);
-  if (code == STATUS_OK && !factorise(k))
-    code = status_fail(
+  TRY(maximise_on_part(k, error));
+  if (!factorise(k))
+    return status_fail(
         error, STATUS_INTERNAL,
         "the covariance of a kriging surface is not positive: points are too close together, or have no scatter");
-  if (code != STATUS_OK) {
-    kriging_free(k);
-    return code;
-  }
   covariance_inverse(k->points, k->factor, k->inverse);
   covariance_solve(k->points, k->factor, k->y, k->weights);
   *out = k;
+  k = NULL;
   return STATUS_OK;
 }
 

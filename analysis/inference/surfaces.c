@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/memory.h"
+
 static const double *values_of(const struct surfaces_runs *runs, size_t output, size_t point) {
   return runs->values + (output * runs->points + point) * runs->replicates;
 }
@@ -89,13 +91,13 @@ static void find_correlations(const struct surfaces_runs *runs, double *correlat
 
 /* Root mean square of the leave-one-out errors. */
 static double left_out(const struct kriging *surface, size_t points) {
-  double *errors = calloc(points, sizeof *errors), squares = 0;
+  OWNED double *errors = calloc(points, sizeof *errors);
+  double squares = 0;
   if (!errors)
     return NAN;
   kriging_left_out(surface, errors);
   for (size_t i = 0; i < points; i++)
     squares += errors[i] * errors[i] / (double)points;
-  free(errors);
   return sqrt(squares);
 }
 

@@ -217,34 +217,30 @@ static status read_template(const struct picture_page *page, const char *name, c
 /* Writes variables, frame.gp and the template. */
 static status write_script(struct chart *chart, double height, char **script, size_t *size, struct error *error) {
   const struct picture_page *page = chart->page;
-  char *frame = NULL, *template = NULL, file[STEM + 40];
-  status code = read_template(page, "frame", &frame, error);
-  if (code == STATUS_OK)
-    code = read_template(page, chart->template, &template, error);
-  FILE *out = code == STATUS_OK ? text_open(script, size) : NULL;
-  if (out) {
-    const char *ending = strrchr(page->path, '.') + 1;
-    snprintf(file, sizeof file, "./%s.%s", chart->stem, ending);
-    chart_text(chart, "output_file", file);
-    chart_text(chart, "ending", ending);
-    snprintf(file, sizeof file, "./%s.dat", chart->stem);
-    chart_text(chart, "data", file);
-    chart_number(chart, "page_width", page->width);
-    chart_number(chart, "page_height", height);
-    fflush(chart->variables);
-    fputs("# A chart of clast for gnuplot 5.4. Change what you like, then run gnuplot on this file in its folder.\n\n"
-          "# What this chart shows. The numbers are in the data file.\n",
-          out);
-    fwrite(chart->variables_text, 1, chart->variables_size, out);
-    fprintf(out, "\n%s\n%s", frame, template);
-  }
-  free(frame);
-  free(template);
+  const char *ending = strrchr(page->path, '.') + 1;
+  OWNED char *frame = NULL;
+  OWNED char *template = NULL;
+  char file[STEM + 40];
+  TRY(read_template(page, "frame", &frame, error));
+  TRY(read_template(page, chart->template, &template, error));
+  snprintf(file, sizeof file, "./%s.%s", chart->stem, ending);
+  chart_text(chart, "output_file", file);
+  chart_text(chart, "ending", ending);
+  snprintf(file, sizeof file, "./%s.dat", chart->stem);
+  chart_text(chart, "data", file);
+  chart_number(chart, "page_width", page->width);
+  chart_number(chart, "page_height", height);
+  fflush(chart->variables);
   fflush(chart->data);
-  const bool whole = out && text_close(out, script) && !ferror(chart->data) && !ferror(chart->variables);
-  if (code == STATUS_OK && !whole)
-    code = status_fail(error, STATUS_MEMORY, "%s: no memory for the chart", page->path);
-  return code;
+  FILE *out = text_open(script, size);
+  if (out)
+    fprintf(out,
+            "# A chart of clast for gnuplot 5.4. Change what you like, then run gnuplot on this file in its folder.\n\n"
+            "# What this chart shows. The numbers are in the data file.\n%s\n%s\n%s",
+            chart->variables_text, frame, template);
+  if (!out || !text_close(out, script) || ferror(chart->data) || ferror(chart->variables))
+    return status_fail(error, STATUS_MEMORY, "%s: no memory for the chart", page->path);
+  return STATUS_OK;
 }
 
 /* ---- gnuplot as a child process ---- */
@@ -311,7 +307,7 @@ static status keep(const struct chart *chart, const char *script, size_t size, c
   const struct picture_page *page = chart->page;
   const int stem = (int)(strrchr(page->path, '.') - page->path);
   char beside[2][LIMITS_PATH + 8];
-  unsigned char *bytes = NULL;
+  OWNED unsigned char *bytes = NULL;
   snprintf(beside[0], sizeof beside[0], "%.*s.gp", stem, page->path);
   snprintf(beside[1], sizeof beside[1], "%.*s.dat", stem, page->path);
   if (page->keep_script) {
@@ -321,9 +317,7 @@ static status keep(const struct chart *chart, const char *script, size_t size, c
     TRY(file_write(beside[1], "data of the chart", chart->data_text, chart->data_size, error));
   }
   TRY(file_read(drawn, "picture", &bytes, &size, error));
-  const status code = file_write(page->path, "picture", bytes, size, error);
-  free(bytes);
-  return code;
+  return file_write(page->path, "picture", bytes, size, error);
 }
 
 /* Writes script and data into the folder, runs gnuplot there and takes the picture out of it. */
@@ -350,22 +344,18 @@ static status draw_in_folder(struct chart *chart, double height, struct error *e
   if (strlen(page->path) + 16 > LIMITS_PATH)
     return status_fail(error, STATUS_USAGE, "the name of the picture is too long");
   snprintf(chart->stem, sizeof chart->stem, "%.*s", (int)(ending - 1 - base), base);
-  char *script = NULL;
+  OWNED char *script = NULL;
   size_t size = 0;
-  status code = write_script(chart, height, &script, &size, error);
-  if (code == STATUS_OK)
-    code = file_may_replace(page->path, "picture", error);
+  TRY(write_script(chart, height, &script, &size, error));
+  TRY(file_may_replace(page->path, "picture", error));
   snprintf(chart->folder, sizeof chart->folder, "%s.XXXXXX", page->path);
-  if (code == STATUS_OK && !mkdtemp(chart->folder))
-    code = status_fail(error, STATUS_IO, "cannot write the picture '%s': %s", page->path, strerror(errno));
-  if (code == STATUS_OK) {
-    code = draw(chart, script, size, error);
-    const char *const endings[] = {"gp", "dat", "messages", ending};
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-      unlink(in_folder(chart, endings[i]).path);
-    rmdir(chart->folder);
-  }
-  free(script);
+  if (!mkdtemp(chart->folder))
+    return status_fail(error, STATUS_IO, "cannot write the picture '%s': %s", page->path, strerror(errno));
+  const status code = draw(chart, script, size, error);
+  const char *const endings[] = {"gp", "dat", "messages", ending};
+  for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+    unlink(in_folder(chart, endings[i]).path);
+  rmdir(chart->folder);
   return code;
 }
 

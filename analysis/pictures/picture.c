@@ -8,6 +8,7 @@
 
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/statistics/statistics.h"
+#include "schemas/memory.h"
 
 static const double none[2] = {HUGE_VAL, -HUGE_VAL}; /* a range without a value */
 
@@ -304,30 +305,21 @@ status picture_map(const struct picture_page *page, const struct picture_words *
   for (size_t i = 0; i < count; i++)
     if (!isfinite(points[i][0]) || !isfinite(points[i][1]))
       return status_fail(error, STATUS_USAGE, "%s: a point of the map is not on its axes", page->path);
-  struct axis x = {.values = malloc(count * sizeof *x.values)}, y = {.values = malloc(count * sizeof *y.values)};
-  double(*value)[2] = calloc(MOST_TILES, sizeof *value);
-  status code = STATUS_OK;
-  if (!x.values || !y.values || !value) {
-    code = status_fail(error, STATUS_MEMORY, "%s: no memory for the map", page->path);
-    goto cleanup;
-  }
+  OWNED double *along = malloc(2 * count * sizeof *along);
+  OWNED double(*value)[2] = calloc(MOST_TILES, sizeof *value);
+  if (!along || !value)
+    return status_fail(error, STATUS_MEMORY, "%s: no memory for the map", page->path);
+  struct axis x = {.values = along}, y = {.values = along + count};
   distinct(count, points, 0, &x);
   distinct(count, points, 1, &y);
-  if (x.count * y.count > MOST_TILES) {
-    code = status_fail(error, STATUS_USAGE, "%s: %zu x %zu tiles are too many for a map; choose axes with fewer values",
+  if (x.count * y.count > MOST_TILES)
+    return status_fail(error, STATUS_USAGE, "%s: %zu x %zu tiles are too many for a map; choose axes with fewer values",
                        page->path, x.count, y.count);
-    goto cleanup;
-  }
   for (size_t i = 0; i < x.count * y.count; i++)
     value[i][0] = NAN;
   for (size_t i = 0; i < count; i++)
     memcpy(value[place(&y, points[i][1]) * x.count + place(&x, points[i][0])], &points[i][2], sizeof *value);
-  code = draw_map(page, words, quantity, &x, &y, (const double(*)[2])value, error);
-cleanup:
-  free(x.values);
-  free(y.values);
-  free(value);
-  return code;
+  return draw_map(page, words, quantity, &x, &y, (const double(*)[2])value, error);
 }
 
 /* ---- log-log spectra with error bars or bands, and fitted lines ---- */

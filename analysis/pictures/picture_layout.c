@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/memory.h"
+
 enum { WIDE = 2048 };          /* cells of the grid along each side */
 static const double GAP = 1.5; /* cells between two fragments */
 
@@ -169,7 +171,7 @@ static struct raster *new_raster(size_t count, const struct picture_layout_disc 
 
 status picture_layout_visible(const struct picture_cloud *cloud, size_t count, const struct picture_layout_disc *discs,
                               size_t fragments, double *visible) {
-  struct raster *raster = new_raster(count, discs);
+  OWNED struct raster *raster = new_raster(count, discs);
   if (!raster)
     return STATUS_MEMORY;
   for (size_t k = 0; k < count; k++)
@@ -187,6 +189,5 @@ status picture_layout_visible(const struct picture_cloud *cloud, size_t count, c
     }
     visible[f] = covered ? (double)seen / (double)covered : 1;
   }
-  free(raster);
   return STATUS_OK;
 }

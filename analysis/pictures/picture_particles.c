@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum { RESOLVED = 10 }; /* particles: a smaller fragment is poorly resolved and gets a pale tint */
@@ -180,8 +181,8 @@ static void cover(double view[4], double x, double y, double radius) {
 /* Shows all resolved fragments and nine tenths of the rest along each axis, so that jets do not shrink the body. With
  * fragments apart: all drawn discs. */
 static status choose_view(struct scene *s) {
-  double *sorted = malloc((s->discs + 1) * sizeof *sorted), all[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  double *view = s->view;
+  OWNED double *sorted = malloc((s->discs + 1) * sizeof *sorted);
+  double all[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, *view = s->view;
   if (!sorted)
     return STATUS_MEMORY;
   memcpy(view, all, sizeof all);
@@ -199,7 +200,6 @@ static status choose_view(struct scene *s) {
     view[axis] = fmin(view[axis], sorted[out]);
     view[axis + 2] = fmax(view[axis + 2], sorted[s->discs - 1 - out]);
   }
-  free(sorted);
   double margin = 0.06 * fmax(view[2] - view[0], view[3] - view[1]);
   for (int axis = 0; axis < 2; axis++) {
     view[axis] = fmax(view[axis] - margin, all[axis] - margin / 6);
@@ -216,7 +216,7 @@ static bool is_inside(const double view[4], const struct picture_layout_disc *d)
 /* Leaves out fragments and single particles that do not fit wholly into the frame, such as jets and small distant
  * fragments. */
 static status leave_out(struct scene *s) {
-  bool *out = calloc(s->fragments + 1, sizeof *out);
+  OWNED bool *out = calloc(s->fragments + 1, sizeof *out);
   size_t kept = 0;
   if (!out)
     return STATUS_MEMORY;
@@ -233,7 +233,6 @@ static status leave_out(struct scene *s) {
     s->left_out += gone;
   }
   s->discs = kept;
-  free(out);
   return STATUS_OK;
 }
 
@@ -295,7 +294,7 @@ static void choose_range(struct scene *s, const double *sorted, size_t count) {
 static status choose_colours(struct scene *s) {
   if (!s->cloud->value)
     return STATUS_OK;
-  double *sorted = malloc((s->discs + 1) * sizeof *sorted);
+  OWNED double *sorted = malloc((s->discs + 1) * sizeof *sorted);
   if (!sorted)
     return STATUS_MEMORY;
   size_t count = collect_values(s, true, sorted);
@@ -303,7 +302,6 @@ static status choose_colours(struct scene *s) {
     count = collect_values(s, false, sorted);
   qsort(sorted, count, sizeof *sorted, sample_ascending);
   choose_range(s, sorted, count);
-  free(sorted);
   choose_unit(s, fmax(fabs(s->low), fabs(s->high)));
   return STATUS_OK;
 }

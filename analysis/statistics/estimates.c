@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/memory.h"
 #include "schemas/rows.h"
 #include "schemas/text.h"
 
@@ -92,8 +93,9 @@ static const struct {
 
 status estimates_make(size_t n, const struct fragment *fragments, double complete_mass,
                       struct estimate rows[ESTIMATES_COUNT], struct error *error) {
-  double few[512], *masses = few, total = 0, elements = 0, largest = 0;
-  if (n > sizeof few / sizeof *few && !(masses = malloc(n * sizeof *masses)))
+  double total = 0, elements = 0, largest = 0;
+  OWNED double *masses = malloc((n + 1) * sizeof *masses);
+  if (!masses)
     return status_fail(error, STATUS_MEMORY, "estimates: no memory for %zu masses", n);
   size_t resolved = 0;
   for (size_t i = 0; i < n; i++) {
@@ -104,8 +106,7 @@ status estimates_make(size_t n, const struct fragment *fragments, double complet
     largest = fmax(largest, fragments[i].mass);
   }
   double element = total / elements;
-  status code = STATUS_OK;
-  for (int i = 0; i < ESTIMATES_COUNT && !code; i++) {
+  for (int i = 0; i < ESTIMATES_COUNT; i++) {
     struct estimate *row = &rows[i];
     double lower = estimates_window_lower(wanted[i].window, element, complete_mass);
     struct exponent_window window = exponent_window_from(wanted[i].method, lower, largest);
@@ -116,13 +117,11 @@ status estimates_make(size_t n, const struct fragment *fragments, double complet
                              .fit = exponent_unknown(wanted[i].method, window)};
     if (!(largest > lower))
       continue; /* no fragment in the window */
-    code = exponent_fit(wanted[i].method, resolved, masses, window, &row->fit, error);
+    TRY(exponent_fit(wanted[i].method, resolved, masses, window, &row->fit, error));
     if (isinf(row->fit.cutoff_mass))
       row->fit.cutoff_mass = NAN;
   }
-  if (masses != few)
-    free(masses);
-  return code;
+  return STATUS_OK;
 }
 
 status estimates_named(const char *name, bool *is, enum exponent_method *method, enum estimates_window *window,

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/memory.h"
+
 FIELD_WORDS(exponent_method_names, EXPONENT_METHODS, [EXPONENT_LEAST_SQUARES] = "least_squares",
             [EXPONENT_MASSES] = "masses", [EXPONENT_UPPER_CUTOFF] = "cutoff");
 
@@ -83,18 +85,15 @@ status exponent_fit_bins(size_t n, const struct spectrum_bin_row *bins, struct e
 
 static status fit_from_masses_by_bins(size_t n, const double *masses, struct exponent_window window,
                                       struct exponent *out, struct error *error) {
-  struct spectrum_bin_row few[256], *rows = few; /* 256 bins are 25 decades: enough without an allocation */
-  size_t count = spectrum_fill(n, masses, few, 256);
-  if (count > 256) {
-    rows = malloc(count * sizeof *rows);
-    if (!rows)
-      return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu bins", count);
-    spectrum_fill(n, masses, rows, count);
-  }
-  status code = exponent_fit_bins(count, rows, window, out, error);
-  if (rows != few)
-    free(rows);
-  return code;
+  struct spectrum_bin_row few[256]; /* 256 bins are 25 decades: enough without an allocation */
+  const size_t count = spectrum_fill(n, masses, few, 256);
+  if (count <= 256)
+    return exponent_fit_bins(count, few, window, out, error);
+  OWNED struct spectrum_bin_row *rows = malloc(count * sizeof *rows);
+  if (!rows)
+    return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu bins", count);
+  spectrum_fill(n, masses, rows, count);
+  return exponent_fit_bins(count, rows, window, out, error);
 }
 
 /* Returns the masses inside the window, descending; *count is their number. NULL only when memory ran out. */
@@ -152,7 +151,7 @@ status exponent_fit(enum exponent_method method, size_t n, const double *masses,
     return fit_from_masses_by_bins(n, masses, window, out, error);
 
   size_t count = 0;
-  double *inside = select_sorted(n, masses, window.lower, window.upper, &count);
+  OWNED double *inside = select_sorted(n, masses, window.lower, window.upper, &count);
   if (!inside)
     return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu masses", n);
   out->n = (int64_t)count;
@@ -160,6 +159,5 @@ status exponent_fit(enum exponent_method method, size_t n, const double *masses,
     fit_pure(count, inside, window.upper, out);
   else if (count >= EXPONENT_LEAST_FRAGMENTS)
     fit_with_cutoff(count, inside, window.upper, out);
-  free(inside);
   return STATUS_OK;
 }

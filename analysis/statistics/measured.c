@@ -10,6 +10,7 @@
 
 #include "engine/grow.h"
 #include "schemas/csv.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 #include "schemas/unit.h"
 
@@ -219,7 +220,7 @@ status measured_compare(const struct measured *measured, const struct pooled_run
   if (!measured->single || !(complete > 0))
     out->from = measured->mass[first];
   out->fragments = measured->weighed ? (double)NAN : measured->above[first];
-  double *masses = malloc(2 * (2 * all + 1) * sizeof *masses);
+  OWNED double *masses = malloc(2 * (2 * all + 1) * sizeof *masses);
   if (!masses)
     return status_fail(error, STATUS_MEMORY, "no memory to compare a measured spectrum");
   const struct pooled_runs together = {1, (const size_t[]){0, all}, runs->masses};
@@ -229,7 +230,6 @@ status measured_compare(const struct measured *measured, const struct pooled_run
     out->log_likelihood = measured->weighed ? (double)NAN : log_likelihood(measured, first, out->from, &pool);
   }
   compare_runs(measured, first, runs, &pool, masses + 2 * all + 1, out);
-  free(masses);
   return STATUS_OK;
 }
 

@@ -9,6 +9,7 @@
 
 #include "engine/random.h"
 #include "engine/threads.h"
+#include "schemas/memory.h"
 
 /* Data of every run for the fits. */
 struct prepared {
@@ -216,9 +217,7 @@ status pooled_exponent(const struct pooled_runs *runs, enum exponent_method meth
   size_t each;
   const size_t groups = sample_groups(runs->count, &each);
   *out = (struct pooled_exponent){.interval = {NAN, NAN, NAN}};
-  const status code = fit_all(&p, runs, method, lower, groups, each, &out->fit, theta, error);
-  if (code)
-    return code;
+  TRY(fit_all(&p, runs, method, lower, groups, each, &out->fit, theta, error));
   out->runs = count_runs(&p, runs, lower, &upper);
   if (upper > 0 && method != EXPONENT_LEAST_SQUARES)
     out->fit.upper = upper;
@@ -275,7 +274,7 @@ static struct power_law_rival fit_rival(const struct pooled_runs *runs, double l
 status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled_rivals *out, struct error *error) {
   *out = (struct pooled_rivals){0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
   TRY(check(runs, lower, error));
-  struct power_law_group *groups = malloc((runs->count + 1) * sizeof *groups);
+  OWNED struct power_law_group *groups = malloc((runs->count + 1) * sizeof *groups);
   if (!groups)
     return no_memory(runs, error);
   for (size_t r = 0; r < runs->count; r++)
@@ -296,7 +295,6 @@ status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled
     out->lognormal_p = power_law_rival_p_value(out->lognormal_ratio);
     out->open_cutoff_p = open_cutoff_p(runs, lower, groups);
   }
-  free(groups);
   return STATUS_OK;
 }
 

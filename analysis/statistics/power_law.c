@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/memory.h"
+
 /* G(y) = 1/y - 1/(e^y - 1): the mean of an exponential distribution of rate y, cut at 1. It falls from 1 (y -> -inf)
  * through 1/2 to 0. Near zero the two terms cancel; the series to y^7 used there has an error below 1e-15 for
  * |y| < 0.3. */
@@ -171,13 +173,11 @@ static void place_nodes(size_t count, const struct power_law_group *groups, size
 
 bool power_law_leave_out(size_t count, const struct power_law_group *groups, size_t each, double *betas) {
   const size_t parts = (count + each - 1) / each;
-  struct power_law_group *rest = malloc((count + 1) * sizeof *rest);
-  double(*slopes)[NODES] = malloc((parts + 1) * sizeof *slopes), nodes[NODES], all[NODES] = {0};
-  if (!rest || !slopes) {
-    free(rest);
-    free(slopes);
+  OWNED struct power_law_group *rest = malloc((count + 1) * sizeof *rest);
+  OWNED double(*slopes)[NODES] = malloc((parts + 1) * sizeof *slopes);
+  double nodes[NODES], all[NODES] = {0};
+  if (!rest || !slopes)
     return false;
-  }
 
   const double y = power_law_fit(count, groups).beta - 1;
   place_nodes(count, groups, each, y, nodes);
@@ -200,8 +200,6 @@ bool power_law_leave_out(size_t count, const struct power_law_group *groups, siz
       betas[p] = power_law_fit(count - (end - begin), rest).beta;
     }
   }
-  free(rest);
-  free(slopes);
   return true;
 }
 

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "schemas/memory.h"
+
 int sample_ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
@@ -134,7 +136,7 @@ struct sample_interval sample_jackknife(size_t runs, double level, sample_statis
   double theta[SAMPLE_GROUPS];
   size_t each;
   const size_t groups = sample_groups(runs, &each);
-  uint32_t *kept = runs > 0 && runs <= UINT32_MAX ? malloc(runs * sizeof *kept) : NULL;
+  OWNED uint32_t *kept = runs > 0 && runs <= UINT32_MAX ? malloc(runs * sizeof *kept) : NULL;
   if (!kept)
     return none;
 
@@ -147,12 +149,9 @@ struct sample_interval sample_jackknife(size_t runs, double level, sample_statis
       if (i / each != g)
         kept[count++] = (uint32_t)i;
     theta[g] = statistic(count, kept, context);
-    if (!isfinite(theta[g])) {
-      free(kept);
+    if (!isfinite(theta[g]))
       return (struct sample_interval){estimate, NAN, NAN};
-    }
   }
-  free(kept);
   return sample_jackknife_of(runs, level, estimate, theta);
 }
 

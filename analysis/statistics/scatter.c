@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "engine/random.h"
+#include "schemas/memory.h"
 
 const double scatter_shares[SCATTER_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
@@ -266,13 +267,10 @@ status scatter_split(const struct scatter_table *t, struct scatter_part *parts, 
     return status_fail(error, STATUS_USAGE,
                        "splitting a variance needs at least two points with two runs each, not %zu points with %zu",
                        t->points, t->runs);
-  double *room = malloc(4 * t->points * sizeof *room);
-  uint32_t *all = malloc(t->runs * sizeof *all);
-  if (!room || !all) {
-    free(room);
-    free(all);
+  OWNED double *room = malloc(4 * t->points * sizeof *room);
+  OWNED uint32_t *all = malloc(t->runs * sizeof *all);
+  if (!room || !all)
     return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
-  }
   for (size_t r = 0; r < t->runs; r++)
     all[r] = (uint32_t)r;
   struct split s = {.table = t, .sum = room, .product = room + 2 * t->points, .weight = room + 3 * t->points};
@@ -292,8 +290,6 @@ status scatter_split(const struct scatter_table *t, struct scatter_part *parts, 
     if (s.part != SCATTER_WHOLE)
       parts[s.part] = part_of(&s, all);
   parts[SCATTER_WHOLE] = (struct scatter_part){parts[SCATTER_INPUTS].variance + parts[SCATTER_SEEDS].variance, 1, NAN};
-  free(room);
-  free(all);
   return STATUS_OK;
 }
 

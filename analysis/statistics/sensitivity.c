@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "schemas/memory.h"
+
 /* Computes one index over a subset of blocks and seeds. */
 struct asking {
   const struct sensitivity_table *table;
@@ -142,13 +144,11 @@ status sensitivity_sobol(const struct sensitivity_table *t, struct sensitivity_i
   if (t->blocks < 2 || t->seeds < 1 || t->inputs < 1)
     return status_fail(error, STATUS_USAGE, "Sobol indices need at least two blocks of points with a result, not %zu",
                        t->blocks);
-  double *centred = malloc(n * sizeof *centred), mean = 0;
-  uint32_t *all = malloc(most * sizeof *all);
-  if (!centred || !all) {
-    free(centred);
-    free(all);
+  OWNED double *centred = malloc(n * sizeof *centred);
+  OWNED uint32_t *all = malloc(most * sizeof *all);
+  double mean = 0;
+  if (!centred || !all)
     return status_fail(error, STATUS_MEMORY, "no memory for the indices of %zu runs", n);
-  }
   for (size_t i = 0; i < n; i++)
     mean += t->value[i] / (double)n;
   for (size_t i = 0; i < n; i++)
@@ -162,8 +162,6 @@ status sensitivity_sobol(const struct sensitivity_table *t, struct sensitivity_i
     a.total = true;
     index[a.input].total = interval_of(&a);
   }
-  free(centred);
-  free(all);
   return STATUS_OK;
 }
 
@@ -182,7 +180,7 @@ status sensitivity_morris(const struct sensitivity_table *t, const size_t *order
   if (t->blocks < 2 || t->seeds < 1)
     return status_fail(error, STATUS_USAGE, "elementary effects need at least two trajectories with results, not %zu",
                        t->blocks);
-  double *effects = malloc(t->inputs * t->blocks * sizeof *effects);
+  OWNED double *effects = malloc(t->inputs * t->blocks * sizeof *effects);
   if (!effects)
     return status_fail(error, STATUS_MEMORY, "no memory for %zu trajectories", t->blocks);
   for (size_t i = 0; i < t->inputs; i++)
@@ -205,6 +203,5 @@ status sensitivity_morris(const struct sensitivity_table *t, const size_t *order
     effect[i].deviation = summary.standard_deviation;
     effect[i].mean_absolute = sample_jackknife(t->blocks, 0.95, mean_absolute, effects + i * t->blocks);
   }
-  free(effects);
   return STATUS_OK;
 }

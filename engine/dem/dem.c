@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "engine/dem/run/run.h"
+#include "schemas/memory.h"
 
 double dem_run_closed(const struct dem_ledger *l) {
   return l->kinetic + l->beam + l->contact + l->broken_beam + l->damping + l->friction - l->external_work;
@@ -169,48 +170,44 @@ static const struct frame_kind kind = {.fault = DEM_STOP_FAULT,
                                        .remedy = remedy,
                                        .failure = failure};
 
-status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error) {
-  *out = NULL;
-  TRY(dem_inputs_check(inputs, error));
-  struct dem_run *run = calloc(1, sizeof *run);
-  if (!run)
-    return status_fail(error, STATUS_MEMORY, "no memory for a run");
-  run->inputs = *inputs;
-  run->seed = seed;
-  run->charge = UINT32_MAX;
-  struct dem_ledger ledger;
-  double magnitude;
-  status code = STATUS_OK;
-  if ((code = dem_protocol_body(inputs, seed, &run->tessellation, error)) ||
-      (code = dem_system_create(run->tessellation, &run->inputs, seed, &run->system, error)))
-    goto cleanup;
-  run->held = calloc(run->tessellation->cell_count, 1);
-  if (!run->held) {
-    code = status_fail(error, STATUS_MEMORY, "no memory for %zu grains", run->tessellation->cell_count);
-    goto cleanup;
-  }
-  double area = 0;
-  for (uint32_t i = 0; i < run->tessellation->cell_count; i++)
-    area += run->tessellation->area[i];
-  run->grain_diameter = sqrt(4 / M_PI * area / (double)run->tessellation->cell_count);
+/* Body, system and motion of a run that has its inputs. */
+static status set_up(struct dem_run *run, struct error *error) {
+  const struct dem_inputs *in = &run->inputs;
+  TRY(dem_protocol_body(in, run->seed, &run->tessellation, error));
+  const size_t n = run->tessellation->cell_count;
+  TRY(dem_system_create(run->tessellation, in, run->seed, &run->system, error));
+  run->held = calloc(n, 1);
   run->stable_time_step = dem_system_stable_time_step(run->system);
-  if (isnan(run->stable_time_step)) {
-    code = status_fail(error, STATUS_MEMORY, "no memory for the longest time step of %zu grains",
-                       run->tessellation->cell_count);
-    goto cleanup;
-  }
-  run->passing_speed = dem_describe_passing_speed(inputs);
-  if (inputs->fidelity.time_step > run->stable_time_step) {
-    code = status_fail(
+  if (!run->held || isnan(run->stable_time_step))
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu grains", n);
+  double area = 0;
+  for (size_t i = 0; i < n; i++)
+    area += run->tessellation->area[i];
+  run->grain_diameter = sqrt(4 / M_PI * area / (double)n);
+  run->passing_speed = dem_describe_passing_speed(in);
+  if (in->fidelity.time_step > run->stable_time_step)
+    return status_fail(
         error, STATUS_CONTENT,
         "fidelity.time_step is %.4g s, but with fidelity.integrator %s this body is unstable above %.4g s: "
         "give a shorter step, at most half of that for good energy",
-        inputs->fidelity.time_step, inputs->fidelity.integrator == DEM_GEAR ? "gear" : "verlet", run->stable_time_step);
-    goto cleanup;
+        in->fidelity.time_step, in->fidelity.integrator == DEM_GEAR ? "gear" : "verlet", run->stable_time_step);
+  return dem_protocol_start(run, error);
+}
+
+status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error) {
+  *out = NULL;
+  TRY(dem_inputs_check(inputs, error));
+  struct dem_run *run = memory_small(1, sizeof *run);
+  run->inputs = *inputs;
+  run->seed = seed;
+  run->charge = UINT32_MAX;
+  const status code = set_up(run, error);
+  if (code) {
+    dem_run_free(run);
+    return code;
   }
-  if ((code = dem_protocol_start(run, error)))
-    goto cleanup;
-  ledger = dem_system_ledger(run->system);
+  double magnitude;
+  const struct dem_ledger ledger = dem_system_ledger(run->system);
   run->state.frame.closed_start = dem_run_closed(&ledger);
   run->frame = (struct frame){.kind = &kind,
                               .state = &run->state.frame,
@@ -224,10 +221,7 @@ status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem
   dem_run_momentum(run, run->state.momentum_start, &magnitude);
   check_speed(run);
   *out = run;
-  run = NULL;
-cleanup:
-  dem_run_free(run);
-  return code;
+  return STATUS_OK;
 }
 
 void dem_run_free(void *of) {

@@ -13,6 +13,7 @@
 #include "engine/mesh/build.h"
 #include "engine/vector3.h"
 #include "schemas/file.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 /* Least share of its box that a body fills (drawing points from a smaller one takes too long); largest coordinate, in
@@ -80,13 +81,10 @@ static int compare_places(const void *a, const void *b) {
 
 /* The vertex with the lowest number stands for all that are equal. */
 static status merge_vertices(struct mesh_soup *soup, struct error *error) {
-  struct place *places = malloc((soup->vertices + 1) * sizeof *places);
-  uint32_t *same = malloc((soup->vertices + 1) * sizeof *same);
-  if (!places || !same) {
-    free(places);
-    free(same);
+  OWNED struct place *places = malloc((soup->vertices + 1) * sizeof *places);
+  OWNED uint32_t *same = malloc((soup->vertices + 1) * sizeof *same);
+  if (!places || !same)
     return status_fail(error, STATUS_MEMORY, "no memory for %zu vertices", soup->vertices);
-  }
   for (size_t v = 0; v < soup->vertices; v++) {
     memcpy(places[v].at, soup->vertex[v], sizeof places[v].at);
     places[v].vertex = (uint32_t)v;
@@ -99,8 +97,6 @@ static status merge_vertices(struct mesh_soup *soup, struct error *error) {
   for (size_t f = 0; f < soup->faces; f++)
     for (int c = 0; c < 3; c++)
       soup->face[f][c] = same[soup->face[f][c]];
-  free(places);
-  free(same);
   return STATUS_OK;
 }
 
@@ -160,7 +156,7 @@ static status check_edge(const struct mesh_soup *soup, const struct edge *edge, 
 
 static status check_edges(const struct mesh_soup *soup, struct error *error) {
   const size_t count = 3 * soup->faces;
-  struct edge *edges = malloc(count * sizeof *edges);
+  OWNED struct edge *edges = malloc(count * sizeof *edges);
   if (!edges)
     return status_fail(error, STATUS_MEMORY, "no memory for %zu edges", count);
   for (size_t f = 0; f < soup->faces; f++)
@@ -170,14 +166,12 @@ static status check_edges(const struct mesh_soup *soup, struct error *error) {
                                    : (struct edge){to, from, (uint32_t)f, false};
     }
   qsort(edges, count, sizeof *edges, compare_edges);
-  status code = STATUS_OK;
-  for (size_t i = 0, next; i < count && !code; i = next) {
+  for (size_t i = 0, next; i < count; i = next) {
     for (next = i + 1; next < count && edges[next].low == edges[i].low && edges[next].high == edges[i].high;)
       next++;
-    code = check_edge(soup, &edges[i], next - i, error);
+    TRY(check_edge(soup, &edges[i], next - i, error));
   }
-  free(edges);
-  return code;
+  return STATUS_OK;
 }
 
 /* Merges equal vertices, and checks that every edge has two faces that turn opposite ways and every face an area. */
@@ -289,25 +283,25 @@ status mesh_read(const char *name, const void *bytes, size_t size, struct mesh *
   if (size > MESH_MOST_BYTES)
     return mesh_refuse(&soup, 0, error, "the file has %zu MB, and %d MB is the most: take a coarser model", size >> 20,
                        MESH_MOST_BYTES >> 20);
-  char *text = malloc(size + 1);
-  struct mesh *mesh = calloc(1, sizeof *mesh);
-  status code = text && mesh ? STATUS_OK : no_memory(name, error);
-  if (code)
-    goto cleanup;
+  OWNED char *text = malloc(size + 1);
+  if (!text)
+    return no_memory(name, error);
   if (size)
     memcpy(text, bytes, size);
   text[size] = 0;
-  if ((code = mesh_formats_read(&soup, text, size, error)) || (code = close_surface(&soup, error)) ||
-      (code = build(mesh, &soup, error)))
-    goto cleanup;
-  *out = mesh;
-  mesh = NULL;
-cleanup:
-  free(text);
+  struct mesh *mesh = memory_small(1, sizeof *mesh);
+  status code = mesh_formats_read(&soup, text, size, error);
+  if (!code)
+    code = close_surface(&soup, error);
+  if (!code)
+    code = build(mesh, &soup, error);
   free(soup.vertex);
   free(soup.face);
   free(soup.line);
-  mesh_free(mesh);
+  if (code)
+    mesh_free(mesh);
+  else
+    *out = mesh;
   return code;
 }
 
@@ -414,8 +408,8 @@ static status add(const char *name, unsigned char *bytes, size_t size, const str
     free(bytes);
     return STATUS_OK;
   }
-  struct entry *entry = calloc(1, sizeof *entry);
-  status code = entry ? mesh_read(name, bytes, size, &entry->file.mesh, error) : no_memory(name, error);
+  struct entry *entry = memory_small(1, sizeof *entry);
+  const status code = mesh_read(name, bytes, size, &entry->file.mesh, error);
   if (code) {
     free(entry);
     free(bytes);
@@ -455,19 +449,14 @@ static status look(const char *path, struct error *error) {
 }
 
 status mesh_files_open(const char *name, const char *folder, const struct mesh_file **out, struct error *error) {
-  char *path = file_name_in(folder, name);
+  OWNED char *path = file_name_in(folder, name);
   unsigned char *bytes = NULL;
   size_t size = 0;
   *out = NULL;
   if (!path)
     return status_fail(error, STATUS_MEMORY, "no memory for the name of a file");
-  status code = look(path, error);
-  if (!code)
-    code = file_input(path, error);
-  if (!code)
-    code = file_read(path, "shape file", &bytes, &size, error);
-  if (!code)
-    code = add(path, bytes, size, out, error);
-  free(path);
-  return code;
+  TRY(look(path, error));
+  TRY(file_input(path, error));
+  TRY(file_read(path, "shape file", &bytes, &size, error));
+  return add(path, bytes, size, out, error);
 }

@@ -4,6 +4,7 @@
 
 #include "engine/mesh/build.h"
 #include "engine/vector3.h"
+#include "schemas/memory.h"
 
 /* Squares in the x-y plane, and the faces above or below each. */
 struct mesh_columns {
@@ -72,13 +73,11 @@ static void fill_faces(const struct mesh *m, struct mesh_columns *c) {
 /* Counting sort of the faces by column. Counts stand two places ahead, and become starts one place ahead; filling moves
  * each start to its own place. */
 static status list_faces(struct mesh *m, struct error *error) {
-  struct mesh_columns *c = m->columns = calloc(1, sizeof *c);
-  const size_t total = c ? choose_columns(m, c) : 0, columns = c ? c->count[0] * c->count[1] : 0;
-  if (c) {
-    c->first = calloc(columns + 2, sizeof *c->first);
-    c->face = malloc((total + 1) * sizeof *c->face);
-  }
-  if (!c || !c->first || !c->face)
+  struct mesh_columns *c = m->columns = memory_small(1, sizeof *c);
+  const size_t total = choose_columns(m, c), columns = c->count[0] * c->count[1];
+  c->first = calloc(columns + 2, sizeof *c->first);
+  c->face = malloc((total + 1) * sizeof *c->face);
+  if (!c->first || !c->face)
     return status_fail(error, STATUS_MEMORY, "no memory for a mesh of %zu faces", m->faces);
   count_faces(m, c);
   for (size_t i = 2; i <= columns; i++)
@@ -176,21 +175,19 @@ static status check_turns(const struct mesh *m, const struct mesh_soup *soup, st
   size_t longest = 1;
   for (size_t i = 0; i < c->count[0] * c->count[1]; i++)
     longest = c->first[i + 1] - c->first[i] > longest ? c->first[i + 1] - c->first[i] : longest;
-  struct meeting *meetings = malloc(longest * sizeof *meetings);
+  OWNED struct meeting *meetings = malloc(longest * sizeof *meetings);
   if (!meetings)
     return status_fail(error, STATUS_MEMORY, "no memory for a mesh of %zu faces", m->faces);
-  status code = STATUS_OK;
-  for (size_t f = 0; f < m->faces && !code; f++) {
+  for (size_t f = 0; f < m->faces; f++) {
     const double *a = m->vertex[m->face[f][0]], *b = m->vertex[m->face[f][1]], *d = m->vertex[m->face[f][2]];
     const double p[2] = {(a[0] + b[0] + d[0]) / 3, (a[1] + b[1] + d[1]) / 3};
     if (!in_turn(m, p, meetings))
-      code = mesh_refuse(soup, soup->line[f], error,
+      return mesh_refuse(soup, soup->line[f], error,
                          "the surface cuts itself, or a part of it is inside out: along the line x = %g, y = %g "
                          "through this face one enters it twice (Blender: join overlapping parts by a boolean union)",
                          p[0] + m->centre[0], p[1] + m->centre[1]);
   }
-  free(meetings);
-  return code;
+  return STATUS_OK;
 }
 
 /* ---- distances, by a tree of boxes about the faces ---- */
@@ -262,21 +259,16 @@ static void split(const struct mesh *m, struct mesh_tree *tree, uint32_t at, uin
 }
 
 static status make_tree(struct mesh *m, struct error *error) {
-  struct mesh_tree *tree = m->tree = calloc(1, sizeof *tree);
-  struct sorting *sorting = malloc(m->faces * sizeof *sorting);
-  if (tree) {
-    tree->box = malloc(2 * m->faces * sizeof *tree->box); /* leaves hold two faces or more, but for a lone one */
-    tree->face = malloc(m->faces * sizeof *tree->face);
-  }
-  if (!tree || !sorting || !tree->box || !tree->face) {
-    free(sorting);
+  struct mesh_tree *tree = m->tree = memory_small(1, sizeof *tree);
+  OWNED struct sorting *sorting = malloc(m->faces * sizeof *sorting);
+  tree->box = malloc(2 * m->faces * sizeof *tree->box); /* leaves hold two faces or more, but for a lone one */
+  tree->face = malloc(m->faces * sizeof *tree->face);
+  if (!sorting || !tree->box || !tree->face)
     return status_fail(error, STATUS_MEMORY, "no memory for a mesh of %zu faces", m->faces);
-  }
   for (size_t f = 0; f < m->faces; f++)
     tree->face[f] = (uint32_t)f;
   uint32_t used = 1;
   split(m, tree, 0, 0, (uint32_t)m->faces, &used, sorting);
-  free(sorting);
   return STATUS_OK;
 }
 

@@ -44,17 +44,21 @@ static struct edits_file seed(void) {
     points[3 * i] = fixture_random(1, (uint64_t)i);
     owners[i] = i / 7;
   }
+  const struct engine_kind fake = {.name = "fake",
+                                   .doc = "Made-up numbers.",
+                                   .results_version = 3,
+                                   .inputs = &fixture_inputs_table,
+                                   .results = &fixture_inputs_table};
+  const struct outcome outcome = {.time = 0.5};
   field_defaults(&fixture_inputs_table, &inputs);
   snprintf(path, sizeof path, "%s/clast-fuzz-XXXXXX", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : ".");
   int descriptor = mkstemp(path);
   must(descriptor >= 0);
   close(descriptor);
   atexit(put_away);
-  must(snapshot_file_open("fake", "Made-up numbers.", 3, 7, &fixture_inputs_table, &inputs, &file, &error) ==
-       STATUS_OK);
+  must(snapshot_file_open(&fake, 7, &inputs, &outcome, &inputs, &file, &error) == STATUS_OK);
   snapshot_file_data(file, "VTKHDF/Points", SNAPSHOT_FILE_REAL, ROWS, 3, points, "m", "where");
   snapshot_file_data(file, "VTKHDF/PointData/fragment", SNAPSHOT_FILE_INTEGER, ROWS, 0, owners, "1", "fragment");
-  snapshot_file_real(file, "run", "time", 0.5);
   must(snapshot_file_save(file, path, &error) == STATUS_OK);
   snapshot_file_close(file);
   return edits_read(path);

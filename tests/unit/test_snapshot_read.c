@@ -14,15 +14,20 @@ enum { ROWS = 300 };
 static char good[] = "/tmp/clast-read-good-XXXXXX", bad[] = "/tmp/clast-read-bad-XXXXXX";
 static double points[3 * ROWS];
 
+static const struct engine_kind fake = {.name = "fake",
+                                        .doc = "Made-up numbers.",
+                                        .results_version = 3,
+                                        .inputs = &fixture_inputs_table,
+                                        .results = &fixture_inputs_table};
+
 static void write_file(const char *path) {
   struct snapshot_file *file = NULL;
   struct fixture_inputs inputs;
   struct error error;
+  const struct outcome outcome = {.time = 0.5};
   field_defaults(&fixture_inputs_table, &inputs);
-  assert_int_equal(snapshot_file_open("fake", "Made-up numbers.", 3, 7, &fixture_inputs_table, &inputs, &file, &error),
-                   STATUS_OK);
+  assert_int_equal(snapshot_file_open(&fake, 7, &inputs, &outcome, &inputs, &file, &error), STATUS_OK);
   snapshot_file_data(file, POINTS, SNAPSHOT_FILE_REAL, ROWS, 3, points, "m", "where");
-  snapshot_file_real(file, "run", "time", 0.5);
   assert_int_equal(snapshot_file_save(file, path, &error), STATUS_OK);
   snapshot_file_close(file);
 }

@@ -21,6 +21,7 @@
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/inputs.h"
+#include "engine/sph/sph.h"
 #include "tests/support/sweep.h"
 
 static char folder[256];
@@ -90,10 +91,12 @@ static struct sph_fragments pieces_of(const struct sph_particles *p) {
 static status write_file(const char *path, const struct sph_particles *p, const struct sph_fragments *pieces,
                          const uint32_t *flaws, struct error *error) {
   static struct sph_inputs inputs;
+  static struct sph_results results;
+  const struct outcome outcome = {.time = 2.5e-5};
   struct snapshot_file *file;
   field_defaults(&sph_inputs, &inputs);
-  assert_int_equal(snapshot_file_open("sph", "what it models", 3, 7, &sph_inputs, &inputs, &file, error), STATUS_OK);
-  snapshot_file_real(file, "run", "time", 2.5e-5);
+  field_defaults(&sph_results, &results);
+  assert_int_equal(snapshot_file_open(&sph_engine, 7, &inputs, &outcome, &results, &file, error), STATUS_OK);
   sph_snapshot_particles(file, p, pieces, flaws);
   status code = snapshot_file_save(file, path, error);
   snapshot_file_close(file);

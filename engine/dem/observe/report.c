@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "engine/dem/run/run.h"
+#include "schemas/memory.h"
 
 /* Data of the search for fragments. */
 struct search {
@@ -75,22 +76,19 @@ static status fragments_of(const struct dem_run *run, double when, uint32_t *lab
   struct search w = {0};
   *fragments = NULL;
   *count = 0;
-  status code;
-  if (!allocate(&w, run->tessellation)) {
-    code = status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains", n);
-    goto cleanup;
+  status code = allocate(&w, run->tessellation)
+                    ? STATUS_OK
+                    : status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains", n);
+  if (!code) {
+    add_grains(run, &w);
+    add_links(run, when, &w);
+    code = fragments_find_plane(w.present, w.member, w.links, (const uint32_t(*)[2])w.link, w.found, fragments, count,
+                                error);
   }
-  add_grains(run, &w);
-  add_links(run, when, &w);
-  code = fragments_find_plane(w.present, w.member, w.links, (const uint32_t(*)[2])w.link, w.found, fragments, count,
-                              error);
-  if (code)
-    goto cleanup;
   for (size_t k = 0; k < *count; k++)
     (*fragments)[k].first = w.grain[(*fragments)[k].first];
-  for (size_t i = 0; label && i < n; i++)
+  for (size_t i = 0; !code && label && i < n; i++)
     label[i] = w.number[i] == UINT32_MAX ? UINT32_MAX : w.found[w.number[i]];
-cleanup:
   free_search(&w);
   return code;
 }
@@ -108,11 +106,10 @@ static status fill_finality(const struct dem_run *run, const struct outcome *out
   size_t breaks = dem_system_breaks(run->system, &log), count;
   for (size_t k = breaks; k > 0 && log[k - 1].time > half; k--)
     results->late_breaks++;
-  struct fragment *then;
+  OWNED struct fragment *then = NULL;
   TRY(fragments_of(run, half, NULL, &then, &count, error));
   if (count > 0)
     results->largest_loss = fmax(0, then[0].mass / outcome->total_mass - outcome->largest_fraction);
-  free(then);
   return STATUS_OK;
 }
 

@@ -6,6 +6,7 @@
 #include "engine/dem/dem.h"
 #include "engine/dem/run/run.h"
 #include "engine/snapshot_file.h"
+#include "schemas/memory.h"
 
 enum { OUTLINE_CORNERS = 64, VTK_POLYGON = 7 };
 
@@ -81,7 +82,7 @@ static const struct snapshot_file_column fragment_columns[] = {
 
 static void add_grains(struct snapshot_file *file, const struct dem_run *run, const uint32_t *label) {
   size_t n = run->tessellation->cell_count;
-  struct grain_row *row = malloc(n * sizeof *row);
+  OWNED struct grain_row *row = malloc(n * sizeof *row);
   if (!row) {
     snapshot_file_fail(file);
     return;
@@ -98,12 +99,11 @@ static void add_grains(struct snapshot_file *file, const struct dem_run *run, co
                                 .fragment = label[i] == UINT32_MAX ? -1.0 : (double)label[i]};
   }
   COLUMNS("grains", n, row, grain_columns);
-  free(row);
 }
 
 static void add_beams(struct snapshot_file *file, const struct dem_run *run) {
   const struct dem_tessellation *t = run->tessellation;
-  struct beam_row *row = malloc((t->pair_count + 1) * sizeof *row);
+  OWNED struct beam_row *row = malloc((t->pair_count + 1) * sizeof *row);
   if (!row) {
     snapshot_file_fail(file);
     return;
@@ -117,7 +117,6 @@ static void add_beams(struct snapshot_file *file, const struct dem_run *run) {
                                .strain = dem_system_beam_strain(run->system, i)};
   }
   COLUMNS("beams", t->pair_count, row, beam_columns);
-  free(row);
 }
 
 /* Outlines of the present grains, as VTK reads them: one cell per grain. */
@@ -212,13 +211,9 @@ static void outlines(struct snapshot_file *file, const struct dem_run *run, cons
 }
 
 static void content(struct snapshot_file *file, const struct dem_run *run, const uint32_t *label,
-                    const struct outcome *outcome, const struct dem_results *results, const struct fragment *fragments,
-                    size_t fragment_count) {
+                    const struct fragment *fragments, size_t fragment_count) {
   const struct dem_break *log = NULL;
   size_t breaks = dem_system_breaks(run->system, &log);
-  snapshot_file_table(file, "inputs", &dem_inputs, &run->inputs);
-  snapshot_file_table(file, "outcome", &outcome_table, outcome);
-  snapshot_file_table(file, "results", &dem_results, results);
   add_grains(file, run, label);
   add_beams(file, run);
   COLUMNS("breaks", breaks, log, break_columns);
@@ -232,26 +227,18 @@ status dem_snapshot_write(void *of, const char *path, struct error *error) {
   struct dem_run *run = of;
   struct outcome outcome;
   struct dem_results results;
-  struct fragment *fragments = NULL;
+  OWNED struct fragment *unlabelled = NULL; /* the report finds them without the labels */
+  OWNED struct fragment *fragments = NULL;
   struct snapshot_file *file = NULL;
   size_t count = 0;
-  status code = STATUS_OK;
-  uint32_t *label = malloc(run->tessellation->cell_count * sizeof *label);
+  OWNED uint32_t *label = malloc(run->tessellation->cell_count * sizeof *label);
   if (!label)
     return status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
-  if ((code = dem_report_finish(run, &outcome, &results, &fragments, &count, error)))
-    goto cleanup;
-  free(fragments); /* found again below, with labels */
-  if ((code = dem_report_fragments(run, label, &fragments, &count, error)) ||
-      (code = snapshot_file_open(dem_engine.name, dem_engine.doc, dem_engine.results_version, run->seed, &dem_inputs,
-                                 &run->inputs, &file, error)))
-    goto cleanup;
-  snapshot_file_real(file, "run", "time", outcome.time);
-  content(file, run, label, &outcome, &results, fragments, count);
-  code = snapshot_file_save(file, path, error);
-cleanup:
+  TRY(dem_report_finish(run, &outcome, &results, &unlabelled, &count, error));
+  TRY(dem_report_fragments(run, label, &fragments, &count, error));
+  TRY(snapshot_file_open(&dem_engine, run->seed, &run->inputs, &outcome, &results, &file, error));
+  content(file, run, label, fragments, count);
+  const status code = snapshot_file_save(file, path, error);
   snapshot_file_close(file);
-  free(fragments);
-  free(label);
   return code;
 }

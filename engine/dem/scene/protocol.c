@@ -29,15 +29,12 @@ status dem_protocol_body(const struct dem_inputs *in, uint64_t seed, struct dem_
   struct dem_tessellation *first = NULL, *second = NULL;
   lattice.origin = (struct dem_point){-along / 2, -across / 2};
   status code = dem_tessellation_make(&lattice, &first, error);
-  if (code)
-    goto cleanup;
   lattice.origin = (struct dem_point){along / 2, across / 2};
   lattice.stream = BODY_SECOND;
-  code = dem_tessellation_make(&lattice, &second, error);
-  if (code)
-    goto cleanup;
-  code = dem_tessellation_join(first, second, out, error);
-cleanup:
+  if (!code)
+    code = dem_tessellation_make(&lattice, &second, error);
+  if (!code)
+    code = dem_tessellation_join(first, second, out, error);
   dem_tessellation_free(first);
   dem_tessellation_free(second);
   return code;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/dem/step/system_layout.h"
+#include "schemas/memory.h"
 
 struct array {
   size_t offset; /* of the pointer in struct dem_system */
@@ -192,17 +193,15 @@ status dem_system_create(const struct dem_tessellation *tessellation, const stru
   s->velocities = needs_velocities(&inputs->contact);
 
   status code = dem_assemble(s, tessellation, seed, error);
-  if (code)
-    goto cleanup;
-  s->kernels->rest(s);
-  if (!make_ready(s)) {
-    code = status_fail(error, STATUS_MEMORY, "not enough memory for %zu grains.", s->count);
-    goto cleanup;
+  if (!code) {
+    s->kernels->rest(s);
+    if (!make_ready(s))
+      code = status_fail(error, STATUS_MEMORY, "not enough memory for %zu grains.", s->count);
   }
-  *out = s;
-  s = NULL;
-cleanup:
-  dem_system_free(s);
+  if (code)
+    dem_system_free(s);
+  else
+    *out = s;
   return code;
 }
 
@@ -466,13 +465,13 @@ static bool runge_kutta(struct dem_system *s, const struct trial *t, double *con
 bool dem_system_start_gear(struct dem_system *s) {
   const size_t n = s->padded, arrays = 3 * (4 + TRIAL_STEPS + 1), size = dem_system_state_size(s);
   const double dt = s->in->fidelity.time_step;
-  double *memory = malloc(arrays * n * sizeof *memory);
-  void *state = malloc(size);
+  OWNED double *memory = malloc(arrays * n * sizeof *memory);
+  OWNED void *state = malloc(size);
   struct trial t;
   bool done = memory && state;
   s->no_memory = !done;
   if (!done)
-    goto cleanup;
+    return false;
   double *next = memory;
   for (int k = 0; k < 3; k++) {
     double **const columns[] = {&t.x0[k],   &t.v0[k],   &t.dx[k],   &t.dv[k],  &t.a[0][k],
@@ -494,9 +493,6 @@ bool dem_system_start_gear(struct dem_system *s) {
       s->c.gear[k][4][g] = square / 24.0 * (35.0 * a0 - 104.0 * a1 + 114.0 * a2 - 56.0 * a3 + 11.0 * a4) / 12.0;
       s->c.gear[k][5][g] = square / 120.0 * (-5.0 * a0 + 18.0 * a1 - 24.0 * a2 + 14.0 * a3 - 3.0 * a4) / 2.0;
     }
-cleanup:
-  free(state);
-  free(memory);
   return done;
 }
 
@@ -586,7 +582,7 @@ static void take_next(const struct dem_system *s, const double *f, double larges
 
 double dem_system_stable_time_step(const struct dem_system *s) {
   const size_t size = 3 * (s->count + 2);
-  double *u = malloc(2 * size * sizeof *u);
+  OWNED double *u = malloc(2 * size * sizeof *u);
   if (!u)
     return NAN;
   double *f = u + size, squared = 0.0;
@@ -601,7 +597,6 @@ double dem_system_stable_time_step(const struct dem_system *s) {
       break;
     take_next(s, f, largest, u);
   }
-  free(u);
   return squared > 0.0 ? largest_angle[s->in->fidelity.integrator] / sqrt(squared) : (double)INFINITY;
 }
 

@@ -2,10 +2,12 @@
 #include "engine/sph/body/bodies.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/vector3.h"
+#include "schemas/memory.h"
 
 static double unit(const double a[3], double out[3]) {
   const double length = sqrt(vector3_dot(a, a));
@@ -17,10 +19,7 @@ static double unit(const double a[3], double out[3]) {
 static const char *name(size_t body, char text[32]) { /* names of bodies as in scenes */
   if (body < 2)
     return body ? "the projectile" : "the target";
-  const char digits[3] = {(char)('0' + body / 100 % 10), (char)('0' + body / 10 % 10), (char)('0' + body % 10)};
-  memcpy(text, "body ", 5);
-  memcpy(text + 5, digits, 3);
-  text[8] = 0;
+  snprintf(text, 32, "body %03zu", body);
   return text;
 }
 
@@ -49,13 +48,12 @@ static status check_overlap(const struct sph_body *bodies, size_t a, size_t b, s
 static status check(const struct sph_body *bodies, size_t count, struct error *error) {
   if (!count || count > 255)
     return status_fail(error, STATUS_CONTENT, "%zu bodies: give 1 to 255.", count);
-  status code = STATUS_OK;
-  for (size_t b = 0; b < count && !code; b++)
-    code = check_body(&bodies[b], error);
   for (size_t b = 0; b < count; b++)
-    for (size_t a = 0; a < b && !code; a++)
-      code = check_overlap(bodies, a, b, error);
-  return code;
+    TRY(check_body(&bodies[b], error));
+  for (size_t b = 0; b < count; b++)
+    for (size_t a = 0; a < b; a++)
+      TRY(check_overlap(bodies, a, b, error));
+  return STATUS_OK;
 }
 
 /* The particles of body b, at its points and from the index `first` on. */
@@ -81,34 +79,25 @@ static struct sph_range fill(const struct sph_body *body, size_t b, const struct
 status sph_bodies_make(const struct sph_body *bodies, size_t count, int arrays, struct sph_particles **out,
                        struct sph_range *ranges, struct error *error) {
   *out = NULL;
-  struct sph_particles *p = NULL;
   TRY(check(bodies, count, error));
-  struct sph_points *points = calloc(count, sizeof *points);
-  if (!points)
-    return status_fail(error, STATUS_MEMORY, "no memory for %zu bodies", count);
+  OWNED struct sph_points *points = memory_small(count, sizeof *points);
   status code = STATUS_OK;
-  size_t n = 0;
-  for (size_t b = 0; b < count; b++) {
+  size_t n = 0, first = 0;
+  for (size_t b = 0; b < count && !code; b++) {
     code = sph_lattice_fill(&bodies[b].lattice, &bodies[b].shape, &points[b], error);
-    if (code)
-      goto cleanup;
     n += points[b].n;
   }
-  code = sph_particles_make(n, arrays, &p, error);
-  if (code)
-    goto cleanup;
-  size_t first = 0;
+  if (!code)
+    code = sph_particles_make(n, arrays, out, error);
   for (size_t b = 0; b < count; b++) {
-    const struct sph_range range = fill(&bodies[b], b, &points[b], first, p);
-    if (ranges)
-      ranges[b] = range;
-    first += range.n;
-  }
-  *out = p;
-cleanup:
-  for (size_t b = 0; b < count; b++)
+    if (!code) {
+      const struct sph_range range = fill(&bodies[b], b, &points[b], first, *out);
+      if (ranges)
+        ranges[b] = range;
+      first += range.n;
+    }
     sph_lattice_empty(&points[b]);
-  free(points);
+  }
   return code;
 }
 

@@ -42,12 +42,11 @@ status sph_flaws_cells(uint64_t seed, uint64_t body, double width, const struct 
                        struct sph_range range, struct sph_cells **out, struct error *error) {
   double frame[3][3], shift[3];
   struct sph_cells *cells = memory_small(1, sizeof *cells);
-  struct place *place = malloc((range.n ? range.n : 1) * sizeof *place);
+  OWNED struct place *place = malloc((range.n ? range.n : 1) * sizeof *place);
   cells->of = malloc((range.n ? range.n : 1) * sizeof *cells->of);
   *out = NULL;
   if (!cells->of || !place) {
     sph_flaws_cells_free(cells);
-    free(place);
     return status_fail(error, STATUS_MEMORY, "no memory for the cells of %zu particles", range.n);
   }
   random_rotation(seed, RANDOM_CELL, body, 0, frame);
@@ -60,7 +59,6 @@ status sph_flaws_cells(uint64_t seed, uint64_t body, double width, const struct 
     cells->count += i == 0 || memcmp(place[i].cube, place[i - 1].cube, sizeof place[i].cube) != 0;
     cells->of[place[i].particle] = (uint32_t)(cells->count - 1);
   }
-  free(place);
   *out = cells;
   return STATUS_OK;
 }
@@ -191,18 +189,14 @@ static status draw_all(struct drawn *d, sph_flaws_owner owner, void *context, ui
 status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner owner, void *context, uint64_t most,
                       struct sph_flaws **out, struct error *error) {
   *out = NULL;
-  struct drawn d = {.law = law, .n = n, .without = n, .has = calloc(n ? n : 1, 1)};
-  if (!d.has)
+  OWNED unsigned char *has = calloc(n ? n : 1, 1);
+  if (!has)
     return status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", n);
+  struct drawn d = {.law = law, .n = n, .without = n, .has = has};
   status code = draw_all(&d, owner, context, most, error);
-  if (code)
-    goto cleanup;
-  *out = sort_by_particle(&d);
-  if (!*out)
+  if (!code && !(*out = sort_by_particle(&d)))
     code = status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", d.count);
-cleanup:
   free(d.flaw);
-  free(d.has);
   return code;
 }
 
@@ -332,21 +326,20 @@ status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *s
   if (!range.n)
     return status_fail(error, STATUS_CONTENT, "a body of no particles has no flaws.");
   status code = find_owners(law, p, range, middle, &owners, error);
-  if (code)
-    goto cleanup;
-  const size_t n = owners.cells ? owners.cells->count : range.n;
-  full.volume = sph_shape_volume(shape) / (law->solid_ratio > 0 ? law->solid_ratio : 1);
-  full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
-  full.exempt = owners.cells ? owners.ends_cells : owners.ends;
-  full.share = owners.share;
-  struct places places = {shape, middle, owners.nearest, owners.ends, owners.cells, law->seed, law->body};
-  code = sph_flaws_make(&full, n, nearest_particle, &places, 0, out, error);
-  if (code)
-    goto cleanup;
-  (*out)->particles = range.n;
-  (*out)->cells = owners.cells;
-  owners.cells = NULL;
-cleanup:
+  if (!code) {
+    const size_t n = owners.cells ? owners.cells->count : range.n;
+    full.volume = sph_shape_volume(shape) / (law->solid_ratio > 0 ? law->solid_ratio : 1);
+    full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
+    full.exempt = owners.cells ? owners.ends_cells : owners.ends;
+    full.share = owners.share;
+    struct places places = {shape, middle, owners.nearest, owners.ends, owners.cells, law->seed, law->body};
+    code = sph_flaws_make(&full, n, nearest_particle, &places, 0, out, error);
+  }
+  if (!code) {
+    (*out)->particles = range.n;
+    (*out)->cells = owners.cells;
+    owners.cells = NULL;
+  }
   sph_kd_tree_free(owners.nearest);
   sph_flaws_cells_free(owners.cells);
   free(owners.ends);

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "schemas/memory.h"
+
 struct key {
   uint64_t axis[3];
   uint32_t id;
@@ -55,7 +57,7 @@ static int compare(const void *left, const void *right) {
 status sph_hilbert_find(size_t n, const double *x, const double *y, const double *z, uint32_t *order,
                         struct error *error) {
   const double *place[3] = {x, y, z};
-  struct key *keys = malloc((n ? n : 1) * sizeof *keys);
+  OWNED struct key *keys = malloc((n ? n : 1) * sizeof *keys);
   if (!keys)
     return status_fail(error, STATUS_MEMORY, "no memory to sort %zu particles", n);
   double lowest[3], extent = 0;
@@ -80,6 +82,5 @@ status sph_hilbert_find(size_t n, const double *x, const double *y, const double
   qsort(keys, n, sizeof *keys, compare);
   for (size_t i = 0; i < n; i++)
     order[i] = keys[i].id;
-  free(keys);
   return STATUS_OK;
 }

@@ -82,32 +82,35 @@ static bool list_images(struct work *w, const struct sph_kd_tree *tree, size_t i
   return true;
 }
 
+static status no_memory(size_t n, struct error *error) {
+  return status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
+}
+
+/* The coordinates by column: x, y and z of n points each. NULL: no memory. */
+static double *columns_of(size_t n, double (*at)[3]) {
+  double *column = malloc(3 * n * sizeof *column);
+  for (size_t i = 0; column && i < n; i++)
+    for (size_t k = 0; k < 3; k++)
+      column[k * n + i] = at[i][k];
+  return column;
+}
+
 /* Lists the neighbours of all points. */
 static status list(struct work *w, struct error *error) {
   struct sph_kd_tree *tree = NULL;
-  double *column = malloc(3 * w->n * sizeof *column);
+  OWNED double *column = columns_of(w->n, w->at);
   if (!column)
-    return status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", w->n);
-  for (size_t i = 0; i < w->n; i++)
-    for (size_t k = 0; k < 3; k++)
-      column[k * w->n + i] = w->at[i][k];
-  status code = sph_kd_tree_create(w->n, column, column + w->n, column + 2 * w->n, &tree, error);
-  if (code)
-    goto cleanup;
-
+    return no_memory(w->n, error);
+  TRY(sph_kd_tree_create(w->n, column, column + w->n, column + 2 * w->n, &tree, error));
   size_t total = 0;
-  for (size_t i = 0; i < w->n; i++) {
+  bool listed = true;
+  for (size_t i = 0; i < w->n && listed; i++) {
     w->first[i] = total;
-    if (!list_images(w, tree, i, &total)) {
-      code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", w->n);
-      goto cleanup;
-    }
+    listed = list_images(w, tree, i, &total);
   }
   w->first[w->n] = total;
-cleanup:
   sph_kd_tree_free(tree);
-  free(column);
-  return code;
+  return listed ? STATUS_OK : no_memory(w->n, error);
 }
 
 /* Does the wall end the body? Walls of periodic directions do not. */
@@ -192,34 +195,26 @@ static status relax_spread(const struct sph_lattice *lattice, const struct sph_s
                            double (*at)[3], struct error *error) {
   struct work w = {.lattice = lattice, .shape = shape, .n = n, .spacing = spacing, .at = at, .capacity = 64 * n + 64};
   status code = STATUS_OK;
+  OWNED double(*pushes)[3] = w.push = malloc(n * sizeof *w.push);
+  OWNED double *spacings = w.s = malloc(n * sizeof *w.s);
+  OWNED size_t *first = w.first = malloc((n + 1) * sizeof *w.first);
+  w.list = malloc(w.capacity * sizeof *w.list); /* it grows */
   for (int k = 0; k < 3; k++)
     if (lattice->periodic[k])
       w.length[k] = shape->kind == SPH_SHAPE_BOX ? shape->side[k] : shape->length;
-  w.push = malloc(n * sizeof *w.push);
-  w.s = malloc(n * sizeof *w.s);
-  w.first = malloc((n + 1) * sizeof *w.first);
-  w.list = malloc(w.capacity * sizeof *w.list);
-  if (!w.push || !w.s || !w.first || !w.list) {
-    code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
-    goto cleanup;
-  }
-  for (size_t i = 0; i < n; i++) {
+  if (!pushes || !spacings || !first || !w.list)
+    code = no_memory(n, error);
+  for (size_t i = 0; i < n && !code; i++) {
     w.s[i] = wanted(&w, at[i]);
     confine(&w, at[i], w.s[i]);
   }
   const int rounds = lattice->grading.fine > 0 ? ROUNDS_GRADED : ROUNDS;
-  for (int k = 0; k < rounds; k++) {
-    if (k % ROUNDS_PER_LIST == 0) {
+  for (int k = 0; k < rounds && !code; k++) {
+    if (k % ROUNDS_PER_LIST == 0)
       code = list(&w, error);
-      if (code)
-        goto cleanup;
-    }
-    round_of(&w, first_step * pow(last_step / first_step, (double)k / (rounds - 1)));
+    if (!code)
+      round_of(&w, first_step * pow(last_step / first_step, (double)k / (rounds - 1)));
   }
-cleanup:
-  free(w.push);
-  free(w.s);
-  free(w.first);
   free(w.list);
   return code;
 }
@@ -270,10 +265,10 @@ static status store(const struct sph_shape *shape, const struct sph_grading *gra
   }
   points->spacing = cbrt(sph_shape_volume(shape) / (double)n);
   points->stretch = 1;
-  status code = find_nearest(points, at, &points->nearest, error);
-  if (!code && n == 1)
+  TRY(find_nearest(points, at, &points->nearest, error));
+  if (n == 1)
     points->nearest = points->spacing;
-  return code;
+  return STATUS_OK;
 }
 
 /* Uniform points start as the hexagonal lattice, each moved by up to 0.7 spacings per direction. This leaves nothing of
@@ -284,27 +279,22 @@ static status fill_uniform(const struct sph_lattice *lattice, const struct sph_s
   regular.kind = SPH_LATTICE_HEXAGONAL;
   regular.particles = wanted;
   struct sph_points start;
-  status code = STATUS_OK;
   TRY(sph_lattice_fill(&regular, shape, &start, error));
-  double(*at)[3] = malloc(start.n * sizeof *at);
-  if (!at) {
-    code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", start.n);
-    goto cleanup;
-  }
-  for (size_t i = 0; i < start.n; i++) {
+  OWNED double(*at)[3] = malloc(start.n * sizeof *at);
+  for (size_t i = 0; at && i < start.n; i++) {
     uint64_t bits[4];
     random_bits(lattice->seed, RANDOM_LATTICE, lattice->body, places + i, bits);
     const double p[3] = {start.x[i], start.y[i], start.z[i]};
     for (int k = 0; k < 3; k++)
       at[i][k] = p[k] + 1.4 * start.spacing * (random_uniform(bits[k]) - 0.5);
   }
-  code = relax_spread(lattice, shape, start.spacing, start.n, at, error);
-  if (!code)
-    code = store(shape, &lattice->grading, start.n, at, points, error);
-cleanup:
-  free(at);
+  const double spacing = start.spacing;
+  const size_t n = start.n;
   sph_lattice_empty(&start);
-  return code;
+  if (!at)
+    return no_memory(n, error);
+  TRY(relax_spread(lattice, shape, spacing, n, at, error));
+  return store(shape, &lattice->grading, n, at, points, error);
 }
 
 /* ---- graded points: the number of particles within r of the point ---- */
@@ -399,26 +389,15 @@ static status decide(const struct sph_lattice *lattice, struct sph_grading *g, s
 
 /* Sorts the points so that neighbours in space are neighbours in memory; the sequence has no such order. */
 static status sort(size_t n, double (*at)[3], struct error *error) {
-  double *column = malloc(3 * n * sizeof *column);
-  uint32_t *order = malloc(n * sizeof *order);
-  status code = STATUS_OK;
-  if (!column || !order) {
-    code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
-    goto cleanup;
-  }
-  for (size_t i = 0; i < n; i++)
-    for (size_t k = 0; k < 3; k++)
-      column[k * n + i] = at[i][k];
-  code = sph_hilbert_find(n, column, column + n, column + 2 * n, order, error);
-  if (code)
-    goto cleanup;
+  OWNED double *column = columns_of(n, at);
+  OWNED uint32_t *order = malloc(n * sizeof *order);
+  if (!column || !order)
+    return no_memory(n, error);
+  TRY(sph_hilbert_find(n, column, column + n, column + 2 * n, order, error));
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < 3; k++)
       at[i][k] = column[k * n + order[i]];
-cleanup:
-  free(column);
-  free(order);
-  return code;
+  return STATUS_OK;
 }
 
 /* Places n points by a low-discrepancy sequence (Weyl's, with powers of the 3D analogue of the plastic number). Its
@@ -457,35 +436,21 @@ static status fill_graded(const struct sph_lattice *lattice, const struct sph_sh
                           struct error *error) {
   struct sph_lattice graded = *lattice;
   struct sph_grading *g = &graded.grading;
-  struct shells *shells = memory_small(1, sizeof *shells);
-  double(*at)[3] = NULL, number = 0;
+  OWNED struct shells *shells = memory_small(1, sizeof *shells);
+  double number = 0;
   cut_shells(g, shape, shells);
-  status code = decide(lattice, g, shells, &number, error);
-  if (code)
-    goto cleanup;
+  TRY(decide(lattice, g, shells, &number, error));
   const size_t n = (size_t)number;
-  at = malloc(n * sizeof *at);
-  if (!at) {
-    code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
-    goto cleanup;
-  }
-  if (throw_points(lattice, shape, shells, n, at) < n) {
-    code = status_fail(
+  OWNED double(*at)[3] = malloc(n * sizeof *at);
+  if (!at)
+    return no_memory(n, error);
+  if (throw_points(lattice, shape, shells, n, at) < n)
+    return status_fail(
         error, STATUS_CONTENT,
         "a body is too thin, or too far from its point of impact, for graded particles: set fidelity.graded: false");
-    goto cleanup;
-  }
-  code = sort(n, at, error);
-  if (code)
-    goto cleanup;
-  code = relax_spread(&graded, shape, g->fine, n, at, error);
-  if (code)
-    goto cleanup;
-  code = store(shape, g, n, at, points, error);
-cleanup:
-  free(shells);
-  free(at);
-  return code;
+  TRY(sort(n, at, error));
+  TRY(relax_spread(&graded, shape, g->fine, n, at, error));
+  return store(shape, g, n, at, points, error);
 }
 
 status sph_irregular_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, double wanted,

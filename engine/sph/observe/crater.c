@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/memory.h"
+
 enum { SIDE_MOST = 2048 }; /* columns along one side */
 
 bool sph_crater_is_ejected(const struct sph_particles *now, size_t i, const struct sph_crater_options *o) {
@@ -124,13 +126,12 @@ static void enter_neighbours(const struct map *m, size_t at, struct queue *q) {
 static status measure_hole(const struct map *m, const struct sph_crater_options *o, struct sph_results *results,
                            struct error *error) {
   size_t columns = m->nx * m->ny;
-  struct queue q = {.column = malloc(columns * sizeof *q.column), .seen = calloc(columns, sizeof *q.seen)};
-  if (!q.column || !q.seen) {
-    free(q.column);
-    free(q.seen);
+  OWNED size_t *column = malloc(columns * sizeof *column);
+  OWNED bool *seen = calloc(columns, sizeof *seen);
+  if (!column || !seen)
     return status_fail(error, STATUS_MEMORY, "no memory for a map of the crater");
-  }
 
+  struct queue q = {.column = column, .seen = seen};
   double area = m->size * m->size, dug = 0, volume = 0, depth = 0;
   enter_axis(m, o->axis, &q);
   while (q.head < q.tail) {
@@ -148,8 +149,6 @@ static status measure_hole(const struct map *m, const struct sph_crater_options 
   results->crater.depth = depth;
   results->crater.radius = sqrt(dug / M_PI);
   results->crater.volume = sph_results_finite(volume);
-  free(q.column);
-  free(q.seen);
   return STATUS_OK;
 }
 

@@ -77,16 +77,11 @@ static status report_largest(const struct sph_run *run, const struct sph_fragmen
   double strength = run->inputs.fragments.static_strength;
   results->largest.bare_fraction = sph_results_share(found->core_largest, found->mass);
   results->largest.veneer_fraction = largest_share(found);
-  status code = STATUS_OK;
   if (!run->inputs.fragments.veneer)
-    code = find_largest_share(run, strength, &results->largest.veneer_fraction, error);
-  if (code)
-    return code;
+    TRY(find_largest_share(run, strength, &results->largest.veneer_fraction, error));
   results->largest.dynamic_fraction = results->largest.veneer_fraction;
   if (!field_is_off(strength))
-    code = find_largest_share(run, NAN, &results->largest.dynamic_fraction, error);
-  if (code)
-    return code;
+    TRY(find_largest_share(run, NAN, &results->largest.dynamic_fraction, error));
 
   results->largest.axis_middle = sph_results_finite(found->axis_ratio[0]);
   results->largest.axis_short = sph_results_finite(found->axis_ratio[1]);
@@ -273,10 +268,9 @@ static status fill_results(const struct sph_run *run, const struct sph_ledger *l
   report_ledger(run, ledger, input, results);
   report_steps(run, ledger, results);
   TRY(report_largest(run, found, results, error));
-  status code = report_protocol(run, results, error);
-  if (!code)
-    report_modules(run, results);
-  return code;
+  TRY(report_protocol(run, results, error));
+  report_modules(run, results);
+  return STATUS_OK;
 }
 
 static void fill_outcome(const struct sph_run *run, const struct sph_ledger *ledger, double input,

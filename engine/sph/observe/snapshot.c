@@ -4,6 +4,7 @@
 
 #include "engine/sph/run/run.h"
 #include "engine/sph/sph.h"
+#include "schemas/memory.h"
 
 enum { VTK_VERTEX = 1, MOST_LAYERS = 4096 };
 
@@ -101,11 +102,11 @@ static void scalar(struct snapshot_file *file, const char *name, size_t n, const
 void sph_snapshot_particles(struct snapshot_file *file, const struct sph_particles *p,
                             const struct sph_fragments *fragments, const uint32_t *flaws) {
   size_t n = p->n;
-  double *values = malloc((9 * n + 1) * sizeof *values);
-  int64_t *integers = malloc((n + 1) * sizeof *integers);
+  OWNED double *values = malloc((9 * n + 1) * sizeof *values);
+  OWNED int64_t *integers = malloc((n + 1) * sizeof *integers);
   if (!values || !integers) {
     snapshot_file_fail(file);
-    goto cleanup;
+    return;
   }
   snapshot_file_vtk(file, n, n, n);
   three(file, "VTKHDF/Points", n, p->x, p->y, p->z, values, "m", "positions of the particles");
@@ -141,14 +142,11 @@ void sph_snapshot_particles(struct snapshot_file *file, const struct sph_particl
   if (flaws)
     unsigned_column(file, AT("flaws"), n, flaws, integers, "number of flaws");
   COLUMNS(file, "fragments", fragments->count, fragments->fragments, fragment_columns);
-cleanup:
-  free(values);
-  free(integers);
 }
 
 /* The profile of an impact or of a plate. */
 static void add_profile(struct snapshot_file *file, const struct sph_run *run) {
-  struct sph_crater_layer *layers = malloc(MOST_LAYERS * sizeof *layers);
+  OWNED struct sph_crater_layer *layers = malloc(MOST_LAYERS * sizeof *layers);
   if (!layers) {
     snapshot_file_fail(file);
     return;
@@ -158,7 +156,6 @@ static void add_profile(struct snapshot_file *file, const struct sph_run *run) {
                      ? sph_plate_profile(run, layers, MOST_LAYERS)
                      : sph_crater_profile(run->start, run->now, &options, layers, MOST_LAYERS);
   COLUMNS(file, "axis", count, layers, axis_columns);
-  free(layers);
 }
 
 status sph_snapshot_write(void *of, const char *path, struct error *error) {
@@ -172,39 +169,29 @@ status sph_snapshot_write(void *of, const char *path, struct error *error) {
   size_t count = 0;
   status code = sph_report_finish(run, &outcome, &results, &fragments, &count, error);
   free(fragments); /* found once more below, with the labels */
+  OWNED uint32_t *flaws = malloc((run->now->n + 1) * sizeof *flaws);
+  if (!code && !flaws)
+    code = status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
+  if (!code)
+    code = sph_report_fragments(run, in->fragments.static_strength, in->fragments.veneer, &found, error);
   if (code)
     return code;
-
-  uint32_t *flaws = malloc((run->now->n + 1) * sizeof *flaws);
-  if (!flaws) {
-    code = status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
-    goto cleanup;
-  }
-  code = sph_report_fragments(run, in->fragments.static_strength, in->fragments.veneer, &found, error);
-  if (code)
-    goto cleanup;
   for (size_t k = 0; k < found.count; k++) /* the spin of few particles is that of their lattice */
     if (found.fragments[k].count < SPH_FRAGMENTS_MEASURED)
       for (int d = 0; d < 3; d++)
         found.fragments[k].spin[d] = NAN;
-  code = snapshot_file_open(sph_engine.name, sph_engine.doc, sph_engine.results_version, run->seed, &sph_inputs, in,
-                            &file, error);
-  if (code)
-    goto cleanup;
-
-  snapshot_file_real(file, "run", "time", outcome.time);
-  snapshot_file_table(file, "inputs", &sph_inputs, in);
-  snapshot_file_table(file, "outcome", &outcome_table, &outcome);
-  snapshot_file_table(file, "results", &sph_results, &results);
+  code = snapshot_file_open(&sph_engine, run->seed, in, &outcome, &results, &file, error);
+  if (code) {
+    sph_fragments_clear(&found);
+    return code;
+  }
   sph_snapshot_particles(file, run->now, &found, sph_system_flaws(run->system, flaws) ? flaws : NULL);
   if (run->sample)
     COLUMNS(file, "curve", run->state.frame.samples, run->sample, curve_columns);
   if (in->kind == SPH_IMPACT || in->kind == SPH_PISTON)
     add_profile(file, run);
   code = snapshot_file_save(file, path, error);
-cleanup:
   snapshot_file_close(file);
-  free(flaws);
   sph_fragments_clear(&found);
   return code;
 }

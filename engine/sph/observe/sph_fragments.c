@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/sph/material/material.h"
+#include "schemas/memory.h"
 
 /* ---- pairs of particles ---- */
 
@@ -130,22 +131,19 @@ static status cell_grid_create(size_t n, const double *x, const double *y, const
                                const uint8_t *role, double reach, const double periodic[3], struct cell_grid **out,
                                struct error *error) {
   *out = NULL;
-  status code = STATUS_OK;
-  struct cell_grid *t = calloc(1, sizeof *t);
-  struct item *from = malloc((n + 1) * sizeof *from);
-  uint32_t *bucket = malloc((n + 1) * sizeof *bucket);
+  OWNED struct item *from = malloc((n + 1) * sizeof *from);
+  OWNED uint32_t *bucket = malloc((n + 1) * sizeof *bucket);
   struct level level[LEVELS];
-  if (!t || !from || !bucket)
-    goto no_memory;
-
-  double largest = collect_items(t, n, x, y, z, h, role, reach, from);
+  struct cell_grid *t = memory_small(1, sizeof *t);
+  const double largest = from ? collect_items(t, n, x, y, z, h, role, reach, from) : 0;
   for (t->mask = 1; t->mask < 2 * t->n;)
     t->mask = 2 * t->mask + 1;
   t->item = malloc((t->n + 1) * sizeof *t->item);
   t->start = calloc(t->mask + 2, sizeof *t->start);
-  if (!t->item || !t->start)
-    goto no_memory;
-
+  if (!from || !bucket || !t->item || !t->start) {
+    cell_grid_free(t);
+    return status_fail(error, STATUS_MEMORY, "no memory to find which of %zu particles are neighbours", n);
+  }
   t->coarsest = largest * (1 + 1e-9); /* a rounded distance must not skip a cell */
   for (int d = 0; d < 3; d++)
     t->period[d] = periodic[d] > 0 ? periodic[d] : 0;
@@ -159,14 +157,7 @@ static status cell_grid_create(size_t n, const double *x, const double *y, const
     level[l] = level_at(t, l);
   sort_items(t, level, from, bucket);
   *out = t;
-  goto cleanup;
-no_memory:
-  cell_grid_free(t);
-  code = status_fail(error, STATUS_MEMORY, "no memory to find which of %zu particles are neighbours", n);
-cleanup:
-  free(from);
-  free(bucket);
-  return code;
+  return STATUS_OK;
 }
 
 /* `square`: r^2 of the pair, m^2; the same bits for (i, j) and (j, i). */
@@ -454,7 +445,7 @@ static status stop_endless_spins(struct search *s, struct error *error) {
     double period = s->options->periodic[d];
     if (!(period > 0))
       continue;
-    double(*range)[2] = malloc((s->out->count + 1) * sizeof *range);
+    OWNED double(*range)[2] = malloc((s->out->count + 1) * sizeof *range);
     if (!range)
       return status_fail(error, STATUS_MEMORY, "no memory for %zu fragments", s->out->count);
     for (size_t f = 0; f < s->out->count; f++) {
@@ -471,7 +462,6 @@ static status stop_endless_spins(struct search *s, struct error *error) {
         for (int other = 0; other < 3; other++)
           if (other != d)
             s->out->fragments[f].spin[other] = 0;
-    free(range);
   }
   return STATUS_OK;
 }
