@@ -194,23 +194,20 @@ static status read_seal(struct bytes *b, const char *path, struct error *error) 
   return STATUS_OK;
 }
 
-static status other_class(enum cpu_class class, const char *path, struct error *error) {
-  const char *name = cpu_class_name(class);
-  return status_fail(
-      error, STATUS_CONTENT,
-      "the restart file '%s' is of CPU class %s, this run of %s, and bits are the same within one class only: "
-      "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run again",
-      path, name, cpu_class_name(cpu_class_choose()), name);
-}
-
 /* Reads magic, checksum, version, seed, class, build and identity: everything before the parts. */
 static status read_head(struct bytes *b, const char *identity, const char *path, uint64_t *seed, struct error *error) {
   uint64_t class, length;
   TRY(read_seal(b, path, error));
   if (!get_exactly(b, VERSION) || !get(b, seed, 8) || !get(b, &class, 8))
     return refuse(path, error);
-  if (class != (uint64_t)cpu_class_choose())
-    return other_class((enum cpu_class) class, path, error);
+  if (class != (uint64_t)cpu_class_choose()) {
+    const char *name = cpu_class_name((enum cpu_class) class);
+    return status_fail(
+        error, STATUS_CONTENT,
+        "the restart file '%s' is of CPU class %s, this run of %s, and bits are the same within one class only: "
+        "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run again",
+        path, name, cpu_class_name(cpu_class_choose()), name);
+  }
   if (!get_exactly(b, build_hash()))
     return refuse(path, error);
   const bool whole = get(b, &length, 8) && length <= b->size - b->used;

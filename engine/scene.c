@@ -542,21 +542,17 @@ const struct scene_settings *scene_settings_find(const struct scene *scene, cons
   return NULL;
 }
 
-static status unknown_settings(const struct scene *scene, const char *name, struct error *error) {
-  char known[512] = SCENE_SETTINGS_STANDARD;
-  for (size_t i = 0; i < scene->settings_count; i++)
-    text_append(known, sizeof known, ", %s", scene->settings[i].name);
-  return status_fail(error, STATUS_MISSING, "%s has no settings '%.64s'; it has %s (`settings` in its document)",
-                     scene->name, name, known);
-}
-
 status scene_settings_use(struct scene *scene, const char *name, struct error *error) {
   if (strcmp(name, SCENE_SETTINGS_STANDARD) == 0)
     return STATUS_OK;
   const struct scene_settings *settings = scene_settings_find(scene, name);
-  if (!settings)
-    return unknown_settings(scene, name, error);
-
+  if (!settings) {
+    char known[512] = SCENE_SETTINGS_STANDARD;
+    for (size_t i = 0; i < scene->settings_count; i++)
+      text_append(known, sizeof known, ", %s", scene->settings[i].name);
+    return status_fail(error, STATUS_MISSING, "%s has no settings '%.64s'; it has %s (`settings` in its document)",
+                       scene->name, name, known);
+  }
   status code = STATUS_OK;
   for (size_t i = 0; code == STATUS_OK && i < settings->count; i++) {
     const size_t row = settings->item[i].row;

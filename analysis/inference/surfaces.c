@@ -34,6 +34,7 @@ struct part {
   double *x, *values, *mean, *noise;
 };
 
+#define PART __attribute__((cleanup(part_clear))) struct part
 static void part_clear(struct part *part) {
   free(part->x);
   free(part->values);
@@ -103,24 +104,15 @@ static double left_out(const struct kriging *surface, size_t points) {
 
 static status fit_output(const struct surfaces_runs *runs, const bool *bounded, size_t k, struct surfaces *out,
                          struct error *error) {
-  struct part part = {0};
-  status code = part_make(runs, bounded, k, &part, error);
-  if (code == STATUS_OK)
-    code = seed_scatter_fit(&part.runs, runs->shared_seeds, &out->scatter[k], error);
-  if (code == STATUS_OK) {
-    seed_scatter_of_means(&part.runs, &out->scatter[k], part.noise);
-    const struct kriging_data data = {.points = part.runs.points,
-                                      .inputs = runs->inputs,
-                                      .x = part.x,
-                                      .mean = part.mean,
-                                      .noise = part.noise};
-    code = kriging_fit(&data, &out->surface[k], error);
-  }
-  if (code == STATUS_OK)
-    out->left_out[k] = left_out(out->surface[k], part.runs.points);
+  PART part = {0};
+  TRY(part_make(runs, bounded, k, &part, error));
+  TRY(seed_scatter_fit(&part.runs, runs->shared_seeds, &out->scatter[k], error));
+  seed_scatter_of_means(&part.runs, &out->scatter[k], part.noise);
+  const struct kriging_data data = {part.runs.points, runs->inputs, part.x, part.mean, part.noise};
+  TRY(kriging_fit(&data, &out->surface[k], error));
+  out->left_out[k] = left_out(out->surface[k], part.runs.points);
   out->used[k] = part.runs.points;
-  part_clear(&part);
-  return code;
+  return STATUS_OK;
 }
 
 status surfaces_fit(const struct surfaces_runs *runs, const struct posterior_datum *data, const bool *bounded,
@@ -164,14 +156,10 @@ status surfaces_errors(const struct surfaces_runs *runs, const struct posterior_
   posterior_place(&place, z, x);
   find_correlations(runs, gamma);
   for (size_t k = 0; k < d; k++) {
-    struct part part = {0};
+    PART part = {0};
     struct seed_scatter scatter;
-    status code = part_make(runs, bounded, k, &part, error);
-    if (code == STATUS_OK)
-      code = seed_scatter_fit(&part.runs, false, &scatter, error);
-    part_clear(&part);
-    if (code != STATUS_OK)
-      return code;
+    TRY(part_make(runs, bounded, k, &part, error));
+    TRY(seed_scatter_fit(&part.runs, false, &scatter, error));
     deviation[k] = sqrt(seed_scatter_variance(&scatter, x) / (double)data[k].specimens);
   }
   for (size_t k = 0; k < d; k++)

@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/memory.h"
+
 enum { LARGE = 10 }; /* cells: a smaller fragment is poorly resolved and gets a pale tint */
 
 /* Cells sorted by fragment: cells of fragment f are order[start[f]] ... order[start[f + 1] - 1]. */
@@ -19,6 +21,7 @@ struct grouping {
   uint32_t *start, *order;
 };
 
+#define GROUPING __attribute__((cleanup(grouping_free))) struct grouping
 static void grouping_free(struct grouping *grouping) {
   free(grouping->start);
   free(grouping->order);
@@ -96,20 +99,14 @@ static void cover_most(const struct picture_body *body, double *centre, double v
 /* Shows all cells. If distant single cells would shrink the picture much, it shows all other fragments and 96 % of the
  * cells. */
 static status choose_view(const struct picture_body *body, double view[4]) {
-  double *centre = malloc((body->cells + 1) * sizeof *centre), all[4], bulk[4];
-  struct grouping grouping;
-  status code = group(body, &grouping);
-  if (!code && !centre)
-    code = STATUS_MEMORY;
-  if (!code) {
-    cover_cells(body, &grouping, all, bulk);
-    cover_most(body, centre, bulk);
-  }
-  free(centre);
-  grouping_free(&grouping);
-  if (code)
-    return code;
-
+  OWNED double *centre = malloc((body->cells + 1) * sizeof *centre);
+  double all[4], bulk[4];
+  GROUPING grouping = {0};
+  TRY(group(body, &grouping));
+  if (!centre)
+    return STATUS_MEMORY;
+  cover_cells(body, &grouping, all, bulk);
+  cover_most(body, centre, bulk);
   bool near = all[2] - all[0] <= 1.25 * (bulk[2] - bulk[0]) && all[3] - all[1] <= 1.25 * (bulk[3] - bulk[1]);
   memcpy(view, near ? all : bulk, 4 * sizeof *view);
   double margin = 0.02 * fmax(view[2] - view[0], view[3] - view[1]);
@@ -209,7 +206,7 @@ static double area_of(const struct picture_body *body, size_t cell) {
 }
 
 void picture_fragments_numbers(const struct picture_body *body, const char *cells, char *text, size_t size) {
-  struct grouping grouping;
+  GROUPING grouping = {0};
   size_t single = 0, fragments = 0;
   double total = 0, largest = 0;
   text[0] = 0;
@@ -228,7 +225,6 @@ void picture_fragments_numbers(const struct picture_body *body, const char *cell
     snprintf(text, size, "%zu %s in %zu fragment%s, %zu of them single; largest %.1f %% of the area", body->cells,
              cells, fragments, fragments == 1 ? "" : "s", single, 100 * largest / total);
   }
-  grouping_free(&grouping);
 }
 
 static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, const double view[4], double left,
@@ -236,12 +232,8 @@ static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, cons
   const struct picture_body *body = &panel->body;
   const bool chosen = panel->view[2] >
                       panel->view[0]; /* a chosen part of the body: its fragments may extend beyond the panel */
-  struct grouping grouping;
-  status code = group(body, &grouping);
-  if (code) {
-    grouping_free(&grouping);
-    return code;
-  }
+  GROUPING grouping = {0};
+  TRY(group(body, &grouping));
   double scale = fmin(width / (view[2] - view[0]), height / (view[3] - view[1])), area = 0;
   for (size_t i = 0; i < body->cells; i++)
     area += area_of(body, i);
@@ -270,7 +262,6 @@ static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, cons
   if (panel->caption)
     picture_canvas_text(cairo, left + width * 0.98, top + height + 1.75 * font, font, PICTURE_RIGHT, false,
                         panel->caption);
-  grouping_free(&grouping);
   return STATUS_OK;
 }
 
@@ -307,9 +298,8 @@ status picture_fragments(const char *path, double width, const char *title, cons
   tallest = fmin(tallest, 1.5 * each);
   double top = font * (0.8 + (title ? 1.9 : 0) + (subtitle ? 1.6 : 0));
   struct picture_canvas canvas;
-  status code = picture_canvas_open(&canvas, path, width, top + tallest + 3 * font, error);
-  if (code)
-    return code;
+  status code = STATUS_OK;
+  TRY(picture_canvas_open(&canvas, path, width, top + tallest + 3 * font, error));
   picture_canvas_head(canvas.cairo, gap, width - 2 * gap, font, title, font, subtitle);
   for (size_t p = 0; p < panels && !code; p++) {
     code = draw_panel(canvas.cairo, &panel[p], view[p], gap + (each + gap) * (double)p, top, each, tallest, font);
@@ -327,26 +317,6 @@ struct columns {
   double *point, *alive, *beam;
   int64_t *id, *offset, *fragment, *grain;
 };
-
-static void read_columns(struct snapshot_read *file, struct columns *c) {
-  c->point = snapshot_read_rows(file, "/VTKHDF/Points", 3, SNAPSHOT_READ_REAL, &c->points);
-  c->id = snapshot_read_rows(file, "/VTKHDF/Connectivity", 0, SNAPSHOT_READ_INTEGER, &c->ids);
-  c->offset = snapshot_read_rows(file, "/VTKHDF/Offsets", 0, SNAPSHOT_READ_INTEGER, &c->offsets);
-  c->fragment = snapshot_read_rows(file, "/VTKHDF/CellData/fragment", 0, SNAPSHOT_READ_INTEGER, &c->fragments);
-  c->grain = snapshot_read_rows(file, "/VTKHDF/CellData/grain", 0, SNAPSHOT_READ_INTEGER, &c->grains);
-  c->beam = snapshot_read_rows(file, "/beams/grains", 2, SNAPSHOT_READ_REAL, &c->beams);
-  c->alive = snapshot_read_rows(file, "/beams/alive", 0, SNAPSHOT_READ_REAL, &c->alives);
-}
-
-static void free_columns(struct columns *c) {
-  free(c->point);
-  free(c->id);
-  free(c->offset);
-  free(c->fragment);
-  free(c->grain);
-  free(c->beam);
-  free(c->alive);
-}
 
 /* The offsets must rise from 0 to the number of vertices. */
 static bool take_cells(const struct columns *c, struct picture_body *body) {
@@ -425,11 +395,16 @@ status picture_fragments_read(const char *path, struct picture_body *body, struc
   struct snapshot_read *file;
   TRY(snapshot_read_open(path, &file, error));
 
-  struct columns columns = {0};
-  read_columns(file, &columns);
-  bool good = snapshot_read_close(file) && take_cells(&columns, body) && take_cracks(&columns, body);
-  free_columns(&columns);
-  if (good)
+  struct columns c;
+  const enum snapshot_read_kind real = SNAPSHOT_READ_REAL, whole = SNAPSHOT_READ_INTEGER;
+  OWNED double *point = c.point = snapshot_read_rows(file, "/VTKHDF/Points", 3, real, &c.points);
+  OWNED int64_t *id = c.id = snapshot_read_rows(file, "/VTKHDF/Connectivity", 0, whole, &c.ids);
+  OWNED int64_t *offset = c.offset = snapshot_read_rows(file, "/VTKHDF/Offsets", 0, whole, &c.offsets);
+  OWNED int64_t *of = c.fragment = snapshot_read_rows(file, "/VTKHDF/CellData/fragment", 0, whole, &c.fragments);
+  OWNED int64_t *grain = c.grain = snapshot_read_rows(file, "/VTKHDF/CellData/grain", 0, whole, &c.grains);
+  OWNED double *beam = c.beam = snapshot_read_rows(file, "/beams/grains", 2, real, &c.beams);
+  OWNED double *alive = c.alive = snapshot_read_rows(file, "/beams/alive", 0, real, &c.alives);
+  if (snapshot_read_close(file) && take_cells(&c, body) && take_cracks(&c, body))
     return STATUS_OK;
 
   picture_fragments_clear(body);

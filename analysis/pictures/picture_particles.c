@@ -46,7 +46,8 @@ static void add_weighted(double sum[3], double mass, const double position[3]) {
     sum[d] += mass * position[d];
 }
 
-static status allocate(struct scene *s) {
+static status gather(struct scene *s) {
+  const struct picture_cloud *c = s->cloud;
   for (size_t i = 0; i < s->cloud->n; i++)
     if (s->cloud->fragment[i] >= (int64_t)s->fragments)
       s->fragments = (size_t)s->cloud->fragment[i] + 1;
@@ -54,12 +55,7 @@ static status allocate(struct scene *s) {
   s->mass = calloc(s->fragments + 1, sizeof *s->mass);
   s->centre = calloc(s->fragments + 1, sizeof *s->centre);
   s->disc = malloc((s->cloud->n + 1) * sizeof *s->disc);
-  return s->count && s->mass && s->centre && s->disc ? STATUS_OK : STATUS_MEMORY;
-}
-
-static status gather(struct scene *s) {
-  const struct picture_cloud *c = s->cloud;
-  if (allocate(s))
+  if (!s->count || !s->mass || !s->centre || !s->disc)
     return STATUS_MEMORY;
   double total = 0, all[3] = {0, 0, 0};
   for (size_t i = 0; i < c->n; i++) {

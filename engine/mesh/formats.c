@@ -19,10 +19,6 @@ static bool number(const char **at, double *value) {
   return true;
 }
 
-static bool three_numbers(const char **at, double out[3]) {
-  return number(at, &out[0]) && number(at, &out[1]) && number(at, &out[2]);
-}
-
 /* ---- OBJ ---- */
 
 /* A corner, such as 7, 7/1, 7//3 or -1 (the last vertex so far). */
@@ -64,22 +60,20 @@ static status read_polygon(struct mesh_soup *soup, size_t line, const char *at, 
   return count < 3 ? mesh_refuse(soup, line, error, "a face has %zu corners: it needs three", count) : STATUS_OK;
 }
 
-static status read_vertex(struct mesh_soup *soup, size_t line, const char *numbers, struct error *error) {
-  double place[3];
-  if (!three_numbers(&numbers, place))
-    return mesh_refuse(soup, line, error, "expected three numbers behind v");
-  return mesh_soup_vertex(soup, line, place, error);
-}
-
 /* One line, whose first word begins at `at`. */
 static status read_obj_line(struct mesh_soup *soup, size_t line, const char *at, struct error *error) {
   static const char *const ignored[] = {"", "vt", "vn", "vp", "o", "g", "s", "l", "p", "usemtl", "mtllib", NULL};
   const size_t length = strcspn(at, " \t\r\v\f\n");
   char word[8] = "";
+  double place[3];
   if (length < sizeof word)
     memcpy(word, at, length);
-  if (strcmp(word, "v") == 0)
-    return read_vertex(soup, line, at + 1, error);
+  if (strcmp(word, "v") == 0) {
+    at++;
+    if (!number(&at, &place[0]) || !number(&at, &place[1]) || !number(&at, &place[2]))
+      return mesh_refuse(soup, line, error, "expected three numbers behind v");
+    return mesh_soup_vertex(soup, line, place, error);
+  }
   if (strcmp(word, "f") == 0)
     return read_polygon(soup, line, at + 1, error);
   const bool fits = length < sizeof word;

@@ -174,13 +174,6 @@ static status check_edges(const struct mesh_soup *soup, struct error *error) {
   return STATUS_OK;
 }
 
-/* Merges equal vertices, and checks that every edge has two faces that turn opposite ways and every face an area. */
-static status close_surface(struct mesh_soup *soup, struct error *error) {
-  TRY(merge_vertices(soup, error));
-  TRY(check_faces(soup, error));
-  return check_edges(soup, error);
-}
-
 /* ---- measures ---- */
 
 static void find_box(struct mesh *m) {
@@ -258,8 +251,12 @@ static status check_size(const struct mesh *m, const struct mesh_soup *soup, str
   return STATUS_OK;
 }
 
-/* Takes vertices and faces from the soup. */
+/* Merges equal vertices, checks that every edge has two faces that turn opposite ways and every face an area, and takes
+ * vertices and faces from the soup. */
 static status build(struct mesh *m, struct mesh_soup *soup, struct error *error) {
+  TRY(merge_vertices(soup, error));
+  TRY(check_faces(soup, error));
+  TRY(check_edges(soup, error));
   m->vertices = soup->vertices;
   m->faces = soup->faces;
   m->tail = soup->tail;
@@ -291,8 +288,6 @@ status mesh_read(const char *name, const void *bytes, size_t size, struct mesh *
   text[size] = 0;
   struct mesh *mesh = memory_small(1, sizeof *mesh);
   status code = mesh_formats_read(&soup, text, size, error);
-  if (!code)
-    code = close_surface(&soup, error);
   if (!code)
     code = build(mesh, &soup, error);
   free(soup.vertex);

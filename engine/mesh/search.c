@@ -50,23 +50,19 @@ static size_t choose_columns(const struct mesh *m, struct mesh_columns *c) {
   }
 }
 
-static void count_faces(const struct mesh *m, struct mesh_columns *c) {
+/* Counts the faces of each column, or fills them in. */
+static void sort_faces(const struct mesh *m, struct mesh_columns *c, bool fill) {
   for (size_t f = 0; f < m->faces; f++) {
     size_t low[2], high[2];
     columns_of(m, c, f, low, high);
     for (size_t i = low[0]; i <= high[0]; i++)
-      for (size_t j = low[1]; j <= high[1]; j++)
-        c->first[i * c->count[1] + j + 2]++;
-  }
-}
-
-static void fill_faces(const struct mesh *m, struct mesh_columns *c) {
-  for (size_t f = 0; f < m->faces; f++) {
-    size_t low[2], high[2];
-    columns_of(m, c, f, low, high);
-    for (size_t i = low[0]; i <= high[0]; i++)
-      for (size_t j = low[1]; j <= high[1]; j++)
-        c->face[c->first[i * c->count[1] + j + 1]++] = (uint32_t)f;
+      for (size_t j = low[1]; j <= high[1]; j++) {
+        size_t *const first = &c->first[i * c->count[1] + j];
+        if (fill)
+          c->face[first[1]++] = (uint32_t)f;
+        else
+          first[2]++;
+      }
   }
 }
 
@@ -79,10 +75,10 @@ static status list_faces(struct mesh *m, struct error *error) {
   c->face = malloc((total + 1) * sizeof *c->face);
   if (!c->first || !c->face)
     return status_fail(error, STATUS_MEMORY, "no memory for a mesh of %zu faces", m->faces);
-  count_faces(m, c);
+  sort_faces(m, c, false);
   for (size_t i = 2; i <= columns; i++)
     c->first[i] += c->first[i - 1];
-  fill_faces(m, c);
+  sort_faces(m, c, true);
   return STATUS_OK;
 }
 

@@ -45,7 +45,7 @@ static void cubes(void **state) {
   assert_memory_not_equal(cells[0]->of, cells[1]->of, p->n * sizeof *cells[0]->of);
   assert_memory_equal(cells[0]->of, cells[2]->of, p->n * sizeof *cells[0]->of);
   for (int k = 0; k < 3; k++)
-    sph_flaws_cells_free(cells[k]);
+    free(cells[k]);
   free(seen);
   sph_flaws_free(flaws);
   solid_end(&c);

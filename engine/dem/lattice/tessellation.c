@@ -8,6 +8,7 @@
 
 #include "engine/grow.h"
 #include "engine/random.h"
+#include "schemas/memory.h"
 
 /* ---- points and cells, in lattice units (spacing 1) ----
  *
@@ -367,8 +368,8 @@ static bool cut_body(struct builder *b) {
   b->corners = (struct corners){.columns = b->points.columns, .rows = b->points.rows};
   b->corners.head = calloc(n, sizeof *b->corners.head);
   b->number = malloc(n * sizeof *b->number);
-  b->out = calloc(1, sizeof *b->out);
-  if (!b->corners.head || !b->number || !b->out || !allocate(b->out, n))
+  b->out = memory_small(1, sizeof *b->out);
+  if (!b->corners.head || !b->number || !allocate(b->out, n))
     return false;
   for (uint32_t row = 0; row < b->points.rows; row++)
     for (uint32_t column = 0; column < b->points.columns; column++)
@@ -435,17 +436,13 @@ static void copy_part(struct dem_tessellation *to, const struct dem_tessellation
 status dem_tessellation_join(const struct dem_tessellation *a, const struct dem_tessellation *b,
                              struct dem_tessellation **out, struct error *error) {
   *out = NULL;
-  struct dem_tessellation *t = calloc(1, sizeof *t);
+  struct dem_tessellation *t = memory_small(1, sizeof *t);
   const size_t cells = a->cell_count + b->cell_count, pairs = a->pair_count + b->pair_count;
   const uint32_t vertices = a->first_vertex[a->cell_count];
-  bool fits = t && allocate(t, cells);
-  if (fits) {
-    t->vertex = malloc((size_t)(vertices + b->first_vertex[b->cell_count]) * sizeof *t->vertex);
-    t->pair = malloc((pairs + 1) * sizeof *t->pair);
-    t->side = malloc((pairs + 1) * sizeof *t->side);
-    fits = t->vertex && t->pair && t->side;
-  }
-  if (!fits) {
+  t->vertex = malloc((size_t)(vertices + b->first_vertex[b->cell_count]) * sizeof *t->vertex);
+  t->pair = malloc((pairs + 1) * sizeof *t->pair);
+  t->side = malloc((pairs + 1) * sizeof *t->side);
+  if (!allocate(t, cells) || !t->vertex || !t->pair || !t->side) {
     dem_tessellation_free(t);
     return status_fail(error, STATUS_MEMORY, "no memory for a body of %zu grains", cells);
   }

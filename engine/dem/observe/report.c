@@ -15,24 +15,6 @@ struct search {
   size_t present, links;
 };
 
-static void free_search(struct search *w) {
-  free(w->member);
-  free(w->number);
-  free(w->grain);
-  free(w->found);
-  free(w->link);
-}
-
-static bool allocate(struct search *w, const struct dem_tessellation *t) {
-  const size_t n = t->cell_count;
-  w->member = malloc(n * sizeof *w->member);
-  w->number = malloc(n * sizeof *w->number);
-  w->grain = malloc(n * sizeof *w->grain);
-  w->found = malloc(n * sizeof *w->found);
-  w->link = malloc((t->pair_count + 1) * sizeof *w->link);
-  return w->member && w->number && w->grain && w->found && w->link;
-}
-
 static void add_grains(const struct dem_run *run, struct search *w) {
   for (uint32_t i = 0; i < run->tessellation->cell_count; i++) {
     const struct dem_grain g = dem_system_grain(run->system, i);
@@ -74,23 +56,23 @@ static status fragments_of(const struct dem_run *run, double when, uint32_t *lab
                            size_t *count, struct error *error) {
   const size_t n = run->tessellation->cell_count;
   struct search w = {0};
+  OWNED struct fragment_member *member = w.member = malloc(n * sizeof *member);
+  OWNED uint32_t *number = w.number = malloc(n * sizeof *number);
+  OWNED uint32_t *grain = w.grain = malloc(n * sizeof *grain);
+  OWNED uint32_t *found = w.found = malloc(n * sizeof *found);
+  OWNED uint32_t(*link)[2] = w.link = malloc((run->tessellation->pair_count + 1) * sizeof *link);
   *fragments = NULL;
   *count = 0;
-  status code = allocate(&w, run->tessellation)
-                    ? STATUS_OK
-                    : status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains", n);
-  if (!code) {
-    add_grains(run, &w);
-    add_links(run, when, &w);
-    code = fragments_find_plane(w.present, w.member, w.links, (const uint32_t(*)[2])w.link, w.found, fragments, count,
-                                error);
-  }
+  if (!member || !number || !grain || !found || !link)
+    return status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains", n);
+  add_grains(run, &w);
+  add_links(run, when, &w);
+  TRY(fragments_find_plane(w.present, member, w.links, (const uint32_t(*)[2])link, found, fragments, count, error));
   for (size_t k = 0; k < *count; k++)
-    (*fragments)[k].first = w.grain[(*fragments)[k].first];
-  for (size_t i = 0; !code && label && i < n; i++)
-    label[i] = w.number[i] == UINT32_MAX ? UINT32_MAX : w.found[w.number[i]];
-  free_search(&w);
-  return code;
+    (*fragments)[k].first = grain[(*fragments)[k].first];
+  for (size_t i = 0; label && i < n; i++)
+    label[i] = number[i] == UINT32_MAX ? UINT32_MAX : found[number[i]];
+  return STATUS_OK;
 }
 
 status dem_report_fragments(const struct dem_run *run, uint32_t *label, struct fragment **fragments, size_t *count,
@@ -153,32 +135,21 @@ static void fill_breaks(const struct dem_run *run, struct dem_results *results) 
 static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, double energy_input,
                          struct dem_results *results) {
   const struct dem_tessellation *t = run->tessellation;
-  *results = (struct dem_results){
-      .stop_reason = run->state.frame.stop,
-      .broken_share = NAN,
-      .first_break = NAN,
-      .last_break = NAN,
-      .energy_input = energy_input,
-      .threshold_energy = NAN,
-      .stable_time_step = run->stable_time_step,
-      .overlap_share = dem_system_overlap_share(run->system),
-      .passing_share = run->passing_speed > 0 ? dem_system_fastest_approach(run->system) / run->passing_speed
-                                              : (double)NAN,
-      .energy = {.kinetic = ledger->kinetic,
-                 .beam = ledger->beam,
-                 .contact = ledger->contact,
-                 .damping = ledger->damping,
-                 .friction = ledger->friction,
-                 .broken_beam = ledger->broken_beam,
-                 .external_work = ledger->external_work},
-      .young_modulus = NAN,
-      .poisson_ratio = NAN,
-      .strength = NAN,
-      .failure_strain = NAN,
-      .final_strain = NAN,
-      .upright_share = NAN,
-      .end_triangle_share = NAN,
-  };
+  field_defaults(&dem_results, results); /* every quantity is off or zero */
+  results->stop_reason = run->state.frame.stop;
+  results->energy_input = energy_input;
+  results->stable_time_step = run->stable_time_step;
+  results->overlap_share = dem_system_overlap_share(run->system);
+  if (run->passing_speed > 0)
+    results->passing_share = dem_system_fastest_approach(run->system) / run->passing_speed;
+  results->largest_loss = 0;
+  results->energy.kinetic = ledger->kinetic;
+  results->energy.beam = ledger->beam;
+  results->energy.contact = ledger->contact;
+  results->energy.damping = ledger->damping;
+  results->energy.friction = ledger->friction;
+  results->energy.broken_beam = ledger->broken_beam;
+  results->energy.external_work = ledger->external_work;
   dem_describe_sound_speeds(&run->inputs, &results->sound_speed_extension, &results->sound_speed_compression);
   if (run->inputs.threshold.breaking)
     results->threshold_energy = dem_describe_threshold_energy(&run->inputs, t);
@@ -219,7 +190,6 @@ static void fill_balance(const struct dem_run *run, const struct dem_ledger *led
     outcome->energy_error = not_infinite(fabs(dem_run_closed(ledger) - s->frame.closed_start) / input);
     outcome->kinetic_energy_share = not_infinite(translation / input);
   }
-  results->angular_momentum_error = NAN;
   if (!dem_inputs_loaded(&run->inputs) && magnitude > 0) {
     const struct dem_inputs *in = &run->inputs;
     const double longest = fmax(in->body.diameter,

@@ -2,6 +2,7 @@
  * of polygons; name it .hdf for older ParaViews). */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "engine/dem/dem.h"
 #include "engine/dem/run/run.h"
@@ -131,83 +132,47 @@ static const struct snapshot_file_column cell_columns[] = {
 };
 #undef COLUMN
 
-struct outlines {
-  size_t points, cells;
-  double (*point)[3];
-  struct cell_row *cell;
-  int64_t *offset, *connectivity, *fragment, *grain;
-  unsigned char *type;
-};
-
-static bool allocate_outlines(struct outlines *o, size_t points, size_t cells) {
-  *o = (struct outlines){.point = malloc(points * sizeof *o->point),
-                         .cell = malloc(cells * sizeof *o->cell),
-                         .offset = malloc((cells + 1) * sizeof *o->offset),
-                         .connectivity = malloc(points * sizeof *o->connectivity),
-                         .fragment = malloc(cells * sizeof *o->fragment),
-                         .grain = malloc(cells * sizeof *o->grain),
-                         .type = malloc(cells)};
-  return o->point && o->cell && o->offset && o->connectivity && o->fragment && o->grain && o->type;
-}
-
-static void free_outlines(struct outlines *o) {
-  free(o->point);
-  free(o->cell);
-  free(o->offset);
-  free(o->connectivity);
-  free(o->fragment);
-  free(o->grain);
-  free(o->type);
-}
-
-static void fill_outlines(struct outlines *o, const struct dem_run *run, const uint32_t *label) {
-  const size_t n = run->tessellation->cell_count, capacity = run->tessellation->first_vertex[n];
-  o->offset[0] = 0;
+static void outlines(struct snapshot_file *file, const struct dem_run *run, const uint32_t *label) {
+  const struct dem_tessellation *t = run->tessellation;
+  const size_t n = t->cell_count, capacity = t->first_vertex[n];
+  OWNED double(*point)[3] = malloc(capacity * sizeof *point);
+  OWNED struct cell_row *cell = malloc(n * sizeof *cell);
+  OWNED int64_t *offset = calloc(n + 1, sizeof *offset);
+  OWNED int64_t *connectivity = malloc(capacity * sizeof *connectivity);
+  OWNED int64_t *fragment = malloc(n * sizeof *fragment);
+  OWNED int64_t *grain = malloc(n * sizeof *grain);
+  OWNED unsigned char *type = malloc(n);
+  size_t points = 0, cells = 0;
+  if (!point || !cell || !offset || !connectivity || !fragment || !grain || !type) {
+    snapshot_file_fail(file);
+    return;
+  }
   for (uint32_t i = 0; i < n; i++) {
-    struct dem_grain g = dem_system_grain(run->system, i);
+    const struct dem_grain g = dem_system_grain(run->system, i);
     struct dem_point corner[OUTLINE_CORNERS];
     if (!g.present)
       continue;
-    size_t corners = dem_system_outline(run->system, i, OUTLINE_CORNERS, corner);
-    for (size_t k = 0; k < corners && k < OUTLINE_CORNERS && o->points < capacity; k++) {
-      double *point = o->point[o->points];
-      point[0] = corner[k].x;
-      point[1] = corner[k].y;
-      point[2] = 0;
-      o->connectivity[o->points] = (int64_t)o->points;
-      o->points++;
+    const size_t corners = dem_system_outline(run->system, i, OUTLINE_CORNERS, corner);
+    for (size_t k = 0; k < corners && k < OUTLINE_CORNERS && points < capacity; k++, points++) {
+      memcpy(point[points], (const double[3]){corner[k].x, corner[k].y, 0}, sizeof point[points]);
+      connectivity[points] = (int64_t)points;
     }
-    const size_t c = o->cells++;
-    o->offset[c + 1] = (int64_t)o->points;
-    o->type[c] = VTK_POLYGON;
-    o->cell[c] = (struct cell_row){g.mass, {g.vx, g.vy, 0}, g.spin};
-    o->grain[c] = i;
-    o->fragment[c] = (int64_t)label[i];
+    type[cells] = VTK_POLYGON;
+    cell[cells] = (struct cell_row){g.mass, {g.vx, g.vy, 0}, g.spin};
+    grain[cells] = i;
+    fragment[cells] = (int64_t)label[i];
+    offset[++cells] = (int64_t)points;
   }
-}
-
-static void outlines(struct snapshot_file *file, const struct dem_run *run, const uint32_t *label) {
-  const struct dem_tessellation *t = run->tessellation;
-  struct outlines o;
-  if (!allocate_outlines(&o, t->first_vertex[t->cell_count], t->cell_count)) {
-    snapshot_file_fail(file);
-    free_outlines(&o);
-    return;
-  }
-  fill_outlines(&o, run, label);
-  const size_t points = o.points, cells = o.cells;
   snapshot_file_vtk(file, points, cells, points);
-  snapshot_file_data(file, "VTKHDF/Points", SNAPSHOT_FILE_REAL, points, 3, o.point, "m",
+  snapshot_file_data(file, "VTKHDF/Points", SNAPSHOT_FILE_REAL, points, 3, point, "m",
                      "corners of the grains' outlines");
-  snapshot_file_data(file, "VTKHDF/Connectivity", SNAPSHOT_FILE_INTEGER, points, 0, o.connectivity, NULL, NULL);
-  snapshot_file_data(file, "VTKHDF/Offsets", SNAPSHOT_FILE_INTEGER, cells + 1, 0, o.offset, NULL, NULL);
-  snapshot_file_data(file, "VTKHDF/Types", SNAPSHOT_FILE_BYTE, cells, 0, o.type, NULL, NULL);
-  snapshot_file_data(file, "VTKHDF/CellData/fragment", SNAPSHOT_FILE_INTEGER, cells, 0, o.fragment, "1",
+  snapshot_file_data(file, "VTKHDF/Connectivity", SNAPSHOT_FILE_INTEGER, points, 0, connectivity, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/Offsets", SNAPSHOT_FILE_INTEGER, cells + 1, 0, offset, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/Types", SNAPSHOT_FILE_BYTE, cells, 0, type, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/CellData/fragment", SNAPSHOT_FILE_INTEGER, cells, 0, fragment, "1",
                      "number of its fragment by descending mass");
-  snapshot_file_data(file, "VTKHDF/CellData/grain", SNAPSHOT_FILE_INTEGER, cells, 0, o.grain, "1",
-                     "index into /grains");
-  COLUMNS("VTKHDF/CellData", cells, o.cell, cell_columns);
-  free_outlines(&o);
+  snapshot_file_data(file, "VTKHDF/CellData/grain", SNAPSHOT_FILE_INTEGER, cells, 0, grain, "1", "index into /grains");
+  COLUMNS("VTKHDF/CellData", cells, cell, cell_columns);
 }
 
 static void content(struct snapshot_file *file, const struct dem_run *run, const uint32_t *label,

@@ -8,10 +8,6 @@ static const struct dem_run *run_of(const struct condition_run *r) {
   return r->run;
 }
 
-static bool hits(const struct dem_inputs *in) {
-  return in->kind == DEM_DISC_COLLISION || in->kind == DEM_BLOCK_IMPACT || in->kind == DEM_DISC_EXPLOSION;
-}
-
 /* ---- the integration ---- */
 
 static double drift(const struct condition_run *r) {
@@ -84,7 +80,7 @@ static double unfinished(const struct condition_run *r) {
   const struct dem_run *run = run_of(r);
   const struct dem_inputs *in = &run->inputs;
   const struct dem_results *results = r->results;
-  if (!hits(in) || results->broken > 0)
+  if (dem_inputs_loaded(in) || results->broken > 0)
     return NAN;
   double extension, compression;
   dem_describe_sound_speeds(in, &extension, &compression);

@@ -41,33 +41,24 @@ static void find_cubes(const struct sph_particles *p, struct sph_range range, co
 status sph_flaws_cells(uint64_t seed, uint64_t body, double width, const struct sph_particles *p,
                        struct sph_range range, struct sph_cells **out, struct error *error) {
   double frame[3][3], shift[3];
-  struct sph_cells *cells = memory_small(1, sizeof *cells);
-  OWNED struct place *place = malloc((range.n ? range.n : 1) * sizeof *place);
-  cells->of = malloc((range.n ? range.n : 1) * sizeof *cells->of);
-  *out = NULL;
-  if (!cells->of || !place) {
-    sph_flaws_cells_free(cells);
+  struct sph_cells *cells = *out = malloc(sizeof *cells + range.n * sizeof *cells->of);
+  OWNED struct place *place = malloc((range.n + 1) * sizeof *place);
+  if (!cells || !place) {
+    free(cells);
+    *out = NULL;
     return status_fail(error, STATUS_MEMORY, "no memory for the cells of %zu particles", range.n);
   }
+  *cells = (struct sph_cells){.particles = range.n, .of = (uint32_t *)(cells + 1)};
   random_rotation(seed, RANDOM_CELL, body, 0, frame);
   for (int d = 0; d < 3; d++)
     shift[d] = random_draw(seed, RANDOM_CELL, body, 1 + (uint64_t)d);
   find_cubes(p, range, frame, width, shift, place);
   qsort(place, range.n, sizeof *place, by_cube);
-  cells->particles = range.n;
   for (size_t i = 0; i < range.n; i++) {
     cells->count += i == 0 || memcmp(place[i].cube, place[i - 1].cube, sizeof place[i].cube) != 0;
     cells->of[place[i].particle] = (uint32_t)(cells->count - 1);
   }
-  *out = cells;
   return STATUS_OK;
-}
-
-void sph_flaws_cells_free(struct sph_cells *cells) {
-  if (!cells)
-    return;
-  free(cells->of);
-  free(cells);
 }
 
 struct placed {
@@ -150,18 +141,13 @@ static status draw_rest(struct drawn *d, struct error *error) {
   return STATUS_OK;
 }
 
-static status check_law(const struct sph_flaw_law *law, struct error *error) {
-  const double m = law->weibull.m, k = law->weibull.k, volume = law->volume;
-  if (m > 0 && k > 0 && volume > 0 && isfinite(m + k + volume))
-    return STATUS_OK;
-  return status_fail(error, STATUS_CONTENT,
-                     "flaws need a positive m, k and volume, not m %g, k %g m^-3, volume %g m^3.", m, k, volume);
-}
-
 static status draw_all(struct drawn *d, sph_flaws_owner owner, void *context, uint64_t most, struct error *error) {
   const struct sph_flaw_law *law = d->law;
   const size_t n = d->n;
-  TRY(check_law(law, error));
+  const double m = law->weibull.m, k = law->weibull.k, volume = law->volume;
+  if (!(m > 0 && k > 0 && volume > 0 && isfinite(m + k + volume)))
+    return status_fail(error, STATUS_CONTENT,
+                       "flaws need a positive m, k and volume, not m %g, k %g m^-3, volume %g m^3.", m, k, volume);
   d->log_kv = log(law->weibull.k) + log(law->volume);
   for (size_t i = 0; law->exempt && i < n; i++) {
     d->has[i] = law->exempt[i] != 0;
@@ -205,7 +191,7 @@ void sph_flaws_free(struct sph_flaws *flaws) {
     return;
   free(flaws->first);
   free(flaws->log_strain);
-  sph_flaws_cells_free(flaws->cells);
+  free(flaws->cells);
   free(flaws);
 }
 
@@ -280,72 +266,36 @@ static unsigned char *exempt_cells(const struct sph_cells *cells, const unsigned
   return out;
 }
 
-/* The owners of flaws, and their shares of the volume. */
-struct owners {
-  struct sph_cells *cells;   /* NULL: particles */
-  unsigned char *ends;       /* by particle: in the ends of the body; NULL: none is */
-  unsigned char *ends_cells; /* by cell: all of its particles are in the ends */
-  double *share;             /* by owner; NULL: equal */
-  struct sph_kd_tree *nearest;
-};
-
-/* The arrays of the owners; `unequal`: their shares differ. False: no memory. */
-static bool find_marks(const struct sph_particles *p, struct sph_range range, const struct sph_middle *middle,
-                       bool unequal, struct owners *o) {
-  if (middle) {
-    o->ends = find_ends(p, range, middle);
-    if (!o->ends)
-      return false;
-  }
-  if (middle && o->cells) {
-    o->ends_cells = exempt_cells(o->cells, o->ends);
-    if (!o->ends_cells)
-      return false;
-  }
-  if (unequal)
-    o->share = find_shares(p, range, o->cells);
-  return o->share || !unequal;
-}
-
-static status find_owners(const struct sph_flaw_law *law, const struct sph_particles *p, struct sph_range range,
-                          const struct sph_middle *middle, struct owners *o, struct error *error) {
-  if (law->cell_width > 0)
-    TRY(sph_flaws_cells(law->seed, law->body, law->cell_width, p, range, &o->cells, error));
-  if (!find_marks(p, range, middle, o->cells || is_graded(p, range), o))
-    return status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", range.n);
-  return sph_kd_tree_create(range.n, p->x + range.first, p->y + range.first, p->z + range.first, &o->nearest, error);
-}
-
 status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *shape, const struct sph_particles *p,
                        struct sph_range range, const struct sph_middle *middle, struct sph_flaws **out,
                        struct error *error) {
   *out = NULL;
-  struct owners owners = {0};
   struct sph_flaw_law full = *law;
+  OWNED struct sph_cells *cells = NULL; /* the owners of flaws; NULL: particles */
+  OWNED struct sph_kd_tree *nearest = NULL;
   TRY(sph_shape_check(shape, error));
   if (!range.n)
     return status_fail(error, STATUS_CONTENT, "a body of no particles has no flaws.");
-  status code = find_owners(law, p, range, middle, &owners, error);
-  if (!code) {
-    const size_t n = owners.cells ? owners.cells->count : range.n;
-    full.volume = sph_shape_volume(shape) / (law->solid_ratio > 0 ? law->solid_ratio : 1);
-    full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
-    full.exempt = owners.cells ? owners.ends_cells : owners.ends;
-    full.share = owners.share;
-    struct places places = {shape, middle, owners.nearest, owners.ends, owners.cells, law->seed, law->body};
-    code = sph_flaws_make(&full, n, nearest_particle, &places, 0, out, error);
-  }
-  if (!code) {
-    (*out)->particles = range.n;
-    (*out)->cells = owners.cells;
-    owners.cells = NULL;
-  }
-  sph_kd_tree_free(owners.nearest);
-  sph_flaws_cells_free(owners.cells);
-  free(owners.ends);
-  free(owners.ends_cells);
-  free(owners.share);
-  return code;
+  if (law->cell_width > 0)
+    TRY(sph_flaws_cells(law->seed, law->body, law->cell_width, p, range, &cells, error));
+  const bool unequal = cells || is_graded(p, range);
+  OWNED unsigned char *ends = middle ? find_ends(p, range, middle) : NULL;
+  OWNED unsigned char *ends_cells = ends && cells ? exempt_cells(cells, ends) : NULL;
+  OWNED double *share = unequal ? find_shares(p, range, cells) : NULL;
+  if ((middle && !ends) || (ends && cells && !ends_cells) || (unequal && !share))
+    return status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", range.n);
+  TRY(sph_kd_tree_create(range.n, p->x + range.first, p->y + range.first, p->z + range.first, &nearest, error));
+  const size_t n = cells ? cells->count : range.n;
+  full.volume = sph_shape_volume(shape) / (law->solid_ratio > 0 ? law->solid_ratio : 1);
+  full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
+  full.exempt = cells ? ends_cells : ends;
+  full.share = share;
+  struct places places = {shape, middle, nearest, ends, cells, law->seed, law->body};
+  TRY(sph_flaws_make(&full, n, nearest_particle, &places, 0, out, error));
+  (*out)->particles = range.n;
+  (*out)->cells = cells;
+  cells = NULL;
+  return STATUS_OK;
 }
 
 /* ---- lists of thresholds ---- */

@@ -22,6 +22,7 @@
 /* Cells of a body that crack as one (modules/crack_cell.h): cubes of a fixed width. The grid of cubes is turned and
  * shifted by the seed. A cube cut by the surface is a smaller cell. */
 
+/* One block of memory: free() ends it. */
 struct sph_cells {
   size_t particles, count; /* number of particles; number of cells that have a particle */
   uint32_t *of;            /* by particle of the body: its cell */
@@ -31,7 +32,6 @@ struct sph_cells {
  * RANDOM_CELL, body). STATUS_MEMORY. */
 status sph_flaws_cells(uint64_t seed, uint64_t body, double width, const struct sph_particles *particles,
                        struct sph_range range, struct sph_cells **out, struct error *error);
-void sph_flaws_cells_free(struct sph_cells *cells); /* NULL is fine */
 
 enum sph_flaw_draw { SPH_FLAWS_RANKED, SPH_FLAWS_POISSON, SPH_FLAW_DRAWS };
 

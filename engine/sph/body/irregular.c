@@ -97,20 +97,19 @@ static double *columns_of(size_t n, double (*at)[3]) {
 
 /* Lists the neighbours of all points. */
 static status list(struct work *w, struct error *error) {
-  struct sph_kd_tree *tree = NULL;
+  OWNED struct sph_kd_tree *tree = NULL;
   OWNED double *column = columns_of(w->n, w->at);
   if (!column)
     return no_memory(w->n, error);
   TRY(sph_kd_tree_create(w->n, column, column + w->n, column + 2 * w->n, &tree, error));
   size_t total = 0;
-  bool listed = true;
-  for (size_t i = 0; i < w->n && listed; i++) {
+  for (size_t i = 0; i < w->n; i++) {
     w->first[i] = total;
-    listed = list_images(w, tree, i, &total);
+    if (!list_images(w, tree, i, &total))
+      return no_memory(w->n, error);
   }
   w->first[w->n] = total;
-  sph_kd_tree_free(tree);
-  return listed ? STATUS_OK : no_memory(w->n, error);
+  return STATUS_OK;
 }
 
 /* Does the wall end the body? Walls of periodic directions do not. */
@@ -235,7 +234,7 @@ static void fill_shares(const struct sph_grading *grading, size_t n, double (*at
 
 /* Mean distance of nearest neighbours; 0 where there are none. */
 static status find_nearest(const struct sph_points *points, double (*at)[3], double *mean, struct error *error) {
-  struct sph_kd_tree *tree;
+  OWNED struct sph_kd_tree *tree = NULL;
   TRY(sph_kd_tree_create(points->n, points->x, points->y, points->z, &tree, error));
   double sum = 0;
   for (size_t i = 0; i < points->n; i++) {
@@ -244,7 +243,6 @@ static status find_nearest(const struct sph_points *points, double (*at)[3], dou
       sum += hypot(hypot(at[i][0] - at[j][0], at[i][1] - at[j][1]), at[i][2] - at[j][2]);
   }
   *mean = sum / (double)points->n;
-  sph_kd_tree_free(tree);
   return STATUS_OK;
 }
 

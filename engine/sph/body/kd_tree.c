@@ -5,8 +5,6 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "schemas/memory.h"
-
 enum { LEAF = 8, DEEPEST = 64 };
 
 /* Node k covers consecutive points. A plane across its widest direction halves them between the nodes 2k + 1 and 2k
@@ -16,6 +14,7 @@ struct node {
   int direction;
 };
 
+/* One block of memory, with the arrays behind the struct. */
 struct sph_kd_tree {
   size_t n, inner; /* nodes with children: 0 .. inner - 1 */
   struct node *node;
@@ -90,15 +89,12 @@ status sph_kd_tree_create(size_t n, const double *x, const double *y, const doub
   size_t leaves = 1;
   while (leaves * LEAF < n)
     leaves *= 2;
-  struct sph_kd_tree *t = memory_small(1, sizeof *t);
-  *t = (struct sph_kd_tree){.n = n, .inner = leaves - 1};
-  t->node = malloc(leaves * sizeof *t->node);
-  t->at = malloc((n ? n : 1) * sizeof *t->at);
-  t->id = malloc((n ? n : 1) * sizeof *t->id);
-  if (!t->node || !t->at || !t->id) {
-    sph_kd_tree_free(t);
+  struct sph_kd_tree *t = malloc(sizeof *t + leaves * sizeof *t->node + n * (sizeof *t->at + sizeof *t->id));
+  if (!t)
     return status_fail(error, STATUS_MEMORY, "no memory to search among %zu particles", n);
-  }
+  *t = (struct sph_kd_tree){.n = n, .inner = leaves - 1, .node = (struct node *)(t + 1)};
+  t->at = (double(*)[3])(t->node + leaves);
+  t->id = (uint32_t *)(t->at + n);
   for (size_t i = 0; i < n; i++) {
     t->at[i][0] = x[i];
     t->at[i][1] = y[i];
@@ -111,11 +107,6 @@ status sph_kd_tree_create(size_t n, const double *x, const double *y, const doub
 }
 
 void sph_kd_tree_free(struct sph_kd_tree *t) {
-  if (!t)
-    return;
-  free(t->node);
-  free(t->at);
-  free(t->id);
   free(t);
 }
 

@@ -39,18 +39,6 @@ static void from_file(const struct sph_shape *s, const double place[3], double o
     out[k] = s->centre[k] + s->unit * place[k];
 }
 
-static bool mesh_shape_inside(const struct sph_shape *s, const double point[3]) {
-  double p[3];
-  to_file(s, point, p);
-  return s->mesh && mesh_inside(s->mesh, p);
-}
-
-static double mesh_shape_distance(const struct sph_shape *s, const double point[3], double normal[3]) {
-  double p[3];
-  to_file(s, point, p);
-  return s->mesh ? s->unit * mesh_distance(s->mesh, p, normal) : (double)NAN;
-}
-
 static bool mesh_shape_surface(const struct sph_shape *s, const double direction[3], double point[3],
                                double normal[3]) {
   double p[3] = {0, 0, 0};
@@ -287,8 +275,10 @@ static double cylinder_distance(const struct sph_shape *s, const double p[3], do
 
 double sph_shape_distance(const struct sph_shape *s, const double point[3], double normal[3]) {
   double p[3], unused[3];
-  if (s->kind == SPH_SHAPE_MESH)
-    return mesh_shape_distance(s, point, normal);
+  if (s->kind == SPH_SHAPE_MESH) {
+    to_file(s, point, p);
+    return s->mesh ? s->unit * mesh_distance(s->mesh, p, normal) : (double)NAN;
+  }
   if (!normal)
     normal = unused;
   vector3_subtract(point, s->centre, p);
@@ -341,7 +331,7 @@ int sph_shape_walls(const struct sph_shape *s, const double point[3], double dep
 bool sph_shape_inside(const struct sph_shape *s, const double point[3]) {
   double p[3];
   switch (s->kind) {
-  case SPH_SHAPE_MESH: return mesh_shape_inside(s, point);
+  case SPH_SHAPE_MESH: to_file(s, point, p); return s->mesh && mesh_inside(s->mesh, p);
   case SPH_SHAPE_SPHERE: vector3_subtract(point, s->centre, p); return vector3_dot(p, p) < s->radius * s->radius;
   default: return sph_shape_distance(s, point, NULL) < 0;
   }

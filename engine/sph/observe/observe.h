@@ -129,5 +129,7 @@ struct sph_fragments {
 status sph_fragments_find(const struct sph_particles *particles, const struct sph_fragments_options *options,
                           struct sph_fragments *out, struct error *error);
 void sph_fragments_clear(struct sph_fragments *fragments);
+/* Of a local variable, cleared where its block is left: SPH_FRAGMENTS found = {0}; */
+#define SPH_FRAGMENTS __attribute__((cleanup(sph_fragments_clear))) struct sph_fragments
 
 #endif

@@ -42,10 +42,9 @@ status sph_report_fragments(const struct sph_run *run, double static_strength, b
 
 static status find_gaps(struct sph_run *run, struct error *error) {
   const size_t bodies = (size_t)run->body_count - sph_derived_has_intruder(&run->inputs);
-  struct sph_fragments found;
+  SPH_FRAGMENTS found = {0};
   TRY(fragments_of(run, run->start, NAN, true, &found, error));
   run->has_gaps = found.count > bodies;
-  sph_fragments_clear(&found);
   return STATUS_OK;
 }
 
@@ -59,10 +58,9 @@ static double largest_share(const struct sph_fragments *found) {
 
 static status find_largest_share(const struct sph_run *run, double static_strength, double *share,
                                  struct error *error) {
-  struct sph_fragments found;
+  SPH_FRAGMENTS found = {0};
   TRY(sph_report_fragments(run, static_strength, true, &found, error));
   *share = largest_share(&found);
-  sph_fragments_clear(&found);
   return STATUS_OK;
 }
 
@@ -128,14 +126,12 @@ static void report_damage(const struct sph_run *run, struct sph_results *results
 }
 
 static status report_stretch(const struct sph_run *run, struct sph_results *results, struct error *error) {
-  struct sph_fragments found;
+  SPH_FRAGMENTS found = {0};
   TRY(sph_report_fragments(run, NAN, false, &found, error));
   size_t parts = 0;
   for (size_t k = 0; k < found.count; k++)
     parts += found.fragments[k].mass * ROD_PARTS > found.mass;
   results->cracks = parts ? (double)parts - 1 : 0;
-  sph_fragments_clear(&found);
-
   if (run->state.peak_stress > 0) {
     results->peak.stress = run->state.peak_stress;
     results->peak.strain = run->state.peak_strain;
@@ -300,23 +296,18 @@ status sph_report_finish(void *of, struct outcome *outcome, void *results, struc
   *count = 0;
   sph_run_read(run);
   const struct sph_inputs *in = &run->inputs;
-  struct sph_fragments found;
+  SPH_FRAGMENTS found = {0};
   TRY(sph_report_fragments(run, in->fragments.static_strength, in->fragments.veneer, &found, error));
 
   struct sph_ledger ledger = sph_system_ledger(run->system);
   double input = run->state.frame.energy_input + fabs(ledger.work_of_held);
-  status code = fill_results(run, &ledger, input, &found, results, error);
-  if (!code) {
-    fill_outcome(run, &ledger, input, &found, outcome);
-    code = find_gaps(run, error);
-  }
-  if (!code) {
-    const struct condition_run end = {run, in, outcome, results};
-    condition_after(sph_conditions, &end, outcome->warnings, sizeof outcome->warnings);
-    *fragments = found.fragments;
-    *count = found.count;
-    found.fragments = NULL;
-  }
-  sph_fragments_clear(&found);
-  return code;
+  TRY(fill_results(run, &ledger, input, &found, results, error));
+  fill_outcome(run, &ledger, input, &found, outcome);
+  TRY(find_gaps(run, error));
+  const struct condition_run end = {run, in, outcome, results};
+  condition_after(sph_conditions, &end, outcome->warnings, sizeof outcome->warnings);
+  *fragments = found.fragments;
+  *count = found.count;
+  found.fragments = NULL;
+  return STATUS_OK;
 }

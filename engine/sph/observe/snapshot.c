@@ -163,35 +163,26 @@ status sph_snapshot_write(void *of, const char *path, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   struct outcome outcome;
   struct sph_results results;
-  struct fragment *fragments = NULL;
-  struct sph_fragments found = {0};
+  OWNED struct fragment *unlabelled = NULL; /* the report finds them without the labels */
+  SPH_FRAGMENTS found = {0};
   struct snapshot_file *file = NULL;
   size_t count = 0;
-  status code = sph_report_finish(run, &outcome, &results, &fragments, &count, error);
-  free(fragments); /* found once more below, with the labels */
+  TRY(sph_report_finish(run, &outcome, &results, &unlabelled, &count, error));
   OWNED uint32_t *flaws = malloc((run->now->n + 1) * sizeof *flaws);
-  if (!code && !flaws)
-    code = status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
-  if (!code)
-    code = sph_report_fragments(run, in->fragments.static_strength, in->fragments.veneer, &found, error);
-  if (code)
-    return code;
+  if (!flaws)
+    return status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
+  TRY(sph_report_fragments(run, in->fragments.static_strength, in->fragments.veneer, &found, error));
   for (size_t k = 0; k < found.count; k++) /* the spin of few particles is that of their lattice */
     if (found.fragments[k].count < SPH_FRAGMENTS_MEASURED)
       for (int d = 0; d < 3; d++)
         found.fragments[k].spin[d] = NAN;
-  code = snapshot_file_open(&sph_engine, run->seed, in, &outcome, &results, &file, error);
-  if (code) {
-    sph_fragments_clear(&found);
-    return code;
-  }
+  TRY(snapshot_file_open(&sph_engine, run->seed, in, &outcome, &results, &file, error));
   sph_snapshot_particles(file, run->now, &found, sph_system_flaws(run->system, flaws) ? flaws : NULL);
   if (run->sample)
     COLUMNS(file, "curve", run->state.frame.samples, run->sample, curve_columns);
   if (in->kind == SPH_IMPACT || in->kind == SPH_PISTON)
     add_profile(file, run);
-  code = snapshot_file_save(file, path, error);
+  const status code = snapshot_file_save(file, path, error);
   snapshot_file_close(file);
-  sph_fragments_clear(&found);
   return code;
 }

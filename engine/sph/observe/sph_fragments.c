@@ -277,10 +277,6 @@ struct search {
   size_t members, links;
 };
 
-static bool is_left_out(const struct sph_fragments_options *options, const struct sph_particles *p, size_t i) {
-  return options->bodies && options->bodies[p->body[i]].left_out;
-}
-
 /* Largest tension of the damaged stress, Pa: step 1 compares it with the static strength. */
 static double tension(const struct sph_particles *p, size_t i, double damage, bool whole_shear) {
   double left = 1 - damage, pressure = p->pressure[i] < 0 ? left * p->pressure[i] : p->pressure[i];
@@ -323,7 +319,7 @@ static void classify(struct search *s) {
     s->role[i] = CELL_GRID_ABSENT;
     s->out->part[i] = SPH_FRAGMENTS_LEFT_OUT;
     s->place[i] = UINT32_MAX;
-    if (is_left_out(s->options, p, i))
+    if (s->options->bodies && s->options->bodies[p->body[i]].left_out)
       continue;
 
     add_member(s, i);
@@ -379,15 +375,12 @@ static void choose_mate(void *context, uint32_t i, uint32_t j, double square) {
 static status choose_mates_within(struct search *s, double width, struct error *error) {
   const struct sph_particles *p = s->p;
   struct cell_grid *grid = NULL;
-  double *reach = malloc((p->n + 1) * sizeof *reach);
+  OWNED double *reach = malloc((p->n + 1) * sizeof *reach);
   if (!reach)
     return status_fail(error, STATUS_MEMORY, "no memory for the damaged layers of %zu particles", p->n);
   for (size_t i = 0; i < p->n; i++)
     reach[i] = width;
-  const status code = cell_grid_create(p->n, p->x, p->y, p->z, reach, s->role, 1, s->options->periodic, &grid, error);
-  free(reach);
-  if (code)
-    return code;
+  TRY(cell_grid_create(p->n, p->x, p->y, p->z, reach, s->role, 1, s->options->periodic, &grid, error));
   cell_grid_visit(grid, true, choose_mate, s);
   cell_grid_free(grid);
   return STATUS_OK;
@@ -538,38 +531,22 @@ static status check(const struct sph_particles *p, const struct sph_fragments_op
   return STATUS_OK;
 }
 
-static bool allocate(struct search *s, size_t n) {
+static status find(struct search *s, struct error *error) {
+  const size_t n = s->p->n + 1;
+  OWNED uint8_t *role = s->role = malloc(n);
+  OWNED uint32_t *parent = s->parent = malloc(n * sizeof *parent);
+  OWNED double *core_mass = s->core_mass = calloc(n, sizeof *core_mass);
+  OWNED double *nearest = s->nearest = malloc(n * sizeof *nearest);
+  OWNED uint32_t *mate = s->mate = malloc(n * sizeof *mate);
+  OWNED struct fragment_member *member = s->member = malloc(n * sizeof *member);
+  OWNED uint32_t *place = s->place = malloc(n * sizeof *place);
+  OWNED uint32_t *particle = s->particle = malloc(n * sizeof *particle);
+  OWNED uint32_t(*link)[2] = s->link = malloc(n * sizeof *link);
+  OWNED uint32_t *label = s->label = malloc(n * sizeof *label);
   s->out->label = malloc(n * sizeof *s->out->label);
   s->out->part = malloc(n);
-  s->role = malloc(n);
-  s->parent = malloc(n * sizeof *s->parent);
-  s->core_mass = calloc(n, sizeof *s->core_mass);
-  s->nearest = malloc(n * sizeof *s->nearest);
-  s->mate = malloc(n * sizeof *s->mate);
-  s->member = malloc(n * sizeof *s->member);
-  s->place = malloc(n * sizeof *s->place);
-  s->particle = malloc(n * sizeof *s->particle);
-  s->link = malloc(n * sizeof *s->link);
-  s->label = malloc(n * sizeof *s->label);
-  return s->out->label && s->out->part && s->role && s->parent && s->core_mass && s->nearest && s->mate && s->member &&
-         s->place && s->particle && s->link && s->label;
-}
-
-static void free_search(struct search *s) {
-  free(s->role);
-  free(s->parent);
-  free(s->core_mass);
-  free(s->nearest);
-  free(s->mate);
-  free(s->member);
-  free(s->place);
-  free(s->particle);
-  free(s->link);
-  free(s->label);
-}
-
-static status find(struct search *s, struct error *error) {
-  if (!allocate(s, s->p->n + 1))
+  if (!role || !parent || !core_mass || !nearest || !mate || !member || !place || !particle || !link || !label ||
+      !s->out->label || !s->out->part)
     return status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu particles", s->p->n);
   classify(s);
   TRY(link_members(s, error));
@@ -591,7 +568,6 @@ status sph_fragments_find(const struct sph_particles *p, const struct sph_fragme
     code = find(&search, error);
   if (code)
     sph_fragments_clear(out);
-  free_search(&search);
   return code;
 }
 

@@ -41,14 +41,6 @@ static status make_system(struct sph_run *run, struct error *error) {
   return sph_system_create(run->start, (size_t)run->body_count, physics, in, &domain, &run->system, error);
 }
 
-static status check_memory(const struct sph_inputs *in, struct error *error) {
-  double needed = (double)sph_describe_memory(in), there = (double)sph_particles_memory();
-  if (needed <= there)
-    return STATUS_OK;
-  return status_fail(error, STATUS_MEMORY, "%.4g particles need about %.3g GB of memory, and there are %.3g GB: %s",
-                     sph_derived_particles(in), needed / 1e9, there / 1e9, sph_inputs_check_fewer(in));
-}
-
 /* ---- advancing ---- */
 
 /* Fracture is over when the mean damage grows by less than stop.quiet_growth during stop.quiet_time. */
@@ -192,8 +184,10 @@ static void begin(struct sph_run *run) {
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error) {
   *out = NULL;
   TRY(sph_inputs_check(inputs, error));
-  TRY(check_memory(inputs, error));
-
+  const double needed = (double)sph_describe_memory(inputs), there = (double)sph_particles_memory();
+  if (needed > there)
+    return status_fail(error, STATUS_MEMORY, "%.4g particles need about %.3g GB of memory, and there are %.3g GB: %s",
+                       sph_derived_particles(inputs), needed / 1e9, there / 1e9, sph_inputs_check_fewer(inputs));
   struct sph_run *run = memory_small(1, sizeof *run);
   run->inputs = *inputs;
   run->seed = seed;
