@@ -232,9 +232,6 @@ void dem_run_free(void *of) {
   dem_tessellation_free(run->tessellation);
   free(run->held);
   free(run->lower);
-  free(run->upper);
-  free(run->left);
-  free(run->right);
   free(run->sample);
   free(run);
 }

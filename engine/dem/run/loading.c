@@ -33,12 +33,13 @@ static status allocate(struct dem_run *run, struct error *error) {
   run->sample_interval = (uint64_t)fmax(1, floor(steps / SAMPLES));
   run->sample_capacity = (size_t)(1.1 * steps / (double)run->sample_interval) + 8;
   run->sample = calloc(run->sample_capacity, sizeof *run->sample);
-  run->lower = malloc(n * sizeof *run->lower);
-  run->upper = malloc(n * sizeof *run->upper);
-  run->left = malloc(n * sizeof *run->left);
-  run->right = malloc(n * sizeof *run->right);
-  if (run->sample && run->lower && run->upper && run->left && run->right)
+  run->lower = malloc(4 * n * sizeof *run->lower); /* one block for the four lists */
+  if (run->sample && run->lower) {
+    run->upper = run->lower + n;
+    run->left = run->upper + n;
+    run->right = run->left + n;
     return STATUS_OK;
+  }
   return status_fail(error, STATUS_MEMORY, "no memory for the sides of %zu grains", n);
 }
 

@@ -131,8 +131,6 @@ double sph_lattice_period(int kind, double spacing, int direction, double at_lea
 
 /* Memory for n places. STATUS_MEMORY. */
 status sph_lattice_allocate(struct sph_points *points, size_t n, struct error *error);
-/* The refusal of a body that has no room for its particles. */
-status sph_lattice_too_thin(double wanted, double spacing, struct error *error);
 
 /* irregular.c: irregular points, uniform or finer near a point. `wanted`: number of uniform particles (not used with a
  * grading). Fills *points: x, y, z, n, and share when graded. STATUS_MEMORY; STATUS_CONTENT when a grading cannot give

@@ -240,6 +240,14 @@ static size_t search_layers(const struct sph_lattice *lattice, struct cut *c, do
   return n;
 }
 
+/* The refusal of a body that has no room for its particles. */
+static status too_thin(double wanted, double spacing, struct error *error) {
+  return status_fail(
+      error, STATUS_CONTENT,
+      "a body is too thin for %.0f particles of spacing %.3g m: raise fidelity.particles, or take a thicker body",
+      wanted, spacing);
+}
+
 static status fill_cut(const struct sph_lattice *lattice, const struct sph_lattice_cell *cell,
                        const struct sph_shape *shape, double wanted, struct sph_points *points, struct error *error) {
   struct cut c = {.cell = cell, .shape = shape};
@@ -262,7 +270,7 @@ static status fill_cut(const struct sph_lattice *lattice, const struct sph_latti
   else if (!thin(&c))
     n = search(lattice, &c, wanted, offset);
   if (!n || (double)n < 0.5 * wanted || (double)n > 2 * wanted + 2)
-    return sph_lattice_too_thin(wanted, spacing, error);
+    return too_thin(wanted, spacing, error);
 
   TRY(sph_lattice_allocate(points, n, error));
   cut(&c, offset, points);
@@ -303,13 +311,6 @@ status sph_lattice_allocate(struct sph_points *points, size_t n, struct error *e
   if (points->x && points->y && points->z)
     return STATUS_OK;
   return status_fail(error, STATUS_MEMORY, "no memory for the places of %zu particles", n);
-}
-
-status sph_lattice_too_thin(double wanted, double spacing, struct error *error) {
-  return status_fail(
-      error, STATUS_CONTENT,
-      "a body is too thin for %.0f particles of spacing %.3g m: raise fidelity.particles, or take a thicker body",
-      wanted, spacing);
 }
 
 /* ---- boxes along the axes: whole rows, stretched to fit ---- */
@@ -353,7 +354,7 @@ static status fill_box(const struct sph_lattice *lattice, const struct sph_latti
   fit_box(lattice, cell, box, wanted, count);
   const double n = count[0] * count[1] * count[2];
   if (n > 2 * wanted + 2 || n < 0.5 * wanted)
-    return sph_lattice_too_thin(wanted, cbrt(sph_shape_volume(box) / wanted), error);
+    return too_thin(wanted, cbrt(sph_shape_volume(box) / wanted), error);
   TRY(sph_lattice_allocate(points, (size_t)n, error));
   points->spacing = cbrt(sph_shape_volume(box) / (double)points->n);
   double step[3], corner[3];

@@ -10,18 +10,20 @@
 
 enum { SIDE_MOST = 2048 }; /* columns along one side */
 
-bool sph_crater_is_ejected(const struct sph_particles *now, size_t i, const struct sph_crater_options *o) {
+static bool is_ejected(const struct sph_particles *now, size_t i, const struct sph_crater_options *o) {
   return now->vz[i] > o->ejection_speed || !isfinite(now->x[i] + now->y[i] + now->z[i]);
 }
 
-double sph_crater_off_axis(const struct sph_particles *p, size_t i, const struct sph_crater_options *o) {
+/* m, of particle i from the axis. */
+static double off_axis(const struct sph_particles *p, size_t i, const struct sph_crater_options *o) {
   return hypot(p->x[i] - o->axis[0], p->y[i] - o->axis[1]);
 }
 
-double sph_crater_top(const struct sph_particles *start, const struct sph_crater_options *o, double spacings) {
+/* m, the highest particle less than `spacings` spacings from the axis. */
+static double top_of(const struct sph_particles *start, const struct sph_crater_options *o, double spacings) {
   double top = -HUGE_VAL;
   for (size_t i = o->first; i < o->first + o->count; i++)
-    if (sph_crater_off_axis(start, i, o) < spacings * o->spacing)
+    if (off_axis(start, i, o) < spacings * o->spacing)
       top = fmax(top, start->z[i]);
   return top;
 }
@@ -78,7 +80,7 @@ static void fill_map(const struct sph_particles *start, const struct sph_particl
       m->before[at] = fmax(m->before[at], start->z[i]);
       m->bottom[at] = fmin(m->bottom[at], start->z[i]);
     }
-    if (!sph_crater_is_ejected(now, i, o) && column_of(m, now->x[i], now->y[i], &at))
+    if (!is_ejected(now, i, o) && column_of(m, now->x[i], now->y[i], &at))
       m->after[at] = fmax(m->after[at], now->z[i]);
   }
 }
@@ -157,7 +159,7 @@ static void measure_ejecta(const struct sph_particles *start, const struct sph_p
                            const struct sph_crater_options *o, struct sph_results *results) {
   double mass = 0, momentum = 0, volume = 0;
   for (size_t i = o->first; i < o->first + o->count; i++) {
-    if (!sph_crater_is_ejected(now, i, o))
+    if (!is_ejected(now, i, o))
       continue;
     mass += now->mass[i];
     momentum += isfinite(now->vz[i]) ? now->mass[i] * now->vz[i] : 0;
@@ -188,7 +190,7 @@ static const double compacted = 1.01; /* distention below which matter counts as
  * branch again; at rest only permanently closed pores count. */
 void sph_crater_compaction(const struct sph_particles *start, const struct sph_particles *now,
                            const struct sph_crater_options *o, double initial, struct sph_results *results) {
-  const double top = sph_crater_top(start, o, 2);
+  const double top = top_of(start, o, 2);
   double ejecta_volume = 0, mass = 0, closed_volume = 0, depth = 0, reach = 0;
   for (size_t i = o->first; i < o->first + o->count; i++) {
     double alpha = now->rest_distention[i], alpha_start = start->distention[i];
@@ -197,15 +199,15 @@ void sph_crater_compaction(const struct sph_particles *start, const struct sph_p
     bool crushed = closed > 0 && alpha < compacted && alpha_start >= compacted;
     if (crushed)
       mass += now->mass[i];
-    if (sph_crater_is_ejected(now, i, o)) {
+    if (is_ejected(now, i, o)) {
       ejecta_volume += volume;
       continue;
     }
     closed_volume += fmax(closed, 0) * volume; /* the volume of the solid does not change */
-    if (crushed && sph_crater_off_axis(start, i, o) < 2 * o->spacing)
+    if (crushed && off_axis(start, i, o) < 2 * o->spacing)
       depth = fmax(depth, top - start->z[i]);
     if (closed > 0 && alpha_start - alpha > 0.01 * (initial - 1))
-      reach = fmax(reach, hypot(sph_crater_off_axis(start, i, o), top - start->z[i]));
+      reach = fmax(reach, hypot(off_axis(start, i, o), top - start->z[i]));
   }
   results->crater.compaction_share = sph_results_share(closed_volume, closed_volume + ejecta_volume);
   results->palpha.compaction.mass_fraction = sph_results_share(mass, o->mass);
@@ -216,10 +218,10 @@ void sph_crater_compaction(const struct sph_particles *start, const struct sph_p
 
 size_t sph_crater_profile(const struct sph_particles *start, const struct sph_particles *now,
                           const struct sph_crater_options *o, struct sph_crater_layer *layers, size_t most) {
-  double top = sph_crater_top(start, o, 1.5);
+  double top = top_of(start, o, 1.5);
   memset(layers, 0, most * sizeof *layers);
   for (size_t i = o->first; i < o->first + o->count; i++) {
-    if (!(sph_crater_off_axis(start, i, o) < 1.5 * o->spacing) || sph_crater_is_ejected(now, i, o))
+    if (!(off_axis(start, i, o) < 1.5 * o->spacing) || is_ejected(now, i, o))
       continue;
     double layer = floor((top - start->z[i]) / o->spacing + 0.5);
     if (!(layer >= 0 && layer < (double)most))

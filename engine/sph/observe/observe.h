@@ -24,12 +24,6 @@ struct sph_crater_options {
   double ejection_speed; /* m/s */
 };
 
-bool sph_crater_is_ejected(const struct sph_particles *now, size_t i, const struct sph_crater_options *options);
-/* m, of particle i from the axis. */
-double sph_crater_off_axis(const struct sph_particles *particles, size_t i, const struct sph_crater_options *options);
-/* m, the highest particle less than `spacings` spacings from the axis. */
-double sph_crater_top(const struct sph_particles *start, const struct sph_crater_options *options, double spacings);
-
 /* Fills the results ejecta.* and crater.*. STATUS_MEMORY. */
 status sph_crater_measure(const struct sph_particles *start, const struct sph_particles *now,
                           const struct sph_crater_options *options, struct sph_results *results, struct error *error);

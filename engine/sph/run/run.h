@@ -83,8 +83,6 @@ double sph_describe_work(const void *inputs);   /* particle-steps, an estimate *
 
 /* conditions.c */
 extern const struct condition sph_conditions[]; /* engine_kind.conditions */
-/* Ratio of the densities of target and projectile; 1 where it causes no error. */
-double sph_conditions_contrast(const struct sph_inputs *inputs);
 
 /* The output of one run of engine `sph`: the record of a protocol during the run, results and fragments at the end, and
  * its fields files. For this folder, run/ and sph.c. */

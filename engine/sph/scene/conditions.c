@@ -47,15 +47,13 @@ static double angular(const struct condition_run *r) {
   return results_of(r)->angular_momentum_error;
 }
 
-double sph_conditions_contrast(const struct sph_inputs *in) {
+/* Ratio of the densities of target and projectile; 1 where it causes no error. */
+static double contrast(const void *inputs) {
+  const struct sph_inputs *in = inputs;
   if (!sph_derived_has_projectile(in) || in->method.volume_weights)
     return 1;
   const double target = sph_derived_density(&in->target), projectile = sph_derived_density(&in->projectile);
   return fmax(target, projectile) / fmin(target, projectile);
-}
-
-static double contrast(const void *inputs) {
-  return sph_conditions_contrast(inputs);
 }
 
 /* ---- too few particles for the number ---- */
