@@ -241,26 +241,34 @@ CREATE TABLE convergence ( -- Studies of convergence (clast converge): the level
   cost_ratio REAL, -- w: processor time of a run over that of the next finer level.
   break_even REAL, -- 2 sqrt(w)/(1 + w): correlation from which a control variate would save time.
   gain REAL, -- Plain Monte Carlo's cost over that of the best control variate; 1: it saves nothing.
-  resolution REAL, -- What this knob leaves unknown at this level: the distance to the limit and half its interval, or |bias| and half width where there is no order. Off for knobs that are no resolution.
+  distance REAL, -- Mean less its limit: the middle of the 95 % interval. Off: no limit is seen.
+  distance_half_width REAL, -- Half width of that interval.
+  resolution REAL, -- What this knob leaves unknown at this level: the largest distance to the limit in its interval, or |bias| and half width where no limit is seen. Off for knobs that are no resolution, and where all runs are equal, so that nothing tells it.
   open INTEGER, -- 1: no limit is in sight, so that resolution may be larger.
   error REAL, -- resolution (of a model: |bias| and half width), and what the other knobs leave unknown at the scene's own setting. Off where it is not known.
   frontier INTEGER, -- 1: no level studied is both cheaper and nearer (Pareto).
   PRIMARY KEY (base_point_id, results_version, knob, quantity, level)
 ) STRICT, WITHOUT ROWID;
 
-CREATE TABLE convergence_limit ( -- Order and limit of each knob of a study, for each quantity.
+CREATE TABLE convergence_limit ( -- Limit of each knob of a study, for each quantity.
   base_point_id INTEGER NOT NULL REFERENCES point (point_id), -- the scene studied, as a point
   results_version INTEGER NOT NULL, -- version of the engine's results
   digest TEXT, -- changes when any bit of the row changes; NULL in older rows
   knob TEXT, -- What was made coarser or finer.
   quantity TEXT, -- Result, as a column of the view runs. Its unit is that of the limit.
-  verdict TEXT, -- What the three finest levels tell. One of: too-few, unchanged, order, no-order, unsure
-  measured_order REAL, -- p of limit + a step^p through the three finest levels.
-  measured_order_low REAL, -- Lower end of the 95 % interval of the order.
-  measured_order_high REAL, -- Upper end of it.
-  extrapolated REAL, -- Extrapolated value at step 0.
-  extrapolated_low REAL, -- Lower end of its 95 % interval.
+  verdict TEXT, -- What all levels and seeds together tell. One of: too-few, constant, limit, no-limit
+  dropped INTEGER, -- [1] Coarse levels that the law does not describe.
+  fit REAL, -- Share of the samples of the best law that lie farther from it than the levels; below 0.05 no law fits.
+  fit_with REAL, -- The same with the finest of the dropped levels. Off: none is dropped.
+  measured_order REAL, -- p of limit + a step^p that fits best.
+  measured_order_low REAL, -- Lower end of its 95 % interval, 0.5 at least.
+  measured_order_high REAL, -- Upper end of it, 2 at most.
+  extrapolated REAL, -- Value at step 0: mean over the laws, by their likelihood.
+  extrapolated_low REAL, -- Lower end of its 95 % interval over all laws.
   extrapolated_high REAL, -- Upper end of it.
+  change REAL, -- Mean of the finest level less that of the next coarser one.
+  change_low REAL, -- Lower end of its 95 % interval.
+  change_high REAL, -- Upper end of it.
   PRIMARY KEY (base_point_id, results_version, knob, quantity)
 ) STRICT, WITHOUT ROWID;
 
@@ -616,23 +624,27 @@ FROM (
 CREATE VIEW resolution AS -- what finer settings may change in a result, for every point that was studied
 WITH level AS (SELECT * FROM convergence WHERE resolution IS NOT NULL),
 of_knob AS (SELECT base_point_id, results_version, quantity, knob,
-    max(iif(base, resolution, NULL)) AS at_base, max(open) AS open, max(verdict = 'no-order') AS diverges
+    max(iif(base, resolution, NULL)) AS at_base, max(open) AS open, max(verdict IN ('no-limit', 'no-order')) AS diverges,
+    max(iif(base, distance, NULL)) AS base_distance, max(iif(base, distance_half_width, NULL)) AS base_width
   FROM level LEFT JOIN convergence_limit USING (base_point_id, results_version, knob, quantity)
   GROUP BY base_point_id, results_version, quantity, knob),
 studied AS (SELECT DISTINCT base_point_id, results_version, quantity, point_id FROM level),
 of_study AS (SELECT s.point_id, s.results_version, s.quantity,
     sum(coalesce(l.resolution, k.at_base)) AS half_width, max(k.diverges) AS diverges,
-    max(k.open OR coalesce(l.resolution, k.at_base) IS NULL) AS open
+    max(k.open OR coalesce(l.resolution, k.at_base) IS NULL) AS open,
+    iif(count(*) = count(coalesce(l.distance, k.base_distance)), sum(coalesce(l.distance, k.base_distance)), NULL)
+      AS distance, sum(coalesce(l.distance_half_width, k.base_width)) AS distance_half_width
   FROM studied s JOIN of_knob k USING (base_point_id, results_version, quantity)
     LEFT JOIN level l ON l.base_point_id = s.base_point_id AND l.results_version = s.results_version
     AND l.quantity = s.quantity AND l.knob = k.knob AND l.point_id = s.point_id
   GROUP BY s.base_point_id, s.point_id, s.results_version, s.quantity
   UNION ALL SELECT s.point_id, s.results_version, s.quantity, s.error, (SELECT max(k.diverges) FROM of_knob k
     WHERE k.base_point_id = s.base_point_id AND k.results_version = s.results_version AND
-    k.quantity = s.quantity), s.open
+    k.quantity = s.quantity), s.open, NULL, NULL
   FROM convergence s WHERE s.knob = 'settings' AND NOT s.base AND s.error IS NOT NULL)
 SELECT point_id, results_version, quantity, max(half_width) AS half_width,
-  CASE WHEN max(diverges) THEN 'diverges' WHEN max(open) THEN 'at-least' ELSE 'known' END AS verdict
+  CASE WHEN max(diverges) THEN 'diverges' WHEN max(open) THEN 'at-least' ELSE 'known' END AS verdict,
+  iif(count(*) = count(distance), distance, NULL) AS distance, distance_half_width
 FROM of_study GROUP BY point_id, results_version, quantity;
 
 INSERT INTO column_doc VALUES ('attempt', 'attempt_id', NULL, 'number of the failed attempt', 0);
@@ -733,6 +745,10 @@ INSERT INTO column_doc VALUES ('convergence', 'deviation', NULL, 'Standard devia
 
 INSERT INTO column_doc VALUES ('convergence', 'digest', NULL, 'changes when any bit of the row changes; NULL in older rows', 0);
 
+INSERT INTO column_doc VALUES ('convergence', 'distance', NULL, 'Mean less its limit: the middle of the 95 % interval. Off: no limit is seen.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'distance_half_width', NULL, 'Half width of that interval.', 1);
+
 INSERT INTO column_doc VALUES ('convergence', 'error', NULL, 'resolution (of a model: |bias| and half width), and what the other knobs leave unknown at the scene''s own setting. Off where it is not known.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'frontier', NULL, '1: no level studied is both cheaper and nearer (Pareto).', 1);
@@ -759,7 +775,7 @@ INSERT INTO column_doc VALUES ('convergence', 'quantity', NULL, 'Result, as a co
 
 INSERT INTO column_doc VALUES ('convergence', 'reference', NULL, '1: the finest level, or the choice that the others are compared with.', 1);
 
-INSERT INTO column_doc VALUES ('convergence', 'resolution', NULL, 'What this knob leaves unknown at this level: the distance to the limit and half its interval, or |bias| and half width where there is no order. Off for knobs that are no resolution.', 1);
+INSERT INTO column_doc VALUES ('convergence', 'resolution', NULL, 'What this knob leaves unknown at this level: the largest distance to the limit in its interval, or |bias| and half width where no limit is seen. Off for knobs that are no resolution, and where all runs are equal, so that nothing tells it.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'results_version', NULL, 'version of the engine''s results', 0);
 
@@ -773,27 +789,39 @@ INSERT INTO column_doc VALUES ('convergence', 'upper_mode', NULL, 'Share of the 
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'base_point_id', NULL, 'the scene studied, as a point', 0);
 
+INSERT INTO column_doc VALUES ('convergence_limit', 'change', NULL, 'Mean of the finest level less that of the next coarser one.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'change_high', NULL, 'Upper end of it.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'change_low', NULL, 'Lower end of its 95 % interval.', 1);
+
 INSERT INTO column_doc VALUES ('convergence_limit', 'digest', NULL, 'changes when any bit of the row changes; NULL in older rows', 0);
 
-INSERT INTO column_doc VALUES ('convergence_limit', 'extrapolated', NULL, 'Extrapolated value at step 0.', 1);
+INSERT INTO column_doc VALUES ('convergence_limit', 'dropped', '1', 'Coarse levels that the law does not describe.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'extrapolated', NULL, 'Value at step 0: mean over the laws, by their likelihood.', 1);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'extrapolated_high', NULL, 'Upper end of it.', 1);
 
-INSERT INTO column_doc VALUES ('convergence_limit', 'extrapolated_low', NULL, 'Lower end of its 95 % interval.', 1);
+INSERT INTO column_doc VALUES ('convergence_limit', 'extrapolated_low', NULL, 'Lower end of its 95 % interval over all laws.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'fit', NULL, 'Share of the samples of the best law that lie farther from it than the levels; below 0.05 no law fits.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'fit_with', NULL, 'The same with the finest of the dropped levels. Off: none is dropped.', 1);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'knob', NULL, 'What was made coarser or finer.', 1);
 
-INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order', NULL, 'p of limit + a step^p through the three finest levels.', 1);
+INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order', NULL, 'p of limit + a step^p that fits best.', 1);
 
-INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order_high', NULL, 'Upper end of it.', 1);
+INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order_high', NULL, 'Upper end of it, 2 at most.', 1);
 
-INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order_low', NULL, 'Lower end of the 95 % interval of the order.', 1);
+INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order_low', NULL, 'Lower end of its 95 % interval, 0.5 at least.', 1);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'quantity', NULL, 'Result, as a column of the view runs. Its unit is that of the limit.', 1);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'results_version', NULL, 'version of the engine''s results', 0);
 
-INSERT INTO column_doc VALUES ('convergence_limit', 'verdict', NULL, 'What the three finest levels tell. One of: too-few, unchanged, order, no-order, unsure', 1);
+INSERT INTO column_doc VALUES ('convergence_limit', 'verdict', NULL, 'What all levels and seeds together tell. One of: too-few, constant, limit, no-limit', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 1);
 
@@ -1064,6 +1092,10 @@ INSERT INTO column_doc VALUES ('points', 'second_fraction_se', '1', 'standard er
 INSERT INTO column_doc VALUES ('points', 'second_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'surplus', '1', 'runs left out because a stopping rule decided without them', 0);
+
+INSERT INTO column_doc VALUES ('resolution', 'distance', NULL, 'mean less its limit; NULL: a knob that was studied has none', 0);
+
+INSERT INTO column_doc VALUES ('resolution', 'distance_half_width', NULL, 'half width of the 95 % interval of distance', 0);
 
 INSERT INTO column_doc VALUES ('resolution', 'half_width', NULL, 'how far finer settings may move the result, in its unit: all knobs that were studied', 0);
 

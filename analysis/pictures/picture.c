@@ -65,6 +65,7 @@ status picture_curves(const struct picture_page *page, const struct picture_word
                       const struct picture_curve *curve, struct error *error) {
   double range[2] = {none[0], none[1]};
   const char *labels[PICTURE_SERIES];
+  double band[PICTURE_SERIES];
   if (count > PICTURE_SERIES)
     return status_fail(error, STATUS_USAGE, "%s: %zu curves are too many for one chart; at most %d", page->path, count,
                        PICTURE_SERIES);
@@ -79,8 +80,10 @@ status picture_curves(const struct picture_page *page, const struct picture_word
   write_range(chart, range);
   for (size_t c = 0; c < count; c++) {
     labels[c] = curve[c].label;
+    band[c] = curve[c].band;
     write_curve(chart, &curve[c]);
   }
+  chart_numbers(chart, "band", count, band);
   const double legend = chart_legend(chart, count, labels);
   return chart_draw(chart, 0.62 * page->width + legend, error);
 }

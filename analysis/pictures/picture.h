@@ -170,9 +170,10 @@ struct picture_curve {
   const char *label; /* may be NULL */
   size_t count;
   const struct picture_mean *mean; /* x ascending */
+  bool band;                       /* a smooth line in a band from low to high, without marks */
 };
-/* Draws one to eight curves: marks with error bars, joined by lines. x is logarithmic when all its values are positive
- * and span a factor of 20 or more. */
+/* Draws one to eight curves: marks with error bars joined by lines, or lines in bands. x is logarithmic when all its
+ * values are positive and span a factor of 20 or more. */
 status picture_curves(const struct picture_page *page, const struct picture_words *words, size_t count,
                       const struct picture_curve *curve, struct error *error);
 

@@ -1,22 +1,16 @@
-/* Bias, order, limit, correlation and frontier of the levels of a knob. */
+/* Bias, correlation and frontier of the levels of a knob, and the rows of a study. */
 #include "analysis/statistics/convergence.h"
 
 #include <gsl/gsl_cdf.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_roots.h>
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "analysis/statistics/statistics.h"
-#include "engine/random.h"
 #include "schemas/rows.h"
 
-enum { RESAMPLES = 1000, FEWEST_SEEDS = 3, FEWEST_PAIRS = 4 };
+enum { FEWEST_PAIRS = 4 };
 #define NOTHING ((double)NAN)
-/* Share of the resamples that must agree before an order is reported, or denied. */
-#define SURE 0.95
 
 struct convergence_difference convergence_bias(size_t n, const double *level, const double *reference, bool paired,
                                                double confidence) {
@@ -45,7 +39,7 @@ struct convergence_difference convergence_bias(size_t n, const double *level, co
 }
 
 double convergence_skew(size_t n, const double *values) {
-  const struct sample_summary summary = sample_summarise(n, values, SURE);
+  const struct sample_summary summary = sample_summarise(n, values, 0.95);
   if (summary.n < 3 || !(summary.standard_deviation > 0))
     return NOTHING;
   double sum = 0;
@@ -94,136 +88,6 @@ double convergence_gain(double correlation, double w) {
   return 1 / (root * root);
 }
 
-/* ---- order and limit ---- */
-
-static FIELD_WORDS(verdict_names,
-                   CONVERGENCE_VERDICTS, [CONVERGENCE_TOO_FEW] = "too-few", [CONVERGENCE_UNCHANGED] = "unchanged",
-                   [CONVERGENCE_ORDER] = "order", [CONVERGENCE_NO_ORDER] = "no-order", [CONVERGENCE_UNSURE] = "unsure");
-
-/* The equation (h0^p - h1^p)/(h1^p - h2^p) = ratio of the differences, for p. h enters as logarithms relative to h1;
- * expm1 is exact for small p. */
-struct order_equation {
-  double up, down, ratio; /* ln(h0/h1) > 0, ln(h1/h2) > 0 */
-};
-static double excess(double p, void *context) {
-  const struct order_equation *e = context;
-  return expm1(p * e->up) / -expm1(-p * e->down) - e->ratio;
-}
-
-bool convergence_solve(const double h[3], const double f[3], double *order, double *limit) {
-  struct order_equation equation = {log(h[0] / h[1]), log(h[1] / h[2]), (f[0] - f[1]) / (f[1] - f[2])};
-  double low = 1e-6, high = CONVERGENCE_ORDER_MOST;
-  *order = *limit = NOTHING;
-  if (!isfinite(equation.ratio) || excess(low, &equation) >= 0 || excess(high, &equation) <= 0)
-    return false;
-  gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
-  if (!solver)
-    return false;
-
-  gsl_function function = {excess, &equation};
-  gsl_root_fsolver_set(solver, &function, low, high);
-  for (int i = 0; i < 200 && high - low > 1e-12 * high; i++) {
-    if (gsl_root_fsolver_iterate(solver) != GSL_SUCCESS)
-      break;
-    low = gsl_root_fsolver_x_lower(solver);
-    high = gsl_root_fsolver_x_upper(solver);
-  }
-  *order = gsl_root_fsolver_root(solver);
-  gsl_root_fsolver_free(solver);
-  *limit = f[2] + (f[2] - f[1]) / expm1(*order * equation.down);
-  return true;
-}
-
-/* Means of the three levels, each shifted at random within the uncertainty that the number of seeds leaves: a draw from
- * Student's t in several dimensions. With w_s normal, the sum of w_s (x_s - mean) over sqrt(n (n - 1)) has the
- * covariance of the means, and the factor sqrt((n - 1)/chi^2) turns it into t. Paired levels share w and chi^2. */
-static void draw_means(uint64_t draw, size_t n, const double *const values[3], const struct sample_summary mean[3],
-                       bool paired, double f[3]) {
-  for (uint64_t level = 0; level < 3; level++) {
-    const uint64_t stream = paired ? 0 : level;
-    uint64_t bits[4];
-    double sum = 0;
-    for (size_t s = 0; s < n; s++) {
-      if (isnan(values[level][s]))
-        continue;
-      random_bits(stream, RANDOM_RESAMPLE, draw, s + 1, bits);
-      sum += gsl_cdf_ugaussian_Pinv(random_uniform(bits[0])) * (values[level][s] - mean[level].mean);
-    }
-    const double count = (double)mean[level].n;
-    random_bits(stream, RANDOM_RESAMPLE, draw, 0, bits);
-    const double chi_squared = gsl_cdf_chisq_Pinv(random_uniform(bits[0]), count - 1);
-    f[level] = mean[level].mean + sum / sqrt(count * chi_squared);
-  }
-}
-
-/* Limits of the middle part of sorted values, with the share `confidence`. */
-static void middle(size_t n, double *values, double confidence, double *low, double *high) {
-  qsort(values, n, sizeof *values, sample_ascending);
-  *low = gsl_stats_quantile_from_sorted_data(values, 1, n, 0.5 - confidence / 2);
-  *high = gsl_stats_quantile_from_sorted_data(values, 1, n, 0.5 + confidence / 2);
-}
-
-/* Paired levels use only the seeds that all three levels have. */
-static size_t complete_seeds(size_t n, const double *const values[3], double *kept[3]) {
-  size_t m = 0;
-  for (size_t s = 0; s < n; s++) {
-    if (isnan(values[0][s]) || isnan(values[1][s]) || isnan(values[2][s]))
-      continue;
-    for (int level = 0; level < 3; level++)
-      kept[level][m] = values[level][s];
-    m++;
-  }
-  return m;
-}
-
-static enum convergence_verdict judge(const struct convergence_limit *found, size_t n, const double *const values[3],
-                                      bool paired, double confidence) {
-  const struct convergence_difference finest = convergence_bias(n, values[1], values[2], paired, confidence);
-  if (found->shrinking >= SURE)
-    return CONVERGENCE_ORDER;
-  if (!(fabs(finest.value) > finest.half_width))
-    return CONVERGENCE_UNCHANGED;
-  return found->shrinking <= 1 - SURE ? CONVERGENCE_NO_ORDER : CONVERGENCE_UNSURE;
-}
-
-struct convergence_limit convergence_extrapolate(const double h[3], size_t n, const double *const values[3],
-                                                 bool paired, double confidence) {
-  struct convergence_limit found = {CONVERGENCE_TOO_FEW, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING};
-  double *kept[3] = {0}, orders[RESAMPLES], limits[RESAMPLES], f[3], drawn[3];
-  double *room = malloc(3 * (n ? n : 1) * sizeof *room);
-  if (!room)
-    return found;
-  for (int level = 0; level < 3; level++) {
-    kept[level] = room + (size_t)level * n;
-    memcpy(kept[level], values[level], n * sizeof **kept);
-  }
-  if (paired)
-    n = complete_seeds(n, values, kept);
-  const double *const sample[3] = {kept[0], kept[1], kept[2]};
-  struct sample_summary mean[3];
-  for (int level = 0; level < 3; level++) {
-    mean[level] = sample_summarise(n, sample[level], confidence);
-    f[level] = mean[level].mean;
-    if (mean[level].n < FEWEST_SEEDS)
-      goto cleanup;
-  }
-
-  size_t count = 0; /* draws that have both order and limit */
-  for (uint64_t draw = 0; draw < RESAMPLES; draw++) {
-    draw_means(draw, n, sample, mean, paired, drawn);
-    count += convergence_solve(h, drawn, &orders[count], &limits[count]);
-  }
-  found.shrinking = (double)count / RESAMPLES;
-  found.verdict = judge(&found, n, sample, paired, confidence);
-  if (found.verdict == CONVERGENCE_ORDER && convergence_solve(h, f, &found.order, &found.limit)) {
-    middle(count, orders, confidence, &found.order_low, &found.order_high);
-    middle(count, limits, confidence, &found.limit_low, &found.limit_high);
-  }
-cleanup:
-  free(room);
-  return found;
-}
-
 void convergence_frontier(size_t n, const double *cost, const double *error, bool *on_frontier) {
   for (size_t i = 0; i < n; i++) {
     on_frontier[i] = isfinite(cost[i]) && isfinite(error[i]);
@@ -233,16 +97,23 @@ void convergence_frontier(size_t n, const double *cost, const double *error, boo
   }
 }
 
-void convergence_resolve(size_t count, struct convergence_row *levels, const struct convergence_limit_row *limit) {
-  const bool open = limit->verdict == CONVERGENCE_NO_ORDER || limit->verdict == CONVERGENCE_UNSURE ||
-                    limit->verdict == CONVERGENCE_TOO_FEW;
+static void resolve(struct convergence_row *level, const struct limit_range *distance) {
+  level->distance = (distance->low + distance->high) / 2;
+  level->distance_half_width = (distance->high - distance->low) / 2;
+  level->resolution = fmax(fabs(distance->low), fabs(distance->high));
+}
+
+void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law, const size_t *place,
+                         double bound) {
   double coarser = NOTHING; /* |bias| and half width of the last level before the reference */
   for (size_t l = 0; l < count; l++) {
     struct convergence_row *level = &levels[l];
     const bool stepped = !isnan(level->step);
-    level->open = stepped && open;
-    if (limit->verdict == CONVERGENCE_ORDER)
-      level->resolution = fabs(level->mean - limit->limit) + (limit->limit_high - limit->limit_low) / 2;
+    level->open = stepped && law->verdict != LIMIT_SEEN;
+    if (law->verdict == LIMIT_SEEN && place[l] < LIMIT_LEVELS)
+      resolve(level, &law->distance[place[l]]);
+    else if (law->verdict == LIMIT_CONSTANT)
+      level->resolution = bound;
     else if (!level->reference)
       level->resolution = fabs(level->bias) + level->bias_half_width;
     else
@@ -250,6 +121,16 @@ void convergence_resolve(size_t count, struct convergence_row *levels, const str
     if (!level->reference && isfinite(level->bias_half_width))
       coarser = fabs(level->bias) + level->bias_half_width;
   }
+}
+
+void convergence_limit_fill(const struct limit_law *law, struct convergence_limit_row *row) {
+  row->verdict = law->verdict;
+  row->dropped = (int64_t)law->dropped;
+  row->fit = law->fit;
+  row->fit_with = law->fit_with;
+  row->order = law->order;
+  row->limit = law->limit;
+  row->change = law->change;
 }
 
 /* ---- rows of the store ---- */
@@ -287,9 +168,12 @@ static const struct field rows[] = {
     LEVEL(cost_ratio, 0, .doc = "w: processor time of a run over that of the next finer level."),
     LEVEL(break_even, 0, .doc = "2 sqrt(w)/(1 + w): correlation from which a control variate would save time."),
     LEVEL(gain, 0, .doc = "Plain Monte Carlo's cost over that of the best control variate; 1: it saves nothing."),
+    LEVEL(distance, -HUGE_VAL, .doc = "Mean less its limit: the middle of the 95 % interval. Off: no limit is seen."),
+    LEVEL(distance_half_width, 0, .doc = "Half width of that interval."),
     LEVEL(resolution, 0,
-          .doc = "What this knob leaves unknown at this level: the distance to the limit and half its interval, or "
-                 "|bias| and half width where there is no order. Off for knobs that are no resolution."),
+          .doc = "What this knob leaves unknown at this level: the largest distance to the limit in its interval, or "
+                 "|bias| and half width where no limit is seen. Off for knobs that are no resolution, and where all "
+                 "runs are equal, so that nothing tells it."),
     LEVEL_FLAG(open, .doc = "1: no limit is in sight, so that resolution may be larger."),
     LEVEL(error, 0,
           .doc = "resolution (of a model: |bias| and half width), and what the other knobs leave unknown at the "
@@ -299,24 +183,33 @@ static const struct field rows[] = {
 const struct field_table convergence_table = FIELD_TABLE(rows, struct convergence_row, "convergence",
                                                          "Levels of the knobs that a study has run.");
 
+static FIELD_WORDS(verdict_names, LIMIT_VERDICTS, [LIMIT_TOO_FEW] = "too-few", [LIMIT_CONSTANT] = "constant",
+                   [LIMIT_SEEN] = "limit", [LIMIT_NOT_SEEN] = "no-limit");
 static const char *const verdict_docs = "fewer than three levels with a step, or fewer than three seeds\n"
-                                        "the two finest levels do not differ as far as these seeds tell\n"
-                                        "differences shrink: order and limit are given\n"
-                                        "differences do not shrink: no limit is in sight\n"
-                                        "more seeds are needed to tell";
+                                        "all runs are equal, which tells no limit\n"
+                                        "a law limit + a step^p agrees with the levels\n"
+                                        "no such law agrees with the three finest levels";
 static const struct field limit_rows[] = {
     LIMIT_TEXT(knob, .doc = "What was made coarser or finer."),
     LIMIT_TEXT(quantity, .doc = "Result, as a column of the view runs. Its unit is that of the limit."),
     ROW_OF(convergence_limit_row, verdict, verdict, FIELD_CHOICE, NULL, .choices = verdict_names,
-           .choice_docs = verdict_docs, .maximum = CONVERGENCE_VERDICTS - 1,
-           .doc = "What the three finest levels tell."),
-    LIMIT_AS(measured_order, order, 0, .doc = "p of limit + a step^p through the three finest levels."),
-    LIMIT_AS(measured_order_low, order_low, 0, .doc = "Lower end of the 95 % interval of the order."),
-    LIMIT_AS(measured_order_high, order_high, 0, .doc = "Upper end of it."),
-    LIMIT_AS(extrapolated, limit, -HUGE_VAL, .doc = "Extrapolated value at step 0."),
-    LIMIT_AS(extrapolated_low, limit_low, -HUGE_VAL, .doc = "Lower end of its 95 % interval."),
-    LIMIT_AS(extrapolated_high, limit_high, -HUGE_VAL, .doc = "Upper end of it."),
+           .choice_docs = verdict_docs, .maximum = LIMIT_VERDICTS - 1,
+           .doc = "What all levels and seeds together tell."),
+    ROW_OF(convergence_limit_row, dropped, dropped, FIELD_INTEGER, "1", .maximum = LIMIT_LEVELS,
+           .doc = "Coarse levels that the law does not describe."),
+    LIMIT_AS(fit, fit, 0,
+             .doc = "Share of the samples of the best law that lie farther from it than the levels; below 0.05 no law "
+                    "fits."),
+    LIMIT_AS(fit_with, fit_with, 0, .doc = "The same with the finest of the dropped levels. Off: none is dropped."),
+    LIMIT_AS(measured_order, order.value, 0, .doc = "p of limit + a step^p that fits best."),
+    LIMIT_AS(measured_order_low, order.low, 0, .doc = "Lower end of its 95 % interval, 0.5 at least."),
+    LIMIT_AS(measured_order_high, order.high, 0, .doc = "Upper end of it, 2 at most."),
+    LIMIT_AS(extrapolated, limit.value, -HUGE_VAL, .doc = "Value at step 0: mean over the laws, by their likelihood."),
+    LIMIT_AS(extrapolated_low, limit.low, -HUGE_VAL, .doc = "Lower end of its 95 % interval over all laws."),
+    LIMIT_AS(extrapolated_high, limit.high, -HUGE_VAL, .doc = "Upper end of it."),
+    LIMIT_AS(change, change.value, -HUGE_VAL, .doc = "Mean of the finest level less that of the next coarser one."),
+    LIMIT_AS(change_low, change.low, -HUGE_VAL, .doc = "Lower end of its 95 % interval."),
+    LIMIT_AS(change_high, change.high, -HUGE_VAL, .doc = "Upper end of it."),
 };
 const struct field_table convergence_limit_table = FIELD_TABLE(limit_rows, struct convergence_limit_row,
-                                                               "convergence limit",
-                                                               "Orders and limits of the knobs of a study.");
+                                                               "convergence limit", "Limits of the knobs of a study.");

@@ -1,6 +1,6 @@
 /* Does a result still change when a run gets finer? Pure functions on the values of two or more settings (levels) of
- * one knob: bias against the finest level, order, extrapolated limit, correlation between levels, and which settings
- * are worth their cost. `clast converge` makes the runs.
+ * one knob: bias against the finest level, correlation between levels, which settings are worth their cost, and the
+ * rows of a study. The limit is inferred by limit.h. `clast converge` makes the runs.
  *
  * Values of a level are in order of the seed, with the same seed at the same index for every level. NaN: the run
  * failed. */
@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "analysis/statistics/limit.h"
 #include "schemas/field.h"
 
 /* A difference of two means with the half width of its interval. NaN: too few values. */
@@ -42,34 +43,6 @@ struct convergence_correlation convergence_correlate(size_t n, const double *coa
 double convergence_break_even(double cost_ratio);
 double convergence_gain(double correlation, double cost_ratio);
 
-/* f(h) = limit + a h^order through the three finest levels, with intervals from resampled seeds. */
-enum convergence_verdict {
-  CONVERGENCE_TOO_FEW,   /* fewer than three levels with a step, or fewer than three seeds */
-  CONVERGENCE_UNCHANGED, /* the two finest levels do not differ significantly with these seeds */
-  CONVERGENCE_ORDER,     /* differences shrink in at least 95 % of the resamples: order and limit are given */
-  CONVERGENCE_NO_ORDER,  /* they do not shrink in at least 95 % of them: no limit is in sight */
-  CONVERGENCE_UNSURE,    /* between both: more seeds are needed to decide */
-  CONVERGENCE_VERDICTS
-};
-
-struct convergence_limit {
-  enum convergence_verdict verdict;
-  double order, order_low, order_high;
-  double limit, limit_low, limit_high;
-  double shrinking; /* share of resamples whose differences shrink */
-};
-
-/* Order p and limit of f(h) = limit + a h^p through (h[i], f[i]), h[0] > h[1] > h[2] > 0. False when the differences
- * change their sign or do not shrink faster than a logarithm, or when p would be above CONVERGENCE_ORDER_MOST.
- * Richardson (1911, doi 10.1098/rsta.1911.0009); the equation for p is solved by Brent's method. */
-#define CONVERGENCE_ORDER_MOST 12.0
-bool convergence_solve(const double h[3], const double f[3], double *order, double *limit);
-
-/* h: steps of the three finest levels, coarse to fine. values[i][s]: value of level i and seed s. `paired`: all levels
- * share one draw of seeds. The same values give the same bits. */
-struct convergence_limit convergence_extrapolate(const double h[3], size_t n, const double *const values[3],
-                                                 bool paired, double level_of_confidence);
-
 /* Marks the Pareto frontier: a point is on it if no other one has a smaller (or equal) cost and a smaller error. NaN is
  * never on the frontier. */
 void convergence_frontier(size_t n, const double *cost, const double *error, bool *on_frontier);
@@ -87,6 +60,7 @@ struct convergence_row { /* one level of one knob, for one quantity */
   double bias, bias_half_width;
   double correlation, correlation_low, correlation_high; /* with the next finer level */
   double cost_ratio, break_even, gain;
+  double distance, distance_half_width; /* mean less the limit, middle and half width of the interval; NaN: no limit */
   double resolution; /* error that this knob alone leaves at this level (convergence_resolve). NaN: a model's knob */
   bool open;         /* no limit is known: the error may be larger */
   double error; /* of this level: resolution, or |bias| and half width of a model's; and the errors that the other knobs
@@ -95,18 +69,24 @@ struct convergence_row { /* one level of one knob, for one quantity */
 };
 extern const struct field_table convergence_table;
 
-struct convergence_limit_row { /* one knob, for one quantity */
+struct convergence_limit_row { /* one knob, for one quantity: struct limit_law */
   char knob[FIELD_TEXT_SIZE], quantity[FIELD_TEXT_SIZE];
-  int verdict; /* enum convergence_verdict */
-  double order, order_low, order_high;
-  double limit, limit_low, limit_high;
+  int verdict; /* enum limit_verdict */
+  int64_t dropped;
+  double fit, fit_with;
+  struct limit_range order, limit, change;
 };
 extern const struct field_table convergence_limit_table;
 
-/* Fills resolution and open of every level of a ladder, coarse to fine. With an order: the distance to the limit and
- * the half width of its interval. Without an order: |bias| and half width against the finest level. The finest level
- * itself takes those of the next coarser one; if the knob has no step, the finest level counts as exact and has 0.
- * Levels without runs get NaN. */
-void convergence_resolve(size_t count, struct convergence_row *levels, const struct convergence_limit_row *limit);
+/* Fills distance, resolution and open of every level of a ladder, coarse to fine. With a limit, resolution is the
+ * largest distance within the interval. Without one: |bias| and half width against the finest level; the finest level
+ * itself takes those of the next coarser one; if the knob has no step, the finest level counts as exact and has 0. When
+ * all runs of the ladder are equal, the knob leaves what the interval of the mean leaves: NaN (cannot be told), or
+ * `bound` of a share. Levels without runs get NaN. law: of the levels with index place[l]; place[l] is at least
+ * LIMIT_LEVELS for a level without one. */
+void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law, const size_t *place,
+                         double bound);
+/* The row of a law. */
+void convergence_limit_fill(const struct limit_law *law, struct convergence_limit_row *row);
 
 #endif

@@ -82,6 +82,48 @@ static bool others_open(const struct finding *finding, const struct knob *knob) 
   return false;
 }
 
+static status add_option(struct finding *finding, const struct convergence_row *row, struct accuracy_option *option,
+                         struct error *error) {
+  struct accuracy *accuracy = finding->accuracy;
+  struct accuracy_option *grown = realloc(accuracy->options, (accuracy->count + 1) * sizeof *grown);
+  if (!grown)
+    return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
+  accuracy->options = grown;
+  snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
+  option->seeds = accuracy_seeds(row->deviation, finding->campaign->accuracy_within - option->error);
+  option->cpu_s = option->seeds ? (double)option->seeds * option->run_s : (double)NAN;
+  accuracy->options[accuracy->count++] = *option;
+  return STATUS_OK;
+}
+
+/* Work of a run of the campaign's scene with this setting of the knob; NaN: the scene refuses it. */
+static double work_at(const struct campaign *campaign, const struct knob *knob, const char *setting) {
+  struct error ignored;
+  struct scene *scene = scene_copy(campaign->scene);
+  double work = NAN;
+  if (scene && scene->kind->work && ladder_turn(knob, scene, setting, &ignored) == STATUS_OK)
+    work = scene->kind->work(scene->inputs);
+  scene_free(scene);
+  return work;
+}
+
+/* Levels finer than the finest one, `row`. The law's distance to the limit shrinks at least as the least order. */
+static status add_finer(struct finding *finding, const struct knob *knob, const struct convergence_row *row,
+                        struct error *error) {
+  static const double finer[] = {2, 4, 8};
+  const double work = work_at(finding->campaign, knob, row->setting);
+  for (size_t i = 0; i < sizeof finer / sizeof finer[0]; i++) {
+    const double factor = knob->step_power < 0 ? finer[i] : 1 / finer[i];
+    const double share = pow(pow(factor, knob->step_power), LIMIT_ORDER_LEAST);
+    struct accuracy_option option = {.extrapolated = true, .error = row->error - (1 - share) * row->resolution};
+    snprintf(option.setting, sizeof option.setting, "%.6g", strtod(row->setting, NULL) * factor);
+    option.run_s = row->cpu * work_at(finding->campaign, knob, option.setting) / work;
+    if (option.run_s > 0)
+      TRY(add_option(finding, row, &option, error));
+  }
+  return STATUS_OK;
+}
+
 /* Second pass: a level as an option. */
 static status take_option(struct finding *finding, const struct convergence_row *row, struct error *error) {
   struct accuracy *accuracy = finding->accuracy;
@@ -96,21 +138,14 @@ static status take_option(struct finding *finding, const struct convergence_row 
   if (!row->base && is_varied(finding->campaign, knob, row->setting))
     return STATUS_OK;
 
-  struct accuracy_option *grown = realloc(accuracy->options, (accuracy->count + 1) * sizeof *grown);
-  if (!grown)
-    return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
-  accuracy->options = grown;
   struct accuracy_option option = {.own = row->base,
                                    .open = row->open || others_open(finding, knob),
                                    .error = row->error,
-                                   .seeds = accuracy_seeds(row->deviation,
-                                                           finding->campaign->accuracy_within - row->error),
                                    .run_s = row->cpu};
-  snprintf(option.knob, sizeof option.knob, "%.63s", row->knob);
   snprintf(option.setting, sizeof option.setting, "%.63s", row->setting);
-  option.cpu_s = option.seeds ? (double)option.seeds * option.run_s : (double)NAN;
-  accuracy->options[accuracy->count++] = option;
-  return STATUS_OK;
+  TRY(add_option(finding, row, &option, error));
+  const bool finest = row->reference && !option.open && knob->group == KNOB_RESOLUTION && row->step > 0;
+  return finest && !is_varied(finding->campaign, knob, row->setting) ? add_finer(finding, knob, row, error) : STATUS_OK;
 }
 
 static int by_cost(const void *a, const void *b) {
@@ -234,7 +269,7 @@ static status print_alternatives(const struct accuracy *accuracy, enum table_for
     table_text(table, option->own ? "" : option->knob);
     table_text(table, option->own ? "the scene's own" : option->setting);
     table_real(table, option->error);
-    table_text(table, option->open ? "at least" : "yes");
+    table_text(table, option->open ? "at least" : option->extrapolated ? "extrapolated" : "yes");
     if (option->seeds)
       table_integer(table, option->seeds);
     else
@@ -264,6 +299,10 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
            "error\n",
            campaign->accuracy_quantity, campaign->accuracy_within);
     code = print_alternatives(&accuracy, TABLE_TEXT, stdout, error);
+    if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
+      printf("The chosen setting is finer than any level that was run. Its error is that of the finest level times "
+             "(its step over that step)^%g, and its cost is by the engine's measure of work.\n",
+             LIMIT_ORDER_LEAST);
     putchar('\n');
   }
   if (code == STATUS_OK)

@@ -10,9 +10,10 @@
 /* A way to run the campaign: one level of one knob, all other inputs as in the campaign's scene. */
 struct accuracy_option {
   char knob[64], setting[64];
-  bool own;      /* the scene's own settings */
-  bool open;     /* the results show no limit, so that `error` may be too small: never chosen */
-  double error;  /* change by finer settings of all knobs together, in the quantity's SI unit */
+  bool own;          /* the scene's own settings */
+  bool extrapolated; /* finer than any level that was run: error by the law, cost by the engine's measure of work */
+  bool open;         /* the results show no limit, so that `error` may be too small: never chosen */
+  double error;      /* change by finer settings of all knobs together, in the quantity's SI unit */
   int64_t seeds; /* number of seeds for which error and 95 % interval of the mean are within the accuracy; 0: no number
                     is enough */
   double run_s;  /* processor time of a run, s */

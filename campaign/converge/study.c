@@ -122,36 +122,43 @@ static void find_level(const struct study_ladder *ladder, size_t quantity, bool 
   row->gain = convergence_gain(r.value, row->cost_ratio);
 }
 
-/* Order and limit from the three finest levels that were run. */
-static void find_limit(const struct study_ladder *ladder, size_t quantity, size_t n,
-                       struct convergence_limit_row *row) {
-  const double *values[3];
-  double h[3];
-  size_t found = 0;
-  for (size_t l = ladder->levels.count; l-- > 0 && found < 3;)
-    if (!ladder->left_out[l] && !isnan(ladder->levels.level[l].step)) {
-      h[2 - found] = ladder->levels.level[l].step;
-      values[2 - found] = ladder->values[quantity][l];
-      found++;
-    }
-  struct convergence_limit limit =
-      {.verdict = CONVERGENCE_TOO_FEW, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING};
-  if (found == 3)
-    limit = convergence_extrapolate(h, n, values, ladder->levels.knob->pairs, CONFIDENCE);
-  row->verdict = limit.verdict;
-  row->order = limit.order;
-  row->order_low = limit.order_low;
-  row->order_high = limit.order_high;
-  row->limit = limit.limit;
-  row->limit_low = limit.limit_low;
-  row->limit_high = limit.limit_high;
+void study_law(const struct study *study, const struct study_ladder *ladder, size_t quantity, struct limit_law *law,
+               size_t *place, size_t count, struct limit_point *points) {
+  const struct field *row = study->quantity[quantity].row;
+  struct limit_ladder levels = {.seeds = (size_t)ladder->seeds, .least = -HUGE_VAL, .most = HUGE_VAL};
+  if (row && row->kind == FIELD_REAL) {
+    levels.least = row->minimum;
+    levels.most = row->maximum;
+  }
+  for (size_t l = 0; l < ladder->levels.count; l++) {
+    place[l] = LIMIT_LEVELS;
+    if (ladder->left_out[l] || sample_summarise(levels.seeds, ladder->values[quantity][l], CONFIDENCE).n == 0)
+      continue;
+    place[l] = levels.levels;
+    levels.step[levels.levels] = ladder->levels.level[l].step;
+    levels.values[levels.levels++] = ladder->values[quantity][l];
+  }
+  if (!limit_infer(&levels, CONFIDENCE, law, count, points))
+    law->verdict = LIMIT_TOO_FEW;
+}
+
+/* How far the mean of a share may be off when all its runs are equal. NaN: not a share. */
+static double bound_of(size_t n, const double *values, bool share) {
+  struct sample_summary summary = sample_summarise(n, values, CONFIDENCE);
+  if (!share)
+    return NOTHING;
+  sample_of_share(&summary, CONFIDENCE);
+  return fmax(summary.mean - summary.low, summary.high - summary.mean);
 }
 
 void study_find(const struct study *study, const struct study_ladder *ladder, size_t quantity,
                 struct study_found *found) {
   const struct field *result = study->quantity[quantity].row;
   const char *column = study->quantity[quantity].column;
-  const size_t n = (size_t)ladder->seeds;
+  const size_t n = (size_t)ladder->seeds, reference = study_reference(ladder);
+  const bool share = result && field_is_share(result);
+  struct limit_law law;
+  size_t place[KNOB_LEVELS];
   *found = (struct study_found){.count = ladder->levels.count, .adds = ladder->levels.knob->group == KNOB_RESOLUTION};
   for (size_t l = 0; l < found->count; l++) {
     struct convergence_row *row = &found->rows[l];
@@ -159,20 +166,21 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
     snprintf(row->knob, sizeof row->knob, "%s", ladder->levels.knob->name);
     snprintf(row->quantity, sizeof row->quantity, "%s", column);
     snprintf(row->setting, sizeof row->setting, "%s", ladder->levels.level[l].setting);
-    find_level(ladder, quantity, result && field_is_share(result), l, n, row);
+    find_level(ladder, quantity, share, l, n, row);
   }
   field_defaults(&convergence_limit_table, &found->limit);
   snprintf(found->limit.knob, sizeof found->limit.knob, "%s", ladder->levels.knob->name);
   snprintf(found->limit.quantity, sizeof found->limit.quantity, "%s", column);
-  find_limit(ladder, quantity, n, &found->limit);
-  convergence_resolve(found->count, found->rows, &found->limit);
+  study_law(study, ladder, quantity, &law, place, 0, NULL);
+  convergence_limit_fill(&law, &found->limit);
+  convergence_resolve(found->count, found->rows, &law, place, bound_of(n, ladder->values[quantity][reference], share));
   for (size_t l = 0; l < found->count; l++) {
     struct convergence_row *row = &found->rows[l];
     const enum knob_group group = ladder->levels.knob->group;
     const bool own = group == KNOB_MODEL || group == KNOB_SETTINGS;
     row->error = own ? fabs(row->bias) + row->bias_half_width : row->resolution;
     if (!found->adds) {
-      row->resolution = NOTHING;
+      row->resolution = row->distance = row->distance_half_width = NOTHING;
       row->open = false;
     }
   }

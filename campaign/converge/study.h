@@ -83,6 +83,11 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
  * Returns the number of ladders. */
 size_t study_of_scene(const struct study *study, size_t from, size_t quantity, struct study_found *found);
 
+/* The limit of a ladder from all its levels with runs. `place` (KNOB_LEVELS numbers): the index of each level in
+ * law->distance; LIMIT_LEVELS for a level that was left out. points: as for limit_infer(). */
+void study_law(const struct study *study, const struct study_ladder *ladder, size_t quantity, struct limit_law *law,
+               size_t *place, size_t count, struct limit_point *points);
+
 /* Index of the level that the others are compared with. */
 size_t study_reference(const struct study_ladder *ladder);
 /* Reads the values of a ladder's runs from the store. */
@@ -109,8 +114,9 @@ status study_print_knobs(enum table_format format, struct error *error);
 /* For people a table per scene and quantity, with a sentence per knob and, unless `quiet`, a legend on stderr. For
  * programs the rows of convergence_table. */
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error);
-/* Draws the mean with its interval over the processor time of a run, or (`of_errors`) the error of each level and the
- * frontier: one curve per knob of the first scene and quantity. */
+/* Of the first scene and quantity. Draws the levels of the first knob that has a step, with law, limit and band, over
+ * the step; without such a knob the levels over the processor time of a run, one curve per knob. `of_errors`: the error
+ * of each level over processor time, and the frontier. */
 status study_print_picture(const struct study *study, bool of_errors, const char *path, struct error *error);
 
 /* ---- study_request.c ---- */

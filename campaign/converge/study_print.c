@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/statistics.h"
 #include "campaign/charts/charts.h"
 #include "campaign/terminal/uncertainty.h"
 #include "schemas/limits.h"
@@ -73,25 +74,116 @@ static void print_level(struct table *table, const struct convergence_row *row, 
   table_text(table, row->frontier ? "yes" : "");
 }
 
-/* The conclusion from the levels of a knob, and the reason why it has no more runs. */
+/* ---- sentences ---- */
+
+/* The first line of a quantity says what is known of it at one level: the scene's own, or the finest that has runs. */
+static bool find_told(size_t count, const struct study_found *found, size_t *knob, size_t *level) {
+  bool any = false;
+  for (size_t i = 0; i < count; i++)
+    for (size_t l = 0; l < found[i].count; l++) {
+      if (found[i].rows[l].n == 0)
+        continue;
+      *knob = i;
+      *level = l;
+      any = true;
+      if (found[i].rows[l].base)
+        return true;
+    }
+  return any;
+}
+
+/* The change between the two finest levels as one of a doubling, or a halving, of the knob's first input. */
+static void print_change(const struct knob *knob, const struct study_found *found) {
+  const struct convergence_row *row[2] = {NULL, NULL}; /* the two finest levels with runs */
+  char text[UNCERTAINTY_TEXT];
+  for (size_t l = 0; l < found->count; l++)
+    if (found->rows[l].n > 0) {
+      row[0] = row[1];
+      row[1] = &found->rows[l];
+    }
+  const double factor = row[0] ? log(2) * fabs(knob->step_power) / log(row[0]->step / row[1]->step) : 1;
+  const struct limit_range *change = &found->limit.change;
+  uncertainty_number(factor * change->value, factor * (change->high - change->low) / 2, text);
+  printf("no limit seen, moving by %s per %s", text, knob->step_power < 0 ? "doubling" : "halving");
+}
+
+static void print_distance(const struct knob *knob, const struct study_found *found,
+                           const struct convergence_row *row) {
+  char text[UNCERTAINTY_TEXT];
+  switch ((enum limit_verdict)found->limit.verdict) {
+  case LIMIT_SEEN:
+    uncertainty_distance(row->distance, row->distance_half_width, text);
+    printf("%s", text);
+    break;
+  case LIMIT_NOT_SEEN: print_change(knob, found); break;
+  case LIMIT_CONSTANT:
+    if (isnan(row->resolution))
+      printf("all runs are equal, so that the limit cannot be told");
+    else
+      printf("all runs are equal, so that the mean may be off by up to %.2g", row->resolution);
+    break;
+  case LIMIT_TOO_FEW:
+  case LIMIT_VERDICTS: printf("no limit inferred, which needs three levels and three seeds"); break;
+  }
+  printf(" (%s)", knob->name);
+}
+
+/* "M_1/M = 0.218 +- 0.026 (seeds, 95 %), 0.03 +- 0.02 below its limit (particles)". */
+static void print_sentence(const struct study *study, size_t from, size_t quantity, size_t count,
+                           const struct study_found *found) {
+  const struct field *field = study->quantity[quantity].row;
+  size_t knob = 0, level = 0;
+  if (!find_told(count, found, &knob, &level))
+    return;
+  const struct study_ladder *ladder = &study->ladder[from + knob];
+  const struct convergence_row *told = &found[knob].rows[level];
+  char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT];
+  charts_label(study->quantity[quantity].name, label);
+  struct sample_summary mean = sample_summarise((size_t)ladder->seeds, ladder->values[quantity][level], 0.95);
+  if (field && field_is_share(field))
+    sample_of_share(&mean, 0.95);
+  uncertainty_seeds(&mean, text);
+  if (!told->base)
+    printf("%s = %s: ", told->knob, told->setting);
+  printf("%s = %s", label, text);
+  for (size_t i = 0; i < count; i++) {
+    const struct convergence_row *row = i == knob ? told : NULL;
+    for (size_t l = 0; l < found[i].count && told->base; l++)
+      if (found[i].rows[l].base)
+        row = &found[i].rows[l];
+    if (!found[i].adds || !row || row->n == 0)
+      continue;
+    printf(", ");
+    print_distance(study->ladder[from + i].levels.knob, &found[i], row);
+  }
+  putchar('\n');
+}
+
+/* The law of a knob, which levels it leaves out and why, and why the knob has no more runs. */
 static void print_limit(const struct study_ladder *ladder, const struct study_found *found) {
   const struct convergence_limit_row *limit = &found->limit;
+  const struct knob *knob = ladder->levels.knob;
+  const char *before = "";
   printf("%s: ", limit->knob);
-  if (!isnan(found->rows[0].step)) {
-    switch ((enum convergence_verdict)limit->verdict) {
-    case CONVERGENCE_ORDER:
-      printf("order %.2g (%.2g to %.2g), limit %.5g (%.5g to %.5g); ", limit->order, limit->order_low,
-             limit->order_high, limit->limit, limit->limit_low, limit->limit_high);
-      break;
-    case CONVERGENCE_NO_ORDER: printf("no order: differences do not shrink, no limit is in sight; "); break;
-    case CONVERGENCE_UNCHANGED: printf("the two finest levels do not differ as far as these seeds tell; "); break;
-    case CONVERGENCE_UNSURE: printf("no order yet: more seeds are needed to tell whether differences shrink; "); break;
-    case CONVERGENCE_TOO_FEW:
-    case CONVERGENCE_VERDICTS: printf("no order: it needs three levels and three seeds; "); break;
-    }
+  if (limit->verdict == LIMIT_SEEN)
+    printf("limit %.5g (%.5g to %.5g), order %.2g (%.2g to %.2g); ", limit->limit.value, limit->limit.low,
+           limit->limit.high, limit->order.value, limit->order.low, limit->order.high);
+  else if (limit->verdict == LIMIT_NOT_SEEN) {
+    print_change(knob, found);
+    printf(": a law of order 0.5 to 2 would be this far from the three finest levels in %.2g of the cases; ",
+           limit->fit);
   }
+  int64_t dropped = limit->verdict == LIMIT_SEEN ? limit->dropped : 0;
+  for (size_t l = 0; l < found->count && dropped > 0; l++)
+    if (found->rows[l].n > 0) {
+      printf("%s%s", *before ? ", " : "the law leaves out ", found->rows[l].setting);
+      before = ",";
+      dropped--;
+    }
+  if (*before)
+    printf(", as it fits all finer levels (%.2g) and not with the next one (%.2g); ", limit->fit, limit->fit_with);
   printf("ended: %s", ladder->end);
-  const char *before = "; without";
+  before = "; without";
   for (size_t l = 0; l < found->count; l++)
     if (found->rows[l].n == 0) {
       printf("%s %s", before, found->rows[l].setting);
@@ -131,8 +223,11 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   const struct study_quantity *what = &study->quantity[quantity];
   const char *unit = what->row ? what->row->unit : NULL;
   const bool named = unit && strcmp(unit, "1") != 0;
-  printf("%s%s, quantity %s%s%s%s\n", from || quantity ? "\n" : "", study->ladder[from].base->name, what->name,
-         named ? " (" : "", named ? unit : "", named ? ")" : "");
+  if (from || quantity)
+    putchar('\n');
+  print_sentence(study, from, quantity, count, found);
+  printf("%s, quantity %s%s%s%s\n", study->ladder[from].base->name, what->name, named ? " (" : "", named ? unit : "",
+         named ? ")" : "");
   TABLE table = table_new(TABLE_TEXT, stdout);
   table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skew", "upper_mode", "cpu_s",
                                              "bias", "bias_hw95", "corr", "corr_low", "corr_high", "break_even",
@@ -150,25 +245,30 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   return STATUS_OK;
 }
 
+enum { OF_LIMIT = 2 }; /* the columns of a limit after knob and quantity, which a level has too */
+
+static void print_value(struct table *table, const struct field *row, const void *of) {
+  struct field_value value;
+  field_get(row, of, &value);
+  switch (row->kind) {
+  case FIELD_TEXT:
+  case FIELD_CHOICE: table_text(table, value.text); return;
+  case FIELD_INTEGER: table_integer(table, value.integer); return;
+  case FIELD_BOOLEAN: table_boolean(table, value.number != 0); return;
+  case FIELD_REAL: table_real(table, value.number); return;
+  }
+}
+
 static status print_rows(struct printing *printing, size_t from, size_t quantity, size_t count,
                          const struct study_found *found, struct table *table, struct error *error) {
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++) {
       struct ask_doubts doubts;
       TRY(read_doubts(printing, &printing->study->ladder[from + i], l, quantity, &doubts, error));
-      for (size_t c = 0; c < convergence_table.count; c++) {
-        const struct field *row = &convergence_table.rows[c];
-        struct field_value value;
-        field_get(row, &found[i].rows[l], &value);
-        if (row->kind == FIELD_TEXT)
-          table_text(table, value.text);
-        else if (row->kind == FIELD_INTEGER)
-          table_integer(table, value.integer);
-        else if (row->kind == FIELD_BOOLEAN)
-          table_boolean(table, value.number != 0);
-        else
-          table_real(table, value.number);
-      }
+      for (size_t c = 0; c < convergence_table.count; c++)
+        print_value(table, &convergence_table.rows[c], &found[i].rows[l]);
+      for (size_t c = OF_LIMIT; c < convergence_limit_table.count; c++)
+        print_value(table, &convergence_limit_table.rows[c], &found[i].limit);
       table_doubt_cells(table, &doubts);
     }
   return STATUS_OK;
@@ -176,7 +276,7 @@ static status print_rows(struct printing *printing, size_t from, size_t quantity
 
 static const char legend[] =
     "* the scene's own setting; ref: what bias is measured against. bias: mean less that of ref, with the half width\n"
-    "of its 95 % interval. error: distance to the limit (without one |bias| + half width, which may be too small),\n"
+    "of its 95 % interval. error: largest distance to the limit (none seen: |bias| + half width, perhaps too small),\n"
     "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer. corr: with\n"
     "the next finer level; a control variate would save time from break_even on. upper_mode: share of the runs in the\n"
     "upper of two modes.\n";
@@ -191,6 +291,8 @@ status study_print(const struct study *study, enum table_format format, bool qui
   TABLE table = format == TABLE_TEXT ? NULL : table_new(format, stdout);
   for (size_t c = 0; table && c < convergence_table.count; c++)
     table_column(table, convergence_table.rows[c].path, convergence_table.rows[c].unit);
+  for (size_t c = OF_LIMIT; table && c < convergence_limit_table.count; c++)
+    table_column(table, convergence_limit_table.rows[c].path, convergence_limit_table.rows[c].unit);
   if (table)
     table_doubt_columns(table);
   for (size_t from = 0, count = 0; from < study->ladder_count; from += count)
@@ -210,7 +312,7 @@ status study_print(const struct study *study, enum table_format format, bool qui
 
 /* ---- pictures: results over cost, and the error over cost with the frontier ---- */
 
-enum { CURVES = PICTURE_SERIES, MARKS = LIMITS_STUDY_KNOBS * KNOB_LEVELS };
+enum { CURVES = PICTURE_SERIES, MARKS = LIMITS_STUDY_KNOBS * KNOB_LEVELS }; /* more marks than steps of a law */
 
 struct drawing {
   struct study_found found[LIMITS_STUDY_KNOBS];
@@ -251,6 +353,54 @@ static void add_curve(struct drawing *drawing, const char *label, size_t from, s
   drawing->count += drawing->curves[drawing->count].count > 0;
 }
 
+/* The first knob whose levels have a step. `count`: there is none. */
+static size_t stepped_knob(const struct study *study, size_t count) {
+  size_t i = 0;
+  while (i < count && isnan(study->ladder[i].levels.level[0].step))
+    i++;
+  return i;
+}
+
+/* The levels of a ladder over the step, the law with its band, and the limit at 0. */
+static void draw_law(const struct study *study, size_t knob, struct drawing *drawing, char label[2][120]) {
+  enum { STEPS = 40 };
+  const struct study_ladder *ladder = &study->ladder[knob];
+  const struct study_found *found = &drawing->found[knob];
+  struct limit_point points[STEPS + 1];
+  struct limit_law law;
+  size_t place[KNOB_LEVELS];
+  double coarsest = 0;
+  struct picture_mean *levels = drawing->means[0], *curve = drawing->means[1];
+  for (size_t l = found->count; l-- > 0;) {
+    const struct convergence_row *row = &found->rows[l];
+    if (row->n == 0)
+      continue;
+    coarsest = row->step;
+    levels[drawing->curves[0].count++] = (struct picture_mean){row->step,
+                                                               row->mean,
+                                                               row->mean - row->half_width,
+                                                               row->mean + row->half_width,
+                                                               NAN,
+                                                               drawing->doubtful[knob][l]};
+  }
+  for (size_t i = 0; i <= STEPS; i++)
+    points[i].step = coarsest * (double)i / STEPS;
+  study_law(study, ladder, 0, &law, place, STEPS + 1, points);
+  snprintf(label[0], sizeof label[0], "levels of %s, mean over seeds with its 95 %% interval", found->limit.knob);
+  snprintf(label[1], sizeof label[1], "law with its 95 %% band; at step 0 the limit, %.3g (%.3g to %.3g)",
+           law.limit.value, law.limit.low, law.limit.high);
+  drawing->curves[0].label = label[0];
+  drawing->curves[0].mean = levels;
+  drawing->count = 1;
+  if (law.verdict != LIMIT_SEEN)
+    return;
+  for (size_t i = 0; i <= STEPS; i++)
+    curve[i] = (struct picture_mean){points[i].step, points[i].mean.value, points[i].mean.low, points[i].mean.high, NAN,
+                                     false};
+  drawing->curves[1] = (struct picture_curve){label[1], STEPS + 1, curve, true};
+  drawing->count = 2;
+}
+
 status study_print_picture(const struct study *study, bool of_errors, const char *path, struct error *error) {
   struct drawing *drawing = calloc(1, sizeof *drawing);
   if (!drawing)
@@ -269,22 +419,32 @@ status study_print_picture(const struct study *study, bool of_errors, const char
     free(drawing);
     return code;
   }
+  const size_t stepped = of_errors ? knobs : stepped_knob(study, knobs);
+  char label[2][120];
+  if (stepped < knobs)
+    draw_law(study, stepped, drawing, label);
   if (of_errors)
     add_curve(drawing, "frontier: no level is both cheaper and nearer", 0, knobs, true, true);
-  for (size_t i = 0; i < knobs && drawing->count < CURVES; i++)
+  for (size_t i = 0; stepped == knobs && i < knobs && drawing->count < CURVES; i++)
     add_curve(drawing, drawing->found[i].limit.knob, i, 1, of_errors, false);
 
-  char title[800], quantity[CHARTS_LABEL], y[CHARTS_LABEL + 16];
+  char title[800], quantity[CHARTS_LABEL], y[CHARTS_LABEL + 16], x[200] = "processor time of a run (s)";
   charts_label(study->quantity[0].name, quantity);
   snprintf(y, sizeof y, "%s%s", of_errors ? "error of " : "", quantity);
-  snprintf(title, sizeof title, "%s: %s over the cost of a run", study->ladder[0].base->name, y);
+  snprintf(title, sizeof title, "%s: %s%s", study->ladder[0].base->name, y,
+           stepped < knobs ? " and its limit" : " over the cost of a run");
+  if (stepped < knobs) {
+    const struct knob *knob = study->ladder[stepped].levels.knob;
+    snprintf(x, sizeof x, "step: %s to the power %.3g", knob->inputs[0].path, knob->step_power);
+  }
   const struct picture_page page = charts_page(path, NULL);
   char caption[CHARTS_LABEL];
-  snprintf(caption, sizeof caption, "A mark is a level of a knob: %s",
-           of_errors ? "how far finer settings may move the mean, all knobs together"
-                     : "mean over seeds with its 95 % interval");
+  snprintf(caption, sizeof caption, "A mark is a level of a knob%s%s", stepped < knobs ? "" : ": ",
+           stepped < knobs ? ""
+           : of_errors     ? "how far finer settings may move the mean, all knobs together"
+                           : "mean over seeds with its 95 % interval");
   charts_doubts(&printing.sum, caption, sizeof caption);
-  const struct picture_words words = {title, caption, "processor time of a run (s)", y};
+  const struct picture_words words = {title, caption, x, y};
   code = picture_curves(&page, &words, drawing->count, drawing->curves, error);
   free(drawing);
   return code;

@@ -73,8 +73,9 @@ static double wall_time(const struct rounds *rounds, const struct study_ladder *
 }
 
 /* Leaves out the most expensive levels until the first round fits into the ladder's share of the time left. All ladders
- * that wait for their first round have equal shares. Levels whose runs exist cost nothing and stay. Returns the number
- * of levels that remain. */
+ * that wait for their first round have equal shares. Levels whose runs exist cost nothing and stay; the scene's own
+ * level stays as long as another one can go, because its error is what the study is for. Returns the number of levels
+ * that remain. */
 static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladder, int64_t seeds) {
   size_t count = ladder->levels.count, waiting = 0;
   for (size_t i = 0; i < rounds->study->ladder_count; i++)
@@ -84,7 +85,8 @@ static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladde
     size_t worst = 0;
     double most = 0;
     for (size_t l = 0; l < ladder->levels.count; l++) {
-      const double cost = ladder->left_out[l] ? 0 : cost_of(rounds, ladder, l, seeds);
+      const bool stays = ladder->left_out[l] || (ladder->levels.level[l].base && count > 1);
+      const double cost = stays ? 0 : cost_of(rounds, ladder, l, seeds);
       if (cost > most) {
         worst = l;
         most = cost;

@@ -10,6 +10,28 @@
 enum { MOST_DECIMALS = 15 };
 static const double MOST_DIGITS = 1e15; /* a double has no more digits than that */
 
+void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_TEXT]) {
+  if (!(half_width > 0)) {
+    snprintf(text, UNCERTAINTY_TEXT, "%.4g", value);
+    return;
+  }
+  /* One digit of the error, two after a leading 1: rounding moves it by at most a quarter. */
+  double leading = floor(log10(half_width));
+  if (half_width < 2 * pow(10, leading))
+    leading--;
+  if (leading < -MOST_DECIMALS || leading > MOST_DECIMALS || fabs(value) >= MOST_DIGITS) {
+    snprintf(text, UNCERTAINTY_TEXT, "%.4g +- %.2g", value, half_width);
+    return;
+  }
+  const int decimals = leading < 0 ? (int)-leading : 0;
+  snprintf(text, UNCERTAINTY_TEXT, "%.*f +- %.*f", decimals, value, decimals, half_width);
+}
+
+void uncertainty_distance(double distance, double half_width, char text[UNCERTAINTY_TEXT]) {
+  uncertainty_number(fabs(distance), half_width, text);
+  text_append(text, UNCERTAINTY_TEXT, " %s its limit", distance > 0 ? "above" : "below");
+}
+
 void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_TEXT]) {
   const double half_width = mean->half_width;
   const char *weak = mean->weak ? ", weak" : "";
@@ -19,16 +41,8 @@ void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_
       text_append(text, UNCERTAINTY_TEXT, " (all %zu runs; %.3g to %.3g)", mean->n, mean->low, mean->high);
     return;
   }
-  /* One digit of the error, two after a leading 1: rounding moves it by at most a quarter. */
-  double leading = floor(log10(half_width));
-  if (half_width < 2 * pow(10, leading))
-    leading--;
-  if (leading < -MOST_DECIMALS || leading > MOST_DECIMALS || fabs(mean->mean) >= MOST_DIGITS) {
-    snprintf(text, UNCERTAINTY_TEXT, "%.4g +- %.2g (seeds, 95 %%%s)", mean->mean, half_width, weak);
-    return;
-  }
-  const int decimals = leading < 0 ? (int)-leading : 0;
-  snprintf(text, UNCERTAINTY_TEXT, "%.*f +- %.*f (seeds, 95 %%%s)", decimals, mean->mean, decimals, half_width, weak);
+  uncertainty_number(mean->mean, half_width, text);
+  text_append(text, UNCERTAINTY_TEXT, " (seeds, 95 %%%s)", weak);
 }
 
 void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]) {
@@ -42,6 +56,11 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
     return;
   case ASK_RESOLUTION_KNOWN:
   case ASK_RESOLUTION_AT_LEAST: break;
+  }
+  if (resolution->verdict == ASK_RESOLUTION_KNOWN && isfinite(resolution->distance)) {
+    uncertainty_distance(resolution->distance, resolution->distance_half_width, text);
+    text_append(text, UNCERTAINTY_TEXT, " (resolution: %s)", resolution->knobs);
+    return;
   }
   text_append(text, UNCERTAINTY_TEXT, "%s+- %.2g%s (resolution: %s)", resolution->points > 1 ? "up to " : "",
               resolution->half_width, resolution->verdict == ASK_RESOLUTION_AT_LEAST ? " or more" : "",

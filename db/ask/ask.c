@@ -214,7 +214,11 @@ enum ask_resolution_verdict ask_resolution_verdict(const char *verdict) {
 
 status ask_resolution(struct store *store, int64_t point_id, const char *quantity, struct ask_resolution *out,
                       struct error *error) {
-  *out = (struct ask_resolution){.verdict = ASK_RESOLUTION_NOT_STUDIED, .half_width = NAN, .scene = "SCENE"};
+  *out = (struct ask_resolution){.verdict = ASK_RESOLUTION_NOT_STUDIED,
+                                 .half_width = NAN,
+                                 .distance = NAN,
+                                 .distance_half_width = NAN,
+                                 .scene = "SCENE"};
   if (!store)
     return STATUS_OK;
   const long long id = point_id;
@@ -231,8 +235,9 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
 
   ANSWER found = answer_to(
       store, error,
-      "SELECT count(*), count(half_width), max(half_width), max(verdict = 'diverges'), max(verdict = 'at-least')"
-      " FROM (SELECT point_id, max(results_version) AS results_version FROM point_total"
+      "SELECT count(*), count(half_width), max(half_width), max(verdict = 'diverges'), max(verdict = 'at-least'),"
+      " max(distance), max(distance_half_width) FROM (SELECT point_id, max(results_version) AS results_version FROM "
+      "point_total"
       "   WHERE runs > 0 AND %lld IN (0, point_id) GROUP BY point_id)"
       " LEFT JOIN (SELECT * FROM resolution WHERE quantity = %Q) USING (point_id, results_version)",
       id, quantity);
@@ -244,6 +249,10 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
       out->verdict = answer_integer(&found, 3)   ? ASK_RESOLUTION_DIVERGES
                      : answer_integer(&found, 4) ? ASK_RESOLUTION_AT_LEAST
                                                  : ASK_RESOLUTION_KNOWN;
+    if (out->points == 1) {
+      out->distance = answer_real(&found, 5);
+      out->distance_half_width = answer_real(&found, 6);
+    }
   }
   TRY(answer_end(&found));
   if (out->studied == 0)

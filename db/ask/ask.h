@@ -140,9 +140,10 @@ struct ask_resolution {
   enum ask_resolution_verdict verdict;
   double half_width; /* 95 % bound on the change of the quantity with finer resolution, in its unit: the largest of the
                         points; NaN: not known */
-  int64_t points, studied; /* requested points with runs, and how many of them were studied */
-  char knobs[128];         /* settings studied: "particles, time_step"; other settings may also change the quantity */
-  char scene[128];         /* the scene that was studied, or needs a study; "SCENE" when the store has several scenes */
+  double distance, distance_half_width; /* of the mean to its limit (mean less limit), of one point; NaN: not known */
+  int64_t points, studied;              /* requested points with runs, and how many of them were studied */
+  char knobs[128]; /* settings studied: "particles, time_step"; other settings may also change the quantity */
+  char scene[128]; /* the scene that was studied, or needs a study; "SCENE" when the store has several scenes */
 };
 
 /* "not-studied", "known", "at-least", "diverges": as in the views. */

@@ -223,7 +223,7 @@ const struct schema_table schema_tables[] = {
     TABLE(attempt, "Attempts that failed: limits, crashes, lost workers.", ROWID),
     TABLE(convergence, "Studies of convergence (clast converge): the levels of each knob, for each quantity.",
           CLUSTERED("base_point_id, results_version, knob, quantity, level"), .fields = &convergence_table),
-    TABLE(convergence_limit, "Order and limit of each knob of a study, for each quantity.",
+    TABLE(convergence_limit, "Limit of each knob of a study, for each quantity.",
           CLUSTERED("base_point_id, results_version, knob, quantity"), .fields = &convergence_limit_table),
     TABLE(holder, "The process that holds the store for writing, for the message of a refusal.", ROWID),
 };

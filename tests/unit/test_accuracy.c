@@ -45,6 +45,7 @@ struct level {
   const char *setting;
   double resolution, error, deviation, cpu;
   bool base, open;
+  double step;
 };
 
 static void add_study(struct store *store, int64_t point, const char *knob, size_t count, const struct level *levels) {
@@ -65,6 +66,8 @@ static void add_study(struct store *store, int64_t point, const char *knob, size
     rows[i].cpu = levels[i].cpu;
     rows[i].base = levels[i].base;
     rows[i].open = levels[i].open;
+    rows[i].step = levels[i].step > 0 ? levels[i].step : (double)NAN;
+    rows[i].reference = i + 1 == count;
     points[i] = point;
   }
   const struct store_convergence study = {point, engine_find("dem", &error)->results_version, count, points, rows,
@@ -80,11 +83,12 @@ static void store_study(const struct campaign *campaign, bool open) {
   assert_int_equal(store_open_writer(fixture_path(path, "accuracy"), &store, NULL, 0, &error), STATUS_OK);
   assert_int_equal(store_add_point(store, 0, campaign->scene, 0, NULL, &point, &error), STATUS_OK);
   add_study(store, point, "time_step", 3,
-            (const struct level[]){{"2e-6", 0.02, 0.04, 0.02, 5, false, open},
-                                   {"1e-6", 0.01, 0.03, 0.02, 10, true, open},
-                                   {"2.5e-7", 0, 0.01, 0.02, 40, false, open}});
+            (const struct level[]){{"2e-6", 0.02, 0.04, 0.02, 5, false, open, 0},
+                                   {"1e-6", 0.01, 0.03, 0.02, 10, true, open, 0},
+                                   {"2.5e-7", 0, 0.01, 0.02, 40, false, open, 0}});
   add_study(store, point, "contact_law", 2,
-            (const struct level[]){{"off", NAN, 0, 0.02, 1, false, false}, {"printed", NAN, 0, 0.02, 10, true, false}});
+            (const struct level[]){{"off", NAN, 0, 0.02, 1, false, false, 0},
+                                   {"printed", NAN, 0, 0.02, 10, true, false, 0}});
   assert_int_equal(store_close(store, &error), STATUS_OK);
 }
 
@@ -128,6 +132,31 @@ static void the_cheapest_that_reaches_it(void **state) {
   campaign_free(campaign);
 }
 
+/* A law goes on beyond the finest level: with order 0.5 at least, at a cost by the engine's measure of work. */
+static void finer_than_any_level(void **state) {
+  (void)state;
+  struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+  struct store *store = NULL;
+  struct accuracy accuracy;
+  int64_t point = 0;
+  assert_int_equal(store_open_writer(fixture_path(path, "finer"), &store, NULL, 0, &error), STATUS_OK);
+  assert_int_equal(store_add_point(store, 0, campaign->scene, 0, NULL, &point, &error), STATUS_OK);
+  add_study(store, point, "time_step", 2,
+            (const struct level[]){{"2e-6", 0.03, 0.03, 1e-4, 5, false, false, 2e-6},
+                                   {"1e-6", 0.02, 0.025, 1e-4, 10, true, false, 1e-6}});
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  assert_int_equal(accuracy.count, 5);
+  const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
+  assert_true(chosen->extrapolated && !chosen->own); /* 0.005 + 0.02 sqrt(1/2) = 0.0191 is within 0.02; no level is */
+  assert_string_equal(chosen->setting, "5e-07");
+  assert_true(fabs(chosen->error - (0.005 + 0.02 * sqrt(0.5))) < 1e-12);
+  assert_true(chosen->run_s > 15 && chosen->run_s < 25);
+  assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_OK);
+  accuracy_clear(&accuracy);
+  campaign_free(campaign);
+}
+
 static void a_varied_input_is_no_choice(void **state) {
   (void)state;
   struct accuracy accuracy;
@@ -168,6 +197,7 @@ int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(seeds_for_a_margin),
                                      cmocka_unit_test(the_cheapest_that_reaches_it),
+                                     cmocka_unit_test(finer_than_any_level),
                                      cmocka_unit_test(a_varied_input_is_no_choice),
                                      cmocka_unit_test(without_a_study_the_command_is_named)};
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -202,13 +202,13 @@ static void findings_replace_earlier_ones(void **state) {
   field_defaults(&convergence_limit_table, &limit);
   strcpy(limit.knob, "time_step");
   strcpy(limit.quantity, "largest_fraction");
-  limit.verdict = CONVERGENCE_NO_ORDER;
+  limit.verdict = LIMIT_NOT_SEEN;
   const int64_t points[2] = {point, point};
   struct store_convergence study = {point, 3, 2, points, rows, &limit};
   assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
   assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 2);
-  assert_int_equal(integer(store, "SELECT count(*) FROM convergence_limit WHERE verdict = 'no-order'"), 1);
+  assert_int_equal(integer(store, "SELECT count(*) FROM convergence_limit WHERE verdict = 'no-limit'"), 1);
   study.count = 1;
   assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 1);
@@ -233,7 +233,7 @@ static void findings_replace_earlier_ones(void **state) {
 
 /* Adds the knob's remaining error at the point, which is the scene studied (`base` 0) or a level of it. */
 static void level_of(struct store *store, int64_t base, int64_t point, const char *knob, double resolution, bool open,
-                     enum convergence_verdict verdict) {
+                     enum limit_verdict verdict) {
   struct convergence_row row;
   struct convergence_limit_row limit;
   field_defaults(&convergence_table, &row);
@@ -243,6 +243,8 @@ static void level_of(struct store *store, int64_t base, int64_t point, const cha
   strcpy(row.quantity, "largest_fraction");
   strcpy(limit.quantity, "largest_fraction");
   row.resolution = resolution;
+  row.distance = -resolution / 2; /* an interval from -resolution to 0 */
+  row.distance_half_width = resolution / 2;
   row.open = open;
   row.base = base == 0;
   limit.verdict = verdict;
@@ -251,7 +253,7 @@ static void level_of(struct store *store, int64_t base, int64_t point, const cha
 }
 
 static void studied(struct store *store, int64_t point, const char *knob, double resolution, bool open,
-                    enum convergence_verdict verdict) {
+                    enum limit_verdict verdict) {
   level_of(store, 0, point, knob, resolution, open, verdict);
 }
 
@@ -265,23 +267,26 @@ static void a_point_has_the_errors_of_its_knobs(void **state) {
   struct ask_resolution found;
   assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
   assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
-  studied(store, point, "time_step", 0.01, false, CONVERGENCE_ORDER);
-  studied(store, point, "grains", 0.05, false, CONVERGENCE_UNCHANGED);
-  studied(store, point, "contact_law", NAN, false, CONVERGENCE_TOO_FEW);
+  studied(store, point, "time_step", 0.01, false, LIMIT_SEEN);
+  studied(store, point, "grains", 0.05, false, LIMIT_SEEN);
+  studied(store, point, "contact_law", NAN, false, LIMIT_TOO_FEW);
   assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
   assert_int_equal(found.verdict, ASK_RESOLUTION_KNOWN);
   assert_true(fabs(found.half_width - 0.06) < 1e-12);
   assert_string_equal(found.knobs, "grains, time_step"); /* not "contact law": it has no error here */
   assert_int_equal(ask_resolution(store, 0, "largest_fraction", &found, &error), STATUS_OK);
   assert_true(fabs(found.half_width - 0.06) < 1e-12 && found.points == 2 && found.studied == 1);
+  assert_true(isnan(found.distance)); /* of two points */
+  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  assert_true(fabs(found.distance + 0.03) < 1e-12 && fabs(found.distance_half_width - 0.03) < 1e-12);
   assert_true(fabs(number(store, "SELECT largest_fraction_resolution FROM points WHERE point_id = 1") - 0.06) < 1e-12);
   assert_int_equal(integer(store, "SELECT count(*) FROM points WHERE largest_fraction_resolution_verdict = "
                                   "'not-studied'"),
                    1);
-  studied(store, point, "grains", 0.05, true, CONVERGENCE_UNSURE);
+  studied(store, point, "grains", 0.05, true, LIMIT_TOO_FEW);
   assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
   assert_int_equal(found.verdict, ASK_RESOLUTION_AT_LEAST);
-  studied(store, point, "grains", 0.05, true, CONVERGENCE_NO_ORDER);
+  studied(store, point, "grains", 0.05, true, LIMIT_NOT_SEEN);
   assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
   assert_int_equal(found.verdict, ASK_RESOLUTION_DIVERGES);
   assert_int_equal(ask_resolution(store, point, "dust_fraction", &found, &error), STATUS_OK);
@@ -298,8 +303,8 @@ static void a_level_has_the_errors_of_the_other_knobs(void **state) {
   assert_int_equal(store_open_writer(fixture_path(path, "level"), &store, NULL, 0, &error), STATUS_OK);
   assert_int_equal(fixture_populate(store, 2, 1, 3, false, &error), STATUS_OK);
   const int64_t point = integer(store, "SELECT min(point_id) FROM run"), finer = point + 1;
-  studied(store, point, "grains", 0.05, false, CONVERGENCE_ORDER);
-  level_of(store, point, finer, "time_step", 0, false, CONVERGENCE_UNCHANGED); /* the scene's own step was not run */
+  studied(store, point, "grains", 0.05, false, LIMIT_SEEN);
+  level_of(store, point, finer, "time_step", 0, false, LIMIT_SEEN); /* the scene's own step was not run */
   assert_int_equal(ask_resolution(store, finer, "largest_fraction", &found, &error), STATUS_OK);
   assert_true(found.verdict == ASK_RESOLUTION_KNOWN && fabs(found.half_width - 0.05) < 1e-12);
   assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);

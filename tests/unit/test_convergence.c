@@ -1,4 +1,4 @@
-/* Known answers of the statistics of a convergence study: bias, order, limit, break-even, gain, frontier. */
+/* Known answers of the statistics of a convergence study: bias, break-even, gain, frontier. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -61,54 +61,6 @@ static void correlations(void **state) {
   NEAR(1 / gain, pow(sqrt(1.0 / 36) + sqrt(0.1 * 35 / 36), 2), 1e-12);
 }
 
-static void orders(void **state) {
-  (void)state;
-  double order, limit;
-  for (double p = 0.25; p < 5; p *= 1.7) {
-    const double h[3] = {1, 0.6, 0.25}, f[3] = {7 - 3 * pow(h[0], p), 7 - 3 * pow(h[1], p), 7 - 3 * pow(h[2], p)};
-    assert_true(convergence_solve(h, f, &order, &limit));
-    NEAR(order, p, 1e-8);
-    NEAR(limit, 7, 1e-8);
-  }
-  const double h[3] = {4, 2, 1};
-  assert_false(convergence_solve(h, (const double[3]){0, 1, 2}, &order, &limit)); /* a logarithm */
-  assert_false(convergence_solve(h, (const double[3]){0, 1, 3}, &order, &limit)); /* grows */
-  assert_false(convergence_solve(h, (const double[3]){0, 1, 0}, &order, &limit)); /* turns back */
-  assert_false(convergence_solve(h, (const double[3]){0, 1, 1}, &order, &limit)); /* is there */
-}
-
-enum { SEEDS = 12 };
-static struct convergence_limit study(const double mean[3], double scatter, bool paired) {
-  /* A fixed spread of seeds with mean zero; levels that do not pair see it in another order. */
-  static const double spread[SEEDS] = {-1.4, 1.4, -0.3, 0.3, 0.8, -0.8, 1.1, -1.1, 0.05, -0.05, -0.6, 0.6};
-  static const double h[3] = {4, 2, 1};
-  double values[3][SEEDS];
-  for (size_t level = 0; level < 3; level++)
-    for (size_t s = 0; s < SEEDS; s++)
-      values[level][s] = mean[level] + scatter * spread[paired ? s : (s * (2 * level + 5) + level) % SEEDS];
-  return convergence_extrapolate(h, SEEDS, (const double *const[3]){values[0], values[1], values[2]}, paired, 0.95);
-}
-
-static void limits(void **state) {
-  (void)state;
-  const double second[3] = {1 + 16, 1 + 4, 1 + 1};
-  struct convergence_limit found = study(second, 5, true); /* a scatter that is the same in paired seeds is no error */
-  assert_int_equal(found.verdict, CONVERGENCE_ORDER);
-  NEAR(found.order, 2, 1e-9);
-  NEAR(found.limit, 1, 1e-9);
-  assert_true(found.order_low <= found.order && found.order <= found.order_high);
-
-  found = study(second, 0.3, false);
-  assert_int_equal(found.verdict, CONVERGENCE_ORDER);
-  assert_true(found.limit_low < 1 && 1 < found.limit_high && found.limit_high - found.limit_low < 2);
-  assert_true(found.order_low < 2 && 2 < found.order_high);
-
-  assert_int_equal(study((const double[3]){0, 1, 2.5}, 0.3, false).verdict, CONVERGENCE_NO_ORDER);
-  assert_int_equal(study((const double[3]){0, 1, 1.1}, 1, false).verdict, CONVERGENCE_UNCHANGED);
-  assert_int_equal(study((const double[3]){0, 1, 1.98}, 0.3, false).verdict, CONVERGENCE_UNSURE);
-  assert_true(isnan(study((const double[3]){0, 1, 2.5}, 0.3, false).limit));
-}
-
 static void frontiers(void **state) {
   (void)state;
   const double cost[6] = {1, 2, 3, 4, 2, 0.5}, error[6] = {5, 3, 3, 1, 4, NAN};
@@ -122,33 +74,39 @@ static void resolutions(void **state) {
   struct convergence_row level[3] = {{.step = 4, .mean = 0.5, .bias = -0.1, .bias_half_width = 0.02},
                                      {.step = 2, .mean = 0.56, .bias = -0.04, .bias_half_width = 0.01},
                                      {.step = 1, .mean = 0.6, .reference = true}};
-  struct convergence_limit_row limit = {.verdict = CONVERGENCE_ORDER,
-                                        .limit = 0.7,
-                                        .limit_low = 0.65,
-                                        .limit_high = 0.75};
-  convergence_resolve(3, level, &limit);
-  NEAR(level[0].resolution, 0.25, 1e-12);
-  NEAR(level[2].resolution, 0.15, 1e-12);
+  static const size_t place[3] = {LIMIT_LEVELS, 0, 1}; /* the coarsest has no run */
+  struct limit_law law = {.verdict = LIMIT_SEEN, .distance = {{-0.14, -0.2, -0.1}, {-0.1, -0.15, 0.05}}};
+  convergence_resolve(3, level, &law, place, NAN);
+  NEAR(level[0].resolution, 0.12, 1e-12);
+  NEAR(level[1].distance, -0.15, 1e-12);
+  NEAR(level[1].distance_half_width, 0.05, 1e-12);
+  NEAR(level[2].distance, -0.05, 1e-12);
+  NEAR(level[2].resolution, 0.15, 1e-12); /* the interval's end that is farther from zero */
   assert_false(level[0].open);
 
-  limit.verdict = CONVERGENCE_NO_ORDER;
-  convergence_resolve(3, level, &limit);
+  law.verdict = LIMIT_NOT_SEEN;
+  convergence_resolve(3, level, &law, place, NAN);
   NEAR(level[0].resolution, 0.12, 1e-12);
   NEAR(level[2].resolution, 0.05, 1e-12); /* as far as the next coarser level at least */
   assert_true(level[0].open && level[2].open);
 
+  /* Equal runs: the bound of a share, or nothing. */
+  law.verdict = LIMIT_CONSTANT;
+  convergence_resolve(3, level, &law, place, 0.3);
+  assert_true(level[0].resolution == 0.3 && level[2].resolution == 0.3 && level[2].open);
+  convergence_resolve(3, level, &law, place, NAN);
+  assert_true(isnan(level[2].resolution));
+
   /* Exact is exact: a choice has no step. */
   level[0].step = level[1].step = level[2].step = NAN;
-  limit.verdict = CONVERGENCE_TOO_FEW;
-  convergence_resolve(3, level, &limit);
+  law.verdict = LIMIT_TOO_FEW;
+  convergence_resolve(3, level, &law, place, NAN);
   assert_true(level[2].resolution == 0 && !level[2].open);
 }
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(biases),       cmocka_unit_test(skews),
-                                     cmocka_unit_test(correlations), cmocka_unit_test(orders),
-                                     cmocka_unit_test(limits),       cmocka_unit_test(frontiers),
-                                     cmocka_unit_test(resolutions)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(biases), cmocka_unit_test(skews), cmocka_unit_test(correlations),
+                                     cmocka_unit_test(frontiers), cmocka_unit_test(resolutions)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,13 +45,22 @@ static void resolution(void **state) {
   snprintf(found.knobs, sizeof found.knobs, "particles, time_step");
   uncertainty_resolution(&found, text);
   assert_string_equal(text, "+- 0.061 (resolution: particles, time_step)");
-  found.verdict = ASK_RESOLUTION_AT_LEAST;
+  found.distance = -0.031;
+  found.distance_half_width = 0.022;
+  uncertainty_resolution(&found, text);
+  assert_string_equal(text, "0.03 +- 0.02 below its limit (resolution: particles, time_step)");
+  uncertainty_distance(0.0031, 0.0144, text);
+  assert_string_equal(text, "0.003 +- 0.014 above its limit");
+  uncertainty_distance(-0.25, 0, text);
+  assert_string_equal(text, "0.25 below its limit");
+  found.verdict = ASK_RESOLUTION_AT_LEAST; /* a part of the distance is not known */
   uncertainty_resolution(&found, text);
   assert_string_equal(text, "+- 0.061 or more (resolution: particles, time_step)");
   found.verdict = ASK_RESOLUTION_DIVERGES;
   uncertainty_resolution(&found, text);
   assert_string_equal(text, "resolution: does not converge (`clast converge basalt-sphere`)");
   found.verdict = ASK_RESOLUTION_KNOWN;
+  found.distance = NAN;
   found.points = 9;
   found.studied = 2;
   uncertainty_resolution(&found, text);

@@ -1,6 +1,6 @@
 # Means over an input with their 95 % intervals, a line for each value of a second input. Thin bars add the error of
 # the resolution; NaN: no bar. A mean in doubt has a "!". Block i - 1 of the data is line i: x, mean, low, high,
-# thin_low, thin_high, doubtful.
+# thin_low, thin_high, doubtful. band[i] > 0: a line without marks in a band from low to high.
 if (log_x) { set logscale x }
 if (log_x) { set format x (x_high / x_low > 1e4 ? '10^{%T}' : '%g') }
 if (log_x && x_high / x_low < 100) {
@@ -11,7 +11,8 @@ set autoscale yfix
 set offsets 0, 0, graph 0.05, graph 0.05
 set key below left Left reverse samplen 2.5 maxcols legend_columns noenhanced
 set key title ' ' # room below the name of the axis
-plot for [i = 1:series] data index i - 1 using 1:($5 == $5 ? $2 : NaN):5:6 with yerrorbars lt i dt 1 lw 0.6 ps 0 notitle, \
-     for [i = 1:series] data index i - 1 using 1:($3 == $3 ? $2 : NaN):3:4 with yerrorbars lt i dt 1 ps 1.2 notitle, \
-     for [i = 1:series] data index i - 1 using 1:2 with linespoints lt i ps 1.2 title label[i], \
+plot for [i = 1:series] data index i - 1 using 1:(band[i] > 0 ? $3 : NaN):4 with filledcurves lt i fs transparent solid 0.2 noborder notitle, \
+     for [i = 1:series] data index i - 1 using 1:($5 == $5 ? $2 : NaN):5:6 with yerrorbars lt i dt 1 lw 0.6 ps 0 notitle, \
+     for [i = 1:series] data index i - 1 using 1:(band[i] == 0 && $3 == $3 ? $2 : NaN):3:4 with yerrorbars lt i dt 1 ps 1.2 notitle, \
+     for [i = 1:series] data index i - 1 using 1:2 with linespoints lt i ps (band[i] > 0 ? 0 : 1.2) title label[i], \
      for [i = 1:series] data index i - 1 using 1:($7 > 0 ? $2 : NaN):('!') with labels offset 1.1, 0.5 notitle
