@@ -46,15 +46,13 @@ same_bits term.db reference.bits "after these signals"
 sed 's/per_point: .*}/per_point: 1}/; s/vary:.*/set: {wait: 100 s}\nlimits: {attempts: 1}/' slow.yaml >killed.yaml
 setsid "$clast" run killed.yaml --store killed.db -j 1 >out 2>err &
 pid=$!
-child() { local c; for c in $(pgrep -P "$1"); do child "$c"; [ -n "$(pgrep -P "$c")" ] || echo "$c"; done; }
+below() { [ -z "$1" ] || pgrep -d , -P "$1" || true; }
 victim=
-for i in $(seq 200); do
-  victim=$(child "$pid" | tail -n 1)
+for i in $(seq 600); do # the slot, its fork server, the run
+  victim=$(below "$(below "$(below "$pid")")")
   [ -n "$victim" ] && break
   sleep 0.05
 done
-sleep 0.5
-victim=$(child "$pid" | tail -n 1)
 kill -9 "$victim"
 ends 75 "a run whose process was killed from outside"
 says "the same command"
