@@ -11,6 +11,7 @@
 #include "campaign/terminal/uncertainty.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
+#include "schemas/text.h"
 
 status study_print_knobs(enum table_format format, struct error *error) {
   TABLE table = table_new(format, stdout);
@@ -30,22 +31,50 @@ status study_print_knobs(enum table_format format, struct error *error) {
 struct printing {
   const struct study *study;
   struct store *store;
-  struct ask_doubts sum; /* of all levels */
 };
 
-/* Of the runs of a level. */
-static status read_doubts(struct printing *printing, const struct study_ladder *ladder, size_t level, size_t quantity,
-                          struct ask_doubts *doubts, struct error *error) {
+/* Of the runs at the points `in` (ids, comma-separated) with the seeds of the study. */
+static status doubts_of(const struct printing *printing, const char *in, const char *quantities,
+                        struct ask_doubts *doubts, struct error *error) {
   const struct study *study = printing->study;
-  const long long first = study->limits.first_seed;
-  char results[ASK_DOUBTS_RESULTS], where[80];
-  snprintf(where, sizeof where, "seed BETWEEN %lld AND %lld", first, first + (long long)study->rule.most_seeds - 1);
-  const struct ask_doubts_choice choice = {.point = ladder->point[level], .where = where};
+  const long long first = study->limits.first_seed, last = first + (long long)study->rule.most_seeds - 1;
+  OWNED char *where = NULL;
+  char results[ASK_DOUBTS_RESULTS];
+  size_t size;
+  FILE *text = text_open(&where, &size);
+  if (text)
+    fprintf(text, "point_id IN (%s) AND seed BETWEEN %lld AND %lld", in, first, last);
+  if (!text || !text_close(text, &where))
+    return status_fail(error, STATUS_MEMORY, "out of memory");
   *doubts = (struct ask_doubts){0};
-  TRY(ask_doubts_results(printing->store, study->quantity[quantity].name, results, error));
-  TRY(ask_doubts(printing->store, &choice, results, doubts, error));
-  ask_doubts_add(&printing->sum, doubts);
-  return STATUS_OK;
+  TRY(ask_doubts_results(printing->store, quantities, results, error));
+  return ask_doubts(printing->store, &(struct ask_doubts_choice){.where = where}, results, doubts, error);
+}
+
+/* Of the runs of a level. */
+static status read_doubts(const struct printing *printing, const struct study_ladder *ladder, size_t level,
+                          size_t quantity, struct ask_doubts *doubts, struct error *error) {
+  char point[24];
+  snprintf(point, sizeof point, "%lld", (long long)ladder->point[level]);
+  return doubts_of(printing, point, printing->study->quantity[quantity].name, doubts, error);
+}
+
+/* Of the runs of all levels of the first ladders, for the first quantities. A run of several ladders counts once. */
+static status sum_doubts(const struct printing *printing, size_t ladders, size_t quantities, struct ask_doubts *sum,
+                         struct error *error) {
+  const struct study *study = printing->study;
+  OWNED char *points = NULL;
+  char names[ASK_DOUBTS_RESULTS] = "";
+  size_t size;
+  FILE *text = text_open(&points, &size);
+  for (size_t i = 0; text && i < ladders; i++)
+    for (size_t l = 0; l < study->ladder[i].levels.count; l++)
+      fprintf(text, "%s%lld", i || l ? "," : "", (long long)study->ladder[i].point[l]);
+  if (!text || !text_close(text, &points))
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  for (size_t q = 0; q < quantities; q++)
+    text_append(names, sizeof names, "%s%s", q ? "," : "", study->quantity[q].name);
+  return doubts_of(printing, points, names, sum, error);
 }
 
 static void print_level(struct table *table, const struct convergence_row *row, const struct ask_doubts *doubts) {
@@ -217,7 +246,7 @@ static void print_gain(size_t count, const struct study_found *found) {
            best->knob, best->setting, best->gain, most);
 }
 
-static status print_quantity(struct printing *printing, size_t from, size_t quantity, size_t count,
+static status print_quantity(const struct printing *printing, size_t from, size_t quantity, size_t count,
                              const struct study_found *found, struct error *error) {
   const struct study *study = printing->study;
   const struct study_quantity *what = &study->quantity[quantity];
@@ -259,7 +288,7 @@ static void print_value(struct table *table, const struct field *row, const void
   }
 }
 
-static status print_rows(struct printing *printing, size_t from, size_t quantity, size_t count,
+static status print_rows(const struct printing *printing, size_t from, size_t quantity, size_t count,
                          const struct study_found *found, struct table *table, struct error *error) {
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++) {
@@ -304,7 +333,9 @@ status study_print(const struct study *study, enum table_format format, bool qui
   if (table)
     return table_end(table, error);
   fflush(stdout);
-  uncertainty_doubts(&printing.sum, stderr);
+  struct ask_doubts sum;
+  TRY(sum_doubts(&printing, study->ladder_count, study->quantity_count, &sum, error));
+  uncertainty_doubts(&sum, stderr);
   if (!quiet)
     fputs(legend, stderr);
   return STATUS_OK;
@@ -414,6 +445,9 @@ status study_print_picture(const struct study *study, bool of_errors, const char
       code = read_doubts(&printing, &study->ladder[i], l, 0, &doubts, error);
       drawing->doubtful[i][l] = doubts.doubtful > 0;
     }
+  struct ask_doubts sum = {0};
+  if (code == STATUS_OK)
+    code = sum_doubts(&printing, knobs, 1, &sum, error);
   store_close(printing.store, NULL);
   if (code != STATUS_OK) {
     free(drawing);
@@ -443,7 +477,7 @@ status study_print_picture(const struct study *study, bool of_errors, const char
            stepped < knobs ? ""
            : of_errors     ? "how far finer settings may move the mean, all knobs together"
                            : "mean over seeds with its 95 % interval");
-  charts_doubts(&printing.sum, caption, sizeof caption);
+  charts_doubts(&sum, caption, sizeof caption);
   const struct picture_words words = {title, caption, x, y};
   code = picture_curves(&page, &words, drawing->count, drawing->curves, error);
   free(drawing);

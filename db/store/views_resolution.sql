@@ -1,4 +1,4 @@
-WITH level AS (SELECT * FROM convergence WHERE resolution IS NOT NULL),
+WITH level AS (SELECT * FROM convergence WHERE resolution IS NOT NULL OR open),
 of_knob AS (SELECT base_point_id, results_version, quantity, knob,
     max(iif(base, resolution, NULL)) AS at_base, max(open) AS open, max(verdict IN ('no-limit', 'no-order')) AS diverges,
     max(iif(base, distance, NULL)) AS base_distance, max(iif(base, distance_half_width, NULL)) AS base_width
@@ -20,5 +20,6 @@ of_study AS (SELECT s.point_id, s.results_version, s.quantity,
   FROM convergence s WHERE s.knob = 'settings' AND NOT s.base AND s.error IS NOT NULL)
 SELECT point_id, results_version, quantity, max(half_width) AS half_width,
   CASE WHEN max(diverges) THEN 'diverges' WHEN max(open) THEN 'at-least' ELSE 'known' END AS verdict,
-  iif(count(*) = count(distance), distance, NULL) AS distance, distance_half_width
-FROM of_study GROUP BY point_id, results_version, quantity;
+  iif(count(*) = 1, max(distance), NULL) AS distance, iif(count(*) = 1, max(distance_half_width), NULL)
+    AS distance_half_width
+FROM of_study WHERE half_width IS NOT NULL GROUP BY point_id, results_version, quantity;

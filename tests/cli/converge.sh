@@ -75,7 +75,18 @@ says "0 runs computed"
 expect 0 "$clast" converge basalt-sphere --set fidelity.particles=300 --set stop.end_time='10 us' \
   --knob particles=200,300,450 --knob precision --seeds 3 --within off --store ball.db -q mean_damage -j 2
 prints "precision"; prints "one round"
+says "marked (!), 12 of 12 runs: coarse" # the scene's own level belongs to two knobs, and counts once
 same "$(number ball.db "select count(*) from run")" 12 "runs: 3 + 1 levels, 3 seeds"
+# A knob whose runs are all equal tells nothing, so the error of the other one is not the whole.
+cp ball.db equal.db
+python - <<'PY'
+import sqlite3
+store = sqlite3.connect("equal.db")
+store.execute("update convergence set resolution = iif(knob = 'precision', null, 0.1), open = (knob = 'precision')")
+store.execute("update convergence_limit set verdict = iif(knob = 'precision', 'constant', 'limit')")
+store.commit()
+PY
+same "$(number equal.db "select count(*) from resolution where verdict <> 'at-least'")" 0 "knobs that tell nothing, left out"
 same "$(number ball.db "select count(*) from point_input where path = 'target.turned' and value = 0")" 0 "points with a lattice that is not turned"
 
 # Named settings of a scene: a level each, and SCENE@NAME for every command.
@@ -169,4 +180,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 45
+done_after 46

@@ -146,6 +146,12 @@ static const struct twin {
      {"fidelity.particles=300", "impact.gap=1 um", "impact.speed=20 m/s"},
      {"stop.end_time=3 us"},
      {"stop.end_time=60 us", "stop.quiet_time=60 us"}},
+    /* so few particles overlap, and press, later than their surfaces meet */
+    {"early",
+     "basalt-sphere",
+     {"fidelity.particles=300", "impact.gap=1 um", "impact.speed=20 m/s"},
+     {"stop.end_time=60 us", "stop.quiet_time=60 us"},
+     {"stop.end_time=400 us", "stop.quiet_time=400 us"}},
     {"effect",
      "disc-explosion",
      {"body.diameter=8 cm", "stop.end_time=0.2 ms"},

@@ -31,7 +31,7 @@ enum { PLACES = 1 << 14, FRAMES = 3, DEPTH = 48 };
 struct place {
   _Atomic uint64_t key;   /* 0: free */
   uint64_t frame[FRAMES]; /* addresses in the program, nearest call first; 0: none */
-  char library[32];       /* which asks for the memory: "" for the program and libc */
+  char owner[32];         /* which asks for the memory: "" for the program and libc */
 };
 static struct table {
   _Atomic uint64_t refused; /* number of refusals: 0 or 1 */
@@ -129,7 +129,7 @@ __attribute__((noinline)) static bool refuse(bool direct) {
     uint64_t empty = 0;
     if (atomic_compare_exchange_strong(&table->place[i].key, &empty, key)) {
       memcpy(table->place[i].frame, at, sizeof at);
-      name_library(frames + OWN_FRAMES, first - OWN_FRAMES, table->place[i].library);
+      name_library(frames + OWN_FRAMES, first - OWN_FRAMES, table->place[i].owner);
       break;
     }
     if (empty == key)

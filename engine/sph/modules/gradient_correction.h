@@ -212,10 +212,9 @@ static const struct sph_module gradient_correction_module = {
 
 #ifdef SPH_MODULE_INPUT_ROWS
 INPUT_SWITCH(method.gradient_correction, gradient_correction.on, 0, .flags = FIELD_DERIVED,
-             .doc =
-                 "Velocity gradients exact for linear fields, and forces conjugate to them: a body turns without "
-                 "strain and keeps its angular momentum, and its free sides are as stiff as its inside. Costs a "
-                 "quarter more time. Unless given it is on where a body can turn: with a target.spin, in a collision "
-                 "and in an impact without damped sides, of bodies with strength.",
+             .doc = "Velocity gradients exact for linear fields, and forces conjugate to them: a body turns without "
+                    "strain and keeps its angular momentum, and its free sides are as stiff as its inside. Costs a "
+                    "quarter more time. Unless given it is on where a target with strength can turn: with a "
+                    "target.spin, in a collision, and in an impact without damped sides.",
              .source = "Randles & Libersky 1996; Bonet & Lok 1999; off in BA95"),
 #endif

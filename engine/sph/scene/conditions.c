@@ -6,6 +6,7 @@
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
+#include "engine/vector3.h"
 
 static const struct sph_run *run_of(const struct condition_run *r) {
   return r->run;
@@ -166,18 +167,16 @@ static double approach(const void *inputs) {
 /* Has the other body changed the target's momentum? Few particles overlap, and press, later than their surfaces meet.
  */
 static bool is_hit(const struct sph_run *run) {
-  const struct sph_inputs *in = &run->inputs;
-  const struct sph_particles *now = run->now;
-  const double start = in->kind == SPH_COLLISION ? 0.5 * in->collision.speed : 0,
-               speed = in->kind == SPH_COLLISION ? in->collision.speed : in->impact.speed;
+  const struct sph_particles *start = run->start, *now = run->now;
+  const double speed = run->inputs.kind == SPH_COLLISION ? run->inputs.collision.speed : run->inputs.impact.speed;
   double gained[3] = {0, 0, 0}, mass = 0;
   for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
-    gained[0] += now->mass[i] * (now->vx[i] - start);
-    gained[1] += now->mass[i] * now->vy[i];
-    gained[2] += now->mass[i] * now->vz[i];
+    gained[0] += now->mass[i] * (now->vx[i] - start->vx[i]);
+    gained[1] += now->mass[i] * (now->vy[i] - start->vy[i]);
+    gained[2] += now->mass[i] * (now->vz[i] - start->vz[i]);
     mass += now->mass[i];
   }
-  return sqrt(gained[0] * gained[0] + gained[1] * gained[1] + gained[2] * gained[2]) > 1e-9 * mass * speed;
+  return sqrt(vector3_dot(gained, gained)) > 1e-9 * mass * speed; /* far above rounding, far below a hit */
 }
 
 /* The time at which a wave has crossed the target once after the hit, over the simulated time; of a run without damage.

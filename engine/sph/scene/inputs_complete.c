@@ -64,7 +64,7 @@ static double plate_time(const struct sph_inputs *in) {
   return 0.94 * in->target.width / (exact.has_precursor ? exact.precursor.speed : exact.shock.speed);
 }
 
-/* Can a body with strength turn? Damped sides hold the target. */
+/* Can a target with strength turn? Damped sides hold it. */
 static bool can_turn(const struct sph_inputs *in) {
   return in->target.strength && (in->target.spin != 0 || in->kind == SPH_COLLISION ||
                                  (in->kind == SPH_IMPACT && in->sides.far != SPH_FAR_DAMPED));
