@@ -1,37 +1,118 @@
 /* Every scene that ships, at its smallest size, and every choice and switch of its inputs: a few steps are computed,
- * reported and freed. No number is judged: under the sanitizers this walks all modules of both engines, in the place of
- * the long pages of verification and validation. */
-#include "tests/support/run_case.h"
-
+ * reported and freed. Under the sanitizers this walks all modules of both engines, in the place of the long pages of
+ * verification and validation.
+ *
+ * Nothing is judged by its size, but everything by its bits: choices.txt beside this file pins a hash of all that the
+ * runs of a scene and an input give, and another of what the program says of them beforehand. A line that changes on
+ * purpose is written anew by CLAST_RENEW=1. Where the first hash of a line changes, tests/support/golden.h says what
+ * else to do; a new row of results changes no hash while it is off. */
 #include "engine/sph/run/run.h"
+#include "tests/support/golden.h"
 
 /* What makes the scene small, and numbers that turn modules on. */
 static const struct {
+  bool numbers; /* are its numbers tried, too? Other scenes have no more kinds of inputs */
   const char *scene, *sets[8];
 } smallest[] = {
-    {"block-impact", {"body.columns=8", "body.rows=5"}},
-    {"compression", {"body.columns=5", "body.rows=8"}},
-    {"disc-collision", {"body.diameter=6 cm"}},
-    {"disc-explosion", {"body.diameter=6 cm"}},
-    {"uniaxial", {"body.columns=5", "body.rows=8"}},
-    {"basalt-sphere", {"fidelity.particles=150", "fidelity.projectile_spacing=0.4"}},
-    {"basalt-sphere", {"fidelity.particles=150", "fidelity.projectile_spacing=0.4", "fracture.cell=8 mm"}},
-    {"colliding-cylinders", {"fidelity.particles=100"}},
-    {"disruption", {"fidelity.particles=150", "fidelity.projectile_spacing=0.4"}},
-    {"elastic-bar", {"fidelity.particles=150"}},
-    {"gabbro-crater",
+    {true, "block-impact", {"body.columns=8", "body.rows=5"}},
+    {true, "compression", {"body.columns=5", "body.rows=8"}},
+    {true, "disc-collision", {"body.diameter=6 cm"}},
+    {true, "disc-explosion", {"body.diameter=6 cm"}},
+    {false, "uniaxial", {"body.columns=5", "body.rows=8"}},
+    {false, "basalt-sphere", {"fidelity.particles=150", "fidelity.projectile_spacing=0.4"}},
+    {true, "basalt-sphere", {"fidelity.particles=150", "fidelity.projectile_spacing=0.4", "fracture.cell=8 mm"}},
+    {true, "colliding-cylinders", {"fidelity.particles=100"}},
+    {false, "disruption", {"fidelity.particles=150", "fidelity.projectile_spacing=0.4"}},
+    {false, "elastic-bar", {"fidelity.particles=150"}},
+    {true,
+     "gabbro-crater",
      {"fidelity.particles=700", "fidelity.fine_spacing=15 mm", "fidelity.fine_radius=10 mm",
       "fidelity.projectile_spacing=0.1"}},
-    {"porous-ice", {"fidelity.particles=150", "fidelity.projectile_spacing=0.3"}},
-    {"porous-plate", {"fidelity.points=30"}},
-    {"porous-target", {"fidelity.particles=150", "fidelity.projectile_spacing=0.3"}},
-    {"pumice-sphere", {"fidelity.particles=150", "fidelity.projectile_spacing=0.3"}},
-    {"solid-ice", {"fidelity.particles=150", "fidelity.projectile_spacing=0.3"}},
-    {"tensile-rod", {"fidelity.particles=400", "stretch.grip=4 mm", "stretch.flaw_free=8 mm"}},
+    {false, "porous-ice", {"fidelity.particles=150", "fidelity.projectile_spacing=0.3"}},
+    {true, "porous-plate", {"fidelity.points=30"}},
+    {true, "porous-target", {"fidelity.particles=150", "fidelity.projectile_spacing=0.3"}},
+    {false, "pumice-sphere", {"fidelity.particles=150", "fidelity.projectile_spacing=0.3"}},
+    {false, "solid-ice", {"fidelity.particles=150", "fidelity.projectile_spacing=0.3"}},
+    {true, "tensile-rod", {"fidelity.particles=400", "stretch.grip=4 mm", "stretch.flaw_free=8 mm"}},
 };
 enum { SMALLEST = sizeof smallest / sizeof *smallest };
 
 static uint64_t walked; /* modules of engine sph that were on in a run */
+
+/* ---- what is pinned ---- */
+
+enum { PINNED, SAID, HASHES };
+static struct {
+  FILE *file;
+  char *text;
+  size_t size;
+} heard[HASHES];
+static FILE *lines; /* of choices.txt, as this program computes them */
+static char *lines_text;
+static size_t lines_size;
+
+static void hear(void) {
+  for (size_t h = 0; h < HASHES; h++)
+    assert_non_null(heard[h].file = open_memstream(&heard[h].text, &heard[h].size));
+}
+
+/* Writes the line of what was heard since hear(). */
+static void pin(const char *scene, const char *what) {
+  fprintf(lines, "%s %s", scene, what);
+  for (size_t h = 0; h < HASHES; h++) {
+    uint8_t digest[16];
+    fclose(heard[h].file);
+    blake2s(heard[h].text, heard[h].size, digest);
+    fputc(' ', lines);
+    for (size_t i = 0; i < 4; i++)
+      fprintf(lines, "%02x", digest[i]);
+    free(heard[h].text);
+  }
+  fputc('\n', lines);
+}
+
+static void hear_rows(const struct field_table *table, const void *object) {
+  for (size_t i = 0; i < table->count; i++) {
+    struct field_value value;
+    field_get(&table->rows[i], object, &value);
+    if (!isnan(value.number))
+      fprintf(heard[PINNED].file, "%s=%a %lld %s\n", table->rows[i].path, value.number, (long long)value.integer,
+              value.text);
+  }
+}
+
+/* Results, fragments and the moving system. */
+static void hear_run(const struct engine_kind *kind, void *run, const struct outcome *outcome, const void *results,
+                     const struct fragment *fragments, size_t count) {
+  hear_rows(&outcome_table, outcome);
+  hear_rows(kind->results, results);
+  for (size_t i = 0; i < count; i++) {
+    const struct fragment *f = &fragments[i];
+    fprintf(heard[PINNED].file, "%zu %zu %a %a %a", (size_t)f->first, (size_t)f->count, f->mass, f->moment_of_inertia,
+            f->kinetic_energy);
+    for (size_t k = 0; k < 3; k++)
+      fprintf(heard[PINNED].file, " %a %a %a", f->position[k], f->velocity[k], f->spin[k]);
+  }
+  const size_t size = kind->system_size(run);
+  void *bytes = calloc(size, 1);
+  assert_non_null(bytes);
+  kind->save_system(run, bytes);
+  fwrite(bytes, 1, size, heard[PINNED].file);
+  free(bytes);
+  fprintf(heard[PINNED].file, "%a %a\n", kind->progress(run), kind->time(run));
+}
+
+/* What `clast explain` and `clast plan` say before a run. */
+static void hear_words(const struct scene *scene) {
+  char *text = scene->kind->describe(scene->inputs);
+  assert_non_null(text);
+  fputs(text, heard[SAID].file);
+  free(text);
+  condition_before(scene->kind->conditions, scene->inputs, heard[SAID].file);
+  fprintf(heard[SAID].file, "%zu %.9g\n", scene->kind->memory(scene->inputs), scene->kind->work(scene->inputs));
+}
+
+/* ---- runs ---- */
 
 static bool runs(const struct scene *scene, uint64_t steps, const char *snapshot, struct error *error) {
   union {
@@ -52,6 +133,8 @@ static bool runs(const struct scene *scene, uint64_t steps, const char *snapshot
   if (snapshot)
     assert_int_equal(scene->kind->write_snapshot(run, snapshot, error), STATUS_OK);
   assert_int_equal(scene->kind->finish(run, &outcome, &results, &fragments, &count, error), STATUS_OK);
+  hear_words(scene);
+  hear_run(scene->kind, run, &outcome, &results, fragments, count);
   free(fragments);
   scene->kind->free(run);
   return true;
@@ -85,8 +168,10 @@ static void every_scene_runs(void **state) {
     struct error error = {0};
     if (scene_check(scene, &error))
       fail_msg("%s: %s", smallest[k].scene, error.message);
-    if (!runs(scene, 60, "smallest.h5", &error))
+    hear();
+    if (!runs(scene, 400, "smallest.h5", &error))
       fail_msg("%s: %s", smallest[k].scene, error.message);
+    pin(smallest[k].scene, "-");
     scene_free(scene);
   }
   remove("smallest.h5");
@@ -95,8 +180,10 @@ static void every_scene_runs(void **state) {
 static bool chosen(const struct scene *scene, const char *path, const char *text) {
   struct scene *other = scene_copy(scene);
   struct error error = {0};
-  bool ran = scene_set_text(other, path, text, NULL) == STATUS_OK && scene_check(other, NULL) == STATUS_OK &&
-             runs(other, 5, NULL, &error);
+  const bool ran = scene_set_text(other, path, text, &error) == STATUS_OK && scene_check(other, &error) == STATUS_OK &&
+                   runs(other, 5, NULL, &error);
+  if (!ran)
+    fprintf(heard[SAID].file, "%s\n", error.message);
   scene_free(other);
   return ran;
 }
@@ -113,8 +200,12 @@ static void every_choice_runs(void **state) {
       const char *const *choices = row->kind == FIELD_CHOICE    ? row->choices
                                    : row->kind == FIELD_BOOLEAN ? switched
                                                                 : NULL;
-      for (; choices && *choices; choices++)
+      if (!choices)
+        continue;
+      hear();
+      for (; *choices; choices++)
         ran += chosen(scene, row->path, *choices);
+      pin(smallest[k].scene, row->path);
     }
     scene_free(scene);
   }
@@ -125,7 +216,82 @@ static void every_choice_runs(void **state) {
       fail_msg("module %s was never on", sph_modules_at(m)->name);
 }
 
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(every_scene_runs), cmocka_unit_test(every_choice_runs)};
+static void tell(const struct scene *scene, const char *path, double number) {
+  struct scene *other = scene_copy(scene);
+  struct error error = {0};
+  const struct field_value value = {.kind = FIELD_REAL, .number = number};
+  if (scene_set(other, path, &value, &error) || scene_check(other, &error)) {
+    fprintf(heard[SAID].file, "%s\n", error.message);
+  } else {
+    uint8_t identity[16];
+    char *json = scene_json(other);
+    assert_non_null(json);
+    scene_identity(other, 7, identity);
+    fprintf(heard[PINNED].file, "%s\n", json);
+    fwrite(identity, 1, sizeof identity, heard[PINNED].file);
+    hear_words(other);
+    free(json);
+  }
+  scene_free(other);
+}
+
+/* Every number that a scene uses: below and above its own value, far off, zero and off. Nothing is run. What the
+ * program says of the scene is heard, its resolved document and its identity, or why it is refused. */
+static void every_number_is_told(void **state) {
+  (void)state;
+  for (size_t k = 0; k < SMALLEST; k++) {
+    if (!smallest[k].numbers)
+      continue;
+    struct scene *scene = small_scene(k);
+    const struct field_table *inputs = scene->kind->inputs;
+    for (size_t i = 0; i < inputs->count; i++) {
+      struct field_value value;
+      field_get(&inputs->rows[i], scene->inputs, &value);
+      if ((value.kind != FIELD_REAL && value.kind != FIELD_INTEGER) ||
+          !field_is_active(inputs, &inputs->rows[i], scene->inputs))
+        continue;
+      const double own = value.kind == FIELD_INTEGER ? (double)value.integer : value.number;
+      const double tried[] = {0.7 * own, 1.4 * own, 40 * own, 0, -1, NAN};
+      hear();
+      for (size_t t = 0; t < sizeof tried / sizeof *tried; t++)
+        tell(scene, inputs->rows[i].path, tried[t]);
+      pin(smallest[k].scene, inputs->rows[i].path);
+    }
+    scene_free(scene);
+  }
+}
+
+static void every_bit_is_pinned(void **state) {
+  (void)state;
+  static const char *const path = CLAST_SOURCE_DIR "/tests/extremes/choices.txt";
+  char line[2][300];
+  size_t changed = 0;
+  fclose(lines);
+  if (getenv("CLAST_RENEW")) {
+    FILE *file = fopen(path, "w");
+    assert_true(file && fwrite(lines_text, 1, lines_size, file) == lines_size && fclose(file) == 0);
+  }
+  FILE *pinned = fopen(path, "r"), *found = fmemopen(lines_text, lines_size, "r");
+  assert_true(pinned && found);
+  for (bool more = true; more;) {
+    for (size_t k = 0; k < 2; k++)
+      if (!fgets(line[k], sizeof line[k], k ? found : pinned))
+        line[k][0] = 0;
+    more = *line[0] || *line[1];
+    if (strcmp(line[0], line[1]) != 0 && changed++ < 20)
+      print_error("pinned: %snow:    %s", line[0], line[1]);
+  }
+  fclose(pinned), fclose(found), free(lines_text);
+  if (changed)
+    fail_msg("%zu lines of %s changed", changed, path);
+}
+
+int main(int count, char **arguments) {
+  (void)count;
+  if (!golden_start(arguments))
+    return 71;
+  assert_non_null(lines = open_memstream(&lines_text, &lines_size));
+  const struct CMUnitTest tests[] = {cmocka_unit_test(every_scene_runs), cmocka_unit_test(every_choice_runs),
+                                     cmocka_unit_test(every_number_is_told), cmocka_unit_test(every_bit_is_pinned)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,15 +22,15 @@ static bool golden_start(char **arguments) {
   return false;
 }
 
-static void golden_version(const struct engine_kind *kind, int pinned) {
+UNUSED static void golden_version(const struct engine_kind *kind, int pinned) {
   if (kind->results_version != pinned)
     fail_msg("results_version of %s is %d now: pin its hashes here", kind->name, kind->results_version);
 }
 
 /* Returns 1 and prints a line if the hash of a run is not the pinned one, else 0. `own`: the engine's own numbers that
  * are part of the hash. Frees the fragments. */
-static int golden_changed(const struct engine_kind *kind, const char *name, struct ran ran, const double *own,
-                          size_t count, const char *pinned) {
+UNUSED static int golden_changed(const struct engine_kind *kind, const char *name, struct ran ran, const double *own,
+                                 size_t count, const char *pinned) {
   const size_t size = (3 + count + ran.count * 12) * sizeof(double);
   double *numbers = malloc(size), *at = numbers;
   assert_non_null(numbers);
