@@ -8,6 +8,7 @@
  * else to do; a new row of results changes no hash while it is off. */
 #include "engine/sph/run/run.h"
 #include "tests/support/golden.h"
+#include "tests/support/pinned.h"
 
 /* What makes the scene small, and numbers that turn modules on. */
 static const struct {
@@ -263,27 +264,9 @@ static void every_number_is_told(void **state) {
 
 static void every_bit_is_pinned(void **state) {
   (void)state;
-  static const char *const path = CLAST_SOURCE_DIR "/tests/extremes/choices.txt";
-  char line[2][300];
-  size_t changed = 0;
   fclose(lines);
-  if (getenv("CLAST_RENEW")) {
-    FILE *file = fopen(path, "w");
-    assert_true(file && fwrite(lines_text, 1, lines_size, file) == lines_size && fclose(file) == 0);
-  }
-  FILE *pinned = fopen(path, "r"), *found = fmemopen(lines_text, lines_size, "r");
-  assert_true(pinned && found);
-  for (bool more = true; more;) {
-    for (size_t k = 0; k < 2; k++)
-      if (!fgets(line[k], sizeof line[k], k ? found : pinned))
-        line[k][0] = 0;
-    more = *line[0] || *line[1];
-    if (strcmp(line[0], line[1]) != 0 && changed++ < 20)
-      print_error("pinned: %snow:    %s", line[0], line[1]);
-  }
-  fclose(pinned), fclose(found), free(lines_text);
-  if (changed)
-    fail_msg("%zu lines of %s changed", changed, path);
+  pinned_same("extremes/choices.txt", lines_text, 0);
+  free(lines_text);
 }
 
 int main(int count, char **arguments) {

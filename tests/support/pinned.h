@@ -1,0 +1,59 @@
+/* Pinned answers: a text that the program computes is compared line by line with a file that was looked at.
+ * CLAST_RENEW=1 writes the file anew: commit it only after each line of `git diff` is a change that you meant. */
+#ifndef CLAST_TESTS_PINNED_H
+#define CLAST_TESTS_PINNED_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+/* Words that blanks part. Two numbers may differ by `tolerance` of the larger one. */
+static bool pinned_line(char *pinned, char *now, double tolerance) {
+  char *rest[2], *end[2];
+  char *a = strtok_r(pinned, " \n", &rest[0]), *b = strtok_r(now, " \n", &rest[1]);
+  for (; a && b; a = strtok_r(NULL, " \n", &rest[0]), b = strtok_r(NULL, " \n", &rest[1])) {
+    const double x = strtod(a, &end[0]), y = strtod(b, &end[1]);
+    if (strcmp(a, b) != 0 &&
+        (tolerance == 0 || *end[0] || *end[1] || !(fabs(x - y) <= tolerance * fmax(fabs(x), fabs(y)))))
+      return false;
+  }
+  return !a && !b;
+}
+
+/* `name`: the file, in the folder tests. */
+static void pinned_same(const char *name, const char *now, double tolerance) {
+  char path[500], pinned[1000], line[1000], kept[2][1000];
+  size_t changed = 0;
+  snprintf(path, sizeof path, "%s/tests/%s", CLAST_SOURCE_DIR, name);
+  if (getenv("CLAST_RENEW")) {
+    FILE *file = fopen(path, "w");
+    assert_true(file && fputs(now, file) >= 0 && fclose(file) == 0);
+  }
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  for (bool more = true; more;) {
+    const size_t length = strcspn(now, "\n");
+    snprintf(line, sizeof line, "%.*s", (int)length, now);
+    now += length + (now[length] == '\n');
+    if (!fgets(pinned, sizeof pinned, file))
+      *pinned = 0;
+    pinned[strcspn(pinned, "\n")] = 0;
+    snprintf(kept[0], sizeof kept[0], "%s", pinned);
+    snprintf(kept[1], sizeof kept[1], "%s", line);
+    if (!pinned_line(pinned, line, tolerance) && changed++ < 20)
+      print_error("pinned: %s\nnow:    %s\n", kept[0], kept[1]);
+    more = *kept[0] || *kept[1];
+  }
+  fclose(file);
+  if (changed)
+    fail_msg("%zu lines of tests/%s changed", changed, name);
+}
+
+#endif
