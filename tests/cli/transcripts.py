@@ -3,7 +3,7 @@
 
 A line "$ COMMAND" is a command of a shell. What follows is its standard output, then its standard error with "! " before
 each line, then "exit CODE" unless the code is 0. Text must be the same byte for byte. Numbers with a decimal point or an
-exponent may differ by 1e-8 of themselves, because libraries of mathematics differ in last bits; the file keeps ten of
+exponent may differ by 1e-6 of themselves, because libraries of mathematics differ in last bits; the file keeps ten of
 their digits. Times of a clock or a processor, and facts of the machine, are words such as TIME.
 
 With CLAST_RENEW=1 the file is written anew. Read what `git diff` shows: each changed line is a changed answer.
@@ -40,7 +40,7 @@ def same(a, b):
         return True
     x, y = NUMBER.findall(a), NUMBER.findall(b)
     return NUMBER.sub("#", a) == NUMBER.sub("#", b) and all(
-        abs(float(p) - float(q)) <= 1e-8 * max(abs(float(p)), abs(float(q))) for p, q in zip(x, y))
+        abs(float(p) - float(q)) <= 1e-6 * max(abs(float(p)), abs(float(q))) for p, q in zip(x, y))
 
 
 def main():
