@@ -20,6 +20,7 @@ const struct engine_kind *const engines_list[] = {&dem_engine, &sph_engine, &toy
 static const struct field input_rows[] = {
     REAL(stick.strain, "1", 0.03, 1e-9, 1e3, .flags = FIELD_PERCENT, .doc = "Scale of the pieces' masses."),
     REAL(stick.angle, "rad", 0.07, 1e-9, 1e3, .doc = "Changes nothing."),
+    REAL(stick.coarse, "kg", 0, 0, 1e3, .absent = "0", .doc = "Mass that the largest piece has too much, times steps."),
     SWITCH(stick.trouble, 0, .doc = "Some seeds end in trouble."),
     REAL(wait, "s", 0, 0, 1e6, .doc = "Time by the clock that a run takes."),
     COUNT(steps, 10, 1, 1000000, .doc = "Steps of a run."),
@@ -35,6 +36,24 @@ static const struct field result_rows[] = {
      .doc = "Number of pieces."},
 };
 static const struct field_table results = FIELD_TABLE(result_rows, struct toy_results, "toy result", "A broken stick.");
+
+static const struct knob knobs[] = {
+    KNOB("steps", RESOLUTION, .inputs = {{"steps", 1}}, .factors = {0.25, 0.5, 1, 2}, .step_power = -1, .pairs = true,
+         .meaning = "steps of a run"),
+    KNOB("trouble", MODEL, .inputs = {{"stick.trouble"}}, KNOB_ON_OFF, .meaning = "some seeds end in trouble"),
+    KNOB_OF_SETTINGS,
+    {.name = NULL},
+};
+
+static double one_step(const void *in) {
+  return (double)((const struct toy_inputs *)in)->steps;
+}
+
+static const struct condition conditions[] = {
+    CONDITION("few", .number = "steps", .bound = 3, .least = true, .doubt = "a stick does not break in so few steps",
+              .reason = "made up", .remedy = "take more steps", .results = "largest_fraction", .before = one_step),
+    {0},
+};
 
 struct toy_run {
   struct frame frame;
@@ -112,7 +131,8 @@ static status finish(void *run, struct outcome *outcome, void *result, struct fr
     return status_fail(error, STATUS_MEMORY, "no memory");
   for (size_t k = 0; k < n; k++) {
     const double u = random_draw(toy->seed, RANDOM_LATTICE, k, 0);
-    (*fragments)[k].mass = (k == 0 ? 5 : 0) + 10 * toy->inputs.stick.strain / (1 + (double)k + u);
+    (*fragments)[k].mass = (k == 0 ? 5 + toy->inputs.stick.coarse / (double)toy->inputs.steps : 0) +
+                           10 * toy->inputs.stick.strain / (1 + (double)k + u);
     (*fragments)[k].count = k + 5 < n ? 10 : 1;
     (*fragments)[k].first = (uint32_t)k;
   }
@@ -126,6 +146,8 @@ static status finish(void *run, struct outcome *outcome, void *result, struct fr
   outcome->steps = toy->state.steps;
   outcome->time = time_of(run);
   outcome->time_step = 1e-6;
+  condition_after(conditions, &(struct condition_run){.inputs = &toy->inputs}, outcome->warnings,
+                  sizeof outcome->warnings);
   ((struct toy_results *)result)->pieces = (int64_t)n;
   return STATUS_OK;
 }
@@ -157,6 +179,8 @@ struct engine_kind toy_engine = {.name = "toy",
                                  .results_version = 1,
                                  .inputs = &inputs,
                                  .results = &results,
+                                 .knobs = knobs,
+                                 .conditions = conditions,
                                  .describe = describe,
                                  .memory = memory,
                                  .work = work,

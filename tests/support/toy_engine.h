@@ -8,6 +8,7 @@
 struct toy_inputs {
   struct {
     double strain, angle; /* scale of the masses, 1; changes nothing, rad */
+    double coarse;        /* kg: mass of the largest piece that more steps take away: coarse / steps */
     bool trouble;         /* seed 13 is refused; of 50 seeds one ends as not finite, four at the hard end */
   } stick;
   double wait;   /* s of the clock that a run takes */
