@@ -56,6 +56,8 @@ def main():
             old, new = before.splitlines(), now.splitlines()
             print(f"CHANGED: {command}", *(f"  pinned: {a}\n  now:    {b}\n" for a, b in zip(old + ["(nothing)"] * len(new), new + ["(nothing)"] * len(old))
                   if not same(a, b) and (a, b) != ("(nothing)",) * 2), sep="", end="")
+            if changed == 10 and not os.environ.get("CLAST_RENEW"):
+                sys.exit("10 commands changed; the others were not run")
         out += command + (before if same(before, now) else now) + blank
     if os.environ.get("CLAST_RENEW"):
         with open(path, "w", encoding="utf-8") as file:
