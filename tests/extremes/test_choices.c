@@ -262,6 +262,25 @@ static void every_number_is_told(void **state) {
   }
 }
 
+static void begin_and_end(void *context) {
+  struct error error = {0};
+  hear();
+  assert_true(runs(context, 2, NULL, &error));
+  for (size_t h = 0; h < HASHES; h++) {
+    fclose(heard[h].file);
+    free(heard[h].text);
+  }
+}
+
+static void no_run_leaves_memory(void **state) {
+  (void)state;
+  for (size_t k = 0; k < SMALLEST; k++) {
+    struct scene *scene = small_scene(k);
+    pinned_frees(smallest[k].scene, begin_and_end, scene);
+    scene_free(scene);
+  }
+}
+
 static void every_bit_is_pinned(void **state) {
   (void)state;
   fclose(lines);
@@ -275,6 +294,7 @@ int main(int count, char **arguments) {
     return 71;
   assert_non_null(lines = open_memstream(&lines_text, &lines_size));
   const struct CMUnitTest tests[] = {cmocka_unit_test(every_scene_runs), cmocka_unit_test(every_choice_runs),
-                                     cmocka_unit_test(every_number_is_told), cmocka_unit_test(every_bit_is_pinned)};
+                                     cmocka_unit_test(every_number_is_told), cmocka_unit_test(every_bit_is_pinned),
+                                     cmocka_unit_test(no_run_leaves_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

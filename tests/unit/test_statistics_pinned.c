@@ -384,8 +384,21 @@ static void numbers_stay(void **state) {
   free(text);
 }
 
+static void part(void *context) {
+  ((void (*)(void))(intptr_t)context)();
+}
+
+static void nothing_is_left(void **state) {
+  (void)state;
+  void (*const parts[])(void) = {of_pairs, of_ladders, of_masses, of_inputs};
+  assert_non_null(out = fopen("/dev/null", "w"));
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+    pinned_frees("statistics", part, (void *)(intptr_t)parts[k]);
+  fclose(out);
+}
+
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(numbers_stay)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(numbers_stay), cmocka_unit_test(nothing_is_left)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
