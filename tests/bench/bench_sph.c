@@ -89,8 +89,18 @@ static void cloud_make(size_t wanted, struct cloud *c) {
     c->slack[i] = 0.05 * p->h[from];
   }
   double **a = c->column, **s = c->sum;
-  c->fields = (struct sph_pair_fields){a[0], a[1], a[2], a[3],  a[4], a[5],  a[6],
-                                       a[7], a[8], a[9], a[10], {0},  a[16], {0}};
+  c->fields = (struct sph_pair_fields){.x = a[0],
+                                       .y = a[1],
+                                       .z = a[2],
+                                       .h = a[3],
+                                       .vx = a[4],
+                                       .vy = a[5],
+                                       .vz = a[6],
+                                       .mass = a[7],
+                                       .density = a[8],
+                                       .sound_speed = a[9],
+                                       .pressure_term = a[10],
+                                       .stress_factor = a[16]};
   for (int k = 0; k < 5; k++)
     c->fields.stress[k] = a[11 + k];
   c->sums = (struct sph_pair_sums){.ax = s[0], .ay = s[1], .az = s[2], .heating = s[12], .signal = s[13]};

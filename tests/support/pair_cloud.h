@@ -12,7 +12,7 @@
 enum { SIDE = 22, LARGE = 36, MOST = LARGE * LARGE * LARGE, COLUMNS = 11 }; /* SIDE: three chunks; LARGE: twelve */
 
 struct cloud {
-  double a[COLUMNS][MOST], stress[5][MOST], factor[MOST], slack[MOST]; /* a: x y z h vx vy vz m rho c p */
+  double a[COLUMNS][MOST], stress[5][MOST], factor[MOST], slack[MOST], damage[MOST]; /* a: x y z h vx vy vz m rho c p */
   size_t n;
 };
 

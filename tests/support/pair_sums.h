@@ -25,6 +25,7 @@ static inline void pair_sums_keep(void *context, size_t first, size_t count, con
     pair_sums_copy(all->gradient[k], first, count, sums->gradient[k]);
   for (int k = 0; k < 6; k++)
     pair_sums_copy(all->correction[k], first, count, sums->correction[k]);
+  pair_sums_copy(all->correction_share[0], first, count, sums->correction_share[0]);
 }
 
 #endif

@@ -59,10 +59,11 @@ static void shares_between_body_and_debris(void **state) {
   (void)state;
   static const char *const classes[] = {"baseline", "v3", "v4"};
   for (int which = 0; which < 3; which++) {
-    static double moment[6][CASES], old[6][CASES], gradient[9][CASES], expected[CASES][6], power[CASES], zero[CASES];
+    static double moment[6][CASES], old[6][CASES], gradient[9][CASES], expected[CASES][6], power[CASES], zero[CASES],
+        found[CASES];
     const struct sph_pair_options options = {.gradient_correction.on = true};
     struct sph_pair_fields fields = {.density = zero, .pressure_term = zero};
-    struct sph_pair_sums sums = {.power = power};
+    struct sph_pair_sums sums = {.power = power, .correction_share[0] = found};
     for (int i = 0; i < CASES; i++) {
       const double d = sqrt(cases[i].d_squared), share = cases[i].share;
       const double value[3] = {cases[i].size, cases[i].size * (1 + d), cases[i].size * (1 - d)};
@@ -83,6 +84,7 @@ static void shares_between_body_and_debris(void **state) {
     assert_int_equal(setenv("CLAST_CPU", classes[which], 1), 0);
     sph_pairs_kernels_choose()->finish_gradient_correction(&options, &fields, 0, CASES, &sums);
     for (int i = 0; i < CASES; i++) {
+      assert_true(fabs(found[i] - cases[i].share) < 5e-14);
       for (int k = 0; k < 6; k++)
         if (!(fabs(moment[k][i] - expected[i][k]) < 5e-14))
           fail_msg("class %s, case %d: B[%d] = %.17g, not %.17g", classes[which], i, k, moment[k][i], expected[i][k]);

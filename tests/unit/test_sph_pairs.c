@@ -19,13 +19,24 @@ enum { SUMS = 14 };
 
 struct summed {
   double a[SUMS][MOST]; /* ax ay az, gradient, heating, signal */
-  double power[MOST], correction[6][MOST];
+  double power[MOST], correction[6][MOST], share[MOST];
   double neighbours;
 };
 
 static struct sph_pair_fields fields_of(const struct cloud *c) {
-  struct sph_pair_fields f = {c->a[0], c->a[1], c->a[2], c->a[3],  c->a[4], c->a[5],   c->a[6],
-                              c->a[7], c->a[8], c->a[9], c->a[10], {0},     c->factor, {0}};
+  struct sph_pair_fields f = {.x = c->a[0],
+                              .y = c->a[1],
+                              .z = c->a[2],
+                              .h = c->a[3],
+                              .vx = c->a[4],
+                              .vy = c->a[5],
+                              .vz = c->a[6],
+                              .mass = c->a[7],
+                              .density = c->a[8],
+                              .sound_speed = c->a[9],
+                              .pressure_term = c->a[10],
+                              .stress_factor = c->factor,
+                              .damage[0] = c->damage};
   for (int k = 0; k < 5; k++)
     f.stress[k] = c->stress[k];
   return f;
@@ -41,6 +52,7 @@ static struct sph_pair_sums sums_of(struct summed *s) {
       {.ax = s->a[0], .ay = s->a[1], .az = s->a[2], .heating = s->a[12], .signal = s->a[13], .power = s->power};
   for (int k = 0; k < 6; k++)
     out.correction[k] = s->correction[k];
+  out.correction_share[0] = s->share;
   for (int k = 0; k < 9; k++)
     out.gradient[k] = s->a[3 + k];
   return out;
@@ -61,6 +73,9 @@ static struct summed *sum(const struct cloud *c, const struct sph_pair_options *
     for (size_t i = 0; i < c->n; i++)
       s->correction[k][i] = k == 0 || k == 3 || k == 5;
   }
+  f.correction_share[0] = options->crack_surfaces.on ? s->share : NULL;
+  for (size_t i = 0; i < c->n; i++)
+    s->share[i] = 1;
   if (options->gradient_correction.on)
     sph_pairs_sum(pairs, c->n, &f, pair_sums_keep, &sums); /* the forces' correction is that of the pass before */
   sph_pairs_sum(pairs, c->n, &f, pair_sums_keep, &sums);
@@ -268,6 +283,94 @@ static void angular_momentum_is_conserved(void **state) {
       assert_true(fabs(total[k]) < 1e-12 * scale); /* 1e4 roundings of either sign */
     free(s), free(c);
   }
+}
+
+/* Whole matter is in flakes of a few particles. The rest is broken; some of these are loose, others pressed, others
+ * between the two. */
+static void cloud_break(struct cloud *c) {
+  for (size_t i = 0; i < c->n; i++) {
+    if (i / 4 % 7 == 0)
+      continue;
+    c->damage[i] = i % 2 ? 1 : 0.95;                                               /* D = 1, 0.857 */
+    c->a[10][i] = fabs(c->a[10][i]) * (i % 5 == 0 ? -1e-3 : i % 11 == 0 ? -1 : 1); /* -1e-3: hardly pressed */
+  }
+}
+
+/* With surfaces at cracks, with reconstructed velocities, with both: energy and both momenta, also of particles with so
+ * few neighbours that their gradient is not, or not wholly, corrected. In every CPU class. */
+static void surfaces_keep_energy_and_momenta(void **state) {
+  (void)state;
+  for (int variant = 0; variant < 3 * 8; variant++) {
+    assert_int_equal(setenv("CLAST_CPU", classes[variant / 8], 1), 0);
+    struct cloud *c = cloud_make(SIDE, 1, false, 5);
+    cloud_break(c);
+    struct sph_pair_options options = usual;
+    options.gradient_correction.on = true;
+    options.crack_surfaces.on = variant & 1;
+    options.reconstruction.on = variant & 2;
+    options.fidelity.precision = variant & 4 ? SPH_FLOAT : SPH_DOUBLE;
+    struct summed *s = sum(c, &options);
+    double sums[7] = {0}, scale[7] = {0}, between = 0; /* momentum, its moment, energy */
+    for (size_t i = 0; i < c->n; i++) {
+      const double m = c->a[7][i];
+      between += s->share[i] < 1;
+      for (int k = 0; k < 3; k++) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+        sums[k] += m * s->a[k][i];
+        sums[3 + k] += m * (c->a[a][i] * s->a[b][i] - c->a[b][i] * s->a[a][i]);
+        sums[6] += m * c->a[4 + k][i] * s->a[k][i];
+        scale[k] += m * fabs(s->a[k][i]);
+        scale[3 + k] += m * fabs(c->a[a][i] * s->a[b][i]);
+        scale[6] += m * fabs(c->a[4 + k][i] * s->a[k][i]);
+      }
+      sums[6] += m * (s->power[i] + s->a[12][i]);
+    }
+    assert_true(between > (variant & 1 ? 100 : -1));
+    for (int k = 0; k < 7; k++)
+      if (!(fabs(sums[k]) < (variant & 4 ? 1e-6 : 1e-12) * scale[k]))
+        fail_msg("variant %d, sum %d: %g of %g", variant, k, sums[k], scale[k]);
+    free(s), free(c);
+  }
+  unsetenv("CLAST_CPU");
+}
+
+/* A whole particle does not see how loose ones fly: its gradient is that of the whole ones, whose field is linear. Nor
+ * does its stress act on them: loose particles without stress have no force from it. Pressed ones it sees. */
+static void loose_neighbours_are_not_felt(void **state) {
+  (void)state;
+  static const double g[9] = {0.3, -1, 0.2, 1, 0.1, 0.5, -0.2, 0.7, -0.4};
+  for (int variant = 0; variant < 3 * 4; variant++) {
+    assert_int_equal(setenv("CLAST_CPU", classes[variant / 4], 1), 0);
+    const bool surfaces = variant & 1;
+    struct cloud *c = cloud_make(12, 1, false, 3);
+    for (size_t i = 0; i < c->n; i++) {
+      const bool loose = i % 7 == 0;
+      c->damage[i] = loose, c->factor[i] = loose ? 0 : c->factor[i], c->a[10][i] = loose ? 0 : c->a[10][i];
+      for (int a = 0; a < 3 && !loose; a++)
+        c->a[4 + a][i] = 5 + g[3 * a] * c->a[0][i] + g[3 * a + 1] * c->a[1][i] + g[3 * a + 2] * c->a[2][i];
+    }
+    struct sph_pair_options options = usual;
+    options.viscosity.alpha = options.viscosity.beta = 0;
+    options.gradient_correction.on = true;
+    options.crack_surfaces.on = surfaces;
+    options.fidelity.precision = variant & 2 ? SPH_FLOAT : SPH_DOUBLE;
+    struct summed *s = sum(c, &options);
+    double off = 0, pulled = 0, usual_pull = 0, partly = 0;
+    for (size_t i = 0; i < c->n; i++)
+      for (int k = 0; k < 9; k++)
+        if (i % 7 && s->share[i] < 1)
+          partly++;
+        else if (i % 7)
+          off = fmax(off, fabs(s->a[3 + k][i] - g[k])), usual_pull = fmax(usual_pull, fabs(s->a[k % 3][i]));
+        else
+          pulled = fmax(pulled, fabs(s->a[k % 3][i]));
+    const double rounding = variant & 2 ? 1e-4 : 1e-11;
+    assert_true(surfaces ? off < rounding : off > 0.01);
+    assert_true(partly < 9 * 10); /* corners */
+    assert_true(surfaces ? pulled == 0 : pulled > 0.01 * usual_pull);
+    free(s), free(c);
+  }
+  unsetenv("CLAST_CPU");
 }
 
 /* Without a body around a particle there is no correction, because its inverse would be noise: in a layer, and in
@@ -565,14 +668,24 @@ static void bodies_apart_are_alone(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(kernels_equal_plain_c),         cmocka_unit_test(momentum_is_conserved),
-      cmocka_unit_test(work_equals_strain_energy),     cmocka_unit_test(corrected_gradient_is_linear),
-      cmocka_unit_test(each_pair_is_summed_once),      cmocka_unit_test(angular_momentum_is_conserved),
-      cmocka_unit_test(one_stress_over_a_cut),         cmocka_unit_test(debris_is_not_corrected),
-      cmocka_unit_test(viscosity_of_two_by_hand),      cmocka_unit_test(not_finite_does_no_harm),
-      cmocka_unit_test(tiny_numbers_stay_the_callers), cmocka_unit_test(coincident_particles_do_no_harm),
-      cmocka_unit_test(float_is_as_good_far_away),     cmocka_unit_test(float_holds_sizes_far_apart),
-      cmocka_unit_test(bits_do_not_depend_on_threads), cmocka_unit_test(bodies_apart_are_alone),
+      cmocka_unit_test(kernels_equal_plain_c),
+      cmocka_unit_test(momentum_is_conserved),
+      cmocka_unit_test(work_equals_strain_energy),
+      cmocka_unit_test(corrected_gradient_is_linear),
+      cmocka_unit_test(each_pair_is_summed_once),
+      cmocka_unit_test(angular_momentum_is_conserved),
+      cmocka_unit_test(one_stress_over_a_cut),
+      cmocka_unit_test(debris_is_not_corrected),
+      cmocka_unit_test(viscosity_of_two_by_hand),
+      cmocka_unit_test(not_finite_does_no_harm),
+      cmocka_unit_test(tiny_numbers_stay_the_callers),
+      cmocka_unit_test(coincident_particles_do_no_harm),
+      cmocka_unit_test(float_is_as_good_far_away),
+      cmocka_unit_test(float_holds_sizes_far_apart),
+      cmocka_unit_test(bits_do_not_depend_on_threads),
+      cmocka_unit_test(bodies_apart_are_alone),
+      cmocka_unit_test(surfaces_keep_energy_and_momenta),
+      cmocka_unit_test(loose_neighbours_are_not_felt),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

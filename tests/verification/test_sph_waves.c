@@ -195,6 +195,51 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
   return w;
 }
 
+/* The share of its peak that a half-sine pulse of 8 spacings keeps over 30 spacings: velocity v, density rho0 (1 +
+ * v/c), in matter without strength. */
+static double pulse(double alpha, bool reconstruction) {
+  const double spacing = 1e-3, length = 80 * spacing, wide = 8 * spacing, begin = 20 * spacing;
+  struct solid_case c = solid_make(1);
+  c.physics[0].material = solid_basalt();
+  c.parameters.in.gradient_correction.on = true;
+  c.parameters.in.reconstruction.on = reconstruction;
+  c.parameters.in.viscosity.alpha = alpha, c.parameters.in.viscosity.beta = 2 * alpha;
+  solid_bar(&c, SPH_LATTICE_CUBIC, 0, length, spacing, true);
+  solid_build(&c, 0);
+  struct sph_particles *p = c.particles;
+  const struct sph_material *m = &c.physics[0].material;
+  const double speed = sqrt(m->tillotson.A / m->density), peak = 1e-4 * speed;
+  for (size_t i = 0; i < p->n; i++) {
+    const double at = (p->x[i] - begin) / wide;
+    if (at > 0 && at < 1) {
+      p->vx[i] = peak * sin(M_PI * at);
+      p->density[i] *= 1 + p->vx[i] / speed;
+    }
+  }
+  solid_start(&c);
+  solid_until(&c, 30 * spacing / speed);
+  solid_read(&c);
+  double most = 0;
+  for (size_t i = 0; i < p->n; i++)
+    most = fmax(most, p->vx[i]);
+  solid_end(&c);
+  return most / peak;
+}
+
+/* Even without viscosity the pulse spreads: waves of few spacings are slower. Of what viscosity takes beyond that,
+ * reconstructed velocities save more than a third, and with their own doubled viscosity still more than a fifth. */
+static void reconstruction_spares_a_pulse(void **state) {
+  (void)state;
+  const double none = pulse(0, false), plain = pulse(1.5, false), same = pulse(1.5, true), usual = pulse(3, true);
+  print_message(
+      "half-sine of 8 spacings keeps of its peak over 30: %.3f without viscosity, %.3f with the usual one, with "
+      "reconstruction %.3f (the same viscosity), %.3f (its own)\n",
+      none, plain, same, usual);
+  assert_true(none > 0.9);
+  assert_true(none - same < 2 * (none - plain) / 3);
+  assert_true(none - usual < 4 * (none - plain) / 5);
+}
+
 static void bar_wave(void **state) {
   (void)state;
   struct sph_material m = solid_basalt();
@@ -228,10 +273,9 @@ static void bar_wave(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(speeds_are_as_printed),
-      cmocka_unit_test(plane_waves),
-      cmocka_unit_test(pochhammer_is_right),
-      cmocka_unit_test(bar_wave),
+      cmocka_unit_test(speeds_are_as_printed),         cmocka_unit_test(plane_waves),
+      cmocka_unit_test(pochhammer_is_right),           cmocka_unit_test(bar_wave),
+      cmocka_unit_test(reconstruction_spares_a_pulse),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

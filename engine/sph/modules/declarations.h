@@ -24,10 +24,11 @@
  *   PAIR_RECORD(term, count)        columns that it adds to a record of the pair loop
  *   PAIR_SUMS(term, member, count, scale)   sums that it adds; they become the COLUMN of that name. `scale` brings them
  *                                           to SI; it is made from `u`, a struct sph_pair_units
+ *   PAIR_FOUND(term, member, count)         values that its finish makes; they become the COLUMN of that name
  *   PAIR_POWER(term)                its finish fills the power of struct sph_pair_sums
  *   PAIR_CONSTANT(name, value)      a number that is the same for all pairs; `value` is made from `o`
- *   PAIR_PACK(term), PAIR_STRESS(term), PAIR_STRESS_ADDED(term), PAIR_FORCE(term), PAIR_SUMMED(term), PAIR_FINISH(term)
- *                                   the functions that it has
+ *   PAIR_PACK(term), PAIR_BEFORE(term), PAIR_STRESS(term), PAIR_STRESS_ADDED(term), PAIR_FORCE(term),
+ * PAIR_SUMMED(term), PAIR_FINISH(term) the functions that it has
  *
  *   TIME_STEP_LIMIT(NAME, member, doc)   SPH_LIMIT_NAME, and the result limited.member
  *
@@ -86,6 +87,9 @@
 #ifndef PAIR_SUMS
 #define PAIR_SUMS(...)
 #endif
+#ifndef PAIR_FOUND
+#define PAIR_FOUND(...)
+#endif
 #ifndef PAIR_POWER
 #define PAIR_POWER(...)
 #endif
@@ -94,6 +98,9 @@
 #endif
 #ifndef PAIR_PACK
 #define PAIR_PACK(...)
+#endif
+#ifndef PAIR_BEFORE
+#define PAIR_BEFORE(...)
 #endif
 #ifndef PAIR_STRESS
 #define PAIR_STRESS(...)
@@ -144,6 +151,8 @@
 #include "engine/sph/modules/viscosity.h"
 #include "engine/sph/modules/artificial_stress.h"
 #include "engine/sph/modules/gradient_correction.h"
+#include "engine/sph/modules/crack_surfaces.h"
+#include "engine/sph/modules/reconstruction.h"
 #include "engine/sph/modules/contact.h"
 /* clang-format on */
 
@@ -153,7 +162,10 @@
   COMBINATION(plain, 0)                                                                                                \
   COMBINATION(artificial, .artificial_stress = true)                                                                   \
   COMBINATION(corrected, .gradient_correction = true)                                                                  \
-  COMBINATION(both, .artificial_stress = true, .gradient_correction = true)
+  COMBINATION(both, .artificial_stress = true, .gradient_correction = true)                                            \
+  COMBINATION(surfaces, .gradient_correction = true, .crack_surfaces = true)                                           \
+  COMBINATION(smooth, .gradient_correction = true, .reconstruction = true)                                             \
+  COMBINATION(limits, .gradient_correction = true, .crack_surfaces = true, .reconstruction = true)
 
 #undef SPH_MODULE_STRUCTS
 #undef SPH_MODULE_LOOPS
@@ -178,9 +190,11 @@
 #undef PAIR_MADE
 #undef PAIR_RECORD
 #undef PAIR_SUMS
+#undef PAIR_FOUND
 #undef PAIR_POWER
 #undef PAIR_CONSTANT
 #undef PAIR_PACK
+#undef PAIR_BEFORE
 #undef PAIR_STRESS
 #undef PAIR_STRESS_ADDED
 #undef PAIR_FORCE

@@ -10,7 +10,11 @@
  * the slopes (v_j - v_i)/(x_j - x_i), and each slope is the rate of the logarithm of that distance. With weights m_j
  * the neighbours behind a front, which are more, count more: they close up before the particle is in the front, and
  * those ahead of it after that. So the carried density ends too low where a thin front compresses much; with weights
- * m_j/rho_j too high, and with the mean of both nearly right. */
+ * m_j/rho_j too high, and with the mean of both nearly right.
+ *
+ * Where B is not wholly the inverse of M, a deviator makes a torque: sum_j (x_j - x_i) x (S B grad W) vanishes only if
+ * M B = 1. Among debris this is next to nothing, as its deviator is. With method.crack_surfaces whole particles have
+ * few neighbours that count, and there the deviator acts with the share p of the inverse. */
 
 MODULE(gradient_correction)
 MODULE_INPUTS(gradient_correction)
@@ -70,7 +74,7 @@ INLINE vec smooth_step(vec x, double low, double high) {
  * mixture in between. Two numbers decide. The mean eigenvalue of M is 1 inside a body and 0.3 in a corner. The
  * determinant over the cube of that mean is at least 0.8 in a body and 0.6 in a sharp point; among debris, with a few
  * neighbours anywhere, it is lower: there a corrected strain is noise, and its forces are stiff. */
-INLINE void invert(const vec m[6], vec inverse[6]) {
+INLINE vec invert(const vec m[6], vec inverse[6]) {
   const vec zero = {0};
   const vec a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
   const vec determinant = m[0] * a + m[1] * b + m[2] * c;
@@ -87,6 +91,7 @@ INLINE void invert(const vec m[6], vec inverse[6]) {
   inverse[3] = 1 - part + s * (m[0] * m[5] - m[2] * m[2]);
   inverse[4] = s * (m[1] * m[2] - m[0] * m[4]);
   inverse[5] = 1 - part + s * (m[0] * m[3] - m[1] * m[1]);
+  return part;
 }
 
 /* Corrects `lanes` particles: those from place `k` of the sums on, which are those from i on of the fields. */
@@ -108,13 +113,21 @@ INLINE void correct_some(const struct sph_pair_options *options, const struct sp
   if (options->strength) {
     vec s[6];
     acting(f->stress, f->stress_factor, i, lanes, s);
+    if (f->correction_share[0]) { /* with crack_surfaces: the deviator has the share p in the forces */
+      const vec rest = 1 - vec_load_first(f->correction_share[0] + i, lanes);
+      UNROLL
+      for (int c = 0; c < 9; c++)
+        out[c] -= rest * g[c];
+    }
     power += s[0] * out[0] + s[3] * out[4] + s[5] * out[8] + s[1] * (out[1] + out[3]) + s[2] * (out[2] + out[6]) +
              s[4] * (out[5] + out[7]);
   }
   power *= vec_load_first(f->density + i, lanes);
   vec_store_first(sums->power + k, power, lanes);
 
-  invert(moment, b);
+  const vec share = invert(moment, b);
+  if (sums->correction_share[0])
+    vec_store_first(sums->correction_share[0] + k, share, lanes);
   times(b, g, out);
   UNROLL
   for (int c = 0; c < 6; c++)
@@ -142,6 +155,16 @@ INLINE void TYPED(gradient_correction_pack)(const struct sph_pair_source *source
   for (size_t c = 0; c < 6; c++)
     b[c] = column_load(source->fields.correction[c], 1, first, which);
   turn(base + PAIR_XX, b, t);
+  if (source->shape.crack_surfaces) { /* of the deviator the share p alone */
+    const vec_double rest = 1 - column_load(source->fields.correction_share[0], 1, first, which);
+    const vec_double mean = (base[PAIR_XX] + base[PAIR_YY] + base[PAIR_ZZ]) / 3;
+    t[0] -= rest * (base[PAIR_XX] - mean);
+    t[3] -= rest * (base[PAIR_YY] - mean);
+    t[5] -= rest * (base[PAIR_ZZ] - mean);
+    t[1] -= rest * base[PAIR_XY], t[6] -= rest * base[PAIR_XY];
+    t[2] -= rest * base[PAIR_XZ], t[7] -= rest * base[PAIR_XZ];
+    t[4] -= rest * base[PAIR_YZ], t[8] -= rest * base[PAIR_YZ];
+  }
   if (source->geometric_weights) { /* the records hold sigma B/rho */
     UNROLL
     for (size_t c = 0; c < 9; c++)
@@ -165,9 +188,9 @@ INLINE void TYPED(gradient_correction_stress)(const struct sph_pair_constants *k
       p->w[a] *= weight;
     p->viscous *= weight * density * (p->densities - density); /* as it was, with the slope */
   }
-  t[1][0] = mine[0] + its[0];
-  t[2][0] = mine[1] + its[1];
-  t[2][1] = mine[2] + its[2];
+  t[1][0] = p->share[0] * mine[0] + p->share[1] * its[0];
+  t[2][0] = p->share[0] * mine[1] + p->share[1] * its[1];
+  t[2][1] = p->share[0] * mine[2] + p->share[1] * its[2];
 }
 
 INLINE void TYPED(gradient_correction_sum)(const struct pair_batch *p, const vec w[3], const bool first, vec *sum) {

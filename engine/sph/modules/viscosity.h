@@ -19,11 +19,11 @@ PAIR_CONSTANT(twice_beta, 2 * o->viscosity.beta)
 
 #ifdef SPH_PAIR_TERM
 
-/* Pi_ij. `mu_per` is |mu_ij| over rho_i + rho_j; zero where the partners recede. */
+/* Pi_ij of |mu_ij|, which is zero where the partners recede. `mu_per` is |mu_ij| over rho_i + rho_j. */
 INLINE void TYPED(viscosity_pair)(const struct sph_pair_constants *k, const struct pair_member *me, const vec *its,
-                                  vec mu_per, struct pair_batch *p) {
+                                  vec mu_per, vec mu, struct pair_batch *p) {
   const vec sound = me->record[PAIR_SOUND] + its[PAIR_SOUND];
-  p->viscous = mu_per * ((REAL)k->twice_beta * p->mu + (REAL)k->alpha * sound);
+  p->viscous = mu_per * ((REAL)k->twice_beta * mu + (REAL)k->alpha * sound);
   if (SINGLE && k->volume_weights)
     p->viscous *= me->record[PAIR_DENSITY] * its[PAIR_DENSITY];
 }
@@ -48,8 +48,11 @@ static const struct sph_module viscosity_module = {
 #endif
 
 #ifdef SPH_MODULE_INPUT_ROWS
-INPUT_REAL(viscosity.alpha, viscosity.alpha, "1", 1.5, 0, 100, .doc = "Monaghan's linear artificial viscosity.",
+INPUT_REAL(viscosity.alpha, viscosity.alpha, "1", 1.5, 0, 100, .flags = FIELD_DERIVED,
+           .doc = "Monaghan's linear artificial viscosity. Unless given it is 1.5, with method.reconstruction 3: less "
+                  "would ring behind shocks.",
            .source = "Monaghan 1992"),
-    INPUT_REAL(viscosity.beta, viscosity.beta, "1", 3, 0, 100, .doc = "Monaghan's quadratic artificial viscosity.",
+    INPUT_REAL(viscosity.beta, viscosity.beta, "1", 3, 0, 100, .flags = FIELD_DERIVED,
+               .doc = "Monaghan's quadratic artificial viscosity. Unless given it is 3, with method.reconstruction 6.",
                .source = "Monaghan 1992"),
 #endif

@@ -34,7 +34,7 @@ enum { PAD = 7 }; /* neighbours.c reads so many elements beyond the end */
 /* A buffer of one piece's sums has a row for each of them, and one for the power. */
 enum {
   ROW = SPH_PIECE + 8, /* its length: at multiples of 4 kB all rows would compete for the same lines of the cache */
-  BUFFER = (SUM_ALL + 1) * ROW,
+  BUFFER = (SUM_ALL + 1 + FOUND_ALL) * ROW,
 };
 
 struct sph_pairs {
@@ -401,6 +401,9 @@ static struct sph_pair_sums sums_in(const struct sph_pairs *p, double *buffer) {
 #define PAIR_SUMS(term, member, count, scale_)                                                                         \
   for (size_t k = 0; k < (count) && p->shape.term; k++)                                                                \
     s.member[k] = buffer + (sph_pair_shape_sums(p->shape, PAIR_TERM_##term) + k) * ROW;
+#define PAIR_FOUND(term, member, count)                                                                                \
+  for (size_t k = 0; k < (count) && p->shape.term; k++)                                                                \
+    s.member[k] = buffer + (SUM_ALL + 1 + FOUND_##member + k) * ROW;
 #include "engine/sph/modules/declarations.h"
   return s;
 }

@@ -62,6 +62,7 @@ struct sph_pair_sums {
   double *power;
   /* Sums of terms, each for the column of its name; NULL where the term is off. */
 #define PAIR_SUMS(term, member, count, scale) double *member[count];
+#define PAIR_FOUND(term, member, count)       double *member[count];
 #include "engine/sph/modules/declarations.h"
   /* m/s: largest |mu_ij| = h |v.r|/(r^2 + 0.01 h^2) of approaching pairs, for the time step. -1 without neighbours:
    * such a particle does not limit the step. */
@@ -199,6 +200,10 @@ enum {
 #define PAIR_SUMS(term, member, count, scale) SUM_BEFORE_##term, SUM_END_##term = SUM_BEFORE_##term + (count)-1,
 #include "engine/sph/modules/declarations.h"
   SUM_ALL,
+  FOUND_END = -1,
+#define PAIR_FOUND(term, member, count) FOUND_##member, FOUND_END_##member = FOUND_##member + (count)-1,
+#include "engine/sph/modules/declarations.h"
+  FOUND_ALL,
   MADE_END = -1,
 #define PAIR_MADE(term, count) MADE_##term, MADE_END_##term = MADE_##term + (count)-1,
 #include "engine/sph/modules/declarations.h"

@@ -121,7 +121,8 @@ INLINE void pair_motion(const struct sph_pair_constants *k, const struct pair_me
   const vec approach = vec_max(p->closing, zero);
   const vec mu_per = SINGLE ? approach * p->per_softened : p->h * approach * p->per_softened;
   p->mu = mu_per * p->densities;
-  TYPED(viscosity_pair)(k, me, its, mu_per, p);
+  TYPED(viscosity_pair)(k, me, its, mu_per, p->mu, p);
+  p->share[0] = p->share[1] = zero + 1;
 }
 
 /* The force of the whole stress. `more`: the neighbours' columns of terms. */
@@ -130,7 +131,7 @@ INLINE void pair_stress(const struct sph_pair_constants *k, const struct pair_me
   vec t[3][3];
   FOR_AXES(a) {
     FOR_AXES(b)
-      t[a][b] = me->record[PAIR_XX + SYMMETRIC(a, b)] + its[PAIR_XX + SYMMETRIC(a, b)];
+      t[a][b] = p->share[0] * me->record[PAIR_XX + SYMMETRIC(a, b)] + p->share[1] * its[PAIR_XX + SYMMETRIC(a, b)];
   }
 #define PART(term) const size_t at = sph_pair_shape_first(shape, PAIR_TERM_##term)
 #define PAIR_STRESS(term)                                                                                              \
@@ -185,7 +186,7 @@ INLINE void pair_add(const struct pair_batch *p, vec mass, vec volume, vec cooli
   }
   ADD(SUM_HEATING, WEIGHTED(mass, cooling));
   FOR_AXES(a)
-    w[a] = WEIGHTED(volume, p->w[a]);
+    w[a] = WEIGHTED(volume, p->w[a]) * p->share[own ? 0 : 1];
   FOR_AXES(a) {
     FOR_AXES(b)
       ADD(SUM_GRADIENT + 3 * a + b, p->u[a] * w[b]);
@@ -228,6 +229,13 @@ INLINE void pair_forces(const struct sph_pair_constants *k, const struct pair_me
   for (size_t column = PAIR_BASE; column < PAIR_MOST; column += LANES)
     if (pair_columns_used(shape, column))
       record_fetch(in, stride, column, slot, more + (column - PAIR_BASE));
+#define PAIR_BEFORE(term)                                                                                              \
+  if (shape.term) {                                                                                                    \
+    PART(term);                                                                                                        \
+    FOR_MEMBERS(m)                                                                                                     \
+      TYPED(term##_before)(k, &me[m], its, me[m].record + at, more + (at - PAIR_BASE), &p[m]);                         \
+  }
+#include "engine/sph/modules/declarations.h"
   if (whole) {
     FOR_MEMBERS(m)
       pair_stress(k, &me[m], its, more, shape, &p[m]);

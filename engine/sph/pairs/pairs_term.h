@@ -9,6 +9,8 @@
  *                 before the pass: arrays of the particles first .. last - 1 that follow from the fields
  *   PAIR_PACK     void TYPED(NAME_pack)(source, first, which, base[], own[])
  *                 columns of the record: `own` are the term's, `base` those of every record, which it may change
+ *   PAIR_BEFORE   void TYPED(NAME_before)(k, me, base, mine, its, p)
+ *                 changes what the force is made of: p->share, p->viscous
  *   PAIR_STRESS   void TYPED(NAME_stress)(k, me, mine, its, p, t)
  *                 sets elements of t, the sum of both partners' stress over density squared
  *   PAIR_STRESS_ADDED   vec TYPED(NAME_stress_added)(k, me, mine, its, p, t)
@@ -103,6 +105,7 @@ struct pair_batch {
   vec per_softened;         /* 1/((rho_i + rho_j)(r^2 + 0.01 h^2)); in float times h */
   vec slope, w[3];          /* W'/r, grad W; zero beyond the support */
   vec closing, mu, viscous; /* -r.v, positive when they approach; |mu_ij|; Pi_ij */
+  vec share[2];             /* of the pair in the member's sums and by its stress; in the neighbour's; 1 */
   vec force[3];
   vec work[PAIR_TERMS]; /* power that terms take from the motion */
   vec_mask near, inner; /* within the support; within h */

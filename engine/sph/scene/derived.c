@@ -20,6 +20,10 @@ bool sph_derived_cracks(const struct sph_body_inputs *b) {
   return b->fracture == SPH_FRACTURE_ON || known;
 }
 
+bool sph_derived_scene_cracks(const struct sph_inputs *in) {
+  return sph_derived_cracks(&in->target) || (sph_derived_has_projectile(in) && sph_derived_cracks(&in->projectile));
+}
+
 struct sph_body_physics sph_derived_physics(const struct sph_body_inputs *b, const struct sph_flaws *flaws) {
   struct sph_body_physics physics = {.material = b->material, .strength = b->strength, .flaws = flaws};
   if (field_is_off(b->material.yield.stress))

@@ -13,6 +13,7 @@ int sph_derived_bodies(const struct sph_inputs *inputs);
 bool sph_derived_has_intruder(const struct sph_inputs *inputs);
 /* Does the body crack? With fracture: auto it does if the material has Weibull's m and k. */
 bool sph_derived_cracks(const struct sph_body_inputs *body);
+bool sph_derived_scene_cracks(const struct sph_inputs *inputs); /* does one of its bodies? */
 /* The physics of a body for the moving system. */
 struct sph_body_physics sph_derived_physics(const struct sph_body_inputs *body, const struct sph_flaws *flaws);
 double sph_derived_density(const struct sph_body_inputs *body);       /* kg/m^3, bulk */

@@ -281,10 +281,10 @@ static status check_bodies(const struct sph_inputs *in, struct error *error) {
 }
 
 static status check_cracks(const struct sph_inputs *in, struct error *error) {
-  const bool cracks = sph_derived_cracks(&in->target) ||
-                      (sph_derived_has_projectile(in) && sph_derived_cracks(&in->projectile));
-  if (cracks && in->artificial_stress.epsilon > 0)
+  if (sph_derived_scene_cracks(in) && in->artificial_stress.epsilon > 0)
     REFUSE("method.artificial_stress would hold cracks together: set it to 0, or target.fracture: off");
+  if (in->artificial_stress.epsilon > 0 && (in->crack_surfaces.on || in->reconstruction.on))
+    REFUSE("method.artificial_stress cannot be used with method.crack_surfaces or method.reconstruction: set it to 0");
   if (!(in->crack_cell.width > 0))
     return STATUS_OK;
   if (in->crack_front.front == SPH_CRACK_FRONT_PLANE)

@@ -95,6 +95,9 @@ void sph_inputs_complete(void *inputs, const bool *given) {
   COMPLETE(fidelity.fine_spacing, 0.5 * spacing);
   COMPLETE(fidelity.fine_radius, 4 * in->fidelity.fine_spacing);
   COMPLETE(gradient_correction.on, can_turn(in));
+  const double viscous = in->reconstruction.on && in->gradient_correction.on ? 2 : 1;
+  COMPLETE(viscosity.alpha, 1.5 * viscous);
+  COMPLETE(viscosity.beta, 3 * viscous);
   COMPLETE(contact.rule, sph_derived_approach(in) < SPH_DERIVED_SLOW ? SPH_CONTACT_OVERLAP : SPH_CONTACT_WELDED);
   COMPLETE(impact.gap, sph_derived_fine_spacing(in));
   COMPLETE(collision.gap, 2 * spacing);

@@ -264,6 +264,7 @@ static void after_pairs(void *context, size_t first, size_t count, const struct 
 #define PAIR_SUMS(term, member, number, scale)                                                                         \
   for (size_t m = 0; m < (number) && sums->member[m]; m++)                                                             \
     memcpy(((double *const *)(const void *)&s->c.member)[m] + first, sums->member[m], count * sizeof(double));
+#define PAIR_FOUND(term, member, number) PAIR_SUMS(term, member, number, 1)
 #include "engine/sph/modules/declarations.h"
   for (size_t k = first_block(s, first); k < s->block_count && s->block[k].low < first + count; k++) {
     struct sph_block *block = &s->block[k];
