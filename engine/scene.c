@@ -476,7 +476,7 @@ static void leave_custom(struct scene *scene, const struct field *row, const str
 
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
-  const struct field *row = field_find(table, path, error);
+  const struct field *row = field_find_in(table, path, scene->inputs, error);
   if (!row)
     return STATUS_CONTENT;
   struct field_value taken = *value, before;
@@ -492,7 +492,7 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
 
 status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error) {
   struct field_value value;
-  const struct field *row = field_find(scene->kind->inputs, path, error);
+  const struct field *row = field_find_in(scene->kind->inputs, path, scene->inputs, error);
   if (!row)
     return STATUS_CONTENT;
   TRY(field_parse(row, text, &value, error));

@@ -105,6 +105,30 @@ const struct field *field_find(const struct field_table *table, const char *path
   return NULL;
 }
 
+const struct field *field_ending(const struct field_table *table, const char *suffix, const struct field *after) {
+  for (size_t i = after ? (size_t)(after - table->rows) + 1 : 0; i < table->count; i++)
+    if (ends_with(table->rows[i].path, suffix))
+      return &table->rows[i];
+  return NULL;
+}
+
+const struct field *field_find_in(const struct field_table *table, const char *path, const void *object,
+                                  struct error *error) {
+  const struct field *found = field_find(table, path, error);
+  if (found)
+    return found;
+  size_t candidates = 0;
+  for (const struct field *row = NULL; (row = field_ending(table, path, row));) {
+    struct field_value value;
+    field_get(row, object, &value);
+    if (!field_is_active(table, row, object) || (row->kind == FIELD_REAL && field_is_off(value.number)))
+      continue;
+    found = row;
+    candidates++;
+  }
+  return candidates == 1 ? found : NULL;
+}
+
 /* ---- values ---- */
 static const void *seat(const struct field *row, const void *object) {
   return (const char *)object + row->offset;

@@ -147,6 +147,12 @@ void field_label_unit(const char *unit, char *text, size_t size);
 void field_defaults(const struct field_table *table, void *object);
 /* The row that decides whether this one is active; NULL when it has no condition, or a condition on an unknown row. */
 const struct field *field_controller(const struct field_table *table, const struct field *row);
+/* The next row behind `after` (NULL: the first one) whose path ends with the whole words of `suffix`; NULL: none. */
+const struct field *field_ending(const struct field_table *table, const char *suffix, const struct field *after);
+/* field_find() of an object's input: where several paths end like this, the only one that has an effect in the object.
+ */
+const struct field *field_find_in(const struct field_table *table, const char *path, const void *object,
+                                  struct error *error);
 bool field_is_active(const struct field_table *table, const struct field *row, const void *object);
 /* The first row with an unmet condition, from this row up through its controlling rows; *other is the row in that
  * condition. NULL when the row is active. The rows of a circular chain are inactive. */

@@ -174,18 +174,26 @@ int json_schema_required(const struct field_table *table, FILE *out) {
 
 static void properties(const struct field_table *table, const char *prefix, size_t length, int indent, FILE *out);
 
-/* A section with a choice `name` may be a word or a file instead (engine/scene.c). */
-static bool is_named(const struct field_table *table, const char *path, size_t whole) {
-  for (size_t i = 0; i < table->count; i++)
-    if (same_start(table->rows[i].path, path, whole) && strcmp(table->rows[i].path + whole, "name") == 0)
-      return table->rows[i].kind == FIELD_CHOICE;
-  return false;
+/* A section with a choice `name` may be a word or a file instead (engine/scene.c), one with a number `per_point` that
+ * number (campaign/document). */
+static const char *form_of(const struct field_table *table, const char *path, size_t whole) {
+  for (size_t i = 0; i < table->count; i++) {
+    const char *const rest = table->rows[i].path + whole;
+    if (!same_start(table->rows[i].path, path, whole))
+      continue;
+    if (strcmp(rest, "name") == 0 && table->rows[i].kind == FIELD_CHOICE)
+      return "[\"object\", \"string\"]";
+    if (strcmp(rest, "per_point") == 0)
+      return "[\"object\", \"integer\"], \"minimum\": 1";
+  }
+  return "\"object\"";
 }
 
 /* Writes the section whose path is the first `whole` bytes of `path`, including a dot at the end. */
 static void write_section(const struct field_table *table, const char *path, size_t whole, int indent, FILE *out) {
-  const bool named = is_named(table, path, whole);
-  fprintf(out, "\"type\": %s, \"additionalProperties\": false,", named ? "[\"object\", \"string\"]" : "\"object\"");
+  const char *const form = form_of(table, path, whole);
+  const bool named = strstr(form, "string");
+  fprintf(out, "\"type\": %s, \"additionalProperties\": false,", form);
   margin(indent, out);
   if (required(table, path, whole, NULL) > 0) {
     fputs("\"required\": [", out);

@@ -183,6 +183,10 @@ static status change(struct document *document, const struct campaign_changes *c
 
 static status from_document(struct document *document, const struct campaign_changes *changes, const char *folder,
                             bool stored, struct campaign **out, struct error *error) {
+  document_node *seeds = document_key(document_root(document), "seeds");
+  const char *number = seeds ? document_scalar(seeds) : NULL;
+  if (number && *number && !document_graft_word(seeds, "per_point", number)) /* `seeds: 4` */
+    return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
   if (changes)
     TRY(change(document, changes, error));
   struct campaign *campaign = memory_small(1, sizeof *campaign);

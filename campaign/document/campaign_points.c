@@ -69,7 +69,7 @@ static bool add_column(struct reading *r, size_t column) {
                  "column %zu has no name; write the file without row names (R: row.names = FALSE, pandas: index=False)",
                  column + 1);
   const char *unit = r->units[column] = csv_take_unit(name);
-  const struct field *row = field_find(campaign->scene->kind->inputs, name, &error);
+  const struct field *row = field_find_in(campaign->scene->kind->inputs, name, campaign->scene->inputs, &error);
   if (!row)
     return wrong(r, "%s", error.message);
   if (row->flags & FIELD_FILE)

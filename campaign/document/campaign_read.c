@@ -21,7 +21,7 @@ static const struct field *read_set_value(document_node *node, const char *key, 
     document_report(node, path, "expected one value; several values belong in `vary`");
     return NULL;
   }
-  const struct field *row = field_find(scene->kind->inputs, key, &error);
+  const struct field *row = field_find_in(scene->kind->inputs, key, scene->inputs, &error);
   if (row && campaign_axis(campaign, row))
     document_report(node, path, "%s", varied);
   else if (!row || (document_value(node, row, &value) && scene_set(scene, row->path, &value, &error) != STATUS_OK))

@@ -196,7 +196,8 @@ static bool read_linked(struct reading *r, document_node *node) {
   struct design_axis *axis = r->axis;
   const struct campaign *campaign = r->campaign;
   const char *name = document_scalar(node);
-  const struct field *row = name ? field_find(campaign->scene->kind->inputs, name, &error) : NULL;
+  const struct field *row = name ? field_find_in(campaign->scene->kind->inputs, name, campaign->scene->inputs, &error)
+                                 : NULL;
   if (!row)
     return wrong(r, node, name ? error.message : "expected the path of the varied input that this one follows");
   const struct design_axis *other = campaign_axis(campaign, row);
@@ -332,7 +333,8 @@ static bool begin_axis(struct reading *readings, size_t index, document_node *va
   r->campaign = campaign;
   r->axis = &campaign->axes[index];
   snprintf(r->path, sizeof r->path, "vary.%.300s", key ? key : "");
-  const struct field *row = key ? field_find(campaign->scene->kind->inputs, key, &error) : NULL;
+  const struct field *row = key ? field_find_in(campaign->scene->kind->inputs, key, campaign->scene->inputs, &error)
+                                : NULL;
   if (!row)
     return wrong(r, NULL, key ? error.message : "expected a path");
   const struct design_axis *same = campaign_axis(campaign, row);
