@@ -86,6 +86,10 @@ case "${1:-}" in
   build)
     install_missing $packages $page_packages
     build release
+    if grep -q "^npm ci failed" build/release/build.log; then
+      say "the program is built, but not the page of clast report: $(grep -m1 "^npm ci failed" build/release/build.log)" >&2
+      exit 69
+    fi
     ;;
   deb) # a build folder of its own: build/ may have come along from a machine with other paths
     [ -n "${2:-}" ] || usage 64 >&2
@@ -104,6 +108,14 @@ case "${1:-}" in
     build release clast
     say "build/release/clast run campaign/examples/demo.yaml"
     build/release/clast run campaign/examples/demo.yaml
+    say "the program is $PWD/build/release/clast, the results are in demo.db; go on with"
+    cat <<'END'
+  export PATH=$PWD/build/release:$PATH
+  clast estimates demo.db                           # the table again
+  clast map demo.db map.png -x strain -y angle      # M_1/M over both thresholds
+  clast simulate disc-explosion --picture disc.png  # one run, drawn
+  ./setup.sh build && clast report demo.db          # a page for a browser; installs what the page needs
+END
     ;;
   test)
     install_missing $packages $page_packages $test_packages
