@@ -83,8 +83,9 @@ struct engine_kind {
   /* Checks conditions across fields (a charge energy needs a disc...). STATUS_CONTENT with a remedy. */
   status (*check)(const void *inputs, struct error *error);
   const struct condition *conditions; /* under which results are valid (engine/condition.h); NULL: none are known */
-  /* What is modelled and why, memory, expected cost: text for `clast explain scene` and `plan`. malloc'd. */
-  char *(*describe)(const void *inputs);
+  /* What is modelled, memory, expected cost: text for `clast explain scene` and `plan`. `all`: also why, with sources.
+   * malloc'd. */
+  char *(*describe)(const void *inputs, bool all);
   size_t (*memory)(const void *inputs); /* bytes a run will need, before anything is allocated */
   double (*work)(const void *inputs); /* a-priori cost in arbitrary units (grain- or particle-steps), for scheduling */
   int64_t *(*threads)(void *inputs);  /* the input that says how many threads one run takes. NULL: always one */

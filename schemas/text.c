@@ -197,6 +197,16 @@ void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *o
   fputc('\n', out);
 }
 
+void text_wrap_lines(const char *text, size_t width, FILE *out) {
+  char line[4096];
+  for (; *text; text += *text == '\n') {
+    const size_t length = strcspn(text, "\n");
+    snprintf(line, sizeof line, "%.*s", (int)length, text);
+    text_wrap(line, 0, strspn(line, " "), width, out);
+    text += length;
+  }
+}
+
 bool text_has_word(const char *words, const char *word) {
   const size_t length = strlen(word);
   for (const char *at = words; *at; at += strcspn(at, " "), at += *at == ' ')

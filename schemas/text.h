@@ -65,6 +65,9 @@ char *text_close(FILE *out, char **text);
  * cursor is at column `at`, which is at most `indent`. */
 void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *out);
 
+/* Wraps each line of a text by itself; a line that begins with blanks keeps them. */
+void text_wrap_lines(const char *text, size_t width, FILE *out);
+
 /* FNV-1a, 64 bits (http://www.isthe.com/chongo/tech/comp/fnv/): the hash of `size` bytes that follow those of `hash`;
  * TEXT_HASH_START before the first byte. "a" gives af63dc4c8601ec8c. */
 #define TEXT_HASH_START UINT64_C(0xcbf29ce484222325)

@@ -234,8 +234,8 @@ function commandOf() {
   const quantity = state.quantity === 'beta' ? 'beta' : state.quantity;
   const from = shellFile(store().name);
   if (!state.x) return `clast stats ${from} --quantity ${quantity}`;
-  if (state.y) return `clast map ${from} map.png -x ${state.x} -y ${state.y} -q ${quantity}`;
-  return `clast plot ${from} plot.png -x ${state.x} -q ${quantity}`;
+  if (state.y) return `clast map ${from} map.png -x ${state.x} -y ${state.y} -Q ${quantity}`;
+  return `clast plot ${from} plot.png -x ${state.x} -Q ${quantity}`;
 }
 
 const WHAT_ERRORS = 'The ± is the half width of the 95 % interval over seeds. It does not hold the error of the resolution';

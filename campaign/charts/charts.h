@@ -52,7 +52,7 @@ void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size);
                   .doc = "Varied input on the horizontal axis: a path or its unique ending.")
 #define QUANTITY_OPTION(type_, member_)                                                                                \
   OPTION_ROW_TEXT(                                                                                                     \
-      "quantity", 'q', "NAME", type_, member_, OUTCOME_DEFAULT,                                                        \
+      "quantity", 'Q', "NAME", type_, member_, OUTCOME_DEFAULT,                                                        \
       .doc = "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a "         \
              "point: beta, or beta_METHOD_WINDOW (beta_masses_from_2).")
 

@@ -38,7 +38,7 @@ static status run(const struct command_line *line, struct error *error) {
     print(table, &row, &doubts);
   TRY(ask_pairs_end(pairs, error));
   TRY(table_end(table, error));
-  if (line->format == TABLE_TEXT) {
+  if (table_for_people(line->format)) {
     uncertainty_doubts(&doubts, stderr);
     fprintf(stderr,
             "clast: %s: b less a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "
@@ -49,7 +49,7 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
+    OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
 };
 
 COMMAND(compare, "results", "A B", COMMAND_OPTIONS(struct options, rows), .has_table = true, .run = run);

@@ -32,7 +32,7 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     OPTION_ROW_LIST("knob", 'k', "NAMES", struct options, request.knobs),
-    OPTION_ROW_TEXT("quantity", 'q', "NAMES", struct options, request.quantity, NULL),
+    OPTION_ROW_TEXT("quantity", 'Q', "NAMES", struct options, request.quantity, NULL),
     SCENE_OPTION_SET(struct options, request.set),
     OPTION_ROW_TEXT("within", 0, "WIDTH", struct options, request.within, "5 %"),
     OPTION_ROW_TEXT("seconds", 0, "S", struct options, request.seconds, NULL),

@@ -11,7 +11,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct ask_points_choice choice = {.campaign = options->campaign, .point = options->point};
   TRY(ask_points_known(store, options->point, error));
   TRY(print_estimates(store, &choice, line->format, stdout, error));
-  if (line->format == TABLE_TEXT)
+  if (table_for_people(line->format))
     print_estimates_legend(store);
   return STATUS_OK;
 }

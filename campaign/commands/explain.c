@@ -1,9 +1,13 @@
 /* `clast explain [PATH|WORD|SCENE]`: every path that has a row (of engines, the outcome, estimates and campaigns), the
  * words of the glossary, the columns of the store, and the model of a scene with its cost and its active inputs. */
+#include <math.h>
+
 #include "analysis/statistics/statistics.h"
 #include "campaign/commands/commands.h"
 #include "db/store/schema.h"
 #include "schemas/file.h"
+
+enum { WIDTH = 100 }; /* of lines, characters */
 
 struct options {
   struct option_list set;
@@ -92,8 +96,8 @@ static void explain_rests_on(const struct engine_kind *kind, const char *path) {
     putchar('\n');
 }
 
-/* Prints the meaning of a word of clast or a column of the store. False: it is neither. */
-static bool explain_word(const char *word) {
+/* Prints the meaning of a word of the glossary. */
+static bool explain_glossary(const char *word) {
   char words[WORDS], meaning[1024];
   for (const char *text = glossary_text; read_entry(&text, words, meaning);) {
     if (!text_has_word(words, word))
@@ -102,6 +106,11 @@ static bool explain_word(const char *word) {
     text_wrap(meaning, 0, 4, 96, stdout);
     return true;
   }
+  return false;
+}
+
+/* Prints the meaning of a condition or a column of the store. False: it is neither. */
+static bool explain_word(const char *word) {
   return explain_exponent(word) || explain_conditions(word) || explain_column(word);
 }
 
@@ -187,12 +196,19 @@ static size_t explain_rows(const char *path, struct text_guess *guess) {
   for (size_t i = 0; i < count; i++) {
     struct error missed = {.status = STATUS_OK};
     const struct field *row = field_find(list[i], path, &missed);
-    if (!row && !has_prefix(list[i], path)) {
+    const bool section = has_prefix(list[i], path);
+    const struct field *first = row || section ? NULL : field_ending(list[i], path, NULL);
+    if (!row && !section && !first) {
       field_guess(list[i], guess);
       continue;
     }
     printf("%s%s: %s\n", found++ ? "\n" : "", list[i]->name, list[i]->doc);
-    field_explain(list[i], row ? row->path : path, stdout);
+    if (row || first)
+      field_explain(list[i], row ? row->path : first->path, stdout);
+    if (section)
+      field_explain(list[i], path, stdout);
+    for (const struct field *next = first; next && (next = field_ending(list[i], path, next));)
+      printf("%s: the same of another body or law\n", next->path);
   }
   return found;
 }
@@ -248,6 +264,11 @@ static bool explain_whole(const char *word) {
 static status explain_path(const char *path, struct error *error) {
   struct text_guess guess = text_guess(path);
   const struct campaign_key *key = campaign_keys_find(path);
+  const bool word = explain_glossary(path);
+  if (word && (strchr(path, '/') || explain_whole(path)))
+    return STATUS_OK;
+  if (word)
+    putchar('\n');
   if (explain_rows(path, &guess)) {
     if (strcmp(path, OUTCOME_NAME(warnings)) == 0 && putchar('\n'))
       explain_conditions(NULL);
@@ -263,7 +284,7 @@ static status explain_path(const char *path, struct error *error) {
   }
   char plain[256];
   const char *said = NULL, *result = result_of(path, plain, &said);
-  if (explain_whole(path) || explain_word(path))
+  if (explain_whole(path) || explain_word(path) || word)
     return STATUS_OK;
   if (strcmp(result, path) != 0 && explain_rows(result, &guess)) {
     printf("%s: %s%s\n", path, said ? said : "its name in a store with runs of two engines",
@@ -272,8 +293,8 @@ static status explain_path(const char *path, struct error *error) {
   }
   for (size_t i = 0; i < campaign_keys_count; i++)
     text_guess_offer(&guess, campaign_keys[i].name);
-  char word[WORDS];
-  guess_word(&guess, word);
+  char near[WORDS];
+  guess_word(&guess, near);
   const char *nearest = guess.nearest;
   return status_fail(error, STATUS_CONTENT,
                      "nothing is called \"%.128s\"%s%s%s `clast explain` lists all paths, `clast scenes` all scenes",
@@ -317,32 +338,47 @@ static status explain_path_list(enum table_format format, struct error *error) {
 
 /* ---- scenes ---- */
 
-static void print_inputs(const struct scene *scene, FILE *out) {
-  const struct field_table *inputs = scene->kind->inputs;
-  int widest = 0;
-  for (size_t i = 0; i < inputs->count; i++) {
-    const int length = (int)strlen(inputs->rows[i].path);
-    if (length > widest && field_is_active(inputs, &inputs->rows[i], scene->inputs))
-      widest = length;
-  }
-  for (size_t i = 0; i < inputs->count; i++) {
-    const struct field *row = &inputs->rows[i];
-    if (!field_is_active(inputs, row, scene->inputs))
-      continue;
-    struct field_value value;
-    char text[FIELD_TEXT_SIZE], doc[FIELD_TEXT_SIZE];
-    field_get(row, scene->inputs, &value);
-    if (row->kind == FIELD_REAL && !field_is_off(value.number)) /* six digits are enough for people */
-      snprintf(text, sizeof text, "%.6g%s%s", value.number, strcmp(row->unit, "1") == 0 ? "" : " ",
-               strcmp(row->unit, "1") == 0 ? "" : row->unit);
-    else
-      field_print(row, &value, text, sizeof text);
-    text_sentence(row->doc, doc, sizeof doc);
-    fprintf(out, "  %-*s  %-20s %s\n", widest, row->path, text, doc);
-  }
+/* A value with its unit, as people write it: six digits, and angles in degrees. */
+static void shown_value(const struct field *row, const void *inputs, char text[FIELD_TEXT_SIZE]) {
+  struct field_value value;
+  field_get(row, inputs, &value);
+  const bool angle = row->unit && strcmp(row->unit, "rad") == 0, pure = !row->unit || strcmp(row->unit, "1") == 0;
+  if (row->kind == FIELD_REAL && !field_is_off(value.number))
+    snprintf(text, FIELD_TEXT_SIZE, "%.6g%s%s", angle ? value.number * 180 / M_PI : value.number, pure ? "" : " ",
+             pure    ? ""
+             : angle ? "deg"
+                     : row->unit);
+  else
+    field_print(row, &value, text, FIELD_TEXT_SIZE);
 }
 
-/* The same for programs. */
+/* The active inputs; unless `all`, those that the scene gives. */
+static status print_inputs(const struct scene *scene, bool all, struct error *error) {
+  const struct field_table *inputs = scene->kind->inputs;
+  TABLE table = table_new(TABLE_ALL, stdout);
+  table_columns(table, (const char *const[]){"input", "value", "meaning", NULL});
+  size_t others = 0;
+  for (size_t i = 0; i < inputs->count; i++) {
+    const struct field *row = &inputs->rows[i];
+    char text[FIELD_TEXT_SIZE], doc[FIELD_TEXT_SIZE];
+    if (!field_is_active(inputs, row, scene->inputs))
+      continue;
+    others += !all && !scene->given[i];
+    if (!all && !scene->given[i])
+      continue;
+    shown_value(row, scene->inputs, text);
+    text_sentence(row->doc, doc, sizeof doc);
+    table_text(table, row->path);
+    table_text(table, text);
+    table_text(table, doc);
+  }
+  TRY(table_end(table, error));
+  if (others)
+    printf("%zu other inputs have defaults; --all lists them, and says what is modelled and why\n", others);
+  return STATUS_OK;
+}
+
+/* All active inputs for programs. */
 static status list_inputs(const struct scene *scene, enum table_format format, struct error *error) {
   const struct field_table *inputs = scene->kind->inputs;
   TABLE table = table_new(format, stdout);
@@ -371,14 +407,24 @@ static void list_settings(const struct scene *scene) {
 
 /* Prints on stdout; for programs only the inputs. */
 static status explain_scene(const struct scene *scene, enum table_format format, struct error *error) {
-  if (format != TABLE_TEXT)
+  if (!table_for_people(format))
     return list_inputs(scene, format, error);
-  OWNED char *description = scene->kind->describe(scene->inputs);
-  if (!description)
+  const bool all = format == TABLE_ALL;
+  OWNED char *description = scene->kind->describe(scene->inputs, all);
+  OWNED char *doubts = NULL;
+  size_t size;
+  FILE *doubt = text_open(&doubts, &size);
+  if (doubt)
+    fputs("in doubt: ", doubt);
+  if (doubt && !condition_before(scene->kind->conditions, scene->inputs, doubt))
+    fputs("nothing that the inputs alone tell\n", doubt);
+  if (!description || !doubt || !text_close(doubt, &doubts))
     return status_fail(error, STATUS_MEMORY, "out of memory");
-  printf("%s, engine %s\n\n%s%s\ninputs:\n", scene->name, scene->kind->name, description,
-         *description && description[strlen(description) - 1] == '\n' ? "" : "\n");
-  print_inputs(scene, stdout);
+  printf("%s, engine %s\n", scene->name, scene->kind->name);
+  text_wrap_lines(description, WIDTH, stdout);
+  text_wrap_lines(doubts, WIDTH, stdout);
+  putchar('\n');
+  TRY(print_inputs(scene, all, error));
   if (scene->settings_count > 0)
     puts("\nnamed settings (campaign/accuracy.md):");
   list_settings(scene);
@@ -393,7 +439,11 @@ static status run(const struct command_line *line, struct error *error) {
     return explain_path_list(line->format, error);
 
   const char *name = line->arguments[0];
-  const bool is_scene = file_name_is_document(name) || strchr(name, '@') || scene_builtin_text(name) ||
+  char words[WORDS], meaning[1024];
+  bool is_word = false;
+  for (const char *text = glossary_text; !is_word && read_entry(&text, words, meaning);)
+    is_word = text_has_word(words, name);
+  const bool is_scene = (!is_word && file_name_is_document(name)) || strchr(name, '@') || scene_builtin_text(name) ||
                         options->set.count;
   if (!is_scene) {
     TRY(table_text_only(line->format, "the explanation of a path", error));

@@ -49,9 +49,13 @@ static status ask(struct store *store, const struct command_line *line, struct e
   table_column(table, "point_id", NULL);
   table_column(table, "from", "kg");
   table_column(table, OUTCOME_NAME(complete_mass), "kg");
-  table_columns(table,
-                (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "N(>m)", "F(L)", "N(>L)", "N(>L)_hw95",
-                                      "distance", "p", "cutoff_p", "open_cutoff_p", "lognormal_p", NULL});
+  table_rare(table);
+  table_columns(table, (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "N(>m)", "F(L)", "N(>L)",
+                                             "N(>L)_hw95", "distance", NULL});
+  table_rare(table);
+  table_columns(table, (const char *const[]){"p", "cutoff_p", "open_cutoff_p", NULL});
+  table_rare(table);
+  table_column(table, "lognormal_p", NULL);
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
   ASK_POOLS pools = ask_pools(store, &choice, NULL, error);
@@ -61,7 +65,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));
-  if (line->format == TABLE_TEXT) {
+  if (table_for_people(line->format)) {
     uncertainty_doubts(&doubts, stderr);
     fputs("clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete mass. "
           "p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better\n",

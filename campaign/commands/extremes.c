@@ -10,18 +10,18 @@ struct options {
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  const bool both = line->format == TABLE_TEXT; /* programs get one table */
+  const bool both = table_for_people(line->format); /* programs get one table */
   if (both || !options->why)
-    TRY(table_answer(ask_campaign_extremes(store, error), false, line->format, stdout));
+    TRY(table_answer(ask_campaign_extremes(store, error), true, line->format, stdout));
   if (both)
     putchar('\n');
   if (both || options->why)
-    TRY(table_answer(ask_campaign_reasons(store, error), false, line->format, stdout));
+    TRY(table_answer(ask_campaign_reasons(store, error), true, line->format, stdout));
   return options->picture ? charts_extremes(store, options->picture, PICTURE_WIDTH, error) : STATUS_OK;
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 'p', "FILE.png", struct options, picture),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture),
     OPTION_ROW_FLAG("why", 0, struct options, why),
 };
 

@@ -18,7 +18,7 @@ status plan_campaign(const char *path, const struct campaign_option *changes, co
   OWNED char *alternatives = NULL;
   TRY(option_load_campaign(path, changes, &campaign, error));
   struct plan plan;
-  struct plan_options options = {.store_path = store, .no_trial = no_trial, .slots = (int)slots};
+  struct plan_options options = {.store_path = store, .no_trial = no_trial, .slots = (int)slots, .all = json};
   if (slots == 0) {
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     options.slots = cores > 0 ? (int)cores : 1;

@@ -37,21 +37,21 @@ static status ask(struct store *store, const struct command_line *line, struct e
   TRY(ask_register_functions(store, error));
   return table_answer(answer_to_user(store, canned ? canned->sql : line->arguments[1], options->with.count,
                                      parameters.all, (double)options->seconds, error),
-                      false, line->format, stdout);
+                      canned != NULL, line->format, stdout);
 }
 
 /* Lists the canned queries: name, parameters and meaning; for programs also the SQL. */
 static status print_canned(enum table_format format, struct error *error) {
   TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"name", "with", "answers", NULL});
-  if (format != TABLE_TEXT)
+  if (!table_for_people(format))
     table_column(table, "sql", NULL);
   for (size_t i = 0; i < ask_canned_count(); i++) {
     const struct query_canned *canned = ask_canned_at(i);
     table_text(table, canned->name);
     table_text(table, canned->parameters);
     table_text(table, canned->doc);
-    if (format != TABLE_TEXT)
+    if (!table_for_people(format))
       table_text(table, canned->sql);
   }
   return table_end(table, error);
@@ -71,7 +71,7 @@ static status run(const struct command_line *line, struct error *error) {
 static const struct option_row rows_of_options[] = {
     OPTION_ROW_FLAG("list", 'l', struct options, list),
     OPTION_ROW_TEXT("named", 'n', "NAME", struct options, named, NULL),
-    OPTION_ROW_LIST("with", 'w', "NAME=VALUE", struct options, with),
+    OPTION_ROW_LIST("with", 0, "NAME=VALUE", struct options, with),
     OPTION_ROW_INTEGER("seconds", 0, "S", struct options, seconds, 0, 1000000, "0"),
 };
 

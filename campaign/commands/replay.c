@@ -14,7 +14,7 @@ static status print_differences(struct store *store, int64_t run_id, const struc
   TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"result", "stored", "recomputed", NULL});
   TRY(replay_compare(store, run_id, kind, result, table, comparison, error));
-  return format == TABLE_TEXT && comparison->different == 0 ? STATUS_OK : table_end(table, error);
+  return table_for_people(format) && comparison->different == 0 ? STATUS_OK : table_end(table, error);
 }
 
 /* Explains the result of the comparison to people. */

@@ -29,7 +29,7 @@ static const struct option_row rows[] = {
     CAMPAIGN_OPTION(struct options, campaign),
     LAUNCH_OPTIONS(struct options, launch),
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL),
-    OPTION_ROW_FLAG("dry-run", 'n', struct options, dry_run),
+    OPTION_ROW_FLAG("dry-run", 0, struct options, dry_run),
 };
 
 COMMAND(run, "running", "CAMPAIGN.yaml", .has_runs = true, .has_farm = true, COMMAND_OPTIONS(struct options, rows),

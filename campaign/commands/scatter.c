@@ -41,7 +41,7 @@ static const struct option_row option_rows[] = {
     COMMANDS_POINT(struct options, point),
     COMMANDS_WHERE(struct options, where),
     COMMANDS_BY(struct options, by),
-    OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
+    OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
     OPTION_ROW_TEXT("half-width", 0, "NUMBER", struct options, half_width, NULL),
     OPTION_ROW_FLAG("split", 0, struct options, split),
     OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture),

@@ -34,7 +34,7 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("design", 0, "KIND", struct options, design, NULL),
     OPTION_ROW_INTEGER("blocks", 0, "N", struct options, blocks, 2, 1 << 20, "64"),
     OPTION_ROW_INTEGER("seed", 0, "N", struct options, seed, 0, INT64_MAX, "1"),
-    OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
+    OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
 };
 
 COMMAND(sensitivity, "results", "STORE|CAMPAIGN.yaml NEW.yaml", COMMAND_OPTIONS(struct options, option_rows),

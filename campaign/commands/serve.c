@@ -88,10 +88,10 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_INTEGER("port", 'p', "N", struct options, port, 0, 65535, "4242"),
+    OPTION_ROW_INTEGER("port", 0, "N", struct options, port, 0, 65535, "4242"),
     OPTION_ROW_TEXT("listen", 0, "ADDRESS", struct options, address, "127.0.0.1"),
     OPTION_ROW_TEXT("token", 0, "FILE", struct options, token, NULL),
-    OPTION_ROW_TEXT("quantity", 'q', "NAMES", struct options, quantity, NULL),
+    OPTION_ROW_TEXT("quantity", 'Q', "NAMES", struct options, quantity, NULL),
     OPTION_ROW_TEXT("knob", 'k', "NAME[=VALUES]", struct options, knob, NULL),
     OPTION_ROW_INTEGER("wait", 0, "S", struct options, wait, 0, 1000000, "3600"),
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL),

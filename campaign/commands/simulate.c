@@ -42,7 +42,7 @@ static status run(const struct command_line *line, struct error *error) {
 static const struct option_row rows[] = {
     OPTION_ROW_INTEGER("seed", 0, "N", struct options, run.seed, 0, INT64_MAX, "1"),
     SCENE_OPTION_SET(struct options, set),
-    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 'p', "FILE.png", struct options, run.picture),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, run.picture),
     OPTION_ROW_OUTPUT(OPTION_OUTPUT, "fields", 0, "FILE.hdf", struct options, run.fields),
     OPTION_ROW_INTEGER("snapshots", 0, "N", struct options, run.snapshots, 0, 100000, "0"),
     OPTION_ROW_OUTPUT(OPTION_OUTPUT, "restart", 0, "FILE", struct options, run.restart),

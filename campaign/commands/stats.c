@@ -21,7 +21,7 @@ static status check(const struct command_line *line, struct error *error) {
       return status_fail(
           error, STATUS_USAGE,
           "%s: exponents are fitted to all runs of a point together, not averaged: `clast estimates %s` has them, "
-          "`clast plot` and `clast map` draw them with -q beta",
+          "`clast plot` and `clast map` draw them with -Q beta",
           name, line->arguments[0]);
   }
   return STATUS_OK;
@@ -48,7 +48,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   TRY(table_answer(ask_group(store, options->by, quantity, pooled, error), true, line->format, stdout));
   if (*pooled)
     fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
-  if (line->format == TABLE_TEXT) {
+  if (table_for_people(line->format)) {
     TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, options->quantity, error));
     quantity_tell_resolutions(store, options->quantity, pooled);
   }
@@ -57,7 +57,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
 
 static const struct option_row rows_of_options[] = {
     OPTION_ROW_TEXT("by", 'b', "AXES", struct options, by, ""),
-    OPTION_ROW_TEXT("quantity", 'q', "NAMES", struct options, quantity, OUTCOME_DEFAULT),
+    OPTION_ROW_TEXT("quantity", 'Q', "NAMES", struct options, quantity, OUTCOME_DEFAULT),
 };
 
 COMMAND(stats, "results", "STORE", COMMAND_OPTIONS(struct options, rows_of_options), .has_table = true, .check = check,

@@ -317,7 +317,7 @@ status study_print(const struct study *study, enum table_format format, bool qui
   STORE store = NULL;
   TRY(store_open_reader(study->limits.store, &store, error));
   struct printing printing = {.study = study, .store = store};
-  TABLE table = format == TABLE_TEXT ? NULL : table_new(format, stdout);
+  TABLE table = table_for_people(format) ? NULL : table_new(format, stdout);
   for (size_t c = 0; table && c < convergence_table.count; c++)
     table_column(table, convergence_table.rows[c].path, convergence_table.rows[c].unit);
   for (size_t c = OF_LIMIT; table && c < convergence_limit_table.count; c++)

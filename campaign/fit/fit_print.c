@@ -343,7 +343,7 @@ static void tell(const struct fit *fit, FILE *out) {
 /* ---- the whole report ---- */
 
 status fit_print(const struct fit *fit, enum table_format format, struct error *error) {
-  if (format != TABLE_TEXT)
+  if (!table_for_people(format))
     return print_rows(fit, format, error);
   TRY(print_inputs(fit, error));
   putchar('\n');

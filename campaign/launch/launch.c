@@ -122,13 +122,13 @@ static status print_answers(const char *path, int64_t campaign, enum table_forma
   int64_t points = 0;
   TRY(store_open_reader(path, &store, error));
   TRY(ask_points_count(store, &choice, &points, error));
-  if (format == TABLE_TEXT && points > MANY_POINTS) {
+  if (table_for_people(format) && points > MANY_POINTS) {
     fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
             campaign);
     return STATUS_OK;
   }
   TRY(print_estimates(store, &choice, format, stdout, error));
-  if (format == TABLE_TEXT && !quiet) {
+  if (table_for_people(format) && !quiet) {
     fflush(stdout); /* the legend comes below the table */
     print_estimates_legend(store);
   }

@@ -1,4 +1,4 @@
-/* The table of estimates: for programs with a column for every number, for people no wider than a terminal. */
+/* The table of estimates: for programs with a column for every number, for people with values and their intervals. */
 #include <math.h>
 #include <string.h>
 
@@ -8,18 +8,6 @@
 #include "schemas/limits.h"
 #include "schemas/text.h"
 
-/* Columns of the table for people that can be left out, in this order: the least wanted first. Varied inputs stay, else
- * rows of different points look alike. */
-enum { LEAST_SQUARES, BETA_RESOLUTION, FRAGMENTS, MEAN_RESOLUTION, LIKELIHOOD, OPTIONAL_COLUMNS };
-static const struct {
-  const char *name;
-  size_t width; /* with the gap before the next column */
-} optional[OPTIONAL_COLUMNS] = {{"beta LSQ", 11},
-                                {"\xc2\xb1res of beta", 6},
-                                {"n", 6},
-                                {"\xc2\xb1res of M_1/M", 7},
-                                {"beta ML with its window", 20}};
-
 struct printing {
   struct store *store;
   enum table_format format;
@@ -27,7 +15,6 @@ struct printing {
   bool studied; /* some exponent has a study; otherwise no point's study is read */
   size_t axes;
   struct ask_column axis[LIMITS_AXES_OF_POOL];
-  bool left_out[OPTIONAL_COLUMNS]; /* they do not fit into a terminal */
 };
 
 /* Order of the methods in point_estimates. */
@@ -100,116 +87,32 @@ static status row_for_programs(struct printing *printing, const struct ask_point
   return STATUS_OK;
 }
 
-/* ---- for people: values with their intervals, and no wider than a terminal ---- */
-
-/* Widths: the table; point, runs and M_1/M; the gap between columns; most values. */
-enum { WIDTH = 100, FIXED = 26, GAP = 2, NUMBER = 5 };
-
-/* Does the name of another axis end like this? */
-static bool is_ambiguous(const struct printing *printing, size_t axis, const char *tail) {
-  for (size_t i = 0; i < printing->axes; i++) {
-    const size_t length = strlen(printing->axis[i].name), end = strlen(tail);
-    if (i != axis && length >= end && strcmp(printing->axis[i].name + length - end, tail) == 0)
-      return true;
-  }
-  return false;
-}
-
-/* A heading for the axis: the last words of its path that no other axis has. "m" and "k" alone are not clear enough. */
-static const char *short_axis(const struct printing *printing, size_t axis) {
-  const char *const name = printing->axis[axis].name, *word = name + strlen(name);
-  while (word > name && (word[-1] != '_' || strlen(word) < 2 || is_ambiguous(printing, axis, word)))
-    word--;
-  return word;
-}
-
-static size_t axis_width(const struct printing *printing, size_t axis) {
-  const char *unit = printing->axis[axis].unit;
-  const size_t head = strlen(short_axis(printing, axis)), cell = NUMBER + (strcmp(unit, "1") ? strlen(unit) + 1 : 0);
-  return (head > cell ? head : cell) + GAP;
-}
-
-/* "4 deg": the heading has no unit, so that it is short. */
-static void axis_cell(struct table *table, const struct ask_column *axis, const struct query_value *value) {
-  const struct query_value shown = ask_columns_value(axis, value);
-  char text[sizeof axis->unit + 40];
-  if ((shown.kind != QUERY_REAL && shown.kind != QUERY_INTEGER) || !*axis->unit || strcmp(axis->unit, "1") == 0) {
-    table_value(table, &shown);
-    return;
-  }
-  snprintf(text, sizeof text, "%.5g %s", shown.real, axis->unit);
-  table_text(table, text);
-}
-
-/* Leaves columns out until the rest fits, or all are out that can be. */
-static void choose_columns(struct printing *printing) {
-  size_t used = FIXED;
-  for (size_t i = 0; i < printing->axes; i++)
-    used += axis_width(printing, i);
-  for (int i = 0; i < OPTIONAL_COLUMNS; i++)
-    used += optional[i].width;
-  for (int i = 0; i < OPTIONAL_COLUMNS && used > WIDTH; i++) {
-    printing->left_out[i] = true;
-    used -= optional[i].width;
-  }
-}
-
-static void tell_left_out(const struct printing *printing) {
-  for (int i = 0; i < OPTIONAL_COLUMNS && printing->left_out[i]; i++)
-    fprintf(stderr, "%s%s", i ? ", " : "clast: for lack of room these columns are left out: ", optional[i].name);
-  if (printing->left_out[0])
-    fputs("; --csv and --json have all\n", stderr);
-}
+/* ---- for people: values with their intervals. The last columns are the least wanted. ---- */
 
 static void columns_for_people(struct printing *printing) {
   struct table *table = printing->table;
-  const bool *out = printing->left_out;
-  choose_columns(printing);
-  table_column(table, "point", NULL);
+  table_column(table, "point_id", NULL);
   for (size_t i = 0; i < printing->axes; i++)
-    table_column(table, short_axis(printing, i), NULL);
-  table_columns(table, (const char *const[]){"runs", "M_1/M", NULL});
-  if (!out[MEAN_RESOLUTION])
-    table_column(table, "\xc2\xb1res", NULL);
-  if (!out[LIKELIHOOD])
-    table_column(table, "window", NULL);
-  if (!out[FRAGMENTS])
-    table_column(table, "n", NULL);
-  if (!out[LEAST_SQUARES])
-    table_column(table, "beta LSQ", NULL);
-  if (!out[LIKELIHOOD])
-    table_column(table, out[LEAST_SQUARES] ? "beta ML" : "ML", NULL);
-  if (!out[BETA_RESOLUTION])
-    table_column(table, "\xc2\xb1res", NULL);
+    table_key(table, &printing->axis[i]);
+  table_columns(table,
+                (const char *const[]){"runs", "M_1/M", "window", "beta ML", "beta ML_hw95", "\xc2\xb1res M_1/M", "n",
+                                      "\xc2\xb1res beta", "beta LSQ", "beta LSQ_hw95", NULL});
 }
 
-/* "2.01 \u00b1 0.13" without the blanks; the value alone when it has no interval; "-" for none. */
-static void with_interval(struct table *table, double value, double half_width, int decimals, const char *mark) {
-  char text[80] = "";
-  if (isnan(value)) {
+/* "0.928 ± 0.009", "0.928 ± 0.009~" when the interval is weak, "1.000 ≥ 0.905" when all runs are equal. */
+static void mean_cell(struct table *table, const struct ask_points_row *row) {
+  char text[UNCERTAINTY_TEXT + 4] = "";
+  if (isnan(row->mean)) {
     table_missing(table);
     return;
   }
-  text_append_fixed(text, sizeof text, value, decimals);
-  if (!isnan(half_width)) {
-    text_append(text, sizeof text, "\xc2\xb1");
-    text_append_fixed(text, sizeof text, half_width, decimals);
-    text_append(text, sizeof text, "%s", mark);
-  }
+  if (row->mean >= 1 && isnan(row->half_width) && isfinite(row->low))
+    snprintf(text, sizeof text, "%.3f \xe2\x89\xa5 %.3f", row->mean, row->low);
+  else
+    uncertainty_cell(row->mean, row->half_width, text);
+  if (row->weak)
+    text_append(text, sizeof text, "~");
   table_text(table, text);
-}
-
-/* "0.928\u00b10.009", "0.928\u00b10.009~" when the interval is weak, "1.000\u22650.905" when all runs are equal. */
-static void mean_cell(struct table *table, const struct ask_points_row *row) {
-  char text[80] = "";
-  if (row->mean >= 1 && isnan(row->half_width) && isfinite(row->low)) {
-    text_append_fixed(text, sizeof text, row->mean, 3);
-    text_append(text, sizeof text, "\xe2\x89\xa5");
-    text_append_fixed(text, sizeof text, row->low, 3);
-    table_text(table, text);
-    return;
-  }
-  with_interval(table, row->mean, row->half_width, 3, row->weak ? "~" : "");
 }
 
 static void resolution_cell(struct table *table, enum ask_resolution_verdict verdict, double half_width) {
@@ -224,41 +127,39 @@ static void resolution_cell(struct table *table, enum ask_resolution_verdict ver
 static status row_for_people(struct printing *printing, const struct ask_points_row *row, int window,
                              const struct point_estimate *fits, const struct doubts *doubts, struct error *error) {
   struct table *table = printing->table;
-  const bool *out = printing->left_out;
-  if (window > 0) { /* only the point's first row shows its inputs and runs */
-    for (size_t i = 0; i < printing->axes + 3 + !out[MEAN_RESOLUTION]; i++)
-      table_text(table, "");
-  } else {
+  const bool first = window == 0; /* only the point's first row shows its inputs and runs */
+  if (first) {
     char runs[64] = "";
     table_integer(table, row->point_id);
     for (size_t i = 0; i < printing->axes; i++)
-      axis_cell(table, &printing->axis[i], &row->inputs[i]);
+      table_value(table, &row->inputs[i]);
     text_append(runs, sizeof runs, "%lld", (long long)row->n);
     if (row->failed)
       text_append(runs, sizeof runs, "/%.0f", (double)row->n + (double)row->failed); /* a sum that cannot overflow */
     table_text(table, runs);
     table_rests_on(table, &row->doubts);
     mean_cell(table, row);
-    if (!out[MEAN_RESOLUTION])
-      resolution_cell(table, row->resolution_verdict, row->resolution);
   }
-  if (!out[LIKELIHOOD])
-    table_text(table, estimates_window_names[window]);
-  if (!out[FRAGMENTS])
-    table_integer(table, fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n);
-  for (int m = 0; m < METHODS; m++) {
+  for (size_t i = 0; !first && i < printing->axes + 3; i++)
+    table_text(table, "");
+  table_text(table, estimates_window_names[window]);
+  for (int m = METHODS; m-- > 0;) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
-    if (out[m == MASSES ? LIKELIHOOD : LEAST_SQUARES])
-      continue;
     table_rests_on(table, &doubts->masses);
-    with_interval(table, fit->fit.beta, fit->interval.half_width, 2, "");
+    table_fixed(table, fit->fit.beta, 2);
+    table_real(table, fit->interval.half_width);
+    if (m != MASSES)
+      continue;
+    if (first)
+      resolution_cell(table, row->resolution_verdict, row->resolution);
+    else
+      table_text(table, "");
+    table_integer(table, fit->fit.n);
+    struct ask_resolution resolution;
+    TRY(read_resolution(printing, row, MASSES, window, &resolution, error));
+    resolution_cell(table, resolution.verdict, resolution.half_width);
   }
-  if (out[BETA_RESOLUTION])
-    return STATUS_OK;
-  struct ask_resolution resolution;
-  const status code = read_resolution(printing, row, MASSES, window, &resolution, error);
-  resolution_cell(table, resolution.verdict, resolution.half_width);
-  return code;
+  return STATUS_OK;
 }
 
 static status print_point(struct printing *printing, const struct ask_points_row *row, struct error *error) {
@@ -275,10 +176,9 @@ static status print_point(struct printing *printing, const struct ask_points_row
   point_release(&point);
   TRY(code);
   for (int window = 0; window < ESTIMATES_WINDOWS; window++) {
-    if (printing->format != TABLE_TEXT)
+    if (!table_for_people(printing->format))
       TRY(row_for_programs(printing, row, window, fits, &doubts, error));
-    else if (window == 0 ||
-             (!printing->left_out[LIKELIHOOD] && fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n > 0))
+    else if (window == 0 || fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n > 0)
       TRY(row_for_people(printing, row, window, fits, &doubts, error)); /* people do not need an empty row */
   }
   return STATUS_OK;
@@ -288,9 +188,9 @@ static const char *const estimates_legend =
     "runs: those that count; 19/20: one of 20 failed. M_1/M: mass share of the largest fragment. !: in doubt.\n"
     "\xc2\xb1: half width of the 95 % interval over seeds; one run has none. ~: weak, too few runs for runs like "
     "these\n"
-    "(`clast explain weak`). 1.000\xe2\x89\xa5"
-    "0.905: all runs are 1, and the mean is at least 0.905. \xc2\xb1res: how far "
-    "finer\nsettings may move M_1/M, and beta ML (`clast converge` measures it, with -q beta; ?: not studied).\n"
+    "(`clast explain weak`). 1.000 \xe2\x89\xa5 0.905: all runs are 1, and the mean is at least 0.905. \xc2\xb1res: "
+    "how far "
+    "finer\nsettings may move M_1/M, and beta ML (`clast converge` measures it, with -Q beta; ?: not studied).\n"
     "beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together. LSQ: least squares on\n"
     "logarithmic bins of one decade, as in the paper; it needs a fragment in every bin. ML: maximum\n"
     "likelihood, without the largest fragment of each run.\n"
@@ -305,7 +205,7 @@ void print_estimates_legend(struct store *store) {
 status print_estimates(struct store *store, const struct ask_points_choice *choice, enum table_format format, FILE *out,
                        struct error *error) {
   struct printing printing = {.store = store, .format = format};
-  TRY(ask_columns_axes(store, format == TABLE_TEXT, LIMITS_AXES_OF_POOL, printing.axis, &printing.axes, error));
+  TRY(ask_columns_axes(store, table_for_people(format), LIMITS_AXES_OF_POOL, printing.axis, &printing.axes, error));
   TRY(ask_resolution_of_exponents(store, &printing.studied, error));
   const char *inputs[LIMITS_AXES_OF_POOL];
   for (size_t i = 0; i < printing.axes; i++)
@@ -313,7 +213,7 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
 
   TABLE table = table_new(format, out);
   printing.table = table;
-  if (format == TABLE_TEXT)
+  if (table_for_people(format))
     columns_for_people(&printing);
   else
     columns_for_programs(&printing);
@@ -322,8 +222,7 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
     TRY(print_point(&printing, &row, error));
   TRY(answer_end(&points));
   TRY(table_end(table, error));
-  tell_left_out(&printing);
-  if (format != TABLE_TEXT)
+  if (!table_for_people(format))
     return STATUS_OK;
   const struct ask_doubts_choice doubts = {.campaign = choice->campaign, .point = choice->point};
   return quantity_tell_doubts(store, &doubts, OUTCOME_DEFAULT ",beta", error);

@@ -10,8 +10,18 @@
 #include "schemas/text.h"
 
 void print_pool_columns(struct table *table, const struct ask_pools *pools) {
-  for (size_t a = 0; a < pools->axes; a++)
-    table_column(table, pools->column[a], NULL);
+  struct ask_column axes[LIMITS_AXES_OF_TABLE];
+  size_t count = 0;
+  (void)ask_columns_axes(pools->store, true, LIMITS_AXES_OF_TABLE, axes, &count, NULL);
+  for (size_t a = 0; a < pools->axes; a++) {
+    size_t k = 0;
+    while (k < count && strcmp(axes[k].name, pools->column[a]) != 0)
+      k++;
+    if (k < count)
+      table_key(table, &axes[k]);
+    else
+      table_column(table, pools->column[a], NULL);
+  }
   table_column(table, pools->choice.by ? "points" : "point_id", NULL);
 }
 
@@ -96,17 +106,52 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
   return table_end(table, error);
 }
 
-static status print_long(const char *scene, const struct engine_kind *kind, const struct run_result *result,
+static void answer(const char *name, double value, enum condition_mark mark, const char *says) {
+  char text[64];
+  snprintf(text, sizeof text, isnan(value) || mark == CONDITION_WITHHELD ? "-" : "%.4g%s", value,
+           mark == CONDITION_MARKED ? UNCERTAINTY_MARK : "");
+  printf("%-13s %-11s %s\n", name, text, says);
+}
+
+/* What most people want of a run, in six lines. */
+static void print_answers(const struct scene *scene, int64_t seed, const struct run_result *result) {
+  const struct outcome *o = &result->outcome;
+  const struct condition *conditions = scene->kind->conditions;
+  char says[256];
+  struct field_value state;
+  field_get(field_find(&outcome_table, OUTCOME_NAME(state), NULL), o, &state);
+  printf("%s, seed %lld: %s after %.4g s in %lld steps\n", scene->name, (long long)seed, state.text, o->time,
+         (long long)o->steps);
+  answer("M_1/M", o->largest_fraction, condition_mark(conditions, o->warnings, OUTCOME_NAME(largest_fraction)),
+         "mass of the largest fragment over the total mass");
+  snprintf(says, sizeof says, "%lld of one grain or particle; the spectrum is complete from %.3g kg on",
+           (long long)o->single_count, o->complete_mass);
+  answer("fragments", (double)o->fragment_count, condition_mark(conditions, o->warnings, OUTCOME_NAME(fragment_count)),
+         says);
+  const struct estimate *fit = NULL;
+  for (size_t i = 0; i < result->estimate_count; i++)
+    if ((int)result->estimates[i].fit.method == ESTIMATES_HEADLINE_METHOD &&
+        (int)result->estimates[i].window == ESTIMATES_HEADLINE_WINDOW)
+      fit = &result->estimates[i];
+  snprintf(says, sizeof says, "beta of F(m) ~ m^-beta, of %zu fragments (maximum likelihood, %s)", fit ? fit->fit.n : 0,
+           estimates_window_names[ESTIMATES_HEADLINE_WINDOW]);
+  answer("exponent", fit ? fit->fit.beta : (double)NAN,
+         condition_mark(conditions, o->warnings, OUTCOME_NAME(mean_fragment_mass)), says);
+  answer("energy error", o->energy_error, CONDITION_SOUND, "of the energy put in, by numerical errors");
+  printf("in doubt (!)  %s\n", *o->warnings ? o->warnings : "nothing");
+}
+
+static status print_long(const struct engine_kind *kind, const struct run_result *result, enum table_format format,
                          struct error *error) {
   const enum condition_mark masses = condition_mark(kind->conditions, result->outcome.warnings,
                                                     OUTCOME_NAME(mean_fragment_mass));
-  TABLE results = table_new(TABLE_TEXT, stdout);
+  TABLE results = table_new(format, stdout);
   table_columns(results, (const char *const[]){"result", "value", "unit", "meaning", NULL});
   list(results, &outcome_table, &result->outcome, kind->conditions, result->outcome.warnings);
   list(results, kind->results, result->result, kind->conditions, result->outcome.warnings);
   TRY(table_end(results, error));
   fputs("\nexponent beta of F(m) ~ m^-beta, of this run alone:\n", stdout);
-  TABLE table = table_new(TABLE_TEXT, stdout);
+  TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"method", "window", "fragments", "beta", NULL});
   for (size_t i = 0; i < result->estimate_count; i++) {
     table_text(table, exponent_method_names[result->estimates[i].fit.method]);
@@ -116,19 +161,31 @@ static status print_long(const char *scene, const struct engine_kind *kind, cons
     table_real(table, result->estimates[i].fit.beta);
   }
   TRY(table_end(table, error));
+  return STATUS_OK;
+}
+
+static status print_for_people(const struct scene *scene, int64_t seed, const struct run_result *result,
+                               enum table_format format, struct error *error) {
   struct ask_resolution resolution;
   char text[UNCERTAINTY_TEXT];
-  status code = ask_resolution(NULL, 0, OUTCOME_DEFAULT, &resolution, error);
-  snprintf(resolution.scene, sizeof resolution.scene, "%s", scene);
+  print_answers(scene, seed, result);
+  TRY(ask_resolution(NULL, 0, OUTCOME_DEFAULT, &resolution, error));
+  snprintf(resolution.scene, sizeof resolution.scene, "%.127s", scene->name);
   uncertainty_resolution(&resolution, text);
-  printf("\nerrors: one run has no interval over seeds: several seeds have one (`clast run`)\n%s\n", text);
-  return code ? code : table_flush(stdout, error);
+  printf("errors: one run has no interval over seeds: several seeds have one (`clast run`)\n%s\n", text);
+  if (format == TABLE_ALL) {
+    putchar('\n');
+    TRY(print_long(scene->kind, result, format, error));
+  } else {
+    puts("all results: --all");
+  }
+  return table_flush(stdout, error);
 }
 
 status print_results(const struct scene *scene, int64_t seed, const struct run_result *result, enum table_format format,
                      struct error *error) {
-  return format == TABLE_TEXT ? print_long(scene->name, scene->kind, result, error)
-                              : print_wide(scene->kind, seed, result, format, error);
+  return table_for_people(format) ? print_for_people(scene, seed, result, format, error)
+                                  : print_wide(scene->kind, seed, result, format, error);
 }
 
 /* ---- spectra ---- */
@@ -198,7 +255,7 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));
-  if (format == TABLE_TEXT)
+  if (table_for_people(format))
     uncertainty_doubts(&sum, stderr);
   return STATUS_OK;
 }
@@ -240,7 +297,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));
-  if (format == TABLE_TEXT) {
+  if (table_for_people(format)) {
     uncertainty_doubts(&sum, stderr);
     fprintf(stderr,
             "clast: fragments from %.3g kg on, where the measured and all simulated spectra are complete. distance: "

@@ -83,7 +83,7 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));
-  if (format == TABLE_TEXT) {
+  if (table_for_people(format)) {
     uncertainty_doubts(&doubts, stderr);
     fputs(
         "clast: low and high: 95 % intervals over runs; of modes the values that belong to them. dip p below 0.05: the "
@@ -372,7 +372,7 @@ status print_variance(struct store *store, const struct scatter_choice *choice, 
   TRY(run_cells_read(store, &pool, choice->quantity, &cells, error));
   TRY(split(&cells, parts, &runs, error));
   TRY(print_parts(&cells, parts, format, error));
-  if (format == TABLE_TEXT) {
+  if (table_for_people(format)) {
     uncertainty_doubts(&cells.doubts, stderr);
     fprintf(stderr,
             "clast: %zu points with %zu seeds each, which count alike. An input: variance of its means over the other "
@@ -524,7 +524,7 @@ static status print_sobol(const struct reading *r, enum table_format format, str
     interval(table, &index[i].total, &r->cells.doubts);
     table_doubt_cells(table, &r->cells.doubts);
   }
-  if (format == TABLE_TEXT)
+  if (table_for_people(format))
     fprintf(
         stderr,
         "clast: Sobol indices, shares of the variance, of %zu blocks with %zu %s. first: of the input alone; total: "
@@ -562,7 +562,7 @@ static status print_morris(const struct reading *r, enum table_format format, st
     table_real(table, effect[i].noise);
     table_doubt_cells(table, &r->cells.doubts);
   }
-  if (format == TABLE_TEXT)
+  if (table_for_people(format))
     fprintf(stderr,
             "clast: elementary effects of %zu trajectories, for the whole range of an input. deviation: large beside "
             "mean_absolute if the input is curved or acts with others; noise: what seeds alone would make\n",
@@ -580,7 +580,7 @@ status print_sensitivity(struct store *store, const char *path, const char *quan
   if (r.whole < r.blocks)
     fprintf(stderr, "clast: %zu of %zu blocks lack a finished run and are left out\n", r.blocks - r.whole, r.blocks);
   TRY(r.kind == DESIGN_SENSITIVITY_SALTELLI ? print_sobol(&r, format, error) : print_morris(&r, format, error));
-  if (format == TABLE_TEXT)
+  if (table_for_people(format))
     uncertainty_doubts(&r.cells.doubts, stderr);
   return STATUS_OK;
 }

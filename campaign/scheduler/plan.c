@@ -381,7 +381,7 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
   else if (code == STATUS_OK && store)
     ask_run_wall_times(store, &plan->run_s_mean, &plan->run_s_most, &ignored);
   if (code == STATUS_OK) {
-    plan->model = scene->kind->describe ? scene->kind->describe(scene->inputs) : NULL;
+    plan->model = scene->kind->describe ? scene->kind->describe(scene->inputs, options->all) : NULL;
     add_up(campaign, options, &looking, fragments, plan);
   }
   for (size_t i = 0; i < looking.sampled; i++)
@@ -474,8 +474,10 @@ void plan_print(const struct campaign *campaign, const struct plan *plan, int sl
   if (plan->points_looked_at < plan->points)
     fprintf(out, "          (averages over %llu of the points)\n", (unsigned long long)plan->points_looked_at);
 
-  if (plan->model)
-    fprintf(out, "\n%s%s", plan->model, plan->model[0] && plan->model[strlen(plan->model) - 1] == '\n' ? "" : "\n");
+  if (plan->model) {
+    fputc('\n', out);
+    text_wrap_lines(plan->model, 100, out);
+  }
 }
 
 static void number(FILE *out, const char *name, double value) {

@@ -10,6 +10,7 @@ struct plan_options {
   bool no_trial;
   double trial_s; /* 0 = 5 s */
   int slots;      /* for the wall time */
+  bool all;       /* the model with its reasons and sources */
 };
 
 struct plan {

@@ -16,11 +16,13 @@
 enum { HELP_VALUE = 1000, ROW_VALUE = 1001, WORD_MAXIMUM = 63 };
 
 struct table_options {
-  bool json, csv;
+  bool json, csv, all;
 };
 static const struct option_row table_rows[] = {
     OPTION_ROW_FLAG("json", 0, struct table_options, json, .doc = "Print JSON: one array of objects, SI units."),
     OPTION_ROW_FLAG("csv", 0, struct table_options, csv, .doc = "Print CSV with a header line, SI units."),
+    OPTION_ROW_FLAG("all", 'a', struct table_options, all,
+                    .doc = "Print all columns or lines, also those that are rarely wanted."),
 };
 
 const struct option_row *option_row(const struct command *command, size_t index) {
@@ -236,7 +238,7 @@ status option_parse(const struct command *command, int argc, char **argv, void *
   TRY(check_arguments(command, line->count, line->arguments, error));
   if (parse.table.json && parse.table.csv)
     return status_fail(error, STATUS_USAGE, "--json and --csv exclude each other");
-  line->format = parse.table.json ? TABLE_JSON : parse.table.csv ? TABLE_CSV : TABLE_TEXT;
+  line->format = parse.table.json ? TABLE_JSON : parse.table.csv ? TABLE_CSV : parse.table.all ? TABLE_ALL : TABLE_TEXT;
   return STATUS_OK;
 }
 
@@ -256,7 +258,8 @@ status option_set_inputs(struct scene *scene, const struct option_list *set, str
     TRY(set_input(scene, set->items[i], path, error));
     for (size_t k = 0; k < i; k++) {
       snprintf(before, sizeof before, "%.*s", (int)strcspn(set->items[k], "="), set->items[k]);
-      if (strcmp(path, before) != 0 && field_find(inputs, path, NULL) == field_find(inputs, before, NULL))
+      if (strcmp(path, before) != 0 &&
+          field_find_in(inputs, path, scene->inputs, NULL) == field_find_in(inputs, before, scene->inputs, NULL))
         return status_fail(error, STATUS_USAGE, "--set %s: the same input as --set %s; leave one of them out", path,
                            before);
     }

@@ -44,6 +44,8 @@ void progress_duration(double seconds, char *buffer, size_t size) {
   const long long whole = seconds >= 0 ? llround(fmin(seconds, 1e15)) : 0;
   if (!(seconds >= 0) || isinf(seconds))
     snprintf(buffer, size, "?");
+  else if (seconds > 0 && seconds < 0.0995)
+    snprintf(buffer, size, "%.2g ms", 1e3 * seconds);
   else if (seconds < 9.95)
     snprintf(buffer, size, "%.1f s", seconds);
   else if (whole < 60)

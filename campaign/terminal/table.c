@@ -7,6 +7,8 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include "campaign/terminal/uncertainty.h"
 #include "schemas/csv.h"
@@ -14,36 +16,95 @@
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
-enum { SAMPLE_ROWS = 500, COLUMNS_MAXIMUM = 2000 }; /* SQLite's own limit on columns is 2000 */
+enum {
+  BATCH_ROWS = 500,       /* rows of the table for people that are laid out together */
+  COLUMNS_MAXIMUM = 2000, /* SQLite's own limit on columns is 2000 */
+  WIDTH = 100,            /* of a table for people, where stdout is no terminal */
+  GAP = 2,                /* between columns */
+  TEXT_LEAST = 24,        /* a column of texts is not made narrower than this */
+};
+
+enum role {
+  PLAIN,
+  KEY,   /* tells rows apart: never left out, and repeated in each part of a table in parts */
+  RARE,  /* left out without --all */
+  SAME,  /* the same, if all rows have the same cell; the note has the cell */
+  ZERO,  /* the same, if all cells are 0 or missing */
+  ERROR, /* half width of an interval, or whether it is weak: stands in the cell of its value */
+};
+
+/* What people need of columns with such a name, or with such an ending. */
+static const struct {
+  const char *name;
+  enum role role;
+} rules[] = {
+    {"point_id", KEY},
+    {"run_id", KEY},
+    {"campaign", KEY},
+    {"engine", SAME},
+    {"results_version", SAME},
+    {"failed", ZERO},
+    {"censored", ZERO},
+    {"surplus", ZERO},
+    {"failed_attempts", ZERO},
+    {"without_result", ZERO},
+    {"warned", ZERO},
+    {"last_started", RARE},
+    {"last_ended", RARE},
+    {"_sd", RARE},
+    {"_se", RARE},
+    {"_low95", RARE},
+    {"_high95", RARE},
+    {"_weak", ZERO},
+    {"_resolution", ZERO},
+    {"_resolution_verdict", SAME},
+};
+enum { RULES = sizeof rules / sizeof rules[0] };
 
 struct column {
-  char *name, *unit;
-  size_t width; /* width in the aligned table, characters */
-  bool text;    /* aligned left */
-  bool marked;  /* a number has a mark behind it; the others leave its room free */
+  char *name, *unit; /* for programs */
+  char *head;        /* for people, with the unit */
+  enum role role;
+  double factor; /* people see numbers over this */
+  size_t value;  /* of an ERROR: the column of its value */
+  size_t narrow;
+  size_t width;     /* in the table for people, characters */
+  bool text;        /* aligned left */
+  bool marked;      /* a number has a mark behind it; the others leave its room free */
+  bool left_out;    /* people do not see it */
+  const char *rest; /* of the text that is being printed */
 };
 
 struct table {
   enum table_format format;
+  bool people; /* the format is for people */
+  bool asked;  /* the user named the columns */
   FILE *out;
   struct column *columns;
   size_t column_count, cell;
   uint64_t rows;
-  struct kept { /* cells of the aligned table's first rows, not yet printed */
+  struct kept { /* cells for people that are not yet printed */
     char *text;
+    size_t digits; /* bytes before the mark */
+    double number;
     bool left;
   } * kept;
   size_t kept_count;
   char mark[UNCERTAINTY_TEXT]; /* behind the next cell */
-  bool out_of_memory, broken, ended;
+  bool laid_out, out_of_memory, broken, ended;
   int write_error;
 };
 
 struct table *table_new(enum table_format format, FILE *out) {
   struct table *table = memory_small(1, sizeof *table);
   table->format = format;
+  table->people = table_for_people(format);
   table->out = out;
   return table;
+}
+
+bool table_for_people(enum table_format format) {
+  return format == TABLE_TEXT || format == TABLE_ALL;
 }
 
 bool table_broken(const struct table *table) {
@@ -62,12 +123,42 @@ static char *copy(struct table *table, const char *text) {
   return made;
 }
 
-/* A name or a unit can come from a store, too. */
-static char *copy_plain(struct table *table, const char *text) {
-  char *made = copy(table, text);
-  if (made && table->format == TABLE_TEXT)
-    text_make_plain(made, "");
-  return made;
+static bool ends_in(const char *name, const char *end) {
+  const size_t length = strlen(name), tail = strlen(end);
+  return length >= tail && strcmp(name + length - tail, end) == 0 && (length == tail || *end == '_');
+}
+
+/* The column of the value whose half width has this name: "x" or "x_mean" of "x_hw95" and "x_weak", the last one of
+ * "hw95". */
+static bool find_value(const struct table *table, const char *name, size_t *value) {
+  const size_t stem = ends_in(name, "_hw95") || ends_in(name, "_weak") ? strlen(name) - strlen("_hw95") : 0;
+  for (size_t c = table->column_count; c-- > 0;) {
+    const char *const other = table->columns[c].name;
+    *value = c;
+    if (stem ? strncmp(other, name, stem) == 0 && (!other[stem] || strcmp(other + stem, "_mean") == 0)
+             : strcmp(name, "hw95") == 0)
+      return true;
+  }
+  return false;
+}
+
+static enum role role_of(const struct table *table, const char *name, size_t *value) {
+  if (table->asked)
+    return PLAIN;
+  if (find_value(table, name, value))
+    return ERROR;
+  for (size_t i = 0; i < RULES; i++)
+    if (ends_in(name, rules[i].name))
+      return rules[i].role;
+  return PLAIN;
+}
+
+/* A name or a unit can come from a store, too: the heading cannot control the terminal. */
+static char *heading(struct table *table, const char *name, const char *unit) {
+  char text[512] = "";
+  text_append(text, sizeof text, unit ? "%s [%s]" : "%s", strcmp(name, "point_id") == 0 ? "point" : name, unit);
+  text_make_plain(text, "");
+  return copy(table, text);
 }
 
 void table_column(struct table *table, const char *name, const char *unit) {
@@ -81,10 +172,20 @@ void table_column(struct table *table, const char *name, const char *unit) {
     return;
   }
   table->columns = columns;
-  columns[table->column_count] = (struct column){.name = copy_plain(table, name)};
+  struct column *column = &columns[table->column_count];
+  *column = (struct column){.name = copy(table, name), .factor = 1};
   if (unit && strcmp(unit, "1") != 0 && *unit)
-    columns[table->column_count].unit = copy_plain(table, unit);
+    column->unit = copy(table, unit);
+  if (table->people && !table->broken) {
+    column->role = role_of(table, name, &column->value);
+    column->head = heading(table, name, column->unit);
+  }
   table->column_count++;
+  if (column->role == ERROR && ends_in(columns[column->value].name, "_mean")) { /* "x" is enough above "1 +- 0.1" */
+    char *end = strstr(columns[column->value].head, "_mean");
+    if (end)
+      memmove(end, end + strlen("_mean"), strlen(end + strlen("_mean")) + 1);
+  }
 }
 
 void table_columns(struct table *table, const char *const *names) {
@@ -92,17 +193,63 @@ void table_columns(struct table *table, const char *const *names) {
     table_column(table, *names, NULL);
 }
 
-/* Characters, not bytes: continuation bytes of UTF-8 do not count. */
-static size_t width_of(const char *text) {
+void table_key(struct table *table, const struct ask_column *input) {
+  table_column(table, input->name, input->unit);
+  if (table->broken || !table->people)
+    return;
+  struct column *column = &table->columns[table->column_count - 1];
+  free(column->head);
+  column->head = heading(table, *input->word && !table->asked ? input->word : input->name, column->unit);
+  column->role = KEY;
+  column->factor = input->factor;
+}
+
+void table_rare(struct table *table) {
+  if (!table->broken && table->people)
+    table->columns[table->column_count - 1].role = RARE;
+}
+
+/* ---- the table for people: which columns, how wide, and the lines of a row ---- */
+
+/* Characters in so many bytes: continuation bytes of UTF-8 do not count. */
+static size_t characters(const char *text, size_t bytes) {
   size_t width = 0;
-  for (; *text; text++)
-    width += (*text & 0xC0) != 0x80;
+  for (size_t i = 0; i < bytes && text[i]; i++)
+    width += (text[i] & 0xC0) != 0x80;
   return width;
 }
 
-static void pad(struct table *table, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    fputc(' ', table->out);
+static size_t width_of(const char *text) {
+  return characters(text, SIZE_MAX);
+}
+
+/* Can a line end behind this character? "M_1" stays whole. */
+static bool is_joint(const char *at) {
+  return at[0] == '_' && !(at[1] >= '0' && at[1] <= '9');
+}
+
+/* Bytes of the first line of a text: it breaks before a blank or behind "_", else anywhere. */
+static size_t line_of(const char *text, size_t width) {
+  size_t at = 0, broken = 0;
+  for (size_t used = 0; text[at]; at++) {
+    used += (text[at] & 0xC0) != 0x80;
+    if (used > width + (text[at] == ' '))
+      return broken ? broken : at;
+    if (text[at] == ' ' || (is_joint(text + at) && used <= width))
+      broken = at + (text[at] == '_');
+  }
+  return at;
+}
+
+/* The narrowest column that breaks no word of a heading. */
+static size_t widest_word(const char *head) {
+  size_t widest = 0;
+  for (size_t word = 0; *head; head++) {
+    word = *head == ' ' ? 0 : word + ((*head & 0xC0) != 0x80);
+    widest = word > widest ? word : widest;
+    word = is_joint(head) ? 0 : word;
+  }
+  return widest;
 }
 
 static bool has_mark(const char *text) {
@@ -111,47 +258,209 @@ static bool has_mark(const char *text) {
 }
 
 /* Characters behind a number where another one has its mark. */
-static size_t room_of_mark(const struct column *column, const char *text, bool left) {
-  return column->marked && !left && !has_mark(text) ? strlen(UNCERTAINTY_MARK) : 0;
+static size_t room_of_mark(const struct column *column, const struct kept *cell) {
+  return column->marked && !cell->left && !has_mark(cell->text) ? strlen(UNCERTAINTY_MARK) : 0;
 }
 
-static void print_aligned(struct table *table, size_t column, const char *text, const char *unit, bool left) {
-  const size_t room = unit ? 0 : room_of_mark(&table->columns[column], text, left);
-  size_t width = width_of(text) + (unit ? width_of(unit) + 3 : 0) + room;
-  size_t gap = table->columns[column].width > width ? table->columns[column].width - width : 0;
-  bool last = column + 1 == table->column_count;
-  if (!left)
-    pad(table, gap);
-  fputs(text, table->out);
-  if (unit)
-    fprintf(table->out, " [%s]", unit);
-  if (!last)
-    pad(table, left ? gap : room);
-  fputs(last ? "\n" : "  ", table->out);
+/* Columns that a person has room for: those of the terminal, or WIDTH. COLUMNS says otherwise. */
+static size_t room_for(FILE *out) {
+  const char *columns = getenv("COLUMNS");
+  struct winsize size;
+  const long asked = columns ? strtol(columns, NULL, 10) : 0;
+  if (asked > 0)
+    return (size_t)asked;
+  return isatty(fileno(out)) && ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : WIDTH;
 }
 
-static void print_kept(struct table *table) {
+static size_t total_width(const struct table *table) {
+  size_t total = 0;
+  for (size_t c = 0; c < table->column_count; c++)
+    total += table->columns[c].left_out ? 0 : table->columns[c].width + GAP;
+  return total ? total - GAP : 0;
+}
+
+/* Width of a column by its cells and its heading, and by its cells and the words of its heading. */
+static void measure(struct table *table, size_t c) {
+  struct column *column = &table->columns[c];
+  column->width = width_of(column->head);
+  column->narrow = widest_word(column->head);
+  for (size_t i = c; i < table->kept_count; i += table->column_count) {
+    column->marked |= !table->kept[i].left && has_mark(table->kept[i].text);
+    column->text |= table->kept[i].left;
+  }
+  for (size_t i = c; i < table->kept_count; i += table->column_count) {
+    const size_t width = width_of(table->kept[i].text) + room_of_mark(column, &table->kept[i]);
+    column->width = width > column->width ? width : column->width;
+    column->narrow = width > column->narrow ? width : column->narrow;
+  }
+}
+
+/* Gives headings several lines, where that gains most first, until the table fits. */
+static void narrow_headings(struct table *table, size_t room) {
+  struct column *best;
+  do {
+    best = NULL;
+    for (size_t c = 0; c < table->column_count; c++) {
+      struct column *column = &table->columns[c];
+      if (!column->left_out && column->width > column->narrow &&
+          (!best || column->width - column->narrow > best->width - best->narrow))
+        best = column;
+    }
+    if (best && total_width(table) > room)
+      best->width = best->narrow;
+  } while (best && total_width(table) > room);
+}
+
+/* Makes columns of texts narrower, the widest first, until the table fits or none is wide. */
+static void narrow_texts(struct table *table, size_t room) {
+  for (size_t total = total_width(table); total > room; total--) {
+    struct column *widest = NULL;
+    for (size_t c = 0; c < table->column_count; c++) {
+      struct column *column = &table->columns[c];
+      if (!column->left_out && column->text && column->width > TEXT_LEAST && (!widest || column->width > widest->width))
+        widest = column;
+    }
+    if (!widest)
+      return;
+    widest->width--;
+  }
+}
+
+/* Do the cells of a column say nothing: because all are the same, or are 0 or missing? */
+static bool is_quiet(const struct table *table, size_t c) {
+  const enum role role = table->columns[c].role;
+  for (size_t i = c; i < table->kept_count; i += table->column_count)
+    if (role == SAME ? strcmp(table->kept[i].text, table->kept[c].text) != 0
+                     : strcmp(table->kept[i].text, "0") != 0 && strcmp(table->kept[i].text, "-") != 0)
+      return false;
+  return (role == SAME || role == ZERO) && table->rows < BATCH_ROWS && table->kept_count > 0;
+}
+
+static void lay_out(struct table *table) {
+  const size_t room = room_for(table->out);
+  table->laid_out = true;
   for (size_t c = 0; c < table->column_count; c++) {
     struct column *column = &table->columns[c];
-    column->width = width_of(column->name) + (column->unit ? width_of(column->unit) + 3 : 0);
-    for (size_t i = c; i < table->kept_count; i += table->column_count)
-      column->marked |= !table->kept[i].left && has_mark(table->kept[i].text);
-    for (size_t i = c; i < table->kept_count; i += table->column_count) {
-      size_t width = width_of(table->kept[i].text) + room_of_mark(column, table->kept[i].text, table->kept[i].left);
-      column->width = width > column->width ? width : column->width;
-      column->text |= table->kept[i].left;
+    column->left_out = column->role == ERROR ||
+                       (table->format == TABLE_TEXT && (column->role == RARE || is_quiet(table, c)));
+    if (c == 0 && column->role == PLAIN)
+      column->role = KEY;
+    measure(table, c);
+  }
+  narrow_headings(table, room);
+  narrow_texts(table, room);
+  if (table->format == TABLE_TEXT)
+    for (size_t c = table->column_count; c-- > 1 && total_width(table) > room;)
+      table->columns[c].left_out |= table->columns[c].role != KEY;
+}
+
+/* Prints one line after the other of cells, whose texts go on at rest[]. row NULL: the headings. */
+static void print_lines(struct table *table, size_t count, const size_t *list, const struct kept *row) {
+  FILE *const out = table->out;
+  for (size_t i = 0; i < count; i++)
+    table->columns[list[i]].rest = row ? row[list[i]].text : table->columns[list[i]].head;
+  for (bool more = true; more;) {
+    size_t blanks = 0; /* before the next text: none at the end of a line */
+    more = false;
+    for (size_t i = 0; i < count; i++) {
+      struct column *column = &table->columns[list[i]];
+      const char *const text = column->rest;
+      const size_t bytes = row && !column->text ? strlen(text) : line_of(text, column->width);
+      const size_t mark = row && *text ? room_of_mark(column, &row[list[i]]) : 0;
+      const size_t width = characters(text, bytes) + mark, gap = column->width > width ? column->width - width : 0;
+      if (bytes)
+        fprintf(out, "%*s%.*s", (int)(blanks + (column->text ? 0 : gap)), "", (int)bytes, text);
+      blanks = bytes ? GAP + mark + (column->text ? gap : 0) : blanks + GAP + column->width;
+      column->rest = text + bytes + (text[bytes] == ' ');
+      more |= *column->rest != 0;
     }
+    fputc('\n', out);
+  }
+}
+
+/* The keys and the columns of a part, from *next on: as many as there is room for, at least one. */
+static size_t take_part(const struct table *table, size_t *next, size_t *list) {
+  const size_t from = *next, room = table->format == TABLE_ALL ? room_for(table->out) : SIZE_MAX;
+  size_t used = 0, count = 0;
+  for (size_t c = 0; c < table->column_count; c++)
+    used += table->columns[c].role == KEY && !table->columns[c].left_out ? table->columns[c].width + GAP : 0;
+  for (bool some = false; *next < table->column_count; ++*next) {
+    const struct column *column = &table->columns[*next];
+    if (column->left_out || column->role == KEY)
+      continue;
+    if (some && used + column->width > room)
+      break;
+    some = true;
+    used += column->width + GAP;
   }
   for (size_t c = 0; c < table->column_count; c++)
-    print_aligned(table, c, table->columns[c].name, table->columns[c].unit, table->columns[c].text);
+    if (!table->columns[c].left_out && (table->columns[c].role == KEY || (c >= from && c < *next)))
+      list[count++] = c;
+  return count;
+}
+
+/* Do the kept cells fit into the columns as they were laid out for earlier rows? */
+static bool fits(const struct table *table) {
   for (size_t i = 0; i < table->kept_count; i++) {
-    size_t c = i % table->column_count;
-    print_aligned(table, c, table->kept[i].text, NULL, table->columns[c].text);
-    free(table->kept[i].text);
+    const struct column *column = &table->columns[i % table->column_count];
+    if (!column->left_out && !column->text &&
+        width_of(table->kept[i].text) + room_of_mark(column, &table->kept[i]) > column->width)
+      return false;
   }
-  free(table->kept);
-  table->kept = NULL;
+  return true;
+}
+
+/* Prints the kept rows: in one part, or with --all in as many as it takes. */
+static void print_kept(struct table *table) {
+  const bool first = !table->laid_out || !fits(table);
+  OWNED size_t *list = malloc((table->column_count + 1) * sizeof *list);
+  if (!list) {
+    fail(table);
+    return;
+  }
+  if (first)
+    lay_out(table);
+  size_t next = 0;
+  do {
+    const size_t part = next, count = take_part(table, &next, list);
+    if (part)
+      fputc('\n', table->out);
+    if (first || part || next < table->column_count)
+      print_lines(table, count, list, NULL);
+    for (size_t i = 0; i < table->kept_count; i += table->column_count)
+      print_lines(table, count, list, &table->kept[i]);
+  } while (next < table->column_count);
+}
+
+static void drop_kept(struct table *table) {
+  for (size_t i = 0; i < table->kept_count; i++)
+    free(table->kept[i].text);
   table->kept_count = 0;
+}
+
+/* Tells people on stderr what they do not see. An ending that several columns have is told once. */
+static void tell_left_out(const struct table *table) {
+  OWNED char *text = NULL;
+  size_t size;
+  FILE *note = text_open(&text, &size);
+  const char *before = "clast: not shown (--all): ";
+  bool told[RULES] = {false};
+  for (size_t c = 0; note && c < table->column_count; c++) {
+    const struct column *column = &table->columns[c];
+    size_t rule = 0;
+    while (rule < RULES && !(*rules[rule].name == '_' && ends_in(column->name, rules[rule].name)))
+      rule++;
+    if (!column->left_out || column->role == ERROR || (rule < RULES && told[rule]))
+      continue;
+    fprintf(note, "%s%s", before, rule < RULES ? rules[rule].name : column->head);
+    before = ", ";
+    if (rule < RULES)
+      told[rule] = true;
+    else if (is_quiet(table, c))
+      fprintf(note, " %s", table->kept[c].text);
+  }
+  if (note && text_close(note, &text) && *text)
+    text_wrap(text, 0, 0, WIDTH, stderr);
 }
 
 /* Would a spreadsheet run the text as a formula? It takes a number as a number. */
@@ -187,9 +496,7 @@ static void print_csv_text(struct table *table, const char *text) {
 }
 
 static void header(struct table *table) {
-  if (table->format == TABLE_TEXT) {
-    print_kept(table);
-  } else if (table->format == TABLE_CSV) {
+  if (table->format == TABLE_CSV) {
     for (size_t c = 0; c < table->column_count; c++) {
       print_csv_text(table, table->columns[c].name);
       fputs(c + 1 < table->column_count ? "," : "\r\n", table->out);
@@ -218,18 +525,46 @@ struct cell {
   enum { CELL_TEXT, CELL_NUMBER, CELL_MISSING } kind;
   const char *text;  /* for programs; digits of a number */
   const char *shown; /* for people */
+  double number;
 };
 
-/* The aligned table's first rows are kept until their widths are known. */
+/* Keeps a cell for people, with its mark. Of a half width, its value's cell becomes "value +- half width". */
 static void keep(struct table *table, const struct cell *cell) {
-  const size_t most = table->column_count * SAMPLE_ROWS;
+  const struct column *column = &table->columns[table->cell];
+  char text[2 * UNCERTAINTY_TEXT + 16];
   if (!table->kept)
-    table->kept = calloc(most, sizeof *table->kept);
-  char *made = table->kept ? copy(table, cell->shown) : NULL;
-  if (made)
-    table->kept[table->kept_count++] = (struct kept){made, cell->kind == CELL_TEXT};
-  else
+    table->kept = calloc(table->column_count * BATCH_ROWS, sizeof *table->kept);
+  if (!table->kept) {
     fail(table);
+    return;
+  }
+  struct kept *kept = &table->kept[table->kept_count];
+  *kept = (struct kept){copy(table, cell->shown), strlen(cell->shown), cell->number,
+                        cell->kind == CELL_TEXT && *cell->shown};
+  if (*table->mark && cell->kind != CELL_MISSING && kept->text) {
+    snprintf(text, sizeof text, "%.*s%s", UNCERTAINTY_TEXT, cell->shown, table->mark);
+    free(kept->text);
+    kept->text = copy(table, text);
+  }
+  if (!kept->text)
+    return;
+  table->kept_count++;
+  struct kept *value = kept - table->cell + column->value;
+  if (column->role != ERROR || !(cell->number > 0) || !isfinite(value->number) || !isfinite(cell->number))
+    return;
+  if (ends_in(column->name, "_weak"))
+    snprintf(text, sizeof text, "%.*s~%.*s", (int)value->digits, value->text, UNCERTAINTY_TEXT,
+             value->text + value->digits);
+  else {
+    char number[UNCERTAINTY_TEXT];
+    uncertainty_cell(value->number, cell->number, number);
+    snprintf(text, sizeof text, "%s%.*s", number, UNCERTAINTY_TEXT, value->text + value->digits);
+    value->digits = strlen(number);
+  }
+  free(value->text);
+  value->text = copy(table, text);
+  if (!value->text)
+    value->text = strdup("");
 }
 
 static void print_csv(struct table *table, const struct cell *cell) {
@@ -259,30 +594,24 @@ static void print_json(struct table *table, const struct cell *cell) {
 static void add_cell(struct table *table, struct cell cell) {
   if (table->broken || table->column_count == 0)
     return;
-  const uint64_t header_row = table->format == TABLE_TEXT ? SAMPLE_ROWS : 0;
-  char marked[2 * UNCERTAINTY_TEXT];
-  if (table->cell == 0 && table->rows == header_row)
+  if (table->cell == 0 && table->rows == 0 && !table->people)
     header(table);
-  if (*table->mark && cell.kind != CELL_MISSING) {
-    snprintf(marked, sizeof marked, "%.*s%s", UNCERTAINTY_TEXT, cell.shown, table->mark);
-    cell.shown = marked;
-  }
-  table->mark[0] = 0;
   switch (table->format) {
   case TABLE_CSV: print_csv(table, &cell); break;
   case TABLE_JSON:
   case TABLE_JSON_LINES: print_json(table, &cell); break;
   case TABLE_TEXT:
-    if (table->rows < SAMPLE_ROWS)
-      keep(table, &cell);
-    else
-      print_aligned(table, table->cell, cell.shown, NULL, table->columns[table->cell].text);
-    break;
+  case TABLE_ALL: keep(table, &cell); break;
   }
+  table->mark[0] = 0;
   if (table->broken || ++table->cell < table->column_count)
     return;
   table->cell = 0;
   table->rows++;
+  if (table->people && table->rows % BATCH_ROWS == 0) {
+    print_kept(table);
+    drop_kept(table);
+  }
   check_output(table);
 }
 
@@ -292,13 +621,13 @@ void table_rests_on(struct table *table, const struct ask_doubts *doubts) {
 }
 
 void table_doubt_columns(struct table *table) {
-  if (table->format != TABLE_TEXT)
+  if (!table->people)
     table_columns(table, (const char *const[]){"doubtful", "doubts", NULL});
 }
 
 void table_doubt_cells(struct table *table, const struct ask_doubts *doubts) {
   char words[UNCERTAINTY_TEXT];
-  if (table->format == TABLE_TEXT)
+  if (table->people)
     return;
   ask_doubts_words(doubts, words, sizeof words);
   table_integer(table, doubts->doubtful);
@@ -306,7 +635,7 @@ void table_doubt_cells(struct table *table, const struct ask_doubts *doubts) {
 }
 
 void table_missing(struct table *table) {
-  add_cell(table, (struct cell){CELL_MISSING, "", "-"});
+  add_cell(table, (struct cell){CELL_MISSING, "", "-", NAN});
 }
 
 void table_text(struct table *table, const char *text) {
@@ -314,22 +643,31 @@ void table_text(struct table *table, const char *text) {
     table_missing(table);
     return;
   }
-  if (table->format != TABLE_TEXT || text_is_plain(text)) {
-    add_cell(table, (struct cell){CELL_TEXT, text, text});
+  if (!table->people || text_is_plain(text)) {
+    add_cell(table, (struct cell){CELL_TEXT, text, text, NAN});
     return;
   }
   char *line = copy(table, text); /* a row stays one line, and a text from a file cannot control the terminal */
   if (!line)
     return;
   text_make_plain(line, "");
-  add_cell(table, (struct cell){CELL_TEXT, line, line});
+  add_cell(table, (struct cell){CELL_TEXT, line, line, NAN});
   free(line);
+}
+
+/* People see a varied input in the campaign's unit. */
+static double factor_of(const struct table *table) {
+  return table->people && !table->broken && table->column_count ? table->columns[table->cell].factor : 1;
 }
 
 void table_integer(struct table *table, int64_t number) {
   char digits[32];
+  if (factor_of(table) != 1) {
+    table_real(table, (double)number);
+    return;
+  }
   snprintf(digits, sizeof digits, "%" PRId64, number);
-  add_cell(table, (struct cell){CELL_NUMBER, digits, digits});
+  add_cell(table, (struct cell){CELL_NUMBER, digits, digits, (double)number});
 }
 
 static bool is_json(const struct table *table) {
@@ -338,9 +676,9 @@ static bool is_json(const struct table *table) {
 
 void table_boolean(struct table *table, bool value) {
   if (is_json(table))
-    add_cell(table, (struct cell){CELL_NUMBER, value ? "true" : "false", ""});
+    add_cell(table, (struct cell){CELL_NUMBER, value ? "true" : "false", "", NAN});
   else
-    add_cell(table, (struct cell){CELL_TEXT, value ? "true" : "false", value ? "yes" : "no"});
+    add_cell(table, (struct cell){CELL_TEXT, value ? "true" : "false", value ? "yes" : "no", NAN});
 }
 
 void table_real(struct table *table, double number) {
@@ -354,9 +692,11 @@ void table_fixed(struct table *table, double number, int decimals) {
   }
   if (isinf(number)) { /* JSON has no infinity. The largest double would be wrong, so it is a text there */
     const char *inf = number > 0 ? "inf" : "-inf", *infinity = number > 0 ? "Infinity" : "-Infinity";
-    add_cell(table, is_json(table) ? (struct cell){CELL_TEXT, infinity, inf} : (struct cell){CELL_NUMBER, inf, inf});
+    add_cell(table,
+             (struct cell){is_json(table) ? CELL_TEXT : CELL_NUMBER, is_json(table) ? infinity : inf, inf, number});
     return;
   }
+  number /= factor_of(table);
   char digits[40], shown[40] = "";
   for (int precision = 15; precision <= 17; precision++) {
     snprintf(digits, sizeof digits, "%.*g", precision, number);
@@ -367,7 +707,7 @@ void table_fixed(struct table *table, double number, int decimals) {
     text_append(shown, sizeof shown, "%.5g", number);
   else
     text_append_fixed(shown, sizeof shown, number, decimals);
-  add_cell(table, (struct cell){CELL_NUMBER, digits, shown});
+  add_cell(table, (struct cell){CELL_NUMBER, digits, shown, number});
 }
 
 static status verdict(const FILE *out, int write_error, struct error *error) {
@@ -388,14 +728,17 @@ status table_flush(FILE *out, struct error *error) {
 
 status table_end(struct table *table, struct error *error) {
   if (!table->broken) {
-    bool nothing_yet = table->rows == 0 || (table->format == TABLE_TEXT && table->rows <= SAMPLE_ROWS);
-    if (nothing_yet)
+    if (table->people && (!table->laid_out || table->kept_count))
+      print_kept(table);
+    else if (table->rows == 0)
       header(table);
     if (table->format == TABLE_JSON)
       fputs(table->rows ? "\n]\n" : "]\n", table->out);
     errno = 0;
     (void)fflush(table->out); /* sets the stream's error flag */
     check_output(table);
+    if (table->people && !table->broken)
+      tell_left_out(table);
   }
   table->ended = true;
   clearerr(table->out); /* reported here, once */
@@ -410,10 +753,10 @@ void table_drop(struct table **variable) {
     return;
   if (!table->ended && table->rows > 0)
     (void)table_end(table, NULL);
-  for (size_t i = 0; i < table->kept_count; i++)
-    free(table->kept[i].text);
+  drop_kept(table);
   for (size_t c = 0; c < table->column_count; c++) {
     free(table->columns[c].name);
+    free(table->columns[c].head);
     free(table->columns[c].unit);
   }
   free(table->kept);
@@ -422,7 +765,7 @@ void table_drop(struct table **variable) {
 }
 
 status table_text_only(enum table_format format, const char *what, struct error *error) {
-  if (format != TABLE_TEXT)
+  if (!table_for_people(format))
     return status_fail(error, STATUS_USAGE, "%s is text, not a table: leave --%s out", what,
                        format == TABLE_CSV ? "csv" : "json");
   return STATUS_OK;
@@ -435,15 +778,9 @@ enum { BLOB_SHOWN = 64 };
 
 struct rows {
   struct table *table;
-  enum table_format format;
-  struct ask_column written[LIMITS_AXES_OF_TABLE]; /* varied inputs, in the campaign's units */
-  size_t written_count;
-  struct shown {
-    const struct ask_column *written; /* the varied input that it is; NULL: shown as stored */
-    bool hidden;
-    size_t doubtful; /* of a mean: its column _doubtful, behind its column _n; 0: none */
-  } * shown;         /* per column */
-  size_t n;          /* the column of the number of runs */
+  size_t *doubtful; /* of a mean: its column _doubtful, behind its column _n; 0: none */
+  bool *hidden;
+  size_t n; /* the column of the number of runs */
 };
 
 /* The column of the mean whose number of doubtful runs is in column `i`; 0: none. */
@@ -456,53 +793,48 @@ static size_t mean_of(const struct answer *answer, size_t i) {
   return 0;
 }
 
-/* People see marks, not the columns that they come from, and the half width of an interval, not its ends. */
+/* People see marks, not the columns that they come from. */
 static void find_marks(struct rows *rows, const struct answer *answer) {
-  const size_t count = answer_count(answer);
-  for (size_t i = 1; i < count; i++) {
+  for (size_t i = 1; i < answer_count(answer); i++) {
     const size_t mean = mean_of(answer, i);
-    if (mean > 0) {
-      rows->shown[mean].doubtful = i;
-      rows->shown[i].hidden = rows->shown[i - 1].hidden = true;
-    }
+    rows->doubtful[mean] = mean ? i : 0;
+    if (mean)
+      rows->hidden[i] = rows->hidden[i - 1] = true;
     if (strcmp(answer_name(answer, i), "n") == 0)
       rows->n = i;
-    const char *end = strrchr(answer_name(answer, i), '_');
-    if (end && (strcmp(end, "_low95") == 0 || strcmp(end, "_high95") == 0))
-      rows->shown[i].hidden = true;
+    rows->hidden[i] |= strcmp(answer_name(answer, i), "doubts") == 0;
   }
-  rows->shown[count - 1].hidden = true;
 }
 
 /* The headings, with the units of the store's columns: people see varied inputs in the campaign's units (`written`). */
 static void name_columns(struct rows *rows, const struct answer *answer, bool written) {
-  const bool people = rows->format == TABLE_TEXT;
   OWNED struct ask_column *units = NULL;
-  size_t unit_count = 0;
-  if (people) /* on an error headings have no units, and values stay in SI */
+  struct ask_column axes[LIMITS_AXES_OF_TABLE];
+  size_t unit_count = 0, axis_count = 0;
+  if (rows->table->people) { /* on an error headings have no units, and values stay in SI */
     (void)ask_columns_units(answer->store, &units, &unit_count, NULL);
-  if (people && written) {
-    find_marks(rows, answer);
-    (void)ask_columns_axes(answer->store, true, LIMITS_AXES_OF_TABLE, rows->written, &rows->written_count, NULL);
+    (void)ask_columns_axes(answer->store, written, LIMITS_AXES_OF_TABLE, axes, &axis_count, NULL);
+    if (written)
+      find_marks(rows, answer);
   }
   for (size_t i = 0; i < answer_count(answer); i++) {
-    const char *name = answer_name(answer, i);
-    struct shown *shown = &rows->shown[i];
-    for (size_t k = 0; k < rows->written_count && !shown->written; k++)
-      if (strcmp(rows->written[k].name, name) == 0)
-        shown->written = &rows->written[k];
-    const char *unit = shown->written ? shown->written->unit : NULL;
+    const char *name = answer_name(answer, i), *unit = NULL;
+    size_t axis = 0;
+    while (axis < axis_count && strcmp(axes[axis].name, name) != 0)
+      axis++;
     for (size_t k = 0; k < unit_count && !unit; k++)
       if (strcmp(units[k].name, name) == 0)
         unit = units[k].unit;
-    if (!shown->hidden)
+    if (axis < axis_count)
+      table_key(rows->table, &axes[axis]);
+    else if (!rows->hidden[i])
       table_column(rows->table, name, unit);
   }
 }
 
 static void print_blob(struct rows *rows, const unsigned char *bytes, size_t size) {
   char text[2 * BLOB_SHOWN + 1];
-  if (rows->format == TABLE_TEXT && size > BLOB_SHOWN) {
+  if (rows->table->people && size > BLOB_SHOWN) {
     snprintf(text, sizeof text, "(%zu bytes)", size);
     table_text(rows->table, text);
     return;
@@ -530,15 +862,12 @@ void table_value(struct table *table, const struct query_value *value) {
 
 static void print_row(struct rows *rows, const struct answer *answer) {
   for (size_t i = 0; i < answer_count(answer); i++) {
-    const struct shown *shown = &rows->shown[i];
-    struct query_value value = answer_value(answer, i);
-    if (shown->hidden)
+    const struct query_value value = answer_value(answer, i);
+    if (rows->hidden[i])
       continue;
-    if (shown->written)
-      value = ask_columns_value(shown->written, &value);
-    if (shown->doubtful) {
-      const int64_t doubtful = answer_integer(answer, shown->doubtful), n = answer_integer(answer, rows->n);
-      const int64_t withheld = n - answer_integer(answer, shown->doubtful - 1);
+    if (rows->doubtful[i]) {
+      const int64_t doubtful = answer_integer(answer, rows->doubtful[i]), n = answer_integer(answer, rows->n);
+      const int64_t withheld = n - answer_integer(answer, rows->doubtful[i] - 1);
       table_rests_on(rows->table, &(struct ask_doubts){.runs = n, .doubtful = doubtful, .withheld = withheld});
     }
     if (value.kind == QUERY_BLOB)
@@ -551,11 +880,14 @@ static void print_row(struct rows *rows, const struct answer *answer) {
 status table_answer(struct answer question, bool written, enum table_format format, FILE *out) {
   ANSWER answer = question;
   TRY(answer_status(&answer)); /* the question itself failed: no table */
+  const size_t count = answer_count(&answer);
   TABLE table = table_new(format, out);
-  OWNED struct shown *shown = calloc(answer_count(&answer) + 1, sizeof *shown);
-  struct rows rows = {.format = format, .table = table, .shown = shown};
-  if (!shown)
+  OWNED size_t *doubtful = calloc(count + 1, sizeof *doubtful);
+  OWNED bool *hidden = calloc(count + 1, sizeof *hidden);
+  if (!doubtful || !hidden)
     return status_fail(answer.error, STATUS_MEMORY, "no memory for a table");
+  table->asked = !written;
+  struct rows rows = {.table = table, .doubtful = doubtful, .hidden = hidden};
   name_columns(&rows, &answer, written);
   while (!table_broken(table) && answer_next(&answer))
     print_row(&rows, &answer);

@@ -1,11 +1,18 @@
-/* Rows on stdout, four ways: an aligned table for people; CSV (RFC 4180), JSON (one array of objects) and JSON Lines
- * (one object on each line) for programs.
+/* Rows on stdout: a table for people; CSV (RFC 4180), JSON (one array of objects) and JSON Lines (one object on each
+ * line) for programs.
  *
- * Cells are added in column order, row after row. Formats for programs are written row by row immediately; the aligned
- * table keeps the first rows to find its widths. Numbers for programs read back as the same bits; the aligned table
- * shows five significant digits and the unit in the heading. Missing values and NaN: empty in CSV, null in JSON, "-" in
- * the table. In CSV a text that a spreadsheet would run as a formula has an apostrophe before it, which readers of
- * schemas/csv.h take off; control characters are spaces but tabs and line ends. */
+ * Cells are added in column order, row after row. Formats for programs are written row by row immediately, with all
+ * columns; numbers read back as the same bits. Missing values and NaN: empty in CSV, null in JSON, "-" for people. In
+ * CSV a text that a spreadsheet would run as a formula has an apostrophe before it, which readers of schemas/csv.h take
+ * off; control characters are spaces but tabs and line ends.
+ *
+ * The table for people has one rule, whatever it shows. It is 100 characters wide at most (on a terminal, as wide as
+ * that; COLUMNS says otherwise). Columns that tell rows apart always stand in it: varied inputs and numbers of points.
+ * The half width of an interval (NAME_hw95) stands in the cell of its value, as "0.349 ± 0.003"; both have the
+ * digits that it allows. Other numbers have five digits. Units are in the headings. If the table is too wide, headings
+ * get several lines, then texts, then it leaves columns out, the last ones first. It also leaves out columns that are
+ * rarely wanted, and those that have the same cell in all rows (engine, failed: table.c names them). A note on stderr
+ * names what is left out. With --all nothing is; the table has several parts if need be. */
 #ifndef CLAST_CAMPAIGN_TERMINAL_TABLE_H
 #define CLAST_CAMPAIGN_TERMINAL_TABLE_H
 
@@ -15,7 +22,8 @@
 
 #include "db/ask/ask.h"
 
-enum table_format { TABLE_TEXT, TABLE_CSV, TABLE_JSON, TABLE_JSON_LINES };
+enum table_format { TABLE_TEXT, TABLE_ALL, TABLE_CSV, TABLE_JSON, TABLE_JSON_LINES };
+bool table_for_people(enum table_format format); /* TABLE_TEXT, or with all columns */
 
 struct table;
 
@@ -31,10 +39,14 @@ struct table *table_new(enum table_format format, FILE *out);
 void table_column(struct table *table, const char *name, const char *unit);
 /* Adds several columns without unit; NULL ends the names. */
 void table_columns(struct table *table, const char *const *names);
+/* A varied input: people see its short name, its unit, and numbers in that unit. */
+void table_key(struct table *table, const struct ask_column *input);
+/* People see the last column only with --all. */
+void table_rare(struct table *table);
 
 void table_text(struct table *table, const char *text); /* NULL: missing */
 void table_real(struct table *table, double number);
-/* The same with this number of decimals in the aligned table. */
+/* The same with this number of decimals in the table for people. */
 void table_fixed(struct table *table, double number, int decimals);
 void table_integer(struct table *table, int64_t number);
 void table_boolean(struct table *table, bool value);
@@ -56,8 +68,9 @@ status table_end(struct table *table, struct error *error);
 bool table_broken(const struct table *table);
 
 /* Prints all rows of an answer as a table, and ends the answer. Headings have the units of the store's table
- * column_doc. With `written`, the answer is that of ask_group(): a table for people shows varied inputs in the
- * campaign's units, and marks instead of the columns _n, _doubtful and doubts. A closed pipe is not an error. */
+ * column_doc. `written`: the program chose the columns, and varied inputs are in the campaign's units; people see marks
+ * instead of the columns _n, _doubtful and doubts of ask_group(). Else the user named the columns: all of them are
+ * shown if there is room. A closed pipe is not an error. */
 status table_answer(struct answer answer, bool written, enum table_format format, FILE *out);
 
 /* Adds one cell: number, text or missing. Not for QUERY_BLOB. */

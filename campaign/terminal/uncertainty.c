@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "schemas/text.h"
 
@@ -25,6 +26,13 @@ void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_T
   }
   const int decimals = leading < 0 ? (int)-leading : 0;
   snprintf(text, UNCERTAINTY_TEXT, "%.*f +- %.*f", decimals, value, decimals, half_width);
+}
+
+void uncertainty_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]) {
+  uncertainty_number(value, half_width, text);
+  char *sign = strstr(text, "+-");
+  if (sign)
+    memcpy(sign, "\xc2\xb1", 2); /* both have two bytes */
 }
 
 void uncertainty_distance(double distance, double half_width, char text[UNCERTAINTY_TEXT]) {

@@ -13,6 +13,9 @@ enum { UNCERTAINTY_TEXT = 256 };
  * width above 0: "0.349". */
 void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_TEXT]);
 
+/* The same as a cell of a table: "0.349 ± 0.003". */
+void uncertainty_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]);
+
 /* "0.03 +- 0.02 below its limit", of a mean less its limit. */
 void uncertainty_distance(double distance, double half_width, char text[UNCERTAINTY_TEXT]);
 

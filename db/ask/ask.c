@@ -142,12 +142,39 @@ void ask_columns_write_in(struct ask_column *column, const char *written) {
   column->factor = other.factor / own.factor;
 }
 
+/* Does the path of another axis end like this? */
+static bool is_ambiguous(const struct ask_column *axes, size_t count, size_t axis, const char *tail) {
+  const size_t end = strlen(tail);
+  for (size_t i = 0; i < count; i++) {
+    const size_t length = strlen(axes[i].word);
+    if (i != axis && length >= end && strcmp(axes[i].word + length - end, tail) == 0 &&
+        (length == end || axes[i].word[length - end - 1] == '.'))
+      return true;
+  }
+  return false;
+}
+
+/* The shortest end of an axis' path (in `word`) that no other has. "name" alone says too little. */
+static const char *short_word(const struct ask_column *axes, size_t count, size_t axis) {
+  const char *const path = axes[axis].word, *word = path + strlen(path);
+  while (word > path && (word[-1] != '.' || strcmp(word, "name") == 0 || is_ambiguous(axes, count, axis, word)))
+    word--;
+  return word;
+}
+
 status ask_columns_axes(struct store *store, bool written, size_t most, struct ask_column *axes, size_t *count,
                         struct error *error) {
-  ANSWER answer = answer_to(store, error, "SELECT column_name, unit, %s FROM axis ORDER BY path",
+  const char *word[LIMITS_AXES_OF_STORE];
+  ANSWER answer = answer_to(store, error, "SELECT column_name, unit, %s, path FROM axis ORDER BY path",
                             written ? "written_unit" : "NULL");
-  for (*count = 0; *count < most && answer_next(&answer);)
-    read_column(&answer, &axes[(*count)++]);
+  for (*count = 0; *count < most && answer_next(&answer); ++*count) {
+    read_column(&answer, &axes[*count]);
+    snprintf(axes[*count].word, sizeof axes->word, "%s", answer_text(&answer, 3));
+  }
+  for (size_t i = 0; i < *count; i++)
+    word[i] = short_word(axes, *count, i);
+  for (size_t i = 0; i < *count; i++)
+    memmove(axes[i].word, word[i], strlen(word[i]) + 1);
   return answer_end(&answer);
 }
 

@@ -101,12 +101,13 @@ const struct query_canned *ask_canned_find(const char *name, struct error *error
 /* A column of the views and its unit. */
 struct ask_column {
   char name[128];
-  char unit[64]; /* "" when the store does not give it; "1" for a pure number */
-  double factor; /* SI value of one of this unit; values of the store are SI */
+  char word[128]; /* of a varied input: the shortest end of its path that no other has: "m", "target.radius"; else "" */
+  char unit[64];  /* "" when the store does not give it; "1" for a pure number */
+  double factor;  /* SI value of one of this unit; values of the store are SI */
 };
 
-/* The columns of the varied inputs, in the order of their paths; at most `most` of them. `written`: in the units that
- * the campaign uses; else in SI units. */
+/* The columns of the varied inputs, in the order of their paths; at most `most` (LIMITS_AXES_OF_STORE) of them.
+ * `written`: in the units that the campaign uses; else in SI units. */
 status ask_columns_axes(struct store *store, bool written, size_t most, struct ask_column *axes, size_t *count,
                         struct error *error);
 /* One column by name, with the campaign's unit if it is a varied input, else with its unit in the store. */

@@ -12,7 +12,7 @@ expect 0 "$clast" run tiny.yaml --dry-run
 
 expect 0 "$clast" run tiny.yaml -j 2
 says "12 runs computed"; prints "M_1/M"
-for point in 1 2 3 4; do grep -q "^$point " out || fail "no line of point $point"; done
+for point in 1 2 3 4; do grep -q "^ *$point " out || fail "no line of point $point"; done
 [ ! -e tiny.db-wal ] || fail "a WAL file is left after a clean end"
 same "$(number tiny.db 'select count(*) from runs where counts')" 12 "runs that count"
 same "$(number tiny.db 'select count(distinct threshold_strain) from points')" 2 "levels of an axis column"
@@ -57,21 +57,23 @@ python - <<'PY'
 import csv, json
 a = list(csv.DictReader(open('stats.csv', newline='')))
 b = json.load(open('stats.json'))
-lines = open('out').read().splitlines()
+lines = open('out', encoding='utf-8').read().splitlines()
 assert len(a) == len(b) == len(lines) - 1 == 4, (len(a), len(b), len(lines))
 for x, y, line in zip(a, b, lines[1:]):
     assert list(x) == list(y)
-    # People see marks instead of _n, _doubtful and doubts, and the half width instead of both ends.
-    told = [name for name in x if not name.endswith(('_n', '_doubtful', 'doubts', '_low95', '_high95'))]
-    shown = line.split()
-    assert len(shown) == len(told), line
-    for name, w in zip(told, shown):
-        u, v = x[name], y[name]
-        if v is None: assert u == '' and w == '-'
-        elif isinstance(v, str): assert u == v == w
-        else: # tables for people show varied inputs in the units of the campaign
-            unit = {'threshold_strain': 0.01, 'threshold_angle': 3.14159265358979 / 180}.get(name, 1)
-            assert float(u) == float(v) and abs(float(w) * unit - v) <= 1e-4 * abs(v) + 1e-12, (name, u, v, w)
+    for name, v in y.items():
+        assert x[name] == '' if v is None else x[name] == v if isinstance(v, str) else float(x[name]) == float(v), (name, x, y)
+    # People see varied inputs in the units of the campaign, counts, and the mean with its half width in the same digits.
+    strain, angle, points, n, *_ = line.split()
+    assert abs(float(strain) * 0.01 - y['threshold_strain']) < 1e-12, line
+    assert abs(float(angle) * 3.14159265358979 / 180 - y['threshold_angle']) < 1e-12, line
+    assert [int(points), int(n)] == [y['points'], y['n']], line
+    if y['largest_fraction_hw95']:
+        mean, sign, error = line.split('  ')[-1].rstrip('~ !').split()
+        last = 10.0 ** -len(mean.partition('.')[2])
+        assert sign == '±' and len(mean.partition('.')[2]) == len(error.partition('.')[2]), line
+        assert abs(float(mean) - y['largest_fraction_mean']) <= 0.501 * last, (line, y)
+        assert abs(float(error) - y['largest_fraction_hw95']) <= 0.501 * last and float(error) < 20 * last, (line, y)
 PY
 ok "stats: table, CSV and JSON agree"
 

@@ -5,7 +5,7 @@
 disc=(disc-explosion --set body.diameter='8 cm' --set charge.energy='2 kJ/m' --set stop.end_time='1 ms')
 expect 0 "$clast" converge --list
 prints "particles"; prints "grains"
-expect 0 "$clast" converge "${disc[@]}" --knob time_step --knob grains=1.2cm,1.069cm,0.9cm -q largest_fraction,broken \
+expect 0 "$clast" converge "${disc[@]}" --knob time_step --knob grains=1.2cm,1.069cm,0.9cm -Q largest_fraction,broken \
   --seeds 4 --max-seeds 8 --within '0.01 %' --store disc.db --picture disc.png -j 2
 says "56 runs computed"; prints "largest number of seeds"; prints "grains"; [ -s disc.png ] || fail "no picture"
 same "$(number disc.db "select count(*) from convergence where n = 8")" 16 "levels of two knobs and two quantities"
@@ -44,7 +44,7 @@ expect 0 "$clast" check disc.db
 # An exponent belongs to all runs of a level: its study finds the beta and the interval that `estimates` prints.
 expect 0 "$clast" estimates disc.db
 prints "?"
-expect 0 "$clast" converge "${disc[@]}" --knob time_step -q beta_masses_from_2 --seeds 8 --within off --store disc.db -j 2
+expect 0 "$clast" converge "${disc[@]}" --knob time_step -Q beta_masses_from_2 --seeds 8 --within off --store disc.db -j 2
 says "0 runs computed"; prints "quantity beta_masses_from_2"
 expect 0 "$clast" estimates disc.db --json
 python - <<'PY'
@@ -73,7 +73,7 @@ says "0 runs computed"
 
 # SPH: the lattice is turned with the seed, and one round is enough without a width.
 expect 0 "$clast" converge basalt-sphere --set fidelity.particles=300 --set stop.end_time='10 us' \
-  --knob particles=200,300,450 --knob precision --seeds 3 --within off --store ball.db -q mean_damage -j 2
+  --knob particles=200,300,450 --knob precision --seeds 3 --within off --store ball.db -Q mean_damage -j 2
 prints "precision"; prints "one round"
 says "marked (!), 12 of 12 runs: coarse" # the scene's own level belongs to two knobs, and counts once
 same "$(number ball.db "select count(*) from run")" 12 "runs: 3 + 1 levels, 3 seeds"
@@ -146,7 +146,7 @@ same "$(number sharp.db "select value from campaign join campaign_point using (c
 sed 's/{within: 0.05}/{quantity: beta_masses_from_2, within: 9}/' sharp.yaml >beta.yaml
 expect 65 "$clast" plan beta.yaml
 says "--quantity beta_masses_from_2"
-expect 0 "$clast" converge beta.yaml --knob time_step -q beta_masses_from_2 --seeds 8 --within off --store sharp.db -j 2
+expect 0 "$clast" converge beta.yaml --knob time_step -Q beta_masses_from_2 --seeds 8 --within off --store sharp.db -j 2
 expect 0 "$clast" plan beta.yaml
 prints "chosen"
 sed -i 's/0.05/1e-9/' sharp.yaml
@@ -175,7 +175,7 @@ expect 64 "$clast" converge disc-explosion --knob particles
 says "grains"
 expect 64 "$clast" converge disc-explosion --knob grains=many,2
 expect 64 "$clast" converge disc-explosion --within wide
-expect 64 "$clast" converge disc-explosion -q largest_fraction,broken --within 0.1
+expect 64 "$clast" converge disc-explosion -Q largest_fraction,broken --within 0.1
 expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin

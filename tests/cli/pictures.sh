@@ -77,18 +77,18 @@ expect 66 "$clast" spectrum small.db --with none.csv
 
 expect 0 "$clast" map small.db map.svg -x strain -y angle
 is_svg map.svg
-expect 0 "$clast" map small.db beta.png -x strain -y angle -q beta_masses_from_2
+expect 0 "$clast" map small.db beta.png -x strain -y angle -Q beta_masses_from_2
 is_png beta.png
 
 expect 0 "$clast" plot small.db lines.png -x strain --by angle
 is_png lines.png
-expect 0 "$clast" plot small.db dust.svg -x strain -q dust_fraction
+expect 0 "$clast" plot small.db dust.svg -x strain -Q dust_fraction
 is_svg dust.svg
-expect 0 "$clast" plot small.db apart.svg -x strain --by angle -q dust_fraction
+expect 0 "$clast" plot small.db apart.svg -x strain --by angle -Q dust_fraction
 tr '\n' ' ' <dust.svg | grep -q 'beams in angle' || fail "a mean over angles, too, does not say so"
 grep -q 'seeds and' apart.svg && fail "a line for each angle is no mean over angles"
 grep -q 'threshold of beams in strain' apart.svg || fail "the axis has no readable name"
-expect 0 "$clast" plot small.db beta.svg -x strain --by angle -q beta_masses_from_2 --keep-script
+expect 0 "$clast" plot small.db beta.svg -x strain --by angle -Q beta_masses_from_2 --keep-script
 expect 0 "$clast" estimates small.db --json
 # The numbers that gnuplot draws are those of the table.
 python - <<'PY'
@@ -103,17 +103,17 @@ for angle, line in zip(angles, drawn):
     assert len(table) == 2 and all(abs(x - 100 * a) < 1e-8 and abs(y - b) < 1e-8 for (x, y, *_), (a, b) in zip(line, table, strict=True)), (line, table)
 PY
 ok "the picture shows the table's exponents"
-expect 64 "$clast" plot small.db m.png -x strain -q beta
+expect 64 "$clast" plot small.db m.png -x strain -Q beta
 says "--by"
-expect 64 "$clast" plot small.db m.png -x strain --by angle -q beta_ks_from_2
+expect 64 "$clast" plot small.db m.png -x strain --by angle -Q beta_ks_from_2
 says "beta_METHOD_WINDOW"
 expect 64 "$clast" plot small.db m.png
 says "--x"
 expect 64 "$clast" plot small.db m.png -x strain --by strain
 expect 64 "$clast" plot small.db m.png -x strain,angle
-expect 64 "$clast" plot small.db m.png -x strain -q largest_fraction,dust_fraction
+expect 64 "$clast" plot small.db m.png -x strain -Q largest_fraction,dust_fraction
 says "one quantity"
-expect 64 "$clast" plot small.db m.png -x strain -q nothing
+expect 64 "$clast" plot small.db m.png -x strain -Q nothing
 says "largest_fraction"
 expect 64 "$clast" plot small.db m.jpg -x strain
 expect 74 "$clast" plot small.db no/such/folder/m.png -x strain
@@ -201,12 +201,12 @@ PY
 ok "the shares of inputs and seeds sum to one"
 expect 0 "$clast" scatter small.db --plot --ascii --by strain
 prints "from     runs"
-expect 0 "$clast" scatter small.db --picture scatter.svg -q fragment_count
+expect 0 "$clast" scatter small.db --picture scatter.svg -Q fragment_count
 is_svg scatter.svg
 expect 64 "$clast" scatter small.db --half-width none
 expect 64 "$clast" scatter small.db --split --point 1
 says "at least two points"
-expect 64 "$clast" scatter small.db -q nothing
+expect 64 "$clast" scatter small.db -Q nothing
 
 # The four names of an exponent, and the goodness of its fit.
 expect 0 "$clast" exponents small.db --draws 200 --json

@@ -35,7 +35,7 @@ says "sub/own.yaml: there is no such file"
 same "$(ls sub)" "" "files that are left"
 ok "no half design"
 expect 0 "$clast" run ask.yaml --store ask.db -j 2 --quiet
-expect 0 "$clast" sensitivity ask.db ask.yaml -q fragment_count --csv
+expect 0 "$clast" sensitivity ask.db ask.yaml -Q fragment_count --csv
 python - <<'PY'
 import csv
 rows = {r["input"]: r for r in csv.DictReader(open("out"))}

@@ -126,7 +126,7 @@ expect 74 "$clast" serve disc.yaml --port 0
 says "disc.db"
 ended 0 "0 evaluations"
 expect 64 "$clast" serve disc.yaml --port 0 --listen localhost
-expect 64 "$clast" serve disc.yaml --port 0 -q no_such
+expect 64 "$clast" serve disc.yaml --port 0 -Q no_such
 expect 64 "$clast" serve disc.yaml --port 0 --knob no_such
 expect 64 "$clast" serve disc.yaml --port 70000
 sed '/^vary/,/GPa\]/d' disc.yaml >still.yaml

@@ -38,11 +38,11 @@ axes = "-x strain -y angle".split()
 
 def commands(store, out):
     """Every command that prints from a store."""
-    yield from (["stats", store], ["stats", store, "-b", "strain", "-q", "main", "--csv"])
+    yield from (["stats", store], ["stats", store, "-b", "strain", "-Q", "main", "--csv"])
     yield from (["estimates", store, *form] for form in ([], ["--csv"], ["--json"]))
     yield ["exponents", store, "--draws", "20"]
     yield from (["scatter", store, *form] for form in ([], ["--split"], ["--plot"], ["--half-width", "0.01", "--json"]))
-    yield from (["scatter", store, "-q", name] for name in ("largest_speed", "fragment_count"))
+    yield from (["scatter", store, "-Q", name] for name in ("largest_speed", "fragment_count"))
     yield from (["status", store, *form] for form in ([], ["--json"]))
     yield from (["spectrum", store, *form] for form in ([], ["-c"], ["--plot"], ["--runs", "--csv"], ["--size", "2700 kg/m^3"]))
     yield from (["compare", f"{store}:1", f"{store}:2"], ["compare", store, "good.db", "--csv"])
@@ -62,7 +62,7 @@ def commands(store, out):
 
 def pictures(store, out):
     """Commands that draw are slow: gnuplot. They run on one store of a table and value."""
-    yield from (["map", store, f"{out}.map.png", *axes], ["plot", store, f"{out}.plot.svg", "-x", "strain", "-b", "angle", "-q", "beta"])
+    yield from (["map", store, f"{out}.map.png", *axes], ["plot", store, f"{out}.plot.svg", "-x", "strain", "-b", "angle", "-Q", "beta"])
     yield from (["spectrum", store, "--picture", f"{out}.spectrum.png"], ["scatter", store, "--picture", f"{out}.scatter.png"])
     yield ["report", store, "-o", f"{out}.html"]
 

@@ -65,8 +65,8 @@ struct toy_run {
   } state;
 };
 
-static char *describe(const void *in) {
-  (void)in;
+static char *describe(const void *in, bool all) {
+  (void)in, (void)all;
   return strdup("a stick, without physics\n");
 }
 

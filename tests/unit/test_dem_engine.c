@@ -45,7 +45,7 @@ static void builtin_scenes_say_what_they_model(void **state) {
   for (size_t k = 0; k < sizeof scenes / sizeof scenes[0]; k++) {
     struct dem_inputs inputs = DEM_CASE(scenes[k], NULL);
     assert_int_equal(inputs.kind, (int)k); /* listed in the order of enum dem_kind */
-    char *text = dem_engine.describe(&inputs);
+    char *text = dem_engine.describe(&inputs, true);
     assert_non_null(strstr(text, scenes[k]));
     assert_non_null(strstr(text, "stability limit"));
     assert_null(strstr(text, "cannot be run"));

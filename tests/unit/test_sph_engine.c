@@ -33,7 +33,7 @@ static void builtin_scenes_say_what_they_model(void **state) {
   (void)state;
   for (size_t k = 0; k < SCENES; k++) {
     struct sph_inputs inputs = SPH_CASE(scenes[k], NULL);
-    char *text = sph_engine.describe(&inputs);
+    char *text = sph_engine.describe(&inputs, true);
     assert_non_null(strstr(text, "c_p "));
     assert_non_null(strstr(text, "bytes per particle"));
     if (strstr(text, "cannot be run"))
@@ -68,7 +68,7 @@ static void flaws_are_described(void **state) {
   const double V = sph_derived_target_mass(&inputs) / inputs.target.material.density;
   double strain = 0, pascal = 0,
          want = pow(inputs.target.material.weibull.k * V, -1 / inputs.target.material.weibull.m);
-  char *text = sph_engine.describe(&inputs);
+  char *text = sph_engine.describe(&inputs, true);
   const char *at = strstr(text, "the weakest opens at strain ");
   assert_true(at && sscanf(at, "the weakest opens at strain %lf (%lf Pa)", &strain, &pascal) == 2);
   assert_true(fabs(strain / want - 1) < 0.005 &&
@@ -78,7 +78,7 @@ static void flaws_are_described(void **state) {
 
 static double described_speed(const struct sph_inputs *inputs) {
   double speed = 0;
-  char *text = sph_engine.describe(inputs);
+  char *text = sph_engine.describe(inputs, true);
   const char *at = strstr(text, "of a core that does ");
   assert_true(at && sscanf(at, "of a core that does %lf particle-steps", &speed) == 1);
   free(text);

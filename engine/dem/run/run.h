@@ -76,7 +76,7 @@ status dem_report_finish(void *run, struct outcome *outcome, void *results, stru
                          struct error *error);
 
 /* describe.c */
-char *dem_describe_scene(const void *inputs); /* struct dem_inputs */
+char *dem_describe_scene(const void *inputs, bool all); /* struct dem_inputs */
 double dem_describe_threshold_energy(const struct dem_inputs *inputs, const struct dem_tessellation *tessellation);
 /* Closing speed above which two free grains pass through each other: no overlap stores that much energy, m/s. */
 double dem_describe_passing_speed(const struct dem_inputs *inputs);

@@ -136,7 +136,8 @@ static void body(const struct dem_inputs *in, FILE *out) {
   dem_run_free(run);
 }
 
-char *dem_describe_scene(const void *inputs) {
+char *dem_describe_scene(const void *inputs, bool all) {
+  (void)all;
   const struct dem_inputs *in = inputs;
   char *text = NULL;
   size_t size = 0;

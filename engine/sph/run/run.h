@@ -77,7 +77,7 @@ double sph_run_extent(const struct sph_run *run);       /* m, the target's reach
 status sph_protocol_bodies(struct sph_run *run, struct error *error);
 
 /* describe.c */
-char *sph_describe_scene(const void *inputs);
+char *sph_describe_scene(const void *inputs, bool all);
 size_t sph_describe_memory(const void *inputs); /* bytes a run will need */
 double sph_describe_work(const void *inputs);   /* particle-steps, an estimate */
 

@@ -162,9 +162,19 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
 }
 
 /* The modules, and the bodies in which each is on. */
-static void modules(const struct sph_inputs *in, FILE *out) {
+static void modules(const struct sph_inputs *in, bool all, FILE *out) {
   static const char *const who[] = {"", "target", "projectile", "target, projectile"};
   const struct need need = need_of(in);
+  const char *before = "  modelled: ";
+  for (size_t m = 0; m < SPH_MODULES && !all; m++)
+    if (set_has(need.modules[0].word, m) || set_has(need.modules[1].word, m)) {
+      fprintf(out, "%s%s", before, sph_modules_at(m)->name);
+      before = ", ";
+    }
+  if (!all) {
+    fputc('\n', out);
+    return;
+  }
   for (size_t m = 0; m < SPH_MODULES; m++) {
     const struct sph_module *module = sph_modules_at(m);
     const unsigned on = set_has(need.modules[0].word, m) + 2U * set_has(need.modules[1].word, m);
@@ -207,7 +217,7 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
             sqrt(sph_material_young_modulus(&target->material) / target->material.density) / (2 * target->length));
 }
 
-char *sph_describe_scene(const void *inputs) {
+char *sph_describe_scene(const void *inputs, bool all) {
   const struct sph_inputs *in = inputs;
   char *text = NULL;
   size_t size = 0;
@@ -216,7 +226,7 @@ char *sph_describe_scene(const void *inputs) {
     return NULL;
   struct error error = {0};
   protocol(in, out);
-  modules(in, out);
+  modules(in, all, out);
   numbers(in, out);
   struct sph_plane_shock exact;
   if (in->kind == SPH_PISTON && !sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL))
