@@ -50,6 +50,9 @@ sed '/^yield_stress/d' basalt.yaml >short.yaml
 scene short.yaml >s.yaml
 expect 65 "$clast" simulate s.yaml
 says "target.material.yield_stress is not given"; says "off"
+sed '/^yield_stress/d; /^melt_energy/d' basalt.yaml >short.yaml # all that is missing at once
+expect 65 "$clast" simulate s.yaml
+says "also missing: target.material."
 sed 's/^density: .*/density: -3 kg/' basalt.yaml >wrong.yaml
 scene wrong.yaml >s.yaml
 expect 65 "$clast" explain ./s.yaml
@@ -64,4 +67,4 @@ says "none.yaml: there is no such file"; one_error
 scene "{file: basalt.yaml, density: 2.8 g/cm^3}" >s.yaml
 expect 0 "$clast" explain ./s.yaml
 prints "2800 kg/m^3"
-done_after 23
+done_after 24

@@ -10,6 +10,7 @@
 #include "engine/sph/modules/module.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/scene/inputs.h"
+#include "schemas/text.h"
 
 #define REFUSE(...) return status_fail(error, STATUS_CONTENT, __VA_ARGS__)
 
@@ -49,9 +50,11 @@ static status refuse_missing(const struct field *row, const char *material, stru
   REFUSE("%s is needed%s, and the material '%s' has none: give it, or %s", row->path, reason, material, remedy);
 }
 
-static status check_needed(const struct sph_inputs *in, const struct sph_body_inputs *body, struct error *error) {
+/* The next value of the body's material behind `after` (NULL: the first) that is needed and missing; NULL: none. */
+static const struct field *next_needed(const struct sph_inputs *in, const struct sph_body_inputs *body,
+                                       const struct field *after) {
   const size_t material = (size_t)((const char *)&body->material - (const char *)in);
-  for (size_t k = 0; k < sph_inputs.count; k++) {
+  for (size_t k = after ? (size_t)(after - sph_inputs.rows) + 1 : 0; k < sph_inputs.count; k++) {
     const struct field *row = &sph_inputs.rows[k];
     struct field_value value;
     if (row->offset < material || row->offset >= material + sizeof body->material)
@@ -59,9 +62,20 @@ static status check_needed(const struct sph_inputs *in, const struct sph_body_in
     field_get(row, in, &value);
     if (value.kind == FIELD_REAL && isnan(value.number) && field_is_active(&sph_inputs, row, in) &&
         is_needed(row, body))
-      return refuse_missing(row, builtin_material_names[body->material_name], error);
+      return row;
   }
-  return STATUS_OK;
+  return NULL;
+}
+
+/* Tells all that is missing at once. */
+static status check_needed(const struct sph_inputs *in, const struct sph_body_inputs *body, struct error *error) {
+  const struct field *row = next_needed(in, body, NULL);
+  if (!row)
+    return STATUS_OK;
+  const status code = refuse_missing(row, builtin_material_names[body->material_name], error);
+  for (size_t more = 0; (row = next_needed(in, body, row)); more++)
+    text_append(error->message, sizeof error->message, "%s%s", more ? ", " : "; also missing: ", row->path);
+  return code;
 }
 
 static status check_flaws(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
@@ -99,13 +113,24 @@ status sph_inputs_check_given(const void *scene, const bool *given, struct error
     const struct sph_body_inputs *inputs = b ? &in->projectile : &in->target;
     if ((size_t)inputs->material_name < sph_materials_count())
       continue; /* a named one has its own values */
+    const struct field *first = NULL;
+    char others[1024] = "";
     for (size_t i = 0; i < sizeof must / sizeof must[0]; i++) {
       char path[128];
       snprintf(path, sizeof path, "%s.material.%s", body, must[i]);
       const struct field *row = field_find(&sph_inputs, path, NULL);
-      if (row && !given[row - sph_inputs.rows] && field_is_active(&sph_inputs, row, in))
-        REFUSE("%s is not given, and the material is of your own: give it, or `off` (%s)", path, row->doc);
+      if (!row || given[row - sph_inputs.rows] || !field_is_active(&sph_inputs, row, in))
+        continue;
+      if (first)
+        text_append(others, sizeof others, "%s%s", *others ? ", " : "; also missing: ", row->path);
+      first = first ? first : row;
     }
+    for (const struct field *row = NULL; first && (row = next_needed(in, inputs, row));)
+      if (row != first && !strstr(others, row->path))
+        text_append(others, sizeof others, "%s%s", *others ? ", " : "; also missing: ", row->path);
+    if (first)
+      REFUSE("%s is not given, and the material is of your own: give it, or `off` (%s)%s", first->path, first->doc,
+             others);
   }
   return STATUS_OK;
 }
