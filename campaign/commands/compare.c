@@ -41,7 +41,7 @@ static status run(const struct command_line *line, struct error *error) {
   if (table_for_people(line->format)) {
     uncertainty_doubts(&doubts, stderr);
     fprintf(stderr,
-            "clast: %s: b less a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "
+            "clast: %s: b minus a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "
             "runs. It does not hold the error of the resolution\n",
             options->quantity);
   }

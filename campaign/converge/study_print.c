@@ -304,7 +304,7 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
 }
 
 static const char legend[] =
-    "* the scene's own setting; ref: what bias is measured against. bias: mean less that of ref, with the half width\n"
+    "* the scene's own setting; ref: what bias is measured against. bias: mean minus that of ref, with the half width\n"
     "of its 95 % interval. error: largest distance to the limit (none seen: |bias| + half width, perhaps too small),\n"
     "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer. corr: with\n"
     "the next finer level; a control variate would save time from break_even on. upper_mode: share of the runs in the\n"

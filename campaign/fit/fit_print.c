@@ -218,7 +218,7 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
   size_t input = 0;
   while (input + 1 < fit->inputs && !identify_mixed(&fit->found, direction, input))
     input++;
-  say(out, "NOT DETERMINED: %s. The data tell %.2g times what its prior tells%s", names, information,
+  say(out, "NOT DETERMINED: %s. The data say %.2g times as much as its prior says%s", names, information,
       fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (kept)."
                                        : "; its interval is that of the prior.");
 }

@@ -167,7 +167,7 @@ static void tell(const struct fit *fit) {
   char text[256];
   if (!fit->rule.note)
     return;
-  snprintf(text, sizeof text, "round %zu: %zu points, %.0f %% of the data taken in", fit->rounds, fit->points,
+  snprintf(text, sizeof text, "round %zu: %zu points, %.0f %% of the data used", fit->rounds, fit->points,
            100 * fit->ensemble.tempered);
   fit->rule.note(fit->rule.note_context, text);
 }

@@ -170,7 +170,8 @@ static status print_for_people(const struct scene *scene, int64_t seed, const st
   char text[UNCERTAINTY_TEXT];
   print_answers(scene, seed, result);
   TRY(ask_resolution(NULL, 0, OUTCOME_DEFAULT, &resolution, error));
-  snprintf(resolution.scene, sizeof resolution.scene, "%.127s", scene->name);
+  snprintf(resolution.scene, sizeof resolution.scene, "%.127s",
+           scene_builtin_text(scene->name) ? scene->name : "SCENE.yaml");
   uncertainty_resolution(&resolution, text);
   printf("errors: one run has no interval over seeds: several seeds have one (`clast run`)\n%s\n", text);
   if (format == TABLE_ALL) {

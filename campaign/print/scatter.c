@@ -377,7 +377,7 @@ status print_variance(struct store *store, const struct scatter_choice *choice, 
     fprintf(stderr,
             "clast: %zu points with %zu seeds each, which count alike. An input: variance of its means over the other "
             "inputs (in a full grid; else ask `clast sensitivity`); what the inputs together have beyond their sum is "
-            "their interplay. Low, high: 95 %% interval over seeds\n",
+            "their interaction. Low, high: 95 %% interval over seeds\n",
             cells.count, runs);
   }
   return STATUS_OK;

@@ -10,6 +10,7 @@
 #include "db/store/views.h"
 #include "engine/grow.h"
 #include "engine/outcome.h"
+#include "engine/scene.h"
 #include "schemas/limits.h"
 #include "schemas/text.h"
 #include "schemas/unit.h"
@@ -256,7 +257,8 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
                             "point_id)",
                             id);
   if (answer_next(&scenes) && answer_integer(&scenes, 0) == 1 && answer_value(&scenes, 1).kind == QUERY_TEXT)
-    snprintf(out->scene, sizeof out->scene, "%s", answer_text(&scenes, 1));
+    snprintf(out->scene, sizeof out->scene, "%s",
+             scene_builtin_text(answer_text(&scenes, 1)) ? answer_text(&scenes, 1) : "SCENE.yaml"); /* its file */
   text_make_plain(out->scene, "");
   TRY(answer_end(&scenes));
 

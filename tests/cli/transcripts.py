@@ -16,7 +16,7 @@ import sys
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+(?:e[-+]?\d+)?|e[-+]?\d+)(?!\w)")
 VOLATILE = [
     (re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d(\.\d+)?)?Z?"), "TIME"),
-    (re.compile(r"in [\d.]+ (?:s|min) \([\d.]+ (?:s|min) of processor time"), "in TIME (TIME of processor time"),
+    (re.compile(r"in [\d.]+ (?:ms|s|min) \([\d.]+ (?:ms|s|min) of processor time"), "in TIME (TIME of processor time"),
     (re.compile(r"^(\s*\"(?:cpu_time|wall_time|cpu_s\w*|seconds|.*_cpu_s)\": )[-\d.e+]+", re.M), r"\1TIME"),
 ]
 

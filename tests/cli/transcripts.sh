@@ -68,7 +68,7 @@ printf '# source: made up\nmass (g), count\n8, 30\n20, 12\n50, 5\n200, 1\n' >mea
 expect 0 python "$source/tests/cli/transcripts.py" "$source/tests/cli/transcripts.txt"
 
 # Means, standard deviations, their errors and t intervals by hand, of the rows that the transcript pins.
-expect 0 clast stats grid.db --by strain,angle -q fragment_count,largest_fraction --csv
+expect 0 clast stats grid.db --by strain,angle -Q fragment_count,largest_fraction --csv
 python - <<'PY'
 import csv, math, sqlite3, statistics
 T11 = 2.2009851600916384  # 97.5 % quantile of Student's t with 11 degrees of freedom

@@ -48,6 +48,25 @@ says "nosuch"; one_error
 expect 64 "$clast" run x.yaml -j many
 expect 64 "$clast" run x.yaml -j
 
+# what a newcomer types first
+for word in weibull damage M_1/M ks knob seed projectile weibull.k; do expect 0 "$clast" explain "$word"; done
+prints "target.material.weibull.k"; prints "projectile.material.weibull.k: the same"
+expect 0 "$clast" explain basalt-sphere --set radius='2 cm' --set weibull.m=9 # of two bodies the one that cracks
+grep -qE '^target.radius +0.02 m' out && grep -qE '^target.material.weibull.m +9 ' out || fail "paths that two bodies have"
+grep -qE '^impact.angle +30 deg' out || fail "an angle is not in degrees"
+printf 'engine: sph\nkind: impact\ntarget: {shape: box, side: 3 cm}\n' >side.yaml
+expect 65 "$clast" explain side.yaml
+says "width, depth, height"
+printf 'name: four\nscene: disc-explosion\nseeds: 4\n' >four.yaml
+expect 0 "$clast" plan four.yaml --no-trial
+grep -qE '^runs +4,' out || fail "seeds: 4"
+expect 0 "$clast" plan four.yaml --no-trial --seeds 7
+grep -qE '^runs +7,' out || fail "seeds: 4 and --seeds 7"
+# one letter is one option
+for command in $commands; do "$clast" "$command" --help | sed -nE 's/^  -(.), --([a-z-]+).*/\1 \2/p'; done | sort -u >letters
+[ -z "$(cut -d' ' -f1 letters | uniq -d)" ] || fail "a letter with two meanings: $(cut -d' ' -f1 letters | uniq -d)"
+ok "a letter is one option"
+
 expect 0 "$clast" --version
 prints "clast $(sed -nE 's/^project\(clast VERSION ([0-9.]+).*/\1/p' "$source/CMakeLists.txt")"
 for fact in commit compiler flags MPI SQLite HDF5 GSL libfyaml; do prints "$fact"; done
@@ -97,4 +116,4 @@ expect 0 "$clast" explain disc-explosion --set friction=0.1 --set friction=0.2
 for words in "converge /dev/zero" "plan /dev/zero" "materials /dev/zero" "simulate /dev/zero"; do
   expect 65 bash -c "ulimit -t 10; [ $sanitized -ne 0 ] || ulimit -v 20000000; exec '$clast' $words" # a sanitizer maps terabytes
 done
-done_after 42
+done_after 55
