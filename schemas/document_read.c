@@ -135,19 +135,17 @@ static void report_unknown(document_node *key, const char *path, const char *con
   text_append(whole, sizeof whole, "%.100s", key->text);
   write_list(known, list);
   const char *near = nearest(key->text, known);
-  const bool here = near;
   const bool dotted = !near && elsewhere && strcmp(elsewhere, key->text) == 0;
-  if (!near)
-    near = elsewhere;
+  const char *const word = elsewhere ? strrchr(elsewhere, '.') : NULL;
+  if (!near && (!*list || dotted || (word && strcmp(word + 1, key->text) == 0)))
+    near = elsewhere; /* else the keys that are known here tell more */
   if (strcmp(key->text, "<<") == 0)
     document_report(key, whole, "merge keys are not part of YAML 1.2; write the keys out");
   else if (dotted)
     document_report(key, whole, "a path with dots; nest it: write '%.*s:' and the rest indented below it",
                     (int)strcspn(elsewhere, "."), elsewhere);
-  else if (near && (here || !*list))
-    document_report(key, whole, "unknown key; did you mean '%s'?", near);
   else if (near)
-    document_report(key, whole, "unknown key; known here are %s; did you mean '%s'?", list, near);
+    document_report(key, whole, "unknown key; did you mean '%s'?", near);
   else if (*list)
     document_report(key, whole, "unknown key; known here are %s", list);
   else

@@ -69,6 +69,9 @@ static void defaults_and_units(void **state) {
   assert_int_equal(points_of(campaign), 2);
   assert_int_equal(campaign_seed(campaign, campaign->scene, 4), 5);
   campaign_free(campaign);
+  campaign = good(HEAD "seeds: 4\n");
+  assert_int_equal(campaign_replicates_least(campaign), 4);
+  campaign_free(campaign);
   campaign = good(HEAD "seeds: {until: {half_width: 1 %}, max: 90}\nlimits: {time: off}\nkeep: {fields: first 3}\n");
   assert_int_equal(campaign->per_point, 0);
   assert_string_equal(campaign->until_quantity, "largest_fraction");
@@ -208,7 +211,7 @@ static void one_input_is_set_once(void **state) {
 
 static void bad_documents_are_told_what_to_do(void **state) {
   (void)state;
-  bad(HEAD "seeds: 4\n", "t.yaml:3:8: error: seeds: expected keys and values below it|per_point");
+  bad(HEAD "seeds: [4]\n", "t.yaml:3:8: error: seeds: expected keys and values below it|per_point");
   bad(HEAD "set: {body.diameter: 2e9 cm}\n", "and at most|cm, got 2e9 cm");
   bad(HEAD "set: {threshold.strain: 5 %%}\n", "two percent signs");
   bad(HEAD "set: {threshold.strain: 0.07}\n", "write '0.07 %' or '7 %'");
