@@ -94,9 +94,8 @@ static void columns_for_people(struct printing *printing) {
   table_column(table, "point_id", NULL);
   for (size_t i = 0; i < printing->axes; i++)
     table_key(table, &printing->axis[i]);
-  table_columns(table,
-                (const char *const[]){"runs", "M_1/M", "window", "beta ML", "beta ML_hw95", "\xc2\xb1res M_1/M", "n",
-                                      "\xc2\xb1res beta", "beta LSQ", "beta LSQ_hw95", NULL});
+  table_columns(table, (const char *const[]){"runs", "M_1/M", "window", "beta ML", "beta ML_hw95", "\xc2\xb1res M_1/M",
+                                             "n", "\xc2\xb1res beta", "beta LSQ", "beta LSQ_hw95", NULL});
 }
 
 /* "0.928 ± 0.009", "0.928 ± 0.009~" when the interval is weak, "1.000 ≥ 0.905" when all runs are equal. */
