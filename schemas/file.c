@@ -195,6 +195,16 @@ static bool is_beside_store(const char *path) {
   return found;
 }
 
+/* Is it a file that a campaign keeps: STORE-fields/<identity>.h5 (campaign/scheduler/scheduler.c)? */
+static bool is_kept(const char *path) {
+  char *real = realpath(path, NULL);
+  const char *base = real ? base_of(real) : "";
+  const bool found = strspn(base, "0123456789abcdef") == 32 && strcmp(base + 32, ".h5") == 0 && base - real > 8 &&
+                     strncmp(base - 8, "-fields/", 8) == 0;
+  free(real);
+  return found;
+}
+
 /* Is it a document by its own name, or by the name that a link leads to? */
 static bool is_document(const char *path, const char *head) {
   char *real = realpath(path, NULL);
@@ -224,6 +234,8 @@ status file_may_replace(const char *path, const char *what, struct error *error)
     return refuse(path, what, strerror(errno), error);
   if (is_database(head))
     return refuse(path, what, "it is a store or another SQLite database: name another file, or remove it first", error);
+  if (is_kept(path))
+    return refuse(path, what, "it has the fields of a run of a store: name another file, or remove it first", error);
   if (is_document(path, head))
     return refuse(path, what, "it is a document, such as a campaign or a scene: name another file, or remove it first",
                   error);

@@ -8,6 +8,7 @@
  *
  * No output replaces what people cannot compute again in a moment:
  *   - an SQLite database, such as a store; nor a name that SQLite uses beside one (-journal, -wal, -shm),
+ *   - the fields of a stored run: STORE-fields/<identity>.h5,
  *   - a file that this command reads, under any of its names; file_input() knows them,
  *   - a document: a file with the ending .yaml, .yml or .json that is not the JSON Lines of an export. */
 #ifndef CLAST_SCHEMAS_FILE_H

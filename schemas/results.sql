@@ -1,8 +1,8 @@
--- The store of clast: schema of version 3.
+-- The store of clast: schema of version 4.
 -- Made from the tables in db/store/schema.c and the engines' field tables; do not edit: a test compares.
 -- Views have, besides, one column per input that some campaign varied (table axis).
 PRAGMA application_id = 1129075540;
-PRAGMA user_version = 3;
+PRAGMA user_version = 4;
 
 CREATE TABLE column_doc ( -- Meaning and unit of every column.
   table_name TEXT NOT NULL, -- table or view
@@ -173,7 +173,6 @@ CREATE TABLE point_estimate ( -- Estimates pooled over the runs of a point that 
   point_id INTEGER NOT NULL REFERENCES point (point_id), -- the point
   results_version INTEGER NOT NULL, -- version of the engine's results it was made from
   ordinal INTEGER NOT NULL, -- number among the estimates of the point
-  digest TEXT, -- changes when any bit of the row changes; NULL in older rows
   window TEXT, -- Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10
   method TEXT, -- Method of the estimate. One of: least_squares, masses, cutoff
   headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
@@ -218,7 +217,6 @@ CREATE TABLE convergence ( -- Studies of convergence (clast converge): the level
   results_version INTEGER NOT NULL, -- version of the engine's results
   level INTEGER NOT NULL, -- number of the level, from 0, coarse to fine
   point_id INTEGER NOT NULL REFERENCES point (point_id), -- the level, as a point: its runs are in run
-  digest TEXT, -- changes when any bit of the row changes; NULL in older rows
   knob TEXT, -- What was made coarser or finer (`clast converge --list`).
   quantity TEXT, -- Result, as a column of the view runs. Its unit is that of mean, bias and error.
   setting TEXT, -- Value of the knob's first input at this level.
@@ -253,7 +251,6 @@ CREATE TABLE convergence ( -- Studies of convergence (clast converge): the level
 CREATE TABLE convergence_limit ( -- Limit of each knob of a study, for each quantity.
   base_point_id INTEGER NOT NULL REFERENCES point (point_id), -- the scene studied, as a point
   results_version INTEGER NOT NULL, -- version of the engine's results
-  digest TEXT, -- changes when any bit of the row changes; NULL in older rows
   knob TEXT, -- What was made coarser or finer.
   quantity TEXT, -- Result, as a column of the view runs. Its unit is that of the limit.
   verdict TEXT, -- What all levels and seeds together tell. One of: too-few, constant, limit, no-limit
@@ -270,6 +267,12 @@ CREATE TABLE convergence_limit ( -- Limit of each knob of a study, for each quan
   change_low REAL, -- Lower end of its 95 % interval.
   change_high REAL, -- Upper end of it.
   PRIMARY KEY (base_point_id, results_version, knob, quantity)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE table_digest ( -- Number and digest of all rows of a table, for `clast check`.
+  table_name TEXT NOT NULL PRIMARY KEY, -- a table whose rows no other digest protects from loss
+  row_count INTEGER NOT NULL, -- its rows, counted in the transaction that changed them
+  digest BLOB NOT NULL CHECK (length(digest) = 16) -- changes when any bit of any of its rows changes
 ) STRICT, WITHOUT ROWID;
 
 CREATE TABLE holder ( -- The process that holds the store for writing, for the message of a refusal.
@@ -744,8 +747,6 @@ INSERT INTO column_doc VALUES ('convergence', 'cpu', 's', 'Mean processor time o
 
 INSERT INTO column_doc VALUES ('convergence', 'deviation', NULL, 'Standard deviation between seeds.', 1);
 
-INSERT INTO column_doc VALUES ('convergence', 'digest', NULL, 'changes when any bit of the row changes; NULL in older rows', 0);
-
 INSERT INTO column_doc VALUES ('convergence', 'distance', NULL, 'Mean less its limit: the middle of the 95 % interval. Off: no limit is seen.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'distance_half_width', NULL, 'Half width of that interval.', 1);
@@ -795,8 +796,6 @@ INSERT INTO column_doc VALUES ('convergence_limit', 'change', NULL, 'Mean of the
 INSERT INTO column_doc VALUES ('convergence_limit', 'change_high', NULL, 'Upper end of it.', 1);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'change_low', NULL, 'Lower end of its 95 % interval.', 1);
-
-INSERT INTO column_doc VALUES ('convergence_limit', 'digest', NULL, 'changes when any bit of the row changes; NULL in older rows', 0);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'dropped', '1', 'Coarse levels that the law does not describe.', 1);
 
@@ -921,8 +920,6 @@ INSERT INTO column_doc VALUES ('point', 'scene_name', NULL, 'name of the scene t
 INSERT INTO column_doc VALUES ('point_estimate', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.', 1);
-
-INSERT INTO column_doc VALUES ('point_estimate', 'digest', NULL, 'changes when any bit of the row changes; NULL in older rows', 0);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'headline', NULL, '1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.', 1);
 
@@ -1729,3 +1726,9 @@ INSERT INTO column_doc VALUES ('spectrum', 'count', '1', 'fragments in the bin',
 INSERT INTO column_doc VALUES ('spectrum', 'mass', 'kg', 'their mass', 0);
 
 INSERT INTO column_doc VALUES ('spectrum', 'run_id', NULL, 'the run', 0);
+
+INSERT INTO column_doc VALUES ('table_digest', 'digest', NULL, 'changes when any bit of any of its rows changes', 0);
+
+INSERT INTO column_doc VALUES ('table_digest', 'row_count', NULL, 'its rows, counted in the transaction that changed them', 0);
+
+INSERT INTO column_doc VALUES ('table_digest', 'table_name', NULL, 'a table whose rows no other digest protects from loss', 0);

@@ -299,22 +299,21 @@ status store_check_run(struct store *store, int64_t run_id, bool *whole, struct 
   return digest_rows_end(&runs);
 }
 
-/* Exponents of points and studies of convergence have a digest in each row. */
+/* Rows of tables that were changed, removed or added. Stores of version 3 lack their digests. */
 static status check_rows(struct report *report, struct error *error) {
-  static const struct {
-    const char *table, *point, *what;
-  } tables[] = {{"point_estimate", "point_id", "the exponents of all its runs"},
-                {"convergence", "base_point_id", "its studies of convergence"},
-                {"convergence_limit", "base_point_id", "its studies of convergence"}};
-  for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
-    char *expression = NULL;
-    if (!schema_has_column(report->store->db, tables[i].table, "digest"))
-      continue;
-    TRY(digest_expression(report->store->db, tables[i].table, &expression, error));
+  sqlite3 *db = report->store->db;
+  for (size_t i = 0; schema_has_column(db, "table_digest", NULL) && i < schema_tables_count; i++) {
+    SQL_TEXT rows = NULL;
     SQL_TEXT sql = NULL;
-    sql = sqlite3_mprintf("SELECT DISTINCT 'point ' || %s || ': a bit of %s has changed since they were stored' "
-                          "FROM %s WHERE digest <> %z",
-                          tables[i].point, tables[i].what, tables[i].table, expression);
+    if (!schema_tables[i].has_digest)
+      continue;
+    TRY(digest_of_rows(db, schema_tables[i].name, &rows, error));
+    sql = sqlite3_mprintf(
+        "SELECT format('table %%s: %%s', table_name, iif(d.row_count = r.row_count, 'a bit of its rows has changed "
+        "since they were stored', format('%%s rows were stored, and %%d are there', ifnull(d.row_count, 'no number "
+        "of'), r.row_count))) FROM (%s) r LEFT JOIN main.table_digest d USING (table_name) WHERE (d.row_count, "
+        "d.digest) IS NOT (r.row_count, r.digest)",
+        rows);
     TRY(sql ? no_rows(report, sql, error) : status_fail(error, STATUS_MEMORY, "%s: memory ran out", checking));
   }
   return STATUS_OK;

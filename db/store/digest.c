@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "db/store/internal.h"
+#include "db/store/schema.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
@@ -145,48 +146,154 @@ status store_digest_fields(const char *path, char digest[STORE_DIGEST_SIZE], str
   return STATUS_OK;
 }
 
-/* ---- digests of single rows, in their column `digest` ---- */
+/* ---- digests of tables ---- */
 
-/* row_digest(table, column, value, column, value, ...) */
-static void row_digest(sqlite3_context *context, int count, sqlite3_value **values) {
+static const char keeping[] = "keeping digests of tables";
+
+/* table, column, value, column, value, ...: the digest of a row. A last step binds its values together. */
+static bool of_row(int count, sqlite3_value **values, struct digest *row) {
   const char *table = (const char *)sqlite3_value_text(values[0]);
   struct digest sum = {0};
-  char text[STORE_DIGEST_SIZE];
   for (int i = 1; i + 1 < count; i += 2) {
     const char *column = (const char *)sqlite3_value_text(values[i]);
-    if (!table || !column) {
-      sqlite3_result_error_nomem(context);
-      return;
-    }
+    if (!table || !column)
+      return false;
     digest_add(&sum, digest_name(table, column), 0, sql_of_argument(values[i + 1]));
   }
-  write_text(sum, text);
-  sqlite3_result_text(context, text, -1, SQLITE_TRANSIENT);
+  *row = step(step(digest_name("row", ""), sum.a), sum.b);
+  return table != NULL;
+}
+
+/* rows_digest(table, column, value, ...): of all rows. Their order does not matter. */
+static void add_row(sqlite3_context *context, int count, sqlite3_value **values) {
+  struct digest *sum = sqlite3_aggregate_context(context, sizeof *sum), row;
+  if (!sum || !of_row(count, values, &row)) {
+    sqlite3_result_error_nomem(context);
+    return;
+  }
+  sum->a += row.a;
+  sum->b += row.b;
+}
+
+static void end_rows(sqlite3_context *context) {
+  const struct digest *sum = sqlite3_aggregate_context(context, 0);
+  uint8_t bytes[16];
+  digest_write(sum ? *sum : (struct digest){0}, bytes);
+  sqlite3_result_blob(context, bytes, sizeof bytes, SQLITE_TRANSIENT);
 }
 
 void digest_function(sqlite3 *db) {
-  sqlite3_create_function(db, "row_digest", -1, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_DIRECTONLY, NULL,
-                          row_digest, NULL, NULL);
+  sqlite3_create_function(db, "rows_digest", -1, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_DIRECTONLY, NULL, NULL,
+                          add_row, end_rows);
 }
 
-status digest_expression(sqlite3 *db, const char *table, char **sql, struct error *error) {
-  enum { MOST_COLUMNS = 60 }; /* SQLite's functions have at most 127 arguments */
-  int64_t count = 0;
-  TRY(sql_integerf(db, &count, error, "SELECT count(*) FROM pragma_table_info(%Q, 'main') WHERE name <> 'digest'",
-                   table));
-  if (count > MOST_COLUMNS)
-    return status_fail(error, STATUS_CONTENT, "table %s has more than %d columns", table, MOST_COLUMNS);
-  return sql_textf(db, sql, "listing columns", error,
-                   "SELECT format('row_digest(%%Q, %%s)', %Q, group_concat(format('%%Q, \"%%w\"', name, name), ', ')) "
-                   "FROM pragma_table_info(%Q, 'main') WHERE name <> 'digest'",
-                   table, table);
+/* row_changed(k, 1 or -1, table, column, value, ...): a row of the k-th table came or went. */
+static void row_changed(sqlite3_context *context, int count, sqlite3_value **values) {
+  struct digest_tables *tables = sqlite3_user_data(context);
+  struct digest row;
+  if (!of_row(count - 2, values + 2, &row)) {
+    sqlite3_result_error_nomem(context);
+    return;
+  }
+  struct digest_of_table *table = &tables->now[sqlite3_value_int(values[0])];
+  const int sign = sqlite3_value_int(values[1]);
+  table->rows += sign;
+  table->sum.a += sign > 0 ? row.a : -row.a;
+  table->sum.b += sign > 0 ? row.b : -row.b;
 }
 
-status digest_fill(sqlite3 *db, const char *table, const char *where, struct error *error) {
-  char *expression = NULL;
-  TRY(digest_expression(db, table, &expression, error));
-  return sql_executef(db, "writing digests", error, "UPDATE main.\"%w\" SET digest = %z WHERE %s", table, expression,
-                      where);
+/* *sql: the arguments of rows_digest() for the columns of a table; `prefix`: NEW., OLD. or "". */
+static status list_values(sqlite3 *db, const char *table, const char *prefix, char **sql, struct error *error) {
+  return sql_textf(db, sql, keeping, error,
+                   "SELECT format('%%Q, %%s', %Q, group_concat(format('%%Q, %s\"%%w\"', name, name), ', ')) FROM "
+                   "pragma_table_info(%Q, 'main')",
+                   table, prefix, table);
+}
+
+status digest_of_rows(sqlite3 *db, const char *table, char **sql, struct error *error) {
+  SQL_TEXT values = NULL;
+  TRY(list_values(db, table, "", &values, error));
+  *sql = sqlite3_mprintf("SELECT %Q AS table_name, count(*) AS row_count, rows_digest(%s) AS digest FROM main.\"%w\"",
+                         table, values, table);
+  return *sql ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: memory ran out", keeping);
+}
+
+status digest_tables_fill(sqlite3 *db, struct error *error) {
+  for (size_t i = 0; i < schema_tables_count; i++) {
+    SQL_TEXT rows = NULL;
+    if (!schema_tables[i].has_digest)
+      continue;
+    TRY(digest_of_rows(db, schema_tables[i].name, &rows, error));
+    TRY(sql_executef(db, keeping, error, "INSERT OR REPLACE INTO table_digest (table_name, row_count, digest) %s",
+                     rows));
+  }
+  return STATUS_OK;
+}
+
+static status read_table(sqlite3 *db, const char *name, struct digest_of_table *table, struct error *error) {
+  STATEMENT row = NULL;
+  status result = sql_preparef(db, &row, keeping, error,
+                               "SELECT row_count, digest FROM main.table_digest WHERE table_name = %Q", name);
+  if (!sql_next(row, &result, keeping, error))
+    return result;
+  const uint8_t *bytes = sqlite3_column_blob(row, 1);
+  table->rows = sqlite3_column_int64(row, 0);
+  if (sqlite3_column_bytes(row, 1) == 16)
+    table->sum = (struct digest){word_at(bytes, 8), word_at(bytes + 8, 8)};
+  return STATUS_OK;
+}
+
+static status make_triggers(sqlite3 *db, const char *table, int index, struct error *error) {
+  SQL_TEXT before = NULL;
+  SQL_TEXT after = NULL;
+  TRY(list_values(db, table, "OLD.", &before, error));
+  TRY(list_values(db, table, "NEW.", &after, error));
+  return sql_executef(
+      db, keeping, error,
+      "CREATE TEMP TRIGGER \"add_%w\" AFTER INSERT ON main.\"%w\" BEGIN SELECT row_changed(%d, 1, %s); END;"
+      "CREATE TEMP TRIGGER \"remove_%w\" AFTER DELETE ON main.\"%w\" BEGIN SELECT row_changed(%d, -1, %s); "
+      "END;"
+      "CREATE TEMP TRIGGER \"change_%w\" AFTER UPDATE ON main.\"%w\" BEGIN SELECT row_changed(%d, -1, %s), "
+      "row_changed(%d, 1, %s); END",
+      table, table, index, after, table, table, index, before, table, table, index, before, index, after);
+}
+
+status digest_tables_follow(sqlite3 *db, struct digest_tables *tables, struct error *error) {
+  *tables = (struct digest_tables){.now = {{0}}};
+  if (schema_tables_count > DIGEST_TABLES)
+    return status_fail(error, STATUS_INTERNAL, "more than %d tables", DIGEST_TABLES);
+  if (!schema_has_column(db, "table_digest", NULL)) /* a copy of a store of version 3 */
+    return STATUS_OK;
+  sqlite3_create_function(db, "row_changed", -1, SQLITE_UTF8 | SQLITE_DIRECTONLY, tables, row_changed, NULL, NULL);
+  for (size_t i = 0; i < schema_tables_count; i++) {
+    if (!schema_tables[i].has_digest)
+      continue;
+    TRY(read_table(db, schema_tables[i].name, &tables->now[i], error));
+    TRY(make_triggers(db, schema_tables[i].name, (int)i, error));
+  }
+  digest_tables_end(tables, true);
+  return STATUS_OK;
+}
+
+status digest_tables_write(sqlite3 *db, const struct digest_tables *tables, struct error *error) {
+  STATEMENT row = NULL;
+  for (size_t i = 0; i < schema_tables_count; i++) {
+    const struct digest_of_table *now = &tables->now[i];
+    uint8_t bytes[16];
+    if (memcmp(now, &tables->stored[i], sizeof *now) == 0)
+      continue;
+    TRY(sql_prepare_once(db, &row,
+                         "INSERT OR REPLACE INTO main.table_digest (table_name, row_count, digest) VALUES (?1, ?2, ?3)",
+                         keeping, error));
+    digest_write(now->sum, bytes);
+    SQL_BIND(row, sql_of_text(schema_tables[i].name), sql_of_integer(now->rows), sql_of_bytes(bytes, sizeof bytes));
+    TRY(sql_run(row, keeping, error));
+  }
+  return STATUS_OK;
+}
+
+void digest_tables_end(struct digest_tables *tables, bool committed) {
+  memcpy(committed ? tables->stored : tables->now, committed ? tables->now : tables->stored, sizeof tables->now);
 }
 
 /* ---- stored rows ---- */

@@ -321,7 +321,7 @@ static status judge_table(struct guard *guard, const struct schema_table *table,
   status result = write_table(guard, table, out, error);
   if (!text_close(out, &ours))
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", reading);
-  for (size_t i = 0; guard->version == SCHEMA_VERSION && i < table->count; i++)
+  for (size_t i = 0; guard->version >= SCHEMA_READABLE && i < table->count; i++)
     if (!schema_may_lack(table->name, table->columns[i].name) &&
         !schema_has_column(guard->db, table->name, table->columns[i].name))
       refuse(guard, "the lack of column", table->columns[i].name, table->name);

@@ -44,20 +44,31 @@ void digest_add_fields(struct digest *sum, const struct digest_names *names, con
 uint64_t digest_row(const char *text);
 void digest_write(struct digest sum, uint8_t bytes[16]);
 
-/* Digests of single rows, for tables whose rows do not belong to a run: their column `digest` is that of the other
- * columns, as text, or NULL in rows of older programs. */
+/* Digests of tables. Table table_digest has the number and the digest of the rows of each table that is marked in the
+ * schema: a row that is changed, removed or added by another program shows. Temporary triggers of the writer's
+ * connection tell of each row; the sums wait in memory, and are stored in the transaction of the change. */
+enum { DIGEST_TABLES = 64 };
+struct digest_tables {
+  struct digest_of_table {
+    int64_t rows;
+    struct digest sum;
+  } now[DIGEST_TABLES], stored[DIGEST_TABLES]; /* in the order of schema_tables */
+};
 /* Makes the SQL function that computes them known to the connection. The file itself cannot call it. */
 void digest_function(sqlite3 *db);
-/* *sql: the SQL expression for the digest of a row of this table as it is now. The caller frees it with sqlite3_free().
- * STATUS_CONTENT: the table has too many columns for a function. */
-status digest_expression(sqlite3 *db, const char *table, char **sql, struct error *error);
-/* Writes the digests of the rows that the SQL condition `where` selects. Within the caller's transaction. */
-status digest_fill(sqlite3 *db, const char *table, const char *where, struct error *error);
+/* *sql: SELECT table_name, row_count, digest of a table as it is now. The caller frees it with sqlite3_free(). */
+status digest_of_rows(sqlite3 *db, const char *table, char **sql, struct error *error);
+/* Fills table_digest from all rows. Within the caller's transaction. */
+status digest_tables_fill(sqlite3 *db, struct error *error);
+/* From now on *tables follows every change that this connection makes; it outlives the connection. */
+status digest_tables_follow(sqlite3 *db, struct digest_tables *tables, struct error *error);
+/* Call before a transaction is committed, and digest_tables_end() after it was, or was rolled back. */
+status digest_tables_write(sqlite3 *db, const struct digest_tables *tables, struct error *error);
+void digest_tables_end(struct digest_tables *tables, bool committed);
 
 /* Runs or points as they are stored, with the digest of what they contain now. A variable of type DIGEST_ROWS closes
  * itself where its block is left. */
 enum digest_kind { DIGEST_RUNS, DIGEST_POINTS };
-enum { DIGEST_TABLES = 64 };
 struct digest_rows {
   sqlite3 *db;
   struct error *error;
@@ -219,6 +230,7 @@ struct store {
   struct identities identities; /* a writer reads them when it opens, a reader at first use */
   bool identities_loaded;
   struct sums sums;
+  struct digest_tables tables;
   int64_t lowest_bin, highest_bin; /* range covered by table bin; lowest > highest: none */
 
   bool in_batch, broken;

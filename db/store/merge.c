@@ -273,6 +273,12 @@ static status copy_missing(struct store *store, const char *source, struct merge
   return merge_paths(store, source, merged, error);
 }
 
+/* Where temporary tables are. SQLite drops all that is temporary, so the triggers are made again. */
+static status keep_temporary(struct store *store, const char *place, struct error *error) {
+  TRY(sql_executef(store->db, doing, error, "PRAGMA temp_store = %s", place));
+  return digest_tables_follow(store->db, &store->tables, error);
+}
+
 /* Copies while the inspection runs. If the source is damaged, that is the error, whatever the copying met. */
 static status merge_inspected(struct store *store, const char *source, struct inspection *inspection,
                               struct merged *merged, int64_t *differing, struct error *error) {
@@ -282,7 +288,9 @@ static status merge_inspected(struct store *store, const char *source, struct in
   /* The sums of a million runs are sorted in files, not in memory. */
   status result = guard_attach(store->db, source, doing, error);
   if (result == STATUS_OK)
-    result = sql_execute(store->db, "PRAGMA temp_store = FILE; BEGIN IMMEDIATE", doing, error);
+    result = keep_temporary(store, "FILE", error);
+  if (result == STATUS_OK)
+    result = sql_execute(store->db, "BEGIN IMMEDIATE", doing, error);
   if (result == STATUS_OK)
     result = copy_missing(store, source, merged, differing, error);
   sqlite3_progress_handler(store->db, 0, NULL, NULL);
@@ -292,9 +300,12 @@ static status merge_inspected(struct store *store, const char *source, struct in
   if (inspected != STATUS_OK)
     result = inspected;
   if (result == STATUS_OK)
+    result = digest_tables_write(store->db, &store->tables, error);
+  if (result == STATUS_OK)
     result = sql_execute(store->db, "COMMIT", doing, error);
   if (result != STATUS_OK)
     sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+  digest_tables_end(&store->tables, result == STATUS_OK);
   return result;
 }
 
@@ -337,13 +348,14 @@ status store_merge(struct store *store, const char *source, int64_t *added, int6
   const status result = merge(store, source, &inspection, added, differing, error);
   sqlite3_exec(store->db,
                "DROP TABLE IF EXISTS temp.merge_point; DROP TABLE IF EXISTS temp.merge_session; DROP TABLE IF EXISTS "
-               "temp.merge_run; DETACH other; PRAGMA temp_store = MEMORY",
+               "temp.merge_run; DETACH other",
                NULL, NULL, NULL);
+  const status back = keep_temporary(store, "MEMORY", result == STATUS_OK ? error : NULL);
   if (result != STATUS_OK)
     sums_forget(&store->sums);
   identities_clear(&store->identities); /* they are read again at the next use */
   store->identities_loaded = false;
   store->lowest_bin = 1; /* the same of table bin: none is known to be covered */
   store->highest_bin = 0;
-  return result;
+  return result == STATUS_OK ? back : result;
 }

@@ -139,7 +139,6 @@ static const struct schema_column point_estimate[] = {
     {"point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the point"},
     {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results it was made from"},
     {"ordinal", "INTEGER NOT NULL", NULL, "number among the estimates of the point"},
-    {"digest", "TEXT", NULL, "changes when any bit of the row changes; NULL in older rows"},
 };
 
 static const struct schema_column attempt[] = {
@@ -167,13 +166,17 @@ static const struct schema_column convergence[] = {
     {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results"},
     {"level", "INTEGER NOT NULL", NULL, "number of the level, from 0, coarse to fine"},
     {"point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the level, as a point: its runs are in run"},
-    {"digest", "TEXT", NULL, "changes when any bit of the row changes; NULL in older rows"},
 };
 
 static const struct schema_column convergence_limit[] = {
     {"base_point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the scene studied, as a point"},
     {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results"},
-    {"digest", "TEXT", NULL, "changes when any bit of the row changes; NULL in older rows"},
+};
+
+static const struct schema_column table_digest[] = {
+    {"table_name", "TEXT NOT NULL PRIMARY KEY", NULL, "a table whose rows no other digest protects from loss"},
+    {"row_count", "INTEGER NOT NULL", NULL, "its rows, counted in the transaction that changed them"},
+    {"digest", "BLOB NOT NULL CHECK (length(digest) = 16)", NULL, "changes when any bit of any of its rows changes"},
 };
 
 static const struct schema_column holder[] = {
@@ -196,19 +199,20 @@ static const struct schema_column column_doc[] = {
 #define TABLE(table_, meaning_, ...)                                                                                   \
   { .name = #table_, .meaning = meaning_, .columns = table_, .count = sizeof table_ / sizeof table_[0], __VA_ARGS__ }
 #define ROWID           .options = "STRICT"
+#define DIGEST          .has_digest = true
 #define CLUSTERED(key_) .options = "STRICT, WITHOUT ROWID", .tail = "PRIMARY KEY (" key_ ")"
 
 const struct schema_table schema_tables[] = {
     TABLE(column_doc, "Meaning and unit of every column.", CLUSTERED("table_name, column_name")),
-    TABLE(campaign, "Campaigns, as their files were read.", ROWID),
-    TABLE(session, "Provenance: one row per invocation that wrote to the store.", ROWID),
+    TABLE(campaign, "Campaigns, as their files were read.", ROWID, DIGEST),
+    TABLE(session, "Provenance: one row per invocation that wrote to the store.", ROWID, DIGEST),
     TABLE(point, "Points: sets of input values. The resolved scene is the truth.", ROWID),
-    TABLE(campaign_point, "Which campaign has which point.", CLUSTERED("campaign_id, point_id")),
+    TABLE(campaign_point, "Which campaign has which point.", CLUSTERED("campaign_id, point_id"), DIGEST),
     TABLE(point_input, "Every active input of every point.", CLUSTERED("point_id, path")),
     TABLE(shape_file, "Shape files of bodies, each once.", ROWID),
-    TABLE(axis, "Inputs that some campaign varied: columns of the views.", .options = "STRICT, WITHOUT ROWID"),
+    TABLE(axis, "Inputs that some campaign varied: columns of the views.", .options = "STRICT, WITHOUT ROWID", DIGEST),
     TABLE(run, "Runs: one simulation of a point with a seed, and what every engine reports of it.", ROWID,
-          .fields = &outcome_table),
+          .fields = &outcome_table, DIGEST),
     TABLE(fragment_mass, "Fragment masses: any spectrum can be made from them without a new run.", ROWID),
     TABLE(bin, "Edges of the mass bins in use.", ROWID),
     TABLE(spectrum, "Fragment mass spectrum of each run.", CLUSTERED("run_id, bin")),
@@ -219,12 +223,14 @@ const struct schema_table schema_tables[] = {
     TABLE(estimate, "Estimates made from the fragments of one run; they can be made again at any time.",
           CLUSTERED("run_id, ordinal"), .fields = &estimates_table),
     TABLE(point_estimate, "Estimates pooled over the runs of a point that count.",
-          CLUSTERED("point_id, results_version, ordinal"), .fields = &estimates_table),
-    TABLE(attempt, "Attempts that failed: limits, crashes, lost workers.", ROWID),
+          CLUSTERED("point_id, results_version, ordinal"), .fields = &estimates_table, DIGEST),
+    TABLE(attempt, "Attempts that failed: limits, crashes, lost workers.", ROWID, DIGEST),
     TABLE(convergence, "Studies of convergence (clast converge): the levels of each knob, for each quantity.",
-          CLUSTERED("base_point_id, results_version, knob, quantity, level"), .fields = &convergence_table),
+          CLUSTERED("base_point_id, results_version, knob, quantity, level"), .fields = &convergence_table, DIGEST),
     TABLE(convergence_limit, "Limit of each knob of a study, for each quantity.",
-          CLUSTERED("base_point_id, results_version, knob, quantity"), .fields = &convergence_limit_table),
+          CLUSTERED("base_point_id, results_version, knob, quantity"), .fields = &convergence_limit_table, DIGEST),
+    TABLE(table_digest, "Number and digest of all rows of a table, for `clast check`.",
+          .options = "STRICT, WITHOUT ROWID"),
     TABLE(holder, "The process that holds the store for writing, for the message of a refusal.", ROWID),
 };
 const size_t schema_tables_count = sizeof schema_tables / sizeof schema_tables[0];
@@ -390,14 +396,7 @@ bool schema_has_column(sqlite3 *db, const char *table, const char *column) {
 }
 
 bool schema_may_lack(const char *table, const char *column) {
-  static const char *const later[][2] = {{"run", "fields_digest"},
-                                         {"point_estimate", "digest"},
-                                         {"convergence", "digest"},
-                                         {"convergence_limit", "digest"}};
-  for (size_t i = 0; i < sizeof later / sizeof later[0]; i++)
-    if (strcmp(later[i][0], table) == 0 && strcmp(later[i][1], column) == 0)
-      return true;
-  return false;
+  return strcmp(table, "table_digest") == 0 || (strcmp(table, "run") == 0 && strcmp(column, "fields_digest") == 0);
 }
 
 bool schema_is_complete(sqlite3 *db) {

@@ -11,8 +11,9 @@
 
 enum {
   SCHEMA_APPLICATION_ID = 0x434c5354, /* "CLST" */
-  SCHEMA_VERSION = 3,
-  SCHEMA_OLDEST = 2, /* the oldest version that is brought forward; only the current one is read */
+  SCHEMA_VERSION = 4,
+  SCHEMA_READABLE = 3, /* the oldest version that is read; 4 added table_digest */
+  SCHEMA_OLDEST = 2,   /* the oldest version that is brought forward */
   SCHEMA_NAME_SIZE = 128,
 };
 
@@ -28,6 +29,7 @@ struct schema_table {
   const struct field_table *fields; /* further columns, or NULL */
   const char *tail;                 /* table constraints, or NULL */
   const char *options;              /* STRICT, perhaps WITHOUT ROWID */
+  bool has_digest;                  /* table_digest has the number and the digest of its rows */
 };
 
 struct schema_index {

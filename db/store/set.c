@@ -39,9 +39,9 @@ static status set_of_run(struct store *store, int64_t run_id, size_t count, cons
 static status set_of_point(struct store *store, int64_t point_id, int results_version, size_t count,
                            const struct estimate *rows, struct error *error) {
   struct sql_insert insert = {0};
-  char where[100];
-  snprintf(where, sizeof where, "point_id = %lld AND results_version = %d", (long long)point_id, results_version);
-  TRY(sql_executef(store->db, writing, error, "DELETE FROM point_estimate WHERE %s", where));
+  TRY(sql_executef(store->db, writing, error,
+                   "DELETE FROM point_estimate WHERE point_id = %lld AND results_version = %d", (long long)point_id,
+                   results_version));
   TRY(sql_insert_prepare(store->db, &insert, "point_estimate", 3, of_point, &estimates_table, 1, writing, error));
   STATEMENT statement = insert.statement;
   for (size_t i = 0; i < count; i++) {
@@ -49,7 +49,7 @@ static status set_of_point(struct store *store, int64_t point_id, int results_ve
     sql_insert_bind(&insert, 0, &key, &rows[i]);
     TRY(sql_run(statement, writing, error));
   }
-  return digest_fill(store->db, "point_estimate", where, error);
+  return STATUS_OK;
 }
 
 status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
@@ -137,7 +137,7 @@ static status replace_rows(struct store *store, const struct store_convergence *
     sql_insert_bind(&insert, 0, &key, (const char *)rows + i * size);
     TRY(sql_run(statement, writing_study, error));
   }
-  return digest_fill(store->db, table, where, error);
+  return STATUS_OK;
 }
 
 static status replace_study(struct store *store, const struct store_convergence *study, struct error *error) {

@@ -129,6 +129,25 @@ static status check_second_name(const char *path, bool lacks_wal, struct error *
                      path);
 }
 
+/* A second name in another folder: the fields files lie beside the other one, and would be computed again. */
+static status check_second_folder(const struct store *store, struct error *error) {
+  struct stat file;
+  STATEMENT rows = NULL;
+  bool any = false, here = false;
+  if (stat(store->path, &file) != 0 || file.st_nlink < 2)
+    return STATUS_OK;
+  status result = sql_prepare(store->db, "SELECT fields_path FROM run WHERE fields_path IS NOT NULL", &rows, "opening",
+                              error);
+  for (; !here && sql_next(rows, &result, "opening", error); any = true)
+    here = paths_readable(store->path, sql_text(rows, 0));
+  if (result != STATUS_OK || here || !any)
+    return result;
+  return status_fail(error, STATUS_IO,
+                     "%s has another name (a hard link), and none of its fields files is found from this folder: use "
+                     "the name in the folder of its fields (a symbolic link may lead there). Nothing was changed.",
+                     store->path);
+}
+
 /* A file or a free path? Opening a pipe would block. */
 static status check_file(const char *path, struct error *error) {
   struct stat file;
@@ -289,9 +308,9 @@ static status inspect(sqlite3 *db, const char *path, int *version, struct error 
   if (header.version < SCHEMA_OLDEST)
     return status_fail(error, STATUS_CONTENT,
                        "%s was written by an older clast (store version %lld), from before the first release; this "
-                       "program reads version %d and brings version %d forward. Run its campaign in a new store: "
+                       "program brings version %d and later forward. Run its campaign in a new store: "
                        "`sqlite3 FILE 'SELECT document FROM campaign'` prints the document. The file did not change.",
-                       path, (long long)header.version, SCHEMA_VERSION, SCHEMA_OLDEST);
+                       path, (long long)header.version, SCHEMA_OLDEST);
   if (!header.utf8)
     return status_fail(
         error, STATUS_CONTENT,
@@ -337,15 +356,17 @@ static status bring_forward(sqlite3 *db, int version, struct error *error) {
   TRY(schema_complete_all(db, error));
   if (version == 2)
     TRY(sql_execute(db, name_campaigns, "bringing the store forward", error));
+  if (version < SCHEMA_VERSION)
+    TRY(digest_tables_fill(db, error));
   TRY(views_regenerate(db, error));
   return sql_executef(db, "opening for writing", error, "PRAGMA application_id = %d; PRAGMA user_version = %d; COMMIT",
                       SCHEMA_APPLICATION_ID, SCHEMA_VERSION);
 }
 
 /* Creates everything in an empty file; else adds tables and columns that the store lacks, and makes the views again.
- * Keeps a copy of an older version as FILE.version<N>. */
+ * Keeps a copy of a version that programs of this one do not read as FILE.version<N>. */
 static status upgrade(sqlite3 *db, const char *path, int version, struct error *error) {
-  if (version >= 0 && version < SCHEMA_VERSION)
+  if (version >= 0 && version < SCHEMA_READABLE)
     TRY(back_up(db, path, version, error));
   TRY(sql_execute(db, "BEGIN IMMEDIATE", "opening for writing", error));
   const status result = bring_forward(db, version, error);
@@ -463,7 +484,10 @@ static status open_locked(struct store *store, struct error *error) {
                   "PRAGMA synchronous = FULL; PRAGMA foreign_keys = OFF; PRAGMA temp_store = MEMORY; "
                   "PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
                   "opening for writing", error));
+  if (version >= 0)
+    TRY(check_second_folder(store, error));
   TRY(upgrade(store->db, store->path, version, error));
+  TRY(digest_tables_follow(store->db, &store->tables, error));
   TRY(write_holder(store, error));
   TRY(sql_execute(store->db, "PRAGMA journal_mode = WAL", "opening for writing", error));
   TRY(write_holder(store, error)); /* the first page of the -wal file */
@@ -549,7 +573,7 @@ static status check_version(const struct store *store, int version, struct error
     return status_fail(error, STATUS_CONTENT, "%s %s", store->path, lacks_wal_text);
   if (version < 0)
     return status_fail(error, STATUS_CONTENT, "%s is empty: no campaign was stored in it yet.", store->path);
-  if (version == SCHEMA_VERSION && schema_is_complete(store->db))
+  if (version >= SCHEMA_READABLE && schema_is_complete(store->db))
     return STATUS_OK;
   return status_fail(error, STATUS_CONTENT,
                      "%s was written by an older clast (store version %d, now %d) and lacks columns. Run its campaign "
@@ -625,6 +649,7 @@ static void roll_back(struct store *store) {
       entry->stored = false;
   }
   sums_forget(&store->sums);
+  digest_tables_end(&store->tables, false);
   store->in_batch = false;
   store->batch_identity_count = 0;
   store->broken = true;
@@ -678,11 +703,14 @@ status store_flush(struct store *store, struct error *error) {
   if (result == STATUS_OK)
     result = sums_write(&store->sums, store->db, error);
   if (result == STATUS_OK)
+    result = digest_tables_write(store->db, &store->tables, error);
+  if (result == STATUS_OK)
     result = sql_execute(store->db, "COMMIT", "committing", error);
   if (result != STATUS_OK) {
     roll_back(store);
     return result;
   }
+  digest_tables_end(&store->tables, true);
   store->in_batch = false;
   store->batch_identity_count = 0;
   return STATUS_OK;
@@ -759,6 +787,7 @@ int store_attempts(struct store *store, const uint8_t identity[16], double time_
 /* Fields files are not moved: the paths in the copy are made relative to the copy's folder. */
 static status keep_paths(const struct store *store, const char *copy, struct error *error) {
   sqlite3 *db = NULL;
+  struct digest_tables tables;
   char *way = paths_between(copy, store->path);
   if (!way)
     return status_fail(error, STATUS_IO, "%s: the path of its folder cannot be resolved", copy);
@@ -768,8 +797,12 @@ static status keep_paths(const struct store *store, const char *copy, struct err
     result = sql_fail(db, code, "writing the hand-over file", error);
   else if (db) {
     guard_connection(db);
-    result = sql_executef(db, "writing the hand-over file", error,
-                          "UPDATE run SET fields_path = %Q || fields_path WHERE fields_path NOT LIKE '/%%'", way);
+    result = digest_tables_follow(db, &tables, error);
+    if (result == STATUS_OK)
+      result = sql_executef(db, "writing the hand-over file", error,
+                            "UPDATE run SET fields_path = %Q || fields_path WHERE fields_path NOT LIKE '/%%'", way);
+    if (result == STATUS_OK)
+      result = digest_tables_write(db, &tables, error);
   }
   sqlite3_close(db);
   free(way);

@@ -41,7 +41,8 @@ for ending in (".db", ".png"):
 for name, copy in (("self.yaml", "campaign.png"), ("scene.yaml", "scene.png")):
     shutil.copy(name, copy)
     kept[name] = kept[copy] = None
-for name in ("measured.yaml", "fields.h5", "masses.csv"):
+fields = "self-fields/" + sorted(os.listdir("self-fields"))[-1]
+for name in ("measured.yaml", "fields.h5", "masses.csv", fields):
     kept[name] = None
 kept = {name: read(name) for name in list(kept) + ["hard.db", "soft.db", "hard.png", "soft.png"]}
 os.mkdir("folder")
@@ -95,6 +96,7 @@ def victims(picture, reads):
     ending = ".png" if picture else ".db"
     for name in ("self", "other", "hard", "soft", "./other", "folder/../hard", os.path.abspath("other")):
         yield name + ending, {74}
+    yield fields, {64, 74} if picture else {74}
     for name, copy in (("self.yaml", "campaign.png"), ("scene.yaml", "scene.png")):
         yield name, {64, 74} if picture else {74}
         if name in reads:

@@ -101,6 +101,15 @@ mkdir merged
 expect 0 "$clast" merge merged/all.db link/there.db
 expect 0 "$clast" check merged/all.db
 
+# A hard link in another folder: its fields are not computed again.
+mkdir hard
+ln kept.db hard/link.db
+expect 74 "$clast" run kept.yaml -j 1 --quiet --store hard/link.db
+says "the folder of its fields"
+same "$(ls hard)" "link.db" "files beside the hard link"
+rm hard/link.db
+expect 0 "$clast" run kept.yaml -j 1 --quiet
+
 # A fields file that another program has locked can be drawn.
 fields=$(ls kept-fields/*.h5 | head -1)
 flock -x "$fields" sleep 20 &
@@ -154,4 +163,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 40
+done_after 43
