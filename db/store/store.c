@@ -18,7 +18,7 @@
 #include "schemas/file.h"
 #include "schemas/limits.h"
 
-enum { BUSY_MS = 10000 }; /* SQLite waits so long for another program's lock */
+enum { BUSY_MS = 10000 };
 
 /* ---- the place: names that are no files, a file that is moved while it is written, a copy without its -wal file ----
  */
@@ -241,6 +241,32 @@ bool store_is_being_written(const char *path) {
   return held;
 }
 
+/* Does another program hold one of these bytes of a file with a lock that excludes one of this type? */
+static bool is_locked(const char *path, short type, off_t first, off_t count) {
+  struct flock lock = {.l_type = type, .l_whence = SEEK_SET, .l_start = first, .l_len = count};
+  const int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+  const bool held = descriptor >= 0 && fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  if (descriptor >= 0)
+    close(descriptor);
+  return held;
+}
+
+/* SQLite's locks of a database: 512 bytes from 2^30 on. In WAL mode readers hold them, too; the one writer has byte 120
+ * of the -shm file. (SQLite's file format, os_unix.c and wal.c) */
+bool store_is_locked(const char *path) {
+  char *file = realpath(path, NULL), *shared = NULL;
+  bool held = false;
+  if (file && store_is_being_written(file))
+    held = false; /* by clast: opening it says so */
+  else if (file && in_wal_mode(file))
+    held = asprintf(&shared, "%s-shm", file) > 0 && is_locked(shared, F_RDLCK, 120, 1);
+  else if (file)
+    held = is_locked(file, F_WRLCK, 1 << 30, 512);
+  free(shared);
+  free(file);
+  return held;
+}
+
 /* The name of the file's network file system, on which locks and shared memory are not reliable; NULL: none. */
 static const char *network_file_system(int descriptor) {
   struct statfs file_system;
@@ -389,6 +415,7 @@ static struct store *allocate(const char *path) {
   if (!store)
     return NULL;
   store->lock = -1;
+  store->patience = BUSY_MS;
   store->lowest_bin = 1;
   store->path = paths_followed(path);
   if (store->path)
@@ -428,7 +455,7 @@ static status open_database(struct store *store, int flags, struct error *error)
                              flags | SQLITE_OPEN_URI | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_NOMUTEX, NULL);
   if (code != SQLITE_OK)
     return sql_fail(store->db, code, "opening", error);
-  sqlite3_busy_timeout(store->db, BUSY_MS);
+  sqlite3_busy_timeout(store->db, store->patience);
   guard_connection(store->db);
   digest_function(store->db);
   return sql_execute(store->db, "PRAGMA cell_size_check = ON", "opening", error);
@@ -627,7 +654,7 @@ status store_close(struct store *store, struct error *error) {
     if (result == STATUS_OK)
       result = sql_execute(store->db, "DELETE FROM holder", "closing", error);
     /* If a reader is in the middle of a query, the file stays in WAL mode, complete and readable. */
-    sqlite3_busy_timeout(store->db, 1000);
+    sqlite3_busy_timeout(store->db, store->patience < 1000 ? store->patience : 1000);
     sqlite3_exec(store->db, "PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode = DELETE", NULL, NULL, NULL);
   }
   release(store);
@@ -682,8 +709,13 @@ bool store_is_free(struct store *store) {
     return true;
   sqlite3_busy_timeout(store->db, 0);
   const int code = sqlite3_exec(store->db, "BEGIN IMMEDIATE; COMMIT", NULL, NULL, NULL);
-  sqlite3_busy_timeout(store->db, BUSY_MS);
+  sqlite3_busy_timeout(store->db, store->patience);
   return (code & 0xff) != SQLITE_BUSY;
+}
+
+void store_hurry(struct store *store) {
+  store->patience = 0;
+  sqlite3_busy_timeout(store->db, 0);
 }
 
 status store_end(struct store *store, status result, int rows, struct error *error) {

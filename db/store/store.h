@@ -36,6 +36,9 @@ const char *store_path(const struct store *store);
 /* Is a process writing this store? Call it before the store is opened: closing a descriptor of the file drops SQLite's
  * locks on it. */
 bool store_is_being_written(const char *path);
+/* Has another program locked the store, so that opening it for writing has to wait? Call it before the store is opened,
+ * as store_is_being_written(). */
+bool store_is_locked(const char *path);
 /* Commits and leaves one plain file in journal_mode=DELETE when writing. NULL is fine. */
 status store_close(struct store *store, struct error *error);
 /* A store that is only read, and closes itself where its block is left: STORE store = NULL; */
@@ -127,6 +130,8 @@ status store_set_convergence(struct store *store, const struct store_convergence
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */
 /* False: another program holds the store, and the next batch cannot begin now. */
 bool store_is_free(struct store *store);
+/* From now on, nothing waits for another program that holds the store. */
+void store_hurry(struct store *store);
 /* Commits when the batch is older than 1 s. STATUS_IO when the file was moved, removed or replaced. */
 status store_tick(struct store *store, struct error *error);
 

@@ -148,4 +148,55 @@ says "another program holds the store"
 [ "$(cat before)" -lt 290 ] || fail "the store was held too late: $(cat before) runs"
 same "$(number held.db "select count(*) from run")" 300 "runs of a store that was held"
 expect 0 "$toy" check held.db
-done_after 43
+
+# A store that another program has locked is waited for, longer than SQLite waits. A signal ends the waiting at once; results
+# that wait in memory are tried for 10 s.
+cat >lock.py <<'PY'
+import sqlite3, sys, time
+store = sqlite3.connect(sys.argv[1], timeout=0, isolation_level=None)
+while not store.in_transaction:
+    try:
+        store.execute("begin immediate")
+    except sqlite3.OperationalError:
+        time.sleep(0.0005)
+open("locked", "w").close()
+time.sleep(float(sys.argv[2]))
+store.execute("commit")
+PY
+lock() { # lock SECONDS
+  rm -f locked
+  python lock.py held.db "$1" &
+  holder=$!
+  until [ -e locked ]; do sleep 0.05; done
+}
+sed -i 's/per_point: .*}/per_point: 250}/' held.yaml
+lock 60
+begun=$SECONDS
+"$toy" run held.yaml -j 2 >out 2>err </dev/null &
+sleep 2
+kill -TERM $!
+wait $! && code=0 || code=$?
+same "$code" 75 "exit of a run that waits for the store"
+says "clast waits until it lets go"
+kill $holder
+wait $holder 2>/dev/null || true
+"$toy" run held.yaml -j 2 >out 2>err </dev/null &
+runner=$!
+sleep 1.5
+lock 60
+sleep 2
+begun=$SECONDS
+kill -TERM $runner
+wait $runner && code=0 || code=$?
+same "$code" 75 "exit of a run with results that wait"
+[ $((SECONDS - begun)) -le 15 ] || fail "the run went on for $((SECONDS - begun)) s"
+says "clast tries for 10 s to store"
+says "results were not stored"
+kill $holder
+wait $holder 2>/dev/null || true
+expect 0 "$toy" check held.db
+lock 12
+expect 0 "$toy" run held.yaml -j 2
+says "clast waits until it lets go"
+same "$(number held.db "select count(*) from run")" 750 "runs of a store that was held"
+done_after 48
