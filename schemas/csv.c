@@ -164,7 +164,13 @@ enum csv_item csv_next(struct csv *csv) {
     csv->line = csv->next;
     if (text[*text == '"'] == '#')
       return take_remark(csv, text);
-    if (csv->count == 0)
+    if (csv->line == 1 && strncmp(text, "sep=", 4) == 0 && text[4] && strchr(";,\t", text[4]) && ends_line(text + 5)) {
+      csv->separator = text[4];
+      csv->told = true;
+      skip_line(csv);
+      continue;
+    }
+    if (csv->count == 0 && !csv->told)
       csv->separator = find_separator(csv->at);
     const size_t count = read_record(csv);
     if (count == 0) {

@@ -1,5 +1,6 @@
 /* Reads CSV (RFC 4180) from outside: points of a campaign, measured spectra. One file means one thing:
- *   - The names decide the separator of the whole file: a semicolon if they have one, else a tab, else a comma.
+ *   - The names decide the separator of the whole file: a semicolon if they have one, else a tab, else a comma. Or the
+ *     first line is sep=; (of Excel), sep=, or sep= and a tab.
  *   - Every record has as many cells as there are names.
  *   - A decimal comma is read where semicolons separate the cells, or in double quotes. A file has one decimal mark.
  * Cells may be in double quotes, with "" for a quote; blanks around a cell are no part of it. Lines end with LF or
@@ -42,6 +43,7 @@ struct csv {
   char *at;
   int64_t next;         /* line of `at` */
   char separator, mark; /* decimal mark; 0: no number had one yet */
+  bool told;            /* the first line has the separator */
 };
 
 /* Reads the file `what`: a plain file or a pipe. STATUS_MISSING, STATUS_IO, STATUS_MEMORY; STATUS_CONTENT: it has a NUL

@@ -251,6 +251,7 @@ struct reading {
   size_t place, amount; /* indices of columns */
   bool by_size;         /* fragments are given by size */
   bool shares;          /* masses of classes are shares of the whole */
+  bool has_density;     /* a remark has it */
   enum amount kind;
   const char *place_unit, *amount_unit, *amount_name; /* parts of the file */
   const char *complete;
@@ -286,8 +287,13 @@ static status take_remark(struct reading *r, char *text, struct error *error) {
     r->complete = value;
   if (strcmp(key, "density") != 0)
     return STATUS_OK;
-  if (unit_is_bare(value) || unit_read(value, "kg/m^3", &r->size.density, error) || !(r->size.density > 0))
+  double density;
+  if (unit_is_bare(value) || unit_read(value, "kg/m^3", &density, error) || !(density > 0))
     return refuse(r, error, "the density needs a number and a unit, such as 2.7 g/cm^3, not", value);
+  if (r->has_density && density != r->size.density)
+    return refuse(r, error, "another density is above this one; leave out", value);
+  r->has_density = true;
+  r->size.density = density;
   return STATUS_OK;
 }
 
@@ -438,6 +444,9 @@ static status read_amount(struct reading *r, const char *text, double *amount, s
   struct unit unit, mass;
   char quantity[QUANTITY];
   if (r->kind == COUNT || r->kind == COUNT_ABOVE) {
+    const size_t whole = strspn(text, "0123456789");
+    if (whole > 0 && whole <= 3 && *text != '0' && text[whole] == '.' && strlen(text) == whole + 4)
+      return refuse(r, error, "a number of fragments, or a separator of thousands; not", text);
     if (!unit_is_bare(text) || unit_read(text, "1", amount, error) || !(*amount >= 0))
       return refuse(r, error, "expected a number of fragments, not", text);
     return STATUS_OK;

@@ -52,8 +52,12 @@ static void cells(void **state) {
       {"\ta\t,b\t\n", "|a|,b|/"}, /* a tab among the names is a separator */
       {"a\tb\n\t2\n", "a|b/|2/"},
       {"a;b\n2,5;214\n", "a|b/2,5|214/"},
-      {"\"a;b\",c\n1,2\n", "a;b|c/1|2/"}, /* not in quotes */
-      {"a,\n,b\n", "a|/|b/"},             /* empty cells */
+      {"\"a;b\",c\n1,2\n", "a;b|c/1|2/"},              /* not in quotes */
+      {"sep=;\r\na;b\r\n2,5;214\r\n", "a|b/2,5|214/"}, /* by Excel */
+      {"\xEF\xBB\xBFsep=,\n# a\n\n\"a;b\",c;d\n1,2\n", " a#a;b|c;d/1|2/"},
+      {"a\nsep=;\n", "a/sep=;/"},
+      {"sep=", "sep=/"},
+      {"a,\n,b\n", "a|/|b/"}, /* empty cells */
       {"a,b\n\"\",x\n", "a|b/|x/"},
       {"a,b\n\"\",\n", "a|b/|/"},
       {"a\n\"open\n1,2\n", "a/!a double quote is not closed"},

@@ -111,6 +111,8 @@ static void bad_files(void **state) {
       {"mass (g),passing (%)\n1,50\n2,40\n", "it counts from this mass downwards"},
       {"mass (g),passing (%)\n1,100\n", "there is no fragment"},
       {"mass (g)\n", "there is no row"},
+      {"mass (g);count\n1;1.234\n", ":2: a number of fragments, or a separator of thousands; not '1.234'"},
+      {"# density: 2.7 g/cm^3\n# density: 3 g/cm^3\nsize (mm)\n1\n", ":2: another density"},
   };
   struct measured m;
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
