@@ -255,12 +255,13 @@ static bool is_locked(const char *path, short type, off_t first, off_t count) {
  * of the -shm file. (SQLite's file format, os_unix.c and wal.c) */
 bool store_is_locked(const char *path) {
   char *file = realpath(path, NULL), *shared = NULL;
+  struct stat kind;
   bool held = false;
-  if (file && store_is_being_written(file))
+  if (!file || stat(file, &kind) != 0 || !S_ISREG(kind.st_mode) || store_is_being_written(file))
     held = false; /* by clast: opening it says so */
-  else if (file && in_wal_mode(file))
+  else if (in_wal_mode(file))
     held = asprintf(&shared, "%s-shm", file) > 0 && is_locked(shared, F_RDLCK, 120, 1);
-  else if (file)
+  else
     held = is_locked(file, F_WRLCK, 1 << 30, 512);
   free(shared);
   free(file);
