@@ -110,6 +110,11 @@ same "$(ls hard)" "link.db" "files beside the hard link"
 rm hard/link.db
 expect 0 "$clast" run kept.yaml -j 1 --quiet
 
+# A pipe is no store, and nothing waits for its writer.
+mkfifo pipe.db
+expect 74 timeout -k 1 20 "$clast" run kept.yaml -j 1 --store pipe.db
+expect 74 timeout -k 1 20 "$clast" merge pipe.db kept.db
+
 # A fields file that another program has locked can be drawn.
 fields=$(ls kept-fields/*.h5 | head -1)
 flock -x "$fields" sleep 20 &
@@ -163,4 +168,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 43
+done_after 45
