@@ -373,12 +373,58 @@ static void of_inputs(void) {
     }
 }
 
+/* ---- nothing, too little, and what is no number ---- */
+
+static void of_nothing(void) {
+  const double odd[] = {NAN, -1, 0, HUGE_VAL};
+  fprintf(out, "== nothing\n");
+  for (size_t k = 0; k < sizeof odd / sizeof *odd; k++) {
+    const double x = odd[k];
+    SAY("odd", x, convergence_gain(x, 0.5), convergence_gain(0.5, x), convergence_break_even(x), spectrum_bin(x),
+        power_law_rival_p_value(x), sample_student(1, 0.95), pooled_spectrum_count_hw95(3, x, 1));
+    SAY("window", estimates_window_lower(ESTIMATES_FROM_5, x, 1), estimates_window_lower(ESTIMATES_FROM_5, 1, x));
+  }
+  SAY("gain", convergence_gain(1.5, 0.5), convergence_gain(1, 0.5), convergence_gain(-1, 0));
+  const struct power_law none = power_law_fit(0, NULL);
+  SAY("law", none.beta, none.standard_error, none.log_likelihood);
+  const double masses[] = {3, 2.05, 2, 1};
+  for (int kind = POWER_LAW_PURE; kind <= POWER_LAW_LOGNORMAL; kind++)
+    for (double upper = 0.5; upper < 5; upper += 1.5) {
+      const struct power_law_group group = power_law_group_of((enum power_law_kind)kind, 4, masses, 1, upper);
+      const struct power_law law = power_law_fit(1, &group);
+      SAY("few", group.weight, group.mean, group.mean_h, law.beta, law.standard_error);
+    }
+  for (int method = 0; method < EXPONENT_METHODS; method++) {
+    const struct exponent unknown = exponent_unknown((enum exponent_method)method, (struct exponent_window){1, 2});
+    exponents("unknown", &unknown);
+    struct exponent fit;
+    SAY("status", exponent_fit((enum exponent_method)method, 4, masses, (struct exponent_window){1, 4}, &fit, NULL));
+    exponents("three", &fit);
+  }
+  double values[4][3] = {{0.5, 0.6, 0.4}, {0.4, 0.5, NAN}, {0.35, 0.4, 0.3}, {0.3, 0.35, 0.25}};
+  for (int shape = 0; shape < 6; shape++) {
+    struct limit_ladder ladder = {.levels = shape == 0 ? 2 : 4, .seeds = shape == 1 ? 2 : 3, .least = 0, .most = 1};
+    for (size_t l = 0; l < 4; l++) {
+      ladder.step[l] = shape == 2 ? (double)NAN : pow(2, -(double)l);
+      ladder.values[l] = values[shape == 3 ? 0 : l];
+      if (shape == 4)
+        values[l][0] = NAN;
+      if (shape == 5)
+        values[l][0] = values[l][1] = values[l][2] = 1;
+    }
+    struct limit_law law;
+    assert_true(limit_infer(&ladder, 0.9, &law, 0, NULL));
+    SAY("shape", law.verdict, (double)law.dropped, law.limit.value, law.limit.low, law.limit.high,
+        law.distance[0].value);
+  }
+}
+
 static void numbers_stay(void **state) {
   (void)state;
   char *text = NULL;
   size_t size = 0;
   assert_non_null(out = open_memstream(&text, &size));
-  of_samples(), of_pairs(), of_ladders(), of_masses(), of_inputs();
+  of_samples(), of_pairs(), of_ladders(), of_masses(), of_inputs(), of_nothing();
   fclose(out);
   pinned_same("unit/statistics.txt", text, 1e-8);
   free(text);
