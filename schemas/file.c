@@ -234,7 +234,7 @@ status file_may_replace(const char *path, const char *what, struct error *error)
     return refuse(path, what, strerror(errno), error);
   if (is_database(head))
     return refuse(path, what, "it is a store or another SQLite database: name another file, or remove it first", error);
-  if (is_kept(path))
+  if (strcmp(what, "fields file") != 0 && is_kept(path)) /* a campaign mends its own: engine/snapshot_file.c */
     return refuse(path, what, "it has the fields of a run of a store: name another file, or remove it first", error);
   if (is_document(path, head))
     return refuse(path, what, "it is a document, such as a campaign or a scene: name another file, or remove it first",
