@@ -105,7 +105,7 @@ static void hear_run(const struct engine_kind *kind, void *run, const struct out
 
 /* What `clast explain` and `clast plan` say before a run. */
 static void hear_words(const struct scene *scene) {
-  char *text = scene->kind->describe(scene->inputs);
+  char *text = scene->kind->describe(scene->inputs, true);
   assert_non_null(text);
   fputs(text, heard[SAID].file);
   free(text);
@@ -225,19 +225,15 @@ static void tell(const struct scene *scene, const char *path, double number) {
     fprintf(heard[SAID].file, "%s\n", error.message);
   } else {
     uint8_t identity[16];
-    char *json = scene_json(other);
-    assert_non_null(json);
     scene_identity(other, 7, identity);
-    fprintf(heard[PINNED].file, "%s\n", json);
     fwrite(identity, 1, sizeof identity, heard[PINNED].file);
     hear_words(other);
-    free(json);
   }
   scene_free(other);
 }
 
 /* Every number that a scene uses: below and above its own value, far off, zero and off. Nothing is run. What the
- * program says of the scene is heard, its resolved document and its identity, or why it is refused. */
+ * program says of the scene is heard and its identity, or why it is refused. */
 static void every_number_is_told(void **state) {
   (void)state;
   for (size_t k = 0; k < SMALLEST; k++) {
