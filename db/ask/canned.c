@@ -51,7 +51,7 @@ static const struct query_canned queries[] = {
      ""},
     {"slowest", "The twenty runs that took longest.",
      "SELECT run_id, point_id, replicate, seed, wall_time, cpu_time, peak_memory, steps, host, rank FROM run ORDER BY "
-     "wall_time DESC LIMIT 20",
+     "wall_time DESC, point_id, replicate LIMIT 20",
      ""},
     {"cost", "Time and memory per point.",
      "SELECT point_id, count(*) AS runs, total(wall_time) AS wall_time, avg(wall_time) AS wall_time_mean, "
