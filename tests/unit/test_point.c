@@ -47,7 +47,8 @@ static double number_of(struct store *store, const char *format, ...) {
   return number(store, sql);
 }
 
-/* A study of the resolution uses the point's own scene. */
+/* A study of the resolution uses the point's own scene. One that is not built in came from a file, whose name the store
+ * does not have. */
 static void resolution_names_the_scene(void **state) {
   (void)state;
   char path[64];
@@ -57,7 +58,7 @@ static void resolution_names_the_scene(void **state) {
   OK(ask_resolution(store, id, "largest_fraction", &found, &error));
   assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
   assert_true(isnan(found.half_width));
-  assert_string_equal(found.scene, "made-up");
+  assert_string_equal(found.scene, "SCENE.yaml");
   OK(ask_resolution(store, id + 1, "largest_fraction", &found, &error));
   assert_string_equal(found.scene, "SCENE");
   OK(store_close(store, &error));

@@ -83,10 +83,10 @@ static const struct sph_module crack_surfaces_module = {
 #endif
 
 #ifdef SPH_MODULE_INPUT_ROWS
-INPUT_SWITCH(method.crack_surfaces, crack_surfaces.on, 0, .absent = "false", .when = "method.gradient_correction=true",
+INPUT_SWITCH(method.crack_surfaces, crack_surfaces.on, 0, .absent = "false",
              .doc =
                  "Matter that holds together has a free surface where its neighbours are broken and loose. Without it "
                  "it feels their flight as strain and pulls at them, so that damage eats into a body. Flaws that were "
-                 "fitted without it are then too strong.",
+                 "fitted without it are then too strong. Needs method.gradient_correction.",
              .source = "our choice; near to Islam & Peng 2019 (arXiv:1901.08342)"),
 #endif

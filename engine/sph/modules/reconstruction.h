@@ -108,10 +108,10 @@ static const struct sph_module reconstruction_module = {
 #endif
 
 #ifdef SPH_MODULE_INPUT_ROWS
-INPUT_SWITCH(method.reconstruction, reconstruction.on, 0, .absent = "false", .when = "method.gradient_correction=true",
+INPUT_SWITCH(method.reconstruction, reconstruction.on, 0, .absent = "false",
              .doc =
                  "Viscosity acts on the jump of velocity that is left at the midpoint of a pair, so that smooth waves "
-                 "hardly feel it. Fronts of shocks are 0.6 times as wide; a run takes 1.8 times as long. Off: as in "
-                 "Monaghan 1992.",
+                 "hardly feel it. Fronts of shocks are 0.6 times as wide; a run takes 1.8 times as long. Needs "
+                 "method.gradient_correction.",
              .source = "Frontiere, Raskin & Owen 2017; Rosswog 2020 (arXiv:1911.13093)"),
 #endif

@@ -308,6 +308,9 @@ static status check_bodies(const struct sph_inputs *in, struct error *error) {
 static status check_cracks(const struct sph_inputs *in, struct error *error) {
   if (sph_derived_scene_cracks(in) && in->artificial_stress.epsilon > 0)
     REFUSE("method.artificial_stress would hold cracks together: set it to 0, or target.fracture: off");
+  if ((in->crack_surfaces.on || in->reconstruction.on) && !in->gradient_correction.on)
+    REFUSE("method.%s needs the velocity gradients of method.gradient_correction: set that to true",
+           in->crack_surfaces.on ? "crack_surfaces" : "reconstruction");
   if (in->artificial_stress.epsilon > 0 && (in->crack_surfaces.on || in->reconstruction.on))
     REFUSE("method.artificial_stress cannot be used with method.crack_surfaces or method.reconstruction: set it to 0");
   if (!(in->crack_cell.width > 0))
