@@ -188,15 +188,18 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   write_names(out, axes);
   fputs("engine, results_version, sum(n > 0) AS points, sum(n) AS n, sum(failed) AS failed, sum(censored) AS censored",
         out);
-  for (size_t i = 0; i < quantities->count; i++)
+  for (size_t i = 0; i < quantities->count; i++) { /* in parts, as in views_statistics_columns() */
     fprintf(out,
             ",\n  avg(p%1$zu) AS m%1$zu, iif(count(p%1$zu) > 1, count(p%1$zu), sum(r%1$zu)) AS u%1$zu, "
-            "iif(count(p%1$zu) > 1, stdev(p%1$zu), max(o%1$zu)) AS d%1$zu,\n  "
+            "iif(count(p%1$zu) > 1, stdev(p%1$zu), max(o%1$zu)) AS d%1$zu,\n  ",
+            i);
+    fprintf(out,
             "iif(count(e%1$zu) = count(*), max(e%1$zu), NULL) AS e%1$zu, CASE WHEN count(e%1$zu) < count(*) THEN "
             "'not-studied' WHEN max(v%1$zu = 'diverges') THEN 'diverges' WHEN max(v%1$zu = 'at-least') THEN 'at-least' "
             "ELSE "
             "'known' END AS v%1$zu, sum(r%1$zu) AS r%1$zu, sum(b%1$zu) AS b%1$zu",
             i);
+  }
   fputs(",\n  words(", out);
   for (size_t i = 0; i < quantities->count; i++)
     fprintf(out, "%sw%zu", i ? " || ', ' || " : "", i);

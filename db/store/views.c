@@ -77,16 +77,22 @@ void views_statistics_columns(size_t i, const char *name, const char *n, bool sh
           ",\n  m%1$zu AS \"%2$s_mean\", d%1$zu AS \"%2$s_sd\", d%1$zu / sqrt(%3$s) AS \"%2$s_se\", h%1$zu AS "
           "\"%2$s_hw95\",\n  ",
           i, name, n);
-  if (share)
-    fprintf(
-        out,
-        "iif(h%1$zu IS NULL, iif(%3$s > 1, m%1$zu * pow(0.05, 1.0 / %3$s), NULL), max(m%1$zu - h%1$zu, 0.0)) AS "
-        "\"%2$s_low95\",\n  iif(h%1$zu IS NULL, iif(%3$s > 1, 1 - (1 - m%1$zu) * pow(0.05, 1.0 / %3$s), NULL), "
-        "min(m%1$zu + h%1$zu, 1.0)) AS \"%2$s_high95\",\n  iif(h%1$zu IS NULL, NULL, (%3$s < %4$d AND d%1$zu < %5$g "
-        "* max(m%1$zu, 1 - m%1$zu)) OR (%3$s < %6$d AND d%1$zu < %7$g * max(m%1$zu, 1 - m%1$zu) AND d%1$zu > %8$g * "
-        "min(m%1$zu, 1 - m%1$zu))) AS \"%2$s_weak\"",
-        i, name, n, SAMPLE_NARROW_RUNS, SAMPLE_NARROW, SAMPLE_EDGE_RUNS, SAMPLE_EDGE, SAMPLE_EDGE_SKEW);
-  else
+  if (share) { /* in parts: fprintf() of 14 values and more asks for memory, and says nothing without it */
+    fprintf(out,
+            "iif(h%1$zu IS NULL, iif(%3$s > 1, m%1$zu * pow(0.05, 1.0 / %3$s), NULL), max(m%1$zu - h%1$zu, 0.0)) AS "
+            "\"%2$s_low95\",\n  ",
+            i, name, n);
+    fprintf(out,
+            "iif(h%1$zu IS NULL, iif(%3$s > 1, 1 - (1 - m%1$zu) * pow(0.05, 1.0 / %3$s), NULL), min(m%1$zu + h%1$zu, "
+            "1.0)) AS \"%2$s_high95\",\n  ",
+            i, name, n);
+    fprintf(out, "iif(h%1$zu IS NULL, NULL, (%2$s < %3$d AND d%1$zu < %4$g * max(m%1$zu, 1 - m%1$zu)) OR ", i, n,
+            SAMPLE_NARROW_RUNS, SAMPLE_NARROW);
+    fprintf(out,
+            "(%3$s < %4$d AND d%1$zu < %5$g * max(m%1$zu, 1 - m%1$zu) AND d%1$zu > %6$g * min(m%1$zu, 1 - m%1$zu))) "
+            "AS \"%2$s_weak\"",
+            i, name, n, SAMPLE_EDGE_RUNS, SAMPLE_EDGE, SAMPLE_EDGE_SKEW);
+  } else
     fprintf(out, "m%1$zu - h%1$zu AS \"%2$s_low95\", m%1$zu + h%1$zu AS \"%2$s_high95\", NULL AS \"%2$s_weak\"", i,
             name);
   fprintf(out, ",\n  e%1$zu AS \"%2$s_resolution\", ifnull(v%1$zu, 'not-studied') AS \"%2$s_resolution_verdict\"", i,
