@@ -197,7 +197,7 @@ static void row_changed(sqlite3_context *context, int count, sqlite3_value **val
   }
   struct digest_of_table *table = &tables->now[sqlite3_value_int(values[0])];
   const int sign = sqlite3_value_int(values[1]);
-  table->rows += sign;
+  table->rows = (int64_t)((uint64_t)table->rows + (uint64_t)sign); /* a store from elsewhere may say any number */
   table->sum.a += sign > 0 ? row.a : -row.a;
   table->sum.b += sign > 0 ? row.b : -row.b;
 }
