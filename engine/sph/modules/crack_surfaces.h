@@ -2,9 +2,9 @@
  *
  *   method.crack_surfaces   turns the term on; it needs the gradient correction
  *
- * A particle is loose if D is above 0.9 and nothing presses on it (P <= 0): debris. Without this term a particle that
- * is not loose sees the flight of loose neighbours as its own strain, and its stress pulls at them, so damage eats into
- * a body over a length of about the kernel. With it a loose neighbour has no share
+ * A broken particle is loose where nothing presses on it: debris. Without this term a particle that is not loose sees
+ * the flight of loose neighbours as its own strain, and its stress pulls at them, so that damage eats into a body. With
+ * it a loose neighbour has no share
  *   - in the velocity gradient and the moments of the particle, so that B_i makes the gradient exact over the others;
  *   - in the part of the pair's force that the particle's own stress makes, on both partners,
  * so that forces stay conjugate to the gradient: momentum and energy are kept. The force by the stress of the loose
@@ -25,7 +25,7 @@ PAIR_TERM(crack_surfaces, o->crack_surfaces.on && o->gradient_correction.on && o
 PAIR_FIELDS(damage, 1)
 PAIR_FIELDS(correction_share, 1)
 PAIR_FOUND(crack_surfaces, correction_share, 1) /* the gradient correction fills it */
-PAIR_RECORD(crack_surfaces, 1)                  /* 1 where the particle is loose, else 0 */
+PAIR_RECORD(crack_surfaces, 1)                  /* how loose the particle is, 0 to 1 */
 PAIR_PACK(crack_surfaces)
 PAIR_BEFORE(crack_surfaces)
 
@@ -77,7 +77,6 @@ static const struct sph_module crack_surfaces_module = {
     .on = crack_surfaces_on,
     .columns = crack_surfaces_columns,
     .bytes_in_pairs = 8,
-    .cost = 10,
 };
 
 #endif

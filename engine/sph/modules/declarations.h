@@ -28,7 +28,7 @@
  *   PAIR_POWER(term)                its finish fills the power of struct sph_pair_sums
  *   PAIR_CONSTANT(name, value)      a number that is the same for all pairs; `value` is made from `o`
  *   PAIR_PACK(term), PAIR_BEFORE(term), PAIR_STRESS(term), PAIR_STRESS_ADDED(term), PAIR_FORCE(term),
- * PAIR_SUMMED(term), PAIR_FINISH(term) the functions that it has
+ *   PAIR_SUMMED(term), PAIR_FINISH(term)   the functions that it has
  *
  *   TIME_STEP_LIMIT(NAME, member, doc)   SPH_LIMIT_NAME, and the result limited.member
  *

@@ -102,7 +102,7 @@ static const struct sph_module reconstruction_module = {
     .on = reconstruction_on,
     .columns = reconstruction_columns,
     .bytes_in_pairs = 48,
-    .cost = 60,
+    .cost = 130,
 };
 
 #endif
@@ -111,7 +111,7 @@ static const struct sph_module reconstruction_module = {
 INPUT_SWITCH(method.reconstruction, reconstruction.on, 0, .absent = "false",
              .doc =
                  "Viscosity acts on the jump of velocity that is left at the midpoint of a pair, so that smooth waves "
-                 "hardly feel it. Fronts of shocks are 0.6 times as wide; a run takes 1.8 times as long. Needs "
+                 "hardly feel it. Fronts of shocks are 0.6 times as wide; a run takes 1.4 to 1.9 times as long. Needs "
                  "method.gradient_correction.",
              .source = "Frontiere, Raskin & Owen 2017; Rosswog 2020 (arXiv:1911.13093)"),
 #endif
