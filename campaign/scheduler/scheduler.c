@@ -311,7 +311,7 @@ static void drop_held(struct scheduler *scheduler, struct scheduler_held *held) 
 /* Takes in what waits, as long as the store is free. */
 static status take_held(struct scheduler *scheduler, struct error *error) {
   status code = STATUS_OK;
-  while (code == STATUS_OK && scheduler->held && store_is_free(scheduler->store)) {
+  while (code == STATUS_OK && scheduler->held && store_begin_if_free(scheduler->store)) {
     struct scheduler_held *held = scheduler->held;
     code = take(scheduler, held->run, &held->report, error);
     drop_held(scheduler, held);
@@ -362,7 +362,7 @@ static status take_report(void *context, const struct farm_report *report, struc
   const struct scheduler_run run = scheduler->out[report->id];
   scheduler->out[report->id].scene = NULL;
   TRY(take_held(scheduler, error));
-  if (scheduler->held || !store_is_free(scheduler->store))
+  if (scheduler->held || !store_begin_if_free(scheduler->store))
     return hold(scheduler, &run, report, error);
   return take(scheduler, run, report, error);
 }

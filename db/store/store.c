@@ -683,6 +683,14 @@ static void roll_back(struct store *store) {
   store->broken = true;
 }
 
+/* What an open batch counts. */
+static void batch_begun(struct store *store) {
+  store->in_batch = true;
+  store->batch_rows = 0;
+  store->batch_identity_count = 0;
+  store->batch_started = clock_s();
+}
+
 status store_begin(struct store *store, struct error *error) {
   if (!store->writer)
     return status_fail(error, STATUS_INTERNAL, "%s is open for reading only", store->path);
@@ -694,23 +702,21 @@ status store_begin(struct store *store, struct error *error) {
   if (store->in_batch)
     return STATUS_OK;
   status result = sql_execute(store->db, "BEGIN IMMEDIATE", "beginning to write", error);
-  if (result != STATUS_OK) {
+  if (result == STATUS_OK)
+    batch_begun(store);
+  else
     store->broken = true;
-    return result;
-  }
-  store->in_batch = true;
-  store->batch_rows = 0;
-  store->batch_identity_count = 0;
-  store->batch_started = clock_s();
-  return STATUS_OK;
+  return result;
 }
 
-bool store_is_free(struct store *store) {
+bool store_begin_if_free(struct store *store) {
   if (store->in_batch || store->broken)
     return true;
   sqlite3_busy_timeout(store->db, 0);
-  const int code = sqlite3_exec(store->db, "BEGIN IMMEDIATE; COMMIT", NULL, NULL, NULL);
+  const int code = sqlite3_exec(store->db, "BEGIN IMMEDIATE", NULL, NULL, NULL);
   sqlite3_busy_timeout(store->db, store->patience);
+  if (code == SQLITE_OK)
+    batch_begun(store);
   return (code & 0xff) != SQLITE_BUSY;
 }
 

@@ -128,8 +128,8 @@ struct store_convergence {
 status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error);
 
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */
-/* False: another program holds the store, and the next batch cannot begin now. */
-bool store_is_free(struct store *store);
+/* Begins a batch without waiting. False: another program holds the store. Other faults are left to the next write. */
+bool store_begin_if_free(struct store *store);
 /* From now on, nothing waits for another program that holds the store. */
 void store_hurry(struct store *store);
 /* Commits when the batch is older than 1 s. STATUS_IO when the file was moved, removed or replaced. */

@@ -287,6 +287,23 @@ static void another_programs_lock_is_named_as_such(void **state) {
   sqlite3_close(db);
 }
 
+static void a_free_store_is_taken_at_once(void **state) {
+  (void)state;
+  char path[64];
+  populated(fixture_path(path, "free"));
+  struct store *store = NULL;
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  sqlite3 *db = NULL;
+  sqlite3_open(path, &db);
+  assert_int_equal(sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_OK);
+  assert_false(store_begin_if_free(store));
+  assert_int_equal(sqlite3_exec(db, "COMMIT", NULL, NULL, NULL), SQLITE_OK);
+  assert_true(store_begin_if_free(store));
+  assert_int_equal(sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_BUSY);
+  sqlite3_close(db);
+  OK(store_close(store, &error));
+}
+
 static void reader_refuses_to_write(void **state) {
   (void)state;
   char path[64];
@@ -312,17 +329,12 @@ static void local_disk_brings_no_warning(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(foreign_files_are_refused),
-      cmocka_unit_test(missing_and_unreachable),
-      cmocka_unit_test(empty_file_is_a_new_store),
-      cmocka_unit_test(failed_creation_leaves_an_empty_file),
-      cmocka_unit_test(oldest_stores_are_refused),
-      cmocka_unit_test(missing_columns_are_added_by_a_writer),
-      cmocka_unit_test(version_2_is_brought_forward),
-      cmocka_unit_test(failed_migration_changes_nothing),
-      cmocka_unit_test(second_writer_is_told_who_holds_it),
-      cmocka_unit_test(another_programs_lock_is_named_as_such),
-      cmocka_unit_test(reader_refuses_to_write),
+      cmocka_unit_test(foreign_files_are_refused),          cmocka_unit_test(missing_and_unreachable),
+      cmocka_unit_test(empty_file_is_a_new_store),          cmocka_unit_test(failed_creation_leaves_an_empty_file),
+      cmocka_unit_test(oldest_stores_are_refused),          cmocka_unit_test(missing_columns_are_added_by_a_writer),
+      cmocka_unit_test(version_2_is_brought_forward),       cmocka_unit_test(failed_migration_changes_nothing),
+      cmocka_unit_test(second_writer_is_told_who_holds_it), cmocka_unit_test(another_programs_lock_is_named_as_such),
+      cmocka_unit_test(a_free_store_is_taken_at_once),      cmocka_unit_test(reader_refuses_to_write),
       cmocka_unit_test(local_disk_brings_no_warning),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
