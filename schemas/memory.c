@@ -6,8 +6,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "schemas/status.h"
-
 void memory_refused(void) {
   static const char refused[] = "clast: the system refused memory; the process ends\n";
   (void)!write(STDERR_FILENO, refused, sizeof refused - 1);
@@ -18,6 +16,12 @@ void memory_free(void *pointer) {
   void *owned;
   memcpy(&owned, pointer, sizeof owned);
   free(owned);
+}
+
+status memory_array(void *pointer, size_t count, size_t size, const char *what, struct error *error) {
+  void *memory = calloc(count ? count : 1, size);
+  memcpy(pointer, &memory, sizeof memory); /* a pointer of any type */
+  return memory ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for %s", what);
 }
 
 void *memory_small(size_t count, size_t size) {

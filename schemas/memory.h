@@ -1,11 +1,13 @@
 /* Small memory: allocations whose size constants of the program bound. When the system refuses one, the process ends
  * with the exit code STATUS_MEMORY; the farm counts such a run as lost and tries it again, and a store survives the end
  * of any process. So the caller checks nothing. Whatever grows with a file, a store or the particles of a scene uses
- * malloc() and returns STATUS_MEMORY instead. */
+ * memory_array() or malloc(), and returns STATUS_MEMORY instead. */
 #ifndef CLAST_SCHEMAS_MEMORY_H
 #define CLAST_SCHEMAS_MEMORY_H
 
 #include <stddef.h>
+
+#include "schemas/status.h"
 
 enum { MEMORY_SMALL = 1 << 16 }; /* bytes, the largest allocation here */
 
@@ -13,6 +15,9 @@ enum { MEMORY_SMALL = 1 << 16 }; /* bytes, the largest allocation here */
 void *memory_small(size_t count, size_t size) __attribute__((malloc, returns_nonnull));
 /* A copy of a text of less than MEMORY_SMALL bytes; never NULL. The caller frees it. */
 char *memory_small_text(const char *text) __attribute__((malloc, returns_nonnull));
+/* `count` items of `size` bytes, all zero, for what grows; also for 0 items. `pointer`: address of the pointer to them.
+ * STATUS_MEMORY: "no memory for WHAT". The caller frees them. */
+status memory_array(void *pointer, size_t count, size_t size, const char *what, struct error *error);
 /* A pointer declared OWNED is freed where its block is left, so that TRY and return are allowed anywhere:
  *   OWNED char *text = NULL; */
 #define OWNED __attribute__((cleanup(memory_free)))

@@ -132,10 +132,10 @@ static status step(struct ensemble_kalman *e, struct work *w, struct error *erro
 
 status ensemble_kalman_step(struct ensemble_kalman *e, struct error *error) {
   const size_t n = e->members, p = e->inputs, d = e->outputs;
-  OWNED size_t *member = calloc(n, sizeof *member);
-  OWNED double *numbers = calloc(n + p + 3 * d + p * d + 2 * d * d, sizeof *numbers);
-  if (!member || !numbers)
-    return status_fail(error, STATUS_MEMORY, "no memory for the ensemble");
+  OWNED size_t *member = NULL;
+  OWNED double *numbers = NULL;
+  TRY(memory_array(&member, n, sizeof *member, "the ensemble", error));
+  TRY(memory_array(&numbers, n + p + 3 * d + p * d + 2 * d * d, sizeof *numbers, "the ensemble", error));
   struct work w = {.member = member, .misfit = numbers, .mean_z = numbers + n};
   w.mean_g = w.mean_z + p;
   w.innovation = w.mean_g + d;

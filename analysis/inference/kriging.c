@@ -90,13 +90,10 @@ static void maximise(struct kriging *k) {
   gsl_vector_free(size);
 }
 
-/* NULL: no memory. */
-static struct kriging *make(size_t n, size_t inputs, struct error *error) {
-  struct kriging *k = calloc(1, sizeof *k + (n * inputs + 3 * n + 3 * n * n) * sizeof *k->numbers);
-  if (!k) {
-    status_fail(error, STATUS_MEMORY, "no memory for a surface");
-    return NULL;
-  }
+static status make(size_t n, size_t inputs, struct kriging **out, struct error *error) {
+  const size_t numbers = n * inputs + 3 * n + 3 * n * n;
+  TRY(memory_array(out, 1, sizeof **out + numbers * sizeof *(*out)->numbers, "a surface", error));
+  struct kriging *k = *out;
   k->points = n;
   k->inputs = inputs;
   k->x = k->numbers;
@@ -106,7 +103,7 @@ static struct kriging *make(size_t n, size_t inputs, struct error *error) {
   k->noise = k->near + n;
   k->factor = k->noise + n * n;
   k->inverse = k->factor + n * n;
-  return k;
+  return STATUS_OK;
 }
 
 static void copy(const struct kriging_data *data, struct kriging *k) {
@@ -127,9 +124,8 @@ static void copy(const struct kriging_data *data, struct kriging *k) {
 /* Finds hyperparameters from every s-th point, with s so large that the search is cheap. */
 static status maximise_on_part(struct kriging *k, struct error *error) {
   const size_t step = (k->points + MOST_POINTS - 1) / MOST_POINTS, n = (k->points + step - 1) / step;
-  OWNED struct kriging *part = make(n, k->inputs, error);
-  if (!part)
-    return STATUS_MEMORY;
+  OWNED struct kriging *part = NULL;
+  TRY(make(n, k->inputs, &part, error));
   for (size_t i = 0; i < n; i++) {
     memcpy(part->x + i * k->inputs, k->x + i * step * k->inputs, k->inputs * sizeof(double));
     part->y[i] = k->y[i * step];
@@ -148,9 +144,8 @@ status kriging_fit(const struct kriging_data *data, struct kriging **out, struct
     return status_fail(error, STATUS_CONTENT,
                        "kriging needs three points or more, and 1 to %d inputs; there are %zu points and %zu inputs",
                        INFERENCE_INPUTS, data->points, data->inputs);
-  OWNED struct kriging *k = make(data->points, data->inputs, error);
-  if (!k)
-    return STATUS_MEMORY;
+  OWNED struct kriging *k = NULL;
+  TRY(make(data->points, data->inputs, &k, error));
   copy(data, k);
   TRY(maximise_on_part(k, error));
   if (!factorise(k))

@@ -8,6 +8,7 @@
 
 #include "analysis/inference/covariance.h"
 #include "engine/random.h"
+#include "schemas/memory.h"
 
 /* Nodes per input of a grid of 1 to 4 inputs. */
 enum { GRID_INPUTS = 4 };
@@ -108,9 +109,8 @@ static double shrink(const struct posterior_model *model, const struct posterior
 
 static status allocate(struct posterior *out, size_t count, size_t inputs, struct error *error) {
   *out = (struct posterior){.count = count, .inputs = inputs};
-  out->z = calloc(count * inputs, sizeof(double));
-  out->weight = calloc(count, sizeof(double));
-  return out->z && out->weight ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the posterior");
+  TRY(memory_array(&out->z, count * inputs, sizeof(double), "the posterior", error));
+  return memory_array(&out->weight, count, sizeof(double), "the posterior", error);
 }
 
 /* *effective: the number of nodes that have most of the weight. */
@@ -250,7 +250,7 @@ static int by_z(const void *a, const void *b) {
 }
 
 double posterior_quantile(const struct posterior *posterior, size_t input, double p) {
-  struct weighted *nodes = malloc(posterior->count * sizeof *nodes);
+  OWNED struct weighted *nodes = malloc(posterior->count * sizeof *nodes);
   if (!nodes)
     return NAN;
   for (size_t n = 0; n < posterior->count; n++)
@@ -258,21 +258,20 @@ double posterior_quantile(const struct posterior *posterior, size_t input, doubl
   qsort(nodes, posterior->count, sizeof *nodes, by_z);
 
   /* Nodes of the same z (a column of the grid) are merged; half of the weight counts as below z, half as above. */
-  double before = -1, z_before = nodes[0].z, below = 0, found = NAN;
-  for (size_t n = 0; n < posterior->count && isnan(found);) {
+  double before = -1, z_before = nodes[0].z, below = 0;
+  for (size_t n = 0; n < posterior->count;) {
     const double z = nodes[n].z;
     double here = 0;
     for (; n < posterior->count && nodes[n].z - z <= 1e-9; n++)
       here += nodes[n].weight;
     const double middle = below + here / 2;
     if (middle >= p)
-      found = before < 0 ? z : z_before + (z - z_before) * (p - before) / (middle - before);
+      return before < 0 ? z : z_before + (z - z_before) * (p - before) / (middle - before);
     before = middle;
     z_before = z;
     below += here;
   }
-  free(nodes);
-  return isnan(found) ? z_before : found;
+  return z_before;
 }
 
 void posterior_moments(const struct posterior *posterior, double *mean, double *covariance) {

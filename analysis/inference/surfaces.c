@@ -53,11 +53,9 @@ static status part_make(const struct surfaces_runs *runs, const bool *bounded, s
                         struct error *error) {
   struct posterior_model place = {.inputs = runs->inputs};
   memcpy(place.bounded, bounded, runs->inputs * sizeof *bounded);
-  part->x = calloc(runs->points * runs->inputs, sizeof(double));
-  part->values = calloc(runs->points * runs->replicates, sizeof(double));
-  part->mean = calloc(runs->points, sizeof(double));
-  if (!part->x || !part->values || !part->mean)
-    return status_fail(error, STATUS_MEMORY, "no memory for a surface");
+  TRY(memory_array(&part->x, runs->points * runs->inputs, sizeof(double), "a surface", error));
+  TRY(memory_array(&part->values, runs->points * runs->replicates, sizeof(double), "a surface", error));
+  TRY(memory_array(&part->mean, runs->points, sizeof(double), "a surface", error));
   size_t n = 0;
   for (size_t i = 0; i < runs->points; i++) {
     if (!is_taken(runs, i) || count_of(runs, output, i) < 2)
@@ -71,8 +69,7 @@ static status part_make(const struct surfaces_runs *runs, const bool *bounded, s
                                           .replicates = runs->replicates,
                                           .x = part->x,
                                           .values = part->values};
-  part->noise = calloc(n * n + 1, sizeof(double));
-  return part->noise ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a surface");
+  return memory_array(&part->noise, n * n, sizeof(double), "a surface", error);
 }
 
 static void find_correlations(const struct surfaces_runs *runs, double *correlation) {

@@ -308,10 +308,10 @@ status picture_map(const struct picture_page *page, const struct picture_words *
   for (size_t i = 0; i < count; i++)
     if (!isfinite(points[i][0]) || !isfinite(points[i][1]))
       return status_fail(error, STATUS_USAGE, "%s: a point of the map is not on its axes", page->path);
-  OWNED double *along = malloc(2 * count * sizeof *along);
-  OWNED double(*value)[2] = calloc(MOST_TILES, sizeof *value);
-  if (!along || !value)
-    return status_fail(error, STATUS_MEMORY, "%s: no memory for the map", page->path);
+  OWNED double *along = NULL;
+  OWNED double(*value)[2] = NULL;
+  TRY(memory_array(&along, 2 * count, sizeof *along, "the map", error));
+  TRY(memory_array(&value, MOST_TILES, sizeof *value, "the map", error));
   struct axis x = {.values = along}, y = {.values = along + count};
   distinct(count, points, 0, &x);
   distinct(count, points, 1, &y);

@@ -34,10 +34,8 @@ static status group(const struct picture_body *body, struct grouping *out) {
       out->fragments = (size_t)body->fragment[i] + 1;
   if (out->fragments > body->cells)
     return STATUS_USAGE; /* each fragment has a cell */
-  out->start = calloc(out->fragments + 2, sizeof *out->start);
-  out->order = calloc(body->cells + 1, sizeof *out->order);
-  if (!out->start || !out->order)
-    return STATUS_MEMORY;
+  TRY(memory_array(&out->start, out->fragments + 2, sizeof *out->start, "", NULL));
+  TRY(memory_array(&out->order, body->cells, sizeof *out->order, "", NULL));
   for (size_t i = 0; i < body->cells; i++)
     out->start[body->fragment[i] + 2]++;
   for (size_t f = 2; f < out->fragments + 2; f++)

@@ -29,11 +29,9 @@ static status gather(const struct picture_cloud *cloud, size_t count, struct lay
   for (size_t k = 0; k < count; k++)
     if ((size_t)cloud->fragment[l->discs[k].id] >= l->pieces)
       l->pieces = (size_t)cloud->fragment[l->discs[k].id] + 1;
-  l->order = malloc((count + 1) * sizeof *l->order);
-  l->piece = calloc(l->pieces + 1, sizeof *l->piece);
-  l->taken = calloc((size_t)WIDE * WIDE, 1);
-  if (!l->order || !l->piece || !l->taken)
-    return STATUS_MEMORY;
+  TRY(memory_array(&l->order, count, sizeof *l->order, "", NULL));
+  TRY(memory_array(&l->piece, l->pieces, sizeof *l->piece, "", NULL));
+  TRY(memory_array(&l->taken, (size_t)WIDE * WIDE, 1, "", NULL));
   for (size_t k = 0; k < count; k++)
     l->piece[cloud->fragment[l->discs[k].id]].count++;
   for (size_t p = 1; p < l->pieces; p++)

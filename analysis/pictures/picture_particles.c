@@ -51,12 +51,10 @@ static status gather(struct scene *s) {
   for (size_t i = 0; i < s->cloud->n; i++)
     if (s->cloud->fragment[i] >= (int64_t)s->fragments)
       s->fragments = (size_t)s->cloud->fragment[i] + 1;
-  s->count = calloc(s->fragments + 1, sizeof *s->count);
-  s->mass = calloc(s->fragments + 1, sizeof *s->mass);
-  s->centre = calloc(s->fragments + 1, sizeof *s->centre);
-  s->disc = malloc((s->cloud->n + 1) * sizeof *s->disc);
-  if (!s->count || !s->mass || !s->centre || !s->disc)
-    return STATUS_MEMORY;
+  TRY(memory_array(&s->count, s->fragments, sizeof *s->count, "", NULL));
+  TRY(memory_array(&s->mass, s->fragments, sizeof *s->mass, "", NULL));
+  TRY(memory_array(&s->centre, s->fragments, sizeof *s->centre, "", NULL));
+  TRY(memory_array(&s->disc, s->cloud->n, sizeof *s->disc, "", NULL));
   double total = 0, all[3] = {0, 0, 0};
   for (size_t i = 0; i < c->n; i++) {
     total += c->mass[i];
@@ -155,8 +153,7 @@ static status turn_body(struct scene *s) {
   for (int k = 0; k < 3 && s->look->axis < 0; k++) {
     s->axis = (k + 1) % 3; /* y first: it is kept unless another is better */
     choose_discs(s);
-    if (look_at_largest(s, &least))
-      return STATUS_MEMORY;
+    TRY(look_at_largest(s, &least));
     if (least > best + 0.01) {
       best = least;
       axis = s->axis;
@@ -177,10 +174,9 @@ static void cover(double view[4], double x, double y, double radius) {
 /* Shows all resolved fragments and nine tenths of the rest along each axis, so that jets do not shrink the body. With
  * fragments apart: all drawn discs. */
 static status choose_view(struct scene *s) {
-  OWNED double *sorted = malloc((s->discs + 1) * sizeof *sorted);
+  OWNED double *sorted = NULL;
   double all[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, *view = s->view;
-  if (!sorted)
-    return STATUS_MEMORY;
+  TRY(memory_array(&sorted, s->discs, sizeof *sorted, "", NULL));
   memcpy(view, all, sizeof all);
   for (size_t k = 0; k < s->discs; k++) {
     const struct picture_layout_disc *d = &s->disc[k];
@@ -212,10 +208,9 @@ static bool is_inside(const double view[4], const struct picture_layout_disc *d)
 /* Leaves out fragments and single particles that do not fit wholly into the frame, such as jets and small distant
  * fragments. */
 static status leave_out(struct scene *s) {
-  OWNED bool *out = calloc(s->fragments + 1, sizeof *out);
+  OWNED bool *out = NULL;
   size_t kept = 0;
-  if (!out)
-    return STATUS_MEMORY;
+  TRY(memory_array(&out, s->fragments, sizeof *out, "", NULL));
   for (size_t k = 0; k < s->discs; k++) {
     const int64_t f = s->cloud->fragment[s->disc[k].id];
     if (f >= 0 && !is_inside(s->view, &s->disc[k]))
@@ -290,9 +285,8 @@ static void choose_range(struct scene *s, const double *sorted, size_t count) {
 static status choose_colours(struct scene *s) {
   if (!s->cloud->value)
     return STATUS_OK;
-  OWNED double *sorted = malloc((s->discs + 1) * sizeof *sorted);
-  if (!sorted)
-    return STATUS_MEMORY;
+  OWNED double *sorted = NULL;
+  TRY(memory_array(&sorted, s->discs, sizeof *sorted, "", NULL));
   size_t count = collect_values(s, true, sorted);
   if (count == 0)
     count = collect_values(s, false, sorted);

@@ -10,6 +10,7 @@
 #include <zlib.h>
 
 #include "schemas/file.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 /* Mark that the data replaces. */
@@ -69,26 +70,22 @@ static void write_base64(const unsigned char *bytes, size_t size, FILE *out) {
 }
 
 static status write_data(const struct page_data *data, FILE *out, struct error *error) {
-  unsigned char *packed = NULL;
+  OWNED unsigned char *packed = NULL;
   size_t size = 0;
-  const status code = compress_data(data, &packed, &size, error);
-  if (code == STATUS_OK) {
-    fputs("<script type=\"application/octet-stream\" class=\"store\">", out);
-    write_base64(packed, size, out);
-    fputs("</script>\n", out);
-  }
-  free(packed);
-  return code;
+  TRY(compress_data(data, &packed, &size, error));
+  fputs("<script type=\"application/octet-stream\" class=\"store\">", out);
+  write_base64(packed, size, out);
+  fputs("</script>\n", out);
+  return STATUS_OK;
 }
 
 status page_write(const char *path, const unsigned char *html, size_t html_size, size_t count,
                   const struct page_data *data, size_t *written, struct error *error) {
-  char *text = NULL;
-  size_t size = 0;
+  OWNED char *text = NULL;
   const unsigned char *place = memmem(html, html_size, mark, sizeof mark - 1);
   if (!place)
     return status_fail(error, STATUS_CONTENT, "share/clast/report.html is damaged: build clast again");
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text, written);
   if (!out)
     return status_fail(error, STATUS_MEMORY, "no memory for the page");
   fwrite(html, 1, (size_t)(place - html), out);
@@ -99,9 +96,6 @@ status page_write(const char *path, const unsigned char *html, size_t html_size,
   fwrite(rest, 1, html_size - (size_t)(rest - html), out);
   if (!text_close(out, &text))
     return status_fail(error, STATUS_MEMORY, "no memory for the page");
-  if (code == STATUS_OK)
-    code = file_write(path, "page", text, size, error);
-  *written = size;
-  free(text);
-  return code;
+  TRY(code);
+  return file_write(path, "page", text, *written, error);
 }

@@ -94,9 +94,8 @@ static const struct {
 status estimates_make(size_t n, const struct fragment *fragments, double complete_mass,
                       struct estimate rows[ESTIMATES_COUNT], struct error *error) {
   double total = 0, elements = 0, largest = 0;
-  OWNED double *masses = malloc((n + 1) * sizeof *masses);
-  if (!masses)
-    return status_fail(error, STATUS_MEMORY, "estimates: no memory for %zu masses", n);
+  OWNED double *masses = NULL;
+  TRY(memory_array(&masses, n, sizeof *masses, "the estimates", error));
   size_t resolved = 0;
   for (size_t i = 0; i < n; i++) {
     total += fragments[i].mass;

@@ -89,32 +89,26 @@ static status fit_from_masses_by_bins(size_t n, const double *masses, struct exp
   const size_t count = spectrum_fill(n, masses, few, 256);
   if (count <= 256)
     return exponent_fit_bins(count, few, window, out, error);
-  OWNED struct spectrum_bin_row *rows = malloc(count * sizeof *rows);
-  if (!rows)
-    return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu bins", count);
+  OWNED struct spectrum_bin_row *rows = NULL;
+  TRY(memory_array(&rows, count, sizeof *rows, "the bins of an exponent", error));
   spectrum_fill(n, masses, rows, count);
   return exponent_fit_bins(count, rows, window, out, error);
 }
 
-/* Returns the masses inside the window, descending; *count is their number. NULL only when memory ran out. */
-static double *select_sorted(size_t n, const double *masses, double lower, double upper, size_t *count) {
-  double *inside = malloc((n ? n : 1) * sizeof *inside);
-  if (!inside)
-    return NULL;
+/* Copies the masses in the window to `inside`, descending; returns their number. */
+static size_t select_sorted(size_t n, const double *masses, struct exponent_window window, double *inside) {
   size_t m = 0;
-  int sorted = 1;
+  bool sorted = true;
   for (size_t i = 0; i < n; i++) {
-    if (!(masses[i] >= lower && masses[i] < upper) || isinf(masses[i]))
+    if (!(masses[i] >= window.lower && masses[i] < window.upper) || isinf(masses[i]))
       continue;
     inside[m] = masses[i];
-    if (m && inside[m] > inside[m - 1])
-      sorted = 0;
+    sorted = sorted && !(m && inside[m] > inside[m - 1]);
     m++;
   }
   if (!sorted)
     qsort(inside, m, sizeof *inside, sample_descending);
-  *count = m;
-  return inside;
+  return m;
 }
 
 /* Fits the pure power law on the window of *out; masses: descending. */
@@ -150,10 +144,9 @@ status exponent_fit(enum exponent_method method, size_t n, const double *masses,
   if (method == EXPONENT_LEAST_SQUARES)
     return fit_from_masses_by_bins(n, masses, window, out, error);
 
-  size_t count = 0;
-  OWNED double *inside = select_sorted(n, masses, window.lower, window.upper, &count);
-  if (!inside)
-    return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu masses", n);
+  OWNED double *inside = NULL;
+  TRY(memory_array(&inside, n, sizeof *inside, "the masses of an exponent", error));
+  const size_t count = select_sorted(n, masses, window, inside);
   out->n = (int64_t)count;
   if (count >= EXPONENT_LEAST_FRAGMENTS && method == EXPONENT_MASSES)
     fit_pure(count, inside, window.upper, out);

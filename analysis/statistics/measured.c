@@ -54,9 +54,7 @@ status measured_bins(const struct measured *measured, const struct pooled_form *
     const struct pooled_runs runs = {1, first, measured->mass};
     return pooled_spectrum(&runs, &one, bins, count, error);
   }
-  *bins = calloc(measured->n + 1, sizeof **bins);
-  if (!*bins)
-    return status_fail(error, STATUS_MEMORY, "no memory for a measured spectrum");
+  TRY(memory_array(bins, measured->n, sizeof **bins, "a measured spectrum", error));
   for (size_t i = 0; i < measured->n; i++) {
     if (i > 0 && measured->mass[i] == measured->mass[i - 1])
       continue; /* equal masses: only the first has the right N(>= m) */
@@ -220,9 +218,8 @@ status measured_compare(const struct measured *measured, const struct pooled_run
   if (!measured->single || !(complete > 0))
     out->from = measured->mass[first];
   out->fragments = measured->weighed ? (double)NAN : measured->above[first];
-  OWNED double *masses = malloc(2 * (2 * all + 1) * sizeof *masses);
-  if (!masses)
-    return status_fail(error, STATUS_MEMORY, "no memory to compare a measured spectrum");
+  OWNED double *masses = NULL;
+  TRY(memory_array(&masses, 2 * (2 * all + 1), sizeof *masses, "a measured spectrum", error));
   const struct pooled_runs together = {1, (const size_t[]){0, all}, runs->masses};
   const struct sorted pool = sort_run(&together, 0, out->from, measured->weighed, masses);
   if (pool.n > 0) {
@@ -527,10 +524,8 @@ static status take_rows(struct reading *r, struct error *error) {
         r->amount_name);
   out->single = r->kind == SINGLE;
   out->weighed = r->kind >= RETAINED;
-  out->mass = malloc(r->count * sizeof *out->mass);
-  out->above = malloc(r->count * sizeof *out->above);
-  if (!out->mass || !out->above)
-    return status_fail(error, STATUS_MEMORY, "%s: no memory for its rows", r->path);
+  TRY(memory_array(&out->mass, r->count, sizeof *out->mass, r->path, error));
+  TRY(memory_array(&out->above, r->count, sizeof *out->above, r->path, error));
   out->n = r->count;
   qsort(r->rows, r->count, sizeof *r->rows, ascending);
   double above = 0;

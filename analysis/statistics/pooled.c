@@ -11,6 +11,8 @@
 #include "engine/threads.h"
 #include "schemas/memory.h"
 
+static const char for_runs[] = "the exponent of a point's runs"; /* there was no memory for it */
+
 /* Data of every run for the fits. */
 struct prepared {
   enum exponent_method method;
@@ -59,15 +61,13 @@ static struct power_law_group group_of(enum power_law_kind kind, const struct po
   return power_law_group_of(kind, end - begin, runs->masses + begin, lower, largest);
 }
 
-static status count_bins(struct prepared *p, const struct pooled_runs *runs) {
+static status count_bins(struct prepared *p, const struct pooled_runs *runs, struct error *error) {
   int end;
   exponent_bins_inside(p->window, &p->first_bin, &end);
   p->bins = (size_t)(end - p->first_bin);
-  p->counts = calloc(runs->count * p->bins + 1, sizeof *p->counts);
-  p->total = calloc(p->bins + 1, sizeof *p->total);
-  p->rows = calloc(p->bins + 1, sizeof *p->rows);
-  if (!p->counts || !p->total || !p->rows)
-    return STATUS_MEMORY;
+  TRY(memory_array(&p->counts, runs->count * p->bins, sizeof *p->counts, for_runs, error));
+  TRY(memory_array(&p->total, p->bins, sizeof *p->total, for_runs, error));
+  TRY(memory_array(&p->rows, p->bins, sizeof *p->rows, for_runs, error));
   const double lower = spectrum_edge(p->first_bin), upper = spectrum_edge(end);
   for (size_t r = 0; r < runs->count; r++) {
     const size_t stop = window_end(runs, r, lower);
@@ -82,19 +82,18 @@ static status count_bins(struct prepared *p, const struct pooled_runs *runs) {
   return STATUS_OK;
 }
 
-static status prepare(struct prepared *p, const struct pooled_runs *runs, double lower) {
+static status prepare(struct prepared *p, const struct pooled_runs *runs, double lower, struct error *error) {
   if (p->method == EXPONENT_LEAST_SQUARES) {
     p->window = exponent_window_from(p->method, lower, NAN);
-    return count_bins(p, runs);
+    return count_bins(p, runs, error);
   }
-  p->groups = calloc(runs->count + 1, sizeof *p->groups);
-  if (!p->groups)
-    return STATUS_MEMORY;
+  TRY(memory_array(&p->groups, runs->count, sizeof *p->groups, for_runs, error));
   for (size_t r = 0; r < runs->count; r++)
     p->groups[r] = group_of(POWER_LAW_PURE, runs, r, lower);
   return STATUS_OK;
 }
 
+#define PREPARED __attribute__((cleanup(forget))) struct prepared
 static void forget(struct prepared *p) {
   free(p->groups);
   free(p->counts);
@@ -137,9 +136,9 @@ static void fit_groups(const struct prepared *p, struct exponent *fit) {
 }
 
 /* theta[g]: beta without the g-th group of `each` runs; there are `groups` of them. */
-static status leave_out(struct prepared *p, size_t groups, size_t each, double *theta) {
+static status leave_out(struct prepared *p, size_t groups, size_t each, double *theta, struct error *error) {
   if (p->groups && !power_law_leave_out(p->runs, p->groups, each, theta))
-    return STATUS_MEMORY;
+    return status_fail(error, STATUS_MEMORY, "no memory for %s", for_runs);
   const double weight = total_weight(p->groups ? p->runs : 0, p->groups);
   for (size_t g = 0; g < groups; g++) {
     const size_t begin = g * each, end = g + 1 < groups ? begin + each : p->runs;
@@ -153,10 +152,6 @@ static status leave_out(struct prepared *p, size_t groups, size_t each, double *
     theta[g] = fit.beta;
   }
   return STATUS_OK;
-}
-
-static status no_memory(const struct pooled_runs *runs, struct error *error) {
-  return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu runs", runs->count);
 }
 
 static status check(const struct pooled_runs *runs, double lower, struct error *error) {
@@ -186,8 +181,7 @@ static size_t count_runs(const struct prepared *p, const struct pooled_runs *run
   return count;
 }
 
-/* Checks the arguments, fits all runs, and then all runs except one group at a time: theta, if there is a beta. After
- * an error p is empty. */
+/* Checks the arguments, fits all runs, and then all runs except one group at a time: theta, if there is a beta. */
 static status fit_all(struct prepared *p, const struct pooled_runs *runs, enum exponent_method method, double lower,
                       size_t groups, size_t each, struct exponent *fit, double *theta, struct error *error) {
   *p = (struct prepared){.method = method, .runs = runs->count};
@@ -195,24 +189,17 @@ static status fit_all(struct prepared *p, const struct pooled_runs *runs, enum e
   if (method != EXPONENT_LEAST_SQUARES && method != EXPONENT_MASSES)
     return status_fail(error, STATUS_USAGE, "exponent: method number %d does not pool runs", (int)method);
   TRY(check(runs, lower, error));
-  status code = prepare(p, runs, lower);
-  if (!code) {
-    if (p->groups)
-      fit_groups(p, fit);
-    else
-      fit_bins(p, 0, 0, fit);
-  }
-  if (!code && isfinite(fit->beta))
-    code = leave_out(p, groups, each, theta);
-  if (!code)
-    return STATUS_OK;
-  forget(p);
-  return no_memory(runs, error);
+  TRY(prepare(p, runs, lower, error));
+  if (p->groups)
+    fit_groups(p, fit);
+  else
+    fit_bins(p, 0, 0, fit);
+  return isfinite(fit->beta) ? leave_out(p, groups, each, theta, error) : STATUS_OK;
 }
 
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
                        struct pooled_exponent *out, struct error *error) {
-  struct prepared p;
+  PREPARED p = {0};
   double theta[SAMPLE_GROUPS], upper;
   size_t each;
   const size_t groups = sample_groups(runs->count, &each);
@@ -222,20 +209,18 @@ status pooled_exponent(const struct pooled_runs *runs, enum exponent_method meth
   if (upper > 0 && method != EXPONENT_LEAST_SQUARES)
     out->fit.upper = upper;
   out->interval = sample_jackknife_of(runs->count, level, out->fit.beta, theta);
-  forget(&p);
   return STATUS_OK;
 }
 
 status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,
                                double *values, struct error *error) {
   const size_t n = runs->count;
-  struct prepared p;
+  PREPARED p = {0};
   struct exponent fit;
   double *theta = values, mean = 0; /* beta without each run, then the values */
   for (size_t r = 0; r < n; r++)
     theta[r] = NAN;
   TRY(fit_all(&p, runs, method, lower, n, 1, &fit, theta, error));
-  forget(&p);
   for (size_t r = 0; r < n; r++)
     mean += theta[r] / (double)n; /* NaN when one is NaN: too few runs */
   for (size_t r = 0; r < n; r++)
@@ -274,9 +259,8 @@ static struct power_law_rival fit_rival(const struct pooled_runs *runs, double l
 status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled_rivals *out, struct error *error) {
   *out = (struct pooled_rivals){0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
   TRY(check(runs, lower, error));
-  OWNED struct power_law_group *groups = malloc((runs->count + 1) * sizeof *groups);
-  if (!groups)
-    return no_memory(runs, error);
+  OWNED struct power_law_group *groups = NULL;
+  TRY(memory_array(&groups, runs->count, sizeof *groups, for_runs, error));
   for (size_t r = 0; r < runs->count; r++)
     groups[r] = group_of(POWER_LAW_PURE, runs, r, lower);
   out->n = (int64_t)total_weight(runs->count, groups);
@@ -422,16 +406,13 @@ status pooled_spectrum(const struct pooled_runs *runs, const struct pooled_form 
                        size_t *count, struct error *error) {
   const size_t units = form->first_run ? form->units : runs->count;
   struct span span = {0};
+  OWNED struct sums *sums = NULL;
   *count = 0;
+  *bins = NULL;
   find_span(runs, &span);
-  *bins = calloc(span.bins + 1, sizeof **bins);
-  span.sums = calloc(span.bins + 1, sizeof *span.sums);
-  if (!*bins || !span.sums) {
-    free(*bins);
-    free(span.sums);
-    *bins = NULL;
-    return status_fail(error, STATUS_MEMORY, "spectrum: no memory for %zu bins", span.bins);
-  }
+  TRY(memory_array(&sums, span.bins, sizeof *sums, "the bins of a spectrum", error));
+  TRY(memory_array(bins, span.bins, sizeof **bins, "the bins of a spectrum", error));
+  span.sums = sums;
   for (size_t u = 0; u < units; u++) {
     const size_t from = form->first_run ? form->first_run[u] : u, to = form->first_run ? form->first_run[u + 1] : u + 1;
     for (size_t r = from; r < to; r++)
@@ -439,7 +420,6 @@ status pooled_spectrum(const struct pooled_runs *runs, const struct pooled_form 
     end_unit(&span, form->cumulative, (double)(to - from));
   }
   write_bins(&span, form, units, *bins, count);
-  free(span.sums);
   return STATUS_OK;
 }
 
@@ -463,12 +443,12 @@ struct draw {
   double *u; /* ln(m/lower), then the distribution function there */
 };
 
-static status make_draw(const struct windows *windows, struct draw *draw) {
-  draw->groups = malloc((windows->count + 1) * sizeof *draw->groups);
-  draw->u = malloc((windows->fragments + 1) * sizeof *draw->u);
-  return draw->groups && draw->u ? STATUS_OK : STATUS_MEMORY;
+static status make_draw(const struct windows *windows, struct draw *draw, struct error *error) {
+  TRY(memory_array(&draw->groups, windows->count, sizeof *draw->groups, for_runs, error));
+  return memory_array(&draw->u, windows->fragments, sizeof *draw->u, for_runs, error);
 }
 
+#define DRAW __attribute__((cleanup(free_draw))) struct draw
 static void free_draw(struct draw *draw) {
   free(draw->groups);
   free(draw->u);
@@ -585,9 +565,9 @@ static size_t count_larger(const struct windows *windows, double beta, double di
   size_t larger = 0;
 #pragma omp parallel num_threads(threads) reduction(+ : larger)
   {
-    struct draw draw;
+    DRAW draw = {0};
     double ignored;
-    if (make_draw(windows, &draw)) {
+    if (make_draw(windows, &draw, NULL)) {
 #pragma omp atomic write
       *failed = true;
     } else {
@@ -597,7 +577,6 @@ static size_t count_larger(const struct windows *windows, double beta, double di
         larger += distance_of(windows, &draw, &ignored) >= distance;
       }
     }
-    free_draw(&draw);
   }
   return larger;
 }
@@ -637,24 +616,20 @@ status pooled_goodness(const struct pooled_runs *runs, double lower, size_t draw
   *out = (struct pooled_goodness){0, NAN, NAN, 0};
   if (!(lower > 0) || isinf(lower))
     return status_fail(error, STATUS_USAGE, "exponent: a window from %g kg: expected a positive mass", lower);
-  struct windows windows = {.count = runs->count,
-                            .fragments = runs->count ? runs->first[runs->count] : 0,
-                            .lower = lower};
-  windows.groups = malloc((windows.count + 1) * sizeof *windows.groups);
-  windows.step = malloc((windows.count + 1) * sizeof *windows.step);
-  struct draw found;
+  OWNED struct power_law_group *groups = NULL;
+  OWNED double *step = NULL;
+  DRAW found = {0};
   double beta;
-  bool failed = make_draw(&windows, &found) != STATUS_OK || !windows.groups || !windows.step;
-  if (!failed) {
-    take_runs(runs, lower, &windows, &found);
-    out->n = windows.fragments;
-    if (windows.fragments >= EXPONENT_LEAST_FRAGMENTS)
-      out->distance = distance_of(&windows, &found, &beta);
-    if (isfinite(out->distance))
-      bootstrap(&windows, beta, draws, out, &failed);
-  }
-  free_draw(&found);
-  free(windows.groups);
-  free(windows.step);
-  return failed ? status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu runs", runs->count) : STATUS_OK;
+  bool failed = false;
+  TRY(memory_array(&groups, runs->count, sizeof *groups, for_runs, error));
+  TRY(memory_array(&step, runs->count, sizeof *step, for_runs, error));
+  struct windows windows = {runs->count, runs->count ? runs->first[runs->count] : 0, lower, groups, step};
+  TRY(make_draw(&windows, &found, error));
+  take_runs(runs, lower, &windows, &found);
+  out->n = windows.fragments;
+  if (windows.fragments >= EXPONENT_LEAST_FRAGMENTS)
+    out->distance = distance_of(&windows, &found, &beta);
+  if (isfinite(out->distance))
+    bootstrap(&windows, beta, draws, out, &failed);
+  return failed ? status_fail(error, STATUS_MEMORY, "no memory for %s", for_runs) : STATUS_OK;
 }

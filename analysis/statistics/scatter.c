@@ -93,9 +93,7 @@ status scatter_make(size_t n, const double *values, struct scatter *out, struct 
                           .upper_share = NAN,
                           .upper_low = NAN,
                           .upper_high = NAN};
-  out->sorted = malloc((n + 1) * sizeof *out->sorted);
-  if (!out->sorted)
-    return status_fail(error, STATUS_MEMORY, "no memory for %zu values", n);
+  TRY(memory_array(&out->sorted, n, sizeof *out->sorted, "the values of runs", error));
   for (size_t i = 0; i < n; i++)
     if (isfinite(values[i]))
       out->sorted[out->n++] = values[i];
@@ -267,10 +265,10 @@ status scatter_split(const struct scatter_table *t, struct scatter_part *parts, 
     return status_fail(error, STATUS_USAGE,
                        "splitting a variance needs at least two points with two runs each, not %zu points with %zu",
                        t->points, t->runs);
-  OWNED double *room = malloc(4 * t->points * sizeof *room);
-  OWNED uint32_t *all = malloc(t->runs * sizeof *all);
-  if (!room || !all)
-    return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
+  OWNED double *room = NULL;
+  OWNED uint32_t *all = NULL;
+  TRY(memory_array(&room, 4 * t->points, sizeof *room, "the parts of a variance", error));
+  TRY(memory_array(&all, t->runs, sizeof *all, "the parts of a variance", error));
   for (size_t r = 0; r < t->runs; r++)
     all[r] = (uint32_t)r;
   struct split s = {.table = t, .sum = room, .product = room + 2 * t->points, .weight = room + 3 * t->points};
@@ -376,18 +374,12 @@ static double search(struct hull *h, size_t n) {
 double scatter_dip(size_t n, const double *values) {
   if (n == 0)
     return NAN;
-  size_t *knots = calloc(3 * n, sizeof *knots);
-  double *lines = malloc(2 * n * sizeof *lines), dip = NAN;
-  struct hull h = {.x = values, .knot = knots, .low = lines};
-  if (knots && lines) {
-    h.below = knots + n;
-    h.above = knots + 2 * n;
-    h.high = lines + n;
-    dip = search(&h, n) / (2 * (double)n);
-  }
-  free(knots);
-  free(lines);
-  return dip;
+  OWNED size_t *knots = calloc(3 * n, sizeof *knots);
+  OWNED double *lines = malloc(2 * n * sizeof *lines);
+  if (!knots || !lines)
+    return NAN;
+  struct hull h = {values, knots, lines, lines + n, knots + n, knots + 2 * n};
+  return search(&h, n) / (2 * (double)n);
 }
 
 /* Sums of exponential steps are an ordered uniform sample up to a scale factor. */
@@ -408,13 +400,10 @@ double scatter_dip_share(size_t n, double dip) {
     return NAN;
   const size_t size = drawn_size(n);
   const double limit = dip * sqrt((double)n / (double)size);
-  double *sample = malloc(size * sizeof *sample);
+  OWNED double *sample = memory_small(size, sizeof *sample);
   size_t larger = 0, drawn = 0;
-  if (!sample)
-    return NAN;
   for (; drawn < SCATTER_DIP_DRAWS && larger < ENOUGH; drawn++)
     larger += drawn_dip(size, drawn, sample) >= limit;
-  free(sample);
   return ((double)larger + 1) / ((double)drawn + 1);
 }
 
@@ -424,14 +413,10 @@ double scatter_dip_limit(size_t n) {
   if (n < 4)
     return NAN;
   const size_t size = drawn_size(n);
-  double *sample = malloc(size * sizeof *sample), *dip = malloc(SCATTER_DIP_DRAWS * sizeof *dip), limit = NAN;
-  for (size_t d = 0; sample && dip && d < SCATTER_DIP_DRAWS; d++)
+  OWNED double *sample = memory_small(size, sizeof *sample);
+  OWNED double *dip = memory_small(SCATTER_DIP_DRAWS, sizeof *dip);
+  for (size_t d = 0; d < SCATTER_DIP_DRAWS; d++)
     dip[d] = drawn_dip(size, d, sample);
-  if (sample && dip) {
-    qsort(dip, SCATTER_DIP_DRAWS, sizeof *dip, sample_descending);
-    limit = dip[fewer - 1] * sqrt((double)size / (double)n);
-  }
-  free(sample);
-  free(dip);
-  return limit;
+  qsort(dip, SCATTER_DIP_DRAWS, sizeof *dip, sample_descending);
+  return dip[fewer - 1] * sqrt((double)size / (double)n);
 }

@@ -144,11 +144,11 @@ status sensitivity_sobol(const struct sensitivity_table *t, struct sensitivity_i
   if (t->blocks < 2 || t->seeds < 1 || t->inputs < 1)
     return status_fail(error, STATUS_USAGE, "Sobol indices need at least two blocks of points with a result, not %zu",
                        t->blocks);
-  OWNED double *centred = malloc(n * sizeof *centred);
-  OWNED uint32_t *all = malloc(most * sizeof *all);
+  OWNED double *centred = NULL;
+  OWNED uint32_t *all = NULL;
   double mean = 0;
-  if (!centred || !all)
-    return status_fail(error, STATUS_MEMORY, "no memory for the indices of %zu runs", n);
+  TRY(memory_array(&centred, n, sizeof *centred, "the indices", error));
+  TRY(memory_array(&all, most, sizeof *all, "the indices", error));
   for (size_t i = 0; i < n; i++)
     mean += t->value[i] / (double)n;
   for (size_t i = 0; i < n; i++)
@@ -180,9 +180,8 @@ status sensitivity_morris(const struct sensitivity_table *t, const size_t *order
   if (t->blocks < 2 || t->seeds < 1)
     return status_fail(error, STATUS_USAGE, "elementary effects need at least two trajectories with results, not %zu",
                        t->blocks);
-  OWNED double *effects = malloc(t->inputs * t->blocks * sizeof *effects);
-  if (!effects)
-    return status_fail(error, STATUS_MEMORY, "no memory for %zu trajectories", t->blocks);
+  OWNED double *effects = NULL;
+  TRY(memory_array(&effects, t->inputs * t->blocks, sizeof *effects, "the trajectories", error));
   for (size_t i = 0; i < t->inputs; i++)
     effect[i].noise = t->seeds > 1 ? 0 : NAN;
   for (size_t b = 0; b < t->blocks; b++)

@@ -528,7 +528,9 @@ struct scatter {
 };
 /* STATUS_MEMORY. */
 status scatter_make(size_t n, const double *values, struct scatter *out, struct error *error);
-void scatter_release(struct scatter *scatter); /* a zeroed one is fine */
+void scatter_release(struct scatter *scatter);
+/* One that is released where its block is left: SCATTER scatter = {0}; */
+#define SCATTER __attribute__((cleanup(scatter_release))) struct scatter /* a zeroed one is fine */
 
 /* Has a sample one mode? The dip (Hartigan & Hartigan 1985, doi 10.1214/aos/1176346577): the distance of the
  * distribution function of the sample from the nearest one with a single mode, between 1/(2n) and 1/4. The test needs

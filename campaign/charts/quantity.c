@@ -42,6 +42,10 @@ struct quantity {
   const struct ask_column *unit[2]; /* the written unit of each axis; NULL: SI */
 };
 
+static void release(struct quantity *quantity) {
+  free(quantity->row);
+}
+
 /* Adds a row with its inputs in the campaign's units. */
 static status add_row(struct quantity *quantity, const struct query_value *inputs, struct row row,
                       struct error *error) {
@@ -125,7 +129,7 @@ static status read_exponents(struct store *store, struct quantity *quantity, enu
 }
 
 /* Reads the quantity `name` over x and y (NULL: over x alone). STATUS_USAGE: unknown names; `refusal` if they are not
- * one or two different inputs and one quantity. The caller frees quantity->row, also after an error. */
+ * one or two different inputs and one quantity. The caller releases it, also after an error. */
 static status read_quantity(struct store *store, const char *x, const char *y, const char *name, bool newest,
                             const char *refusal, struct quantity *quantity, struct error *error) {
   enum exponent_method method;
@@ -205,6 +209,12 @@ struct plot {
   struct line line[MOST_LINES];
   size_t count;
 };
+
+static void release_plot(struct plot *plot) {
+  for (size_t i = 0; i < plot->count; i++)
+    free(plot->line[i].means);
+  release(&plot->quantity);
+}
 
 /* Finds the line of this row, or makes it. */
 static status find_line(struct plot *plot, const struct row *row, struct line **found, struct error *error) {
@@ -302,19 +312,14 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
 
 status quantity_plot(struct store *store, const char *x, const char *by, const char *name,
                      const struct picture_page *page, struct error *error) {
-  struct plot plot = {0};
-  status code = read_quantity(store, x, by, name, false,
-                              "a plot has one axis below (--x), at most one input that tells its lines apart (--by, "
-                              "another one), and one quantity",
-                              &plot.quantity, error);
-  if (code == STATUS_OK)
-    code = draw_lines(store, &plot, page, error);
-  if (code == STATUS_OK)
-    quantity_tell_resolution(store, plot.quantity.name, plot.quantity.pooled);
-  for (size_t i = 0; i < plot.count; i++)
-    free(plot.line[i].means);
-  free(plot.quantity.row);
-  return code;
+  __attribute__((cleanup(release_plot))) struct plot plot = {0};
+  TRY(read_quantity(store, x, by, name, false,
+                    "a plot has one axis below (--x), at most one input that tells its lines apart (--by, another "
+                    "one), and one quantity",
+                    &plot.quantity, error));
+  TRY(draw_lines(store, &plot, page, error));
+  quantity_tell_resolution(store, plot.quantity.name, plot.quantity.pooled);
+  return STATUS_OK;
 }
 
 /* ---- tiles ---- */
@@ -364,14 +369,12 @@ static status make_tiles(struct store *store, const struct quantity *quantity, d
 
 status quantity_map(struct store *store, const char *x, const char *y, const char *name,
                     const struct picture_page *page, struct error *error) {
-  struct quantity quantity = {0};
-  status code = read_quantity(store, x, y, name, true, "a map needs two different inputs (--x, --y) and one quantity",
-                              &quantity, error);
-  OWNED double(*tile)[4] = calloc(quantity.count + 1, sizeof *tile);
-  if (code == STATUS_OK)
-    code = tile ? make_tiles(store, &quantity, tile, page, error) : status_fail(error, STATUS_MEMORY, "out of memory");
-  if (code == STATUS_OK)
-    quantity_tell_resolution(store, name, quantity.pooled);
-  free(quantity.row);
-  return code;
+  __attribute__((cleanup(release))) struct quantity quantity = {0};
+  OWNED double(*tile)[4] = NULL;
+  TRY(read_quantity(store, x, y, name, true, "a map needs two different inputs (--x, --y) and one quantity", &quantity,
+                    error));
+  TRY(memory_array(&tile, quantity.count, sizeof *tile, "the map", error));
+  TRY(make_tiles(store, &quantity, tile, page, error));
+  quantity_tell_resolution(store, name, quantity.pooled);
+  return STATUS_OK;
 }

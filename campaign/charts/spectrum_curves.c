@@ -73,9 +73,7 @@ static status make_thin(const struct ask_pool *pool, struct curve *curve, struct
   const struct pooled_runs *runs = &pool->data.runs;
   struct pooled_form form = curve->form;
   form.first_run = NULL;
-  curve->thin = calloc(runs->count + 1, sizeof *curve->thin);
-  if (!curve->thin)
-    return status_fail(error, STATUS_MEMORY, "no memory for the spectra of %zu runs", runs->count);
+  TRY(memory_array(&curve->thin, runs->count, sizeof *curve->thin, "the spectra of the runs", error));
   for (size_t r = 0; r < runs->count; r++) {
     struct pooled_bin *bins;
     TRY(pooled_spectrum(&(struct pooled_runs){1, runs->first + r, runs->masses}, &form, &bins, &curve->thin[r].count,
@@ -140,6 +138,17 @@ struct curves {
   struct ask_doubts doubts;
   struct curve curve[PICTURE_SERIES];
 };
+
+static void release(struct curves **curves) {
+  for (size_t i = 0; i < (*curves)->count; i++) {
+    struct curve *curve = &(*curves)->curve[i];
+    for (size_t r = 0; r < curve->thin_count; r++)
+      free((void *)curve->thin[r].bins);
+    free(curve->thin);
+    free(curve->bins);
+  }
+  free(*curves);
+}
 
 enum { CAPTION = 1000 };
 
@@ -224,25 +233,18 @@ static status take_curves(struct store *store, bool with_rivals, struct curves *
 
 status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice,
                             const struct spectrum_drawing *drawing, struct error *error) {
-  OWNED struct curves *curves = memory_small(1, sizeof *curves);
+  __attribute__((cleanup(release))) struct curves *curves = memory_small(1, sizeof *curves);
   curves->choice = choice;
   curves->most = choice->measured ? PICTURE_SERIES - 1 : PICTURE_SERIES;
-  status code = take_curves(store, drawing->text, curves, error);
-  if (code == STATUS_OK && drawing->page)
-    code = draw_picture(store, curves, drawing->page, error);
-  if (code == STATUS_OK && drawing->text)
+  TRY(take_curves(store, drawing->text, curves, error));
+  if (drawing->page)
+    TRY(draw_picture(store, curves, drawing->page, error));
+  if (drawing->text)
     print_plots(curves, drawing->ascii);
-  if (code == STATUS_OK && drawing->text && !drawing->page)
+  if (drawing->text && !drawing->page)
     uncertainty_doubts(&curves->doubts, stderr);
-  if (code == STATUS_OK && curves->more)
+  if (curves->more)
     fprintf(stderr, "clast: only the first %zu spectra are drawn; --point, --where and --by choose others\n",
             curves->count);
-  for (size_t i = 0; i < curves->count; i++) {
-    struct curve *curve = &curves->curve[i];
-    for (size_t r = 0; r < curve->thin_count; r++)
-      free((void *)curve->thin[r].bins);
-    free(curve->thin);
-    free(curve->bins);
-  }
-  return code;
+  return STATUS_OK;
 }

@@ -36,24 +36,18 @@ static void tell(int64_t run_id, const struct ask_run *stored, const struct repl
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const int64_t run_id = strtoll(line->arguments[1], NULL, 10);
-  struct ask_run stored;
+  __attribute__((cleanup(ask_run_release))) struct ask_run stored = {0};
   SCENE scene = NULL;
-  struct run_result result = {0};
+  RUN_RESULT result = {0};
   struct replay_compare comparison = {0};
-  status code = ask_run_read(store, run_id, &stored, error);
-  if (code == STATUS_OK)
-    code = replay_compute(&stored, run_id, options->fields, &scene, &result, error);
-  if (code == STATUS_OK)
-    code = print_differences(store, run_id, scene->kind, &result, line->format, &comparison, error);
-  if (code == STATUS_OK) {
-    tell(run_id, &stored, &comparison, result.fragment_count);
-    code = replay_verdict(store, run_id, &stored, &comparison, error);
-  }
-  if (code == STATUS_OK && options->fields && result.outcome.state == OUTCOME_INVALID)
+  TRY(ask_run_read(store, run_id, &stored, error));
+  TRY(replay_compute(&stored, run_id, options->fields, &scene, &result, error));
+  TRY(print_differences(store, run_id, scene->kind, &result, line->format, &comparison, error));
+  tell(run_id, &stored, &comparison, result.fragment_count);
+  TRY(replay_verdict(store, run_id, &stored, &comparison, error));
+  if (options->fields && result.outcome.state == OUTCOME_INVALID)
     fprintf(stderr, "clast: the run is invalid and has no fields: %s is not written\n", options->fields);
-  ask_run_release(&stored);
-  run_result_clear(&result);
-  return code;
+  return STATUS_OK;
 }
 
 static status check(const struct command_line *line, struct error *error) {

@@ -9,7 +9,7 @@ struct options {
 
 static status simulate(const struct scene *scene, const struct one_run_options *options, enum table_format format,
                        struct error *error) {
-  struct run_result result = {0};
+  RUN_RESULT result = {0};
   campaign_warn_scene(scene, "clast: warning: ", stderr);
   status code = one_run(scene, options, &result, error);
   /* Results are printed also when a file could not be written: hours of computing must not be lost for that. */
@@ -17,8 +17,7 @@ static status simulate(const struct scene *scene, const struct one_run_options *
     const status printed = print_results(scene, options->seed, &result, format, code ? NULL : error);
     code = code ? code : printed;
   }
-  if (code)
-    goto cleanup;
+  TRY(code);
   if (options->restart)
     remove(options->restart); /* the run has ended */
   if (!outcome_is_usable(result.outcome.state))
@@ -27,8 +26,6 @@ static status simulate(const struct scene *scene, const struct one_run_options *
     fprintf(stderr, "clast: %s\n", result.outcome.message);
   condition_tell(scene->kind->conditions, result.outcome.warnings,
                  condition_before(scene->kind->conditions, scene->inputs, NULL), "clast: warning: ", stderr);
-cleanup:
-  run_result_clear(&result);
   return code;
 }
 

@@ -26,16 +26,12 @@ static status ask(struct store *store, const struct command_line *line, struct e
   struct spectrum_choice choice = {.pool = {options->point, options->where, options->by},
                                    .cumulative = options->cumulative,
                                    .runs = options->runs};
-  struct measured measured = {0};
+  __attribute__((cleanup(measured_release))) struct measured measured = {0};
   if (options->size && (unit_read(options->size, "kg/m^3", &choice.density, error) || !(choice.density > 0)))
     return status_fail(error, STATUS_USAGE, "--size is a density such as 2700 kg/m^3, not '%s'", options->size);
-  status code = STATUS_OK;
   if (options->with)
-    code = spectrum_curves_measured(store, options->with, &choice, &measured, error);
-  if (code == STATUS_OK)
-    code = print(store, options, &choice, line->format, error);
-  measured_release(&measured);
-  return code;
+    TRY(spectrum_curves_measured(store, options->with, &choice, &measured, error));
+  return print(store, options, &choice, line->format, error);
 }
 
 static const struct option_row option_rows[] = {

@@ -10,6 +10,7 @@
 #include "campaign/document/campaign.h"
 #include "campaign/terminal/table.h"
 #include "db/ask/ask.h"
+#include "engine/grow.h"
 #include "engine/scene.h"
 #include "schemas/text.h"
 
@@ -85,10 +86,8 @@ static bool others_open(const struct finding *finding, const struct knob *knob) 
 static status add_option(struct finding *finding, const struct convergence_row *row, struct accuracy_option *option,
                          struct error *error) {
   struct accuracy *accuracy = finding->accuracy;
-  struct accuracy_option *grown = realloc(accuracy->options, (accuracy->count + 1) * sizeof *grown);
-  if (!grown)
+  if (!grow_block(&accuracy->options, (accuracy->count + 1) * sizeof *accuracy->options))
     return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
-  accuracy->options = grown;
   snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
   option->seeds = accuracy_seeds(row->deviation, finding->campaign->accuracy_within - option->error);
   option->cpu_s = option->seeds ? (double)option->seeds * option->run_s : (double)NAN;
@@ -99,12 +98,9 @@ static status add_option(struct finding *finding, const struct convergence_row *
 /* Work of a run of the campaign's scene with this setting of the knob; NaN: the scene refuses it. */
 static double work_at(const struct campaign *campaign, const struct knob *knob, const char *setting) {
   struct error ignored;
-  struct scene *scene = scene_copy(campaign->scene);
-  double work = NAN;
-  if (scene && scene->kind->work && ladder_turn(knob, scene, setting, &ignored) == STATUS_OK)
-    work = scene->kind->work(scene->inputs);
-  scene_free(scene);
-  return work;
+  SCENE scene = scene_copy(campaign->scene);
+  const bool good = scene->kind->work && ladder_turn(knob, scene, setting, &ignored) == STATUS_OK;
+  return good ? scene->kind->work(scene->inputs) : (double)NAN;
 }
 
 /* Levels finer than the finest one, `row`. The law's distance to the limit shrinks at least as the least order. */
@@ -187,17 +183,15 @@ static status read_study(struct finding *finding, struct store *store, const str
 }
 
 static status read_points(struct finding *finding, struct store *store, struct error *error) {
-  struct campaign_walk walk;
-  status code = campaign_walk_begin(&walk, finding->campaign, error);
-  for (int i = 0; code == STATUS_OK && !finding->studied && i < LOOKED_AT && campaign_walk_next(&walk); i++) {
+  CAMPAIGN_WALK walk = {0};
+  TRY(campaign_walk_begin(&walk, finding->campaign, error));
+  for (int i = 0; !finding->studied && i < LOOKED_AT && campaign_walk_next(&walk); i++) {
     struct error ignored;
-    struct scene *scene = campaign_walk_scene(&walk, &ignored);
+    SCENE scene = campaign_walk_scene(&walk, &ignored);
     if (scene)
-      code = read_study(finding, store, scene, error);
-    scene_free(scene);
+      TRY(read_study(finding, store, scene, error));
   }
-  campaign_walk_end(&walk);
-  return code;
+  return STATUS_OK;
 }
 
 static status no_study(const struct campaign *campaign, const char *path, const char *store, struct error *error) {
@@ -210,22 +204,17 @@ static status no_study(const struct campaign *campaign, const char *path, const 
 status accuracy_find(const struct campaign *campaign, const char *path, const char *store_path,
                      struct accuracy *accuracy, struct error *error) {
   struct finding finding = {.campaign = campaign, .accuracy = accuracy};
-  struct store *store = NULL;
+  STORE store = NULL;
   *accuracy = (struct accuracy){0};
-  status code = store_open_reader(store_path, &store, error);
+  const status code = store_open_reader(store_path, &store, error);
   if (code == STATUS_MISSING)
     return no_study(campaign, path, store_path, error);
-  if (code == STATUS_OK)
-    code = read_study(&finding, store, campaign->scene, error);
-  if (code == STATUS_OK && !finding.studied)
-    code = read_points(&finding, store, error);
-  store_close(store, NULL);
-  if (code == STATUS_OK && accuracy->count == 0)
-    code = no_study(campaign, path, store_path, error);
-  if (code != STATUS_OK) {
-    accuracy_clear(accuracy);
-    return code;
-  }
+  TRY(code);
+  TRY(read_study(&finding, store, campaign->scene, error));
+  if (!finding.studied)
+    TRY(read_points(&finding, store, error));
+  if (accuracy->count == 0)
+    return no_study(campaign, path, store_path, error);
   choose(accuracy);
   return STATUS_OK;
 }
@@ -283,30 +272,27 @@ static status print_alternatives(const struct accuracy *accuracy, enum table_for
 
 status accuracy_settle(struct campaign *campaign, const char *path, const char *store, enum accuracy_print print,
                        char **json, struct error *error) {
-  struct accuracy accuracy;
+  __attribute__((cleanup(accuracy_clear))) struct accuracy accuracy = {0};
   if (field_is_off(campaign->accuracy_within))
     return STATUS_OK;
   TRY(accuracy_find(campaign, path, store, &accuracy, error));
-  status code = STATUS_OK;
   if (print == ACCURACY_JSON) {
     size_t size = 0;
     FILE *out = text_open(json, &size);
-    code = out ? print_alternatives(&accuracy, TABLE_JSON, out, error) : STATUS_OK;
+    const status code = out ? print_alternatives(&accuracy, TABLE_JSON, out, error) : STATUS_OK;
     if (!out || (!text_close(out, json) && code == STATUS_OK))
-      code = status_fail(error, STATUS_MEMORY, "out of memory");
+      return status_fail(error, STATUS_MEMORY, "out of memory");
+    TRY(code);
   } else if (print == ACCURACY_TEXT) {
     printf("accuracy  %s within %g: error of resolution and 95 %% interval together. run_cost: against the smallest "
            "error\n",
            campaign->accuracy_quantity, campaign->accuracy_within);
-    code = print_alternatives(&accuracy, TABLE_TEXT, stdout, error);
+    TRY(print_alternatives(&accuracy, TABLE_TEXT, stdout, error));
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
       printf("The chosen setting is finer than any level that was run. Its error is that of the finest level times "
              "(its step over that step)^%g, and its cost is by the engine's measure of work.\n",
              LIMIT_ORDER_LEAST);
     putchar('\n');
   }
-  if (code == STATUS_OK)
-    code = accuracy_apply(&accuracy, campaign, error);
-  accuracy_clear(&accuracy);
-  return code;
+  return accuracy_apply(&accuracy, campaign, error);
 }

@@ -91,8 +91,6 @@ static status add_level(struct making *making, const struct field_value *value, 
   if (making->knob->step_power != 0)
     level.step = pow(as_number(value), making->knob->step_power);
   level.scene = scene_copy(making->base);
-  if (!level.scene)
-    return status_fail(error, STATUS_MEMORY, "no memory for a level");
   struct error why = {0};
   if (!level.base && set_inputs(making, value, level.scene, &why) != STATUS_OK) {
     fprintf(making->notes, "%s = %s is left out: %s\n", making->rows[0]->path, level.setting, why.message);
@@ -145,30 +143,27 @@ static bool is_wanted(const char *settings, const char *name) {
   return !settings;
 }
 
-static status add_named(struct making *making, const char *name, struct error *error) {
+static void add_named(struct making *making, const char *name) {
   struct ladder_level level = {.step = NAN, .base = strcmp(name, SCENE_SETTINGS_STANDARD) == 0};
   struct error why = {0};
   snprintf(level.setting, sizeof level.setting, "%s", name);
   level.scene = scene_copy(making->base);
-  if (!level.scene)
-    return status_fail(error, STATUS_MEMORY, "no memory for a level");
   if (scene_settings_use(level.scene, name, &why) != STATUS_OK || scene_check(level.scene, &why) != STATUS_OK) {
     fprintf(making->notes, "settings %s are left out: %s\n", name, why.message);
     scene_free(level.scene);
-    return STATUS_OK;
+    return;
   }
   making->ladder->level[making->ladder->count++] = level;
-  return STATUS_OK;
 }
 
 static status add_all_named(struct making *making, const char *settings, struct error *error) {
   const struct scene *base = making->base;
   struct ladder *ladder = making->ladder;
   if (is_wanted(settings, SCENE_SETTINGS_STANDARD))
-    TRY(add_named(making, SCENE_SETTINGS_STANDARD, error));
+    add_named(making, SCENE_SETTINGS_STANDARD);
   for (size_t i = 0; i < base->settings_count; i++)
     if (is_wanted(settings, base->settings[i].name))
-      TRY(add_named(making, base->settings[i].name, error));
+      add_named(making, base->settings[i].name);
   if (ladder->count < 2)
     return status_fail(error, STATUS_CONTENT, "%s has fewer than two named settings (`settings` in its document)",
                        base->name);

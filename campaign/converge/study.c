@@ -7,7 +7,9 @@
 
 #include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
+#include "engine/grow.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 
 #define CONFIDENCE 0.95
 #define NOTHING    ((double)NAN)
@@ -32,28 +34,22 @@ status study_quantity_find(const struct engine_kind *kind, const char *name, str
 }
 
 status study_add(struct study *study, const struct scene *base, struct ladder *levels, struct error *error) {
-  struct study_ladder *grown = realloc(study->ladder, (study->ladder_count + 1) * sizeof *grown);
-  if (grown)
-    study->ladder = grown;
-  struct study_ladder ladder = {.levels = *levels, .base = base, .end = "not begun"};
   const size_t room = (size_t)study->rule.most_seeds;
-  bool good = grown != NULL;
+  if (!grow_block(&study->ladder, (study->ladder_count + 1) * sizeof *study->ladder))
+    memory_refused();
+  struct study_ladder *ladder = &study->ladder[study->ladder_count++];
+  *ladder = (struct study_ladder){.levels = *levels, .base = base, .end = "not begun"};
   *levels = (struct ladder){0};
-  for (size_t q = 0; q < study->quantity_count; q++)
-    for (size_t l = 0; l < ladder.levels.count; l++) {
-      ladder.values[q][l] = malloc(room * sizeof(double));
-      good = good && ladder.values[q][l];
-      for (size_t s = 0; ladder.values[q][l] && s < room; s++)
-        ladder.values[q][l][s] = NAN;
+  for (size_t l = 0; l < ladder->levels.count; l++) {
+    ladder->cpu[l] = ladder->wall[l] = NAN;
+    TRY(memory_array(&ladder->ran[l], room, sizeof *ladder->ran[l], "a study", error));
+    for (size_t q = 0; q < study->quantity_count; q++) {
+      TRY(memory_array(&ladder->values[q][l], room, sizeof(double), "a study", error));
+      for (size_t s = 0; s < room; s++)
+        ladder->values[q][l][s] = NAN;
     }
-  for (size_t l = 0; l < ladder.levels.count; l++) {
-    ladder.cpu[l] = ladder.wall[l] = NAN;
-    ladder.ran[l] = calloc(room, sizeof *ladder.ran[l]);
-    good = good && ladder.ran[l];
   }
-  if (grown)
-    study->ladder[study->ladder_count++] = ladder;
-  return good ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a study");
+  return STATUS_OK;
 }
 
 void study_clear(struct study *study) {
@@ -261,13 +257,12 @@ static void combine(const struct study_ladder *ladders, size_t count, struct stu
 /* Separates the two modes of a level that has two. */
 static void find_modes(const struct study_ladder *ladder, size_t quantity, struct study_found *found) {
   for (size_t l = 0; l < found->count; l++) {
-    struct scatter scatter;
+    SCATTER scatter = {0};
     struct error ignored;
     if (found->rows[l].n < 4 ||
         scatter_make((size_t)ladder->seeds, ladder->values[quantity][l], &scatter, &ignored) != STATUS_OK)
       continue;
     found->rows[l].upper_mode = scatter.upper_share;
-    scatter_release(&scatter);
   }
 }
 
@@ -283,12 +278,12 @@ size_t study_of_scene(const struct study *study, size_t from, size_t quantity, s
 }
 
 status study_store(const struct study *study, struct store *store, struct error *error) {
-  struct study_found *found = malloc(LIMITS_STUDY_KNOBS * sizeof *found);
-  status code = found ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the rows of a study");
-  for (size_t from = 0, count = 0; code == STATUS_OK && from < study->ladder_count; from += count)
-    for (size_t q = 0; code == STATUS_OK && q < study->quantity_count; q++) {
+  OWNED struct study_found *found = NULL;
+  TRY(memory_array(&found, LIMITS_STUDY_KNOBS, sizeof *found, "the rows of a study", error));
+  for (size_t from = 0, count = 0; from < study->ladder_count; from += count)
+    for (size_t q = 0; q < study->quantity_count; q++) {
       count = study_of_scene(study, from, q, found);
-      for (size_t i = 0; code == STATUS_OK && i < count; i++) {
+      for (size_t i = 0; i < count; i++) {
         const struct study_ladder *ladder = &study->ladder[from + i];
         const struct store_convergence rows = {.base_point_id = ladder->base_point,
                                                .results_version = ladder->base->kind->results_version,
@@ -296,11 +291,10 @@ status study_store(const struct study *study, struct store *store, struct error 
                                                .point_ids = ladder->point,
                                                .rows = found[i].rows,
                                                .limit = &found[i].limit};
-        code = store_set_convergence(store, &rows, error);
+        TRY(store_set_convergence(store, &rows, error));
       }
     }
-  free(found);
-  return code;
+  return STATUS_OK;
 }
 
 /* ---- values from the store ---- */
@@ -342,17 +336,14 @@ static status read_exponent(const struct study *study, struct study_ladder *ladd
   for (int64_t s = 0; s < study->rule.most_seeds; s++)
     values[s] = NAN;
   snprintf(where, sizeof where, "seed BETWEEN %lld AND %lld", (long long)first, (long long)(first + ladder->seeds - 1));
-  struct point_data point;
+  __attribute__((cleanup(point_release))) struct point_data point = {0};
+  OWNED double *of_runs = NULL;
   TRY(point_read_where(store, ladder->point[l], ladder->base->kind->results_version, where, &point, error));
-
-  double *of_runs = malloc((point.runs.count + 1) * sizeof *of_runs);
-  status code = of_runs ? point_exponent_of_runs(&point, quantity->method, quantity->window, of_runs, error)
-                        : status_fail(error, STATUS_MEMORY, "no memory for an exponent");
-  for (size_t r = 0; code == STATUS_OK && r < point.runs.count; r++)
+  TRY(memory_array(&of_runs, point.runs.count, sizeof *of_runs, "an exponent", error));
+  TRY(point_exponent_of_runs(&point, quantity->method, quantity->window, of_runs, error));
+  for (size_t r = 0; r < point.runs.count; r++)
     values[(int64_t)point.seed[r] - first] = of_runs[r];
-  free(of_runs);
-  point_release(&point);
-  return code;
+  return STATUS_OK;
 }
 
 status study_read(const struct study *study, struct study_ladder *ladder, struct store *store, struct error *error) {

@@ -311,9 +311,8 @@ static const char legend[] =
     "upper of two modes.\n";
 
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error) {
-  OWNED struct study_found *found = malloc(LIMITS_STUDY_KNOBS * sizeof *found);
-  if (!found)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
+  OWNED struct study_found *found = NULL;
+  TRY(memory_array(&found, LIMITS_STUDY_KNOBS, sizeof *found, "the rows of a study", error));
   STORE store = NULL;
   TRY(store_open_reader(study->limits.store, &store, error));
   struct printing printing = {.study = study, .store = store};
@@ -353,17 +352,18 @@ struct drawing {
   bool doubtful[LIMITS_STUDY_KNOBS][KNOB_LEVELS];
 };
 
+/* The mean of a level with its interval. */
+static struct picture_mean mean_at(double x, const struct convergence_row *row, bool doubtful) {
+  const double low = row->mean - row->half_width, high = row->mean + row->half_width;
+  return (struct picture_mean){x, row->mean, low, high, NAN, doubtful};
+}
+
 /* Adds a mark of the level to the last curve, in order of cost. */
 static void add_mark(struct drawing *drawing, const struct convergence_row *row, bool of_errors, bool doubtful) {
   struct picture_mean *means = drawing->means[drawing->count];
   struct picture_curve *curve = &drawing->curves[drawing->count];
   const struct picture_mean mark = of_errors ? (struct picture_mean){row->cpu, row->error, NAN, NAN, NAN, doubtful}
-                                             : (struct picture_mean){row->cpu,
-                                                                     row->mean,
-                                                                     row->mean - row->half_width,
-                                                                     row->mean + row->half_width,
-                                                                     NAN,
-                                                                     doubtful};
+                                             : mean_at(row->cpu, row, doubtful);
   if (!isfinite(mark.x) || !isfinite(mark.y) || curve->count == MARKS)
     return;
   size_t place = curve->count++;
@@ -407,12 +407,7 @@ static void draw_law(const struct study *study, size_t knob, struct drawing *dra
     if (row->n == 0)
       continue;
     coarsest = row->step;
-    levels[drawing->curves[0].count++] = (struct picture_mean){row->step,
-                                                               row->mean,
-                                                               row->mean - row->half_width,
-                                                               row->mean + row->half_width,
-                                                               NAN,
-                                                               drawing->doubtful[knob][l]};
+    levels[drawing->curves[0].count++] = mean_at(row->step, row, drawing->doubtful[knob][l]);
   }
   for (size_t i = 0; i <= STEPS; i++)
     points[i].step = coarsest * (double)i / STEPS;
@@ -433,26 +428,20 @@ static void draw_law(const struct study *study, size_t knob, struct drawing *dra
 }
 
 status study_print_picture(const struct study *study, bool of_errors, const char *path, struct error *error) {
-  struct drawing *drawing = calloc(1, sizeof *drawing);
-  if (!drawing)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
+  OWNED struct drawing *drawing = NULL;
+  STORE store = NULL;
+  TRY(memory_array(&drawing, 1, sizeof *drawing, "the picture of a study", error));
+  TRY(store_open_reader(study->limits.store, &store, error));
   const size_t knobs = study_of_scene(study, 0, 0, drawing->found);
-  struct printing printing = {.study = study};
-  status code = store_open_reader(study->limits.store, &printing.store, error);
+  const struct printing printing = {.study = study, .store = store};
   for (size_t i = 0; i < knobs; i++)
-    for (size_t l = 0; l < drawing->found[i].count && code == STATUS_OK; l++) {
+    for (size_t l = 0; l < drawing->found[i].count; l++) {
       struct ask_doubts doubts;
-      code = read_doubts(&printing, &study->ladder[i], l, 0, &doubts, error);
+      TRY(read_doubts(&printing, &study->ladder[i], l, 0, &doubts, error));
       drawing->doubtful[i][l] = doubts.doubtful > 0;
     }
-  struct ask_doubts sum = {0};
-  if (code == STATUS_OK)
-    code = sum_doubts(&printing, knobs, 1, &sum, error);
-  store_close(printing.store, NULL);
-  if (code != STATUS_OK) {
-    free(drawing);
-    return code;
-  }
+  struct ask_doubts sum;
+  TRY(sum_doubts(&printing, knobs, 1, &sum, error));
   const size_t stepped = of_errors ? knobs : stepped_knob(study, knobs);
   char label[2][120];
   if (stepped < knobs)
@@ -479,7 +468,5 @@ status study_print_picture(const struct study *study, bool of_errors, const char
                            : "mean over seeds with its 95 % interval");
   charts_doubts(&sum, caption, sizeof caption);
   const struct picture_words words = {title, caption, x, y};
-  code = picture_curves(&page, &words, drawing->count, drawing->curves, error);
-  free(drawing);
-  return code;
+  return picture_curves(&page, &words, drawing->count, drawing->curves, error);
 }

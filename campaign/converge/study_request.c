@@ -20,23 +20,19 @@ static status add_scene(struct study_subject *subject, const struct option_list 
 
 /* Every point of the campaign is a scene of its own. */
 static status add_points(struct study_subject *subject, const struct option_list *set, struct error *error) {
-  struct campaign_walk walk;
-  status code = campaign_walk_begin(&walk, subject->campaign, error);
-  while (code == STATUS_OK && campaign_walk_next(&walk)) {
-    struct scene *scene = campaign_walk_scene(&walk, error);
-    if (!scene)
-      code = STATUS_CONTENT;
-    else if (subject->scene_count < STUDY_SCENES)
-      code = add_scene(subject, set, scene, error);
-    else {
-      scene_free(scene);
-      code = status_fail(error, STATUS_CONTENT,
+  CAMPAIGN_WALK walk = {0};
+  TRY(campaign_walk_begin(&walk, subject->campaign, error));
+  while (campaign_walk_next(&walk)) {
+    if (subject->scene_count == STUDY_SCENES)
+      return status_fail(error, STATUS_CONTENT,
                          "the campaign has more than %d points: study a campaign with fewer points, or one scene",
                          STUDY_SCENES);
-    }
+    struct scene *scene = campaign_walk_scene(&walk, error);
+    if (!scene)
+      return STATUS_CONTENT;
+    TRY(add_scene(subject, set, scene, error));
   }
-  campaign_walk_end(&walk);
-  return code;
+  return STATUS_OK;
 }
 
 static status load_campaign(struct study_subject *subject, const char *path, const struct option_list *set,

@@ -19,9 +19,7 @@ struct design_sensitivity {
 static status fill_pairs(struct design_sensitivity *design, struct error *error) {
   const size_t width = 2 * design->inputs;
   struct design_sobol *sobol = NULL;
-  design->pairs = malloc(design->blocks * width * sizeof *design->pairs);
-  if (!design->pairs)
-    return status_fail(error, STATUS_MEMORY, "no memory for a design of %zu blocks", design->blocks);
+  TRY(memory_array(&design->pairs, design->blocks * width, sizeof *design->pairs, "a design", error));
   const status code = design_sobol_create(width, design->seed, &sobol, error);
   for (size_t b = 0; code == STATUS_OK && b < design->blocks; b++)
     design_sobol_next(sobol, design->pairs + b * width);

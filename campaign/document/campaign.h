@@ -154,8 +154,9 @@ struct campaign_walk {
   struct field_value *values; /* values of the current point, one for each axis */
 };
 
-/* Begins a walk before the first point. STATUS_MEMORY; STATUS_CONTENT: no such design. After an error there is nothing
- * to end. */
+/* A walk that ends where its block is left: CAMPAIGN_WALK walk = {0}; */
+#define CAMPAIGN_WALK __attribute__((cleanup(campaign_walk_end))) struct campaign_walk
+/* Begins a walk before the first point. STATUS_MEMORY; STATUS_CONTENT: no such design. End it also after an error. */
 status campaign_walk_begin(struct campaign_walk *walk, const struct campaign *campaign, struct error *error);
 void campaign_walk_end(struct campaign_walk *walk); /* twice is fine */
 /* Goes to the next point. False after the last one. */

@@ -281,7 +281,7 @@ struct scene *campaign_point_scene(const struct campaign *campaign, const struct
 struct scene *campaign_point_scene_from(const struct scene *base, const struct campaign *campaign,
                                         const struct field_value *values, struct error *error) {
   struct scene *scene = scene_copy(base);
-  status code = scene ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a point");
+  status code = STATUS_OK;
   for (size_t i = 0; code == STATUS_OK && i < campaign->axis_count; i++)
     code = scene_set(scene, campaign->axes[i].row->path, &values[i], error);
   if (code == STATUS_OK)

@@ -183,7 +183,7 @@ static void check_quantities(document_node *root, const struct campaign *campaig
 static void check_points(document_node *root, struct campaign *campaign) {
   enum { TRIED = 1000 };
   struct error error = {0};
-  struct campaign_walk walk;
+  CAMPAIGN_WALK walk = {0};
   document_node *design = document_key(root, "design"), *vary = document_key(root, "vary");
   bool good = campaign_walk_begin(&walk, campaign, &error) == STATUS_OK;
   if (!good)
@@ -202,7 +202,6 @@ static void check_points(document_node *root, struct campaign *campaign) {
     else
       document_report(vary ? vary : root, vary ? "vary" : "scene", "%s", error.message);
   }
-  campaign_walk_end(&walk);
 }
 
 /* The store is named after the campaign when the document does not name it. */

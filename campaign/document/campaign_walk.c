@@ -6,19 +6,14 @@
 #include <string.h>
 
 #include "engine/outcome.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 status campaign_walk_begin(struct campaign_walk *walk, const struct campaign *campaign, struct error *error) {
   *walk = (struct campaign_walk){.campaign = campaign};
-  walk->values = calloc(campaign->axis_count + 1, sizeof *walk->values);
-  if (!walk->values)
-    return status_fail(error, STATUS_MEMORY, "no memory for the points of a campaign");
-  const status code = design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
-                                    (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &walk->design,
-                                    error);
-  if (code)
-    campaign_walk_end(walk);
-  return code;
+  TRY(memory_array(&walk->values, campaign->axis_count, sizeof *walk->values, "the points of a campaign", error));
+  return design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
+                       (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &walk->design, error);
 }
 
 void campaign_walk_end(struct campaign_walk *walk) {
@@ -47,7 +42,7 @@ struct doubts {
 
 /* The engine writes its lines in the order of the bits. */
 static void add(struct doubts *doubts, const struct scene *scene) {
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t size = 0;
   FILE *out = text_open(&text, &size);
   doubts->points++;
@@ -63,7 +58,6 @@ static void add(struct doubts *doubts, const struct scene *scene) {
       snprintf(doubts->first[k], sizeof doubts->first[k], "%.*s", (int)length, line);
     line += length + (line[length] != 0);
   }
-  free(text);
 }
 
 static void print(const struct doubts *doubts, const char *before, bool counted, FILE *out) {
@@ -85,16 +79,14 @@ void campaign_warn_scene(const struct scene *scene, const char *before, FILE *ou
 
 void campaign_warn(const struct campaign *campaign, const char *before, FILE *out) {
   struct doubts doubts = {0};
-  struct campaign_walk walk;
+  CAMPAIGN_WALK walk = {0};
   struct error error;
   if (campaign_walk_begin(&walk, campaign, &error) == STATUS_OK)
     for (size_t i = 0; i < LOOKED_AT && campaign_walk_next(&walk); i++) {
-      struct scene *scene = campaign_walk_scene(&walk, &error);
+      SCENE scene = campaign_walk_scene(&walk, &error);
       if (scene)
         add(&doubts, scene);
-      scene_free(scene);
     }
-  campaign_walk_end(&walk);
   print(&doubts, before, doubts.points > 1, out);
 }
 

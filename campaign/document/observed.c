@@ -203,7 +203,7 @@ static void read_shot(struct reading *r, document_node *node) {
   struct observed_shot *shot = &m->shots[m->shot_count++];
   field_defaults(&shot_table, shot);
   shot->scene = scene_copy(r->campaign->scene);
-  if (!shot->scene || document_kind(node) != DOCUMENT_MAPPING) {
+  if (document_kind(node) != DOCUMENT_MAPPING) {
     document_report(node, "shots", "expected a mapping with `measured` or `fragments`, and the inputs of this shot");
     return;
   }

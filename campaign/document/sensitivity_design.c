@@ -85,30 +85,25 @@ static status write_files(const struct campaign *campaign, const struct design_s
 
 status sensitivity_design_write(const char *path, const char *output, enum design_sensitivity_kind kind, size_t blocks,
                                 uint64_t seed, struct error *error) {
-  struct campaign *campaign = NULL, *written = NULL;
+  CAMPAIGN campaign = NULL;
+  CAMPAIGN written = NULL;
   struct design_sensitivity *design = NULL;
   char points[LIMITS_PATH];
   const size_t length = strlen(output);
   if (length < 6 || strcmp(output + length - 5, ".yaml") != 0 || length >= sizeof points)
     return status_fail(error, STATUS_USAGE, "'%s' is to be written: its name must end in .yaml", output);
   snprintf(points, sizeof points, "%.*s.csv", (int)(length - 5), output);
-  status code = campaign_load(path, &campaign, error);
-  if (code == STATUS_OK)
-    code = check_axes(path, campaign, error);
-  if (code == STATUS_OK)
-    code = design_sensitivity_create(kind, campaign->axis_count, blocks, seed, &design, error);
-  if (code == STATUS_OK)
-    code = write_files(campaign, design, output, points, error);
-  if (code == STATUS_OK) { /* the file must be the campaign that runs */
-    code = campaign_load(output, &written, error);
-    if (code) {
-      remove(output);
-      remove(points);
-    }
-  }
-  campaign_free(written);
+  TRY(campaign_load(path, &campaign, error));
+  TRY(check_axes(path, campaign, error));
+  TRY(design_sensitivity_create(kind, campaign->axis_count, blocks, seed, &design, error));
+  status code = write_files(campaign, design, output, points, error);
   design_sensitivity_free(design);
-  campaign_free(campaign);
+  TRY(code);
+  code = campaign_load(output, &written, error); /* the file must be the campaign that runs */
+  if (code) {
+    remove(output);
+    remove(points);
+  }
   return code;
 }
 

@@ -79,9 +79,7 @@ static json_t *text_of(const char *text) {
   if (!out)
     return made;
   text_json_string(text, out);
-  if (text_close(out, &quoted))
-    made = json_loads(quoted, JSON_DECODE_ANY, NULL);
-  return made;
+  return text_close(out, &quoted) ? json_loads(quoted, JSON_DECODE_ANY, NULL) : NULL;
 }
 
 static json_t *id_of(const char *id) {

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "campaign/design/design.h"
+#include "schemas/memory.h"
 
 double fit_transform(const struct observed_datum *datum, double value) {
   return datum->ask.kind == ASK_SPECIMENS_COUNT ? log1p(value) : value;
@@ -98,15 +99,14 @@ static status allocate(struct fit *fit, struct error *error) {
   fit->replicates = (size_t)fit->campaign->per_point;
   fit->capacity = fit->members * (size_t)fit->rule.rounds;
   const size_t d = fit->observed->datum_count;
-  fit->z = calloc(fit->capacity * fit->inputs, sizeof(double));
-  fit->values = calloc(fit->capacity * d * fit->replicates, sizeof(double));
-  fit->place = calloc(fit->members * fit->inputs, sizeof(double));
-  return fit->z && fit->values && fit->place ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a fit");
+  TRY(memory_array(&fit->z, fit->capacity * fit->inputs, sizeof(double), "a fit", error));
+  TRY(memory_array(&fit->values, fit->capacity * d * fit->replicates, sizeof(double), "a fit", error));
+  return memory_array(&fit->place, fit->members * fit->inputs, sizeof(double), "a fit", error);
 }
 
 /* Makes the first ensemble: the points of `clast run` for this campaign. */
 static status draw_members(struct fit *fit, struct error *error) {
-  struct campaign_walk walk;
+  CAMPAIGN_WALK walk = {0};
   TRY(campaign_walk_begin(&walk, fit->campaign, error));
   for (size_t j = 0; j < fit->members && campaign_walk_next(&walk); j++)
     for (size_t i = 0; i < fit->inputs; i++) {
@@ -114,31 +114,21 @@ static status draw_members(struct fit *fit, struct error *error) {
       fit->place[j * fit->inputs + i] = posterior_coordinate(
           design_axis_share(&fit->campaign->axes[a], &walk.values[a]));
     }
-  campaign_walk_end(&walk);
   return STATUS_OK;
 }
 
 status fit_create(const struct campaign *campaign, const struct observed *observed, const struct fit_rule *rule,
                   const char *scene_reference, struct fit **out, struct error *error) {
-  *out = NULL;
-  struct fit *fit = calloc(1, sizeof *fit);
-  if (!fit)
-    return status_fail(error, STATUS_MEMORY, "no memory for a fit");
+  TRY(memory_array(out, 1, sizeof **out, "a fit", error));
+  struct fit *fit = *out;
   fit->campaign = campaign;
   fit->observed = observed;
   fit->scene_reference = scene_reference;
   fit->rule = *rule;
-  status code = check_campaign(campaign, error);
-  if (code == STATUS_OK)
-    code = find_inputs(fit, error);
-  if (code == STATUS_OK)
-    code = allocate(fit, error);
-  if (code == STATUS_OK)
-    code = draw_members(fit, error);
-  if (code != STATUS_OK) {
-    fit_free(fit);
-    return code;
-  }
+  TRY(check_campaign(campaign, error));
+  TRY(find_inputs(fit, error));
+  TRY(allocate(fit, error));
+  TRY(draw_members(fit, error));
   find_data(fit);
   fit->ensemble = (struct ensemble_kalman){.members = fit->members,
                                            .inputs = fit->inputs,
@@ -146,7 +136,6 @@ status fit_create(const struct campaign *campaign, const struct observed *observ
                                            .z = fit->place,
                                            .gamma = fit->gamma,
                                            .seed = rule->seed};
-  *out = fit;
   return STATUS_OK;
 }
 
@@ -178,17 +167,14 @@ struct surfaces_runs fit_runs(const struct fit *fit, double *packed) {
 }
 
 status fit_solve(struct fit *fit, struct error *error) {
-  double *packed = calloc(fit->points * fit->observed->datum_count * fit->replicates, sizeof *packed);
-  if (!packed)
-    return status_fail(error, STATUS_MEMORY, "no memory for a fit");
+  OWNED double *packed = NULL;
+  TRY(memory_array(&packed, fit->points * fit->observed->datum_count * fit->replicates, sizeof *packed, "a fit",
+                   error));
   const struct surfaces_runs runs = fit_runs(fit, packed);
   surfaces_clear(&fit->surfaces);
   posterior_clear(&fit->posterior);
-  status code = surfaces_fit(&runs, fit->data, fit->bounded, &fit->surfaces, error);
-  free(packed);
-  if (code == STATUS_OK)
-    code = posterior_make(&fit->surfaces.model, fit->rule.seed, &fit->posterior, error);
-  return code;
+  TRY(surfaces_fit(&runs, fit->data, fit->bounded, &fit->surfaces, error));
+  return posterior_make(&fit->surfaces.model, fit->rule.seed, &fit->posterior, error);
 }
 
 status fit_find(struct fit *fit, struct error *error) {

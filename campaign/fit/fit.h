@@ -59,7 +59,7 @@ struct fit {
 };
 
 /* STATUS_CONTENT: the campaign's design is not sampled, an input has no law, too few points or seeds. *out owns what it
- * allocates and borrows the rest. */
+ * allocates and borrows the rest. Free it also after an error. */
 status fit_create(const struct campaign *campaign, const struct observed *observed, const struct fit_rule *rule,
                   const char *scene_reference, struct fit **out, struct error *error);
 void fit_free(struct fit *fit); /* NULL is fine */

@@ -7,6 +7,7 @@
 
 #include "campaign/fit/fit.h"
 #include "engine/random.h"
+#include "schemas/memory.h"
 
 /* ---- a round as campaigns ---- */
 
@@ -63,19 +64,15 @@ static status next_round(void *context, const struct scheduler *scheduler, struc
 /* The scene of a member of the shot. NULL with *error. */
 static struct scene *scene_of(const struct fit *fit, const double *z, struct error *error) {
   const struct campaign *campaign = fit->campaign;
-  struct field_value *values = calloc(campaign->axis_count, sizeof *values);
-  struct scene *scene = NULL;
-  for (size_t i = 0; values && i < fit->inputs; i++)
+  OWNED struct field_value *values = NULL;
+  if (memory_array(&values, campaign->axis_count, sizeof *values, "a point", error))
+    return NULL;
+  for (size_t i = 0; i < fit->inputs; i++)
     fit_value(fit, i, z[i], &values[fit->axis[i]]);
-  for (size_t i = 0; values && i < campaign->axis_count; i++)
+  for (size_t i = 0; i < campaign->axis_count; i++)
     if (campaign->axes[i].kind == DESIGN_AXIS_LINKED)
       design_axis_follow(&campaign->axes[i], &values[campaign->axes[i].linked], 0, &values[i]);
-  if (values)
-    scene = campaign_point_scene_from(fit->observed->shots[fit->shot].scene, campaign, values, error);
-  else
-    status_fail(error, STATUS_MEMORY, "no memory for a point");
-  free(values);
-  return scene;
+  return campaign_point_scene_from(fit->observed->shots[fit->shot].scene, campaign, values, error);
 }
 
 /* Reads the values of the shot's data at a point of the store: data x replicates. Point 0: it has none. */
@@ -106,19 +103,15 @@ static status read_data(struct fit *fit, struct store *store, const struct scene
 static status read_point(struct fit *fit, struct store *store, const double *z, double *values, struct error *error) {
   const size_t count = fit->replicates;
   struct error invalid = {0};
-  struct scene *scene = scene_of(fit, z, &invalid);
-  uint64_t *seeds = calloc(count, sizeof *seeds);
+  SCENE scene = scene_of(fit, z, &invalid);
+  OWNED uint64_t *seeds = NULL;
   int64_t point = 0;
-  status code = seeds ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a point");
-  for (size_t r = 0; seeds && scene && r < count; r++)
+  TRY(memory_array(&seeds, count, sizeof *seeds, "a point", error));
+  for (size_t r = 0; scene && r < count; r++)
     seeds[r] = campaign_seed(fit->campaign, scene, (int64_t)r);
-  if (code == STATUS_OK && scene)
-    code = store_point_find(store, scene, &point, error);
-  if (code == STATUS_OK)
-    code = read_data(fit, store, scene, point, seeds, values, error);
-  free(seeds);
-  scene_free(scene);
-  return code;
+  if (scene)
+    TRY(store_point_find(store, scene, &point, error));
+  return read_data(fit, store, scene, point, seeds, values, error);
 }
 
 /* ---- after a round ---- */
@@ -127,15 +120,14 @@ static status read_point(struct fit *fit, struct store *store, const double *z, 
  * left. */
 static status move_ensemble(struct fit *fit, struct error *error) {
   const size_t d = fit->observed->datum_count, from = fit->points - fit->members;
-  double *g = calloc(fit->members * d, sizeof *g), *packed = calloc(fit->points * d * fit->replicates, sizeof *packed);
-  status code = g && packed ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");
-  if (code == STATUS_OK) {
-    const struct surfaces_runs runs = fit_runs(fit, packed);
-    for (size_t j = 0; j < fit->members; j++)
-      for (size_t k = 0; k < d; k++)
-        g[j * d + k] = surfaces_mean(&runs, k, from + j);
-    code = surfaces_errors(&runs, fit->data, fit->bounded, fit->members, fit->gamma, error);
-  }
+  OWNED double *g = NULL, *packed = NULL;
+  TRY(memory_array(&g, fit->members * d, sizeof *g, "a round", error));
+  TRY(memory_array(&packed, fit->points * d * fit->replicates, sizeof *packed, "a round", error));
+  const struct surfaces_runs runs = fit_runs(fit, packed);
+  for (size_t j = 0; j < fit->members; j++)
+    for (size_t k = 0; k < d; k++)
+      g[j * d + k] = surfaces_mean(&runs, k, from + j);
+  TRY(surfaces_errors(&runs, fit->data, fit->bounded, fit->members, fit->gamma, error));
   double y[OBSERVED_DATA];
   for (size_t k = 0; k < d; k++)
     y[k] = fit->data[k].value;
@@ -143,11 +135,8 @@ static status move_ensemble(struct fit *fit, struct error *error) {
   fit->ensemble.y = y;
   fit->ensemble.round = fit->rounds;
   fit->ensemble.least = (1 - fit->ensemble.tempered) / (double)(fit->rule.rounds - 1 - (int64_t)fit->rounds);
-  if (code == STATUS_OK)
-    code = ensemble_kalman_step(&fit->ensemble, error);
+  const status code = ensemble_kalman_step(&fit->ensemble, error);
   fit->ensemble.g = fit->ensemble.y = NULL;
-  free(g);
-  free(packed);
   return code;
 }
 
@@ -213,6 +202,12 @@ struct launching { /* the two documents, and what is made from them */
   enum table_format format;
 };
 
+static void end_launching(struct launching *launching) {
+  fit_free(launching->fit);
+  observed_free(launching->observed);
+  campaign_free(launching->campaign);
+}
+
 static status run_fit(void *context, struct launch *launch, struct error *error) {
   const struct launching *launching = context;
   const struct fit_launch *options = launching->options;
@@ -234,27 +229,19 @@ static status run_fit(void *context, struct launch *launch, struct error *error)
 
 status fit_rounds_launch(const struct command_line *line, const struct fit_launch *options, enum table_format format,
                          struct error *error) {
-  struct launching launching = {.options = options, .format = format};
+  __attribute__((cleanup(end_launching))) struct launching launching = {.options = options, .format = format};
   struct launch_notes notes = {.quiet = options->launch.quiet};
   const struct fit_rule rule = {.rounds = options->rounds,
                                 .seed = (uint64_t)options->seed,
                                 .note = launch_note,
                                 .note_context = &notes};
   char scene[2 * FIELD_TEXT_SIZE]; /* path from the current folder */
-  status code = campaign_load(line->arguments[1], &launching.campaign, error);
+  TRY(campaign_load(line->arguments[1], &launching.campaign, error));
   struct campaign *campaign = launching.campaign;
-  if (code == STATUS_OK)
-    code = observed_load(line->arguments[0], campaign, &launching.observed, error);
-  if (code == STATUS_OK) {
-    driver_list_reference(campaign, line->arguments[1], scene, sizeof scene);
-    if (options->store)
-      snprintf(campaign->store, sizeof campaign->store, "%s", options->store);
-    code = fit_create(campaign, launching.observed, &rule, scene, &launching.fit, error);
-  }
-  if (code == STATUS_OK)
-    code = launch_farm(campaign, &options->launch, line, run_fit, &launching, error);
-  fit_free(launching.fit);
-  observed_free(launching.observed);
-  campaign_free(campaign);
-  return code;
+  TRY(observed_load(line->arguments[0], campaign, &launching.observed, error));
+  driver_list_reference(campaign, line->arguments[1], scene, sizeof scene);
+  if (options->store)
+    snprintf(campaign->store, sizeof campaign->store, "%s", options->store);
+  TRY(fit_create(campaign, launching.observed, &rule, scene, &launching.fit, error));
+  return launch_farm(campaign, &options->launch, line, run_fit, &launching, error);
 }

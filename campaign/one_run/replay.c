@@ -110,9 +110,7 @@ static status compare_results(struct comparison *comparison, struct store *store
   ANSWER stored = ask_run_results(store, run_id, comparison->kind->name, error);
   if (!answer_next(&stored))
     return answer_end(&stored);
-  OWNED const struct field **doubtful = calloc(answer_count(&stored), sizeof *doubtful);
-  if (!doubtful)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
+  OWNED const struct field **doubtful = memory_small(answer_count(&stored), sizeof *doubtful);
   comparison->doubtful = doubtful;
   compare_table(comparison, &outcome_table, &comparison->result->outcome, &stored);
   compare_table(comparison, comparison->kind->results, comparison->result->result, &stored);

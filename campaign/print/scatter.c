@@ -74,12 +74,11 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
   struct ask_doubts doubts = {0};
   bool several = false; /* a pool has more than one point */
   while (!table_broken(table) && (printing.pool = ask_pools_next(&pools))) {
-    struct scatter scatter;
+    SCATTER scatter = {0};
     several |= printing.pool->points > 1;
     ask_doubts_add(&doubts, &printing.pool->doubts);
     TRY(scatter_make(printing.pool->data.runs.count, printing.pool->value, &scatter, error));
     print_scatter(&printing, &scatter);
-    scatter_release(&scatter);
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));
@@ -98,7 +97,7 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
 }
 
 static status plot_pool(bool ascii, const struct ask_pool *pool, struct error *error) {
-  struct scatter scatter;
+  SCATTER scatter = {0};
   char mark[UNCERTAINTY_TEXT];
   TRY(scatter_make(pool->data.runs.count, pool->value, &scatter, error));
   const struct scatter_histogram histogram = scatter_histogram_of(&scatter);
@@ -109,7 +108,6 @@ static status plot_pool(bool ascii, const struct ask_pool *pool, struct error *e
     printf("two modes: %.4g and %.4g, apart at %.4g; %.0f %% of the runs are in the upper one (%.0f to %.0f %%)\n",
            scatter.lower_mode, scatter.upper_mode, scatter.between, 100 * scatter.upper_share, 100 * scatter.upper_low,
            100 * scatter.upper_high);
-  scatter_release(&scatter);
   return STATUS_OK;
 }
 
@@ -208,15 +206,12 @@ static int by_seed(const void *a, const void *b) {
   return p < q ? -1 : p > q;
 }
 
-static status no_memory(struct error *error) {
-  return status_fail(error, STATUS_MEMORY, "no memory for the runs of the points");
-}
-
 static status add_cell(struct run_cells *cells, const struct ask_pool *pool, struct error *error) {
   if (!grow_room(&cells->cell, &cells->room, cells->count + 1, sizeof *cells->cell))
-    return no_memory(error);
+    return status_fail(error, STATUS_MEMORY, "no memory for the runs of the points");
   struct run_cell *cell = &cells->cell[cells->count++];
-  *cell = (struct run_cell){.run = malloc((pool->data.runs.count + 1) * sizeof *cell->run)};
+  *cell = (struct run_cell){0};
+  TRY(memory_array(&cell->run, pool->data.runs.count, sizeof *cell->run, "the runs of the points", error));
   cells->axes = pool->axes;
   ask_doubts_add(&cells->doubts, &pool->doubts);
   memcpy(cells->column, pool->column, sizeof cells->column);
@@ -226,12 +221,8 @@ static status add_cell(struct run_cells *cells, const struct ask_pool *pool, str
       snprintf(text, sizeof text, "%s", pool->input[a].text);
     else if (pool->input[a].kind != QUERY_NULL)
       snprintf(text, sizeof text, "%.17g", pool->input[a].real);
-    cell->input[a] = strdup(text);
-    if (!cell->input[a])
-      return no_memory(error);
+    cell->input[a] = memory_small_text(text);
   }
-  if (!cell->run)
-    return no_memory(error);
   for (size_t r = 0; r < pool->data.runs.count; r++)
     if (isfinite(pool->value[r]))
       cell->run[cell->runs++] = (struct run_cells_run){pool->seed[r], pool->value[r]};
@@ -316,19 +307,18 @@ static void number_levels(const struct run_cells *cells, uint32_t *level) {
 }
 
 static status split(struct run_cells *cells, struct scatter_part *parts, size_t *runs, struct error *error) {
-  OWNED struct run_cell **all = calloc(cells->count + 1, sizeof *all);
+  OWNED struct run_cell **all = NULL;
+  OWNED uint32_t *level = NULL;
+  OWNED double *value = NULL;
   bool same_seeds;
-  if (!all)
-    return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
+  TRY(memory_array(&all, cells->count, sizeof *all, "the parts of a variance", error));
   for (size_t c = 0; c < cells->count; c++)
     all[c] = &cells->cell[c];
   *runs = run_cells_balance(cells->count, all, &same_seeds);
   if (cells->count < 2 || *runs < 2)
     return status_fail(error, STATUS_USAGE, "splitting a variance needs at least two points with two runs each");
-  OWNED uint32_t *level = malloc((cells->count * cells->axes + 1) * sizeof *level);
-  OWNED double *value = malloc(cells->count * *runs * sizeof *value);
-  if (!level || !value)
-    return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
+  TRY(memory_array(&level, cells->count * cells->axes, sizeof *level, "the parts of a variance", error));
+  TRY(memory_array(&value, cells->count * *runs, sizeof *value, "the parts of a variance", error));
   for (size_t c = 0; c < cells->count; c++)
     for (size_t r = 0; r < *runs; r++)
       value[c * *runs + r] = cells->cell[c].run[r].value;
@@ -460,10 +450,9 @@ static int by_address(const void *a, const void *b) {
 
 static status fill_table(struct reading *r, struct error *error) {
   const size_t rows = r->whole * r->points;
-  OWNED struct run_cell **used = malloc((rows + 1) * sizeof *used);
+  OWNED struct run_cell **used = NULL;
   size_t count = 0;
-  if (!used)
-    return status_fail(error, STATUS_MEMORY, "no memory for %zu points", rows);
+  TRY(memory_array(&used, rows, sizeof *used, "the points of a design", error));
   for (size_t i = 0; i < rows; i++)
     used[i] = r->place[r->block[i / r->points] * r->points + i % r->points];
   qsort(used, rows, sizeof *used, by_address);
@@ -472,9 +461,7 @@ static status fill_table(struct reading *r, struct error *error) {
       used[count++] = used[i];
   r->table = (struct sensitivity_table){.inputs = r->campaign->axis_count, .blocks = r->whole};
   r->table.seeds = run_cells_balance(count, used, &r->table.same_seeds);
-  r->value = malloc((rows * r->table.seeds + 1) * sizeof *r->value);
-  if (!r->value)
-    return status_fail(error, STATUS_MEMORY, "no memory for %zu points", rows);
+  TRY(memory_array(&r->value, rows * r->table.seeds, sizeof *r->value, "the points of a design", error));
   for (size_t i = 0; i < rows; i++)
     for (size_t s = 0; s < r->table.seeds; s++)
       r->value[i * r->table.seeds + s] = r->place[r->block[i / r->points] * r->points + i % r->points]->run[s].value;
@@ -492,10 +479,8 @@ static status read_runs(struct store *store, const char *quantity, struct readin
     text_append(by, sizeof by, "%s%s", a ? "," : "", campaign->axes[a].row->path);
   const struct ask_pool_choice choice = {.by = by};
   TRY(run_cells_read(store, &choice, quantity, &r->cells, error));
-  r->place = calloc(r->blocks * r->points + 1, sizeof *r->place);
-  r->block = calloc(r->blocks + 1, sizeof *r->block);
-  if (!r->place || !r->block)
-    return status_fail(error, STATUS_MEMORY, "no memory for a design");
+  TRY(memory_array(&r->place, r->blocks * r->points, sizeof *r->place, "the points of a design", error));
+  TRY(memory_array(&r->block, r->blocks, sizeof *r->block, "the points of a design", error));
   find_places(r);
   if (r->whole < 2)
     return status_fail(error, STATUS_USAGE,
@@ -539,10 +524,10 @@ static status print_sobol(const struct reading *r, enum table_format format, str
 static status print_morris(const struct reading *r, enum table_format format, struct error *error) {
   const size_t n = r->table.inputs;
   struct sensitivity_effect effect[LIMITS_AXES_OF_POOL];
-  OWNED size_t *order = malloc(n * r->blocks * sizeof *order);
-  OWNED double *step = malloc(n * r->blocks * sizeof *step);
-  if (!order || !step)
-    return status_fail(error, STATUS_MEMORY, "no memory for a design");
+  OWNED size_t *order = NULL;
+  OWNED double *step = NULL;
+  TRY(memory_array(&order, n * r->blocks, sizeof *order, "the steps of a design", error));
+  TRY(memory_array(&step, n * r->blocks, sizeof *step, "the steps of a design", error));
   sensitivity_design_steps(r->campaign, r->blocks, order, step);
   for (size_t b = 0; b < r->whole; b++) { /* the complete blocks move to the front */
     memmove(order + b * n, order + r->block[b] * n, n * sizeof *order);

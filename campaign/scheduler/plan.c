@@ -49,30 +49,24 @@ static status step(const struct engine_kind *kind, void *state, double until, st
 
 status plan_try(const struct scene *scene, uint64_t seed, double seconds, struct plan_trial *run, struct error *error) {
   const struct engine_kind *kind = scene->kind;
-  void *state = NULL, *result = NULL;
-  struct fragment *list = NULL;
+  void *state = NULL;
+  OWNED void *result = NULL;
+  OWNED struct fragment *list = NULL;
   struct outcome outcome;
   const double begin = clock_cpu_s();
   *run = (struct plan_trial){0};
-  struct scene *alone = scene_copy(scene); /* one thread: the processor time of several includes their waiting */
-  if (!alone)
-    return status_fail(error, STATUS_MEMORY, "no memory for the trial's scene");
+  SCENE alone = scene_copy(scene); /* one thread: the processor time of several includes their waiting */
   if (kind->threads)
     *kind->threads(alone->inputs) = 1;
-  status code = kind->prepare(alone->inputs, seed, &state, error);
-  scene_free(alone);
-  if (code != STATUS_OK)
-    return code;
+  TRY(kind->prepare(alone->inputs, seed, &state, error));
   run->prepare_s = clock_cpu_s() - begin;
-  code = step(kind, state, begin + seconds, run, error);
+  status code = step(kind, state, begin + seconds, run, error);
   if (code == STATUS_OK) {
     const double stepped = clock_cpu_s();
     result = memory_small(1, kind->results->size);
     code = kind->finish(state, &outcome, result, &list, &run->fragments, error);
     run->finish_s = clock_cpu_s() - stepped;
   }
-  free(list);
-  free(result);
   kind->free(state);
   return code;
 }
@@ -218,7 +212,7 @@ static void take_point(struct plan *plan, struct looking *looking, struct scene 
 /* Samples points evenly spread over the part of the design that can be generated in a short time. */
 static status look(const struct campaign *campaign, struct store *store, struct plan *plan, struct looking *looking,
                    struct error *error) {
-  struct campaign_walk walk;
+  CAMPAIGN_WALK walk = {0};
   struct error first = {0};
   TRY(campaign_walk_begin(&walk, campaign, error));
   plan->points = design_points(walk.design);
@@ -236,7 +230,6 @@ static status look(const struct campaign *campaign, struct store *store, struct 
     ask(campaign, scene, store, looking);
     take_point(plan, looking, scene, looking->sampled < SAMPLED && i >= looking->sampled * (walked / SAMPLED));
   }
-  campaign_walk_end(&walk);
   return looking->costliest
              ? STATUS_OK
              : status_fail(error, STATUS_CONTENT, "no point of the design can be run: %s", first.message);
@@ -488,7 +481,7 @@ static void number(FILE *out, const char *name, double value) {
 }
 
 static void axis_json(const struct campaign *campaign, size_t index, FILE *out) {
-  char *values = NULL;
+  OWNED char *values = NULL;
   size_t size = 0;
   FILE *text = text_open(&values, &size);
   if (!text)
@@ -502,7 +495,6 @@ static void axis_json(const struct campaign *campaign, size_t index, FILE *out) 
   fputs(", \"values\": ", out);
   text_json_string(text_close(text, &values) ? values : "", out);
   fputc('}', out);
-  free(values);
 }
 
 char *plan_print_json(const struct campaign *campaign, const struct plan *plan, int slots) {

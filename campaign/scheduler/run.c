@@ -10,6 +10,7 @@
 #include "engine/threads.h"
 #include "schemas/file.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 
 /* The encodings begin with these marks. All ranks of a farm run one binary, so arrays of structs are sent as they are
  * in memory. The marks, the sizes and the hashes of the tables find anything else. */
@@ -26,26 +27,19 @@ void run_result_clear(struct run_result *result) {
 static status write_snapshot(const struct engine_kind *kind, void *run, const char *path, struct error *error) {
   const char *slash = strrchr(path, '/');
   if (slash && slash != path) {
-    char *folder = strndup(path, (size_t)(slash - path));
-    const status code = folder ? file_folder(folder, error)
-                               : status_fail(error, STATUS_MEMORY, "no memory for the name of a folder");
-    free(folder);
-    if (code != STATUS_OK)
-      return code;
+    char folder[LIMITS_PATH];
+    snprintf(folder, sizeof folder, "%.*s", (int)(slash - path), path);
+    TRY(file_folder(folder, error));
   }
   return kind->write_snapshot(run, path, error);
 }
 
-static status invalid(const struct engine_kind *kind, struct run_result *result, const struct error *why,
-                      struct error *error) {
+static void invalid(const struct engine_kind *kind, struct run_result *result, const struct error *why) {
   field_defaults(&outcome_table, &result->outcome);
   result->outcome.state = OUTCOME_INVALID;
   snprintf(result->outcome.message, sizeof result->outcome.message, "%.*s", FIELD_TEXT_SIZE - 1, why->message);
-  result->result = calloc(1, kind->results->size);
-  if (!result->result)
-    return status_fail(error, STATUS_MEMORY, "no memory for the result");
+  result->result = memory_small(1, kind->results->size);
   field_defaults(kind->results, result->result);
-  return STATUS_OK;
 }
 
 /* Goes on from the request's restart file. *run is NULL when the request names none or the file does not exist. */
@@ -81,9 +75,7 @@ static status step_to_end(const struct engine_kind *kind, void *run, run_watch w
 
 /* Makes results and estimates of a run that has ended. On an error the caller clears *result. */
 static status finish(const struct engine_kind *kind, void *run, struct run_result *result, struct error *error) {
-  result->result = calloc(1, kind->results->size);
-  if (!result->result)
-    return status_fail(error, STATUS_MEMORY, "no memory for the result");
+  result->result = memory_small(1, kind->results->size);
   TRY(kind->finish(run, &result->outcome, result->result, &result->fragments, &result->fragment_count, error));
   if (result->fragment_count == 0)
     return STATUS_OK;
@@ -102,8 +94,10 @@ status run_simulate(const struct run_request *request, run_watch watch, void *co
   status code = STATUS_OK;
   if (!run) {
     code = kind->prepare(request->inputs, request->seed, &run, &why);
-    if (code == STATUS_CONTENT)
-      return invalid(kind, result, &why, error);
+    if (code == STATUS_CONTENT) {
+      invalid(kind, result, &why);
+      return STATUS_OK;
+    }
     if (code != STATUS_OK)
       return status_fail(error, code, "%s", why.message);
   }
@@ -249,8 +243,8 @@ static uint8_t *encode_result(const struct engine_kind *kind, struct run_result 
 status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, size_t size, struct run_result *result,
                          struct error *error) {
   struct wire wire = {(uint8_t *)bytes, 0, size, true, true};
-  *result = (struct run_result){.result = calloc(1, kind->results->size)};
-  const bool has_memory = result->result && pass_result(&wire, kind, result);
+  *result = (struct run_result){.result = memory_small(1, kind->results->size)};
+  const bool has_memory = pass_result(&wire, kind, result);
   if (has_memory && wire.good && wire.at == size)
     return STATUS_OK;
   run_result_clear(result);
@@ -273,9 +267,7 @@ static status decode_task(const uint8_t *task, size_t size, struct run_request *
     request->kind = engine_find(name, error);
     if (!request->kind)
       return STATUS_INTERNAL;
-    *inputs = calloc(1, request->kind->inputs->size);
-    if (!*inputs)
-      return status_fail(error, STATUS_MEMORY, "no memory for the inputs");
+    *inputs = memory_small(1, request->kind->inputs->size);
     pass_object(&wire, request->kind->inputs, *inputs);
   }
   for (uint64_t left = pass_count(&wire, 0); left > 0 && wire.good; left--) { /* files that the inputs name */
@@ -294,30 +286,22 @@ static status decode_task(const uint8_t *task, size_t size, struct run_request *
 
 status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size, struct error *error) {
   struct run_request request = {0};
-  struct run_result values = {0};
+  RUN_RESULT values = {0};
   char fields_path[LIMITS_PATH];
-  void *inputs = NULL;
+  OWNED void *inputs = NULL;
   *result = NULL;
   *result_size = 0;
-  status code = decode_task(task, task_size, &request, &inputs, fields_path, error);
-  if (code != STATUS_OK)
-    goto cleanup;
+  TRY(decode_task(task, task_size, &request, &inputs, fields_path, error));
   if (request.kind->threads)
     farm_allow_memory(threads_stacks(*request.kind->threads(inputs) - 1));
-  code = run_simulate(&request, NULL, NULL, 0, &values, error);
+  status code = run_simulate(&request, NULL, NULL, 0, &values, error);
   if (code != STATUS_OK && !values.result)
-    goto cleanup;
+    return code;
   if (code == STATUS_OK && request.fields_path && values.outcome.state != OUTCOME_INVALID)
     code = store_digest_fields(request.fields_path, values.fields_digest, error);
   if (code != STATUS_OK && error)
     values.unwritten = *error;
   values.unwritten.status = code;
-  code = STATUS_OK;
   *result = encode_result(request.kind, &values, result_size);
-  if (!*result)
-    code = status_fail(error, STATUS_MEMORY, "no memory for the result");
-cleanup:
-  run_result_clear(&values);
-  free(inputs);
-  return code;
+  return *result ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the result");
 }

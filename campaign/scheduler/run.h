@@ -40,6 +40,8 @@ typedef status (*run_watch)(void *context, const struct engine_kind *kind, void 
 status run_simulate(const struct run_request *request, run_watch watch, void *context, uint64_t block,
                     struct run_result *result, struct error *error);
 void run_result_clear(struct run_result *result);
+/* A result that is cleared where its block is left: RUN_RESULT result = {0}; */
+#define RUN_RESULT __attribute__((cleanup(run_result_clear))) struct run_result
 
 /* malloc'd; NULL when memory is out. */
 uint8_t *run_encode_task(const struct run_request *request, size_t *size);

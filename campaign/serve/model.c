@@ -1,5 +1,6 @@
 /* Checks that a campaign can be served, and makes scenes from vectors of numbers. */
 #include "campaign/serve/serve.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 #include <stdlib.h>
@@ -16,9 +17,7 @@ static status take_inputs(struct serve_model *model, struct error *error) {
   if (campaign->axis_count == 0)
     return status_fail(error, STATUS_CONTENT,
                        "the campaign varies nothing, so a server would have no inputs; give `vary`");
-  model->inputs = calloc(campaign->axis_count, sizeof *model->inputs);
-  if (!model->inputs)
-    return status_fail(error, STATUS_MEMORY, "no memory for the inputs");
+  model->inputs = memory_small(campaign->axis_count, sizeof *model->inputs);
   for (size_t i = 0; i < campaign->axis_count; i++) {
     const struct design_axis *axis = &campaign->axes[i];
     if (!is_number(axis->row))
@@ -65,12 +64,11 @@ static status take_levels(struct serve_model *model, const char *text, struct er
       if (strcmp(campaign->axes[i].row->path, knob->inputs[k].path) == 0)
         return status_fail(error, STATUS_USAGE, "--knob %s sets %s, which the campaign varies", name,
                            knob->inputs[k].path);
-  char *notes = NULL;
+  OWNED char *notes = NULL;
   const status code = ladder_make(knob, campaign->scene, text[length] ? text + length + 1 : NULL, &model->ladder,
                                   &notes, error);
   if (notes)
     fputs(notes, stderr);
-  free(notes);
   return code;
 }
 
@@ -96,23 +94,19 @@ void serve_model_clear(struct serve_model *model) {
 struct scene *serve_model_scene(const struct serve_model *model, const double *inputs, size_t level,
                                 struct error *error) {
   const struct campaign *campaign = model->campaign;
-  struct field_value *values = calloc(campaign->axis_count, sizeof *values);
-  if (!values) {
-    status_fail(error, STATUS_MEMORY, "no memory for a point");
+  OWNED struct field_value *values = NULL;
+  if (memory_array(&values, campaign->axis_count, sizeof *values, "a point", error))
     return NULL;
-  }
-  status code = STATUS_OK;
-  for (size_t i = 0; !code && i < model->input_count; i++) {
+  for (size_t i = 0; i < model->input_count; i++) {
     const struct field_value given = {.kind = FIELD_REAL, .number = inputs[i]};
-    code = field_set_value(campaign->axes[model->inputs[i]].row, &given, &values[model->inputs[i]], error);
+    if (field_set_value(campaign->axes[model->inputs[i]].row, &given, &values[model->inputs[i]], error))
+      return NULL;
   }
   for (size_t i = 0; i < campaign->axis_count; i++)
     if (campaign->axes[i].kind == DESIGN_AXIS_LINKED)
       design_axis_follow(&campaign->axes[i], &values[campaign->axes[i].linked], 0, &values[i]);
   const struct scene *base = level == SERVE_MODEL_OWN_LEVEL ? campaign->scene : model->ladder.level[level].scene;
-  struct scene *scene = code ? NULL : campaign_point_scene_from(base, campaign, values, error);
-  free(values);
-  return scene;
+  return campaign_point_scene_from(base, campaign, values, error);
 }
 
 static json_t *describe_row(const struct field *row) {

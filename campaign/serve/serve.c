@@ -109,37 +109,32 @@ static struct serve_answer answer_of(struct serve *serve, const struct job *job)
   const struct serve_config *config = &job->request.config;
   const size_t count = (size_t)config->count, size = config->result_count * count;
   struct error error = {0};
-  double *values = malloc(size * sizeof *values);
-  status code = values ? STATUS_OK : status_fail(&error, STATUS_MEMORY, "out of memory");
-  for (size_t i = 0; values && i < size; i++)
+  OWNED double *values = NULL;
+  status code = memory_array(&values, size, sizeof *values, "an answer", &error);
+  for (size_t i = 0; !code && i < size; i++)
     values[i] = NAN;
   for (size_t k = 0; !code && k < config->result_count; k++)
     code = read_store(serve, job, &config->results[k], values + k * count, NULL, &error);
-  const struct serve_answer answer = code ? serve_request_error(503, "Unavailable", "%s", error.message)
-                                          : serve_request_answer(&job->request, values);
-  free(values);
-  return answer;
+  return code ? serve_request_error(503, "Unavailable", "%s", error.message)
+              : serve_request_answer(&job->request, values);
 }
 
 /* ---- evaluations in ---- */
 
 /* The job waits for this run, unless the run has used up its attempts. */
-static status want(struct serve *serve, struct job *job, int64_t replicate, struct error *error) {
+static void want(struct serve *serve, struct job *job, int64_t replicate) {
   struct wanted *wanted = NULL;
   uint8_t identity[16];
   const uint64_t seed = campaign_seed(serve->model->campaign, job->scene, replicate);
   scene_identity(job->scene, seed, identity);
   HASH_FIND(hh, serve->runs, identity, sizeof identity, wanted);
   if (!wanted && scheduler_attempts(serve->scheduler, identity) >= serve->model->campaign->attempts)
-    return STATUS_OK;
+    return;
   if (!wanted) {
-    struct scene *scene = scene_copy(job->scene);
-    if (!scene)
-      return status_fail(error, STATUS_MEMORY, "out of memory");
     wanted = memory_small(1, sizeof *wanted);
     memcpy(wanted->identity, identity, sizeof identity);
-    wanted->scene = scene;
-    wanted->run = (struct scheduler_run){.scene = scene,
+    wanted->scene = scene_copy(job->scene);
+    wanted->run = (struct scheduler_run){.scene = wanted->scene,
                                          .point_id = job->point_id,
                                          .session_id = serve->session_id,
                                          .replicate = replicate,
@@ -152,7 +147,6 @@ static status want(struct serve *serve, struct job *job, int64_t replicate, stru
   wish->job = job;
   LL_PREPEND(wanted->wishes, wish);
   job->missing++;
-  return STATUS_OK;
 }
 
 /* Finds or adds the point in the store, and requests each missing run. */
@@ -160,15 +154,14 @@ static status open_job(struct serve *serve, struct job *job, struct error *error
   const struct serve_config *config = &job->request.config;
   TRY(store_add_point(serve->scheduler->store, serve->campaign_id, job->scene, serve->path_count, serve->paths,
                       &job->point_id, error));
-  bool *there = memory_small((size_t)config->count, sizeof *there);
-  status code = read_store(serve, job, &config->results[0], NULL, there, error);
-  for (int64_t r = 0; !code && r < config->count; r++) {
+  OWNED bool *there = memory_small((size_t)config->count, sizeof *there);
+  TRY(read_store(serve, job, &config->results[0], NULL, there, error));
+  for (int64_t r = 0; r < config->count; r++) {
     serve->counts.found += there[r];
     if (!there[r])
-      code = want(serve, job, config->first + r, error);
+      want(serve, job, config->first + r);
   }
-  free(there);
-  return code;
+  return STATUS_OK;
 }
 
 struct serve_answer serve_submit(struct serve *serve, struct serve_request *request, void *ticket) {

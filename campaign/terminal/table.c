@@ -882,10 +882,8 @@ status table_answer(struct answer question, bool written, enum table_format form
   TRY(answer_status(&answer)); /* the question itself failed: no table */
   const size_t count = answer_count(&answer);
   TABLE table = table_new(format, out);
-  OWNED size_t *doubtful = calloc(count + 1, sizeof *doubtful);
-  OWNED bool *hidden = calloc(count + 1, sizeof *hidden);
-  if (!doubtful || !hidden)
-    return status_fail(answer.error, STATUS_MEMORY, "no memory for a table");
+  OWNED size_t *doubtful = memory_small(count, sizeof *doubtful); /* at most COLUMNS_MAXIMUM */
+  OWNED bool *hidden = memory_small(count, sizeof *hidden);
   table->asked = !written;
   struct rows rows = {.table = table, .doubtful = doubtful, .hidden = hidden};
   name_columns(&rows, &answer, written);
