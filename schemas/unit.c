@@ -24,6 +24,7 @@ static const struct base {
 } bases[] = {
     {"1", {0, 0, 0, 0, 0, 0}, 0, false, 1, 1},
     {"%", {0, 0, 0, 0, 0, 0}, -2, false, 1, 1},
+    {"\u2030", {0, 0, 0, 0, 0, 0}, -3, false, 1, 1}, /* per mille */
     {"m", {0, 1, 0, 0, 0, 0}, 0, true, 1, 1},
     {"g", {1, 0, 0, 0, 0, 0}, -3, true, 1, 1},
     {"t", {1, 0, 0, 0, 0, 0}, 3, false, 1, 1},
@@ -62,20 +63,21 @@ enum { PREFIXES = sizeof prefixes / sizeof prefixes[0] };
 
 /* Spellings that users write, and the unit that they mean. */
 static const char *const habits[][2] = {
-    {"kph", "km/h"},    {"kmh", "km/h"},    {"kmph", "km/h"},    {"mph", "km/h"},    {"sec", "s"},
-    {"secs", "s"},      {"second", "s"},    {"seconds", "s"},    {"msec", "ms"},     {"usec", "us"},
-    {"mins", "min"},    {"minute", "min"},  {"minutes", "min"},  {"hr", "h"},        {"hrs", "h"},
-    {"hour", "h"},      {"hours", "h"},     {"day", "d"},        {"days", "d"},      {"meter", "m"},
-    {"meters", "m"},    {"metre", "m"},     {"metres", "m"},     {"micron", "um"},   {"microns", "um"},
-    {"ft", "m"},        {"inch", "cm"},     {"in", "cm"},        {"gram", "g"},      {"grams", "g"},
-    {"gm", "g"},        {"kilogram", "kg"}, {"kilograms", "kg"}, {"kgs", "kg"},      {"cc", "cm^3"},
-    {"gcc", "g/cm^3"},  {"mps", "m/s"},     {"kps", "km/s"},     {"fps", "m/s"},     {"degree", "deg"},
-    {"degrees", "deg"}, {"degs", "deg"},    {"radian", "rad"},   {"radians", "rad"}, {"percent", "%"},
-    {"newton", "N"},    {"newtons", "N"},   {"pascal", "Pa"},    {"pascals", "Pa"},  {"psi", "kPa"},
-    {"mpa", "MPa"},     {"joule", "J"},     {"joules", "J"},     {"watt", "W"},      {"watts", "W"},
-    {"kelvin", "K"},    {"C", "K"},         {"byte", "B"},       {"bytes", "B"},     {"M", "MiB"},
-    {"G", "GiB"},       {"gig", "GiB"},     {"meg", "MiB"},      {"dyne", "dyn"},    {"dynes", "dyn"},
-    {"ergs", "erg"},    {"tonne", "t"},     {"ton", "t"},        {"tons", "t"},      {"tonnes", "t"},
+    {"kph", "km/h"},    {"kmh", "km/h"},    {"kmph", "km/h"},    {"mph", "km/h"},   {"sec", "s"},
+    {"secs", "s"},      {"second", "s"},    {"seconds", "s"},    {"msec", "ms"},    {"usec", "us"},
+    {"mins", "min"},    {"minute", "min"},  {"minutes", "min"},  {"hr", "h"},       {"hrs", "h"},
+    {"hour", "h"},      {"hours", "h"},     {"day", "d"},        {"days", "d"},     {"meter", "m"},
+    {"meters", "m"},    {"metre", "m"},     {"metres", "m"},     {"micron", "um"},  {"microns", "um"},
+    {"ft", "m"},        {"inch", "cm"},     {"in", "cm"},        {"gram", "g"},     {"grams", "g"},
+    {"gm", "g"},        {"kilogram", "kg"}, {"kilograms", "kg"}, {"kgs", "kg"},     {"cc", "cm^3"},
+    {"gcc", "g/cm^3"},  {"mps", "m/s"},     {"kps", "km/s"},     {"fps", "m/s"},    {"degree", "deg"},
+    {"degrees", "deg"}, {"degs", "deg"},    {"degC", "K"},       {"radian", "rad"}, {"radians", "rad"},
+    {"percent", "%"},   {"newton", "N"},    {"newtons", "N"},    {"pascal", "Pa"},  {"pascals", "Pa"},
+    {"psi", "kPa"},     {"mpa", "MPa"},     {"joule", "J"},      {"joules", "J"},   {"watt", "W"},
+    {"watts", "W"},     {"kelvin", "K"},    {"C", "K"},          {"byte", "B"},     {"bytes", "B"},
+    {"M", "MiB"},       {"G", "GiB"},       {"gig", "GiB"},      {"meg", "MiB"},    {"dyne", "dyn"},
+    {"dynes", "dyn"},   {"ergs", "erg"},    {"tonne", "t"},      {"ton", "t"},      {"tons", "t"},
+    {"tonnes", "t"},
 };
 
 /* Compares without regard to case, except for a single letter: "m" and "M" differ. */
@@ -331,11 +333,13 @@ enum { UNIT_LENGTH = 200 };
 /* Writes typeset signs as the grammar has them: "kg·m⁻³" becomes "kg*m^-3". False: the unit is too long. */
 static bool plain_form(const char *text, char plain[UNIT_LENGTH]) {
   static const char *const signs[][2] = {
-      {"\u00B7", "*"}, {"\u22C5", "*"}, {"\u00D7", "*"}, {"\u2212", "-"}, /* dots, cross, minus */
-      {"\u207B", "-"}, {"\u2070", "0"}, {"\u00B9", "1"}, {"\u00B2", "2"}, {"\u00B3", "3"}, {"\u2074", "4"},
-      {"\u2075", "5"}, {"\u2076", "6"}, {"\u2077", "7"}, {"\u2078", "8"}, {"\u2079", "9"}, /* superscripts */
+      {"\u00B7", "*"},   {"\u22C5", "*"},   {"\u00D7", "*"},   {"\u2212", "-"}, /* dots, cross, minus */
+      {"\u00B0", "deg"}, {"\u00BA", "deg"}, {"\u02DA", "deg"}, /* degree, and what looks like it: ordinal, ring */
+      {"\u00A0", " "},   {"\u202F", " "},                      /* spaces that do not break */
+      {"\u207B", "-"},   {"\u2070", "0"},   {"\u00B9", "1"},   {"\u00B2", "2"}, {"\u00B3", "3"}, {"\u2074", "4"},
+      {"\u2075", "5"},   {"\u2076", "6"},   {"\u2077", "7"},   {"\u2078", "8"}, {"\u2079", "9"}, /* superscripts */
   };
-  enum { SIGNS = sizeof signs / sizeof signs[0], RAISED = 4 };
+  enum { SIGNS = sizeof signs / sizeof signs[0], RAISED = 9 };
   bool raised = false, whole = true;
   plain[0] = '\0';
   while (*text && whole) {
@@ -359,8 +363,10 @@ status unit_parse(const char *text, struct unit *unit, struct error *error) {
   *unit = one;
   if (!plain_form(text, plain))
     return status_fail(error, STATUS_CONTENT, "unit '%.*s' is too long", QUOTE, text);
-  const char *percent = strchr(plain, '%');
-  if (percent && strchr(percent + 1, '%'))
+  size_t shares = 0; /* percent and per mille */
+  for (const char *c = plain; *c; c++)
+    shares += *c == '%' || strncmp(c, "\u2030", strlen("\u2030")) == 0;
+  if (shares > 1)
     return status_fail(error, STATUS_CONTENT, "unit '%.*s' has two percent signs; write one", QUOTE, text);
   TRY(product(&p, unit));
   if (*p.at)
