@@ -54,9 +54,9 @@ static status status_of(int code) {
   case SQLITE_PERM:
   case SQLITE_AUTH:
   case SQLITE_CANTOPEN:
-  case SQLITE_BUSY:
   case SQLITE_LOCKED:
   case SQLITE_IOERR: return STATUS_IO;
+  case SQLITE_BUSY: return STATUS_STOPPED;
   case SQLITE_CORRUPT:
   case SQLITE_CONSTRAINT:
   case SQLITE_TOOBIG:

@@ -1,6 +1,11 @@
 /* The list of commands, and how one is run. */
 #include "campaign/commands/commands.h"
 
+#include <signal.h>
+#include <unistd.h>
+
+#include "campaign/farm/farm.h"
+
 #define COMMAND_ADDRESS(name_) &name_##_command,
 static const struct command *const all[] = {COMMANDS(COMMAND_ADDRESS)};
 
@@ -33,7 +38,25 @@ status commands_ask(const struct command_line *line,
   return ask(store, line, error);
 }
 
+/* While another program holds a store. A stop signal that a farm has blocked ends the wait; else it ends the program.
+ */
+static bool wait_for_store(const char *path, bool tell) {
+  sigset_t pending;
+  if (tell)
+    fprintf(
+        stderr,
+        "%sclast: %s: another program holds the store (a database browser with unsaved changes?): clast waits until "
+        "it lets go\n",
+        isatty(STDERR_FILENO) ? "\r\033[K" : "", path); /* over the line of progress */
+  sigpending(&pending);
+  for (size_t i = 0; i < FARM_STOP_SIGNALS; i++)
+    if (sigismember(&pending, farm_stop_signals[i]) > 0)
+      return false;
+  return true;
+}
+
 status commands_run(const struct command *command, const struct command_line *line, struct error *error) {
+  store_on_wait(wait_for_store);
   if (command->check)
     TRY(command->check(line, error));
   const status code = command->run ? command->run(line, error) : commands_ask(line, command->ask, error);

@@ -31,19 +31,13 @@ static status merge(struct store *store, const struct command_line *line, int64_
   return pooling_store(store, 0, error);
 }
 
-static void note(void *context, const char *text) {
-  (void)context;
-  fprintf(stderr, "clast: %s\n", text);
-}
-
 static status run(const struct command_line *line, struct error *error) {
   struct store *store = NULL;
   int64_t disagreeing = 0;
   char warning[512] = "";
-  TRY(scheduler_wait_for_store(line->arguments[0], note, NULL, error));
   TRY(store_open_writer(line->arguments[0], &store, warning, sizeof warning, error));
   if (*warning)
-    note(NULL, warning);
+    fprintf(stderr, "clast: %s\n", warning);
   status code = merge(store, line, &disagreeing, error);
   status closed = store_close(store, code ? NULL : error);
   if (code || closed)

@@ -2,11 +2,9 @@
 #include "campaign/scheduler/scheduler.h"
 
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include <utlist.h>
 
@@ -19,7 +17,6 @@
 enum { HELD_BYTES = 64 << 20 }; /* of reports while another program holds the store; then no new runs start */
 #define HELD_NOTED_S 10.0
 #define HELD_LAST_S  10.0
-enum { HELD_TRIED_MS = 50 };
 
 void scheduler_limits(const struct campaign *campaign, struct farm_options *options) {
   options->time_limit_s = isnan(campaign->time_limit) ? 0 : campaign->time_limit;
@@ -308,10 +305,10 @@ static void drop_held(struct scheduler *scheduler, struct scheduler_held *held) 
   free(held);
 }
 
-/* Takes in what waits, as long as the store is free. */
-static status take_held(struct scheduler *scheduler, struct error *error) {
+/* Takes in what waits, as long as the store is free, or is so within the given time. */
+static status take_held(struct scheduler *scheduler, double patience_s, struct error *error) {
   status code = STATUS_OK;
-  while (code == STATUS_OK && scheduler->held && store_begin_if_free(scheduler->store)) {
+  while (code == STATUS_OK && scheduler->held && store_begin_within(scheduler->store, patience_s)) {
     struct scheduler_held *held = scheduler->held;
     code = take(scheduler, held->run, &held->report, error);
     drop_held(scheduler, held);
@@ -324,31 +321,24 @@ static status take_held(struct scheduler *scheduler, struct error *error) {
   return code;
 }
 
-/* After a signal: results that cannot be stored within HELD_LAST_S are lost, and nothing else waits for the store. */
+/* After a signal: results that cannot be stored within HELD_LAST_S are lost. */
 static void end_held(struct scheduler *scheduler) {
-  const double until = clock_s() + HELD_LAST_S;
   struct error ignored = {0};
-  status code = STATUS_OK;
+  const struct scheduler_held *held;
   size_t count = 0;
   char text[160];
-  for (const struct scheduler_held *held = scheduler->held; held; held = held->next)
-    count++;
+  DL_COUNT(scheduler->held, held, count);
   if (count == 0)
     return;
   snprintf(text, sizeof text, "another program holds the store: clast tries for %g s to store %zu results", HELD_LAST_S,
            count);
   scheduler_note(scheduler, text);
   scheduler->held_noted = true;
-  while (code == STATUS_OK && scheduler->held && clock_s() < until) {
-    code = take_held(scheduler, &ignored);
-    if (scheduler->held)
-      nanosleep(&(struct timespec){.tv_nsec = 1000000 * HELD_TRIED_MS}, NULL);
-  }
+  (void)take_held(scheduler, HELD_LAST_S, &ignored);
   for (count = 0; scheduler->held; count++)
     drop_held(scheduler, scheduler->held);
   if (count == 0)
     return;
-  store_hurry(scheduler->store);
   snprintf(text, sizeof text,
            "%zu results were not stored, because another program holds the store; the same command computes them again",
            count);
@@ -361,8 +351,8 @@ static status take_report(void *context, const struct farm_report *report, struc
     return status_fail(error, STATUS_INTERNAL, "the farm reported a task that it was not given");
   const struct scheduler_run run = scheduler->out[report->id];
   scheduler->out[report->id].scene = NULL;
-  TRY(take_held(scheduler, error));
-  if (scheduler->held || !store_begin_if_free(scheduler->store))
+  TRY(take_held(scheduler, 0, error));
+  if (scheduler->held || !store_begin_within(scheduler->store, 0))
     return hold(scheduler, &run, report, error);
   return take(scheduler, run, report, error);
 }
@@ -380,27 +370,10 @@ static status tick(void *context, int running, struct error *error) {
       *error = scheduler->error;
     return scheduler->error.status;
   }
-  TRY(take_held(scheduler, error));
+  TRY(take_held(scheduler, 0, error));
   if (scheduler->planner.tick)
     scheduler->planner.tick(scheduler->planner.context, running, false);
   return store_tick(scheduler->store, error);
-}
-
-status scheduler_wait_for_store(const char *path, void (*note)(void *context, const char *text), void *context,
-                                struct error *error) {
-  for (bool noted = false; store_is_locked(path); noted = true) {
-    sigset_t pending;
-    if (!noted && note)
-      note(context, "another program holds the store (a database browser with unsaved changes?): clast waits until it "
-                    "lets go");
-    nanosleep(&(struct timespec){.tv_nsec = 1000000 * HELD_TRIED_MS}, NULL);
-    sigpending(&pending);
-    for (size_t i = 0; i < FARM_STOP_SIGNALS; i++)
-      if (sigismember(&pending, farm_stop_signals[i]) > 0)
-        return status_fail(error, STATUS_STOPPED, "stopped by signal %d (%s); the same command resumes",
-                           farm_stop_signals[i], strsignal(farm_stop_signals[i]));
-  }
-  return STATUS_OK;
 }
 
 /* Commits first: mpirun may kill this process within a second. Without a signal a rank was lost, and the others go on.
@@ -433,6 +406,8 @@ status scheduler_end(struct scheduler *scheduler, status code, struct error *err
   /* The disk that refused fields may refuse the last commit, too, which is then the error. */
   const bool refused = code == STATUS_STOPPED && scheduler->stop.status != STATUS_OK;
   const bool good = code == STATUS_OK || refused;
+  if (code != STATUS_OK)
+    store_hurry(scheduler->store, HELD_LAST_S);
   end_held(scheduler);
   const status flushed = store_flush(scheduler->store, good ? error : NULL);
   const struct error *why = NULL;
@@ -464,9 +439,7 @@ status scheduler_compute(const struct scheduler_planner *planner, struct farm *f
   struct scheduler scheduler = {.planner = *planner, .options = *options};
   char warning[1024] = "";
   scheduler.options.slots = farm_slots_total(farm);
-  status code = scheduler_wait_for_store(options->store_path, options->note, options->note_context, error);
-  if (code == STATUS_OK)
-    code = store_open_writer(options->store_path, &scheduler.store, warning, sizeof warning, error);
+  status code = store_open_writer(options->store_path, &scheduler.store, warning, sizeof warning, error);
   if (code == STATUS_OK && warning[0])
     scheduler_note(&scheduler, warning);
   if (code == STATUS_OK)

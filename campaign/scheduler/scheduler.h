@@ -100,10 +100,6 @@ struct scheduler { /* planners read the first members and the list of the runs t
   bool held_noted;
 };
 
-/* Waits as long as another program has locked the store at `path`, and notes it once (NULL: it does not).
- * STATUS_STOPPED: a stop signal came that the farm has blocked. */
-status scheduler_wait_for_store(const char *path, void (*note)(void *context, const char *text), void *context,
-                                struct error *error);
 /* Computes all that the planner asks for. Every rank calls it: ranks other than 0 compute runs and return the manager's
  * status. STATUS_STOPPED after a signal: the same command goes on. STATUS_IO: a fields file or the store could not be
  * written; STATUS_CONTENT from the store; what the planner returns. */

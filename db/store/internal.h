@@ -233,7 +233,7 @@ struct store {
   struct digest_tables tables;
   int64_t lowest_bin, highest_bin; /* range covered by table bin; lowest > highest: none */
 
-  int patience; /* ms: SQLite waits so long for another program's lock */
+  double waits_since, waited_at, wait_until; /* s, monotonic: for another program that holds the file */
   bool in_batch, broken;
   int batch_rows;
   double batch_started; /* s, monotonic */

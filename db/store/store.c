@@ -5,10 +5,12 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/vfs.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "db/store/internal.h"
@@ -18,7 +20,8 @@
 #include "schemas/file.h"
 #include "schemas/limits.h"
 
-enum { BUSY_MS = 10000 };
+#define ALONE_S 10.0 /* SQLite waits so long for another program where no function was given to store_on_wait() */
+#define TOLD_S  1.0
 
 /* ---- the place: names that are no files, a file that is moved while it is written, a copy without its -wal file ----
  */
@@ -241,33 +244,6 @@ bool store_is_being_written(const char *path) {
   return held;
 }
 
-/* Does another program hold one of these bytes of a file with a lock that excludes one of this type? */
-static bool is_locked(const char *path, short type, off_t first, off_t count) {
-  struct flock lock = {.l_type = type, .l_whence = SEEK_SET, .l_start = first, .l_len = count};
-  const int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
-  const bool held = descriptor >= 0 && fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
-  if (descriptor >= 0)
-    close(descriptor);
-  return held;
-}
-
-/* SQLite's locks of a database: 512 bytes from 2^30 on. In WAL mode readers hold them, too; the one writer has byte 120
- * of the -shm file. (SQLite's file format, os_unix.c and wal.c) */
-bool store_is_locked(const char *path) {
-  char *file = realpath(path, NULL), *shared = NULL;
-  struct stat kind;
-  bool held = false;
-  if (!file || stat(file, &kind) != 0 || !S_ISREG(kind.st_mode) || store_is_being_written(file))
-    held = false; /* by clast: opening it says so */
-  else if (in_wal_mode(file))
-    held = asprintf(&shared, "%s-shm", file) > 0 && is_locked(shared, F_RDLCK, 120, 1);
-  else
-    held = is_locked(file, F_WRLCK, 1 << 30, 512);
-  free(shared);
-  free(file);
-  return held;
-}
-
 /* The name of the file's network file system, on which locks and shared memory are not reliable; NULL: none. */
 static const char *network_file_system(int descriptor) {
   struct statfs file_system;
@@ -416,7 +392,7 @@ static struct store *allocate(const char *path) {
   if (!store)
     return NULL;
   store->lock = -1;
-  store->patience = BUSY_MS;
+  store->wait_until = INFINITY;
   store->lowest_bin = 1;
   store->path = paths_followed(path);
   if (store->path)
@@ -451,12 +427,34 @@ static void release(struct store *store) {
   free(store);
 }
 
+static bool (*on_wait)(const char *path, bool tell);
+
+void store_on_wait(bool (*wait)(const char *path, bool tell)) {
+  on_wait = wait;
+}
+
+/* SQLite calls it again and again while another program holds the file; 0 ends the wait. */
+static int wait_for_others(void *context, int count) {
+  struct store *store = context;
+  const double now = clock_s();
+  (void)count; /* SQLite does not begin at 0 in every wait */
+  if (now - store->waited_at > 1)
+    store->waits_since = now;
+  const double waited = now - store->waits_since;
+  const bool tell = waited >= TOLD_S && store->waited_at - store->waits_since < TOLD_S;
+  store->waited_at = now;
+  if (now >= store->wait_until || !(on_wait ? on_wait(store->path, tell) : waited < ALONE_S))
+    return 0;
+  nanosleep(&(struct timespec){.tv_nsec = waited < 0.1 ? 1000000 : 50000000}, NULL);
+  return 1;
+}
+
 static status open_database(struct store *store, int flags, struct error *error) {
   int code = sqlite3_open_v2(store->path, &store->db,
                              flags | SQLITE_OPEN_URI | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_NOMUTEX, NULL);
   if (code != SQLITE_OK)
     return sql_fail(store->db, code, "opening", error);
-  sqlite3_busy_timeout(store->db, store->patience);
+  sqlite3_busy_handler(store->db, wait_for_others, store);
   guard_connection(store->db);
   digest_function(store->db);
   return sql_execute(store->db, "PRAGMA cell_size_check = ON", "opening", error);
@@ -655,7 +653,7 @@ status store_close(struct store *store, struct error *error) {
     if (result == STATUS_OK)
       result = sql_execute(store->db, "DELETE FROM holder", "closing", error);
     /* If a reader is in the middle of a query, the file stays in WAL mode, complete and readable. */
-    sqlite3_busy_timeout(store->db, store->patience < 1000 ? store->patience : 1000);
+    store_hurry(store, 1);
     sqlite3_exec(store->db, "PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode = DELETE", NULL, NULL, NULL);
   }
   release(store);
@@ -709,20 +707,20 @@ status store_begin(struct store *store, struct error *error) {
   return result;
 }
 
-bool store_begin_if_free(struct store *store) {
+bool store_begin_within(struct store *store, double seconds) {
   if (store->in_batch || store->broken)
     return true;
-  sqlite3_busy_timeout(store->db, 0);
+  const double until = store->wait_until;
+  store_hurry(store, seconds);
   const int code = sqlite3_exec(store->db, "BEGIN IMMEDIATE", NULL, NULL, NULL);
-  sqlite3_busy_timeout(store->db, store->patience);
+  store->wait_until = until;
   if (code == SQLITE_OK)
     batch_begun(store);
   return (code & 0xff) != SQLITE_BUSY;
 }
 
-void store_hurry(struct store *store) {
-  store->patience = 0;
-  sqlite3_busy_timeout(store->db, 0);
+void store_hurry(struct store *store, double seconds) {
+  store->wait_until = fmin(store->wait_until, clock_s() + seconds);
 }
 
 status store_end(struct store *store, status result, int rows, struct error *error) {

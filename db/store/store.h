@@ -22,8 +22,12 @@ struct store;
  * "" for no file, or for a database in memory, so results would be lost at the end. It deletes and overwrites files
  * whose names end in -journal, -wal or -shm. */
 const char *store_name_refused(const char *path);
+/* What happens while a program that is not clast holds the file of a store, in every call that reads or writes: `wait`
+ * is called up to every 50 ms, and says whether the call waits on; tell: once in each wait, after 1 s. Where it says
+ * no, the call fails with STATUS_STOPPED. Call it when the program begins; without it calls wait for 10 s. */
+void store_on_wait(bool (*wait)(const char *path, bool tell));
 /* Opens for writing: creates the file when absent, upgrades an older one (and keeps a copy of it), refuses a newer or
- * foreign one. STATUS_IO: read-only, disk full, locked (the message names the holder's host and process).
+ * foreign one. STATUS_IO: read-only, disk full, written by another clast (the message names its host and process).
  * STATUS_CONTENT: not a clast store, damaged, newer. STATUS_USAGE: the name is no file's (":memory:"). *warning (may be
  * NULL) receives a sentence to print (network file system, copied without its -wal file), or "". The lock ends with the
  * process; a child forked while the store is open shares it until the child ends or executes another program. */
@@ -36,9 +40,6 @@ const char *store_path(const struct store *store);
 /* Is a process writing this store? Call it before the store is opened: closing a descriptor of the file drops SQLite's
  * locks on it. */
 bool store_is_being_written(const char *path);
-/* Has another program locked the store, so that opening it for writing has to wait? Call it before the store is opened,
- * as store_is_being_written(). */
-bool store_is_locked(const char *path);
 /* Commits and leaves one plain file in journal_mode=DELETE when writing. NULL is fine. */
 status store_close(struct store *store, struct error *error);
 /* A store that is only read, and closes itself where its block is left: STORE store = NULL; */
@@ -128,10 +129,11 @@ struct store_convergence {
 status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error);
 
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */
-/* Begins a batch without waiting. False: another program holds the store. Other faults are left to the next write. */
-bool store_begin_if_free(struct store *store);
-/* From now on, nothing waits for another program that holds the store. */
-void store_hurry(struct store *store);
+/* Begins a batch, and waits for another program at most so long. False: it holds the store. Other faults are left to
+ * the next write. */
+bool store_begin_within(struct store *store, double seconds);
+/* From now on, the calls of this store together wait at most so long for another program. */
+void store_hurry(struct store *store, double seconds);
 /* Commits when the batch is older than 1 s. STATUS_IO when the file was moved, removed or replaced. */
 status store_tick(struct store *store, struct error *error);
 

@@ -171,13 +171,11 @@ lock() { # lock SECONDS
 }
 sed -i 's/per_point: .*}/per_point: 250}/' held.yaml
 lock 60
-begun=$SECONDS
 "$toy" run held.yaml -j 2 >out 2>err </dev/null &
-sleep 2
+until grep -q "clast waits until it lets go" err; do sleep 0.1; done
 kill -TERM $!
 wait $! && code=0 || code=$?
 same "$code" 75 "exit of a run that waits for the store"
-says "clast waits until it lets go"
 kill $holder
 wait $holder 2>/dev/null || true
 "$toy" run held.yaml -j 2 >out 2>err </dev/null &

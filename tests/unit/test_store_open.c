@@ -272,36 +272,97 @@ static void second_writer_is_told_who_holds_it(void **state) {
   OK(store_close(store, &error));
 }
 
-static void another_programs_lock_is_named_as_such(void **state) {
+static struct {
+  sqlite3 *db;
+  int calls, told, lets_go_after; /* never: below 0 */
+} holder;
+
+static bool waits(const char *path, bool tell) {
+  assert_non_null(strstr(path, ".db"));
+  holder.told += tell;
+  if (++holder.calls == holder.lets_go_after)
+    assert_int_equal(sqlite3_exec(holder.db, "COMMIT", NULL, NULL, NULL), SQLITE_OK);
+  return holder.lets_go_after >= 0 || holder.calls < 5;
+}
+
+/* Another program takes the store now, and lets go after some calls of waits(). */
+static void held(const char *how, int lets_go_after) {
+  holder.calls = holder.told = 0;
+  holder.lets_go_after = lets_go_after;
+  assert_int_equal(sqlite3_exec(holder.db, how, NULL, NULL, NULL), SQLITE_OK);
+}
+
+static int open_twice(const char *name, char *path, struct store **store) {
+  populated(fixture_path(path, name));
+  store_on_wait(waits);
+  if (store)
+    OK(store_open_writer(path, store, NULL, 0, &error));
+  return sqlite3_open(path, &holder.db);
+}
+
+/* Every call that writes or reads waits for another program, wherever in the life of a store it comes. */
+static void every_call_waits_for_another_program(void **state) {
+  (void)state;
+  char path[64], other[64];
+  struct store *store = NULL;
+  int64_t session = 0, campaign = 0, added = 0, differing = 0;
+  populated(fixture_path(other, "source"));
+  assert_int_equal(open_twice("waits", path, NULL), SQLITE_OK);
+#define WAITED_FOR(how_, call_)                                                                                        \
+  held(how_, 5);                                                                                                       \
+  OK(call_);                                                                                                           \
+  assert_int_equal(holder.calls, 5)
+  WAITED_FOR("BEGIN EXCLUSIVE", store_open_reader(path, &store, &error));
+  OK(store_close(store, &error));
+  WAITED_FOR("BEGIN EXCLUSIVE", store_open_writer(path, &store, NULL, 0, &error));
+  WAITED_FOR("BEGIN IMMEDIATE", store_begin_session(store, "{}", &session, &error));
+  WAITED_FOR("BEGIN IMMEDIATE", store_add_campaign(store, "c", "name: c", "{}", &campaign, &error));
+  OK(store_flush(store, &error));
+  WAITED_FOR("BEGIN IMMEDIATE", store_set_session(store, session, campaign, &error));
+  OK(store_flush(store, &error));
+  WAITED_FOR("BEGIN IMMEDIATE", store_merge(store, other, &added, &differing, &error));
+  WAITED_FOR("BEGIN IMMEDIATE", store_end_session(store, session, "finished", &error));
+  WAITED_FOR("BEGIN IMMEDIATE", store_close(store, &error));
+  sqlite3_close(holder.db);
+  store_on_wait(NULL);
+}
+
+/* Told once, after a second. A wait that is ended is no fault of the store: the same command goes on. */
+static void a_wait_that_is_ended_is_a_stop(void **state) {
   (void)state;
   char path[64];
-  populated(fixture_path(path, "browser"));
-  sqlite3 *db = NULL;
-  sqlite3_open(path, &db);
-  assert_int_equal(sqlite3_exec(db, "BEGIN EXCLUSIVE", NULL, NULL, NULL), SQLITE_OK);
-  if (getenv("CLAST_FULL")) { /* the writer waits 10 s before it gives up */
-    struct store *store = NULL;
-    assert_int_equal(store_open_writer(path, &store, NULL, 0, &error), STATUS_IO);
-    assert_non_null(strstr(error.message, "Another program"));
-  }
-  sqlite3_close(db);
+  struct store *store = NULL;
+  assert_int_equal(open_twice("ended", path, NULL), SQLITE_OK);
+  held("BEGIN EXCLUSIVE", 130); /* of 1 ms each at first, then of 50 ms */
+  OK(store_open_reader(path, &store, &error));
+  assert_int_equal(holder.told, 1);
+  OK(store_close(store, &error));
+  held("BEGIN EXCLUSIVE", -1);
+  assert_int_equal(store_open_writer(path, &store, NULL, 0, &error), STATUS_STOPPED);
+  assert_non_null(strstr(error.message, "Another program"));
+  assert_int_equal(store_open_reader(path, &store, &error), STATUS_STOPPED);
+  sqlite3_close(holder.db);
+  store_on_wait(NULL);
 }
 
 static void a_free_store_is_taken_at_once(void **state) {
   (void)state;
   char path[64];
-  populated(fixture_path(path, "free"));
   struct store *store = NULL;
-  OK(store_open_writer(path, &store, NULL, 0, &error));
-  sqlite3 *db = NULL;
-  sqlite3_open(path, &db);
-  assert_int_equal(sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_OK);
-  assert_false(store_begin_if_free(store));
-  assert_int_equal(sqlite3_exec(db, "COMMIT", NULL, NULL, NULL), SQLITE_OK);
-  assert_true(store_begin_if_free(store));
-  assert_int_equal(sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_BUSY);
-  sqlite3_close(db);
+  assert_int_equal(open_twice("free", path, &store), SQLITE_OK);
+  held("BEGIN IMMEDIATE", 0);
+  assert_false(store_begin_within(store, 0));
+  assert_true(holder.calls <= 1);
+  assert_int_equal(sqlite3_exec(holder.db, "COMMIT", NULL, NULL, NULL), SQLITE_OK);
+  assert_true(store_begin_within(store, 0));
+  assert_int_equal(sqlite3_exec(holder.db, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_BUSY);
+  OK(store_flush(store, &error));
+  held("BEGIN IMMEDIATE", 0);
+  store_hurry(store, 0.2); /* all later waits together */
+  assert_int_equal(store_end_session(store, 1, "x", &error), STATUS_STOPPED);
+  sqlite3_close(holder.db);
   OK(store_close(store, &error));
+  store_on_wait(NULL);
 }
 
 static void reader_refuses_to_write(void **state) {
@@ -329,12 +390,19 @@ static void local_disk_brings_no_warning(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(foreign_files_are_refused),          cmocka_unit_test(missing_and_unreachable),
-      cmocka_unit_test(empty_file_is_a_new_store),          cmocka_unit_test(failed_creation_leaves_an_empty_file),
-      cmocka_unit_test(oldest_stores_are_refused),          cmocka_unit_test(missing_columns_are_added_by_a_writer),
-      cmocka_unit_test(version_2_is_brought_forward),       cmocka_unit_test(failed_migration_changes_nothing),
-      cmocka_unit_test(second_writer_is_told_who_holds_it), cmocka_unit_test(another_programs_lock_is_named_as_such),
-      cmocka_unit_test(a_free_store_is_taken_at_once),      cmocka_unit_test(reader_refuses_to_write),
+      cmocka_unit_test(foreign_files_are_refused),
+      cmocka_unit_test(missing_and_unreachable),
+      cmocka_unit_test(empty_file_is_a_new_store),
+      cmocka_unit_test(failed_creation_leaves_an_empty_file),
+      cmocka_unit_test(oldest_stores_are_refused),
+      cmocka_unit_test(missing_columns_are_added_by_a_writer),
+      cmocka_unit_test(version_2_is_brought_forward),
+      cmocka_unit_test(failed_migration_changes_nothing),
+      cmocka_unit_test(second_writer_is_told_who_holds_it),
+      cmocka_unit_test(every_call_waits_for_another_program),
+      cmocka_unit_test(a_wait_that_is_ended_is_a_stop),
+      cmocka_unit_test(a_free_store_is_taken_at_once),
+      cmocka_unit_test(reader_refuses_to_write),
       cmocka_unit_test(local_disk_brings_no_warning),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
