@@ -1,5 +1,5 @@
 /* Cholesky factors and eigenvectors. */
-#include "analysis/inference/covariance.h"
+#include "analysis/inference/inference.h"
 
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/inference/covariance.h"
 #include "engine/random.h"
 #include "schemas/memory.h"
 

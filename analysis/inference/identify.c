@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/inference/covariance.h"
 #include "analysis/statistics/statistics.h"
 
 enum { NODES = 64 };

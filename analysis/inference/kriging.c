@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/inference/covariance.h"
 #include "schemas/memory.h"
 
 /* Prior variance of the trend's constant and slopes, in variances of the means: wide. */

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "analysis/inference/covariance.h"
 #include "analysis/statistics/statistics.h"
 
 static struct sample_moments moments_of(const struct seed_scatter_runs *runs, size_t point) {

@@ -1,5 +1,5 @@
 /* Draws of the noise, least squares for every order, and intervals by the profile over orders and dropped levels. */
-#include "analysis/statistics/limit.h"
+#include "analysis/statistics/convergence.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/terminal/uncertainty.h"
+#include "campaign/terminal/table.h"
 #include "db/ask/ask.h"
 #include "engine/engine.h"
 #include "engine/outcome.h"

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "campaign/terminal/uncertainty.h"
+#include "campaign/terminal/table.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 

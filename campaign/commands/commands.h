@@ -12,7 +12,7 @@
 #include "campaign/launch/launch.h"
 #include "campaign/print/print.h"
 #include "campaign/terminal/option.h"
-#include "campaign/terminal/uncertainty.h"
+#include "campaign/terminal/table.h"
 #include "db/ask/ask.h"
 #include "db/store/store.h"
 #include "engine/engine.h"

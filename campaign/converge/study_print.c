@@ -8,7 +8,7 @@
 
 #include "analysis/statistics/statistics.h"
 #include "campaign/charts/charts.h"
-#include "campaign/terminal/uncertainty.h"
+#include "campaign/terminal/table.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdarg.h>
 
-#include "campaign/terminal/uncertainty.h"
+#include "campaign/terminal/table.h"
 #include "schemas/text.h"
 
 enum { WIDTH = 110, LABEL = 2 * FIELD_TEXT_SIZE, PARAGRAPH = (OBSERVED_DATA + 4) * LABEL };

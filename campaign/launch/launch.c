@@ -7,7 +7,6 @@
 #include <time.h>
 
 #include "campaign/print/print.h"
-#include "campaign/scheduler/provenance.h"
 #include "campaign/scheduler/run.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"

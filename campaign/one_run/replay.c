@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/scheduler/provenance.h"
+#include "campaign/scheduler/run.h"
 #include "engine/cpu_class.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "campaign/print/print.h"
-#include "campaign/terminal/uncertainty.h"
+#include "campaign/terminal/table.h"
 #include "db/ask/ask.h"
 #include "schemas/limits.h"
 #include "schemas/text.h"

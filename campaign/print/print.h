@@ -4,7 +4,7 @@
 
 #include "campaign/charts/charts.h"
 #include "campaign/scheduler/run.h"
-#include "campaign/terminal/uncertainty.h"
+#include "campaign/terminal/table.h"
 #include "db/ask/ask.h"
 
 /* ---- results of one run: for people one quantity per line with unit and meaning, for programs one row ---- */

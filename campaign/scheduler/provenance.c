@@ -1,5 +1,5 @@
 /* Writes the facts as a JSON object. */
-#include "campaign/scheduler/provenance.h"
+#include "campaign/scheduler/run.h"
 
 #include <stdio.h>
 #include <stdlib.h>

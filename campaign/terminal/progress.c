@@ -7,7 +7,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "campaign/terminal/uncertainty.h"
+#include "campaign/terminal/table.h"
 #include "schemas/text.h"
 
 struct progress {

@@ -10,7 +10,6 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "campaign/terminal/uncertainty.h"
 #include "schemas/csv.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"

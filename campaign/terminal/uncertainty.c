@@ -1,5 +1,5 @@
 /* Words for the errors of a mean. */
-#include "campaign/terminal/uncertainty.h"
+#include "campaign/terminal/table.h"
 
 #include <inttypes.h>
 #include <math.h>

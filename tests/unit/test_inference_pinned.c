@@ -2,7 +2,7 @@
  * specimens, errors and shots, on a grid and sampled. test_inference judges what the numbers mean; this test says that
  * they stay. */
 #include "analysis/analysis.h"
-#include "analysis/inference/covariance.h"
+#include "analysis/inference/inference.h"
 #include "tests/support/inference_cases.h"
 #include "tests/support/pinned.h"
 

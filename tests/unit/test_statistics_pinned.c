@@ -3,7 +3,6 @@
  * says that they stay. */
 #include "analysis/analysis.h"
 #include "analysis/statistics/convergence.h"
-#include "analysis/statistics/limit.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "tests/support/pinned.h"

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <cmocka.h>
 
-#include "campaign/terminal/uncertainty.h"
+#include "campaign/terminal/table.h"
 
 static void seeds(void **state) {
   (void)state;

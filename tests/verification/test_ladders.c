@@ -17,7 +17,7 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/limit.h"
+#include "analysis/statistics/convergence.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "tests/support/run_case.h"
