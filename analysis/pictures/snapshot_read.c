@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <hdf5.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -12,6 +13,7 @@
 #include <unistd.h>
 
 #include "schemas/file.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum { NAME_SIZE = 128 };
@@ -75,21 +77,24 @@ struct file {
   double bytes; /* largest size of the file's data if it is compressed */
 };
 
+/* An object of HDF5 that is closed where its block is left. */
+#define OBJECT __attribute__((cleanup(close_object))) hid_t
+static void close_object(hid_t *id) {
+  if (*id >= 0)
+    H5Idec_ref(*id);
+}
+
 static struct file *open_file(const char *path) {
   hsize_t size = 0;
-  struct file *f = calloc(1, sizeof *f);
-  if (!f)
-    return NULL;
+  struct file *f = memory_small(1, sizeof *f);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 prints nothing: the return values report errors */
   H5PLset_loading_state(0);              /* a file must not choose libraries to load: its unknown filters are errors */
   /* No lock: some file systems have none, and a program that only shows the file may hold one. clast puts whole files
    * in place and never writes into one. */
-  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  OBJECT access = H5Pcreate(H5P_FILE_ACCESS);
   if (access >= 0)
     H5Pset_file_locking(access, false, true);
   f->file = H5Fopen(path, H5F_ACC_RDONLY, access >= 0 ? access : H5P_DEFAULT);
-  if (access >= 0)
-    H5Pclose(access);
   if (f->file >= 0 && H5Fget_filesize(f->file, &size) >= 0) {
     f->bytes = (double)size * MOST_COMPRESSED;
     return f;
@@ -119,15 +124,11 @@ static bool has_object(struct file *f, const char *name) {
 
 /* Are the numbers stored in this file, without external or virtual storage? */
 static bool plain(hid_t set) {
-  hid_t type = H5Dget_type(set), layout = H5Dget_create_plist(set);
+  OBJECT type = H5Dget_type(set);
+  OBJECT layout = H5Dget_create_plist(set);
   H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
-  bool good = (class == H5T_INTEGER || class == H5T_FLOAT) && H5Tget_size(type) <= 8 && layout >= 0 &&
-              H5Pget_external_count(layout) == 0 && H5Pget_layout(layout) != H5D_VIRTUAL;
-  if (layout >= 0)
-    H5Pclose(layout);
-  if (type >= 0)
-    H5Tclose(type);
-  return good;
+  return (class == H5T_INTEGER || class == H5T_FLOAT) && H5Tget_size(type) <= 8 && layout >= 0 &&
+         H5Pget_external_count(layout) == 0 && H5Pget_layout(layout) != H5D_VIRTUAL;
 }
 
 /* Number of rows of a data set of plain numbers with the wanted shape; -1: another kind of data set, or too many
@@ -136,13 +137,11 @@ static int64_t count_rows(hid_t set, size_t width) {
   hsize_t size[2] = {0, 0};
   if (!plain(set)) /* first: the shape of virtual storage can lie in other files */
     return -1;
-  hid_t space = H5Dget_space(set);
-  if (space < 0)
-    return -1;
+  OBJECT space = H5Dget_space(set);
   int rank = width ? 2 : 1;
-  bool good = H5Sget_simple_extent_ndims(space) == rank && H5Sget_simple_extent_dims(space, size, NULL) == rank &&
-              size[0] <= SNAPSHOT_READ_LARGEST && (!width || size[1] == width);
-  H5Sclose(space);
+  bool good = space >= 0 && H5Sget_simple_extent_ndims(space) == rank &&
+              H5Sget_simple_extent_dims(space, size, NULL) == rank && size[0] <= SNAPSHOT_READ_LARGEST &&
+              (!width || size[1] == width);
   return good ? (int64_t)size[0] : -1;
 }
 
@@ -163,14 +162,11 @@ static void *rows_of(struct file *f, const char *name, size_t width, enum snapsh
   *rows = 0;
   if (!has_object(f, name))
     return NULL;
-  hid_t set = H5Dopen2(f->file, name, H5P_DEFAULT);
-  if (set < 0)
-    return NULL;
-  int64_t count = count_rows(set, width);
+  OBJECT set = H5Dopen2(f->file, name, H5P_DEFAULT);
+  int64_t count = set < 0 ? -1 : count_rows(set, width);
   void *values = count < 0 ? NULL : read_rows(f, set, kind, (size_t)count * (width ? width : 1));
   if (values)
     *rows = (size_t)count;
-  H5Dclose(set);
   return values;
 }
 
@@ -181,13 +177,10 @@ static hid_t open_attribute(struct file *f, const char *at, const char *name, H5
   hid_t id = H5Aopen_by_name(f->file, at, name, H5P_DEFAULT, H5P_DEFAULT);
   if (id < 0)
     return -1;
-  hid_t type = H5Aget_type(id), space = H5Aget_space(id);
+  OBJECT type = H5Aget_type(id);
+  OBJECT space = H5Aget_space(id);
   bool good = type >= 0 && space >= 0 && H5Tget_class(type) == class && H5Tget_size(type) <= most &&
               H5Sget_simple_extent_npoints(space) == 1 && (class != H5T_STRING || H5Tis_variable_str(type) == 0);
-  if (space >= 0)
-    H5Sclose(space);
-  if (type >= 0)
-    H5Tclose(type);
   if (good)
     return id;
   H5Aclose(id);
@@ -197,37 +190,27 @@ static hid_t open_attribute(struct file *f, const char *at, const char *name, H5
 static bool text_of(struct file *f, const char *at, const char *name, char *text, size_t size) {
   enum { LONGEST = 65536 };
   text[0] = 0;
-  hid_t id = open_attribute(f, at, name, H5T_STRING, LONGEST);
+  OBJECT id = open_attribute(f, at, name, H5T_STRING, LONGEST);
   if (id < 0)
     return false;
-  hid_t type = H5Aget_type(id);
-  size_t length = H5Tget_size(type);
-  char *whole = calloc(length + 1, 1);
-  bool good = whole && H5Aread(id, type, whole) >= 0;
-  if (good) {
-    size_t kept = strlen(whole) < size ? strlen(whole) : size - 1;
-    memcpy(text, whole, kept);
-    text[kept] = 0;
-  }
-  free(whole);
-  H5Tclose(type);
-  H5Aclose(id);
-  return good;
+  OBJECT type = H5Aget_type(id);
+  OWNED char *whole = calloc(H5Tget_size(type) + 1, 1);
+  if (!whole || H5Aread(id, type, whole) < 0)
+    return false;
+  snprintf(text, size, "%s", whole);
+  return true;
 }
 
 static bool number_of(struct file *f, const struct question *q, H5T_class_t class, hid_t type, void *value) {
-  hid_t id = open_attribute(f, q->at, q->name, class, 8);
-  bool good = id >= 0 && H5Aread(id, type, value) >= 0;
-  if (id >= 0)
-    H5Aclose(id);
-  return good;
+  OBJECT id = open_attribute(f, q->at, q->name, class, 8);
+  return id >= 0 && H5Aread(id, type, value) >= 0;
 }
 
 /* ---- the child: answers ---- */
 
 static bool reply(int line, struct file *file, const struct question *q) {
   struct answer a = {0};
-  void *values = NULL;
+  OWNED void *values = NULL;
   switch (q->what) {
   case HAS: a.good = has_object(file, q->at); break;
   case ROWS:
@@ -238,9 +221,7 @@ static bool reply(int line, struct file *file, const struct question *q) {
   case REAL: a.good = number_of(file, q, H5T_FLOAT, H5T_NATIVE_DOUBLE, &a.real); break;
   case INTEGER: a.good = number_of(file, q, H5T_INTEGER, H5T_NATIVE_LLONG, &a.integer); break;
   }
-  bool sent = put(line, &a, sizeof a) && (!values || put(line, values, size_of_rows(a.rows, q->width)));
-  free(values);
-  return sent;
+  return put(line, &a, sizeof a) && (!values || put(line, values, size_of_rows(a.rows, q->width)));
 }
 
 /* Answers requests until the parent closes its end. A crash ends this process immediately, without the parent's
@@ -360,10 +341,7 @@ bool snapshot_read_text(struct snapshot_read *f, const char *at, const char *nam
   text[0] = 0;
   if (!ask(f, &(struct question){.what = TEXT}, at, name, &a))
     return false;
-  size_t length = strnlen(a.text, sizeof a.text);
-  size_t kept = length < size ? length : size - 1;
-  memcpy(text, a.text, kept);
-  text[kept] = 0;
+  snprintf(text, size, "%.*s", (int)sizeof a.text, a.text);
   if (text_is_plain(text))
     return true;
   text[0] = 0;
