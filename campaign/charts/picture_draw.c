@@ -95,24 +95,19 @@ static status read_quantity(const char *fields, bool chosen, struct picture_clou
 static status draw_particles(const char *fields, const char *picture, const struct picture_choice *options,
                              struct error *error) {
   struct picture_look look;
-  struct picture_cloud cloud = {0};
+  __attribute__((cleanup(picture_cloud_clear))) struct picture_cloud cloud = {0};
   const char *what;
   char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "";
   TRY(choose_look(options, &look, &what, error));
   TRY(picture_cloud_read(fields, &cloud, error));
-  status code = read_quantity(fields, options->what != NULL, &cloud, &what, unit, error);
-  if (code)
-    goto cleanup;
+  TRY(read_quantity(fields, options->what != NULL, &cloud, &what, unit, error));
   name_look(&look, &cloud, title, sizeof title);
   picture_particles_numbers(&cloud, numbers, sizeof numbers);
   look.title = options->caption ? options->caption : title;
   look.subtitle = numbers;
   look.quantity = what;
   look.unit = unit;
-  code = picture_particles(picture, width_of(options), &cloud, &look, error);
-cleanup:
-  picture_cloud_clear(&cloud);
-  return code;
+  return picture_particles(picture, width_of(options), &cloud, &look, error);
 }
 
 /* One column of a profile, beside its depths. */

@@ -20,8 +20,7 @@ static void print(struct table *table, const struct ask_pairs_row *row, struct a
     table_real(table, row->difference.mean[k]);
   }
   table_rests_on(table, &both);
-  table_real(table, row->difference.difference);
-  table_real(table, row->difference.half_width);
+  table_reals(table, 2, (const double[]){row->difference.difference, row->difference.half_width});
   table_doubt_cells(table, &both);
 }
 

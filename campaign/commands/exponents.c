@@ -20,8 +20,7 @@ static status print_pool(struct table *table, size_t draws, const struct ask_poo
   TRY(pooled_goodness(runs, lower, draws, &goodness, error));
   TRY(pooled_rivals(runs, lower, &rivals, error));
   table_integer(table, pool->data.point_id);
-  table_real(table, lower);
-  table_real(table, pool->data.complete_mass);
+  table_reals(table, 2, (const double[]){lower, pool->data.complete_mass});
   table_integer(table, (int64_t)runs->count);
   table_integer(table, fit.fit.n);
   const double any = 1; /* a density: the exponents by size do not depend on it */

@@ -189,23 +189,18 @@ static status from_document(struct document *document, const struct campaign_cha
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
   if (changes)
     TRY(change(document, changes, error));
-  struct campaign *campaign = memory_small(1, sizeof *campaign);
+  CAMPAIGN campaign = memory_small(1, sizeof *campaign);
   campaign_read(document_root(document), folder, stored, campaign); /* its defaults clear the whole struct */
-  char *changed = document_change_text(document);
+  OWNED char *changed = document_change_text(document);
   campaign->text = changed ? text_for_store(changed, campaign) : NULL;
-  free(changed);
-  if (!campaign->text) {
-    campaign_free(campaign);
+  if (!campaign->text)
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
-  }
   const char *report = NULL;
   const status code = document_finish(document, &report);
-  if (code != STATUS_OK) {
-    status_fail(error, code, "%s", report);
-    campaign_free(campaign);
-    return code;
-  }
+  if (code != STATUS_OK)
+    return status_fail(error, code, "%s", report);
   *out = campaign;
+  campaign = NULL;
   return STATUS_OK;
 }
 
@@ -242,11 +237,10 @@ status campaign_load_changed(const char *path, const struct campaign_changes *ch
   *out = NULL;
   TRY(document_open(path, &document, error));
   const char *slash = strrchr(path, '/');
-  char *folder = slash ? memory_small_text(path) : NULL;
+  OWNED char *folder = slash ? memory_small_text(path) : NULL;
   if (folder)
     folder[slash - path + (slash == path)] = '\0';
   const status code = from_document(document, changes, folder, false, out, error);
-  free(folder);
   document_free(document);
   return code;
 }

@@ -175,7 +175,8 @@ static void read_fragments(struct reading *r, document_node *node) {
     return;
   }
   const size_t count = document_count(list);
-  double *masses = calloc(count, sizeof *masses), sum = 0;
+  OWNED double *masses = calloc(count, sizeof *masses);
+  double sum = 0;
   bool good = document_read(node, &fragments_table, also, &from);
   if (!masses)
     document_report_memory(node, "fragments");
@@ -188,7 +189,6 @@ static void read_fragments(struct reading *r, document_node *node) {
     document_report(list, "masses", "the fragments weigh %.4g kg together, the body %.4g kg", sum, from.total);
   else if (masses && good)
     take_masses(r, list, count, masses, from.total, from.complete);
-  free(masses);
 }
 
 /* ---- shots ---- */

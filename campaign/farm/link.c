@@ -93,9 +93,7 @@ static status post(struct farm_link *link, int rank, struct error *error) {
   struct farm_bytes *const out = &link->out[rank];
   if (out->begin == out->end)
     return STATUS_OK;
-  struct message *message = calloc(1, sizeof *message);
-  if (!message)
-    return status_fail(error, STATUS_MEMORY, "no memory for a message to rank %d", rank);
+  struct message *message = memory_small(1, sizeof *message);
   message->bytes = *out;
   message->rank = rank;
   *out = (struct farm_bytes){0};
@@ -142,8 +140,8 @@ static status receive_all(struct farm_link *link, struct error *error) {
     if (!flag)
       return STATUS_OK;
     MPI_Get_count(&from, MPI_BYTE, &size);
-    struct message *message = calloc(1, sizeof *message);
-    if (!message || size < 0 || !farm_frame_reserve(&message->bytes, (size_t)size + 1)) {
+    struct message *message = memory_small(1, sizeof *message);
+    if (size < 0 || !farm_frame_reserve(&message->bytes, (size_t)size + 1)) {
       free(message);
       return status_fail(error, STATUS_MEMORY, "no memory for a message of %d bytes from rank %d", size,
                          from.MPI_SOURCE);

@@ -31,8 +31,7 @@ static void input_cells(const struct fit *fit, size_t i, const struct ask_doubts
   double z[3];
   for (int q = 0; q < 3; q++)
     z[q] = posterior_quantile(&fit->posterior, i, levels[2 * q]);
-  table_real(table, fit_number(fit, i, z05));
-  table_real(table, fit_number(fit, i, z95));
+  table_reals(table, 2, (const double[]){fit_number(fit, i, z05), fit_number(fit, i, z95)});
   for (int q = 0; q < 3; q++) {
     table_rests_on(table, doubts);
     table_real(table, fit_number(fit, i, z[q]));
@@ -85,10 +84,8 @@ static double predicted(const struct fit *fit, size_t k, double level) {
 static void value_cells(const struct fit *fit, size_t k, struct table *table) {
   const struct observed_datum *datum = &fit->observed->data[k];
   const double slope = datum->ask.kind == ASK_SPECIMENS_COUNT ? 1 + datum->value : 1;
-  table_real(table, datum->value);
-  table_real(table, datum->error);
-  table_real(table, seeds_of(fit, k));
-  table_real(table, fit->data[k].resolution * slope);
+  table_reals(table, 4,
+              (const double[]){datum->value, datum->error, seeds_of(fit, k), fit->data[k].resolution * slope});
 }
 
 static const char *const datum_columns[] = {"measured", "value",  "error", "sd_seeds", "sd_resolution",

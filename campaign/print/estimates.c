@@ -65,10 +65,7 @@ static status row_for_programs(struct printing *printing, const struct ask_point
     table_value(table, &row->inputs[i]);
   table_integer(table, row->n);
   table_integer(table, row->failed);
-  table_real(table, row->mean);
-  table_real(table, row->half_width);
-  table_real(table, row->low);
-  table_real(table, row->high);
+  table_reals(table, 4, (const double[]){row->mean, row->half_width, row->low, row->high});
   table_integer(table, row->weak);
   table_real(table, row->resolution);
   table_text(table, ask_resolution_names[row->resolution_verdict]);
@@ -78,9 +75,7 @@ static status row_for_programs(struct printing *printing, const struct ask_point
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
     struct ask_resolution resolution;
     TRY(read_resolution(printing, row, m, window, &resolution, error));
-    table_real(table, fit->fit.beta);
-    table_real(table, fit->interval.half_width);
-    table_real(table, resolution.half_width);
+    table_reals(table, 3, (const double[]){fit->fit.beta, fit->interval.half_width, resolution.half_width});
     table_text(table, ask_resolution_names[resolution.verdict]);
   }
   table_doubt_cells(table, &doubts->all);

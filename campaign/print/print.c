@@ -214,9 +214,7 @@ static status print_bins(struct table *table, const struct spectrum_choice *choi
     table_integer(table, (int64_t)runs->count);
     table_integer(table, bins[b].count);
     table_rests_on(table, doubts);
-    table_real(table, bins[b].value);
-    table_real(table, bins[b].half_width);
-    table_real(table, bins[b].mass / mass);
+    table_reals(table, 3, (const double[]){bins[b].value, bins[b].half_width, bins[b].mass / mass});
     table_doubt_cells(table, doubts);
   }
   return STATUS_OK;
@@ -281,12 +279,10 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
     struct measured_match match;
     TRY(measured_compare(choice->measured, &pool->data.runs, complete, &match, error));
     print_pool_cells(table, &pools, pool);
-    table_real(table, match.from);
-    table_real(table, match.fragments);
+    table_reals(table, 2, (const double[]){match.from, match.fragments});
     table_integer(table, (int64_t)pool->data.runs.count);
     table_rests_on(table, &pool->doubts);
-    table_real(table, match.simulated.mean);
-    table_real(table, match.simulated.half_width);
+    table_reals(table, 2, (const double[]){match.simulated.mean, match.simulated.half_width});
     table_rests_on(table, &pool->doubts);
     table_real(table, match.distance);
     table_rests_on(table, &pool->doubts);

@@ -26,9 +26,7 @@ static void row(const struct printing *printing, const char *name, double value,
   table_text(printing->table, name);
   if (strcmp(name, "runs") != 0)
     table_rests_on(printing->table, &printing->pool->doubts);
-  table_real(printing->table, value);
-  table_real(printing->table, low);
-  table_real(printing->table, high);
+  table_reals(printing->table, 3, (const double[]){value, low, high});
   table_doubt_cells(printing->table, &printing->pool->doubts);
 }
 
@@ -338,9 +336,8 @@ static status print_parts(const struct run_cells *cells, const struct scatter_pa
     table_rests_on(table, &cells->doubts);
     table_real(table, parts[i].variance);
     table_rests_on(table, &cells->doubts);
-    table_real(table, parts[i].share);
-    table_real(table, parts[i].share - parts[i].half_width);
-    table_real(table, parts[i].share + parts[i].half_width);
+    const double share = parts[i].share, half_width = parts[i].half_width;
+    table_reals(table, 3, (const double[]){share, share - half_width, share + half_width});
     table_doubt_cells(table, &cells->doubts);
   }
   return table_end(table, error);
@@ -492,8 +489,7 @@ static status read_runs(struct store *store, const char *quantity, struct readin
 
 static void interval(struct table *table, const struct sample_interval *i, const struct ask_doubts *doubts) {
   table_rests_on(table, doubts);
-  table_real(table, i->estimate);
-  table_real(table, i->half_width);
+  table_reals(table, 2, (const double[]){i->estimate, i->half_width});
 }
 
 static status print_sobol(const struct reading *r, enum table_format format, struct error *error) {
@@ -542,9 +538,7 @@ static status print_morris(const struct reading *r, enum table_format format, st
     table_text(table, r->campaign->axes[i].row->path);
     interval(table, &effect[i].mean_absolute, &r->cells.doubts);
     table_rests_on(table, &r->cells.doubts);
-    table_real(table, effect[i].mean);
-    table_real(table, effect[i].deviation);
-    table_real(table, effect[i].noise);
+    table_reals(table, 3, (const double[]){effect[i].mean, effect[i].deviation, effect[i].noise});
     table_doubt_cells(table, &r->cells.doubts);
   }
   if (table_for_people(format))

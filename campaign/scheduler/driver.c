@@ -711,17 +711,15 @@ status driver_list_begin(const struct campaign *like, const struct scene *scene,
   campaign->axis_count = 0;
   campaign->design = (struct campaign_design_keys){.kind = CAMPAIGN_LIST};
   campaign->keep = CAMPAIGN_KEEP_NONE;
-  campaign->axes = calloc(axes + 1, sizeof *campaign->axes);
   campaign->scene = scene_copy(scene);
-  bool good = campaign->axes && campaign->scene;
-  for (size_t i = 0; good && i < axes; i++) {
+  campaign->axes = memory_small(axes, sizeof *campaign->axes);
+  while (campaign->axis_count < axes) {
     struct design_axis *axis = &campaign->axes[campaign->axis_count++];
     *axis = (struct design_axis){.kind = DESIGN_AXIS_LEVELS, .lower = -HUGE_VAL, .upper = HUGE_VAL};
-    axis->levels = calloc(points, sizeof *axis->levels);
+    TRY(memory_array(&axis->levels, points, sizeof *axis->levels, "a round", error));
     axis->level_count = points;
-    good = axis->levels != NULL;
   }
-  return good ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");
+  return STATUS_OK;
 }
 
 status driver_list_end(struct campaign *campaign, const char *scene_reference, const char *comment,

@@ -5,6 +5,8 @@
 #include <pthread.h>
 #include <stdlib.h>
 
+#include "schemas/memory.h"
+
 struct fit {
   const struct ask_points_version *which;
   struct point_data point;
@@ -39,19 +41,15 @@ static status end(struct store *store, struct fit *fit, status code, struct erro
     return code;
   if (fit->has_thread)
     pthread_join(fit->thread, NULL);
-  if (code == STATUS_OK && fit->result != STATUS_OK && error)
-    *error = fit->error;
   if (code == STATUS_OK)
-    code = fit->result;
-  if (code == STATUS_OK)
-    code = write_fit(store, fit, error);
+    code = fit->result ? status_fail(error, fit->result, "%s", fit->error.message) : write_fit(store, fit, error);
   point_release(&fit->point);
   *fit = (struct fit){0};
   return code;
 }
 
 status pooling_store(struct store *store, int64_t campaign_id, struct error *error) {
-  struct ask_points_version *points = NULL;
+  OWNED struct ask_points_version *points = NULL;
   size_t count = 0;
   struct fit fit = {0};
   TRY(store_flush(store, error)); /* the sums of the open batch */
@@ -71,7 +69,6 @@ status pooling_store(struct store *store, int64_t campaign_id, struct error *err
       point_release(&point);
     }
   }
-  code = end(store, &fit, code, error);
-  free(points);
-  return code ? code : store_flush(store, error);
+  TRY(end(store, &fit, code, error));
+  return store_flush(store, error);
 }

@@ -110,9 +110,7 @@ static struct serve_answer refused_at_once(const struct serve_http *server, stru
 }
 
 static enum MHD_Result begin(struct serve_http *http, struct MHD_Connection *connection, void **context) {
-  struct exchange *exchange = *context = calloc(1, sizeof *exchange);
-  if (!exchange)
-    return MHD_NO;
+  struct exchange *exchange = *context = memory_small(1, sizeof *exchange);
   *exchange = (struct exchange){.http = http, .connection = connection};
   http->exchanges++;
   exchange->answer = refused_at_once(http, connection);

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "campaign/terminal/table.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 struct progress {
@@ -25,9 +26,8 @@ enum progress_style progress_style_of(FILE *out) {
 }
 
 struct progress *progress_create(FILE *out, enum progress_style style, bool colour, int columns) {
-  struct progress *progress = calloc(1, sizeof *progress);
-  if (progress)
-    *progress = (struct progress){out, style, colour, false, columns, -HUGE_VAL, -1};
+  struct progress *progress = memory_small(1, sizeof *progress);
+  *progress = (struct progress){out, style, colour, false, columns, -HUGE_VAL, -1};
   return progress;
 }
 

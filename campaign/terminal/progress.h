@@ -26,7 +26,7 @@ enum progress_style { PROGRESS_PLAIN, PROGRESS_BAR };
 struct progress;
 /* PROGRESS_BAR when `out` is a terminal that can redraw a line (TERM set and not dumb). */
 enum progress_style progress_style_of(FILE *out);
-/* `out` is borrowed. columns: width of the terminal, 0 = ask it. NULL when memory is out. */
+/* `out` is borrowed. columns: width of the terminal, 0 = ask it. Never NULL. */
 struct progress *progress_create(FILE *out, enum progress_style style, bool colour, int columns);
 /* now: seconds of any monotonic clock. Draws only when it is time to, or when `last`. */
 void progress_update(struct progress *progress, const struct progress_state *state, double now, bool last);

@@ -10,6 +10,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "engine/grow.h"
 #include "schemas/csv.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
@@ -163,15 +164,12 @@ static char *heading(struct table *table, const char *name, const char *unit) {
 void table_column(struct table *table, const char *name, const char *unit) {
   if (table->broken)
     return;
-  struct column *columns = realloc(table->columns, (table->column_count + 1) * sizeof *columns);
-  if (!columns || table->column_count == COLUMNS_MAXIMUM) {
-    if (columns)
-      table->columns = columns;
+  if (table->column_count == COLUMNS_MAXIMUM ||
+      !grow_block(&table->columns, (table->column_count + 1) * sizeof *table->columns)) {
     fail(table);
     return;
   }
-  table->columns = columns;
-  struct column *column = &columns[table->column_count];
+  struct column *columns = table->columns, *column = &columns[table->column_count];
   *column = (struct column){.name = copy(table, name), .factor = 1};
   if (unit && strcmp(unit, "1") != 0 && *unit)
     column->unit = copy(table, unit);
@@ -294,35 +292,28 @@ static void measure(struct table *table, size_t c) {
   }
 }
 
-/* Gives headings several lines, where that gains most first, until the table fits. */
-static void narrow_headings(struct table *table, size_t room) {
-  struct column *best;
-  do {
-    best = NULL;
-    for (size_t c = 0; c < table->column_count; c++) {
-      struct column *column = &table->columns[c];
-      if (!column->left_out && column->width > column->narrow &&
-          (!best || column->width - column->narrow > best->width - best->narrow))
-        best = column;
-    }
-    if (best && total_width(table) > room)
-      best->width = best->narrow;
-  } while (best && total_width(table) > room);
+/* The column that gains most by a heading of several lines; with `texts` the widest column of texts. NULL: none. */
+static struct column *widest(const struct table *table, bool texts) {
+  struct column *best = NULL;
+  size_t most = 0;
+  for (size_t c = 0; c < table->column_count; c++) {
+    struct column *column = &table->columns[c];
+    const size_t least = texts ? TEXT_LEAST : column->narrow;
+    if (column->left_out || (texts && !column->text) || column->width <= least + most)
+      continue;
+    best = column;
+    most = column->width - least;
+  }
+  return best;
 }
 
-/* Makes columns of texts narrower, the widest first, until the table fits or none is wide. */
-static void narrow_texts(struct table *table, size_t room) {
-  for (size_t total = total_width(table); total > room; total--) {
-    struct column *widest = NULL;
-    for (size_t c = 0; c < table->column_count; c++) {
-      struct column *column = &table->columns[c];
-      if (!column->left_out && column->text && column->width > TEXT_LEAST && (!widest || column->width > widest->width))
-        widest = column;
-    }
-    if (!widest)
-      return;
-    widest->width--;
-  }
+/* Until the table fits: gives headings several lines, then makes columns of texts narrower. */
+static void make_narrow(struct table *table, size_t room) {
+  struct column *column;
+  while (total_width(table) > room && (column = widest(table, false)))
+    column->width = column->narrow;
+  while (total_width(table) > room && (column = widest(table, true)))
+    column->width--;
 }
 
 /* Do the cells of a column say nothing: because all are the same, or are 0 or missing? */
@@ -346,8 +337,7 @@ static void lay_out(struct table *table) {
       column->role = KEY;
     measure(table, c);
   }
-  narrow_headings(table, room);
-  narrow_texts(table, room);
+  make_narrow(table, room);
   if (table->format == TABLE_TEXT)
     for (size_t c = table->column_count; c-- > 1 && total_width(table) > room;)
       table->columns[c].left_out |= table->columns[c].role != KEY;
@@ -475,7 +465,7 @@ static bool is_formula(const char *text) {
 /* The text comes from a store, perhaps a foreign one: it neither controls a terminal nor runs in a spreadsheet. */
 static void print_csv_text(struct table *table, const char *text) {
   FILE *const out = table->out;
-  char *plain = copy(table, text);
+  OWNED char *plain = copy(table, text);
   if (!plain)
     return;
   text_make_plain(plain, "\t\n");
@@ -491,7 +481,6 @@ static void print_csv_text(struct table *table, const char *text) {
     }
     fputc('"', out);
   }
-  free(plain);
 }
 
 static void header(struct table *table) {
@@ -538,13 +527,10 @@ static void keep(struct table *table, const struct cell *cell) {
     return;
   }
   struct kept *kept = &table->kept[table->kept_count];
-  *kept = (struct kept){copy(table, cell->shown), strlen(cell->shown), cell->number,
+  const bool marked = *table->mark && cell->kind != CELL_MISSING;
+  snprintf(text, sizeof text, "%.*s%s", UNCERTAINTY_TEXT, cell->shown, table->mark);
+  *kept = (struct kept){copy(table, marked ? text : cell->shown), strlen(cell->shown), cell->number,
                         cell->kind == CELL_TEXT && *cell->shown};
-  if (*table->mark && cell->kind != CELL_MISSING && kept->text) {
-    snprintf(text, sizeof text, "%.*s%s", UNCERTAINTY_TEXT, cell->shown, table->mark);
-    free(kept->text);
-    kept->text = copy(table, text);
-  }
   if (!kept->text)
     return;
   table->kept_count++;
@@ -646,12 +632,11 @@ void table_text(struct table *table, const char *text) {
     add_cell(table, (struct cell){CELL_TEXT, text, text, NAN});
     return;
   }
-  char *line = copy(table, text); /* a row stays one line, and a text from a file cannot control the terminal */
+  OWNED char *line = copy(table, text); /* a row stays one line, and a text from a file cannot control the terminal */
   if (!line)
     return;
   text_make_plain(line, "");
   add_cell(table, (struct cell){CELL_TEXT, line, line, NAN});
-  free(line);
 }
 
 /* People see a varied input in the campaign's unit. */
@@ -682,6 +667,11 @@ void table_boolean(struct table *table, bool value) {
 
 void table_real(struct table *table, double number) {
   table_fixed(table, number, -1);
+}
+
+void table_reals(struct table *table, size_t count, const double *numbers) {
+  for (size_t i = 0; i < count; i++)
+    table_real(table, numbers[i]);
 }
 
 void table_fixed(struct table *table, double number, int decimals) {
@@ -832,21 +822,13 @@ static void name_columns(struct rows *rows, const struct answer *answer, bool wr
 }
 
 static void print_blob(struct rows *rows, const unsigned char *bytes, size_t size) {
-  char text[2 * BLOB_SHOWN + 1];
-  if (rows->table->people && size > BLOB_SHOWN) {
-    snprintf(text, sizeof text, "(%zu bytes)", size);
-    table_text(rows->table, text);
-    return;
-  }
-  char *hex = size <= BLOB_SHOWN ? text : malloc(2 * size + 1);
-  if (!hex) {
-    table_missing(rows->table);
-    return;
-  }
-  text_hex(bytes, size, hex);
-  table_text(rows->table, hex);
-  if (hex != text)
-    free(hex);
+  const size_t room = 2 * size + sizeof "(18446744073709551615 bytes)";
+  OWNED char *text = malloc(room);
+  if (text && rows->table->people && size > BLOB_SHOWN)
+    snprintf(text, room, "(%zu bytes)", size);
+  else if (text)
+    text_hex(bytes, size, text);
+  table_text(rows->table, text);
 }
 
 void table_value(struct table *table, const struct query_value *value) {

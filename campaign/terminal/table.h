@@ -46,6 +46,7 @@ void table_rare(struct table *table);
 
 void table_text(struct table *table, const char *text); /* NULL: missing */
 void table_real(struct table *table, double number);
+void table_reals(struct table *table, size_t count, const double *numbers); /* a cell for each */
 /* The same with this number of decimals in the table for people. */
 void table_fixed(struct table *table, double number, int decimals);
 void table_integer(struct table *table, int64_t number);
