@@ -263,9 +263,7 @@ static status print_alternatives(const struct accuracy *accuracy, enum table_for
       table_integer(table, option->seeds);
     else
       table_missing(table);
-    table_real(table, option->run_s);
-    table_real(table, option->cpu_s);
-    table_real(table, option->run_s / reference->run_s);
+    table_reals(table, 3, (const double[]){option->run_s, option->cpu_s, option->run_s / reference->run_s});
   }
   return table_end(table, error);
 }

@@ -2,9 +2,7 @@
  * increasing numbers of seeds, until the bias of every level is known to the wanted width or the budget is spent. Its
  * runs are ordinary runs of the store: a stopped study goes on where it ended, and runs of other campaigns are used.
  *
- *     study_request_read(&request, path, &subject, &error);      // sets up subject.study
- *     study_rounds_launch(&subject.study, &launch, &error);      // farm, rounds, tables
- *     study_request_clear(&subject); */
+ *     study_launch(&request, line, &error);      // what is asked for, farm, rounds, tables */
 #ifndef CLAST_CAMPAIGN_CONVERGE_STUDY_H
 #define CLAST_CAMPAIGN_CONVERGE_STUDY_H
 
@@ -97,15 +95,11 @@ status study_store(const struct study *study, struct store *store, struct error 
 
 /* ---- study_rounds.c ---- */
 
-struct study_launch {
-  const struct launch_options *options;
-  const struct command_line *line;
-  enum table_format format;
-  const char *picture, *frontier; /* pictures of means and of errors; NULL: none */
-};
-/* Starts the farm, runs all rounds and, on rank 0, stores and prints what was found and draws the pictures. STATUS_OK
- * also when the budget is spent; STATUS_STOPPED after a signal: the same command continues the study. */
-status study_rounds_launch(struct study *study, const struct study_launch *asked, struct error *error);
+struct study_request;
+/* Reads the request for the first argument, starts the farm, runs all rounds and, on rank 0, stores and prints what was
+ * found and draws the pictures. STATUS_OK also when the budget is spent; STATUS_STOPPED after a signal: the same
+ * command continues the study. */
+status study_launch(const struct study_request *request, const struct command_line *line, struct error *error);
 
 /* ---- study_print.c ---- */
 
@@ -123,10 +117,12 @@ status study_print_picture(const struct study *study, bool of_errors, const char
 
 /* A user's request as on the command line (`clast converge --help`); texts may be NULL. */
 struct study_request {
+  struct launch_options launch;
   struct option_list knobs, set;
   const char *quantity, *store, *within, *seconds;
   int64_t first_seeds, most_seeds, first_seed;
-  bool quiet; /* prints no remarks on levels that are left out */
+  const char *picture, *frontier; /* of means and of errors */
+  bool list;                      /* of the knobs, and no study */
 };
 
 enum { STUDY_SCENES = 64 };
@@ -138,6 +134,7 @@ struct study_subject {
   struct scene *scenes[STUDY_SCENES]; /* owned */
   size_t scene_count;
   char reference[2 * FIELD_TEXT_SIZE]; /* path of the scene from the current folder */
+  bool quiet;                          /* prints no remarks on levels that are left out */
 };
 
 /* Loads `path`, a file of a campaign or a scene or a built-in scene, and sets up its study: limits, quantities, rule,

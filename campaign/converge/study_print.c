@@ -86,20 +86,12 @@ static void print_level(struct table *table, const struct convergence_row *row, 
   table_text(table, setting);
   table_integer(table, row->n);
   table_rests_on(table, doubts);
-  table_real(table, row->mean);
-  table_real(table, row->half_width);
-  table_real(table, row->deviation);
-  table_real(table, row->skew);
-  table_real(table, row->upper_mode);
-  table_real(table, row->cpu);
+  table_reals(table, 6,
+              (const double[]){row->mean, row->half_width, row->deviation, row->skew, row->upper_mode, row->cpu});
   table_rests_on(table, doubts);
-  table_real(table, row->bias);
-  table_real(table, row->bias_half_width);
-  table_real(table, row->correlation);
-  table_real(table, row->correlation_low);
-  table_real(table, row->correlation_high);
-  table_real(table, row->break_even);
-  table_real(table, row->error);
+  table_reals(table, 2, (const double[]){row->bias, row->bias_half_width});
+  table_reals(table, 3, (const double[]){row->correlation, row->correlation_low, row->correlation_high});
+  table_reals(table, 2, (const double[]){row->break_even, row->error});
   table_text(table, row->frontier ? "yes" : "");
 }
 

@@ -9,6 +9,7 @@
 
 #include "campaign/document/campaign.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 
 /* ---- the subject ---- */
 
@@ -139,14 +140,13 @@ static status read_rule(struct study *study, const struct study_request *request
 /* ---- knobs ---- */
 
 /* A knob that does not apply is left out with a remark if it comes from a group, and refused if it was named. */
-static status add_knob(struct study_subject *subject, const struct study_request *request, const struct scene *scene,
-                       const struct knob *knob, const char *settings, bool named, struct error *error) {
+static status add_knob(struct study_subject *subject, const struct scene *scene, const struct knob *knob,
+                       const char *settings, bool named, struct error *error) {
   struct ladder levels;
-  char *notes = NULL;
+  OWNED char *notes = NULL;
   status code = ladder_make(knob, scene, settings, &levels, &notes, error);
-  for (const char *line = code || request->quiet ? NULL : notes; line && *line; line += strcspn(line, "\n") + 1)
+  for (const char *line = code || subject->quiet ? NULL : notes; line && *line; line += strcspn(line, "\n") + 1)
     fprintf(stderr, "clast: %.*s\n", (int)strcspn(line, "\n"), line);
-  free(notes);
   if (code == STATUS_CONTENT && !named) {
     *error = (struct error){0};
     return STATUS_OK;
@@ -155,38 +155,39 @@ static status add_knob(struct study_subject *subject, const struct study_request
 }
 
 /* `name`: a knob, or a group of knobs. */
-static status add_named(struct study_subject *subject, const struct study_request *request, const struct scene *scene,
-                        const char *name, const char *settings, struct error *error) {
+static status add_named(struct study_subject *subject, const struct scene *scene, const char *name,
+                        const char *settings, struct error *error) {
   int group = 0;
   while (group < KNOB_GROUPS && strcmp(name, engine_knob_groups[group]) != 0)
     group++;
   if (group == KNOB_GROUPS) {
     const struct knob *knob = engine_knob(scene->kind, name, error);
-    return knob ? add_knob(subject, request, scene, knob, settings, true, error) : STATUS_USAGE;
+    return knob ? add_knob(subject, scene, knob, settings, true, error) : STATUS_USAGE;
   }
   for (const struct knob *knob = scene->kind->knobs; knob && knob->name; knob++)
     if ((int)knob->group == group)
-      TRY(add_knob(subject, request, scene, knob, NULL, false, error));
+      TRY(add_knob(subject, scene, knob, NULL, false, error));
   return STATUS_OK;
 }
 
 /* "particles,time_step" or "particles=1000,3000". */
-static status add_item(struct study_subject *subject, const struct study_request *request, const struct scene *scene,
-                       const char *item, struct error *error) {
+static status add_item(struct study_subject *subject, const struct scene *scene, const char *item,
+                       struct error *error) {
   char name[64];
   const char *equals = strchr(item, '=');
   if (equals) {
     snprintf(name, sizeof name, "%.*s", (int)(equals - item), item);
-    return add_named(subject, request, scene, name, equals + 1, error);
+    return add_named(subject, scene, name, equals + 1, error);
   }
   while (ladder_next_word(&item, name, sizeof name))
-    TRY(add_named(subject, request, scene, name, NULL, error));
+    TRY(add_named(subject, scene, name, NULL, error));
   return STATUS_OK;
 }
 
 status study_request_read(const struct study_request *request, const char *path, struct study_subject *subject,
                           struct error *error) {
   struct study *study = &subject->study;
+  subject->quiet = request->launch.quiet;
   TRY(load(subject, path, &request->set, error));
   if (request->first_seed > 0)
     study->limits.first_seed = request->first_seed;
@@ -197,9 +198,9 @@ status study_request_read(const struct study_request *request, const char *path,
   TRY(read_rule(study, request, error));
   for (size_t s = 0; s < subject->scene_count; s++) {
     if (request->knobs.count == 0)
-      TRY(add_item(subject, request, subject->scenes[s], "resolution,settings", error));
+      TRY(add_item(subject, subject->scenes[s], "resolution,settings", error));
     for (size_t i = 0; i < request->knobs.count; i++)
-      TRY(add_item(subject, request, subject->scenes[s], request->knobs.items[i], error));
+      TRY(add_item(subject, subject->scenes[s], request->knobs.items[i], error));
   }
   return study->ladder_count
              ? STATUS_OK

@@ -5,6 +5,7 @@
 
 #include "campaign/converge/study.h"
 #include "schemas/clock.h"
+#include "schemas/memory.h"
 
 struct rounds {
   struct study *study;
@@ -267,12 +268,13 @@ static bool is_enough(void *context) {
 
 struct launching {
   struct study *study;
-  const struct study_launch *asked;
+  const struct study_request *request;
+  enum table_format format;
 };
 
 static status run_study(void *context, struct launch *launch, struct error *error) {
   const struct launching *launching = context;
-  const struct study_launch *asked = launching->asked;
+  const struct study_request *request = launching->request;
   struct study *study = launching->study;
   struct rounds rounds = {.study = study, .begin = clock_s()};
   const struct series series = {.context = &rounds,
@@ -286,13 +288,18 @@ static status run_study(void *context, struct launch *launch, struct error *erro
   launch_tell_series(launch, code, study->limits.store, &summary, false);
   if (!launch->manager || code != STATUS_OK)
     return code;
-  TRY(study_print(study, asked->format, asked->options->quiet, error));
-  if (asked->picture)
-    TRY(study_print_picture(study, false, asked->picture, error));
-  return asked->frontier ? study_print_picture(study, true, asked->frontier, error) : STATUS_OK;
+  TRY(study_print(study, launching->format, request->launch.quiet, error));
+  if (request->picture)
+    TRY(study_print_picture(study, false, request->picture, error));
+  return request->frontier ? study_print_picture(study, true, request->frontier, error) : STATUS_OK;
 }
 
-status study_rounds_launch(struct study *study, const struct study_launch *asked, struct error *error) {
-  struct launching launching = {study, asked};
-  return launch_farm(&study->limits, asked->options, asked->line, run_study, &launching, error);
+status study_launch(const struct study_request *request, const struct command_line *line, struct error *error) {
+  OWNED struct study_subject *subject = memory_small(1, sizeof *subject);
+  struct launching launching = {&subject->study, request, line->format};
+  status code = study_request_read(request, line->arguments[0], subject, error);
+  if (code == STATUS_OK)
+    code = launch_farm(&subject->study.limits, &request->launch, line, run_study, &launching, error);
+  study_request_clear(subject);
+  return code;
 }
