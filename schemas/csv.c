@@ -158,11 +158,24 @@ static enum csv_item take_remark(struct csv *csv, char *text) {
   return CSV_REMARK;
 }
 
+/* What a spreadsheet writes for a failed formula (#DIV/0!, #NAME?, #N/A; #NV in German), or for a number that is wider
+ * than its column (####): it is no remark. */
+static bool is_error_value(const char *text) {
+  const size_t length = strcspn(text, " ,;\t\"\r\n"), wide = strspn(text, "#");
+  const size_t name = 1 + strspn(text + 1, "ABCDEFGHIJKLMNOPQRSTUVWXYZ/0");
+  const char *behind = text + length + strspn(text + length, " \"");
+  if (wide == length)
+    return wide > 1 && *behind && strchr(",;\t", *behind) && !ends_line(behind + strspn(behind, " ,;\t"));
+  if (name == length)
+    return memchr(text, '/', length) || (length == 3 && strncmp(text, "#NV", 3) == 0);
+  return name + 1 == length && strchr("!?", text[name]);
+}
+
 enum csv_item csv_next(struct csv *csv) {
   while (*csv->at) {
     char *const text = csv->at + strspn(csv->at, " \t");
     csv->line = csv->next;
-    if (text[*text == '"'] == '#')
+    if (text[*text == '"'] == '#' && !is_error_value(text + (*text == '"')))
       return take_remark(csv, text);
     if (csv->line == 1 && strncmp(text, "sep=", 4) == 0 && text[4] && strchr(";,\t", text[4]) && ends_line(text + 5)) {
       csv->separator = text[4];

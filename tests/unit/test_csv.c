@@ -57,6 +57,10 @@ static void cells(void **state) {
       {"\xEF\xBB\xBFsep=,\n# a\n\n\"a;b\",c;d\n1,2\n", " a#a;b|c;d/1|2/"},
       {"a\nsep=;\n", "a/sep=;/"},
       {"sep=", "sep=/"},
+      /* errors of spreadsheets are no remarks */
+      {"a,b\n#DIV/0!,2\n#N/A,3\n\"#NAME?\",4\n####,5\n#NV,6\n", "a|b/#DIV/0!|2/#N/A|3/#NAME?|4/####|5/#NV|6/"},
+      {"a;b\n#WERT! ;2\n", "a|b/#WERT!|2/"},
+      {"####\n## a, b\n###,,\n#NOTE: x\n#N,A\na,b\n", "##### a, b####NOTE: x#N,A#a|b/"},
       {"a,\n,b\n", "a|/|b/"}, /* empty cells */
       {"a,b\n\"\",x\n", "a|b/|x/"},
       {"a,b\n\"\",\n", "a|b/|/"},
