@@ -194,7 +194,8 @@ static void digest_point(const struct scene *scene, const uint8_t hash[16], cons
   digest_add(&sum, digest_name("point", "scene"), 0, sql_of_text(json));
   for (size_t i = 0; i < inputs->count; i++)
     if (field_is_active(inputs, &inputs->rows[i], scene->inputs))
-      digest_add(&sum, value, digest_row(inputs->rows[i].path), sql_of_field(&inputs->rows[i], scene->inputs, true));
+      digest_add(&sum, value, digest_row(inputs->rows[i].path, strlen(inputs->rows[i].path)),
+                 sql_of_field(&inputs->rows[i], scene->inputs, true));
   digest_write(sum, digest);
 }
 

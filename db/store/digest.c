@@ -37,13 +37,14 @@ static struct digest step_bytes(struct digest state, const void *bytes, size_t s
   return size ? step(state, word_at(at, size)) : state;
 }
 
+static const struct digest start = {0x9e3779b97f4a7c15u, 0x6a09e667f3bcc909u};
+
 struct digest digest_name(const char *table, const char *column) {
-  const struct digest start = {0x9e3779b97f4a7c15u, 0x6a09e667f3bcc909u};
   return step_bytes(step_bytes(start, table, strlen(table)), column, strlen(column));
 }
 
-uint64_t digest_row(const char *text) {
-  return digest_name("", text).a;
+uint64_t digest_row(const char *text, size_t size) {
+  return step_bytes(step_bytes(start, "", 0), text, size).a;
 }
 
 void digest_add(struct digest *sum, struct digest name, uint64_t row, struct sql_value value) {
@@ -388,7 +389,7 @@ static status read_digest(struct digest_rows *rows, struct digest *sum) {
     sqlite3_bind_int64(table->rows, 1, rows->number);
     while (sql_next(table->rows, &result, doing, rows->error)) {
       const uint64_t row = sqlite3_column_type(table->rows, 0) == SQLITE_TEXT
-                               ? digest_row(sql_text(table->rows, 0))
+                               ? digest_row(sql_text(table->rows, 0), (size_t)sqlite3_column_bytes(table->rows, 0))
                                : (uint64_t)sqlite3_column_int64(table->rows, 0);
       for (int k = 1; k < sqlite3_column_count(table->rows); k++)
         digest_add(sum, table->names[k], row, sql_of_column(table->rows, k));

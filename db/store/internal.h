@@ -41,7 +41,7 @@ void digest_add(struct digest *sum, struct digest name, uint64_t row, struct sql
 void digest_add_fields(struct digest *sum, const struct digest_names *names, const struct field_table *fields,
                        uint64_t row, const void *object);
 /* The row number for a row whose key is a text. */
-uint64_t digest_row(const char *text);
+uint64_t digest_row(const char *text, size_t size);
 void digest_write(struct digest sum, uint8_t bytes[16]);
 
 /* Digests of tables. Table table_digest has the number and the digest of the rows of each table that is marked in the
