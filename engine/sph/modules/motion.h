@@ -17,19 +17,19 @@ RANGE_INLINE double motion_cube_root(double e) {
   return 1 + e * (1.0 / 3 - e * (1.0 / 9 - e * (5.0 / 81)));
 }
 
-/* Holds internal energy at or above zero and density at or above the body's bound. The ledger counts the energy that
- * this adds. */
+/* Holds internal energy at or above zero, unless method.negative_energy, and density at or above the body's bound. The
+ * ledger counts the energy that this adds. */
 RANGE_INLINE void motion_clamp(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   double *energy = s->c.energy, *density = s->c.density;
-  const double lowest = body->lowest_density;
+  const double lowest = body->lowest_density, coldest = body->lowest_energy;
   int64_t below = 0;
   RANGE_LOOP
   for (size_t i = b->low; i < b->high; i++)
-    below |= -(int64_t)(energy[i] < 0) | -(int64_t)(density[i] < lowest);
+    below |= -(int64_t)(energy[i] < coldest) | -(int64_t)(density[i] < lowest);
   if (!below)
     return;
   for (size_t i = b->low; i < b->high; i++) {
-    if (energy[i] < 0) {
+    if (energy[i] < coldest) {
       b->clamped -= s->c.mass[i] * energy[i];
       energy[i] = 0;
     }

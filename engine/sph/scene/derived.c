@@ -187,6 +187,17 @@ double sph_derived_smallest_spacing(const struct sph_inputs *in) {
   return sph_derived_has_projectile(in) ? fmin(fine, fine * in->fidelity.projectile_spacing) : fine;
 }
 
+double sph_derived_cfl(const struct sph_inputs *in) {
+  const double growth = pow(2.1, 4) * 0.35, damping = 0.08 * in->viscosity.alpha;
+  const double e_folds = 4; /* of a wave without viscosity, until the end of the run: it begins as rounding */
+  double speed = sph_derived_wave_speed(&in->target);
+  if (sph_derived_has_projectile(in))
+    speed = fmax(speed, sph_derived_wave_speed(&in->projectile));
+  const double lengths = in->stop.end_time * speed / (in->fidelity.smoothing * sph_derived_smallest_spacing(in));
+  const double share = cbrt((damping + (lengths > 0 ? e_folds / lengths : 0)) / growth); /* dt c_L/h */
+  return fmin(SPH_INPUTS_CFL, share * (1 + 0.6 * in->viscosity.alpha));
+}
+
 double sph_derived_particles(const struct sph_inputs *in) {
   double target = (double)in->fidelity.particles;
   if (in->kind == SPH_COLLISION)

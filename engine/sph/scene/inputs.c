@@ -182,6 +182,12 @@ static const struct field rows[] = {
         .doc =
             "m_j/rho_j instead of m_j/rho_i in the velocity gradient, for bodies of very different density that touch.",
         .source = "BA95 eq. 18 for off"),
+    SWITCH(method.negative_energy, 0, .flags = FIELD_DERIVED, .absent = "false",
+           .doc =
+               "Keep an internal energy below 0, which errors of a time step make in cold matter; the pressure takes "
+               "it as 0. Without it the energy is set to 0, and energy.clamped counts what that adds. Unless given "
+               "it is on where no body cracks, yields or has pores: elastic bodies come back to 0 in each cycle.",
+           .source = "our choice"),
 
     REAL(fragments.static_strength, "Pa", NAN, 0, 1e15, .flags = FIELD_DERIVED | FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
          .doc = "At the end, damaged particles under more tension than this count as broken: their cracks would still "
@@ -249,7 +255,9 @@ static const struct field rows[] = {
                 "lattices, and a kernel sum within 1 % of what it stands for; others err by some per cent at any "
                 "resolution. Below 0.9 method.gradient_correction is necessary: else stresses and wave speeds are 5 to "
                 "39 % too small."),
-    REAL(fidelity.cfl, "1", 0.3, 1e-3, 1, .doc = "Courant number: the time step over h/(c + viscous term)."),
+    REAL(fidelity.cfl, "1", SPH_INPUTS_CFL, 1e-3, 1, .flags = FIELD_DERIVED,
+         .doc = "Courant number: the time step over h/(c + viscous term). Unless given: 0.3, or less where little "
+                "viscosity lets waves as short as the spacing grow."),
     REAL(fidelity.skin, "1", 0.05, 0, 1,
          .doc = "Least slack of the neighbour lists over h (fast particles have more): longer lists last for more "
                 "steps. It changes the order of sums, not the physics."),

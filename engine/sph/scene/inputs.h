@@ -59,7 +59,7 @@ struct sph_collision {
   double speed, gap; /* m/s, m */
 };
 struct sph_method {
-  bool volume_weights;
+  bool volume_weights, negative_energy;
 };
 struct sph_fragment_rules {
   double static_strength, damage, link_length; /* Pa, 1, 1 */
@@ -71,6 +71,7 @@ struct sph_fragment_rules {
 struct sph_stop_rules {
   double end_time, quiet_time, quiet_growth; /* s, s, 1 */
 };
+#define SPH_INPUTS_CFL 0.3 /* the default Courant number where viscosity is strong */
 struct sph_fidelity {
   int64_t particles, points;
   double projectile_spacing; /* 1, over the target's */

@@ -70,6 +70,12 @@ static bool can_turn(const struct sph_inputs *in) {
                                  (in->kind == SPH_IMPACT && in->sides.far != SPH_FAR_DAMPED));
 }
 
+/* No cracks, no yielding, no pores: what deforms comes back to the energy 0. */
+static bool stays_elastic(const struct sph_body_inputs *body) {
+  return body->strength && !sph_derived_cracks(body) && field_is_off(body->material.yield.stress) &&
+         !(body->material.palpha.distention > 1);
+}
+
 /* Time, s, by which few particles may press later than their surfaces meet: that of one spacing. */
 static double late(const struct sph_inputs *in) {
   const double speed = in->kind == SPH_COLLISION ? in->collision.speed : in->impact.speed * cos(in->impact.angle);
@@ -95,6 +101,8 @@ void sph_inputs_complete(void *inputs, const bool *given) {
   COMPLETE(fidelity.fine_spacing, 0.5 * spacing);
   COMPLETE(fidelity.fine_radius, 4 * in->fidelity.fine_spacing);
   COMPLETE(gradient_correction.on, can_turn(in));
+  COMPLETE(method.negative_energy,
+           stays_elastic(&in->target) && (!sph_derived_has_projectile(in) || stays_elastic(&in->projectile)));
   const double viscous = in->reconstruction.on && in->gradient_correction.on ? 2 : 1;
   COMPLETE(viscosity.alpha, 1.5 * viscous);
   COMPLETE(viscosity.beta, 3 * viscous);
@@ -108,4 +116,5 @@ void sph_inputs_complete(void *inputs, const bool *given) {
   COMPLETE(fragments.dust_mass, 1e-3 * sph_derived_target_mass(in));
   COMPLETE(stop.quiet_time, 2 * crossing);
   COMPLETE(stop.end_time, in->kind == SPH_PISTON ? plate_time(in) : 10 * crossing + sph_derived_arrival(in) + late(in));
+  COMPLETE(fidelity.cfl, sph_derived_cfl(in));
 }

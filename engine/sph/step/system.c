@@ -224,9 +224,11 @@ static status check_inputs(const struct sph_inputs *inputs, struct error *error)
   for (size_t k = 0; k < sph_inputs.count; k++) {
     const struct field *row = &sph_inputs.rows[k];
     struct field_value value, unused;
-    if (!is_read(row) || row->flags & FIELD_DERIVED)
+    if (!is_read(row))
       continue;
     field_get(row, inputs, &value);
+    if (row->flags & FIELD_DERIVED && value.kind == FIELD_REAL && isnan(value.number))
+      continue;
     TRY(field_set_value(row, &value, &unused, error));
   }
   return STATUS_OK;
@@ -357,6 +359,7 @@ static status make_body(struct sph_system *s, const struct sph_particles *p, str
   }
   b->density = sph_material_bulk_density(&b->physics.material);
   b->lowest_density = s->domain.lowest_density * b->density;
+  b->lowest_energy = s->in.method.negative_energy ? -HUGE_VAL : 0;
   b->physics.flaws = NULL; /* owned by the caller; the modules have their own data from them */
   choose_hooks(s, b);
   return STATUS_OK;

@@ -149,11 +149,11 @@ struct sph_block {
 struct sph_solid {
   struct sph_body_physics physics; /* flaws is NULL (module weibull has them) */
   struct sph_module_set modules;
-  struct sph_column_set columns; /* those that its modules need */
-  void *prepared[SPH_MODULES];   /* by its modules (sph_module.prepare) */
-  size_t first, last;            /* its particles */
-  double density;                /* kg/m^3 at the start, bulk */
-  double lowest_density;
+  struct sph_column_set columns;                /* those that its modules need */
+  void *prepared[SPH_MODULES];                  /* by its modules (sph_module.prepare) */
+  size_t first, last;                           /* its particles */
+  double density;                               /* kg/m^3 at the start, bulk */
+  double lowest_density, lowest_energy;         /* kg/m^3, J/kg: what falls below them is raised to them */
   sph_hook before[SPH_HOOKS], after[SPH_HOOKS]; /* loops of a step, in order: before and after the pair loop */
   size_t before_count, after_count;
   size_t first_count;                                                    /* of `before`: those that run before `meet` */
