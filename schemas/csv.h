@@ -5,8 +5,8 @@
  *   - A decimal comma is read where semicolons separate the cells, or in double quotes. A file has one decimal mark.
  * Cells may be in double quotes, with "" for a quote; blanks around a cell are no part of it. Lines end with LF or
  * CRLF. Empty records are skipped. A line that begins with # is a remark, but not with #N/A. A NUL byte is refused. The
- * apostrophe before
- * =, +, - or @, by which a writer keeps spreadsheets from taking a text as a formula, is no part of the cell. */
+ * apostrophe before =, +, - or @, by which a writer keeps spreadsheets from taking a text as a formula, is no part of
+ * the cell. */
 #ifndef CLAST_SCHEMAS_CSV_H
 #define CLAST_SCHEMAS_CSV_H
 

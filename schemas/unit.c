@@ -234,7 +234,7 @@ static size_t sign_length(const char *at) {
 /* The power behind a name or parenthesis; 1 when there is none. */
 static status power(struct parser *p, int *value) {
   *value = 1;
-  if (is_digit(*p->at))
+  if (is_digit(p->at[*p->at == '-']))
     return status_fail(p->error, STATUS_CONTENT, "in unit '%.*s' write powers with '^', such as m^2", QUOTE, p->whole);
   const size_t length = sign_length(p->at);
   if (length == 0)

@@ -134,6 +134,7 @@ static void messages_are_these(void **state) {
       {"5 kmin", "s", "unknown unit 'kmin'; did you mean 'min'?"},
       {"5 %%", "1", "unit '%%' has two percent signs; write one"},
       {"5 % %", "1", "unit '% %' has two percent signs; write one"},
+      {"5 m-3", "1/m^3", "in unit 'm-3' write powers with '^', such as m^2"},
       {"5 \u2030 %", "1", "unit '\u2030 %' has two percent signs; write one"},
       {"20 \u00B0C", "K", "unknown unit 'degC'; did you mean 'K'?"},
       {"5 m%", "m", "unexpected '%' in a unit; put a space or '*' between two units"},
