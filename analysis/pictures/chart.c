@@ -199,8 +199,11 @@ static status read_template(const struct picture_page *page, const char *name, c
   }
   char path[LIMITS_PATH];
   enum { MOST = 1 << 20 };
+  for (const struct chart_template *t = chart_templates; t->name; t++) { /* a kept script replaces none of them */
+    snprintf(path, sizeof path, "%s/%s.gp", page->templates, t->name);
+    TRY(file_input(path, error));
+  }
   snprintf(path, sizeof path, "%s/%s.gp", page->templates, name);
-  TRY(file_input(path, error));
   FILE *in = fopen(path, "r");
   if (!in)
     return status_fail(error, STATUS_MISSING,

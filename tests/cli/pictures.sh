@@ -154,6 +154,9 @@ cp -r "$source/analysis/pictures/templates" changed
 sed -i 's/0x0072B2/0x123456/' changed/frame.gp
 expect 0 "$clast" plot small.db lines.svg -x strain --templates changed
 grep -q 'rgb( *18, *52, *86)' lines.svg || fail "the changed template is not used"
+expect 74 "$clast" plot small.db changed/map.svg -x strain --templates changed --keep-script
+says "changed/map.gp"
+cmp -s changed/map.gp "$source/analysis/pictures/templates/map.gp" || fail "a template was replaced"
 expect 66 "$clast" plot small.db lines.svg -x strain --templates none
 says "share/clast/templates"
 expect 66 env PATH=/nowhere "$clast" plot small.db m.png -x strain
@@ -219,4 +222,4 @@ for r in json.load(open("out")):
         assert abs(r["F(L)"] - r["N(>L)"] - 1) < 1e-12 and 0 < r["p"] <= 1 and 0 < r["distance"] < 1, r
 PY
 ok "exponents by their names"
-done_after 84
+done_after 85
