@@ -155,6 +155,11 @@ static status check_ranges(struct report *report, struct error *error) {
 }
 
 static status check_files(struct report *report, struct error *error) {
+  struct error elsewhere = {0};
+  if (store_check_folder(report->store, &elsewhere) != STATUS_OK) {
+    say(report, "%s", elsewhere.message);
+    return STATUS_OK;
+  }
   const bool digests = schema_has_column(report->store->db, "run", "fields_digest");
   STATEMENT statement = NULL;
   status result = sql_preparef(report->store->db, &statement, checking, error,

@@ -279,6 +279,9 @@ status store_compare_bins(const struct store *store, sqlite3_stmt *rows, int64_t
  * table bin. Within the open transaction. STATUS_CONTENT: no mass lies in such bins. */
 status store_add_spectrum(struct store *store, int64_t run_id, const struct sums_run *run, size_t count,
                           struct error *error);
+/* STATUS_IO: the store was opened by a second name in another folder (a hard link). Its fields files lie beside the
+ * other one: they would be called missing, and computed again. */
+status store_check_folder(const struct store *store, struct error *error);
 /* The hash that identifies a point. */
 void store_point_hash(const struct scene *scene, uint8_t hash[16]);
 /* Reads the identities of the store, and its range of bins. error may be NULL. */

@@ -132,8 +132,7 @@ static status check_second_name(const char *path, bool lacks_wal, struct error *
                      path);
 }
 
-/* A second name in another folder: the fields files lie beside the other one, and would be computed again. */
-static status check_second_folder(const struct store *store, struct error *error) {
+status store_check_folder(const struct store *store, struct error *error) {
   struct stat file;
   STATEMENT rows = NULL;
   bool any = false, here = false;
@@ -511,7 +510,7 @@ static status open_locked(struct store *store, struct error *error) {
                   "PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
                   "opening for writing", error));
   if (version >= 0)
-    TRY(check_second_folder(store, error));
+    TRY(store_check_folder(store, error));
   TRY(upgrade(store->db, store->path, version, error));
   TRY(digest_tables_follow(store->db, &store->tables, error));
   TRY(write_holder(store, error));

@@ -107,6 +107,9 @@ ln kept.db hard/link.db
 expect 74 "$clast" run kept.yaml -j 1 --quiet --store hard/link.db
 says "the folder of its fields"
 same "$(ls hard)" "link.db" "files beside the hard link"
+expect 65 "$clast" check hard/link.db
+prints "the folder of its fields"
+same "$(wc -l <out)" 1 "problems of a store whose fields are not found from here"
 rm hard/link.db
 expect 0 "$clast" run kept.yaml -j 1 --quiet
 
@@ -168,4 +171,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 45
+done_after 47
