@@ -38,20 +38,29 @@ status commands_ask(const struct command_line *line,
   return ask(store, line, error);
 }
 
-/* While another program holds a store. A stop signal that a farm has blocked ends the wait; else it ends the program.
- */
+static void stop_waiting(int number) {
+  (void)number;
+  _exit(STATUS_STOPPED);
+}
+
+/* While another program holds a store. A stop signal ends the waiting with STATUS_STOPPED: one that a farm has blocked
+ * by way of the farm's end. */
 static bool wait_for_store(const char *path, bool tell) {
+  const struct sigaction stop = {.sa_handler = stop_waiting};
+  struct sigaction now;
   sigset_t pending;
   if (tell)
-    fprintf(
-        stderr,
-        "%sclast: %s: another program holds the store (a database browser with unsaved changes?): clast waits until "
-        "it lets go\n",
-        isatty(STDERR_FILENO) ? "\r\033[K" : "", path); /* over the line of progress */
+    fprintf(stderr,
+            "%sclast: %s: another program holds the store (a database browser with unsaved changes?): clast waits "
+            "until it lets go\n",
+            isatty(STDERR_FILENO) ? "\r\033[K" : "", path); /* over the line of progress */
   sigpending(&pending);
-  for (size_t i = 0; i < FARM_STOP_SIGNALS; i++)
+  for (size_t i = 0; i < FARM_STOP_SIGNALS; i++) {
     if (sigismember(&pending, farm_stop_signals[i]) > 0)
       return false;
+    if (sigaction(farm_stop_signals[i], NULL, &now) == 0 && now.sa_handler == SIG_DFL)
+      sigaction(farm_stop_signals[i], &stop, NULL);
+  }
   return true;
 }
 

@@ -176,6 +176,11 @@ until grep -q "clast waits until it lets go" err; do sleep 0.1; done
 kill -TERM $!
 wait $! && code=0 || code=$?
 same "$code" 75 "exit of a run that waits for the store"
+"$toy" merge held.db tiny.db >out 2>err </dev/null &
+until grep -q "clast waits until it lets go" err; do sleep 0.1; done
+kill -TERM $!
+wait $! && code=0 || code=$?
+same "$code" 75 "exit of a merge that waits for the store"
 kill $holder
 wait $holder 2>/dev/null || true
 "$toy" run held.yaml -j 2 >out 2>err </dev/null &
@@ -197,4 +202,4 @@ lock 12
 expect 0 "$toy" run held.yaml -j 2
 says "clast waits until it lets go"
 same "$(number held.db "select count(*) from run")" 750 "runs of a store that was held"
-done_after 48
+done_after 49
