@@ -105,9 +105,6 @@ void design_sensitivity_free(struct design_sensitivity *design); /* NULL is fine
 size_t design_sensitivity_rows(const struct design_sensitivity *design);
 /* Coordinates of a row in (0, 1), one for each input: the arguments of the quantiles. */
 void design_sensitivity_row(const struct design_sensitivity *design, size_t row, double *coordinates);
-/* Morris: the input that each step of each trajectory changes, and the change of its coordinate. Both arrays: inputs x
- * blocks. */
-void design_sensitivity_steps(const struct design_sensitivity *design, size_t *order, double *step);
 
 /* When a point has enough replicates. The rule judges complete prefixes 0..n-1 of the replicate numbers only: "the
  * first n that finished" would favour quick runs (measured bias: 2.8 standard errors with 32 workers). */

@@ -99,14 +99,3 @@ void design_sensitivity_row(const struct design_sensitivity *design, size_t row,
   for (size_t k = 0; k < n; k++)
     coordinates[order[k]] = coordinate(k < point ? moved(level[order[k]]) : level[order[k]]);
 }
-
-void design_sensitivity_steps(const struct design_sensitivity *design, size_t *order, double *step) {
-  for (size_t block = 0; block < design->blocks; block++) {
-    size_t at[64], level[64];
-    walk(design, block, at, level);
-    for (size_t k = 0; k < design->inputs; k++) {
-      order[block * design->inputs + k] = at[k];
-      step[block * design->inputs + k] = coordinate(moved(level[at[k]])) - coordinate(level[at[k]]);
-    }
-  }
-}

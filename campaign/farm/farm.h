@@ -120,9 +120,9 @@ struct farm_manager {
  * grace_s or drain_s to finish, and the status is STATUS_STOPPED. A second signal ends the farm immediately. */
 status farm_run(struct farm *farm, const struct farm_manager *manager, struct error *error);
 
-/* Utilisation of the last farm_run: sum of task CPU over slots x wall from first dispatch to last report. */
+/* Times of the last farm_run; wall_s: from the first task sent to the last report. */
 struct farm_usage {
-  double task_cpu_s, wall_s, manager_cpu_s, waiting_cpu_s, start_up_s;
+  double wall_s, manager_cpu_s, waiting_cpu_s, start_up_s;
   int64_t tasks;
 };
 struct farm_usage farm_usage(const struct farm *farm);

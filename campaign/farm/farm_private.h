@@ -198,6 +198,7 @@ struct farm_pool_sink {
   void (*ended)(void *context, struct farm_job *job, const struct farm_ended *ended);
 };
 
+/* End *out also after an error. */
 status farm_pool_start(const struct farm_options *options, farm_work work, struct farm_pool **out, struct error *error);
 void farm_pool_sink_to(struct farm_pool *pool, struct farm_pool_sink sink);
 void farm_pool_submit(struct farm_pool *pool, struct farm_job *job); /* owns the job until it has ended */

@@ -260,7 +260,6 @@ static void report(void *context, struct farm_job *job, const struct farm_ended 
   if (peer->out > 0)
     peer->out--;
   peer->mean_wall_s += 0.1 * (result->wall_s - peer->mean_wall_s);
-  m->usage.task_cpu_s += result->cpu_s;
   m->usage.tasks++;
   m->last_ns = clock_ns();
   m->dry = false;

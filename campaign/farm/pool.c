@@ -36,7 +36,6 @@ struct farm_pool {
   struct pollfd *fds;
   struct farm_job_queue queue;
   struct farm_pool_sink sink;
-  size_t count;
   double mean_wall_s; /* mean wall time of recent tasks */
   int64_t looked_ns;
 };
@@ -64,26 +63,19 @@ static void flush(struct slot *slot) {
 status farm_pool_start(const struct farm_options *options, farm_work work, struct farm_pool **out,
                        struct error *error) {
   const size_t slots = (size_t)options->slots;
-  struct farm_pool *pool = memory_small(1, sizeof *pool);
+  struct farm_pool *pool = *out = memory_small(1, sizeof *pool);
   *pool = (struct farm_pool){.setup = {.options = *options, .work = work}, .control = -1, .mean_wall_s = 1};
   pool->looked_ns = clock_ns();
-  pool->slots = calloc(slots, sizeof *pool->slots);
-  pool->fds = calloc(slots + 2, sizeof *pool->fds);
   pool->records_size = slots * sizeof *pool->setup.records;
   void *records = mmap(NULL, pool->records_size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  pool->setup.records = records == MAP_FAILED ? NULL : records;
-  for (size_t i = 0; pool->slots && i < slots; i++)
+  if (records == MAP_FAILED)
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu slots", slots);
+  pool->setup.records = records;
+  TRY(memory_array(&pool->fds, slots + 2, sizeof *pool->fds, "the slots", error));
+  TRY(memory_array(&pool->slots, slots, sizeof *pool->slots, "the slots", error));
+  for (size_t i = 0; i < slots; i++)
     pool->slots[i].channel = -1;
-  status result = STATUS_OK;
-  if (!pool->slots || !pool->fds || !pool->setup.records)
-    result = status_fail(error, STATUS_MEMORY, "no memory for %zu slots", slots);
-  if (result == STATUS_OK)
-    result = farm_server_start(&pool->setup, &pool->server, &pool->control, error);
-  if (result == STATUS_OK)
-    *out = pool;
-  else
-    farm_pool_end(pool);
-  return result;
+  return farm_server_start(&pool->setup, &pool->server, &pool->control, error);
 }
 
 void farm_pool_sink_to(struct farm_pool *pool, struct farm_pool_sink sink) {
@@ -92,7 +84,6 @@ void farm_pool_sink_to(struct farm_pool *pool, struct farm_pool_sink sink) {
 
 void farm_pool_submit(struct farm_pool *pool, struct farm_job *job) {
   farm_job_push(&pool->queue, job);
-  pool->count++;
 }
 
 int farm_pool_slots(const struct farm_pool *pool) {
@@ -206,15 +197,11 @@ void farm_pool_withdraw(struct farm_pool *pool, size_t most, struct farm_job_que
   while (most > 0 && pool->queue.first) {
     struct farm_job *job = farm_job_take(&pool->queue, pool->queue.first->prev->handle);
     farm_job_push_front(into, job);
-    pool->count--;
     most--;
   }
-  for (int i = 0; i < pool->setup.options.slots; i++) {
-    for (struct farm_job *job; most > 0 && (job = take_back(pool, i)); most--) {
+  for (int i = 0; i < pool->setup.options.slots; i++)
+    for (struct farm_job *job; most > 0 && (job = take_back(pool, i)); most--)
       farm_job_push(into, job);
-      pool->count--;
-    }
-  }
 }
 
 void farm_pool_end(struct farm_pool *pool) {
@@ -241,11 +228,6 @@ void farm_pool_end(struct farm_pool *pool) {
 /* ---- Reads results, replaces slots that end, enforces deadlines of runs in process ---- */
 
 enum { IDLE_ENDS = 5 }; /* a slot that ends this many times in a row without a task is not replaced */
-
-static void ended(struct farm_pool *pool, struct farm_job *job, const struct farm_ended *how) {
-  pool->count--;
-  pool->sink.ended(pool->sink.context, job, how);
-}
 
 /* Reads the bytes that the slot has written so far. False: its channel is closed. */
 static bool read_slot(struct slot *slot) {
@@ -281,7 +263,7 @@ static bool listen_to(struct farm_pool *pool, struct slot *slot) {
       continue; /* unreachable: a job that the slot ran is in its queue */
     slot->idle_ends = 0;
     pool->mean_wall_s += 0.1 * (how.result.wall_s - pool->mean_wall_s);
-    ended(pool, job, &how);
+    pool->sink.ended(pool->sink.context, job, &how);
   }
   if (got < 0)
     return false;
@@ -339,7 +321,7 @@ static void slot_ended(struct farm_pool *pool, int index, const struct farm_resu
   how.result.slot = index;
   how.message = text;
   how.message_size = strlen(text);
-  ended(pool, job, &how);
+  pool->sink.ended(pool->sink.context, job, &how);
 }
 
 /* The fork server reports that a slot's process has ended, or could not be made. Requests a new one. */

@@ -139,9 +139,7 @@ static status start(struct farm *farm, farm_work work, struct error *error) {
                        "--mpi=pmix`, or start one program; programs that work on stores of their own need `env -u "
                        "SLURM_STEP_NUM_TASKS -u PMI_SIZE`",
                        launched);
-  farm->peers = calloc((size_t)farm->ranks, sizeof *farm->peers);
-  if (!farm->peers)
-    return status_fail(error, STATUS_MEMORY, "no memory for %d ranks", farm->ranks);
+  TRY(memory_array(&farm->peers, (size_t)farm->ranks, sizeof *farm->peers, "the ranks", error));
   for (int rank = 0; rank < farm->ranks; rank++)
     farm->peers[rank].mean_wall_s = 1;
   return introduce(farm, error);

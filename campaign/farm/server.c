@@ -12,9 +12,8 @@
 #include <sys/signalfd.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
-
-#include "schemas/clock.h"
 
 struct server {
   const struct farm_slot_setup *setup;
