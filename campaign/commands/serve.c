@@ -16,34 +16,17 @@ struct options {
 struct serving { /* context of the function that the farm runs */
   const struct serve_model *model;
   struct serve_options options;
-  int slots;
 };
-
-static void tell(void *context, const struct serve_http *http) {
-  const struct serving *serving = context;
-  fprintf(stderr, "clast: serving at port %d with %d slot%s, store %s; Ctrl-C ends\n", serve_http_port(http),
-          serving->slots, serving->slots == 1 ? "" : "s", serving->options.store);
-  if (serve_http_open_to_all(http))
-    fputs("clast: warning: other machines can reach this port, and nobody is asked for a password\n", stderr);
-}
 
 static status serve_all(void *context, struct launch *launch, struct error *error) {
   struct serving *serving = context;
-  struct serve_counts counts;
-  serving->slots = farm_slots_total(launch->farm);
   serving->options.facts = launch->scheduler.facts;
-  const status code = serve_run(serving->model, launch->farm, &serving->options, &counts, error);
-  if (!code && launch->manager)
-    fprintf(stderr,
-            "clast: %" PRId64 " evaluations: %" PRId64 " runs computed, %" PRId64 " found in the store, %" PRId64
-            " given up\n",
-            counts.evaluations, counts.computed, counts.found, counts.failed);
-  return code;
+  return serve_run(serving->model, launch->farm, &serving->options, error);
 }
 
 /* The first line of the file, malloc'd. It is a file because command lines are no secret. */
 static status read_token(const char *path, char **token, struct error *error) {
-  unsigned char *bytes = NULL;
+  OWNED unsigned char *bytes = NULL;
   size_t size = 0;
   struct stat file;
   *token = NULL;
@@ -53,21 +36,21 @@ static status read_token(const char *path, char **token, struct error *error) {
   char *text = (char *)bytes;
   text[strcspn(text, "\r\n")] = '\0';
   const bool others = stat(path, &file) == 0 && (file.st_mode & (S_IRWXG | S_IRWXO));
-  if (!others && strlen(text) >= SHORTEST_TOKEN) {
-    *token = text;
-    return STATUS_OK;
-  }
-  free(bytes);
-  return others ? status_fail(error, STATUS_USAGE, "%s: others can read the token: `chmod 600 %s`", path, path)
-                : status_fail(error, STATUS_CONTENT, "%s: the token in its first line needs %d characters or more",
-                              path, SHORTEST_TOKEN);
+  if (others)
+    return status_fail(error, STATUS_USAGE, "%s: others can read the token: `chmod 600 %s`", path, path);
+  if (strlen(text) < SHORTEST_TOKEN)
+    return status_fail(error, STATUS_CONTENT, "%s: the token in its first line needs %d characters or more", path,
+                       SHORTEST_TOKEN);
+  *token = text;
+  bytes = NULL;
+  return STATUS_OK;
 }
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   struct launch_options launch = options->launch;
   CAMPAIGN campaign = NULL;
-  struct serve_model model = {0};
+  __attribute__((cleanup(serve_model_clear))) struct serve_model model = {0};
   launch.quiet = true; /* there is no progress to show */
   OWNED char *token = NULL;
   TRY(read_token(options->token, &token, error));
@@ -77,14 +60,9 @@ static status run(const struct command_line *line, struct error *error) {
                                         .address = options->address,
                                         .token = token,
                                         .port = (int)options->port,
-                                        .wait_s = (double)options->wait,
-                                        .ready = tell}};
-  serving.options.context = &serving;
-  status code = serve_model_make(campaign, options->quantity, options->knob, &model, error);
-  if (!code)
-    code = launch_farm(campaign, &launch, line, serve_all, &serving, error);
-  serve_model_clear(&model);
-  return code;
+                                        .wait_s = (double)options->wait}};
+  TRY(serve_model_make(campaign, options->quantity, options->knob, &model, error));
+  return launch_farm(campaign, &launch, line, serve_all, &serving, error);
 }
 
 static const struct option_row rows[] = {

@@ -75,14 +75,9 @@ static status take_levels(struct serve_model *model, const char *text, struct er
 status serve_model_make(const struct campaign *campaign, const char *results, const char *knob,
                         struct serve_model *model, struct error *error) {
   *model = (struct serve_model){.campaign = campaign};
-  status code = take_inputs(model, error);
-  if (!code)
-    code = take_results(model, results ? results : campaign->quantity, error);
-  if (!code && knob)
-    code = take_levels(model, knob, error);
-  if (code)
-    serve_model_clear(model);
-  return code;
+  TRY(take_inputs(model, error));
+  TRY(take_results(model, results ? results : campaign->quantity, error));
+  return knob ? take_levels(model, knob, error) : STATUS_OK;
 }
 
 void serve_model_clear(struct serve_model *model) {
@@ -121,10 +116,8 @@ char *serve_model_describe(const struct serve_model *model) {
     json_array_append_new(results, describe_row(model->results[i].row));
   for (size_t i = 0; i < model->ladder.count; i++)
     json_array_append_new(levels, json_string(model->ladder.level[i].setting));
-  json_t *whole = json_pack("{s:s, s:s, s:o, s:o, s:s?, s:o}", "model", model->campaign->name, "scene",
-                            model->campaign->scene->name, "inputs", inputs, "results", results, "knob",
-                            model->ladder.count ? model->ladder.knob->name : NULL, "levels", levels);
-  char *text = whole ? json_dumps(whole, JSON_INDENT(1)) : NULL;
-  json_decref(whole);
-  return text;
+  json_auto_t *whole = json_pack("{s:s, s:s, s:o, s:o, s:s?, s:o}", "model", model->campaign->name, "scene",
+                                 model->campaign->scene->name, "inputs", inputs, "results", results, "knob",
+                                 model->ladder.count ? model->ladder.knob->name : NULL, "levels", levels);
+  return whole ? json_dumps(whole, JSON_INDENT(1)) : NULL;
 }

@@ -254,12 +254,11 @@ bool serve_request_read(const struct serve_model *model, const char *method, con
                                                        model->campaign->name)));
 
   json_error_t where;
-  json_t *root = json_loadb(body, size, JSON_REJECT_DUPLICATES, &where);
+  json_auto_t *root = json_loadb(body, size, JSON_REJECT_DUPLICATES, &where);
   if (!root)
     return answered(answer, serve_request_error(400, "InvalidInput", "the body is no JSON: line %d: %s", where.line,
                                                 where.text));
   const bool evaluate = read_call(model, route, root, request, answer);
-  json_decref(root);
   if (!evaluate)
     serve_request_clear(request);
   return evaluate;

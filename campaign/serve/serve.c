@@ -2,6 +2,7 @@
  * again; a run that two evaluations need is computed once; all computed runs are stored. */
 #include "campaign/serve/serve.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,9 +48,9 @@ struct serve {
   const char **paths; /* paths of the varied inputs, for the store */
   size_t path_count;
   struct job *jobs;
-  struct wanted *runs;  /* uthash */
-  struct wanted *queue; /* those on no slot */
-  struct serve_counts counts;
+  struct wanted *runs;                          /* uthash */
+  struct wanted *queue;                         /* those on no slot */
+  int64_t evaluations, computed, found, failed; /* numbers of runs: computed now, found in the store, failed */
   bool stopping;
 };
 
@@ -80,8 +81,11 @@ static status begin(void *context, struct scheduler *scheduler, struct error *er
     serve->paths[serve->path_count++] = ladder->knob->inputs[i].path;
   TRY(scheduler_announce(scheduler, campaign, "{\"served\": true}", &serve->session_id, &serve->campaign_id, error));
   TRY(store_flush(scheduler->store, error));
-  if (serve->options->ready)
-    serve->options->ready(serve->options->context, serve->http);
+  const int slots = scheduler->options.slots;
+  fprintf(stderr, "clast: serving at port %d with %d slot%s, store %s; Ctrl-C ends\n", serve_http_port(serve->http),
+          slots, slots == 1 ? "" : "s", serve->options->store);
+  if (serve_http_open_to_all(serve->http))
+    fputs("clast: warning: other machines can reach this port, and nobody is asked for a password\n", stderr);
   return STATUS_OK;
 }
 
@@ -157,7 +161,7 @@ static status open_job(struct serve *serve, struct job *job, struct error *error
   OWNED bool *there = memory_small((size_t)config->count, sizeof *there);
   TRY(read_store(serve, job, &config->results[0], NULL, there, error));
   for (int64_t r = 0; r < config->count; r++) {
-    serve->counts.found += there[r];
+    serve->found += there[r];
     if (!there[r])
       want(serve, job, config->first + r);
   }
@@ -172,7 +176,7 @@ struct serve_answer serve_submit(struct serve *serve, struct serve_request *requ
   struct error error = {0};
   struct job *job = memory_small(1, sizeof *job);
   struct serve_answer answer = {0};
-  serve->counts.evaluations++;
+  serve->evaluations++;
   *job = (struct job){.request = *request, .ticket = ticket, .started = clock_s()};
   *request = (struct serve_request){0};
   job->scene = serve_model_scene(serve->model, job->request.inputs, job->request.config.level, &error);
@@ -228,8 +232,8 @@ static status ended(void *context, const struct scheduler_run *run, const struct
     wanted->run.lost = run->lost;
     DL_APPEND(serve->queue, wanted);
   } else {
-    serve->counts.computed += end->ending == SCHEDULER_DONE;
-    serve->counts.failed += end->ending != SCHEDULER_DONE;
+    serve->computed += end->ending == SCHEDULER_DONE;
+    serve->failed += end->ending != SCHEDULER_DONE;
     settle(serve, wanted);
   }
   serve_http_run(serve->http);
@@ -282,10 +286,9 @@ static status end(void *context, status code, struct error *error) {
 }
 
 status serve_run(const struct serve_model *model, struct farm *farm, const struct serve_options *options,
-                 struct serve_counts *counts, struct error *error) {
+                 struct error *error) {
   struct serve serve = {.model = model, .options = options};
   status code = STATUS_OK;
-  *counts = (struct serve_counts){0};
   if (farm_rank(farm) == 0)
     code = serve_http_open(model, &serve, options, &serve.http, error);
   if (code) {
@@ -302,8 +305,12 @@ status serve_run(const struct serve_model *model, struct farm *farm, const struc
                                               .orders = serve.http ? serve_http_file(serve.http) : 0};
     const struct scheduler_options own = {.store_path = options->store, .facts = options->facts};
     code = scheduler_compute(&planner, farm, &own, error);
-    *counts = serve.counts;
   }
+  if (!code && farm_rank(farm) == 0)
+    fprintf(stderr,
+            "clast: %" PRId64 " evaluations: %" PRId64 " runs computed, %" PRId64 " found in the store, %" PRId64
+            " given up\n",
+            serve.evaluations, serve.computed, serve.found, serve.failed);
   serve_http_close(serve.http);
   struct wanted *wanted, *following;
   HASH_ITER(hh, serve.runs, wanted, following) {

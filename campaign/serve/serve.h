@@ -28,7 +28,8 @@ struct serve_model {
 };
 
 /* results: comma-separated names, NULL: the campaign's main quantity. knob: "NAME" or "NAME=VALUE,VALUE", NULL: none.
- * STATUS_CONTENT: nothing is varied, or an input is no number. STATUS_USAGE: an unknown result or knob. */
+ * STATUS_CONTENT: nothing is varied, or an input is no number. STATUS_USAGE: an unknown result or knob. Clear *model
+ * also after an error. */
 status serve_model_make(const struct campaign *campaign, const char *results, const char *knob,
                         struct serve_model *model, struct error *error);
 void serve_model_clear(struct serve_model *model);
@@ -55,19 +56,12 @@ struct serve_options {
   const char *token; /* a word that each request must have, as bearer token or as password; NULL: none */
   int port;
   double wait_s; /* an evaluation is answered with 503 after this time, s; its runs go on. 0: never */
-  /* Called when the server listens. May be NULL. */
-  void (*ready)(void *context, const struct serve_http *http);
-  void *context;
 };
 
-struct serve_counts {
-  int64_t evaluations, computed, found, failed; /* numbers of runs: computed now, found in the store, failed */
-};
-
-/* Serves until a signal stops it (STATUS_OK) or the store fails. The farm has been started; ranks other than 0 compute
- * runs. */
+/* Serves until a signal stops it (STATUS_OK) or the store fails. Tells on stderr where it listens, and at the end what
+ * it did. The farm has been started; ranks other than 0 compute runs. */
 status serve_run(const struct serve_model *model, struct farm *farm, const struct serve_options *options,
-                 struct serve_counts *counts, struct error *error);
+                 struct error *error);
 int serve_http_port(const struct serve_http *http);
 bool serve_http_open_to_all(const struct serve_http *http); /* other machines reach it, and there is no token */
 
