@@ -3,16 +3,11 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdalign.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "analysis/analysis.h"
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/table.h"
 #include "engine/cpu_class.h"
-#include "schemas/text.h"
 
 static bool colour(void) {
   const char *no_colour = getenv("NO_COLOR"), *terminal = getenv("TERM");

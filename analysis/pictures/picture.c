@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "analysis/pictures/picture_canvas.h"
-#include "analysis/statistics/statistics.h"
 #include "schemas/memory.h"
 
 static const double none[2] = {HUGE_VAL, -HUGE_VAL}; /* a range without a value */

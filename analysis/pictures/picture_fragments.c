@@ -3,11 +3,8 @@
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/snapshot_read.h"
-#include "analysis/statistics/statistics.h"
 
 #include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -2,10 +2,8 @@
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/picture_layout.h"
-#include "analysis/statistics/statistics.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,6 +32,7 @@ struct scene {
 
 static const double REACH = 0.80; /* disc radius divided by size: discs overlap a little, so that a cut has no holes */
 
+#define SCENE_OF_DISCS __attribute__((cleanup(clear))) struct scene
 static void clear(struct scene *s) {
   free(s->count);
   free(s->mass);
@@ -299,7 +298,7 @@ static status choose_colours(struct scene *s) {
 /* ---- drawing ---- */
 
 void picture_particles_numbers(const struct picture_cloud *cloud, char *text, size_t size) {
-  struct scene s = {.cloud = cloud};
+  SCENE_OF_DISCS s = {.cloud = cloud};
   double total, single;
   size_t searched = weigh(cloud, &total, &single), fragments = 0;
   text[0] = 0;
@@ -313,7 +312,6 @@ void picture_particles_numbers(const struct picture_cloud *cloud, char *text, si
              searched, fragments, fragments == 1 ? "" : "s", 100 * largest / total, 100 * second / total,
              100 * single / total);
   }
-  clear(&s);
 }
 
 /* Golden-angle steps of hue, as for bodies of grains. light: from -1 (far) to 1 (near). */
@@ -492,7 +490,7 @@ status picture_particles(const char *path, double width, const struct picture_cl
     if (cloud->fragment[i] >= (int64_t)cloud->n)
       return status_fail(error, STATUS_USAGE, "%s: fragment numbers beyond the number of particles", path);
 
-  struct scene s = {.cloud = cloud, .look = look};
+  SCENE_OF_DISCS s = {.cloud = cloud, .look = look};
   status code = cloud->n ? choose(&s) : STATUS_OK;
   if (code == STATUS_OK && s.discs > 0)
     code = draw(path, width, &s, error);
@@ -504,6 +502,5 @@ status picture_particles(const char *path, double width, const struct picture_cl
                        path);
   if (code == STATUS_MEMORY)
     status_fail(error, code, "%s: no memory for the picture", path);
-  clear(&s);
   return code;
 }

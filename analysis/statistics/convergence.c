@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
+#include "schemas/memory.h"
 #include "schemas/rows.h"
 
 enum { FEWEST_PAIRS = 4 };
@@ -52,7 +53,7 @@ double convergence_skew(size_t n, const double *values) {
 struct convergence_correlation convergence_correlate(size_t n, const double *coarse, const double *fine,
                                                      double confidence) {
   struct convergence_correlation correlation = {0, NOTHING, NOTHING, NOTHING};
-  double *pairs = malloc(2 * (n ? n : 1) * sizeof *pairs);
+  OWNED double *pairs = malloc(2 * (n ? n : 1) * sizeof *pairs);
   if (!pairs)
     return correlation;
   size_t m = 0;
@@ -70,7 +71,6 @@ struct convergence_correlation convergence_correlate(size_t n, const double *coa
     correlation.low = tanh(atanh(correlation.value) - z);
     correlation.high = tanh(atanh(correlation.value) + z);
   }
-  free(pairs);
   return correlation;
 }
 

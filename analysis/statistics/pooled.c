@@ -614,8 +614,7 @@ static void take_runs(const struct pooled_runs *runs, double lower, struct windo
 status pooled_goodness(const struct pooled_runs *runs, double lower, size_t draws, struct pooled_goodness *out,
                        struct error *error) {
   *out = (struct pooled_goodness){0, NAN, NAN, 0};
-  if (!(lower > 0) || isinf(lower))
-    return status_fail(error, STATUS_USAGE, "exponent: a window from %g kg: expected a positive mass", lower);
+  TRY(check(runs, lower, error));
   OWNED struct power_law_group *groups = NULL;
   OWNED double *step = NULL;
   DRAW found = {0};

@@ -2,7 +2,6 @@
 #include "analysis/statistics/statistics.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "schemas/memory.h"
 

@@ -7,9 +7,7 @@
 #include <string.h>
 
 #include "campaign/terminal/table.h"
-#include "db/ask/ask.h"
 #include "engine/engine.h"
-#include "engine/outcome.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 

@@ -3,7 +3,6 @@
 
 #include "campaign/commands/commands.h"
 #include "campaign/converge/accuracy.h"
-#include "campaign/scheduler/plan.h"
 
 struct options {
   struct campaign_option campaign;

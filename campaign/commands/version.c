@@ -21,12 +21,11 @@ static status run(const struct command_line *line, struct error *error) {
   };
   const size_t facts_count = sizeof facts / sizeof facts[0];
   if (((const struct options *)line->options)->json) {
-    json_t *object = json_object();
+    json_auto_t *object = json_object();
     for (size_t i = 0; i < facts_count; i++)
       json_object_set_new(object, facts[i].name, json_string(facts[i].value));
     const bool all = json_object_size(object) == facts_count && json_dumpf(object, stdout, JSON_INDENT(1)) == 0;
     putchar('\n');
-    json_decref(object);
     return all ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the facts");
   }
   printf("clast %s\n", facts[0].value);

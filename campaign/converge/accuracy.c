@@ -7,7 +7,6 @@
 
 #include "analysis/statistics/statistics.h"
 #include "campaign/converge/study.h"
-#include "campaign/document/campaign.h"
 #include "campaign/terminal/table.h"
 #include "db/ask/ask.h"
 #include "engine/grow.h"
@@ -16,22 +15,11 @@
 
 enum { FEWEST_SEEDS = 3, MOST_SEEDS = 10000, LOOKED_AT = 1000 };
 
-static bool are_enough(int64_t seeds, double deviation, double margin) {
-  return sample_student((size_t)seeds, 0.95) * deviation / sqrt((double)seeds) <= margin;
-}
-
 int64_t accuracy_seeds(double deviation, double margin) {
-  if (!(margin > 0) || !(deviation >= 0) || !are_enough(MOST_SEEDS, deviation, margin))
+  const int64_t seeds = (int64_t)scatter_runs_needed(deviation, margin);
+  if (seeds == 0 || seeds > MOST_SEEDS)
     return 0;
-  int64_t low = FEWEST_SEEDS - 1, high = MOST_SEEDS; /* invariant: `low` seeds are too few, `high` are enough */
-  while (high - low > 1) {
-    const int64_t middle = low + (high - low) / 2;
-    if (are_enough(middle, deviation, margin))
-      high = middle;
-    else
-      low = middle;
-  }
-  return high;
+  return seeds > FEWEST_SEEDS ? seeds : FEWEST_SEEDS;
 }
 
 struct finding {

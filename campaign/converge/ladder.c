@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/scene.h"
 #include "schemas/text.h"
 
 struct making {

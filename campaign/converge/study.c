@@ -5,10 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
 #include "engine/grow.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
 
 #define CONFIDENCE 0.95

@@ -3,13 +3,10 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
 #include "campaign/charts/charts.h"
 #include "campaign/terminal/table.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 

@@ -7,8 +7,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "campaign/document/campaign.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
 
 /* ---- the subject ---- */

@@ -1,7 +1,6 @@
 /* The rounds of a study as a series of campaigns: chooses the next levels and numbers of seeds. Runs a study from its
  * farm to its tables. */
 #include <math.h>
-#include <stdlib.h>
 
 #include "campaign/converge/study.h"
 #include "schemas/clock.h"

@@ -2,7 +2,6 @@
 #include "campaign/document/campaign.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 

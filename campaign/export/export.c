@@ -257,15 +257,11 @@ static status fill(struct crate *crate, struct store *store, const char *title, 
 
 status export_crate(struct store *store, const char *store_path, const struct export_crate_options *options,
                     struct error *error) {
-  struct crate crate = {.options = options, .graph = json_array(), .parts = json_array(), .actions = json_array()};
+  json_auto_t *graph = json_array(), *parts = json_array(), *actions = json_array();
+  struct crate crate = {.options = options, .graph = graph, .parts = parts, .actions = actions};
   const char *slash = strrchr(store_path, '/');
-  status code = take_folder(options->folder, error);
-  if (code == STATUS_OK)
-    code = fill(&crate, store, slash ? slash + 1 : store_path, error);
-  json_decref(crate.graph);
-  json_decref(crate.parts);
-  json_decref(crate.actions);
-  return code;
+  TRY(take_folder(options->folder, error));
+  return fill(&crate, store, slash ? slash + 1 : store_path, error);
 }
 
 /* ---- a Cinema database: pictures and a table of them ---- */

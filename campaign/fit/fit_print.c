@@ -39,12 +39,10 @@ static void input_cells(const struct fit *fit, size_t i, const struct ask_doubts
   table_real(table, (posterior_share(z[2]) - posterior_share(z[0])) / 0.9);
 }
 
-static const char *const input_columns[] = {"input",  "unit", "prior_05", "prior_95", "q05",
-                                            "median", "q95",  "kept",     NULL};
-
 static status print_inputs(const struct fit *fit, struct error *error) {
   TABLE table = table_new(TABLE_TEXT, stdout);
-  table_columns(table, input_columns);
+  table_columns(table,
+                (const char *const[]){"input", "unit", "prior_05", "prior_95", "q05", "median", "q95", "kept", NULL});
   const struct ask_doubts doubts = all_doubts(fit);
   for (size_t i = 0; i < fit->inputs; i++) {
     table_text(table, row_of(fit, i)->path);
@@ -88,13 +86,11 @@ static void value_cells(const struct fit *fit, size_t k, struct table *table) {
               (const double[]){datum->value, datum->error, seeds_of(fit, k), fit->data[k].resolution * slope});
 }
 
-static const char *const datum_columns[] = {"measured", "value",  "error", "sd_seeds", "sd_resolution",
-                                            "q05",      "median", "q95",   "below",    NULL};
-
 static status print_data(const struct fit *fit, struct error *error) {
   TABLE table = table_new(TABLE_TEXT, stdout);
   char label[LABEL];
-  table_columns(table, datum_columns);
+  table_columns(table, (const char *const[]){"measured", "value", "error", "sd_seeds", "sd_resolution", "q05", "median",
+                                             "q95", "below", NULL});
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     observed_label(fit->observed, k, label, sizeof label);
     table_text(table, label);

@@ -2,7 +2,6 @@
  * from its documents to its report. */
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "campaign/fit/fit.h"

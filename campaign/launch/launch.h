@@ -2,10 +2,8 @@
 #ifndef CLAST_CAMPAIGN_LAUNCH_LAUNCH_H
 #define CLAST_CAMPAIGN_LAUNCH_LAUNCH_H
 
-#include "campaign/document/campaign.h"
-#include "campaign/scheduler/driver.h"
+#include "campaign/scheduler/scheduler.h"
 #include "campaign/terminal/option.h"
-#include "campaign/terminal/progress.h"
 #include "campaign/terminal/table.h"
 
 struct launch_options {

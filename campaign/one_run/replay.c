@@ -3,10 +3,8 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "campaign/scheduler/run.h"
 #include "engine/cpu_class.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"

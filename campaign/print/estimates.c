@@ -158,7 +158,7 @@ static status row_for_people(struct printing *printing, const struct ask_points_
 
 static status print_point(struct printing *printing, const struct ask_points_row *row, struct error *error) {
   struct point_estimate fits[POINT_ESTIMATES];
-  struct point_data point;
+  __attribute__((cleanup(point_release))) struct point_data point = {0};
   struct doubts doubts = {0};
   const struct ask_doubts_choice choice = {.point = row->point_id};
   char all[ASK_DOUBTS_RESULTS];
@@ -166,9 +166,7 @@ static status print_point(struct printing *printing, const struct ask_points_row
   TRY(ask_doubts(printing->store, &choice, OUTCOME_NAME(mean_fragment_mass), &doubts.masses, error));
   TRY(ask_doubts(printing->store, &choice, all, &doubts.all, error));
   TRY(point_read(printing->store, row->point_id, row->results_version, &point, error));
-  const status code = point_estimates(&point, 0.95, fits, error);
-  point_release(&point);
-  TRY(code);
+  TRY(point_estimates(&point, 0.95, fits, error));
   for (int window = 0; window < ESTIMATES_WINDOWS; window++) {
     if (!table_for_people(printing->format))
       TRY(row_for_programs(printing, row, window, fits, &doubts, error));

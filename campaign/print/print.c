@@ -160,8 +160,7 @@ static status print_long(const struct engine_kind *kind, const struct run_result
     table_rests_on(table, &(struct ask_doubts){.runs = 1, .doubtful = masses != CONDITION_SOUND});
     table_real(table, result->estimates[i].fit.beta);
   }
-  TRY(table_end(table, error));
-  return STATUS_OK;
+  return table_end(table, error);
 }
 
 static status print_for_people(const struct scene *scene, int64_t seed, const struct run_result *result,

@@ -1,5 +1,5 @@
 /* Chooses the runs of a campaign: the window of points, the progress line, and campaigns in a series. */
-#include "campaign/scheduler/driver.h"
+#include "campaign/scheduler/scheduler.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -513,6 +513,8 @@ static void tick(void *context, int running, bool last) {
   const struct driver_summary *summary = &driver->summary;
   const double now = clock_s(), elapsed = now - driver->begin;
   const uint64_t points = design_points(driver->walk.design), unmet = points - driver->expanded;
+  const uint64_t open_points = summary->points - summary->points_done;
+  const bool rated = elapsed > 0 && driver->started_done > 0;
   struct sample_summary mean = sample_summarise_moments(&driver->moments, 0.95);
   if (field_is_share(driver->row))
     sample_of_share(&mean, 0.95);
@@ -523,10 +525,8 @@ static void tick(void *context, int running, bool last) {
       .failed = summary->runs_failed,
       .running = running,
       .total = driver->wanted + (int64_t)unmet * campaign_replicates_least(driver->campaign),
-      .total_is_minimum = driver->campaign->per_point == 0 &&
-                                  summary->points_done<summary->points, .rate = elapsed> 0 && driver->started_done > 0
-                              ? (double)driver->started_done / elapsed
-                              : NOTHING,
+      .total_is_minimum = driver->campaign->per_point == 0 && open_points > 0,
+      .rate = rated ? (double)driver->started_done / elapsed : NOTHING,
       .seconds_left = last ? NOTHING : time_left(driver, now),
       .quantity = driver->row->path,
       .mean = mean,

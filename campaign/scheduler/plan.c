@@ -1,13 +1,11 @@
 /* Predicts a campaign: times trial runs, walks the design, and prints what it found. */
-#include "campaign/scheduler/plan.h"
+#include "campaign/scheduler/scheduler.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "campaign/converge/ladder.h"
-#include "campaign/terminal/progress.h"
-#include "db/ask/ask.h"
 #include "db/store/store.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"

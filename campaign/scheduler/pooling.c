@@ -3,7 +3,6 @@
 #include "campaign/scheduler/scheduler.h"
 
 #include <pthread.h>
-#include <stdlib.h>
 
 #include "schemas/memory.h"
 

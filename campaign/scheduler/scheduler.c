@@ -246,24 +246,20 @@ static status take(struct scheduler *scheduler, struct scheduler_run run, const 
                    struct error *error) {
   const struct scheduler_planner *planner = &scheduler->planner;
   struct scheduler_end end = {.report = report};
-  struct run_result result = {0};
-
-  status code = STATUS_OK;
+  RUN_RESULT result = {0};
   if (report->ending != FARM_DONE) {
-    code = take_attempt(scheduler, &run, &end, error);
+    TRY(take_attempt(scheduler, &run, &end, error));
   } else {
     TRY(run_decode_result(run.scene->kind, report->bytes, report->size, &result, error));
     end.result = &result;
-    code = (run.replay ? store_fields : store_result)(scheduler, &run, &end, error);
+    TRY((run.replay ? store_fields : store_result)(scheduler, &run, &end, error));
   }
-  if (code == STATUS_OK && result.unwritten.status)
-    code = stop_without_fields(scheduler, &result.unwritten, error);
-  if (code == STATUS_OK)
-    code = planner->ended(planner->context, &run, &end, error);
-  run_result_clear(&result);
-  if (code == STATUS_OK && scheduler->stop.status != STATUS_OK)
+  if (result.unwritten.status)
+    TRY(stop_without_fields(scheduler, &result.unwritten, error));
+  TRY(planner->ended(planner->context, &run, &end, error));
+  if (scheduler->stop.status != STATUS_OK)
     return status_fail(error, STATUS_STOPPED, "%s", scheduler->stop.message);
-  return code;
+  return STATUS_OK;
 }
 
 /* ---- another program holds the store: reports wait in memory, and the slots go on ---- */
@@ -276,18 +272,12 @@ struct scheduler_held {
 
 static status hold(struct scheduler *scheduler, const struct scheduler_run *run, const struct farm_report *report,
                    struct error *error) {
+  uint8_t *bytes = NULL;
+  TRY(memory_array(&bytes, report->size, 1, "results while another program holds the store", error));
   struct scheduler_held *held = memory_small(1, sizeof *held);
   *held = (struct scheduler_held){.run = *run, .report = *report};
-  uint8_t *bytes = malloc(report->size + 1);
-  char *message = strdup(report->message ? report->message : "");
   held->report.bytes = bytes;
-  held->report.message = message;
-  if (!bytes || !message) {
-    free(bytes);
-    free(message);
-    free(held);
-    return status_fail(error, STATUS_MEMORY, "no memory for results while another program holds the store");
-  }
+  held->report.message = memory_small_text(report->message ? report->message : "");
   if (report->size)
     memcpy(bytes, report->bytes, report->size);
   if (!scheduler->held)

@@ -2,11 +2,11 @@
  * and tells the planner how the run ended. A planner knows which runs are wanted and nothing of slots, attempts or
  * rows. These are planners:
  *
- *     a campaign   chooses among the replicates of its points: driver.h
- *     a series     campaigns one after another, each depends on the results before: driver.h. A study of convergence
- *                  (converge/) and a fit (fit/) are series. So is whatever else looks for something by runs: it gives
- *                  the next campaign and reads its results, and nothing more
- *     a server     runs that requests ask for: serve/
+ *     a campaign   chooses among the replicates of its points: driver_run()
+ *     a series     campaigns one after another, each depends on the results before: driver_run_series(). A study of
+ *                  convergence (converge/) and a fit (fit/) are series. So is whatever else looks for something by
+ * runs: it gives the next campaign and reads its results, and nothing more a server     runs that requests ask for:
+ * serve/
  *
  *     farm_start(&farm_options, run_work, &farm, &error);     // before HDF5, threads, MPI
  *     scheduler_compute(&planner, farm, &options, &error);    // every rank; only rank 0 opens the store
@@ -133,5 +133,151 @@ struct farm_manager scheduler_manager(struct scheduler *scheduler);
 /* After the farm has ended with `code`: the last tick, and commits the open batch. Returns the status to go on with,
  * which may be an error that no tick has passed on yet. The store stays open. */
 status scheduler_end(struct scheduler *scheduler, status code, struct error *error);
+
+/* ---- campaigns as planners ----
+ *
+ * A campaign is asked for runs until every point has its replicates. A point's statistics use a fixed prefix of
+ * replicate numbers 0..n-1. With `seeds: until` the prefix grows batch by batch and the decision looks at complete
+ * prefixes only, never at "the first n that finished" (which is biased towards quick runs). Idle slots compute runs
+ * beyond the prefix; these are stored with surplus = 1 and counted only if the prefix grows to include them. */
+
+struct driver_summary {
+  int64_t campaign_id, session_id;
+  uint64_t points, points_done;   /* different points; points whose replicates are complete */
+  uint64_t points_invalid;        /* points with invalid combinations of values: no runs, counted as failures */
+  int64_t runs_reused, runs_done; /* found in the store; computed now */
+  int64_t runs_failed;            /* all attempts failed, or the run ended in a failed state; includes reused runs */
+  int64_t runs_left;       /* the machine ended limits.attempts attempts: the same command tries these runs again */
+  int64_t runs_doubtful;   /* whose words mark the main quantity */
+  int64_t runs_censored;   /* ended at the hard end time: usable, but fragmentation may be incomplete */
+  int64_t runs_surplus;    /* in the store, but left out of statistics */
+  int64_t fields_written;  /* HDF5 files kept */
+  int64_t attempts_failed; /* attempts that failed in this invocation */
+  uint64_t points_interval_met, points_cap_reached; /* with `until` */
+  double cpu_s;                                     /* processor time of the runs computed now */
+};
+
+/* Computes a campaign; every rank calls it. STATUS_OK; STATUS_FAILED_RUNS: finished with failed runs, or stopped
+ * because too many of the first failed; STATUS_STOPPED also when runs were lost to the machine: the same command
+ * resumes; and the statuses of scheduler_compute. *summary is filled in every case, with zero on ranks other than 0. */
+status driver_run(const struct campaign *campaign, struct farm *farm, const struct scheduler_options *options,
+                  struct driver_summary *summary, struct error *error);
+
+/* Campaigns one after the other, where each depends on earlier results: the levels of a study, the rounds of a fit.
+ * Each is an ordinary campaign of the store. Stored runs are not computed again, so that a stopped series goes on where
+ * it was. */
+struct series {
+  void *context;
+  const struct campaign *limits; /* those of every campaign of the series */
+  /* Gives the next campaign in *campaign, which the series then owns. It stays NULL when there is none. The scheduler
+   * tells the store and the number of slots. */
+  status (*next)(void *context, const struct scheduler *scheduler, struct campaign **campaign, struct error *error);
+  /* All runs of the campaign are in the store, committed. */
+  status (*done)(void *context, const struct scheduler *scheduler, struct error *error);
+  /* Ends the campaign under way without its other runs, when it returns true. NULL: every run is wanted. */
+  bool (*is_enough)(void *context);
+};
+
+struct series_summary {
+  int64_t runs_done, runs_failed, runs_reused;
+  double cpu_s;
+};
+
+/* Every rank calls it; only rank 0 calls the callbacks. STATUS_STOPPED after a signal, STATUS_FAILED_RUNS when too many
+ * of a campaign's first runs failed (limits.failures); *error says which. Single failed runs are no error: they have no
+ * result when `done` is called. */
+status driver_run_series(const struct series *series, struct farm *farm, const struct scheduler_options *options,
+                         struct series_summary *summary, struct error *error);
+
+/* A campaign of a series: a list of `points` points of a scene, with the seeds, limits and store of `like`. It has
+ * `axes` axes, whose rows and levels the caller sets; then driver_list_end() writes its document. The caller frees it,
+ * also after an error. */
+status driver_list_begin(const struct campaign *like, const struct scene *scene, size_t axes, size_t points,
+                         struct campaign **out, struct error *error);
+status driver_list_end(struct campaign *campaign, const char *scene_reference, const char *comment,
+                       struct error *error);
+/* Writes the scene of the campaign at `path` as it is called from the current folder. */
+void driver_list_reference(const struct campaign *campaign, const char *path, char *reference, size_t size);
+
+/* The parts of driver_run, for tests that take the farm's place. */
+struct driver;
+struct driver *driver_new(const struct campaign *campaign);          /* borrows the campaign; never NULL */
+struct scheduler_planner driver_planner(struct driver *driver);      /* context: the driver */
+struct driver_summary driver_summarise(const struct driver *driver); /* so far */
+void driver_free(struct driver *driver);                             /* NULL is fine */
+
+/* ---- what a campaign will cost ----
+ *
+ * Predicts runs and cost of a campaign. Stores nothing. Times come from trial runs of up to 5 s in all: of the most
+ * expensive sampled point, of a coarse version of it that runs to its end, and of other points. */
+
+struct plan_options {
+  const char *store_path; /* NULL: the campaign's */
+  bool no_trial;
+  double trial_s; /* 0 = 5 s */
+  int slots;      /* for the wall time */
+  bool all;       /* the model with its reasons and sources */
+};
+
+struct plan {
+  uint64_t points, points_looked_at; /* costs are averaged over the sampled points (at most 4096) */
+  uint64_t runs_least, runs_most;    /* differ with `until` */
+  uint64_t runs_there;               /* of the sampled points, already in the store */
+  bool store_exists;
+  bool trial_made, trial_finished; /* finished: the trial is a whole run, not an extrapolation */
+  bool trial_whole;     /* times are of whole runs, measured or estimated from a coarse run; else upper bounds */
+  double share_of_most; /* mean time of a run divided by that of the most expensive point; NaN: taken from the engine's
+                           measure of work */
+  double run_s_mean,
+      run_s_most; /* per run; NaN without trial and without finished runs. An upper bound unless finished */
+  double cpu_s_least, cpu_s_most;   /* processor time of the remaining runs */
+  double wall_s_least, wall_s_most; /* wall time of the remaining runs on the slots */
+  double threads;      /* threads that share the work of a run of the most expensive point; 1 without trial */
+  double memory_most;  /* largest memory of one run, bytes */
+  double disk_bytes;   /* growth of the store by runs_most runs; NaN without trial */
+  double fields_bytes; /* size of the HDF5 files to keep; NaN when not known */
+  char *model;         /* owned: kind->describe() of the sampled point */
+  char *alternatives;  /* owned: JSON array of the settings that an accuracy was chosen from, or NULL */
+};
+
+status plan_make(const struct campaign *campaign, const struct plan_options *options, struct plan *plan,
+                 struct error *error);
+void plan_clear(struct plan *plan);
+void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out); /* for people */
+char *plan_print_json(const struct campaign *campaign, const struct plan *plan, int slots);      /* malloc'd */
+
+/* ---- trials: the beginning of a run, whole runs, and coarse whole runs that tell which share of a run the beginning
+ * was. All times are processor time of this process, so that other work on the machine does not count. ---- */
+
+enum { PLAN_MARKS = 512 };
+
+/* Progress of a run (simulated time divided by the hard end time) after numbers of steps. */
+struct plan_trial {
+  double prepare_s, step_s, finish_s;
+  double steps;    /* made */
+  double progress; /* 0..1 at the end of the piece */
+  bool finished;   /* the run ended before the time limit of the trial */
+  size_t fragments;
+  double mark_steps[PLAN_MARKS], mark_progress[PLAN_MARKS]; /* ascending */
+  size_t marks;
+};
+
+/* Runs for at most `seconds`, on one thread. A run that cannot be prepared is an error. */
+status plan_try(const struct scene *scene, uint64_t seed, double seconds, struct plan_trial *run, struct error *error);
+
+/* Processor time (s) of a whole run, of which `piece` is the beginning. Estimated from a whole run of a coarser scene:
+ * both runs are assumed to need the same share of their steps up to the same simulated time. NaN: the coarse run did
+ * not reach this time. */
+double plan_whole(const struct plan_trial *piece, const struct plan_trial *coarse);
+
+/* The same without a coarse run: time up to the hard end of the run, which most runs do not reach. */
+double plan_to_hard_end(const struct plan_trial *piece);
+
+/* Coarsens the scene by the first knob of its engine that has a step (particles, grains), so that a whole run takes
+ * about `seconds`. `rate`: upper bound of processor seconds per unit of the engine's work. The caller owns *coarse;
+ * NULL: there is no such scene. `setting`: value of that knob, for other points of the campaign. */
+void plan_coarsen(const struct scene *scene, double rate, double seconds, struct scene **coarse, char setting[64]);
+/* The same setting in another scene. NULL: it does not apply. */
+struct scene *plan_coarsen_like(const struct scene *scene, const char *setting);
 
 #endif

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "analysis/pictures/picture_canvas.h"
-#include "campaign/document/campaign.h"
 #include "schemas/file.h"
 #include "schemas/limits.h"
 #include "schemas/text.h"

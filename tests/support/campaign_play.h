@@ -9,8 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "campaign/scheduler/driver.h"
 #include "campaign/scheduler/run.h"
+#include "campaign/scheduler/scheduler.h"
 #include "engine/random.h"
 #include "tests/support/toy_engine.h"
 

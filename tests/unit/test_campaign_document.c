@@ -13,7 +13,7 @@
 
 #include "campaign/design/design.h"
 #include "campaign/document/campaign.h"
-#include "campaign/scheduler/plan.h"
+#include "campaign/scheduler/scheduler.h"
 
 #define HEAD "name: t\nscene: disc-explosion\n"
 

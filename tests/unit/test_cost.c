@@ -10,8 +10,8 @@
 #include <string.h>
 
 #include "analysis/analysis.h"
-#include "campaign/scheduler/plan.h"
 #include "campaign/scheduler/point.h"
+#include "campaign/scheduler/scheduler.h"
 
 #define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
