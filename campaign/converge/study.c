@@ -33,8 +33,10 @@ status study_quantity_find(const struct engine_kind *kind, const char *name, str
 
 status study_add(struct study *study, const struct scene *base, struct ladder *levels, struct error *error) {
   const size_t room = (size_t)study->rule.most_seeds;
-  if (!grow_block(&study->ladder, (study->ladder_count + 1) * sizeof *study->ladder))
-    memory_refused();
+  if (!grow_block(&study->ladder, (study->ladder_count + 1) * sizeof *study->ladder)) {
+    ladder_clear(levels);
+    return status_fail(error, STATUS_MEMORY, "no memory for a study");
+  }
   struct study_ladder *ladder = &study->ladder[study->ladder_count++];
   *ladder = (struct study_ladder){.levels = *levels, .base = base, .end = "not begun"};
   *levels = (struct ladder){0};
