@@ -186,7 +186,8 @@ static void read_fragments(struct reading *r, document_node *node) {
     sum += masses[i] = mass.number;
   }
   if (masses && good && sum > 1.02 * from.total)
-    document_report(list, "masses", "the fragments weigh %.4g kg together, the body %.4g kg", sum, from.total);
+    document_report(list, "masses", "the fragments together weigh %.15g %% of the total; expected at most 102 %%",
+                    100 * sum / from.total);
   else if (masses && good)
     take_masses(r, list, count, masses, from.total, from.complete);
 }

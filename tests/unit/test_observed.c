@@ -144,7 +144,8 @@ static void errors_have_a_place(void **state) {
   bad(SHOT "set: {strain: 3 %}\n    measured: [{quantity: time, value: 1}]\n", "unknown in the campaign");
   bad(SHOT "set: {strian: 3 %}\n    measured: [{quantity: time, value: 1}]\n", "threshold.strain");
   bad(SHOT "specimens: 0\n    measured: [{quantity: time, value: 1}]\n", "specimens|at least 1");
-  bad(SHOT "fragments: {total: 10 g, complete: 1 g, masses: [9 g, 1.21 g]}\n", "weigh"); /* 2 % are of the balance */
+  bad(SHOT "fragments: {total: 10 g, complete: 1 g, masses: [9 g, 1.21 g]}\n",
+      "weigh 102.1 % of the total"); /* 2 % are of the balance */
   observed_free(good(SHOT "fragments: {total: 10 g, complete: 1 g, masses: [9 g, 1.19 g]}\n"));
   bad(SHOT "fragments: {total: 10 g, masses: [9 g]}\n", "complete");
 }
