@@ -152,6 +152,13 @@ static const struct twin {
      {"fidelity.particles=300", "impact.gap=1 um", "impact.speed=20 m/s"},
      {"stop.end_time=60 us", "stop.quiet_time=60 us"},
      {"stop.end_time=400 us", "stop.quiet_time=400 us"}},
+    /* the bodies press on each other, or have parted */
+    {"early",
+     "basalt-sphere",
+     {"fidelity.particles=300", "impact.gap=1 um", "impact.mass=150 g", "impact.speed=100 m/s", "target.fracture=off",
+      "fidelity.projectile_spacing=1", "method.contact=overlap"},
+     {"stop.end_time=100 us"},
+     {"stop.end_time=300 us"}},
     {"effect",
      "disc-explosion",
      {"body.diameter=8 cm", "stop.end_time=0.2 ms"},

@@ -190,6 +190,12 @@ static double unfinished(const struct condition_run *r) {
   return (sph_derived_arrival(in) + crossing) / r->outcome->time;
 }
 
+/* Energy of the overlap of bodies over the energy put in: they have not parted yet. */
+static double pressing(const struct condition_run *r) {
+  const struct sph_results *results = results_of(r);
+  return results->contact.energy / results->energy_input;
+}
+
 /* Mean damage of a target without damped sides. */
 static double gone(const struct condition_run *r) {
   const struct sph_inputs *in = r->inputs;
@@ -367,6 +373,11 @@ const struct condition sph_conditions[] = {
               .bound = 1, .doubt = "the run ended before anything could break",
               .reason = "a body can break from the hit until a wave has crossed it",
               .remedy = "give a longer stop.end_time", .after = unfinished),
+    CONDITION("early", .number = "the energy of the overlap of bodies in contact, over the energy put in,",
+              .bound = 0.01,
+              .doubt = "the bodies still press on each other: their speeds, and perhaps the damage, are not final",
+              .reason = "spheres that have parted have 0, debris between two bodies has 5e-5",
+              .remedy = "give a longer stop.end_time and stop.quiet_time", .after = pressing),
     CONDITION("gone", .number = "the mean damage of the target", .bound = 0.9,
               .doubt = "no body is left that could have a crater", .reason = "our choice",
               .remedy = "use the fragments",
