@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "schemas/field.h"
+#include "schemas/file.h"
 #include "schemas/unit.h"
 
 enum { QUOTE = 60 };
@@ -67,6 +68,11 @@ static status unknown_choice(const struct field *row, const char *text, struct e
     text_guess_offer(&guess, row->choices[i]);
 
   field_describe_choices(row, list, sizeof list);
+  if (file_name_is_document(text))
+    return status_fail(error, STATUS_CONTENT,
+                       "%s: a file is named in the document of a scene (such as material: %.*s); to compare it with "
+                       "others, write a scene for each and run them into one store",
+                       row->path, QUOTE, text);
   if (!guess.nearest)
     return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'", row->path, list, QUOTE, text);
   return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'; did you mean '%s'?", row->path, list, QUOTE,
