@@ -25,7 +25,14 @@
  * `mine` are the term's columns in the member's record, `its` those of the neighbours, `base` the columns that every
  * record has. Units, which are all 1 in double (struct sph_pair_units): h and d in unit.distance, u in unit.velocity,
  * densities in unit.density, w in unit.length^-4, stress over density squared in unit.specific. A force is the latter
- * times w. The mass of the partner, or its volume, is a factor that the pair loop adds. */
+ * times w. A PAIR_CONSTANT is in SI: a number with a unit comes in by PAIR_PACK, which can convert it (source->unit).
+ *
+ * p->force is what the neighbour gets, and the member gets its opposite: a force that slows the member adds along +u.
+ * In double the loop multiplies it by the mass of the partner. In float slope and w have the factor m_i m_j already, or
+ * V_i V_j with volume weights. With the gradient correction and without volume weights both have a further factor
+ * (rho_i rho_j)^(-1/2) in PAIR_STRESS_ADDED and PAIR_FORCE, not in PAIR_BEFORE: a force with densities of its own takes
+ * it out. In float q, t and inverse_r may be no numbers outside `near`: end with vec_keep(p->near, ...). A force that
+ * does not act along d changes the angular momentum. */
 
 #define vec_part        TYPED(vec_part)
 #define column_load     TYPED(column_load)
