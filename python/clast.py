@@ -134,10 +134,12 @@ class Store:
         return self.query(where) if point is None else self.query(where + " AND point_id = ?", (int(point),))
 
     def unit(self, column):
-        """The SI unit of a column of the views; "" for a pure number or a text."""
-        row = self.connection.execute(
-            "SELECT unit FROM column_doc WHERE column_name = ? AND unit <> '1' LIMIT 1", (column,)).fetchone()
-        return row[0] if row else ""
+        """The SI unit of a column of the views; "" for a pure number or a text. KeyError: there is no such column."""
+        units = [unit for (unit,) in self.connection.execute(
+            "SELECT unit FROM column_doc WHERE column_name = ?", (column,))]
+        if not units:
+            raise KeyError(f"the store has no column {column!r}")
+        return next((unit for unit in units if unit not in (None, "", "1", "-")), "")
 
     def axes(self):
         """The varied inputs, as columns of the views."""

@@ -41,7 +41,10 @@ size_t document_guard_text(const char *text, size_t size) {
 static void report_byte(struct document *document, size_t at) {
   const char *text = document->text + at;
   const unsigned char byte = (unsigned char)*text;
-  if (byte == 0)
+  if (byte == 0 && strncmp(document->text, "SQLite format 3", 15) == 0)
+    document_report_at(document, 0, 15, NULL,
+                       "this is a store (an SQLite database); a document is expected, such as a campaign");
+  else if (byte == 0)
     document_report_at(document, at, at + 1, NULL, "a NUL byte: this is not text; save the file as UTF-8");
   else if (text_utf8_length(text, document->size - at) == 0)
     document_report_at(document, at, at + 1, NULL, "invalid UTF-8 (byte 0x%02x); save the file as UTF-8", byte);

@@ -251,7 +251,8 @@ struct reading {
   bool has_density;     /* a remark has it */
   enum amount kind;
   const char *place_unit, *amount_unit, *amount_name; /* parts of the file */
-  const char *complete;
+  const char *complete;                               /* "# complete from", and its line */
+  int64_t complete_line;
   struct row *rows;
   size_t count, room;
   struct measured *out;
@@ -280,8 +281,10 @@ static status take_remark(struct reading *r, char *text, struct error *error) {
   const char *key = trim(text), *value = trim(colon + 1);
   if (strcmp(key, "source") == 0)
     snprintf(r->out->source, sizeof r->out->source, "%s", value);
-  if (strcmp(key, "complete from") == 0)
+  if (strcmp(key, "complete from") == 0) {
     r->complete = value;
+    r->complete_line = r->csv.line;
+  }
   if (strcmp(key, "density") != 0)
     return STATUS_OK;
   double density;
@@ -436,6 +439,15 @@ static status read_mass(const struct reading *r, const char *text, const char *u
   return STATUS_OK;
 }
 
+/* "# complete from": a mass, or a size where the column has sizes. */
+static status read_complete(struct reading *r, struct error *error) {
+  double *mass = &r->out->complete;
+  r->csv.line = r->complete_line;
+  if (r->by_size && !unit_is_bare(r->complete) && unit_read(r->complete, "kg", mass, NULL) == STATUS_OK && *mass > 0)
+    return STATUS_OK;
+  return read_mass(r, r->complete, "", mass, error);
+}
+
 /* A number of fragments, a mass in kg, or a share of the mass. */
 static status read_amount(struct reading *r, const char *text, double *amount, struct error *error) {
   struct unit unit, mass;
@@ -495,7 +507,7 @@ static status read_items(struct reading *r, struct error *error) {
     }
   if (r->count == 0)
     return status_fail(error, STATUS_CONTENT, "%s: there is no row with a fragment", r->path);
-  return *r->complete ? read_mass(r, r->complete, "", &r->out->complete, error) : STATUS_OK;
+  return *r->complete ? read_complete(r, error) : STATUS_OK;
 }
 
 /* A column `number` or `n` may count fragments or number the rows. */

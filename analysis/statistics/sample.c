@@ -169,6 +169,10 @@ bool sample_may_stop(size_t n, const double *values, double half_width, double l
   return t * t * variance <= half_width * half_width * number;
 }
 
+bool sample_could_stop(size_t n, double level) {
+  return n >= 2 && SAMPLE_GUARD * sample_student(n, level) <= (double)n;
+}
+
 /* ---- Paired and independent differences of means. ---- */
 
 /* Student's t with the degrees of freedom of Welch and Satterthwaite. */

@@ -125,6 +125,8 @@ enum { SAMPLE_FIRST = 30, SAMPLE_BATCH = 10, SAMPLE_GUARD = 20 };
 /* values[r] of replicate r; NaN (a failed run) is left out of the statistics. True when a campaign may stop at the
  * prefix of length n. */
 bool sample_may_stop(size_t n, const double *values, double half_width, double level, size_t n0);
+/* Are n values enough to stop if all are equal? From 41 on at a level of 0.95. */
+bool sample_could_stop(size_t n, double level);
 
 /* ---- spectra of masses ----
  *

@@ -1,11 +1,24 @@
 /* `clast export STORE [TARGET]`: one compact file for hand-over, rows for other programs, or a folder of CSV files. */
-#include "campaign/export/export.h"
+#include <string.h>
+#include <strings.h>
+
 #include "campaign/commands/commands.h"
+#include "campaign/export/export.h"
 
 struct options {
   const char *per, *license, *author;
   bool csv, lines, bits, cinema, crate;
 };
+
+/* Does the name promise a table? */
+static bool is_table(const char *name) {
+  static const char *const endings[] = {".csv", ".json", ".jsonl", ".txt", ".tsv"};
+  const char *dot = strrchr(name, '.');
+  for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
+    if (strcasecmp(dot, endings[i]) == 0)
+      return true;
+  return false;
+}
 
 /* Options that exclude each other. */
 static status check(const struct command_line *line, struct error *error) {
@@ -20,6 +33,10 @@ static status check(const struct command_line *line, struct error *error) {
       {options->per && other, "--per excludes --bits, --cinema and --crate"},
       {(options->license || options->author) && !options->crate, "--license and --author belong to --crate"},
       {options->lines && !options->per, "--jsonl needs --per run or --per point"},
+      {!options->per && !options->csv && !other && line->count > 1 && is_table(line->arguments[1]),
+       "without an option the target is a store. For rows give --per run or --per point (--jsonl for JSON), for a "
+       "folder "
+       "of tables --csv"},
       {!options->per && line->count < 2,
        "clast export needs a target, or --per run or --per point for rows on standard output; usage: "
        "clast export STORE [TARGET]"},

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/statistics.h"
 #include "campaign/document/campaign_read.h"
 #include "engine/random.h"
 #include "schemas/memory.h"
@@ -260,7 +261,12 @@ void campaign_drop(struct campaign **campaign) {
 }
 
 int64_t campaign_replicates_least(const struct campaign *campaign) {
-  return campaign->per_point ? campaign->per_point : campaign->until_minimum;
+  if (campaign->per_point)
+    return campaign->per_point;
+  int64_t least = campaign->until_minimum;
+  while (least < campaign->maximum && !sample_could_stop((size_t)least, campaign->until_level))
+    least += campaign->until_batch;
+  return least < campaign->maximum ? least : campaign->maximum;
 }
 
 int64_t campaign_replicates_most(const struct campaign *campaign) {

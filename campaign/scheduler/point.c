@@ -11,7 +11,7 @@
 struct point *point_create(const struct campaign *campaign, struct scene *scene) {
   struct point *point = memory_small(1, sizeof *point);
   point->scene = scene;
-  point->rule = (struct design_stopping){.minimum = campaign_replicates_least(campaign),
+  point->rule = (struct design_stopping){.minimum = campaign->per_point ? campaign->per_point : campaign->until_minimum,
                                          .maximum = campaign_replicates_most(campaign),
                                          .batch = campaign->until_batch,
                                          .half_width = campaign->until_half_width,

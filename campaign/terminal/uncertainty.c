@@ -19,6 +19,8 @@ void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_T
   double leading = floor(log10(half_width));
   if (half_width < 2 * pow(10, leading))
     leading--;
+  if (value != 0 && fabs(value) < 0.5 * pow(10, leading)) /* 0.3 +- 2.7, not 0 +- 3 */
+    leading--;
   if (leading < -MOST_DECIMALS || leading > MOST_DECIMALS || fabs(value) >= MOST_DIGITS) {
     snprintf(text, UNCERTAINTY_TEXT, "%.4g +- %.2g", value, half_width);
     return;

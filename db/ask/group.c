@@ -9,7 +9,7 @@
 #include "schemas/limits.h"
 #include "schemas/text.h"
 
-enum { NAME = 128 };
+enum { NAME = 128, NAMED = 6 };
 
 struct names {
   char name[LIMITS_NAMES][NAME];
@@ -212,7 +212,8 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   return text_close(out, &sql);
 }
 
-/* Varied inputs that differ within a group; "other inputs" when the points of a group differ in none of them. */
+/* What differs within a group: `scene`, and the varied inputs or, when the points of a group differ in none of them,
+ * all others. The first NAMED are named. */
 static status find_pooled(struct store *store, const struct names *axes, char pooled[ASK_GROUP_POOLED],
                           struct error *error) {
   sqlite3_str *order = sqlite3_str_new(NULL);
@@ -227,11 +228,20 @@ static status find_pooled(struct store *store, const struct names *axes, char po
       "differing AS (SELECT path FROM (SELECT grp, a.path, count(*) AS points, count(i.value) AS given, "
       "count(DISTINCT i.value) AS kinds FROM grouped g CROSS JOIN axis a LEFT JOIN point_input i ON i.point_id = "
       "g.point_id AND i.path = a.path GROUP BY grp, a.path) WHERE kinds > 1 OR (kinds = 1 AND given < points))\n"
-      "SELECT DISTINCT path FROM differing UNION ALL SELECT 'other inputs' WHERE NOT EXISTS (SELECT 1 FROM "
-      "differing) AND EXISTS (SELECT 1 FROM grouped GROUP BY grp HAVING count(DISTINCT point_id) > 1)",
+      "SELECT 'scene' WHERE EXISTS (SELECT 1 FROM grouped JOIN point USING (point_id) GROUP BY grp HAVING "
+      "count(DISTINCT "
+      "scene_name) > 1)\n"
+      "UNION ALL SELECT DISTINCT path FROM differing\n"
+      "UNION ALL SELECT DISTINCT i.path FROM grouped g JOIN point_input i USING (point_id) WHERE NOT EXISTS (SELECT 1 "
+      "FROM differing) GROUP BY grp, i.path HAVING count(DISTINCT i.value) > 1 OR count(*) < (SELECT count(*) FROM "
+      "grouped h WHERE h.grp = g.grp)",
       sqlite3_str_finish(order));
-  while (answer_next(&answer))
-    append(pooled, ASK_GROUP_POOLED, answer_text(&answer, 0));
+  size_t count = 0;
+  for (; answer_next(&answer); count++)
+    if (count < NAMED)
+      append(pooled, ASK_GROUP_POOLED, answer_text(&answer, 0));
+  if (count > NAMED)
+    text_append(pooled, ASK_GROUP_POOLED, " and %zu more inputs", count - NAMED);
   return answer_end(&answer);
 }
 

@@ -45,6 +45,8 @@ ok "CSV and JSON Lines hold the views to the last bit"
 expect 64 "$clast" export rows.db --per grain
 says "expects run or point"
 expect 64 "$clast" export rows.db --jsonl
+expect 64 "$clast" export rows.db rows.csv
+says "For rows give --per run"
 expect 64 "$clast" export rows.db
 says "needs a target"
 expect 64 "$clast" export rows.db --per run --csv --jsonl
@@ -145,4 +147,4 @@ done
 cd ..
 [ "$(ls guide/block-*.sh | wc -l)" -ge 2 ] && [ "$(ls guide/block-*.python | wc -l)" -ge 2 ] || fail "too few blocks in the guide"
 ok "blocks of the guide"
-done_after 49
+done_after 50

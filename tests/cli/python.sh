@@ -51,6 +51,11 @@ with clast.open("example.db") as store:
         assert [value] == [p["largest_fraction_mean"] for p in points if (p["threshold_angle"], p["threshold_strain"]) == (angle, strain)]
     # units, and metadata for Datasette from the same table
     assert store.unit("threshold_angle") == "rad" and store.unit("largest_fraction") == ""
+    try:
+        store.unit("largest_fractoin")
+        raise SystemExit("an unknown column has a unit")
+    except KeyError:
+        pass
     tables = store.datasette()["databases"]["example"]["tables"]
     assert tables["runs"]["columns"]["total_mass"].endswith("[kg]") or "[kg" in tables["runs"]["columns"]["total_mass"]
     assert set(list(points[0])) <= set(tables["points"]["columns"]), set(points[0]) - set(tables["points"]["columns"])

@@ -8,6 +8,15 @@ one() { # one NAME [LINE]: a campaign of one short run
   printf 'name: "%s"\nscene: disc-explosion\nset: {body.diameter: 8 cm, stop.end_time: 0.05 ms}\nseeds: {per_point: %s}\nstore: %s.db\n%s\n' \
     "${3:-$1}" "${4:-1}" "$1" "${2:-}" >"$1.yaml"
 }
+# Two scenes in one store: a mean over both says so.
+one discs
+one collision
+sed -i 's/disc-explosion/disc-collision/; s/store: .*/store: discs.db/' collision.yaml
+expect 0 "$clast" run discs.yaml -j 1 --quiet
+expect 0 "$clast" run collision.yaml -j 1 --quiet
+expect 0 "$clast" stats discs.db
+says "pooled over scene, "
+
 one formula '' '=HYPERLINK(1)'
 expect 0 "$clast" run formula.yaml -j 1 --quiet
 expect 0 "$clast" status formula.db --csv
@@ -171,4 +180,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 47
+done_after 50

@@ -227,6 +227,11 @@ static void each_error_says_this(void **state) {
                    "a.yaml:1:8: error: a NUL byte: this is not text; save the file as UTF-8\n"
                    "  name: a?b\n"
                    "         ^");
+  wrong +=
+      differs("SQLite format 3\0b\n", 18,
+              "a.yaml:1:1: error: this is a store (an SQLite database); a document is expected, such as a campaign\n"
+              "  SQLite format 3?b\n"
+              "  ^~~~~~~~~~~~~~~");
   assert_int_equal(wrong, 0);
 }
 

@@ -65,6 +65,11 @@ static void the_three_kinds(void **state) {
   near(m.complete, 0.001);
   assert_true(m.above[0] == 7 && m.above[1] == 2);
   measured_release(&m);
+  assert_int_equal(read_text("# density: 2.7 g/cm^3\n# complete from: 0.1 g\nsize (mm), count\n2, 214\n4, 58\n",
+                             &(struct spectrum_size){1, 3}, &m),
+                   STATUS_OK);
+  near(m.complete, 1e-4);
+  measured_release(&m);
 }
 
 static void bad_files(void **state) {
@@ -88,7 +93,8 @@ static void bad_files(void **state) {
       {"# density: 1 g/cm^3\nsize (m)\n1e200\n", "no fragment has the mass of '1e200 m'"},
       {"size (mm)\n1\n", "sizes need a density"},
       {"# density: heavy\nsize (mm)\n1\n", ":1: the density needs a number"},
-      {"# complete from: 1 km\nmass (g)\n1\n", "expected a mass"},
+      {"# complete from: 1 km\nmass (g)\n1\n", ":1: expected a mass"},
+      {"# density: 1 g/cm^3\n# complete from: 1 s\nsize (mm)\n1\n", ":2: expected a size"},
       {"", "there is no row"},
       /* A file means one thing. */
       {"mass\n94\n31\n", ":2: a number without a unit"},
