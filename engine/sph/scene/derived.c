@@ -195,7 +195,7 @@ double sph_derived_cfl(const struct sph_inputs *in) {
     speed = fmax(speed, sph_derived_wave_speed(&in->projectile));
   const double lengths = in->stop.end_time * speed / (in->fidelity.smoothing * sph_derived_smallest_spacing(in));
   const double share = cbrt((damping + (lengths > 0 ? e_folds / lengths : 0)) / growth); /* dt c_L/h */
-  return fmin(SPH_INPUTS_CFL, share * (1 + 0.6 * in->viscosity.alpha));
+  return fmax(SPH_INPUTS_LEAST_CFL, fmin(SPH_INPUTS_CFL, share * (1 + 0.6 * in->viscosity.alpha)));
 }
 
 double sph_derived_particles(const struct sph_inputs *in) {

@@ -255,7 +255,7 @@ static const struct field rows[] = {
                 "lattices, and a kernel sum within 1 % of what it stands for; others err by some per cent at any "
                 "resolution. Below 0.9 method.gradient_correction is necessary: else stresses and wave speeds are 5 to "
                 "39 % too small."),
-    REAL(fidelity.cfl, "1", SPH_INPUTS_CFL, 1e-3, 1, .flags = FIELD_DERIVED,
+    REAL(fidelity.cfl, "1", SPH_INPUTS_CFL, SPH_INPUTS_LEAST_CFL, 1, .flags = FIELD_DERIVED,
          .doc = "Courant number: the time step over h/(c + viscous term). Unless given: 0.3, or less where little "
                 "viscosity lets waves as short as the spacing grow."),
     REAL(fidelity.skin, "1", 0.05, 0, 1,

@@ -71,7 +71,8 @@ struct sph_fragment_rules {
 struct sph_stop_rules {
   double end_time, quiet_time, quiet_growth; /* s, s, 1 */
 };
-#define SPH_INPUTS_CFL 0.3 /* the default Courant number where viscosity is strong */
+#define SPH_INPUTS_CFL       0.3 /* the default Courant number where viscosity is strong */
+#define SPH_INPUTS_LEAST_CFL 1e-3
 struct sph_fidelity {
   int64_t particles, points;
   double projectile_spacing; /* 1, over the target's */
