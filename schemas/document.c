@@ -276,6 +276,15 @@ static document_node *section_at(struct document *document, const char *key) {
   return section && set(document->root, key, section) ? section : NULL;
 }
 
+void document_drop(document_node *mapping, const char *const *keys) {
+  size_t kept = 0;
+  for (size_t i = 0; mapping && mapping->kind == DOCUMENT_MAPPING && i < mapping->count; i++)
+    if (!text_is_one_of(mapping->pairs[i].key->text, keys))
+      mapping->pairs[kept++] = mapping->pairs[i];
+  if (mapping && mapping->kind == DOCUMENT_MAPPING)
+    mapping->count = kept;
+}
+
 bool document_is_put(const document_node *node) {
   return node->put;
 }

@@ -1,8 +1,7 @@
 /* `clast plan CAMPAIGN`: predicts the runs and the cost of a campaign. */
-#include <unistd.h>
-
 #include "campaign/commands/commands.h"
 #include "campaign/converge/accuracy.h"
+#include "campaign/launch/launch.h"
 
 struct options {
   struct campaign_option campaign;
@@ -15,13 +14,10 @@ status plan_campaign(const char *path, const struct campaign_option *changes, co
                      bool no_trial, bool json, struct error *error) {
   CAMPAIGN campaign = NULL;
   OWNED char *alternatives = NULL;
-  TRY(option_load_campaign(path, changes, &campaign, error));
+  const int at_a_time = launch_slots(slots);
+  TRY(option_load_campaign(path, changes, at_a_time, &campaign, error));
   struct plan plan;
-  struct plan_options options = {.store_path = store, .no_trial = no_trial, .slots = (int)slots, .all = json};
-  if (slots == 0) {
-    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    options.slots = cores > 0 ? (int)cores : 1;
-  }
+  struct plan_options options = {.store_path = store, .no_trial = no_trial, .slots = at_a_time, .all = json};
   TRY(accuracy_settle(campaign, path, store ? store : campaign->store, json ? ACCURACY_JSON : ACCURACY_TEXT,
                       &alternatives, error));
   TRY(plan_make(campaign, &options, &plan, error));

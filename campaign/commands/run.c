@@ -16,10 +16,10 @@ static status run(const struct command_line *line, struct error *error) {
     return plan_campaign(path, &options->campaign, options->store, options->launch.slots, false,
                          line->format == TABLE_JSON, error);
   CAMPAIGN campaign = NULL;
-  TRY(option_load_campaign(path, &options->campaign, &campaign, error));
+  TRY(option_load_campaign(path, &options->campaign, launch_slots(options->launch.slots), &campaign, error));
   const char *store = options->store ? options->store : campaign->store;
   if (!launch_other_rank()) { /* only the manager takes runs from the campaign */
-    TRY(accuracy_settle(campaign, path, store, ACCURACY_SILENT, NULL, error));
+    TRY(accuracy_settle(campaign, path, store, options->launch.quiet ? ACCURACY_SILENT : ACCURACY_NOTE, NULL, error));
     campaign_warn(campaign, "clast: warning: ", stderr);
   }
   return launch_campaign(campaign, store, &options->launch, line->format, line, error);

@@ -1,12 +1,14 @@
 /* Reads a study, finds how many seeds each level needs, and chooses. */
 #include "campaign/converge/accuracy.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "analysis/statistics/statistics.h"
 #include "campaign/converge/study.h"
+#include "campaign/terminal/progress.h"
 #include "campaign/terminal/table.h"
 #include "db/ask/ask.h"
 #include "engine/grow.h"
@@ -71,24 +73,47 @@ static bool others_open(const struct finding *finding, const struct knob *knob) 
   return false;
 }
 
+/* As many seeds as the time of a point allows, and no more than make the interval 1 % of the error. */
+static int64_t seeds_in(const struct accuracy_option *option, double point_s) {
+  const int64_t useful = accuracy_seeds(option->deviation, 0.01 * option->error);
+  const int64_t most = useful ? useful : MOST_SEEDS;
+  const double seeds = floor(point_s / option->run_s);
+  return seeds < FEWEST_SEEDS ? 0 : seeds < (double)most ? (int64_t)seeds : most;
+}
+
+static double total_of(const struct accuracy_option *option, int64_t seeds) {
+  if (seeds == 0)
+    return NAN;
+  return option->error + sample_student((size_t)seeds, 0.95) * option->deviation / sqrt((double)seeds);
+}
+
 static status add_option(struct finding *finding, const struct convergence_row *row, struct accuracy_option *option,
                          struct error *error) {
   struct accuracy *accuracy = finding->accuracy;
   if (!grow_block(&accuracy->options, (accuracy->count + 1) * sizeof *accuracy->options))
     return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
   snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
-  option->seeds = accuracy_seeds(row->deviation, finding->campaign->accuracy_within - option->error);
+  option->deviation = row->deviation;
+  option->seeds = isnan(accuracy->point_s)
+                      ? accuracy_seeds(row->deviation, finding->campaign->accuracy_within - option->error)
+                      : seeds_in(option, accuracy->point_s);
+  option->total = total_of(option, option->seeds);
   option->cpu_s = option->seeds ? (double)option->seeds * option->run_s : (double)NAN;
   accuracy->options[accuracy->count++] = *option;
   return STATUS_OK;
 }
 
-/* Work of a run of the campaign's scene with this setting of the knob; NaN: the scene refuses it. */
+/* Work of a run of the campaign's scene with this setting of the knob. NaN: the scene refuses it, or its result would
+ * be marked where that of the scene's own settings is not (finer grains with the same time step). */
 static double work_at(const struct campaign *campaign, const struct knob *knob, const char *setting) {
   struct error ignored;
+  const struct engine_kind *kind = campaign->scene->kind;
   SCENE scene = scene_copy(campaign->scene);
-  const bool good = scene->kind->work && ladder_turn(knob, scene, setting, &ignored) == STATUS_OK;
-  return good ? scene->kind->work(scene->inputs) : (double)NAN;
+  if (!kind->work || ladder_turn(knob, scene, setting, &ignored) != STATUS_OK)
+    return NAN;
+  const uint64_t marks = condition_before(kind->conditions, scene->inputs, NULL);
+  return marks & ~condition_before(kind->conditions, campaign->scene->inputs, NULL) ? (double)NAN
+                                                                                    : kind->work(scene->inputs);
 }
 
 /* Levels finer than the finest one, `row`. The law's distance to the limit shrinks at least as the least order. */
@@ -132,6 +157,12 @@ static status take_option(struct finding *finding, const struct convergence_row 
   return finest && !is_varied(finding->campaign, knob, row->setting) ? add_finer(finding, knob, row, error) : STATUS_OK;
 }
 
+static int by_total(const void *a, const void *b) {
+  const struct accuracy_option *x = a, *y = b;
+  const double p = x->seeds ? x->total : HUGE_VAL, q = y->seeds ? y->total : HUGE_VAL;
+  return p == q ? (x->error > y->error) - (x->error < y->error) : (p > q) - (p < q);
+}
+
 static int by_cost(const void *a, const void *b) {
   const struct accuracy_option *x = a, *y = b;
   const bool reach_x = x->seeds > 0, reach_y = y->seeds > 0;
@@ -142,14 +173,36 @@ static int by_cost(const void *a, const void *b) {
 }
 
 static void choose(struct accuracy *accuracy) {
-  qsort(accuracy->options, accuracy->count, sizeof *accuracy->options, by_cost);
+  const bool in_time = !isnan(accuracy->point_s);
+  size_t open = accuracy->count; /* for a time the best option without a known bound is better than none */
+  qsort(accuracy->options, accuracy->count, sizeof *accuracy->options, in_time ? by_total : by_cost);
   accuracy->chosen = accuracy->count;
   for (size_t i = accuracy->count; i-- > 0;) {
-    if (accuracy->options[i].seeds > 0 && !accuracy->options[i].open)
-      accuracy->chosen = i;
-    if (accuracy->options[i].error <= accuracy->options[accuracy->reference].error)
+    const struct accuracy_option *option = &accuracy->options[i];
+    if (option->seeds > 0)
+      *(option->open ? &open : &accuracy->chosen) = i;
+    if (option->error <= accuracy->options[accuracy->reference].error)
       accuracy->reference = i;
   }
+  if (in_time && accuracy->chosen == accuracy->count)
+    accuracy->chosen = open;
+}
+
+double accuracy_least(const struct accuracy *accuracy, double point_s) {
+  double least[2] = {NAN, NAN}; /* of options with a limit, without one */
+  for (size_t i = 0; i < accuracy->count; i++) {
+    const struct accuracy_option *option = &accuracy->options[i];
+    least[option->open] = fmin(least[option->open], total_of(option, seeds_in(option, point_s)));
+  }
+  return isnan(least[0]) ? least[1] : least[0];
+}
+
+/* The share of each point in the campaign's time. NaN: the campaign gives an accuracy, not a time. */
+static status divide_time(const struct campaign *campaign, struct accuracy *accuracy, struct error *error) {
+  CAMPAIGN_WALK walk = {0};
+  TRY(campaign_walk_begin(&walk, campaign, error));
+  accuracy->point_s = campaign->accuracy_time / (double)design_points(walk.design);
+  return STATUS_OK;
 }
 
 /* Reads the study of this scene, if there is one. */
@@ -194,6 +247,7 @@ status accuracy_find(const struct campaign *campaign, const char *path, const ch
   struct finding finding = {.campaign = campaign, .accuracy = accuracy};
   STORE store = NULL;
   *accuracy = (struct accuracy){0};
+  TRY(divide_time(campaign, accuracy, error));
   const status code = store_open_reader(store_path, &store, error);
   if (code == STATUS_MISSING)
     return no_study(campaign, path, store_path, error);
@@ -212,7 +266,23 @@ void accuracy_clear(struct accuracy *accuracy) {
   *accuracy = (struct accuracy){0};
 }
 
+/* No option can be run often enough in the time. */
+static status too_short(const struct accuracy *accuracy, const struct campaign *campaign, struct error *error) {
+  double least = HUGE_VAL;
+  for (size_t i = 0; i < accuracy->count; i++)
+    least = fmin(least, FEWEST_SEEDS * accuracy->options[i].run_s * campaign->accuracy_time / accuracy->point_s);
+  char given[32], needed[32];
+  progress_duration(campaign->accuracy_time, given, sizeof given);
+  progress_duration(least, needed, sizeof needed);
+  return status_fail(error, STATUS_CONTENT,
+                     "accuracy: %s of processor time is too short: the cheapest studied settings and %d seeds for each "
+                     "of the %.0f points need %s. Allow more time, or take fewer points",
+                     given, FEWEST_SEEDS, campaign->accuracy_time / accuracy->point_s, needed);
+}
+
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {
+  if (accuracy->chosen == accuracy->count && !isnan(accuracy->point_s))
+    return too_short(accuracy, campaign, error);
   if (accuracy->chosen == accuracy->count) {
     const struct accuracy_option *best = &accuracy->options[accuracy->reference];
     return status_fail(error, STATUS_CONTENT,
@@ -236,7 +306,7 @@ static status print_alternatives(const struct accuracy *accuracy, enum table_for
                                  struct error *error) {
   const struct accuracy_option *reference = &accuracy->options[accuracy->reference];
   TABLE table = table_new(format, out);
-  table_columns(table, (const char *const[]){"choice", "knob", "setting", "error", "known", "seeds", NULL});
+  table_columns(table, (const char *const[]){"choice", "knob", "setting", "error", "known", "seeds", "total", NULL});
   table_column(table, "run_cpu", "s");
   table_column(table, "point_cpu", "s");
   table_column(table, "run_cost", NULL);
@@ -251,28 +321,69 @@ static status print_alternatives(const struct accuracy *accuracy, enum table_for
       table_integer(table, option->seeds);
     else
       table_missing(table);
-    table_reals(table, 3, (const double[]){option->run_s, option->cpu_s, option->run_s / reference->run_s});
+    table_reals(table, 4,
+                (const double[]){option->total, option->run_s, option->cpu_s, option->run_s / reference->run_s});
   }
   return table_end(table, error);
+}
+
+/* What is chosen for the time, which error it gives, and what half and twice the time would give. */
+static void print_choice(const struct accuracy *accuracy, const struct campaign *campaign, const char *before,
+                         FILE *out) {
+  if (isnan(accuracy->point_s) || accuracy->chosen == accuracy->count)
+    return;
+  const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
+  const double half = accuracy_least(accuracy, accuracy->point_s / 2),
+               twice = accuracy_least(accuracy, accuracy->point_s * 2);
+  const char *more = option->open ? " or more" : "";
+  char time[32];
+  progress_duration(campaign->accuracy_time, time, sizeof time);
+  fprintf(out, "%s%s \xc2\xb1 %.2g%s in %s of processor time: %s%s%s, %" PRId64 " seeds a point\n", before,
+          campaign->accuracy_quantity, option->total, more, time, option->own ? "" : option->knob,
+          option->own ? "" : " = ", option->own ? "the scene's own settings" : option->setting, option->seeds);
+  fprintf(out, "%s%.2g%s of it is resolution, the rest seeds. In half of the time: ", before, option->error, more);
+  fprintf(out, isnan(half) ? "no result" : "\xc2\xb1 %.2g%s", half, more);
+  fprintf(out, "; in twice: \xc2\xb1 %.2g%s\n", twice, more);
+}
+
+static status alternatives_json(const struct accuracy *accuracy, char **json, struct error *error) {
+  size_t size = 0;
+  FILE *out = text_open(json, &size);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  fputs("\"alternatives\": ", out);
+  const status code = print_alternatives(accuracy, TABLE_JSON, out, error);
+  if (code == STATUS_OK && !isnan(accuracy->point_s)) {
+    static const struct {
+      const char *name;
+      double factor;
+    } times[] = {{"error_in_half_the_time", 0.5}, {"error_in_the_time", 1}, {"error_in_twice_the_time", 2}};
+    for (size_t i = 0; i < sizeof times / sizeof times[0]; i++) {
+      const double error_then = accuracy_least(accuracy, times[i].factor * accuracy->point_s);
+      fprintf(out, isnan(error_then) ? ", \"%s\": null" : ", \"%s\": %.17g", times[i].name, error_then);
+    }
+  }
+  if (!text_close(out, json) && code == STATUS_OK)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  return code;
 }
 
 status accuracy_settle(struct campaign *campaign, const char *path, const char *store, enum accuracy_print print,
                        char **json, struct error *error) {
   __attribute__((cleanup(accuracy_clear))) struct accuracy accuracy = {0};
-  if (field_is_off(campaign->accuracy_within))
+  if (field_is_off(campaign->accuracy_within) && field_is_off(campaign->accuracy_time))
     return STATUS_OK;
   TRY(accuracy_find(campaign, path, store, &accuracy, error));
-  if (print == ACCURACY_JSON) {
-    size_t size = 0;
-    FILE *out = text_open(json, &size);
-    const status code = out ? print_alternatives(&accuracy, TABLE_JSON, out, error) : STATUS_OK;
-    if (!out || (!text_close(out, json) && code == STATUS_OK))
-      return status_fail(error, STATUS_MEMORY, "out of memory");
-    TRY(code);
-  } else if (print == ACCURACY_TEXT) {
-    printf("accuracy  %s within %g: error of resolution and 95 %% interval together. run_cost: against the smallest "
-           "error\n",
-           campaign->accuracy_quantity, campaign->accuracy_within);
+  if (print == ACCURACY_JSON)
+    TRY(alternatives_json(&accuracy, json, error));
+  if (print == ACCURACY_NOTE)
+    print_choice(&accuracy, campaign, "clast: ", stderr);
+  if (print == ACCURACY_TEXT) {
+    if (isnan(accuracy.point_s))
+      printf("accuracy  %s within %g. total: error of resolution and 95 %% interval together. run_cost: against the "
+             "smallest error\n",
+             campaign->accuracy_quantity, campaign->accuracy_within);
+    print_choice(&accuracy, campaign, "accuracy  ", stdout);
     TRY(print_alternatives(&accuracy, TABLE_TEXT, stdout, error));
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
       printf("The chosen setting is finer than any level that was run. Its error is that of the finest level times "

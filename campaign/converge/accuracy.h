@@ -1,5 +1,6 @@
 /* Accuracy on demand: the cheapest settings and number of seeds that reach the accuracy of a campaign
- * (`accuracy: {quantity, within}`), from a study that `clast converge` has stored. */
+ * (`accuracy: {quantity, within}`), or those that give the least error for a time (`accuracy: {quantity,
+ * processor_time}`), from a study that `clast converge` has stored. */
 #ifndef CLAST_CAMPAIGN_CONVERGE_ACCURACY_H
 #define CLAST_CAMPAIGN_CONVERGE_ACCURACY_H
 
@@ -14,16 +15,18 @@ struct accuracy_option {
   bool extrapolated; /* finer than any level that was run: error by the law, cost by the engine's measure of work */
   bool open;         /* the results show no limit, so that `error` may be too small: never chosen */
   double error;      /* change by finer settings of all knobs together, in the quantity's SI unit */
-  int64_t seeds; /* number of seeds for which error and 95 % interval of the mean are within the accuracy; 0: no number
-                    is enough */
-  double run_s;  /* processor time of a run, s */
-  double cpu_s;  /* processor time of one point (`seeds` runs), s; NaN when seeds is 0 */
+  double deviation;  /* standard deviation between seeds */
+  int64_t seeds;     /* of a point: the fewest that reach the accuracy, or as many as the time allows; 0: none do */
+  double total;      /* error and half width of the 95 % interval of the mean of so many seeds; NaN when seeds is 0 */
+  double run_s;      /* processor time of a run, s */
+  double cpu_s;      /* processor time of one point (`seeds` runs), s; NaN when seeds is 0 */
 };
 
 struct accuracy {
-  struct accuracy_option *options; /* owned; by cpu_s, then the options that do not reach the accuracy by error */
+  struct accuracy_option *options; /* owned; by cpu_s, for a time by total; then those that do not reach it, by error */
   size_t count;
-  size_t chosen;    /* the cheapest option that reaches the accuracy; count: none does */
+  double point_s;   /* processor time that a point may cost, s; NaN: an accuracy is given, not a time */
+  size_t chosen;    /* the cheapest option that reaches the accuracy, or that with the least total; count: none does */
   size_t reference; /* the option with the smallest error; costs are relative to it */
 };
 
@@ -35,14 +38,18 @@ status accuracy_find(const struct campaign *campaign, const char *path, const ch
                      struct error *error);
 void accuracy_clear(struct accuracy *accuracy); /* a zeroed one is fine */
 
+/* The least total when a point may cost so many seconds; NaN: too few for every option. For a time only. */
+double accuracy_least(const struct accuracy *accuracy, double point_s);
+
 /* Sets the chosen option's inputs and number of seeds in the campaign. STATUS_CONTENT when no option reaches the
- * accuracy. */
+ * accuracy, or the time is too short for each. */
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error);
 
-enum accuracy_print { ACCURACY_SILENT, ACCURACY_TEXT, ACCURACY_JSON };
+enum accuracy_print { ACCURACY_SILENT, ACCURACY_NOTE, ACCURACY_TEXT, ACCURACY_JSON };
 
 /* Calls accuracy_find and accuracy_apply if the campaign has the key `accuracy`. Before it applies the chosen option it
- * prints all of them, or makes *json of them, malloc'd. json: NULL, unless asked for. */
+ * prints a sentence about it on stderr, or all options on stdout, or makes *json of them, malloc'd: members of a JSON
+ * object. json: NULL, unless asked for. */
 status accuracy_settle(struct campaign *campaign, const char *path, const char *store, enum accuracy_print print,
                        char **json, struct error *error);
 

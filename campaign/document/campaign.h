@@ -55,6 +55,7 @@ struct campaign {
   char accuracy_quantity[FIELD_TEXT_SIZE];
   double accuracy_within; /* limit of |error| plus half width of the mean's interval, in the quantity's SI unit; NaN:
                              not given */
+  double accuracy_time;   /* processor time of the campaign in which that sum shall be least, s; NaN: not given */
   double time_limit;      /* s per attempt, NaN = off */
   double memory_limit;    /* bytes per attempt, NaN = off */
   int64_t attempts;       /* most attempts of one run */
@@ -79,6 +80,7 @@ struct campaign_changes {
   size_t input_count;
   const char *const *inputs; /* "PATH=VALUE": as if under `set` */
   int64_t seeds;             /* seeds.per_point; 0: as written */
+  double processor_time; /* accuracy.processor_time in s, in the place of seeds and accuracy.within; 0: as written */
 };
 
 /* Splits PATH=VALUE of --set. *value points into the text. STATUS_USAGE: the text has another form. */

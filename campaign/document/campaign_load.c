@@ -56,6 +56,10 @@ static const struct field rows[] = {
         .doc = "Choose settings and number of seeds so that the error of resolution and the 95 % interval of the mean "
                "together are at most this, in the SI unit of the quantity, at the least processor time. The choice "
                "comes from a study in the store (`clast converge`). off: settings and seeds are as written."),
+    ROW("accuracy.processor_time", accuracy_time, FIELD_REAL, "s", .number = NAN, .minimum = 0, .maximum = 1e12,
+        .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
+        .doc = "Instead of within: choose settings and number of seeds so that the same sum is least for so much "
+               "processor time of all points together."),
     ROW("limits.time", time_limit, FIELD_REAL, "s", .number = NAN, .minimum = 0, .maximum = 1e9,
         .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM, .doc = "Wall time of one attempt at a run; off: none."),
     ROW("limits.memory", memory_limit, FIELD_REAL, "B", .number = NAN, .minimum = 1048576, .maximum = 0x1p60,
@@ -173,9 +177,17 @@ static status change(struct document *document, const struct campaign_changes *c
     TRY(campaign_change_split(changes->inputs[i], path, &value, error));
     TRY(document_change_put(document, (const char *const[]){"set", path}, value, origin, error));
   }
+  char number[32];
+  if (changes->processor_time > 0) {
+    document_node *seeds = document_key(document_root(document), "seeds");
+    document_node *accuracy = document_key(document_root(document), "accuracy");
+    document_drop(seeds, (const char *const[]){"per_point", "until", "max", NULL});
+    document_drop(accuracy, (const char *const[]){"within", NULL});
+    snprintf(number, sizeof number, "%.17g s", changes->processor_time);
+    TRY(document_change_put(document, (const char *const[]){"accuracy", "processor_time"}, number, origin, error));
+  }
   if (changes->seeds == 0)
     return STATUS_OK;
-  char number[32];
   snprintf(number, sizeof number, "%" PRId64, changes->seeds);
   return document_change_put(document, (const char *const[]){"seeds", "per_point"}, number, origin, error);
 }

@@ -144,8 +144,10 @@ static void check_accuracy(document_node *root, struct campaign *campaign) {
     memcpy(campaign->accuracy_quantity, campaign->quantity, sizeof campaign->accuracy_quantity);
   if (!accuracy)
     return;
-  if (!key_of(accuracy, "within"))
-    document_report(accuracy, "accuracy", "'within' is missing: give the largest error of the result");
+  if (field_is_off(campaign->accuracy_within) == field_is_off(campaign->accuracy_time))
+    document_report(accuracy, "accuracy",
+                    "give one of 'within', the largest error of the result, and 'processor_time', which the campaign "
+                    "may cost");
   if (seeds || key_of(document_key(root, "seeds"), "until"))
     document_report(accuracy, "accuracy",
                     "accuracy finds the number of seeds; leave seeds.per_point and seeds.until "

@@ -60,6 +60,9 @@ bool farm_under_mpi(void);
  * tell. */
 int farm_launched(void);
 
+/* Number of cores that this process may use. */
+int farm_cores(void);
+
 /* Forks the server and the slots. STATUS_USAGE when the launcher started several programs that MPI does not connect.
  * Every rank calls it, before MPI_Init, any thread and HDF5. */
 status farm_start(const struct farm_options *options, farm_work work, struct farm **out, struct error *error);

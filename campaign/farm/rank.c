@@ -29,6 +29,11 @@ int farm_launched(void) {
   return 1;
 }
 
+int farm_cores(void) {
+  cpu_set_t cores;
+  return sched_getaffinity(0, sizeof cores, &cores) == 0 ? CPU_COUNT(&cores) : 1;
+}
+
 const int farm_stop_signals[FARM_STOP_SIGNALS] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
 
 static status watch_signals(struct farm *farm, struct error *error) {
@@ -103,13 +108,10 @@ static status introduce(struct farm *farm, struct error *error) {
 
 /* Fills in what the caller left at zero. */
 static status complete_options(struct farm_options *o, struct error *error) {
-  cpu_set_t cores;
   if (o->slots < 0 || o->slots > 4096)
     return status_fail(error, STATUS_USAGE, "%d slots asked for: from 1 to 4096, or 0 for one per core", o->slots);
-  if (o->slots == 0 && !o->use_mpi && sched_getaffinity(0, sizeof cores, &cores) == 0)
-    o->slots = CPU_COUNT(&cores);
   if (o->slots == 0)
-    o->slots = 1;
+    o->slots = o->use_mpi ? 1 : farm_cores();
   if (!(o->grace_s > 0))
     o->grace_s = o->use_mpi ? 0.5 : 2;
   if (!(o->drain_s > 0))

@@ -65,6 +65,11 @@ status launch_farm(const struct campaign *limits, const struct launch_options *o
   return code ? code : stopped;
 }
 
+int launch_slots(int64_t slots) {
+  const int ranks = farm_launched() > 1 ? farm_launched() : 1;
+  return ranks * (slots > 0 ? (int)slots : farm_under_mpi() ? 1 : farm_cores());
+}
+
 bool launch_other_rank(void) {
   static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"};
   if (!farm_under_mpi() && farm_launched() <= 1)

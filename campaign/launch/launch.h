@@ -53,6 +53,9 @@ void launch_tell_runs(const char *store, int64_t computed, int64_t found, double
 void launch_tell_series(const struct launch *launch, status code, const char *store,
                         const struct series_summary *summary, bool found);
 
+/* Runs at a time on all ranks, as the farm will have them: known before it starts. slots: the option; 0: not given. */
+int launch_slots(int64_t slots);
+
 /* True on a rank other than 0. Before MPI_Init only the launcher's environment tells. */
 bool launch_other_rank(void);
 

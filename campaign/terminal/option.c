@@ -271,8 +271,18 @@ status option_load_scene(const char *name, const struct option_list *set, struct
   return option_set_inputs(*scene, set, error);
 }
 
-status option_load_campaign(const char *path, const struct campaign_option *option, struct campaign **campaign,
-                            struct error *error) {
-  const struct campaign_changes changes = {option->set.count, option->set.items, option->seeds};
+status option_load_campaign(const char *path, const struct campaign_option *option, int slots,
+                            struct campaign **campaign, struct error *error) {
+  struct campaign_changes changes = {option->set.count, option->set.items, option->seeds, 0};
+  if (option->within) {
+    const struct field *row = field_find(&campaign_table, "accuracy.processor_time", error);
+    struct field_value time = {0};
+    if (!row)
+      return STATUS_INTERNAL;
+    if (field_parse(row, option->within, &time, error) != STATUS_OK || field_is_off(time.number))
+      return status_fail(error, STATUS_USAGE, "--within %s: expected a time above 0, such as 2h or 30min",
+                         option->within);
+    changes.processor_time = time.number * slots;
+  }
   return campaign_load_changed(path, &changes, campaign, error);
 }

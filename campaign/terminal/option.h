@@ -147,6 +147,7 @@ status option_set_inputs(struct scene *scene, const struct option_list *set, str
 struct campaign_option {
   struct option_list set;
   int64_t seeds;
+  const char *within; /* a time; NULL: none */
 };
 
 #define CAMPAIGN_OPTION(type_, member_)                                                                                \
@@ -155,10 +156,13 @@ struct campaign_option {
       .doc = "Another value of an input, like a line under `set` of the campaign: contact.friction=0.3. May be "       \
              "given several times."),                                                                                  \
       OPTION_ROW_INTEGER("seeds", 0, "N", type_, member_.seeds, 0, 1000000000000, "0",                                 \
-                         .doc = "Number of seeds for every point, instead of the campaign's; 0: the campaign's.")
+                         .doc = "Number of seeds for every point, instead of the campaign's; 0: the campaign's."),     \
+      OPTION_ROW_TEXT("within", 0, "TIME", type_, member_.within, NULL,                                                \
+                      .doc = "Choose settings and number of seeds for the least error of the campaign's quantity in "  \
+                             "so much time on the slots, such as 2h; needs a study (`clast converge`).")
 
-/* campaign_load with the changes. STATUS_USAGE when a change is wrong. */
-status option_load_campaign(const char *path, const struct campaign_option *option, struct campaign **campaign,
-                            struct error *error);
+/* campaign_load with the changes. slots: runs at a time, for `within`. STATUS_USAGE when a change is wrong. */
+status option_load_campaign(const char *path, const struct campaign_option *option, int slots,
+                            struct campaign **campaign, struct error *error);
 
 #endif

@@ -149,6 +149,31 @@ says "--quantity beta_masses_from_2"
 expect 0 "$clast" converge beta.yaml --knob time_step -Q beta_masses_from_2 --seeds 8 --within off --store sharp.db -j 2
 expect 0 "$clast" plan beta.yaml
 prints "chosen"
+# The least error in a time: the campaign's own seeds give way, more time gives a smaller error, a short one is refused.
+sed 's/^accuracy.*/seeds: 30/; s/sharp/timed/; s/^store.*/store: sharp.db/' sharp.yaml >timed.yaml
+expect 0 "$clast" plan timed.yaml --within 5s -j 2 --json --no-trial
+python - <<'PY'
+import json
+plan = json.load(open('out'))
+chosen, = [a for a in plan['alternatives'] if a['choice'] == 'chosen']
+assert plan['runs_least'] == chosen['seeds'] and chosen['point_cpu'] <= 10, plan
+assert plan['error_in_the_time'] == chosen['total'] == min(a['total'] for a in plan['alternatives'] if a['total'])
+assert plan['error_in_half_the_time'] >= plan['error_in_the_time'] >= plan['error_in_twice_the_time'] > chosen['error'] / 2
+open('seeds', 'w').write(str(chosen['seeds']))
+PY
+ok "the plan takes the least error in the time"
+expect 0 "$clast" plan timed.yaml --within 5s --no-trial
+prints "In half of the time"
+expect 0 "$clast" run timed.yaml --within 200ms -j 2
+says "of processor time"
+expect 0 "$clast" run timed.yaml --within 200ms -j 2
+says "0 runs computed"
+expect 65 "$clast" run timed.yaml --within 1us -j 2
+says "too short"
+expect 64 "$clast" run timed.yaml --within 10
+says "30min"
+expect 64 "$clast" run timed.yaml --within 1h --seeds 5
+says "leave seeds.per_point"
 sed -i 's/0.05/1e-9/' sharp.yaml
 expect 65 "$clast" run sharp.yaml
 says "smallest error"
@@ -180,4 +205,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 46
+done_after 54

@@ -157,6 +157,73 @@ static void finer_than_any_level(void **state) {
   campaign_free(campaign);
 }
 
+/* Grains finer than any level, with the same time step: those whose step is above a quarter of the longest stable one
+ * (engine/dem/scene/conditions.c) would be marked, so they are no options. Twice as fine: a sixth. */
+static void a_finer_setting_that_would_be_marked_is_none(void **state) {
+  (void)state;
+  struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+  struct store *store = NULL;
+  struct accuracy accuracy;
+  int64_t point = 0;
+  assert_int_equal(store_open_writer(fixture_path(path, "grains"), &store, NULL, 0, &error), STATUS_OK);
+  assert_int_equal(store_add_point(store, 0, campaign->scene, 0, NULL, &point, &error), STATUS_OK);
+  add_study(store, point, "grains", 2,
+            (const struct level[]){{"0.0112", 0.03, 0.03, 1e-4, 5, true, false, 0.0112},
+                                   {"0.008", 0.02, 0.025, 1e-4, 10, false, false, 0.008}});
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  assert_int_equal(accuracy.count, 3);
+  for (size_t i = 0; i < accuracy.count; i++)
+    assert_true(!accuracy.options[i].extrapolated || strcmp(accuracy.options[i].setting, "0.004") == 0);
+  accuracy_clear(&accuracy);
+  campaign_free(campaign);
+}
+
+static void check_time(const char *time, const char *setting, int64_t seeds, double error_of_resolution) {
+  char text[256];
+  struct accuracy accuracy;
+  snprintf(text, sizeof text, HEAD "accuracy: {processor_time: %s}\n", time);
+  struct campaign *campaign = campaign_of(text);
+  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
+  assert_string_equal(chosen->setting, setting);
+  assert_int_equal(chosen->seeds, seeds);
+  const double total = error_of_resolution + sample_student((size_t)seeds, 0.95) * 0.02 / sqrt((double)seeds);
+  assert_true(fabs(chosen->total - total) < 1e-12);
+  assert_true(chosen->total == accuracy_least(&accuracy, accuracy.point_s));
+  assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_OK);
+  assert_int_equal(campaign->per_point, seeds);
+  accuracy_clear(&accuracy);
+  campaign_free(campaign);
+}
+
+/* t(n - 1) 0.02/sqrt n: n = 3 0.0497, 4 0.0318, 6 0.0210, 8 0.0167, 16 0.0107, 24 0.00845, 48 0.00581. */
+static void the_least_error_in_a_time(void **state) {
+  (void)state;
+  struct campaign *campaign = campaign_of(HEAD "accuracy: {processor_time: 5 s}\n");
+  struct accuracy accuracy;
+  store_study(campaign, false);
+  check_time("15 s", "2e-6", 3, 0.04);    /* nothing else can be run three times */
+  check_time("30 s", "2e-6", 6, 0.04);    /* 0.0610; the scene's own: 3 seeds, 0.0797 */
+  check_time("80 s", "1e-6", 8, 0.03);    /* 0.0467; with 16 seeds of the coarser one 0.0507 */
+  check_time("240 s", "2.5e-7", 6, 0.01); /* 0.0310; with 24 of its own 0.0384 */
+
+  /* Too short for all. */
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "15 s"));
+  campaign_free(campaign);
+
+  /* Two points share the time. An option without a limit is taken only when there is no other. */
+  campaign = campaign_of(HEAD "vary: {threshold.strain: [1 %, 3 %]}\naccuracy: {processor_time: 60 s}\n");
+  store_study(campaign, true);
+  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  assert_true(accuracy.point_s == 30 && accuracy.options[accuracy.chosen].open);
+  assert_int_equal(accuracy.options[accuracy.chosen].seeds, 6);
+  assert_true(isnan(accuracy_least(&accuracy, 14)));
+  accuracy_clear(&accuracy);
+  campaign_free(campaign);
+}
+
 static void a_varied_input_is_no_choice(void **state) {
   (void)state;
   struct accuracy accuracy;
@@ -179,9 +246,13 @@ static void without_a_study_the_command_is_named(void **state) {
                    STATUS_CONTENT); /* of another scene */
   assert_non_null(strstr(error.message, "clast converge"));
   campaign_free(campaign);
-  static const char *const wrong[] = {"accuracy: {quantity: largest_fraction}\n", "accuracy: {within: 0}\n",
+  static const char *const wrong[] = {"accuracy: {quantity: largest_fraction}\n",
+                                      "accuracy: {within: 0}\n",
                                       "accuracy: {within: 0.1, quantity: nonsense}\n",
                                       "accuracy: {within: 0.1}\nseeds: {per_point: 3}\n",
+                                      "accuracy: {within: 0.1, processor_time: 1 h}\n",
+                                      "accuracy: {processor_time: 1 h}\nseeds: 3\n",
+                                      "accuracy: {processor_time: 1}\n",
                                       "accuracy: {within: 0.1}\nseeds: {until: {half_width: 0.1}}\n"};
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
     char text[256];
@@ -198,6 +269,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(seeds_for_a_margin),
                                      cmocka_unit_test(the_cheapest_that_reaches_it),
                                      cmocka_unit_test(finer_than_any_level),
+                                     cmocka_unit_test(a_finer_setting_that_would_be_marked_is_none),
+                                     cmocka_unit_test(the_least_error_in_a_time),
                                      cmocka_unit_test(a_varied_input_is_no_choice),
                                      cmocka_unit_test(without_a_study_the_command_is_named)};
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -196,14 +196,14 @@ static void one_input_is_set_once(void **state) {
   assert_non_null(file);
   fputs(HEAD "set: {body.diameter: 8 cm}\n", file);
   fclose(file);
-  const struct campaign_changes once = {1, (const char *const[]){"diameter=9 cm"}, 0};
+  const struct campaign_changes once = {1, (const char *const[]){"diameter=9 cm"}, 0, 0};
   assert_int_equal(campaign_load_changed("t-set.yaml", &once, &campaign, &error), STATUS_OK);
   assert_null(strstr(campaign->text, "8 cm"));
   struct field_value value;
   field_get(field_find(campaign->scene->kind->inputs, "body.diameter", &error), campaign->scene->inputs, &value);
   assert_true(value.number == 0.09);
   campaign_free(campaign);
-  const struct campaign_changes both = {2, (const char *const[]){"diameter=9 cm", "body.diameter=7 cm"}, 0};
+  const struct campaign_changes both = {2, (const char *const[]){"diameter=9 cm", "body.diameter=7 cm"}, 0, 0};
   campaign = NULL;
   const status code = campaign_load_changed("t-set.yaml", &both, &campaign, &error);
   remove("t-set.yaml");
