@@ -52,71 +52,103 @@ static status unknown_builtin(const char *name, struct error *error) {
 
 /* ---- materials by name or file ----
  *
- * Sections of a scene may come from a named document. Their input `name` is the name of a document or `custom`. A scene
- * gives such a section as a word, as the name of a file, or by its values; all forms become one. `material: basalt`
- * becomes {name: basalt}. `material: ./my-rock.yaml`, or the key `file` in the section, becomes the content of the
- * file, with name custom; the scene's own values take precedence. */
+ * Sections of a scene may come from a named document, by their input `name`. A scene gives such a section as a word, as
+ * the name of a file, or by its values; all forms become one. `material: basalt` becomes {name: basalt}. `material:
+ * ./my-rock.yaml`, or the key `file` in the section, becomes the content of the file, with the name my-rock.yaml; the
+ * scene's own values take precedence. The key `like` of a file names the built-in document that gives what the file
+ * lacks. */
 
 enum { PATH_SIZE = 256 };
 
 /* Keys of a material's document that are not values. */
-static const char *const material_words[] = {"material", "source", "sources", NULL};
+static const char *const material_words[] = {"material", "source", "sources", "like", NULL};
+
+/* Does the input name a document? */
+static bool is_open(const struct field *row) {
+  return row->kind == FIELD_TEXT && row->choices;
+}
 
 static bool is_named(const struct field_table *inputs, const char *section, const char *key) {
   char path[PATH_SIZE + 64];
   snprintf(path, sizeof path, "%s.%s", section, key);
   for (size_t i = 0; i < inputs->count; i++)
     if (strcmp(inputs->rows[i].path, path) == 0)
-      return inputs->rows[i].kind == FIELD_CHOICE;
+      return is_open(&inputs->rows[i]);
   return false;
+}
+
+status scene_material_like(document_node *root, const struct engine_materials *materials, struct error *error) {
+  document_node *node = document_key(root, "like");
+  const char *word = node ? document_scalar(node) : "", *text = word && *word ? materials->text(word) : NULL;
+  OWNED void *unused = memory_small(1, materials->values->size);
+  struct document *base = NULL;
+  if (!node)
+    return STATUS_OK;
+  if (!text)
+    return word ? materials->load(word, unused, error)
+                : status_fail(error, STATUS_CONTENT, "expected the name of a material, such as like: granite");
+  TRY(document_parse(word, text, strlen(text), &base, error));
+  return document_graft(root, base, material_words) ? STATUS_OK
+                                                    : status_fail(error, STATUS_MEMORY, "no memory for a material");
+}
+
+/* The file's own name, which the input `name` gets. */
+static const char *own_name(const char *file) {
+  const char *slash = strrchr(file, '/');
+  return slash ? slash + 1 : file;
 }
 
 /* `place`: where errors about the file are reported. */
 static void include_material(document_node *section, document_node *place, const char *path, const char *file,
-                             const char *folder) {
+                             const struct engine_kind *kind, const char *folder) {
   struct document *other = NULL;
   struct error error;
   OWNED char *whole = file_name_in(folder, file);
-  if (!whole) {
-    document_report_memory(place, path);
-    return;
+  status code = whole ? document_open(whole, &other, &error)
+                      : status_fail(&error, STATUS_MEMORY, "no memory for a path");
+  if (code == STATUS_OK) {
+    code = scene_material_like(document_root(other), kind->materials, &error);
+    if (!document_graft(section, other, material_words))
+      code = status_fail(&error, STATUS_MEMORY, "no memory for a material");
   }
-  if (document_open(whole, &other, &error) != STATUS_OK)
+  document_graft_drop(section, "name");
+  if (code != STATUS_OK)
     document_report_error(place, path, &error);
-  else if (!document_graft(section, other, material_words) || !document_graft_word(section, "name", "custom"))
+  if (!document_graft_word(section, "name", own_name(file)))
     document_report_memory(place, path);
-  (void)document_graft_word(section, "name", "custom"); /* after an error: prevents further errors about the section */
 }
 
-/* `material: {file: ./my-rock.yaml, ...}` */
-static void take_section(document_node *section, const char *path, const char *folder) {
-  document_node *file = document_key(section, "file");
-  if (!file)
+/* `material: {file: ./my-rock.yaml, ...}`; also under `name`, where a store keeps the file's own name without folder.
+ */
+static void take_section(document_node *section, const char *path, const struct engine_kind *kind, const char *folder) {
+  document_node *file = document_key(section, "file"), *name = document_key(section, "name");
+  document_node *from = file ? file : name;
+  const char *word = from ? document_scalar(from) : NULL;
+  if (!file && (!word || !strchr(word, '/')))
     return;
-  const char *word = document_scalar(file);
   if (!word || !*word) {
     document_report(file, path, "expected the name of a material's file, such as ./my-rock.yaml");
     return;
   }
   document_graft_drop(section, "file");
-  include_material(section, file, path, word, folder);
+  include_material(section, from, path, word, kind, folder);
 }
 
 /* `material: basalt`, or `material: ./my-rock.yaml` */
-static void take_word(document_node *node, const char *path, const char *folder) {
+static void take_word(document_node *node, const char *path, const struct engine_kind *kind, const char *folder) {
   const char *text = document_scalar(node);
   if (!text || !*text)
     return; /* the reader describes the error */
   char word[LIMITS_PATH];
   snprintf(word, sizeof word, "%s", text);
   if (file_name_is_document(word))
-    include_material(node, node, path, word, folder);
+    include_material(node, node, path, word, kind, folder);
   else if (!document_graft_word(node, "name", word))
     document_report_memory(node, path);
 }
 
 /* `section`: its path, empty at the root. Files are relative to `folder` (NULL: the current one). */
-static void take_materials(document_node *mapping, const struct field_table *inputs, const char *section,
+static void take_materials(document_node *mapping, const struct engine_kind *kind, const char *section,
                            const char *folder) {
   for (size_t i = 0; i < document_count(mapping); i++) {
     const char *key = NULL;
@@ -124,13 +156,13 @@ static void take_materials(document_node *mapping, const struct field_table *inp
     char path[PATH_SIZE];
     if (!key || (size_t)snprintf(path, sizeof path, "%s%s%s", section, *section ? "." : "", key) >= sizeof path)
       continue;
-    const bool is_material = is_named(inputs, path, "name"), is_section = document_kind(node) == DOCUMENT_MAPPING;
+    const bool is_material = is_named(kind->inputs, path, "name"), is_section = document_kind(node) == DOCUMENT_MAPPING;
     if (is_material && is_section)
-      take_section(node, path, folder);
+      take_section(node, path, kind, folder);
     else if (is_material)
-      take_word(node, path, folder);
+      take_word(node, path, kind, folder);
     else if (is_section)
-      take_materials(node, inputs, path, folder);
+      take_materials(node, kind, path, folder);
   }
 }
 
@@ -347,7 +379,7 @@ static void read_scene(document_node *root, const char *folder, const char *fall
   if (!kind)
     return;
   struct scene *scene = *out = create(kind);
-  take_materials(root, kind->inputs, "", folder);
+  take_materials(root, kind, "", folder);
   take_files(root, kind->inputs, folder);
   document_read_given(root, kind->inputs, own_keys, scene->inputs, scene->given, kind->complete);
   snprintf(scene->name, sizeof scene->name, "%s", name.text);
@@ -458,20 +490,67 @@ void scene_drop(struct scene **scene) {
 
 /* ---- overrides ---- */
 
-/* Another material in place of the document's own one (`custom`): all values of that one go, also those from its file.
- * Values that overrides gave stay. `before`: the value of `row` before it was set. */
-static void leave_custom(struct scene *scene, const struct field *row, const struct field_value *before) {
+/* The document of a scene that has only this section, by its file: {"target": {"material": "./my-rock.yaml"}}. NULL: no
+ * memory. */
+static char *section_document(const char *path, const char *file) {
+  char *text = NULL;
+  size_t size = 0, depth = 1;
+  FILE *out = text_open(&text, &size);
+  if (!out)
+    return NULL;
+  fputs("{\"", out);
+  for (const char *last = strrchr(path, '.'); path < last; path++) {
+    depth += *path == '.';
+    *path == '.' ? fputs("\": {\"", out) : fputc(*path, out);
+  }
+  fputs("\": ", out);
+  text_json_string(file, out);
+  while (depth-- > 0)
+    fputc('}', out);
+  return text_close(out, &text);
+}
+
+/* Takes the values of a user's material, except those that overrides gave. */
+static status take_own(struct scene *scene, const struct field *row, const char *file, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
-  const char *const name = strrchr(row->path, '.');
-  struct field_value now;
-  if (!name || strcmp(name, ".name") != 0 || row->kind != FIELD_CHOICE || strcmp(before->text, "custom") != 0)
-    return;
-  field_get(row, scene->inputs, &now);
-  if (strcmp(now.text, "custom") == 0)
-    return;
-  for (size_t i = 0; i < table->count; i++)
-    if (!scene->overridden[i] && strncmp(table->rows[i].path, row->path, (size_t)(name + 1 - row->path)) == 0)
+  OWNED char *text = section_document(row->path, file);
+  SCENE own = NULL;
+  struct document *document = NULL;
+  const char *report = NULL;
+  TRY(document_open(file, &document, error)); /* a message about the file alone */
+  document_free(document);
+  if (!text)
+    return status_fail(error, STATUS_MEMORY, "no memory for a material");
+  own = create(scene->kind);
+  TRY(document_parse(row->path, text, strlen(text), &document, error));
+  take_materials(document_root(document), scene->kind, "", NULL);
+  document_read_given(document_root(document), table, NULL, own->inputs, own->given, scene->kind->complete);
+  const status code = document_finish(document, &report);
+  if (code)
+    status_fail(error, code, "%s", report);
+  document_free(document);
+  for (size_t i = 0; code == STATUS_OK && i < table->count; i++) {
+    struct field_value value;
+    if (!own->given[i] || scene->overridden[i])
+      continue;
+    field_get(&table->rows[i], own->inputs, &value);
+    field_set_unchecked(&table->rows[i], scene->inputs, &value);
+    scene->given[i] = true;
+  }
+  return code;
+}
+
+/* Another material in place of the user's own one: all values of that one go, also those from its file. Values that
+ * overrides gave stay. `before`: the value of `row` before it was set. */
+static status change_material(struct scene *scene, const struct field *row, const struct field_value *before,
+                              const char *now, struct error *error) {
+  const struct field_table *table = scene->kind->inputs;
+  const size_t section = (size_t)(strrchr(row->path, '.') + 1 - row->path);
+  const bool own = !field_is_choice(row, before->text) || strcmp(before->text, "custom") == 0;
+  for (size_t i = 0; own && i < table->count; i++)
+    if (!scene->overridden[i] && strncmp(table->rows[i].path, row->path, section) == 0)
       scene->given[i] = false;
+  return field_is_choice(row, now) ? STATUS_OK : take_own(scene, row, now, error);
 }
 
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error) {
@@ -482,9 +561,13 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
   struct field_value taken = *value, before;
   TRY(set_file(row, &taken, error));
   field_get(row, scene->inputs, &before);
+  if (is_open(row))
+    field_copy_text(taken.text, own_name(value->text));
   TRY(field_set(row, scene->inputs, &taken, error));
-  leave_custom(scene, row, &before);
-  scene->given[row - table->rows] = scene->overridden[row - table->rows] = true;
+  scene->overridden[row - table->rows] = true;
+  if (is_open(row) && strcmp(before.text, value->text) != 0)
+    TRY(change_material(scene, row, &before, value->text, error));
+  scene->given[row - table->rows] = true;
   if (scene->kind->complete)
     scene->kind->complete(scene->inputs, scene->given);
   return STATUS_OK;
@@ -528,9 +611,9 @@ status scene_check(struct scene *scene, struct error *error) {
       set_back(scene, i);
     }
   }
-  if (scene->kind->check)
-    TRY(scene->kind->check(scene->inputs, error));
-  return scene->kind->check_given ? scene->kind->check_given(scene->inputs, scene->given, error) : STATUS_OK;
+  if (scene->kind->check_given)
+    TRY(scene->kind->check_given(scene->inputs, scene->given, error));
+  return scene->kind->check ? scene->kind->check(scene->inputs, error) : STATUS_OK;
 }
 
 /* ---- using named settings ---- */

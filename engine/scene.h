@@ -6,6 +6,7 @@
 
 #include "engine/engine.h"
 #include "engine/mesh/mesh.h"
+#include "schemas/document.h"
 
 /* Named settings of a scene: numerical choices that belong together, such as those of a quick draft. A document gives
  * them under `settings`:
@@ -54,10 +55,14 @@ void scene_free(struct scene *scene);
 void scene_drop(struct scene **scene); /* for SCENE */
 
 /* Overrides one input by path or unique suffix, from text ("5 km/s") or as a value. Inputs that follow from it and were
- * not given are completed again. The name of a material replaces the document's own material with all its values.
+ * not given are completed again. The name of a material, or of its file (relative to the current folder), replaces the
+ * document's own material with all its values.
  * Conditions across fields are not checked. */
 status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error);
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error);
+/* Adds to the document of a material what the key `like` names: a built-in material. STATUS_MISSING, STATUS_CONTENT,
+ * STATUS_MEMORY. */
+status scene_material_like(document_node *root, const struct engine_materials *materials, struct error *error);
 /* The settings of this name, or NULL. */
 const struct scene_settings *scene_settings_find(const struct scene *scene, const char *name);
 /* Applies settings, as if the document gave their inputs. "standard" changes nothing. STATUS_MISSING: unknown name; the

@@ -89,6 +89,10 @@ const struct field *field_find(const struct field_table *table, const char *path
   }
   if (candidates == 1)
     return found;
+  char name[FIELD_TEXT_SIZE + 8]; /* target.material is target.material.name */
+  snprintf(name, sizeof name, "%.*s.name", FIELD_TEXT_SIZE, path);
+  if (candidates == 0 && (found = field_ending(table, name, NULL)) && found->kind == FIELD_TEXT && found->choices)
+    return field_find(table, name, error);
   for (size_t i = 0; candidates == 0 && i < table->count; i++) { /* as the name of a column */
     char column[FIELD_TEXT_SIZE];
     field_column_name(table->rows[i].path, column, sizeof column);
@@ -139,6 +143,10 @@ size_t field_choice_count(const struct field *row) {
   while (row->choices[count])
     count++;
   return count;
+}
+
+bool field_is_choice(const struct field *row, const char *text) {
+  return text_is_one_of(text, row->choices);
 }
 
 void field_copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
@@ -418,7 +426,11 @@ static void write_value(const struct field *row, const struct field_value *value
   case FIELD_INTEGER: fprintf(out, "%" PRId64, value->integer); break;
   case FIELD_BOOLEAN: fputs(value->number != 0 ? "true" : "false", out); break;
   case FIELD_CHOICE:
-  case FIELD_TEXT: write_text(value->text, out); break;
+  case FIELD_TEXT:
+    write_text(row->choices && !field_is_choice(row, value->text) ? row->choices[field_choice_count(row) - 1]
+                                                                  : value->text,
+               out);
+    break;
   }
 }
 

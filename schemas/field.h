@@ -42,7 +42,8 @@ struct field {
   double minimum, maximum;    /* inclusive unless flagged; -HUGE_VAL / HUGE_VAL for none. Integers too */
   double number;              /* default of REAL/INTEGER/BOOLEAN (0/1)/CHOICE (index); NAN with MAY_BE_OFF = off */
   const char *text;           /* default of TEXT */
-  const char *const *choices; /* NULL-terminated, for CHOICE */
+  const char *const *choices; /* NULL-terminated, for CHOICE. For TEXT: names of built-in documents; any other value is
+                               * the name of a user's document, and the identity has the last choice in its place */
   const char *choice_docs;    /* optional, one sentence per choice, separated by '\n' */
   unsigned flags;
   const char *when; /* NULL, or "path=value|value" (a choice, boolean or integer of the same table, itself active): the
@@ -118,8 +119,9 @@ struct field_value {
 };
 
 size_t field_choice_count(const struct field *row);
-bool field_is_off(double value);              /* value of a FIELD_MAY_BE_OFF row */
-bool field_is_share(const struct field *row); /* a real number from 0 to 1 */
+bool field_is_choice(const struct field *row, const char *text); /* is it one of the row's choices? */
+bool field_is_off(double value);                                 /* value of a FIELD_MAY_BE_OFF row */
+bool field_is_share(const struct field *row);                    /* a real number from 0 to 1 */
 
 /* Exact path, or unique suffix after a dot ("strain" for "threshold.strain"), or the path as the name of a column
  * ("threshold_strain"). NULL: *error has STATUS_CONTENT and names the nearest known paths (or the candidates of an

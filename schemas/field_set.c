@@ -68,11 +68,6 @@ static status unknown_choice(const struct field *row, const char *text, struct e
     text_guess_offer(&guess, row->choices[i]);
 
   field_describe_choices(row, list, sizeof list);
-  if (file_name_is_document(text))
-    return status_fail(error, STATUS_CONTENT,
-                       "%s: a file is named in the document of a scene (such as material: %.*s); to compare it with "
-                       "others, write a scene for each and run them into one store",
-                       row->path, QUOTE, text);
   if (!guess.nearest)
     return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'", row->path, list, QUOTE, text);
   return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'; did you mean '%s'?", row->path, list, QUOTE,
@@ -121,7 +116,11 @@ status field_set_value(const struct field *row, const struct field_value *value,
   case FIELD_INTEGER: return set_integer(row, value, out, error);
   case FIELD_CHOICE: return set_choice(row, value, out, error);
   case FIELD_BOOLEAN: out->number = value->number != 0; break;
-  case FIELD_TEXT: field_copy_text(out->text, value->text); break;
+  case FIELD_TEXT:
+    if (row->choices && !field_is_choice(row, value->text) && !file_name_is_document(value->text))
+      return unknown_choice(row, value->text, error);
+    field_copy_text(out->text, value->text);
+    break;
   }
   return STATUS_OK;
 }

@@ -65,16 +65,21 @@ static void type(const struct field *row, FILE *out) {
     fputs(row->flags & FIELD_MAY_BE_OFF ? ", {\"const\": \"off\"}]" : "]", out);
     break;
   case FIELD_BOOLEAN: fputs("\"type\": \"boolean\"", out); break;
+  case FIELD_TEXT:
+    if (!row->choices) { /* a plain 12 or true is accepted as text, too */
+      fprintf(out, "\"type\": [\"string\", \"number\", \"boolean\"], %s\"maxLength\": %d",
+              row->flags & FIELD_REQUIRED ? "\"minLength\": 1, " : "", FIELD_TEXT_SIZE - 1);
+      break;
+    }
+    fprintf(out, "\"anyOf\": [{\"type\": \"string\", \"pattern\": \"/|[.](ya?ml|json)$\", \"maxLength\": %d}, {",
+            FIELD_TEXT_SIZE - 1);
+    __attribute__((fallthrough));
   case FIELD_CHOICE:
     for (size_t i = 0; row->choices[i]; i++) {
       fputs(i ? ", " : "\"enum\": [", out);
       text_json_string(row->choices[i], out);
     }
-    fputc(']', out);
-    break;
-  case FIELD_TEXT: /* a plain 12 or true is accepted as text, too */
-    fprintf(out, "\"type\": [\"string\", \"number\", \"boolean\"], %s\"maxLength\": %d",
-            row->flags & FIELD_REQUIRED ? "\"minLength\": 1, " : "", FIELD_TEXT_SIZE - 1);
+    fputs(row->kind == FIELD_TEXT ? "]}]" : "]", out);
     break;
   }
 }
@@ -181,7 +186,7 @@ static const char *form_of(const struct field_table *table, const char *path, si
     const char *const rest = table->rows[i].path + whole;
     if (!same_start(table->rows[i].path, path, whole))
       continue;
-    if (strcmp(rest, "name") == 0 && table->rows[i].kind == FIELD_CHOICE)
+    if (strcmp(rest, "name") == 0 && table->rows[i].choices)
       return "[\"object\", \"string\"]";
     if (strcmp(rest, "per_point") == 0)
       return "[\"object\", \"integer\"], \"minimum\": 1";

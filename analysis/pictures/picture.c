@@ -76,7 +76,10 @@ status picture_curves(const struct picture_page *page, const struct picture_word
     return nothing_to_draw(page, error);
   struct chart *chart = chart_new("lines", page, words);
   chart_number(chart, "series", (double)count);
-  write_range(chart, range);
+  const size_t places = curve[0].places;
+  write_range(chart, places > 0 ? (double[2]){0.5, (double)places + 0.5} : range);
+  chart_number(chart, "places", (double)places);
+  chart_texts(chart, "place", places, curve[0].place);
   for (size_t c = 0; c < count; c++) {
     labels[c] = curve[c].label;
     band[c] = curve[c].band;

@@ -171,6 +171,8 @@ struct picture_curve {
   size_t count;
   const struct picture_mean *mean; /* x ascending */
   bool band;                       /* a smooth line in a band from low to high, without marks */
+  size_t places;                   /* of the first curve, > 0: bars; the x axis has these words at 1, 2, ... */
+  const char *const *place;
 };
 /* Draws one to eight curves: marks with error bars joined by lines, or lines in bands. x is logarithmic when all its
  * values are positive and span a factor of 20 or more. */

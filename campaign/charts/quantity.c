@@ -18,7 +18,7 @@
 /* Columns of ask_group after the axes. */
 enum { VERSION = 1, MEAN = 6, LOW = 10, HIGH = 11, RESOLUTION = 13, DOUBTFUL = 16, COLUMNS = 18 };
 
-enum { MOST_ROWS = 10000, MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, INPUT_TEXT = 200 };
+enum { MOST_ROWS = 10000, MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, MOST_PLACES = 40, INPUT_TEXT = 200 };
 
 struct row {
   double input[2];            /* in the campaign's unit; NaN: a text, off, or does not apply */
@@ -206,6 +206,8 @@ struct line {
 
 struct plot {
   struct quantity quantity;
+  const char *place[MOST_PLACES]; /* the words of an axis that has no numbers */
+  size_t places;
   struct line line[MOST_LINES];
   size_t count;
 };
@@ -233,10 +235,18 @@ static status find_line(struct plot *plot, const struct row *row, struct line **
 
 static status add_mean(struct plot *plot, const struct row *row, struct error *error) {
   const char *column = plot->quantity.column[0];
-  const double x = row->input[0];
+  double x = row->input[0];
   struct line *line = NULL;
-  if (isnan(x) && *row->text[0])
-    return status_fail(error, STATUS_USAGE, "%s is no number, so it cannot be an axis: give it to --by", column);
+  if (isnan(x) && *row->text[0]) {
+    size_t place = 0;
+    while (place < plot->places && strcmp(plot->place[place], row->text[0]) != 0)
+      place++;
+    if (place == MOST_PLACES)
+      return status_fail(error, STATUS_USAGE, "%s has more than %d values: give it to --by", column, MOST_PLACES);
+    if (place == plot->places)
+      plot->place[plot->places++] = row->text[0];
+    x = (double)place + 1;
+  }
   if (isnan(x))
     return STATUS_OK; /* off, or does not apply: an axis of numbers cannot show it */
   TRY(find_line(plot, row, &line, error));
@@ -295,6 +305,8 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   for (size_t i = 0; i < plot->count; i++) {
     curves[i].label = *plot->line[i].label ? plot->line[i].label : NULL;
     curves[i].count = plot->line[i].count;
+    curves[i].places = plot->places;
+    curves[i].place = plot->place;
     curves[i].mean = plot->line[i].means;
   }
   charts_label(quantity->name, name);

@@ -412,7 +412,7 @@ static void draw_law(const struct study *study, size_t knob, struct drawing *dra
   for (size_t i = 0; i <= STEPS; i++)
     curve[i] = (struct picture_mean){points[i].step, points[i].mean.value, points[i].mean.low, points[i].mean.high, NAN,
                                      false};
-  drawing->curves[1] = (struct picture_curve){label[1], STEPS + 1, curve, true};
+  drawing->curves[1] = (struct picture_curve){.label = label[1], .count = STEPS + 1, .mean = curve, .band = true};
   drawing->count = 2;
 }
 

@@ -6,14 +6,28 @@
 
 #include "analysis/statistics/statistics.h"
 #include "db/store/store.h"
+#include "schemas/file.h"
 #include "schemas/memory.h"
 
 static document_node *key_of(document_node *mapping, const char *key) {
   return mapping && document_kind(mapping) == DOCUMENT_MAPPING ? document_key(mapping, key) : NULL;
 }
 
+bool campaign_read_value(document_node *node, const struct field *row, const char *folder, struct field_value *value) {
+  if (!document_value(node, row, value))
+    return false;
+  if (row->kind != FIELD_TEXT || !row->choices || field_is_choice(row, value->text) || document_is_put(node))
+    return true;
+  OWNED char *whole = file_name_in(folder, value->text);
+  if (whole && strlen(whole) < FIELD_TEXT_SIZE)
+    field_copy_text(value->text, whole);
+  else
+    document_report(node, row->path, "the name of this file is too long with its folder");
+  return whole && strlen(whole) < FIELD_TEXT_SIZE;
+}
+
 /* Reads one entry of `set`. Returns the input; NULL: reported. */
-static const struct field *read_set_value(document_node *node, const char *key, const char *path,
+static const struct field *read_set_value(document_node *node, const char *key, const char *path, const char *folder,
                                           const struct campaign *campaign, struct scene *scene, const char *varied) {
   struct error error = {0};
   struct field_value value;
@@ -24,13 +38,14 @@ static const struct field *read_set_value(document_node *node, const char *key, 
   const struct field *row = field_find_in(scene->kind->inputs, key, scene->inputs, &error);
   if (row && campaign_axis(campaign, row))
     document_report(node, path, "%s", varied);
-  else if (!row || (document_value(node, row, &value) && scene_set(scene, row->path, &value, &error) != STATUS_OK))
+  else if (!row ||
+           (campaign_read_value(node, row, folder, &value) && scene_set(scene, row->path, &value, &error) != STATUS_OK))
     document_report_error(node, path, &error);
   return row;
 }
 
-void campaign_read_set(document_node *set, const struct campaign *campaign, struct scene *scene, bool stored,
-                       const char *varied) {
+void campaign_read_set(document_node *set, const char *folder, const struct campaign *campaign, struct scene *scene,
+                       bool stored, const char *varied) {
   const struct field_table *inputs = scene->kind->inputs;
   if (!set)
     return;
@@ -44,7 +59,7 @@ void campaign_read_set(document_node *set, const struct campaign *campaign, stru
     char path[320];
     document_node *node = document_item(set, i, &key);
     snprintf(path, sizeof path, "set.%.300s", key ? key : "");
-    const struct field *row = read_set_value(node, key, path, campaign, scene, varied);
+    const struct field *row = read_set_value(node, key, path, folder, campaign, scene, varied);
     if (!row)
       continue;
     const char **name = &names[row - inputs->rows];
@@ -246,8 +261,9 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
   if (file)
     varied = campaign_points_read(file, folder, campaign) && !vary;
   else
-    varied = campaign_vary_read(vary, campaign);
-  campaign_read_set(set, campaign, campaign->scene, stored, "set here and varied in `vary`; leave one of them out");
+    varied = campaign_vary_read(vary, folder, campaign);
+  campaign_read_set(set, folder, campaign, campaign->scene, stored,
+                    "set here and varied in `vary`; leave one of them out");
   check_quantities(root, campaign);
   if (plain && varied)
     check_points(root, campaign);

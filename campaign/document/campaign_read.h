@@ -12,8 +12,11 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
 /* Reads `set` (NULL: none) into `scene`. An input that is an axis of the campaign is refused with the words `varied`.
  * One input under two of its names is a slip, which the document of a store may still have. A value of the command line
  * replaces that of the document. */
-void campaign_read_set(document_node *set, const struct campaign *campaign, struct scene *scene, bool stored,
-                       const char *varied);
+void campaign_read_set(document_node *set, const char *folder, const struct campaign *campaign, struct scene *scene,
+                       bool stored, const char *varied);
+/* One value of an input. The name of a material's file is relative to `folder`, on the command line to the current one.
+ * False: reported. */
+bool campaign_read_value(document_node *node, const struct field *row, const char *folder, struct field_value *value);
 
 /* `design: {file: points.csv}`: the points of a campaign from another program. For campaign_read.c only.
  *
@@ -27,6 +30,6 @@ bool campaign_points_read(document_node *node, const char *folder, struct campai
 /* ---- The key `vary` of a campaign: paths into the scene and what values they take. For campaign_read.c only ---- */
 
 /* Fills campaign->axes from the mapping (NULL: nothing varied). False when anything was reported. */
-bool campaign_vary_read(document_node *vary, struct campaign *campaign);
+bool campaign_vary_read(document_node *vary, const char *folder, struct campaign *campaign);
 
 #endif

@@ -14,6 +14,7 @@ struct reading { /* one axis being read */
   struct campaign *campaign;
   struct design_axis *axis;
   document_node *node;
+  const char *folder;
   char path[PATH_SIZE]; /* "vary.threshold.strain", for messages */
 };
 
@@ -104,7 +105,7 @@ static bool read_values(struct reading *r, document_node *node) {
   struct field row = *r->axis->row;
   row.path = r->path;
   for (size_t i = 0; i < count; i++)
-    if (document_value(document_item(node, i, NULL), &row, &r->axis->levels[i]))
+    if (campaign_read_value(document_item(node, i, NULL), &row, r->folder, &r->axis->levels[i]))
       note_unit(r, document_item(node, i, NULL), row.unit);
     else
       good = false;
@@ -325,10 +326,12 @@ static bool drop_equal(struct reading *r) {
 }
 
 /* Finds the input of the index-th key and makes its axis. */
-static bool begin_axis(struct reading *readings, size_t index, document_node *vary, struct campaign *campaign) {
+static bool begin_axis(struct reading *readings, size_t index, document_node *vary, const char *folder,
+                       struct campaign *campaign) {
   const char *key = NULL;
   struct error error = {0};
   struct reading *r = &readings[index];
+  r->folder = folder;
   r->node = document_item(vary, index, &key);
   r->campaign = campaign;
   r->axis = &campaign->axes[index];
@@ -346,9 +349,10 @@ static bool begin_axis(struct reading *readings, size_t index, document_node *va
 }
 
 /* Finds the inputs of all axes first, so that links may come in any order. */
-static bool read_axes(struct reading *readings, size_t count, document_node *vary, struct campaign *campaign) {
+static bool read_axes(struct reading *readings, size_t count, document_node *vary, const char *folder,
+                      struct campaign *campaign) {
   for (size_t i = 0; i < count; i++)
-    if (!begin_axis(readings, i, vary, campaign))
+    if (!begin_axis(readings, i, vary, folder, campaign))
       return false;
   bool good = true;
   for (size_t i = 0; i < count; i++) {
@@ -369,7 +373,7 @@ static bool read_axes(struct reading *readings, size_t count, document_node *var
   return good;
 }
 
-bool campaign_vary_read(document_node *vary, struct campaign *campaign) {
+bool campaign_vary_read(document_node *vary, const char *folder, struct campaign *campaign) {
   if (!vary)
     return true;
   if (document_kind(vary) != DOCUMENT_MAPPING) {
@@ -381,7 +385,7 @@ bool campaign_vary_read(document_node *vary, struct campaign *campaign) {
   struct reading *readings = calloc(count + 1, sizeof *readings);
   campaign->axes = calloc(count + 1, sizeof *campaign->axes);
   if (readings && campaign->axes)
-    good = read_axes(readings, count, vary, campaign);
+    good = read_axes(readings, count, vary, folder, campaign);
   else
     document_report_memory(vary, "vary");
   free(readings);

@@ -212,7 +212,7 @@ static void read_shot(struct reading *r, document_node *node) {
   if (!shot->name[0])
     snprintf(shot->name, sizeof shot->name, "shot %zu", m->shot_count);
   document_node *data = document_key(node, "measured"), *fragments = document_key(node, "fragments");
-  campaign_read_set(document_key(node, "set"), r->campaign, shot->scene, false,
+  campaign_read_set(document_key(node, "set"), NULL, r->campaign, shot->scene, false,
                     "known here and unknown in the campaign (`vary`); leave one of them out");
   if (data && (document_kind(data) != DOCUMENT_SEQUENCE || document_count(data) == 0))
     document_report(data, "measured", "expected a list of {quantity: NAME, value: NUMBER, error: NUMBER}");

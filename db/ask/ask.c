@@ -176,6 +176,9 @@ status ask_columns_axes(struct store *store, bool written, size_t most, struct a
     word[i] = short_word(axes, *count, i);
   for (size_t i = 0; i < *count; i++)
     memmove(axes[i].word, word[i], strlen(word[i]) + 1);
+  for (size_t i = 0; i < *count; i++) /* "material" says enough of material.name */
+    if (strlen(axes[i].word) > 5 && strcmp(strchr(axes[i].word, 0) - 5, ".name") == 0)
+      axes[i].word[strlen(axes[i].word) - 5] = '\0';
   return answer_end(&answer);
 }
 
@@ -444,8 +447,8 @@ status ask_points_label(struct store *store, int64_t point_id, char *text, size_
   ANSWER
   answer =
       answer_to(store, error,
-                "SELECT path, value, unit, written_unit FROM point_input JOIN axis USING (path) WHERE point_id = %lld "
-                "ORDER BY path DESC",
+                "SELECT iif(path LIKE '%%.name', substr(path, 1, length(path) - 5), path), value, unit, written_unit "
+                "FROM point_input JOIN axis USING (path) WHERE point_id = %lld ORDER BY path DESC",
                 (long long)point_id);
   for (size_t used = 0; answer_next(&answer);) {
     const char *path = answer_text(&answer, 0), *word = strrchr(path, '.');

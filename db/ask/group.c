@@ -66,12 +66,14 @@ static const char *without_engine(const char *column) {
   return column;
 }
 
-/* Looks for the name as written, as a column name, and as a column name without its engine's prefix. */
+/* Looks for the name as written, as a column name, and as a column name without its engine's prefix or its
+ * last word "name". */
 static status look_for(struct store *store, const char *columns_sql, const char *name, struct choice *choice,
                        struct error *error) {
-  char column[NAME];
+  char column[NAME], named[NAME]; /* named: "material" of "target_material_name" */
   field_column_name(name, column, sizeof column);
-  const char *const forms[] = {name, column, without_engine(column)};
+  snprintf(named, sizeof named, "%.*s_name", NAME - 6, column);
+  const char *const forms[] = {name, column, without_engine(column), named};
   *choice = (struct choice){.guess = text_guess(name)};
   for (size_t i = 0; choice->matches == 0 && i < sizeof forms / sizeof forms[0]; i++) {
     choice->wanted = forms[i];

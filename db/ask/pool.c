@@ -208,8 +208,14 @@ static status write_label(struct store *store, struct ask_pool *pool, struct err
       snprintf(value, sizeof value, "%s", input->text);
     else if (input->kind != QUERY_NULL)
       snprintf(value, sizeof value, "%.3g", input->real);
-    const char *word = strrchr(pool->column[a], '_');
-    text_append(pool->label, sizeof pool->label, "%s%s %s%s%s", a ? ", " : "", word ? word + 1 : pool->column[a], value,
+    char column[sizeof pool->column[a]];
+    snprintf(column, sizeof column, "%s", pool->column[a]);
+    char *word = strrchr(column, '_');
+    if (word && strcmp(word, "_name") == 0) { /* "material" says more */
+      *word = '\0';
+      word = strrchr(column, '_');
+    }
+    text_append(pool->label, sizeof pool->label, "%s%s %s%s%s", a ? ", " : "", word ? word + 1 : column, value,
                 *unit ? " " : "", unit);
   }
   return STATUS_OK;

@@ -49,7 +49,7 @@ same "$(sqlite3 own.db "select value from point_input where path = 'target.mater
 sed '/^yield_stress/d' basalt.yaml >short.yaml
 scene short.yaml >s.yaml
 expect 65 "$clast" simulate s.yaml
-says "target.material.yield_stress is not given"; says "off"
+says "target.material.yield_stress is not given by the material 'short.yaml'"; says "off"
 sed '/^yield_stress/d; /^melt_energy/d' basalt.yaml >short.yaml # all that is missing at once
 expect 65 "$clast" simulate s.yaml
 says "also missing: target.material."
@@ -67,4 +67,44 @@ says "none.yaml: there is no such file"; one_error
 scene "{file: basalt.yaml, density: 2.8 g/cm^3}" >s.yaml
 expect 0 "$clast" explain ./s.yaml
 prints "2800 kg/m^3"
-done_after 24
+scene "{name: ./basalt.yaml}" >s.yaml
+expect 0 "$clast" explain ./s.yaml
+prints "of basalt.yaml"
+
+# A file everywhere that a name is; a rock like another; the later layer wins whole.
+mkdir rocks
+sed 's/^density: .*/density: 2.75 g\/cm^3/' granite.yaml >rocks/own.yaml
+printf 'material: thin\nlike: basalt\ndensity: 2.2 g/cm^3\n' >rocks/thin.yaml
+expect 0 "$clast" materials rocks/thin.yaml
+sed 's/like: .*/like: basald/' rocks/thin.yaml >wrong.yaml
+expect 65 "$clast" materials ./wrong.yaml
+says "did you mean 'basalt'"
+scene rocks/own.yaml >s.yaml
+density() { "$clast" explain "$@" --json | python -c "
+import json, sys; print(*[r['value'] for r in json.load(sys.stdin) if r['path'] in ('target.material.name', 'target.material.density')])"; }
+same "$(density s.yaml)" "own.yaml 2750" "a file in a scene"
+same "$(density s.yaml --set target.material=granite)" "granite 2680" "a name over a file"
+same "$(density s.yaml --set target.material=rocks/thin.yaml)" "thin.yaml 2200" "a file over a file"
+same "$(density basalt-sphere --set target.material=rocks/own.yaml)" "own.yaml 2750" "a file over a name"
+same "$(density s.yaml --set target.material=rocks/thin.yaml --set target.material.density='1 g/cm^3')" "thin.yaml 1000" "a value over a file"
+expect 66 "$clast" explain s.yaml --set target.material=none.yaml
+says "none.yaml: there is no such file"
+expect 64 "$clast" explain s.yaml --set material=granite
+says "'target.material.name', 'projectile.material.name'"
+printf 'name: mix\nscene: ../s.yaml\nvary: {target.material: [basalt, own.yaml, ./thin.yaml]}\nseeds: 2\n' >rocks/mix.yaml
+expect 0 "$clast" run rocks/mix.yaml --quiet
+expect 0 "$clast" stats mix.db --by material --csv
+prints "basalt,"; prints "own.yaml,"; prints "thin.yaml,"
+expect 0 "$clast" run rocks/mix.yaml --quiet
+same "$(sqlite3 mix.db "select count(*) from run")" 6 "runs after the same command again"
+expect 0 "$clast" plot mix.db bars.png -x material
+expect 0 "$clast" check mix.db
+
+# The identity of a run is its values: the name of the file is no part of it.
+printf 'name: a\nscene: s.yaml\nseeds: 1\nstore: same.db\n' >a.yaml
+expect 0 "$clast" run a.yaml --quiet
+mv rocks/own.yaml rocks/other.yaml
+scene rocks/other.yaml >s.yaml
+expect 0 "$clast" run a.yaml --quiet
+same "$(sqlite3 same.db "select count(*) from run")" 1 "runs of the same rock in another file"
+done_after 43

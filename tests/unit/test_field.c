@@ -285,9 +285,7 @@ static void parses_or_says_why(void **state) {
       {"law", "weak", "weak", NULL},
       {"law", "off", "off", NULL},
       {"law", "strng", NULL, "law: expected weak, strong or off, got 'strng'; did you mean 'strong'?"},
-      {"law", "./my-law.yaml", NULL,
-       "law: a file is named in the document of a scene (such as material: ./my-law.yaml); to compare it with others, "
-       "write a scene for each and run them into one store"},
+      {"law", "./my-law.yaml", NULL, "law: expected weak, strong or off, got './my-law.yaml'"},
       {"law", "", NULL, "law: expected weak, strong or off, got ''"},
       {"name", "Ida", "Ida", NULL},
   };

@@ -295,7 +295,8 @@ static void curves_are_drawn(void **state) {
   const struct picture_mean low[] = {{1, 0.1, 0.1, 0.1, 0, false},
                                      {10, NAN, 0, 0, NAN, false},
                                      {100, 0.125, NAN, NAN, NAN, false}};
-  const struct picture_curve both[] = {{"high", 3, high, false}, {"low", 3, low, false}};
+  const struct picture_curve both[] = {{.label = "high", .count = 3, .mean = high},
+                                       {.label = "low", .count = 3, .mean = low}};
   assert_int_equal(curves("curves.png", 2, both), STATUS_OK);
   double dark, coloured;
   int width, height;
@@ -312,13 +313,17 @@ static void curves_are_drawn(void **state) {
   assert_non_null(strstr(script, "\noutput_file = './curves.png'\n"));
   assert_non_null(strstr(script, "0xD55E00")); /* vermilion of Okabe and Ito */
   const struct picture_mean short_way[] = {{1, 0.1, NAN, NAN, NAN, false}, {19, 0.9, NAN, NAN, NAN, false}};
-  assert_int_equal(curves("narrow.pdf", 1, &(struct picture_curve){"one label", 2, short_way, false}), STATUS_OK);
+  assert_int_equal(curves("narrow.pdf", 1,
+                          &(struct picture_curve){.label = "one label", .count = 2, .mean = short_way}),
+                   STATUS_OK);
   assert_non_null(strstr(text_of(at("narrow.gp")), "\nlog_x = 0\n"));
   assert_memory_equal(text_of(at("narrow.pdf")), "%PDF", 4);
-  assert_int_equal(curves("one.svg", 1, &(struct picture_curve){"lonely", 1, high, false}), STATUS_OK);
+  assert_int_equal(curves("one.svg", 1, &(struct picture_curve){.label = "lonely", .count = 1, .mean = high}),
+                   STATUS_OK);
   assert_non_null(strstr(text_of(at("one.svg")), "lonely"));
   assert_int_equal(curves("none.png", 0, NULL), STATUS_USAGE);
-  assert_int_equal(curves("none.png", 1, &(struct picture_curve){NULL, 1, &low[1], false}), STATUS_USAGE);
+  assert_int_equal(curves("none.png", 1, &(struct picture_curve){.label = NULL, .count = 1, .mean = &low[1]}),
+                   STATUS_USAGE);
   assert_int_equal(curves("none.png", 9, both), STATUS_USAGE);
 }
 
@@ -328,7 +333,7 @@ static void hostile_text_is_text(void **state) {
   const struct picture_mean mean[] = {{1, 2, 1, 3, NAN, false}, {2, 3, 2, 4, NAN, false}};
   const char *evil = "'; system('touch hacked'); `touch hacked` \"$(touch hacked)\" @x {/=99 a}_b \\n\n! touch hacked\n"
                      "\x01\xff\xc3 'end";
-  const struct picture_curve curve = {evil, 2, mean, false};
+  const struct picture_curve curve = {.label = evil, .count = 2, .mean = mean};
   struct picture_page page = {.path = at("| touch hacked ;'`touch hacked`.svg"), .width = 900, .keep_script = true};
   char path[512];
   snprintf(path, sizeof path, "%s", page.path);
@@ -347,7 +352,7 @@ static void hostile_text_is_text(void **state) {
 static void missing_gnuplot_is_told(void **state) {
   (void)state;
   const struct picture_mean mean[] = {{1, 2, 1, 3, NAN, false}, {2, 3, 2, 4, NAN, false}};
-  const struct picture_curve curve = {"a", 2, mean, false};
+  const struct picture_curve curve = {.label = "a", .count = 2, .mean = mean};
   struct picture_page page = {.path = "missing.png", .width = 900};
   struct error error = {0};
   char path[4096];

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "engine/builtin.h"
+#include "engine/scene.h"
 #include "engine/sph/material/material.h"
-#include "schemas/document.h"
 #include "schemas/text.h"
 
 #define MATERIAL sph_material
@@ -84,12 +84,15 @@ static void read_sources(document_node *sources) {
 
 /* Frees the document. */
 static status read_material(struct document *document, struct sph_material *out, struct error *error) {
-  static const char *const own_keys[] = {"material", "source", "sources", NULL};
+  static const char *const own_keys[] = {"material", "source", "sources", "like", NULL};
   const char *report = NULL;
+  struct error unknown;
   status code;
   field_defaults(&sph_materials_table, out);
   document_node *root = document_root(document);
-  if (document_read(root, &sph_materials_table, own_keys, out) && !(out->tillotson.E_cv > out->tillotson.E_iv))
+  if (scene_material_like(root, &sph_materials, &unknown))
+    document_report_error(root, "like", &unknown);
+  else if (document_read(root, &sph_materials_table, own_keys, out) && !(out->tillotson.E_cv > out->tillotson.E_iv))
     document_report(root, "tillotson.E_cv", "must be above tillotson.E_iv");
   read_sources(document_key(root, "sources"));
   code = document_finish(document, &report);

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "engine/builtin.h"
 #include "engine/mesh/mesh.h"
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/modules/module.h"
@@ -117,7 +116,7 @@ static void shape(const char *name, const struct sph_shape *s, const struct sph_
     mesh(s, out);
   else
     fprintf(out, "box of %.4g x %.4g x %.4g m", s->side[0], s->side[1], s->side[2]);
-  fprintf(out, " of %s, %.4g kg; about %.0f particles, spacing %.3g m, %s\n", builtin_material_names[b->material_name],
+  fprintf(out, " of %s, %.4g kg; about %.0f particles, spacing %.3g m, %s\n", b->material_name,
           sph_derived_density(b) * volume, volume / (spacing * spacing * spacing), spacing, lattices[b->lattice]);
 }
 

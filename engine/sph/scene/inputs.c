@@ -59,7 +59,8 @@ static const struct field_table outline = FIELD_TABLE(outline_rows, struct sph_b
 
 #define MATERIAL_DOC(default_)                                                                                         \
   "Material whose values become the defaults of this body's; `clast materials` lists them, and " default_              \
-  " is taken unless one is named. custom: the scene gives all values."
+  " is taken unless one is named. A file of your own is named with its folder or ending, such as ./my-rock.yaml. "     \
+  "custom: the scene gives all values."
 
 static const struct field matter_rows[] = {
     CHOICE(lattice, lattices,
@@ -76,8 +77,8 @@ static const struct field matter_rows[] = {
            .choice_docs = "if the material has Weibull's m and k\nyes; m and k are needed\nno: only tension_limit and "
                           "yield limit stress",
            .doc = "The body has explicit flaws, from which cracks grow.", .source = "BA95 section 3"),
-    INPUT_CHOICE(material.name, material_name, builtin_material_names, .flags = FIELD_DERIVED,
-                 .doc = MATERIAL_DOC("basalt")),
+    ROW_OF(INPUTS, material.name, material_name, FIELD_TEXT, NULL, .text = "custom", .choices = builtin_material_names,
+           .flags = FIELD_DERIVED, .doc = MATERIAL_DOC("basalt")),
     {.path = "material",
      .offset = offsetof(struct sph_body_inputs, material),
      .nest = &sph_materials_nested,

@@ -37,8 +37,8 @@ struct sph_body_inputs {
   int lattice;                         /* enum sph_lattice_kind */
   bool turned;
   bool strength;
-  int fracture;      /* enum sph_fracture_choice */
-  int material_name; /* index of builtin_material_names */
+  int fracture;                        /* enum sph_fracture_choice */
+  char material_name[FIELD_TEXT_SIZE]; /* built-in, the name of a file, or custom */
   struct sph_material material;
 };
 

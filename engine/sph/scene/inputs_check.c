@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/builtin.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/material/material.h"
 #include "engine/sph/material/palpha.h"
@@ -50,20 +49,23 @@ static status refuse_missing(const struct field *row, const char *material, stru
   REFUSE("%s is needed%s, and the material '%s' has none: give it, or %s", row->path, reason, material, remedy);
 }
 
-/* The next value of the body's material behind `after` (NULL: the first) that is needed and missing; NULL: none. */
+/* Is it a value of the body's material that is needed and missing? */
+static bool is_missing(const struct sph_inputs *in, const struct sph_body_inputs *body, const struct field *row) {
+  const size_t material = (size_t)((const char *)&body->material - (const char *)in);
+  struct field_value value;
+  if (row->offset < material || row->offset >= material + sizeof body->material)
+    return false;
+  field_get(row, in, &value);
+  return value.kind == FIELD_REAL && isnan(value.number) && field_is_active(&sph_inputs, row, in) &&
+         is_needed(row, body);
+}
+
+/* The next such value behind `after` (NULL: the first); NULL: none. */
 static const struct field *next_needed(const struct sph_inputs *in, const struct sph_body_inputs *body,
                                        const struct field *after) {
-  const size_t material = (size_t)((const char *)&body->material - (const char *)in);
-  for (size_t k = after ? (size_t)(after - sph_inputs.rows) + 1 : 0; k < sph_inputs.count; k++) {
-    const struct field *row = &sph_inputs.rows[k];
-    struct field_value value;
-    if (row->offset < material || row->offset >= material + sizeof body->material)
-      continue;
-    field_get(row, in, &value);
-    if (value.kind == FIELD_REAL && isnan(value.number) && field_is_active(&sph_inputs, row, in) &&
-        is_needed(row, body))
-      return row;
-  }
+  for (size_t k = after ? (size_t)(after - sph_inputs.rows) + 1 : 0; k < sph_inputs.count; k++)
+    if (is_missing(in, body, &sph_inputs.rows[k]))
+      return &sph_inputs.rows[k];
   return NULL;
 }
 
@@ -72,7 +74,7 @@ static status check_needed(const struct sph_inputs *in, const struct sph_body_in
   const struct field *row = next_needed(in, body, NULL);
   if (!row)
     return STATUS_OK;
-  const status code = refuse_missing(row, builtin_material_names[body->material_name], error);
+  const status code = refuse_missing(row, body->material_name, error);
   for (size_t more = 0; (row = next_needed(in, body, row)); more++)
     text_append(error->message, sizeof error->message, "%s%s", more ? ", " : "; also missing: ", row->path);
   return code;
@@ -105,32 +107,32 @@ static status check_material(const struct sph_inputs *in, const char *body_name,
 }
 
 /* Values that may be off must be set to off explicitly: without a yield stress a body is elastic at any stress. */
+static bool must_be_given(const struct field *row, const char *body) {
+  static const char *const must[] = {"yield_stress", "melt_energy", "tension_limit", "weibull.m", "weibull.k", NULL};
+  const size_t length = strlen(body);
+  return strncmp(row->path, body, length) == 0 && strncmp(row->path + length, ".material.", 10) == 0 &&
+         text_is_one_of(row->path + length + 10, must);
+}
+
 status sph_inputs_check_given(const void *scene, const bool *given, struct error *error) {
   const struct sph_inputs *in = scene;
-  static const char *const must[] = {"yield_stress", "melt_energy", "tension_limit", "weibull.m", "weibull.k"};
   for (int b = 0; b < 2; b++) {
     const char *body = b ? "projectile" : "target";
     const struct sph_body_inputs *inputs = b ? &in->projectile : &in->target;
-    if ((size_t)inputs->material_name < sph_materials_count())
-      continue; /* a named one has its own values */
     const struct field *first = NULL;
     char others[1024] = "";
-    for (size_t i = 0; i < sizeof must / sizeof must[0]; i++) {
-      char path[128];
-      snprintf(path, sizeof path, "%s.material.%s", body, must[i]);
-      const struct field *row = field_find(&sph_inputs, path, NULL);
-      if (!row || given[row - sph_inputs.rows] || !field_is_active(&sph_inputs, row, in))
+    for (size_t k = 0; k < sph_inputs.count && !sph_materials_text(inputs->material_name); k++) {
+      const struct field *row = &sph_inputs.rows[k];
+      const bool must = must_be_given(row, body) && !given[k] && field_is_active(&sph_inputs, row, in);
+      if (!must && !is_missing(in, inputs, row))
         continue;
       if (first)
         text_append(others, sizeof others, "%s%s", *others ? ", " : "; also missing: ", row->path);
       first = first ? first : row;
     }
-    for (const struct field *row = NULL; first && (row = next_needed(in, inputs, row));)
-      if (row != first && !strstr(others, row->path))
-        text_append(others, sizeof others, "%s%s", *others ? ", " : "; also missing: ", row->path);
     if (first)
-      REFUSE("%s is not given, and the material is of your own: give it, or `off` (%s)%s", first->path, first->doc,
-             others);
+      REFUSE("%s is not given by the material '%s': give it%s (%s)%s", first->path, inputs->material_name,
+             first->flags & FIELD_MAY_BE_OFF ? ", or `off`" : "", first->doc, others);
   }
   return STATUS_OK;
 }

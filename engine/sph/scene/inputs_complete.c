@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/builtin.h"
 #include "engine/sph/material/material.h"
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/modules/module.h"
@@ -23,11 +22,9 @@ static void complete_material(struct sph_inputs *in, struct sph_body_inputs *bod
   const size_t name = (size_t)((char *)&body->material_name - (char *)in);
   const size_t first = (size_t)((char *)&body->material - (char *)in);
   if (!given[row_at(name)])
-    for (body->material_name = 0; strcmp(builtin_material_names[body->material_name], fallback) != 0;)
-      body->material_name++;
-  if ((size_t)body->material_name >= sph_materials_count() ||
-      sph_materials_load(builtin_material_names[body->material_name], &material, NULL))
-    field_defaults(&sph_materials_table, &material); /* custom: none */
+    field_copy_text(body->material_name, fallback);
+  if (sph_materials_load(body->material_name, &material, NULL))
+    field_defaults(&sph_materials_table, &material); /* of the user's own: none */
   bool own[sizeof material / sizeof(int)] = {false}; /* by row of a material: the scene gives it */
   for (size_t i = 0; i < sph_inputs.count; i++) {
     size_t offset = sph_inputs.rows[i].offset;
