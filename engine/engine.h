@@ -83,6 +83,8 @@ struct engine_kind {
   /* Checks conditions across fields (a charge energy needs a disc...). STATUS_CONTENT with a remedy. */
   status (*check)(const void *inputs, struct error *error);
   const struct condition *conditions; /* under which results are valid (engine/condition.h); NULL: none are known */
+  /* Path of the result that such a scene is made for ("strength"). NULL, also as a function: OUTCOME_DEFAULT. */
+  const char *(*headline)(const void *inputs);
   /* What is modelled, memory, expected cost: text for `clast explain scene` and `plan`. `all`: also why, with sources.
    * malloc'd. */
   char *(*describe)(const void *inputs, bool all);

@@ -695,3 +695,8 @@ void scene_identity(const struct scene *scene, uint64_t seed, uint8_t identity[1
   free(text);
   free(inputs);
 }
+
+const char *scene_headline(const struct scene *scene) {
+  const char *path = scene->kind->headline ? scene->kind->headline(scene->inputs) : NULL;
+  return path ? path : OUTCOME_DEFAULT;
+}

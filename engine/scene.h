@@ -78,6 +78,9 @@ enum { SCENE_FILES_MOST = 4 }; /* inputs of one engine with FIELD_FILE */
 size_t scene_files_of(const struct field_table *inputs, const void *object,
                       const struct mesh_file *files[SCENE_FILES_MOST]);
 
+/* Path of the result that the scene is made for: M_1/M where bodies break. */
+const char *scene_headline(const struct scene *scene);
+
 /* JSON Schema of this engine's scene documents: what schemas/scene-<engine>.schema.json holds. */
 void scene_schema(const struct engine_kind *kind, FILE *out);
 

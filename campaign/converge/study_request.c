@@ -191,8 +191,11 @@ status study_request_read(const struct study_request *request, const char *path,
     study->limits.first_seed = request->first_seed;
   if (request->store)
     snprintf(study->limits.store, sizeof study->limits.store, "%s", request->store);
-  TRY(read_quantities(study, request->quantity ? request->quantity : study->limits.quantity, subject->scenes[0]->kind,
-                      error));
+  TRY(read_quantities(study,
+                      request->quantity   ? request->quantity
+                      : subject->campaign ? study->limits.quantity
+                                          : scene_headline(subject->scenes[0]),
+                      subject->scenes[0]->kind, error));
   TRY(read_rule(study, request, error));
   for (size_t s = 0; s < subject->scene_count; s++) {
     if (request->knobs.count == 0)

@@ -141,8 +141,6 @@ static void check_seeds(document_node *root, struct campaign *campaign) {
   if (!until)
     return;
   campaign->per_point = 0;
-  if (!campaign->until_quantity[0])
-    memcpy(campaign->until_quantity, campaign->quantity, sizeof campaign->until_quantity);
   if (!key_of(until, "half_width"))
     document_report(until, "seeds.until", "'half_width' is missing: give the half width that ends a point");
   if (campaign->until_minimum > campaign->maximum)
@@ -155,8 +153,6 @@ static void check_seeds(document_node *root, struct campaign *campaign) {
 /* `accuracy` decides the seeds itself. */
 static void check_accuracy(document_node *root, struct campaign *campaign) {
   document_node *accuracy = document_key(root, "accuracy"), *seeds = key_of(document_key(root, "seeds"), "per_point");
-  if (!campaign->accuracy_quantity[0])
-    memcpy(campaign->accuracy_quantity, campaign->quantity, sizeof campaign->accuracy_quantity);
   if (!accuracy)
     return;
   if (field_is_off(campaign->accuracy_within) == field_is_off(campaign->accuracy_time))
@@ -176,7 +172,13 @@ static void check_quantity(document_node *node, const char *path, const char *na
     document_report_error(node, path, &error);
 }
 
-static void check_quantities(document_node *root, const struct campaign *campaign) {
+static void check_quantities(document_node *root, struct campaign *campaign) {
+  char *const follow[] = {campaign->until_quantity, campaign->accuracy_quantity};
+  if (!document_key(root, "quantity"))
+    snprintf(campaign->quantity, sizeof campaign->quantity, "%s", scene_headline(campaign->scene));
+  for (size_t i = 0; i < sizeof follow / sizeof follow[0]; i++)
+    if (!follow[i][0])
+      memcpy(follow[i], campaign->quantity, sizeof campaign->quantity);
   struct error error;
   bool exponent;
   enum exponent_method method;

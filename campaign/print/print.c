@@ -110,7 +110,7 @@ static void answer(const char *name, double value, enum condition_mark mark, con
   char text[64];
   snprintf(text, sizeof text, isnan(value) || mark == CONDITION_WITHHELD ? "-" : "%.4g%s", value,
            mark == CONDITION_MARKED ? UNCERTAINTY_MARK : "");
-  printf("%-13s %-11s %s\n", name, text, says);
+  printf("%-14s %-10s %s\n", name, text, says);
 }
 
 /* What most people want of a run, in six lines. */
@@ -122,6 +122,16 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
   field_get(field_find(&outcome_table, OUTCOME_NAME(state), NULL), o, &state);
   printf("%s, seed %lld: %s after %.4g s in %lld steps\n", scene->name, (long long)seed, state.text, o->time,
          (long long)o->steps);
+  const char *headline = scene_headline(scene);
+  const struct field *row = field_find(scene->kind->results, headline, NULL);
+  if (row) {
+    struct field_value value;
+    field_get(row, result->result, &value);
+    snprintf(says, sizeof says, "%s; ", row->unit ? row->unit : "1");
+    const char *kind = strstr(row->doc, ": "); /* "Piston: mean pressure" */
+    text_sentence(kind ? kind + 2 : row->doc, says + strlen(says), sizeof says - strlen(says));
+    answer(headline, value.number, condition_mark(conditions, o->warnings, headline), says);
+  }
   answer("M_1/M", o->largest_fraction, condition_mark(conditions, o->warnings, OUTCOME_NAME(largest_fraction)),
          "mass of the largest fragment over the total mass");
   snprintf(says, sizeof says, "%lld of one grain or particle; the spectrum is complete from %.3g kg on",
@@ -138,7 +148,7 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
   answer("exponent", fit ? fit->fit.beta : (double)NAN,
          condition_mark(conditions, o->warnings, OUTCOME_NAME(mean_fragment_mass)), says);
   answer("energy error", o->energy_error, CONDITION_SOUND, "of the energy put in, by numerical errors");
-  printf("in doubt (!)  %s\n", *o->warnings ? o->warnings : "nothing");
+  printf("in doubt (!)   %s\n", *o->warnings ? o->warnings : "nothing");
 }
 
 static status print_long(const struct engine_kind *kind, const struct run_result *result, enum table_format format,
@@ -172,7 +182,7 @@ static status print_for_people(const struct scene *scene, int64_t seed, const st
   snprintf(resolution.scene, sizeof resolution.scene, "%.127s",
            scene_builtin_text(scene->name) ? scene->name : "SCENE.yaml");
   uncertainty_resolution(&resolution, text);
-  printf("errors: one run has no interval over seeds: several seeds have one (`clast run`)\n%s\n", text);
+  printf("errors: a single run has none; `clast run` with several seeds gives an interval\n%s\n", text);
   if (format == TABLE_ALL) {
     putchar('\n');
     TRY(print_long(scene->kind, result, format, error));

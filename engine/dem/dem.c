@@ -292,6 +292,14 @@ static const struct knob knobs[] = {
     {.name = NULL},
 };
 
+static const char *headline(const void *inputs) {
+  switch ((enum dem_kind)((const struct dem_inputs *)inputs)->kind) {
+  case DEM_UNIAXIAL: return "young_modulus";
+  case DEM_COMPRESSION: return "strength";
+  default: return NULL;
+  }
+}
+
 const struct engine_kind dem_engine = {
     .name = "dem",
     .dimensions = 2,
@@ -308,6 +316,7 @@ const struct engine_kind dem_engine = {
     .knobs = knobs,
     .check = dem_inputs_check,
     .conditions = dem_conditions,
+    .headline = headline,
     .describe = dem_describe_scene,
     .memory = memory,
     .work = work,

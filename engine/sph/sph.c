@@ -77,6 +77,15 @@ static const struct knob knobs[] = {
     {.name = NULL},
 };
 
+static const char *headline(const void *inputs) {
+  switch ((enum sph_kind)((const struct sph_inputs *)inputs)->kind) {
+  case SPH_STRETCH: return "peak.stress";
+  case SPH_VIBRATION: return "frequency";
+  case SPH_PISTON: return "shock.pressure";
+  default: return NULL;
+  }
+}
+
 const struct engine_kind sph_engine = {
     .name = "sph",
     .dimensions = 3,
@@ -92,6 +101,7 @@ const struct engine_kind sph_engine = {
     .check_given = sph_inputs_check_given,
     .check = sph_inputs_check,
     .conditions = sph_conditions,
+    .headline = headline,
     .describe = sph_describe_scene,
     .memory = sph_describe_memory,
     .work = sph_describe_work,

@@ -69,6 +69,17 @@ static void defaults_and_units(void **state) {
   assert_int_equal(points_of(campaign), 2);
   assert_int_equal(campaign_seed(campaign, campaign->scene, 4), 5);
   campaign_free(campaign);
+  static const char *const made_for[][2] = {{"compression", "strength"},        {"uniaxial", "young_modulus"},
+                                            {"tensile-rod", "peak.stress"},     {"elastic-bar", "frequency"},
+                                            {"porous-plate", "shock.pressure"}, {"disruption", "largest_fraction"}};
+  for (size_t i = 0; i < sizeof made_for / sizeof made_for[0]; i++) {
+    char text[128];
+    snprintf(text, sizeof text, "name: t\nscene: %s\naccuracy: {within: 1}\n", made_for[i][0]);
+    campaign = good(text);
+    assert_string_equal(campaign->quantity, made_for[i][1]);
+    assert_string_equal(campaign->accuracy_quantity, made_for[i][1]);
+    campaign_free(campaign);
+  }
   campaign = good(HEAD "seeds: 4\n");
   assert_int_equal(campaign_replicates_least(campaign), 4);
   campaign_free(campaign);
