@@ -99,6 +99,7 @@ struct picture_look {
   double plane; /* m, place of the cut along the axis; NaN: the centre of mass of the heaviest fragment, or of all
                    particles */
   const char *title, *subtitle; /* NULL: none */
+  const char *doubts;           /* stands in the note under the picture; NULL: none */
   const char *quantity, *unit;  /* of the values: "damage", "1"; "pressure", "Pa" */
 };
 /* Draws particles as discs of their size. The colour range is 0..1 for values of unit 1 within 0..1. Otherwise it is

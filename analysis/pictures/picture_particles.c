@@ -418,8 +418,10 @@ static void legend(cairo_t *cairo, const struct scene *s, double x, double y, do
 
 /* Writes a note under the picture about particles that are missing or have no value. */
 static void note(cairo_t *cairo, const struct scene *s, double left, double y, double font) {
-  char text[300] = "";
+  char text[600] = "";
   size_t grey = 0;
+  if (s->look->doubts && *s->look->doubts)
+    text_append(text, sizeof text, "%s. ", s->look->doubts);
   for (size_t k = 0; s->cloud->value && k < s->discs; k++)
     grey += isfinite(s->cloud->value[s->disc[k].id]) ? 0u : 1u;
   if (grey)

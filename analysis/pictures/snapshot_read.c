@@ -187,12 +187,35 @@ static hid_t open_attribute(struct file *f, const char *at, const char *name, H5
   return -1;
 }
 
-static bool text_of(struct file *f, const char *at, const char *name, char *text, size_t size) {
-  enum { LONGEST = 65536 };
-  text[0] = 0;
-  OBJECT id = open_attribute(f, at, name, H5T_STRING, LONGEST);
-  if (id < 0)
+enum { LONGEST_TEXT = 65536 };
+
+/* A data set of one text, as results have it. */
+static bool text_of_result(struct file *f, const char *at, const char *name, char *text, size_t size) {
+  char path[256];
+  if (snprintf(path, sizeof path, "%s/%s", at, name) >= (int)sizeof path || !has_object(f, path))
     return false;
+  OBJECT set = H5Dopen2(f->file, path, H5P_DEFAULT);
+  if (set < 0)
+    return false;
+  OBJECT type = H5Dget_type(set);
+  OBJECT space = H5Dget_space(set);
+  OBJECT layout = H5Dget_create_plist(set);
+  if (type < 0 || space < 0 || layout < 0 || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 ||
+      H5Tget_size(type) > LONGEST_TEXT || H5Sget_simple_extent_npoints(space) != 1 ||
+      H5Pget_external_count(layout) != 0 || H5Pget_layout(layout) == H5D_VIRTUAL)
+    return false;
+  OWNED char *whole = calloc(H5Tget_size(type) + 1, 1);
+  if (!whole || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, whole) < 0)
+    return false;
+  snprintf(text, size, "%s", whole);
+  return true;
+}
+
+static bool text_of(struct file *f, const char *at, const char *name, char *text, size_t size) {
+  text[0] = 0;
+  OBJECT id = open_attribute(f, at, name, H5T_STRING, LONGEST_TEXT);
+  if (id < 0)
+    return text_of_result(f, at, name, text, size);
   OBJECT type = H5Aget_type(id);
   OWNED char *whole = calloc(H5Tget_size(type) + 1, 1);
   if (!whole || H5Aread(id, type, whole) < 0)

@@ -33,8 +33,8 @@ enum snapshot_read_kind {
  * ran out. */
 void *snapshot_read_rows(struct snapshot_read *file, const char *name, size_t width, enum snapshot_read_kind kind,
                          size_t *rows);
-/* Reads a text attribute, cut to `size` and to SNAPSHOT_READ_TEXT. False, with an empty text, when it is missing, is no
- * UTF-8 or has control characters: a picture cannot show it. */
+/* Reads a text attribute, or a data set of one text, cut to `size` and to SNAPSHOT_READ_TEXT. False, with an empty
+ * text, when it is missing, is no UTF-8 or has control characters: a picture cannot show it. */
 bool snapshot_read_text(struct snapshot_read *file, const char *at, const char *name, char *text, size_t size);
 /* Reads a number attribute. False, with *value unchanged, when it is missing. */
 bool snapshot_read_real(struct snapshot_read *file, const char *at, const char *name, double *value);

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/pictures/snapshot_read.h"
+#include "campaign/terminal/table.h"
 #include "schemas/text.h"
 #include "schemas/unit.h"
 
@@ -15,14 +17,37 @@ static double width_of(const struct picture_choice *options) {
   return options->width > 0 ? options->width : WIDTH;
 }
 
+enum { DOUBTS = 300 };
+
+/* Writes "! in doubt, 1 of 1 runs: coarse" for a body whose run broke conditions, and prints a line for each of them on
+ * stderr. */
+static void tell_doubts(const char *fields, char text[DOUBTS]) {
+  struct snapshot_read *file;
+  struct error error;
+  struct ask_doubts doubts = {0};
+  char engine[64] = "", words[FIELD_TEXT_SIZE] = "";
+  text[0] = 0;
+  if (snapshot_read_open(fields, &file, &error))
+    return;
+  const bool known = snapshot_read_text(file, "run", "engine", engine, sizeof engine) &&
+                     snapshot_read_text(file, "outcome", "warnings", words, sizeof words);
+  if (!snapshot_read_close(file) || !known)
+    return;
+  ask_doubts_run(&doubts, engine, words, OUTCOME_DEFAULT, 1);
+  charts_doubts(&doubts, text, DOUBTS);
+  uncertainty_doubts(&doubts, stderr);
+}
+
 /* Grains in the plane have one picture only. */
 static status draw_grains(const char *fields, const char *picture, const struct picture_choice *options,
                           struct error *error) {
   struct picture_panel panel = {0};
-  char numbers[160];
+  char numbers[160], doubts[DOUBTS];
   status code = STATUS_OK;
   TRY(picture_fragments_read(fields, &panel.body, error));
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
+  tell_doubts(fields, doubts);
+  panel.caption = *doubts ? doubts : NULL;
   if (options->what || options->view || options->axis || options->at)
     code = status_fail(error, STATUS_USAGE,
                        "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
@@ -97,12 +122,14 @@ static status draw_particles(const char *fields, const char *picture, const stru
   struct picture_look look;
   __attribute__((cleanup(picture_cloud_clear))) struct picture_cloud cloud = {0};
   const char *what;
-  char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "";
+  char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "", doubts[DOUBTS];
   TRY(choose_look(options, &look, &what, error));
   TRY(picture_cloud_read(fields, &cloud, error));
   TRY(read_quantity(fields, options->what != NULL, &cloud, &what, unit, error));
   name_look(&look, &cloud, title, sizeof title);
   picture_particles_numbers(&cloud, numbers, sizeof numbers);
+  tell_doubts(fields, doubts);
+  look.doubts = doubts;
   look.title = options->caption ? options->caption : title;
   look.subtitle = numbers;
   look.quantity = what;
@@ -138,7 +165,7 @@ static status draw_profile(const char *fields, const char *picture, const struct
   struct picture_profile profile[MOST];
   struct picture_cloud cloud;
   double *depth = NULL;
-  char unit[32] = "", title[FIELD_TEXT_SIZE];
+  char unit[32] = "", title[FIELD_TEXT_SIZE], doubts[DOUBTS];
   size_t count = 0;
   TRY(picture_cloud_read(fields, &cloud, error));
   status code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error);
@@ -152,8 +179,9 @@ static status draw_profile(const char *fields, const char *picture, const struct
   if (code)
     goto cleanup;
   name_look(&(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
+  tell_doubts(fields, doubts);
   const struct picture_page page = charts_page(picture, &options->chart);
-  const struct picture_words words = {options->caption ? options->caption : title, NULL, "depth at the start (m)",
+  const struct picture_words words = {options->caption ? options->caption : title, doubts, "depth at the start (m)",
                                       NULL};
   code = picture_profile(&page, &words, count, depth, panels, profile, error);
 cleanup:

@@ -9,6 +9,8 @@
 #include <string.h>
 
 #include "analysis/statistics/statistics.h"
+#include "campaign/terminal/table.h"
+#include "schemas/memory.h"
 
 static const char *const statistic_names[SERVE_STATISTICS] = {"mean", "sd", "se", "hw95"};
 
@@ -279,7 +281,19 @@ static double statistic_of(const struct sample_summary *summary, enum serve_stat
   return NAN;
 }
 
-struct serve_answer serve_request_answer(const struct serve_request *request, const double *values) {
+/* The sentences of conditions that runs behind a number break, a line each; the caller frees them. NULL: no memory. */
+static char *sentences_of(const struct ask_doubts *doubts) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return NULL;
+  uncertainty_doubts(doubts, out);
+  return fclose(out) ? NULL : text;
+}
+
+struct serve_answer serve_request_answer(const struct serve_request *request, const double *values,
+                                         const struct ask_doubts *doubts) {
   const struct serve_config *config = &request->config;
   const size_t count = (size_t)config->count, vectors = config->single ? 1 : config->statistic_count;
   json_t *output = json_array();
@@ -292,14 +306,28 @@ struct serve_answer serve_request_answer(const struct serve_request *request, co
         sample_of_share(&summary, 0.95);
       const double number = config->single ? values[k] : statistic_of(&summary, config->statistics[v]);
       if (!isfinite(number)) { /* JSON has no NaN and no infinity */
+        OWNED char *sentences = sentences_of(&doubts[k]);
+        const char *told = sentences ? sentences : "";
         json_decref(output);
         return serve_request_error(500, "InvalidOutput",
                                    "%s has no value here: %zu of %zu runs have one (see `clast query STORE --named "
-                                   "failures`, and column state of the view runs)",
-                                   config->results[k].row->path, summary.n, count);
+                                   "failures`, and column state of the view runs)%s%s",
+                                   config->results[k].row->path, summary.n, count, *told ? "; " : "", told);
       }
       json_array_append_new(vector, json_real(number));
     }
   }
-  return answer_json(200, json_pack("{s:o}", "output", output));
+  json_t *told = json_array();
+  bool sound = true;
+  for (size_t k = 0; k < config->result_count; k++) {
+    OWNED char *sentences = sentences_of(&doubts[k]);
+    json_array_append_new(told, json_string(sentences ? sentences : ""));
+    sound = sound && doubts[k].doubtful == 0;
+  }
+  json_t *whole = json_pack("{s:o}", "output", output);
+  if (sound)
+    json_decref(told);
+  else
+    json_object_set_new(whole, "doubts", told);
+  return answer_json(200, whole);
 }

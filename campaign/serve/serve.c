@@ -91,9 +91,10 @@ static status begin(void *context, struct scheduler *scheduler, struct error *er
 
 /* ---- what the store has of a job ---- */
 
-/* `values`: NaN where there is no usable run, or its value has no meaning. Both arrays may be NULL. */
+/* `values`: NaN where there is no usable run, or its value has no meaning. Both arrays may be NULL. The usable runs are
+ * added to *doubts. */
 static status read_store(struct serve *serve, const struct job *job, const struct serve_result *result, double *values,
-                         bool *there, struct error *error) {
+                         bool *there, struct ask_doubts *doubts, struct error *error) {
   const struct serve_config *config = &job->request.config;
   ANSWER answer = ask_run_of_point(serve->scheduler->store, job->point_id, job->scene->kind, result->row,
                                    result->of_outcome, error);
@@ -103,6 +104,8 @@ static status read_store(struct serve *serve, const struct job *job, const struc
       continue;
     if (values)
       values[r] = outcome_is_usable(run.state) && !run.withheld ? run.value : (double)NAN;
+    if (doubts && outcome_is_usable(run.state))
+      (void)ask_doubts_run(doubts, job->scene->kind->name, run.warnings, result->row->path, 1);
     if (there)
       there[r] = true;
   }
@@ -114,13 +117,14 @@ static struct serve_answer answer_of(struct serve *serve, const struct job *job)
   const size_t count = (size_t)config->count, size = config->result_count * count;
   struct error error = {0};
   OWNED double *values = NULL;
+  OWNED struct ask_doubts *doubts = memory_small(config->result_count, sizeof *doubts);
   status code = memory_array(&values, size, sizeof *values, "an answer", &error);
   for (size_t i = 0; !code && i < size; i++)
     values[i] = NAN;
   for (size_t k = 0; !code && k < config->result_count; k++)
-    code = read_store(serve, job, &config->results[k], values + k * count, NULL, &error);
+    code = read_store(serve, job, &config->results[k], values + k * count, NULL, &doubts[k], &error);
   return code ? serve_request_error(503, "Unavailable", "%s", error.message)
-              : serve_request_answer(&job->request, values);
+              : serve_request_answer(&job->request, values, doubts);
 }
 
 /* ---- evaluations in ---- */
@@ -159,7 +163,7 @@ static status open_job(struct serve *serve, struct job *job, struct error *error
   TRY(store_add_point(serve->scheduler->store, serve->campaign_id, job->scene, serve->path_count, serve->paths,
                       &job->point_id, error));
   OWNED bool *there = memory_small((size_t)config->count, sizeof *there);
-  TRY(read_store(serve, job, &config->results[0], NULL, there, error));
+  TRY(read_store(serve, job, &config->results[0], NULL, there, NULL, error));
   for (int64_t r = 0; r < config->count; r++) {
     serve->found += there[r];
     if (!there[r])

@@ -106,8 +106,10 @@ struct serve_answer serve_request_error(unsigned http, const char *type, const c
 bool serve_request_read(const struct serve_model *model, const char *method, const char *path, const char *body,
                         size_t size, struct serve_request *request, struct serve_answer *answer);
 
-/* The answer to an evaluation. values[k * count + r]: result k of replicate first + r; NaN: no usable run. */
-struct serve_answer serve_request_answer(const struct serve_request *request, const double *values);
+/* The answer to an evaluation. values[k * count + r]: result k of replicate first + r; NaN: no usable run.
+ * doubts[k]: of the runs behind result k. */
+struct serve_answer serve_request_answer(const struct serve_request *request, const double *values,
+                                         const struct ask_doubts *doubts);
 
 /* ---- evaluations: serve.c ---- */
 

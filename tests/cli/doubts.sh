@@ -122,8 +122,29 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
   report) ;; # cli.report looks at the page
   # raw values, with the words beside them: clast query, clast export
   query | export) ;;
-  # no numbers of a store that rest on runs: files, pictures of one body, bits, other programs
-  serve | retry | scenes | materials | schema | cite | picture | check | merge | replay | help | version | completion) ;;
+  picture) expect 0 "$clast" simulate disc-explosion --set fidelity.time_step='4 us' --set stop.end_time='20 us' --fields body.hdf
+    expect 0 "$clast" picture body.hdf body.png
+    says "marked (!), 1 of 1 runs: step: fidelity.time_step over the longest stable step is above 0.25" ;;
+  serve) "$clast" serve marked.yaml --store marked.db --port 0 2>serve.err &
+    pid=$!
+    for _ in $(seq 200); do
+      port=$(sed -nE 's/^clast: serving at port ([0-9]+) .*/\1/p' serve.err)
+      [ -z "$port" ] || break
+      sleep 0.05
+    done
+    for step in 1e-6 4e-6; do
+      python - "$port" $step >answer <<'PY'
+import json, sys, urllib.request
+body = {"name": "marked", "input": [[float(sys.argv[2]), 0.02]]}
+print(urllib.request.urlopen(f"http://127.0.0.1:{sys.argv[1]}/Evaluate", json.dumps(body).encode(), timeout=60).read().decode())
+PY
+      [ "$(grep -c 'marked (!), 3 of 3 runs: step: fidelity.time_step over' answer)" = $([ $step = 4e-6 ] && echo 1 || echo 0) ] ||
+        fail "doubts of an answer at $step"
+    done
+    kill $pid
+    wait $pid || true ;;
+  # no numbers of a store that rest on runs: files, bits, other programs
+  retry | scenes | materials | schema | cite | check | merge | replay | help | version | completion) ;;
   *) fail "clast $command is new: does it print a number that may be in doubt?" ;;
   esac
 done
@@ -164,4 +185,4 @@ db.execute(\"UPDATE run SET warnings = 'soot' WHERE point_id = 1\")
 db.commit()"
 expect 0 "$clast" stats old.db --by time_step
 says "marked (!), 3 of 12 runs: soot: a word of another version of clast"
-done_after 78
+done_after 80
