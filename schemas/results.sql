@@ -577,6 +577,8 @@ WITH first AS (
 SELECT p.point_id, p.engine, p.scene_name AS scene,
   t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS failed,
   ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS failed_attempts,
+  (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings <> '') AS doubtful,
+  ifnull((SELECT group_concat(words, '; ') FROM (SELECT DISTINCT r.warnings AS words FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings <> '' ORDER BY words)), '') AS doubts,
   m0 AS "largest_fraction_mean", d0 AS "largest_fraction_sd", d0 / sqrt(n) AS "largest_fraction_se", h0 AS "largest_fraction_hw95",
   iif(h0 IS NULL, iif(n > 1, m0 * pow(0.05, 1.0 / n), NULL), max(m0 - h0, 0.0)) AS "largest_fraction_low95",
   iif(h0 IS NULL, iif(n > 1, 1 - (1 - m0) * pow(0.05, 1.0 / n), NULL), min(m0 + h0, 1.0)) AS "largest_fraction_high95",
@@ -984,6 +986,10 @@ INSERT INTO column_doc VALUES ('point_total', 'runs', '1', 'runs that count: com
 INSERT INTO column_doc VALUES ('point_total', 'surplus', '1', 'runs left out because a stopping rule decided without them', 0);
 
 INSERT INTO column_doc VALUES ('points', 'censored', '1', 'runs that count and ended at their time: fragments may still have been breaking', 0);
+
+INSERT INTO column_doc VALUES ('points', 'doubtful', '1', 'runs behind the means that break a condition: their values are in doubt, or have no meaning', 0);
+
+INSERT INTO column_doc VALUES ('points', 'doubts', NULL, 'warnings of these runs, each different text once; clast explain WORD says what a word means', 0);
 
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 

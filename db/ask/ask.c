@@ -575,7 +575,8 @@ struct answer ask_run_kept(struct store *store, struct error *error) {
     sqlite3_str_appendf(columns, ", \"%w\"", i < axis_count ? axes[i].name : results[i - axis_count]);
   return answer_to(
       store, error,
-      "SELECT run_id, point_id, seed%z, fields_path AS fields FROM runs WHERE counts AND typeof(fields_path) = "
+      "SELECT run_id, point_id, seed%z, warnings, fields_path AS fields FROM runs WHERE counts AND typeof(fields_path) "
+      "= "
       "'text' AND results_version = (SELECT max(results_version) FROM run AS newest WHERE newest.point_id = "
       "runs.point_id) ORDER BY point_id, replicate",
       sqlite3_str_finish(columns));

@@ -275,7 +275,7 @@ status ask_run_masses(struct store *store, int64_t run_id, double **masses, size
 status ask_run_wall_times(struct store *store, double *mean, double *longest, struct error *error);
 
 /* One row per run that counts and has its fields kept, of each point's newest results_version: run_id, point_id, seed,
- * the varied inputs, the main results, and last `fields`. */
+ * the varied inputs, the main results, `warnings`, and last `fields`. */
 struct answer ask_run_kept(struct store *store, struct error *error);
 /* The path of the file that a row names in this column, as this process can open it: the store holds it relative to its
  * own folder. The caller frees it; NULL: no memory. */

@@ -259,7 +259,12 @@ static void write_points(struct view *view) {
   write_axes(view);
   fputs("  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS "
         "failed,\n  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS "
-        "failed_attempts",
+        "failed_attempts,\n"
+        "  (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND "
+        "r.counts AND r.warnings <> '') AS doubtful,\n"
+        "  ifnull((SELECT group_concat(words, '; ') FROM (SELECT DISTINCT r.warnings AS words FROM run r WHERE "
+        "r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings <> '' ORDER BY "
+        "words)), '') AS doubts",
         out);
   for (size_t i = 0; i < count; i++)
     views_statistics_columns(i, names[i], "n", views_is_share(names[i]), out);

@@ -11,6 +11,8 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
 INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
   ('points', 'n', '1', 'runs that count: completed, or ended at their time, and not surplus'),
   ('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers'),
+  ('points', 'doubtful', '1', 'runs behind the means that break a condition: their values are in doubt, or have no meaning'),
+  ('points', 'doubts', NULL, 'warnings of these runs, each different text once; clast explain WORD says what a word means'),
   ('spectra', 'n', '1', 'runs of the point that count'),
   ('spectra', 'count', '1', 'fragments in the bin, of all runs'),
   ('spectra', 'mass', 'kg', 'their mass'),

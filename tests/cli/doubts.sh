@@ -121,7 +121,13 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
     prints "above 0.25" ;;
   report) ;; # cli.report looks at the page
   # raw values, with the words beside them: clast query, clast export
-  query | export) ;;
+  query) ;;
+  export) expect 0 "$clast" export marked.db --per point
+    python - <<'PY' || fail "rows of points"
+import csv
+assert [(r["doubtful"], r["doubts"]) for r in csv.DictReader(open("out", newline=""))] == [("0", "")] * 2 + [("3", "step")] * 2
+PY
+    ;;
   picture) expect 0 "$clast" simulate disc-explosion --set fidelity.time_step='4 us' --set stop.end_time='20 us' --fields body.hdf
     expect 0 "$clast" picture body.hdf body.png
     says "marked (!), 1 of 1 runs: step: fidelity.time_step over the longest stable step is above 0.25" ;;
@@ -185,4 +191,4 @@ db.execute(\"UPDATE run SET warnings = 'soot' WHERE point_id = 1\")
 db.commit()"
 expect 0 "$clast" stats old.db --by time_step
 says "marked (!), 3 of 12 runs: soot: a word of another version of clast"
-done_after 80
+done_after 81

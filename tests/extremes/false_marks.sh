@@ -20,7 +20,7 @@ campaign disc-explosion "body.diameter: 14 cm" "charge.energy: [1 kJ/m, 3 kJ/m, 
 campaign block-impact "" "impact.speed: [200 m/s, 400 m/s]" 5
 if [ "${CLAST_FULL:-0}" = 1 ]; then # as they ship
   for scene in $("$clast" scenes --json | python -c "import json, sys; print(*[s['name'] for s in json.load(sys.stdin)])"); do
-    campaign "$scene" "" "fidelity.threads: [1]" 1
+    campaign "$scene" "" ""
   done
 fi
 "$clast" query "$store" "select scene, warnings, count(*) as runs from runs where counts group by scene, warnings" --json >words.json
