@@ -54,8 +54,8 @@ uint64_t condition_before(const struct condition *list, const void *inputs, FILE
       continue;
     set |= UINT64_C(1) << k;
     if (out)
-      fprintf(out, "%s: %s is %.3g, %s %g: %s; %s\n", c->word, c->number, number, c->least ? "below" : "above",
-              c->bound, c->doubt, c->remedy);
+      fprintf(out, "%s: %s is %.3g, %s %g (clast explain %s)\n", c->word, c->number, number,
+              c->least ? "below" : "above", c->bound, c->word);
   }
   return set;
 }
@@ -109,7 +109,7 @@ enum condition_mark condition_mark(const struct condition *list, const char *wor
 }
 
 void condition_sentence(const struct condition *c, FILE *out) {
-  fprintf(out, "%s is %s %g: %s; %s\n", c->number, c->least ? "below" : "above", c->bound, c->doubt, c->remedy);
+  fprintf(out, "%s is %s %g (clast explain %s)\n", c->number, c->least ? "below" : "above", c->bound, c->word);
 }
 
 void condition_tell(const struct condition *list, const char *words, uint64_t told, const char *before, FILE *out) {

@@ -46,7 +46,8 @@ struct condition {
 bool condition_broken(const struct condition *condition, double number);
 
 /* The conditions that the inputs alone break: bit k is the k-th row of `list`, which ends with a word of NULL. Prints a
- * line for each, with number, bound, doubt and remedy, to `out` (NULL: prints nothing). A list of NULL has no rows. */
+ * line for each, with number, bound and where to read more, to `out` (NULL: prints nothing). A list of NULL has no
+ * rows. */
 uint64_t condition_before(const struct condition *list, const void *inputs, FILE *out);
 
 /* Judges a run at its end. Writes the words of broken conditions, separated by ", ", into `words`. */
@@ -63,14 +64,13 @@ enum { CONDITION_WORD = 32 };
 enum condition_mark condition_next(const struct condition *list, const char **words, const char *names,
                                    char word[CONDITION_WORD], const struct condition **row);
 
-/* Prints "word: number is above bound: doubt; remedy" for each of the words that `told`, a set of condition_before(),
- * has not. */
+/* Prints "word: " and condition_sentence() for each of the words that `told`, a set of condition_before(), has not. */
 void condition_tell(const struct condition *list, const char *words, uint64_t told, const char *before, FILE *out);
 
 /* Is a word one of some words? */
 bool condition_has(const char *words, const char *word);
 
-/* Prints "number is above bound: doubt; remedy". */
+/* Prints "number is above bound (clast explain WORD)". */
 void condition_sentence(const struct condition *condition, FILE *out);
 
 /* The first row of a word in a list; NULL when there is none. */

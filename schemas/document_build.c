@@ -383,6 +383,25 @@ static void silence(struct fy_diag *diag, void *user, const char *text, size_t l
   (void)diag, (void)user, (void)text, (void)length; /* libfyaml would write to stderr */
 }
 
+/* What libfyaml's commonest messages mean for an author. */
+static const char *plain_words(const char *message) {
+  static const char *const words[][2] =
+      {{"missing comma in flow mapping", "a '{' without its '}', or a missing comma"},
+       {"missing comma in flow sequence", "a '[' without its ']', or a missing comma"},
+       {"flow sequence without a closing bracket", "a '[' without its ']'"},
+       {"flow mapping without a closing brace", "a '{' without its '}'"},
+       {"could not find expected ':'", "a key has ': ' behind it, as in 'scene: disc-explosion'"},
+       {"invalid nested block mapping on the same line", "a value with ': ' in it needs quotes"},
+       {"invalid multiline plain key", "wrong indentation: the keys of one level begin in the same column"},
+       {"wrongly indented double-quoted scalar", "a '\"' without its second '\"'"},
+       {"double-quoted scalar without closing quote", "a '\"' without its second '\"'"},
+       {NULL, NULL}};
+  size_t k = 0;
+  while (words[k][0] && strcmp(words[k][0], message) != 0)
+    k++;
+  return words[k][0] ? words[k][1] : message;
+}
+
 /* Reports libfyaml's message about the first thing it could not read. */
 static void report_syntax(struct document *document, struct fy_diag *diag) {
   void *previous = NULL;
@@ -398,7 +417,7 @@ static void report_syntax(struct document *document, struct fy_diag *diag) {
     do
       offset++;
     while (offset < document->size && ((unsigned char)document->text[offset] & 0xC0) == 0x80);
-  document_report_at(document, offset, 0, NULL, "no valid YAML: %s", error->msg);
+  document_report_at(document, offset, 0, NULL, "no valid YAML: %s", plain_words(error->msg));
 }
 
 static struct fy_diag *create_diag(void) {

@@ -1,4 +1,5 @@
 /* Reads scalars through their rows, and a mapping into a struct through its field table. */
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -96,6 +97,10 @@ bool document_value(document_node *node, const struct field *row, struct field_v
     return false;
   if (read_value(node, row, value, &error) == STATUS_OK)
     return true;
+  const char *text = node->document->text, *end = text + node->end;
+  if (node->end > 0 && node->end + 1 < node->document->size && *end == ',' && isdigit((unsigned char)end[-1]) &&
+      isdigit((unsigned char)end[1]))
+    text_append(error.message, sizeof error.message, "; a decimal mark is a point, as a comma ends the value here");
   report(node, row, error.message);
   return false;
 }

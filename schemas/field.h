@@ -201,6 +201,8 @@ void field_copy_text(char to[FIELD_TEXT_SIZE], const char *from);
 void field_print_number(double number, char text[32]);
 /* Human text of a value, SI with unit ("5000 m/s", "3 %" of a row in percent), shortest digits that round-trip. */
 void field_print(const struct field *row, const struct field_value *value, char *buffer, size_t size);
+/* The same with six digits, and angles in degrees. */
+void field_show(const struct field *row, const struct field_value *value, char *buffer, size_t size);
 
 /* Resolved object as JSON text (nested, active rows only, shortest round-trip numbers, "off" as "off"). The caller
  * frees it; NULL: no memory. */

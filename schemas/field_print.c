@@ -91,6 +91,31 @@ void field_print(const struct field *row, const struct field_value *value, char 
   }
 }
 
+static double six_digits(double number) {
+  char text[NUMBER];
+  snprintf(text, sizeof text, "%.6g", number);
+  return strtod(text, NULL);
+}
+
+/* A row whose angles are in degrees. */
+static struct field in_degrees(const struct field *row) {
+  struct field shown = *row;
+  if (!row->unit || strcmp(row->unit, "rad") != 0)
+    return shown;
+  shown.unit = "deg";
+  shown.minimum = six_digits(row->minimum * 180 / M_PI);
+  shown.maximum = six_digits(row->maximum * 180 / M_PI);
+  return shown;
+}
+
+void field_show(const struct field *row, const struct field_value *value, char *buffer, size_t size) {
+  const struct field shown = in_degrees(row);
+  struct field_value rounded = *value;
+  if (row->kind == FIELD_REAL && isfinite(value->number))
+    rounded.number = six_digits(shown.unit == row->unit ? value->number : value->number * 180 / M_PI);
+  field_print(&shown, &rounded, buffer, size);
+}
+
 /* ---- conditions, choices and ranges of rows, in words ---- */
 
 void field_describe_inactive(const struct field_table *table, const struct field *row, const void *object, char *text,
@@ -177,9 +202,10 @@ static void explain_choices(const struct field *row, FILE *out) {
 /* " in m, above 0 m, or off" */
 static void explain_range(const struct field *row, FILE *out) {
   char range[160];
-  field_describe_range(row, range, sizeof range);
+  const struct field shown = in_degrees(row);
+  field_describe_range(&shown, range, sizeof range);
   if (row->unit && strcmp(row->unit, "1"))
-    fprintf(out, " in %s", row->unit);
+    fprintf(out, " in %s", shown.unit);
   if (row->flags & FIELD_PERCENT)
     fputs(" in percent", out);
   if (strncmp(range, "a number", 8) != 0)
@@ -200,7 +226,7 @@ static void explain_default(const struct field *row, FILE *out) {
     return;
   }
   field_default(row, &value);
-  field_print(row, &value, text, sizeof text);
+  field_show(row, &value, text, sizeof text);
   fprintf(out, row->kind == FIELD_TEXT ? "; default \"%s\"\n" : "; default %s\n", text);
 }
 

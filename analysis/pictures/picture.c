@@ -455,6 +455,14 @@ status picture_spectrum(const struct picture_page *page, const struct picture_wo
   return chart_draw(chart, 0.68 * page->width + legend, error);
 }
 
+status picture_movie(const struct picture_page *page, double height, size_t count, const char *const *frame,
+                     struct error *error) {
+  struct chart *chart = chart_new("movie", page, &(struct picture_words){0});
+  chart_number(chart, "frames", (double)count);
+  chart_texts(chart, "frame", count, frame);
+  return chart_draw(chart, height, error);
+}
+
 /* ---- which values of inputs are safe: a row of tiles per input, each tile divided by the shares of safe, warned and
  * refused runs ---- */
 

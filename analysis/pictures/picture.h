@@ -43,6 +43,9 @@ struct picture_panel {
 status picture_fragments(const char *path, double width, const char *title, const char *subtitle, size_t panels,
                          const struct picture_panel *panel, struct error *error);
 
+/* The view that a body's panel would get: all of it without distant dust. STATUS_MEMORY. */
+status picture_fragments_view(const struct picture_body *body, double view[4]);
+
 /* A line of numbers for a body's subtitle: "1100 grains in 259 fragments, 180 of them single; largest 12.1 % of the
  * area". cells: what the cells are ("grains"). Empty without cells or with wrong fragment numbers. */
 void picture_fragments_numbers(const struct picture_body *body, const char *cells, char *text, size_t size);
@@ -87,6 +90,15 @@ status picture_cloud_read_axis(const char *path, const char *name, double **valu
                                struct error *error);
 void picture_cloud_clear(struct picture_cloud *cloud);
 
+/* One frame for several pictures: the pictures of a movie. Begin with PICTURE_NO_FRAME. */
+struct picture_frame {
+  double view[4];   /* m: x0, y0, x1, y1 */
+  double low, high; /* of the values */
+  double plane;     /* m: of cuts; NaN: not known yet */
+};
+#define PICTURE_NO_FRAME                                                                                               \
+  { {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, HUGE_VAL, -HUGE_VAL, NAN }
+
 enum picture_view {
   PICTURE_CUT,     /* a cut: every particle that the plane meets, drawn as the disc of its section */
   PICTURE_OUTSIDE, /* all particles from outside, near ones before far ones */
@@ -101,10 +113,12 @@ struct picture_look {
   const char *title, *subtitle; /* NULL: none */
   const char *doubts;           /* stands in the note under the picture; NULL: none */
   const char *quantity, *unit;  /* of the values: "damage", "1"; "pressure", "Pa" */
+  struct picture_frame *frame;  /* NULL: the picture's own */
 };
 /* Draws particles as discs of their size. The colour range is 0..1 for values of unit 1 within 0..1. Otherwise it is
  * the range of the drawn particles, without the outermost percent at both ends and without bodies that have no
- * fragments; it is symmetric about zero when both signs occur. STATUS_USAGE also when the plane meets no particle. */
+ * fragments; it is symmetric about zero when both signs occur. STATUS_USAGE also when the plane meets no particle.
+ * path NULL: draws nothing and widens look->frame to what the picture would show. */
 status picture_particles(const char *path, double width, const struct picture_cloud *cloud,
                          const struct picture_look *look, struct error *error);
 /* "95210 particles: 143 fragments of two and more (largest 34.6 %, second 3.1 % of the mass), 41.2 % in single
@@ -214,6 +228,11 @@ status picture_margins(const char *path, double width, const char *title, size_t
  * counts. At most 10 000 tiles (STATUS_USAGE). quantity: label of the colour bar. */
 status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
                    size_t count, const double (*points)[4], struct error *error);
+
+/* Joins pictures of one size into a movie, by gnuplot. page->path ends in .gif. frame: names relative to the folder of
+ * page->path. */
+status picture_movie(const struct picture_page *page, double height, size_t count, const char *const *frame,
+                     struct error *error);
 
 /* One measured number, and the fit's prediction for one more such experiment. */
 enum { PICTURE_QUANTILES = 5, PICTURE_PREDICTIONS = 32 };

@@ -93,7 +93,7 @@ static void cover_most(const struct picture_body *body, double *centre, double v
 
 /* Shows all cells. If distant single cells would shrink the picture much, it shows all other fragments and 96 % of the
  * cells. */
-static status choose_view(const struct picture_body *body, double view[4]) {
+status picture_fragments_view(const struct picture_body *body, double view[4]) {
   OWNED double *centre = malloc((body->cells + 1) * sizeof *centre);
   double all[4], bulk[4];
   GROUPING grouping = {0};
@@ -273,7 +273,7 @@ static status frame_panel(const char *path, const struct picture_panel *panel, d
   memcpy(view, panel->view, 4 * sizeof *view);
   if (view[2] > view[0])
     return STATUS_OK;
-  status code = choose_view(&panel->body, view);
+  status code = picture_fragments_view(&panel->body, view);
   return code ? fail(path, code, error) : STATUS_OK;
 }
 

@@ -23,6 +23,7 @@ struct scene {
   struct picture_layout_disc *disc;
   double low, high, scale; /* range of the colours; values are divided by `scale` */
   double view[4];
+  bool measuring;  /* only the frame is wanted */
   size_t left_out; /* number of particles outside the frame */
   int axis;        /* axis of the line of sight */
   double hidden;   /* mass share of large fragments that are hidden */
@@ -112,7 +113,9 @@ static bool make_disc(const struct scene *s, size_t i, struct picture_layout_dis
     disc->depth = -disc->depth;
   if (view != PICTURE_CUT)
     return true;
-  const double off = at[along] - (isfinite(s->look->plane) ? s->look->plane : s->middle[along]);
+  const struct picture_frame *frame = s->look->frame;
+  const double plane = isfinite(s->look->plane) || !frame ? s->look->plane : frame->plane;
+  const double off = at[along] - (isfinite(plane) ? plane : s->middle[along]);
   if (fabs(off) >= disc->radius)
     return false;
   disc->depth = -fabs(off) / c->size[i];
@@ -473,15 +476,29 @@ static status choose(struct scene *s) {
   TRY(gather(s));
   s->axis = s->look->axis < 0 ? 1 : s->look->axis;
   choose_discs(s);
-  if (s->look->view == PICTURE_OUTSIDE)
+  if (s->look->view == PICTURE_OUTSIDE && !s->look->frame)
     TRY(turn_body(s));
   if (s->look->view == PICTURE_APART && s->discs > 0)
     TRY(picture_layout_apart(s->cloud, s->discs, s->disc));
   if (s->discs == 0)
     return STATUS_OK;
+  struct picture_frame *frame = s->look->frame;
   TRY(choose_view(s));
+  if (frame && !s->measuring)
+    memcpy(s->view, frame->view, sizeof s->view);
   TRY(leave_out(s));
-  return choose_colours(s);
+  TRY(choose_colours(s));
+  if (s->measuring) {
+    cover(frame->view, s->view[0], s->view[1], 0);
+    cover(frame->view, s->view[2], s->view[3], 0);
+    frame->low = fmin(frame->low, s->low);
+    frame->high = fmax(frame->high, s->high);
+    frame->plane = isfinite(frame->plane) ? frame->plane : s->middle[s->axis];
+  } else if (frame && s->cloud->value) {
+    choose_range(s, &frame->low, 2);
+    choose_unit(s, fmax(fabs(s->low), fabs(s->high)));
+  }
+  return STATUS_OK;
 }
 
 status picture_particles(const char *path, double width, const struct picture_cloud *cloud,
@@ -492,8 +509,10 @@ status picture_particles(const char *path, double width, const struct picture_cl
     if (cloud->fragment[i] >= (int64_t)cloud->n)
       return status_fail(error, STATUS_USAGE, "%s: fragment numbers beyond the number of particles", path);
 
-  SCENE_OF_DISCS s = {.cloud = cloud, .look = look};
+  SCENE_OF_DISCS s = {.cloud = cloud, .look = look, .measuring = !path};
   status code = cloud->n ? choose(&s) : STATUS_OK;
+  if (code == STATUS_OK && !path)
+    return STATUS_OK;
   if (code == STATUS_OK && s.discs > 0)
     code = draw(path, width, &s, error);
   else if (code == STATUS_OK)

@@ -5,9 +5,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "analysis/pictures/snapshot_read.h"
 #include "campaign/terminal/table.h"
+#include "schemas/document.h"
+#include "schemas/file.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 #include "schemas/unit.h"
 
@@ -19,8 +23,8 @@ static double width_of(const struct picture_choice *options) {
 
 enum { DOUBTS = 300 };
 
-/* Writes "! in doubt, 1 of 1 runs: coarse" for a body whose run broke conditions, and prints a line for each of them on
- * stderr. */
+/* Writes "! in doubt, 1 of 1 runs: coarse" for a body whose run broke conditions. `aloud`: and prints a line for each
+ * of them on stderr. */
 static void tell_doubts(const char *fields, char text[DOUBTS]) {
   struct snapshot_read *file;
   struct error error;
@@ -38,23 +42,48 @@ static void tell_doubts(const char *fields, char text[DOUBTS]) {
   uncertainty_doubts(&doubts, stderr);
 }
 
-/* Grains in the plane have one picture only. */
+/* The scene and the number of a snapshot are the file's name; the fields of a stored run are named by a hash. */
+static void name_file(const char *fields, char *text, size_t size) {
+  const char *slash = strrchr(fields, '/'), *base = slash ? slash + 1 : fields;
+  const size_t length = strcspn(base, ".");
+  snprintf(text, size, "%.*s", length < 32 ? (int)length : 0, base);
+}
+
+/* Widens a frame to what the picture of the body would show. */
+static status widen(struct picture_frame *frame, const struct picture_body *body) {
+  double view[4];
+  TRY(picture_fragments_view(body, view));
+  for (int k = 0; k < 2; k++) {
+    frame->view[k] = fmin(frame->view[k], view[k]);
+    frame->view[k + 2] = fmax(frame->view[k + 2], view[k + 2]);
+  }
+  return STATUS_OK;
+}
+
+/* Grains in the plane have one picture only. `frame` NULL: the picture's own; `picture` NULL: only widens the frame. */
 static status draw_grains(const char *fields, const char *picture, const struct picture_choice *options,
-                          struct error *error) {
+                          struct picture_frame *frame, struct error *error) {
   struct picture_panel panel = {0};
-  char numbers[160], doubts[DOUBTS];
+  char numbers[160], title[FIELD_TEXT_SIZE], doubts[DOUBTS] = "";
   status code = STATUS_OK;
   TRY(picture_fragments_read(fields, &panel.body, error));
+  name_file(fields, title, sizeof title);
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
-  tell_doubts(fields, doubts);
+  if (!frame) /* all pictures of a movie have one size */
+    tell_doubts(fields, doubts);
   panel.caption = *doubts ? doubts : NULL;
+  if (frame && picture)
+    memcpy(panel.view, frame->view, sizeof panel.view);
   if (options->what || options->view || options->axis || options->at)
     code = status_fail(error, STATUS_USAGE,
                        "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
                        "are for particles in space",
                        fields);
+  else if (!picture)
+    code = widen(frame, &panel.body);
   else
-    code = picture_fragments(picture, width_of(options), options->caption, numbers, 1, &panel, error);
+    code = picture_fragments(picture, width_of(options), options->caption ? options->caption : title, numbers, 1,
+                             &panel, error);
   picture_fragments_clear(&panel.body);
   return code;
 }
@@ -90,10 +119,11 @@ static status choose_look(const struct picture_choice *options, struct picture_l
   return unit_read(options->at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
 }
 
-static void name_look(const struct picture_look *look, const struct picture_cloud *cloud, char *text, size_t size) {
-  text[0] = '\0';
+static void name_look(const char *fields, const struct picture_look *look, const struct picture_cloud *cloud,
+                      char *text, size_t size) {
+  name_file(fields, text, size);
   if (*cloud->engine)
-    text_append(text, size, "%s, seed %lld", cloud->engine, cloud->seed);
+    text_append(text, size, "%s%s, seed %lld", *text ? ": " : "", cloud->engine, cloud->seed);
   if (isfinite(cloud->time))
     text_append(text, size, ", %.4g \xc2\xb5s", 1e6 * cloud->time);
   if (look->view == PICTURE_CUT && isfinite(look->plane))
@@ -118,22 +148,24 @@ static status read_quantity(const char *fields, bool chosen, struct picture_clou
 }
 
 static status draw_particles(const char *fields, const char *picture, const struct picture_choice *options,
-                             struct error *error) {
+                             struct picture_frame *frame, struct error *error) {
   struct picture_look look;
   __attribute__((cleanup(picture_cloud_clear))) struct picture_cloud cloud = {0};
   const char *what;
-  char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "", doubts[DOUBTS];
+  char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "", doubts[DOUBTS] = "";
   TRY(choose_look(options, &look, &what, error));
   TRY(picture_cloud_read(fields, &cloud, error));
   TRY(read_quantity(fields, options->what != NULL, &cloud, &what, unit, error));
-  name_look(&look, &cloud, title, sizeof title);
+  name_look(fields, &look, &cloud, title, sizeof title);
   picture_particles_numbers(&cloud, numbers, sizeof numbers);
-  tell_doubts(fields, doubts);
+  if (!frame) /* all pictures of a movie have one size */
+    tell_doubts(fields, doubts);
   look.doubts = doubts;
   look.title = options->caption ? options->caption : title;
   look.subtitle = numbers;
   look.quantity = what;
   look.unit = unit;
+  look.frame = frame;
   return picture_particles(picture, width_of(options), &cloud, &look, error);
 }
 
@@ -165,7 +197,7 @@ static status draw_profile(const char *fields, const char *picture, const struct
   struct picture_profile profile[MOST];
   struct picture_cloud cloud;
   double *depth = NULL;
-  char unit[32] = "", title[FIELD_TEXT_SIZE], doubts[DOUBTS];
+  char unit[32] = "", title[FIELD_TEXT_SIZE], doubts[DOUBTS] = "";
   size_t count = 0;
   TRY(picture_cloud_read(fields, &cloud, error));
   status code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error);
@@ -178,8 +210,8 @@ static status draw_profile(const char *fields, const char *picture, const struct
   }
   if (code)
     goto cleanup;
-  name_look(&(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
   tell_doubts(fields, doubts);
+  name_look(fields, &(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
   const struct picture_page page = charts_page(picture, &options->chart);
   const struct picture_words words = {options->caption ? options->caption : title, doubts, "depth at the start (m)",
                                       NULL};
@@ -192,12 +224,102 @@ cleanup:
   return code;
 }
 
+static status draw_fields(const char *fields, const char *picture, const struct picture_choice *options,
+                          struct picture_frame *frame, struct error *error) {
+  return picture_cloud_in_file(fields) ? draw_particles(fields, picture, options, frame, error)
+                                       : draw_grains(fields, picture, options, frame, error);
+}
+
+/* ---- movies: NAME_000.png, NAME_001.png, ... of all snapshots of a run, in one frame and one range of colours ---- */
+
+enum { MOST_FRAMES = 10000 };
+
+struct movie {
+  size_t count;
+  char *fields[MOST_FRAMES], *picture[MOST_FRAMES]; /* owned: snapshots, and their pictures */
+};
+
+static void movie_free(struct movie *movie) {
+  for (size_t i = 0; i < movie->count; i++) {
+    free(movie->fields[i]);
+    free(movie->picture[i]);
+  }
+}
+
+/* Reads the list of snapshots that `clast simulate --snapshots` writes. */
+static status read_series(const char *series, const char *picture, struct movie *movie, struct error *error) {
+  struct document *document = NULL;
+  TRY(document_open(series, &document, error));
+  const char *slash = strrchr(series, '/'), *ending = strrchr(picture, '.');
+  OWNED char *folder = strndup(series, slash ? (size_t)(slash - series) : 0);
+  document_node *files = document_key(document_root(document), "files");
+  const size_t count = files ? document_count(files) : 0;
+  for (size_t i = 0; i < count && i < MOST_FRAMES; i++) {
+    document_node *name = document_key(document_item(files, i, NULL), "name");
+    const char *word = name ? document_scalar(name) : NULL;
+    movie->fields[i] = file_name_in(folder, word ? word : "");
+    if (asprintf(&movie->picture[i], "%.*s_%03zu.png", (int)(ending - picture), picture, i) < 0)
+      movie->picture[i] = NULL;
+    movie->count++;
+    if (!movie->fields[i] || !movie->picture[i])
+      break;
+  }
+  document_free(document);
+  if (movie->count == 0)
+    return status_fail(error, STATUS_CONTENT, "%s lists no snapshots", series);
+  return movie->picture[movie->count - 1] && movie->fields[movie->count - 1]
+             ? STATUS_OK
+             : status_fail(error, STATUS_MEMORY, "no memory for a movie");
+}
+
+static status join(const char *picture, const struct picture_choice *options, const struct movie *movie,
+                   struct error *error) {
+  OWNED const char **name = memory_small(movie->count, sizeof *name);
+  OWNED unsigned char *bytes = NULL;
+  size_t size = 0;
+  for (size_t i = 0; i < movie->count; i++) {
+    const char *slash = strrchr(movie->picture[i], '/');
+    name[i] = slash ? slash + 1 : movie->picture[i];
+  }
+  TRY(file_read(movie->picture[0], "picture", &bytes, &size, error));
+  struct picture_page page = charts_page(picture, &options->chart);
+  page.width = bytes[18] * 256 + bytes[19]; /* PNG: width at byte 16, height at byte 20, big-endian */
+  return picture_movie(&page, bytes[22] * 256 + bytes[23], movie->count, name, error);
+}
+
+static status draw_movie(const char *series, const char *picture, const struct picture_choice *options,
+                         struct error *error) {
+  __attribute__((cleanup(movie_free))) struct movie movie = {0};
+  struct picture_frame frame = PICTURE_NO_FRAME;
+  const char *ending = strrchr(picture, '.');
+  const bool gif = ending && strcmp(ending, ".gif") == 0;
+  if (!gif && (!ending || strcmp(ending, ".png") != 0))
+    return status_fail(error, STATUS_USAGE, "%s: all snapshots become a movie, NAME.gif, or pictures, NAME.png",
+                       picture);
+  if (options->view && strcmp(options->view, "profile") == 0)
+    return status_fail(error, STATUS_USAGE, "--view profile is for one snapshot");
+  TRY(read_series(series, picture, &movie, error));
+  for (size_t i = 0; i < 2 * movie.count; i++) {
+    const size_t k = i % movie.count;
+    TRY(draw_fields(movie.fields[k], i < movie.count ? NULL : movie.picture[k], options, &frame, error));
+  }
+  if (!gif) {
+    printf("%zu pictures, %s to %s\n", movie.count, movie.picture[0], movie.picture[movie.count - 1]);
+    return STATUS_OK;
+  }
+  const status code = join(picture, options, &movie, error);
+  for (size_t i = 0; i < movie.count; i++)
+    unlink(movie.picture[i]);
+  return code;
+}
+
 status picture_draw(const char *fields, const char *picture, const struct picture_choice *options,
                     struct error *error) {
-  if (!picture_cloud_in_file(fields))
-    return draw_grains(fields, picture, options, error);
-  if (!options->view || strcmp(options->view, "profile") != 0)
-    return draw_particles(fields, picture, options, error);
+  const size_t length = strlen(fields);
+  if (length > 7 && strcmp(fields + length - 7, ".series") == 0)
+    return draw_movie(fields, picture, options, error);
+  if (!picture_cloud_in_file(fields) || !options->view || strcmp(options->view, "profile") != 0)
+    return draw_fields(fields, picture, options, NULL, error);
   if (options->axis || options->at)
     return status_fail(error, STATUS_USAGE, "--axis and --at are for pictures of the body, not for --view profile");
   return draw_profile(fields, picture, options, error);

@@ -349,7 +349,8 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
   charts_intervals(quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "", resolution, sizeof resolution);
   if (widest > 0)
-    snprintf(caption, sizeof caption, "At most \xc2\xb1 %.2g: %s; %s", widest, intervals, resolution);
+    snprintf(caption, sizeof caption, "The widest of the %s is \xc2\xb1 %.2g, `clast stats` has all; %s", intervals,
+             widest, resolution);
   else
     snprintf(caption, sizeof caption, "No interval: one run a point; %s", resolution);
   TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));

@@ -185,7 +185,11 @@ static status draw_picture(struct store *store, const struct curves *curves, con
     form = curves->curve[0].form;
   for (; count < curves->count; count++)
     series[count] = series_of(&curves->curve[count]);
-  if (measured) {
+  if (measured && measured->weighed)
+    fputs("clast: a sieve table has masses and no numbers of fragments, so the picture has no curve of it; the table "
+          "compares shares of mass\n",
+          stderr);
+  else if (measured) {
     series[count] = (struct picture_series){.measured = true, .complete_mass = measured->complete};
     TRY(measured_bins(measured, &form, &bins, &series[count].count, error));
     snprintf(label, sizeof label, "measured%s%s", *measured->source ? ": " : "", measured->source);

@@ -1,6 +1,5 @@
 /* `clast explain [PATH|WORD|SCENE]`: every path that has a row (of engines, the outcome, estimates and campaigns), the
  * words of the glossary, the columns of the store, and the model of a scene with its cost and its active inputs. */
-#include <math.h>
 
 #include "analysis/statistics/statistics.h"
 #include "campaign/commands/commands.h"
@@ -338,20 +337,6 @@ static status explain_path_list(enum table_format format, struct error *error) {
 
 /* ---- scenes ---- */
 
-/* A value with its unit, as people write it: six digits, and angles in degrees. */
-static void shown_value(const struct field *row, const void *inputs, char text[FIELD_TEXT_SIZE]) {
-  struct field_value value;
-  field_get(row, inputs, &value);
-  const bool angle = row->unit && strcmp(row->unit, "rad") == 0, pure = !row->unit || strcmp(row->unit, "1") == 0;
-  if (row->kind == FIELD_REAL && !field_is_off(value.number))
-    snprintf(text, FIELD_TEXT_SIZE, "%.6g%s%s", angle ? value.number * 180 / M_PI : value.number, pure ? "" : " ",
-             pure    ? ""
-             : angle ? "deg"
-                     : row->unit);
-  else
-    field_print(row, &value, text, FIELD_TEXT_SIZE);
-}
-
 /* The active inputs; unless `all`, those that the scene gives. */
 static status print_inputs(const struct scene *scene, bool all, struct error *error) {
   const struct field_table *inputs = scene->kind->inputs;
@@ -366,7 +351,9 @@ static status print_inputs(const struct scene *scene, bool all, struct error *er
     others += !all && !scene->given[i];
     if (!all && !scene->given[i])
       continue;
-    shown_value(row, scene->inputs, text);
+    struct field_value value;
+    field_get(row, scene->inputs, &value);
+    field_show(row, &value, text, sizeof text);
     text_sentence(row->doc, doc, sizeof doc);
     table_text(table, row->path);
     table_text(table, text);
@@ -438,8 +425,11 @@ static status run(const struct command_line *line, struct error *error) {
   if (line->count == 0)
     return explain_path_list(line->format, error);
 
-  const char *name = line->arguments[0];
-  char words[WORDS], meaning[1024];
+  char name[FIELD_TEXT_SIZE], words[WORDS], meaning[1024]; /* "equation of state" is a word with underscores */
+  const bool blanks = strchr(line->arguments[0], ' ') != NULL;
+  snprintf(name, sizeof name, "%s", line->arguments[0]);
+  for (char *at = name; blanks && (at = strchr(at, ' '));)
+    *at = '_';
   bool is_word = false;
   for (const char *text = glossary_text; !is_word && read_entry(&text, words, meaning);)
     is_word = text_has_word(words, name);

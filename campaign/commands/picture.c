@@ -14,4 +14,5 @@ static const struct option_row rows[] = {
     CHART_OPTIONS(struct picture_choice, chart),
 };
 
-COMMAND(picture, "results", "FIELDS.hdf PICTURE.png", COMMAND_OPTIONS(struct picture_choice, rows), .run = run);
+COMMAND(picture, "results", "FIELDS.hdf[.series] PICTURE.png", COMMAND_OPTIONS(struct picture_choice, rows),
+        .run = run);

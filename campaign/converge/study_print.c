@@ -326,6 +326,10 @@ status study_print(const struct study *study, enum table_format format, bool qui
   uncertainty_doubts(&sum, stderr);
   if (!quiet)
     fputs(legend, stderr);
+  fprintf(stderr,
+          "clast: next: `clast stats %s` now has this error beside each value, and `accuracy: {within: ...}` in a "
+          "campaign chooses settings by it\n",
+          study->limits.store);
   return STATUS_OK;
 }
 

@@ -159,17 +159,8 @@ void design_axis_follow(const struct design_axis *axis, const struct field_value
 
 enum { SHOWN = 12, VALUE_SIZE = FIELD_TEXT_SIZE + 64 };
 
-/* "0.0698132 rad (4 deg)": degrees are easier to read than radians. Six digits: levels of a range carry rounding
- * errors. */
 static const char *value_text(const struct field *row, const struct field_value *value, char text[VALUE_SIZE]) {
-  char digits[32];
-  struct field_value shown = *value;
-  snprintf(digits, sizeof digits, "%.6g", value->number);
-  if (row->kind == FIELD_REAL)
-    shown.number = strtod(digits, NULL);
-  field_print(row, &shown, text, VALUE_SIZE);
-  if (row->kind == FIELD_REAL && row->unit && strcmp(row->unit, "rad") == 0 && !isnan(value->number))
-    text_append(text, VALUE_SIZE, " (%.4g deg)", value->number * 180 / M_PI);
+  field_show(row, value, text, VALUE_SIZE);
   return text;
 }
 

@@ -177,16 +177,14 @@ static status print_point(struct printing *printing, const struct ask_points_row
 }
 
 static const char *const estimates_legend =
-    "runs: those that count; 19/20: one of 20 failed. M_1/M: mass share of the largest fragment. !: in doubt.\n"
-    "\xc2\xb1: half width of the 95 % interval over seeds; one run has none. ~: weak, too few runs for runs like "
-    "these\n"
-    "(`clast explain weak`). 1.000 \xe2\x89\xa5 0.905: all runs are 1, and the mean is at least 0.905. \xc2\xb1res: "
-    "how far "
-    "finer\nsettings may move M_1/M, and beta ML (`clast converge` measures it, with -Q beta; ?: not studied).\n"
-    "beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together. LSQ: least squares on\n"
-    "logarithmic bins of one decade, as in the paper; it needs a fragment in every bin. ML: maximum\n"
-    "likelihood, without the largest fragment of each run.\n"
-    "window from_5: n fragments heavier than 4.5 mean grains (or particles), from_10: than 9.5, from_2: than 1.5.\n";
+    "runs: those that count; 19/20: one of 20 failed. M_1/M: mass share of the largest fragment. !: in\n"
+    "doubt. \xc2\xb1: half width of the 95 % interval over seeds; one run has none. ~: weak, too few runs\n"
+    "(`clast explain weak`). 1.000 \xe2\x89\xa5 0.905: all runs are 1, and the mean is at least 0.905. \xc2\xb1res:\n"
+    "how far finer settings may move M_1/M, and beta ML (`clast converge` measures it, with -Q beta;\n"
+    "?: not studied). beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together.\n"
+    "LSQ: least squares on logarithmic bins of one decade, as in the paper; it needs a fragment in every\n"
+    "bin. ML: maximum likelihood, without the largest fragment of each run. window from_5: n fragments\n"
+    "heavier than 4.5 mean grains (or particles), from_10: than 9.5, from_2: than 1.5.\n";
 
 void print_estimates_legend(struct store *store) {
   fputs(estimates_legend, stderr);

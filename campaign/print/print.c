@@ -284,9 +284,11 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
                                              "runs_as_far", "log_likelihood", NULL});
   table_doubt_columns(table);
   struct ask_doubts sum = {0};
+  bool nothing = false; /* measured above the mass where all is complete */
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
     struct measured_match match;
     TRY(measured_compare(choice->measured, &pool->data.runs, complete, &match, error));
+    nothing |= match.fragments == 0 || !isfinite(match.distance);
     print_pool_cells(table, &pools, pool);
     table_reals(table, 2, (const double[]){match.from, match.fragments});
     table_integer(table, (int64_t)pool->data.runs.count);
@@ -306,10 +308,13 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   if (table_for_people(format)) {
     uncertainty_doubts(&sum, stderr);
     fprintf(stderr,
-            "clast: fragments from %.3g kg on, where the measured and all simulated spectra are complete. distance: "
-            "Kolmogorov's, of %s; runs_as_far: share of the runs that are as far from the other runs as the "
-            "measured one (one experiment is one specimen; below 0.05 speaks against the point)\n",
+            "clast: fragments from %.3g kg on, where the measured and all simulated spectra are complete.\n"
+            "distance: Kolmogorov's, of %s. runs_as_far: share of the runs that are as far from the others\n"
+            "as the measured one (one experiment is one specimen; below 0.05 speaks against the point)\n",
             complete, choice->measured->weighed ? "the shares of mass" : "the shapes");
+    if (nothing)
+      fputs("clast: measured 0 or -: no measured fragment is that heavy. More particles or grains lower that mass\n",
+            stderr);
   }
   return STATUS_OK;
 }

@@ -404,7 +404,7 @@ static const char *bytes(double count, char *buffer, size_t size) {
 /* Where the times of a run come from. */
 static const char *how_timed(const struct plan *plan) {
   if (!plan->trial_made)
-    return isnan(plan->run_s_mean) ? " (no trial run)" : " (from runs in the store)";
+    return " (from runs in the store)";
   if (plan->trial_finished)
     return " (whole runs timed)";
   if (plan->trial_whole)
@@ -428,6 +428,10 @@ static void print_design(const struct campaign *campaign, const struct plan *pla
 
 static void print_times(const struct plan *plan, int slots, FILE *out) {
   char a[64], b[64];
+  if (isnan(plan->run_s_mean) && plan->runs_least > plan->runs_there) {
+    fputs("time      not known without a trial run\n", out);
+    return;
+  }
   progress_duration(plan->run_s_mean, a, sizeof a);
   progress_duration(plan->run_s_most, b, sizeof b);
   fprintf(out, "a run     %s%s on average, %s for the most expensive%s\n",

@@ -24,6 +24,15 @@ struct answer ask_campaign_progress(struct store *store, bool writing, struct er
   return answer_to_user(store, progress_sql, 1, &parameter, 0, error);
 }
 
+bool ask_campaign_shared(struct store *store) {
+  double points = 0;
+  return answer_number(
+             store, &points, NULL,
+             "SELECT count(*) FROM (SELECT point_id FROM campaign_point GROUP BY point_id HAVING count(*) > 1)") ==
+             STATUS_OK &&
+         points > 0;
+}
+
 status ask_campaign_document(struct store *store, int64_t campaign, char **name, char **document, struct error *error) {
   ANSWER
   answer = answer_to(store, error,

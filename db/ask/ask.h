@@ -16,6 +16,7 @@
  * without_result, cpu_time (s), start and end of its last session, and warned runs that count. `writing`: a process is
  * writing the store (store_is_being_written). */
 struct answer ask_campaign_progress(struct store *store, bool writing, struct error *error);
+bool ask_campaign_shared(struct store *store); /* have several campaigns the same point? */
 
 /* Name and YAML text of a campaign (0: the last one); the caller frees both. Both NULL: the store has no campaign. */
 status ask_campaign_document(struct store *store, int64_t campaign, char **name, char **document, struct error *error);

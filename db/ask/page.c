@@ -372,10 +372,9 @@ static status add_sentences(struct reading *reading, struct error *error) {
       size_t size = 0;
       FILE *out = text_open(&text, &size);
       if (out)
-        condition_sentence(c, out);
+        fprintf(out, "%s is %s %g: %s; %s", c->number, c->least ? "below" : "above", c->bound, c->doubt, c->remedy);
       if (!out || !text_close(out, &text))
         return status_fail(error, STATUS_MEMORY, "no memory for the page");
-      text[strcspn(text, "\n")] = 0;
       sql_bind_text(insert, 1, engine_at(e)->name);
       sql_bind_text(insert, 2, c->word);
       sqlite3_bind_text(insert, 3, text, -1, SQLITE_TRANSIENT);

@@ -43,13 +43,13 @@ says "6 runs in doubt (!)"
 expect 0 "$clast" sensitivity sweep.yaml ask.yaml --design saltelli --blocks 4
 expect 0 "$clast" run ask.yaml --store ask.db -j 2 --quiet
 
-# What a person sees: " !" behind a number, and below the table the runs, the word, the reason and the remedy.
+# What a person sees: " !" behind a number, and below the table the runs, the word, and where to read the reason and the remedy.
 marked() { # marked RUNS COMMAND...
   local runs=$1
   shift
   expect 0 "$clast" "$@"
   grep -Eq '[0-9s] !( |$)' out || fail "no mark: $*"
-  says "marked (!), $runs runs: step: fidelity.time_step over the longest stable step is above 0.25: energy may drift; give a"
+  says "marked (!), $runs runs: step: fidelity.time_step over the longest stable step is above 0.25 (clast explain step)"
   same "$(grep -c 'marked (!)' err)" 1 "sentences"
 }
 # What a program gets: the number of runs and their words, in rows that rest on them, and in no others.

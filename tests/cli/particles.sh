@@ -20,6 +20,21 @@ for k, time in enumerate(times):
 PY
 ok "the series lists four snapshots and their times"
 
+# A movie, and pictures in one frame: all have one size, and the movie has as many frames as there are snapshots.
+expect 0 "$clast" picture basalt-sphere.hdf.series all.png
+prints "4 pictures, all_000.png to all_003.png"
+expect 0 "$clast" picture basalt-sphere.hdf.series movie.gif
+python - <<'PY'
+import struct
+sizes = {open(f"all_00{i}.png", "rb").read()[16:24] for i in range(4)}
+movie = open("movie.gif", "rb").read()
+assert len(sizes) == 1 and movie[:4] == b"GIF8", sizes
+assert struct.unpack("<HH", movie[6:10]) == struct.unpack(">II", sizes.pop()) and movie.count(b"\x21\xf9\x04") >= 4
+PY
+[ ! -e movie_000.png ] || fail "the frames of the movie stay"
+ok "a movie of the snapshots"
+expect 64 "$clast" picture basalt-sphere.hdf.series movie.svg
+
 expect 0 "$clast" simulate elastic-bar --set fidelity.particles=600 --set "stop.end_time=5 us" --quiet --fields bar.hdf
 for what in damage pressure density energy flaws fragments; do
   expect 0 "$clast" picture end.hdf $what.png --what $what
@@ -124,4 +139,4 @@ got=0 # the disk fills up at the end (a limit on file size gives such an error):
 same $got 74 "fields file too large"
 cmp -s out whole.json || fail "the results are lost with the fields file"
 [ -z "$(find . -name 'full.hdf*')" ] || fail "half a fields file is left"
-done_after 52
+done_after 56

@@ -93,7 +93,7 @@ static void bounds_are_exclusive_and_the_end_decides(void **state) {
   const uint64_t set = condition_before(rows, NULL, out);
   fclose(out);
   assert_int_equal(set, 1 | 8);
-  assert_string_equal(text, "high: n is 5, above 4: d; r\ntold: n is 5, above 4: d; r\n");
+  assert_string_equal(text, "high: n is 5, above 4 (clast explain high)\ntold: n is 5, above 4 (clast explain told)\n");
   free(text);
   condition_after(rows, &(struct condition_run){0}, words, sizeof words);
   assert_string_equal(words, "high, end");
@@ -117,7 +117,7 @@ static void bounds_are_exclusive_and_the_end_decides(void **state) {
   out = open_memstream(&text, &size);
   condition_tell(rows, words, set, "! ", out);
   fclose(out);
-  assert_string_equal(text, "! end: n is below 4: d; r\n");
+  assert_string_equal(text, "! end: n is below 4 (clast explain end)\n");
   free(text);
 }
 

@@ -191,11 +191,11 @@ static void each_error_says_this(void **state) {
        "a.yaml:1:1: error: the document is empty; expected keys and values, such as 'name: first'\n"
        "  # only a comment\n"
        "  ^"},
-      {"a: [1, 2\n", "a.yaml:2:1: error: no valid YAML: flow sequence without a closing bracket"},
-      {"a: b: c\n", "a.yaml:1:5: error: no valid YAML: invalid nested block mapping on the same line\n"
+      {"a: [1, 2\n", "a.yaml:2:1: error: no valid YAML: a '[' without its ']'"},
+      {"a: b: c\n", "a.yaml:1:5: error: no valid YAML: a value with ': ' in it needs quotes\n"
                     "  a: b: c\n"
                     "      ^"},
-      {"name: \"abc\n", "a.yaml:1:8: error: no valid YAML: double-quoted scalar without closing quote\n"
+      {"name: \"abc\n", "a.yaml:1:8: error: no valid YAML: a '\"' without its second '\"'\n"
                         "  name: \"abc\n"
                         "         ^"},
       {"a: 'b' c\n", "a.yaml:1:8: error: no valid YAML: invalid trailing content after single-quoted scalar\n"

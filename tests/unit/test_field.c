@@ -452,17 +452,18 @@ static void explains(void **state) {
   assert_int_equal(field_explain(&table, "law", out), 1); /* a word, not a prefix of letters */
   assert_int_equal(field_explain(&table, "law_of.angle", out), 1);
   fclose(out);
-  assert_string_equal(text, "body.length: real in m, above 0 m; default 0.4 m\n"
-                            "    How long it is.\n"
-                            "    Source: a paper, eq. 3\n"
-                            "law: choice; default strong\n"
-                            "    Which law.\n"
-                            "      weak: soft\n"
-                            "      strong: hard\n"
-                            "      off: none\n"
-                            "law_of.angle: real in rad, at least -4 and at most 4 rad; default 0.5 rad\n"
-                            "    Angle.\n"
-                            "    Only when law is weak or strong\n");
+  assert_string_equal(text,
+                      "body.length: real in m, above 0 m; default 0.4 m\n"
+                      "    How long it is.\n"
+                      "    Source: a paper, eq. 3\n"
+                      "law: choice; default strong\n"
+                      "    Which law.\n"
+                      "      weak: soft\n"
+                      "      strong: hard\n"
+                      "      off: none\n"
+                      "law_of.angle: real in deg, at least -229.183 and at most 229.183 deg; default 28.6479 deg\n"
+                      "    Angle.\n"
+                      "    Only when law is weak or strong\n");
   free(text);
   out = open_memstream(&text, &size);
   assert_int_equal(field_explain(&table, "", out), ROWS);
