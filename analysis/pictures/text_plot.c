@@ -145,7 +145,7 @@ void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *unit, 
     if (series->bins[b].value > 0)
       row(out, &scale, unicode, form, &series->bins[b], series);
   if (series->count && series->bins[0].lower < complete_from(form, series))
-    fprintf(out, "%s below %.3g %s fragments are missing: too few particles\n", glyph(INCOMPLETE, unicode),
+    fprintf(out, "%s below %.3g %s fragments are missing: too few particles or grains\n", glyph(INCOMPLETE, unicode),
             complete_from(form, series), unit);
   if (!series->fits || !series->fit[0].label)
     return;

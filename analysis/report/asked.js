@@ -6,6 +6,15 @@ import {inUnit, number, plural, unitOf} from './words.js';
 
 const sum = (points, key) => points.reduce((total, point) => total + (point[key] ?? 0), 0);
 
+const when = (time) => (time ? `${time.slice(0, 16).replace('T', ' ')} UTC` : '(running or killed)'); // as people write it
+
+// "disc-explosion, 20 seeds a point"
+function scene(stores) {
+  const points = stores.flatMap((store) => store.points), runs = points.map((point) => point.n);
+  const names = [...new Set(points.map((point) => point.scene))].join(', '), least = Math.min(...runs), most = Math.max(...runs);
+  return points.length ? `Scene ${names}, ${least < most ? `${least} to ` : ''}${plural(most, 'seed')} a point. ` : '';
+}
+
 function varied(store) {
   return store.axes.map((axis) => {
     const values = [...new Set(store.points.map((point) => inUnit([store], axis.column_name, point[axis.column_name])))];
@@ -32,7 +41,7 @@ function programs(store) {
   const sessions = ask(store, questions.sessions);
   const names = new Set(sessions.map((s) => `clast ${s.version ?? '?'}, commit ${(s.commit_id ?? '?').slice(0, 10)}, ${s.compiler ?? ''} on ${s.host}`));
   const last = sessions[sessions.length - 1];
-  return [...names].join('; ') + (last ? `. Last session: ${last.started_at} to ${last.ended_at ?? '(running or killed)'}` : '');
+  return [...names].join('; ') + (last ? `. Last session: ${when(last.started_at)} to ${when(last.ended_at)}` : '');
 }
 
 function thinned(store) {
@@ -58,7 +67,7 @@ function one(store) {
   return element('div', {},
     element('h3', {}, store.name),
     list([
-      ['campaigns', campaigns.map((c) => `${c.name} (${c.added_at})`).join(', ') || 'none'],
+      ['campaigns', [...new Set(campaigns.map((c) => `${c.name} (${when(c.added_at)})`))].join(', ') || 'none'],
       ['computed', `${plural(store.points.length, 'point')}; ${computed(store)}`],
       ['by', programs(store)],
       ['left out here', thinned(store)],
@@ -78,5 +87,5 @@ export function showTitle(stores) {
   document.title = `${title} - clast`;
   document.getElementById('title').textContent = title;
   const {facts} = stores[0];
-  document.getElementById('made').textContent = `Made ${facts.made_at} by ${facts.program.replace(/(commit .{10})\w*/, '$1')}.`;
+  document.getElementById('made').textContent = `${scene(stores)}Made ${facts.made_at} by ${facts.program.replace(/(commit .{10})\w*/, '$1')}.`;
 }

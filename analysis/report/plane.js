@@ -138,7 +138,7 @@ function planeSpec(rows, title) {
     params: [{name: 'brush', select: {type: 'interval', encodings: ['x', 'y']}}],
     mark: grid ? {type: 'rect', cursor: 'pointer'} : {type: 'point', filled: true, size: 120, cursor: 'pointer'},
     encoding: {...place,
-      color: {field: 'mean', type: 'quantitative', title, scale: {scheme: 'viridis', zero: false}, legend: {orient: 'top', gradientLength: 220, titleLimit: 0}},
+      color: {field: 'mean', type: 'quantitative', title, scale: {scheme: 'cividis', zero: false}, legend: {orient: 'top', gradientLength: 220, titleLimit: 0}},
       ...(grid ? {stroke: {value: 'white'}} : {stroke: {condition: {test: isChosen, value: '#D40000'}, value: 'white'}, strokeWidth: {condition: {test: isChosen, value: 4}, value: 1}}),
       tooltip: tooltip([[state.x, label(state.stores, state.x)], [state.y, label(state.stores, state.y)]], title)},
   }];
@@ -305,7 +305,7 @@ export function showChoices() {
       changed('store');
     }));
   parts.push(select('quantity', 'Quantity', options([...quantities.main, 'beta', ...quantities.others]), state.quantity, set('quantity')));
-  if (columns.length > 0) parts.push(select('x', 'Across', options(columns), state.x, set('x')));
-  if (columns.length > 1) parts.push(select('y', 'Up', [['', '(nothing: a line)'], ...options(columns.filter((column) => column !== state.x))], state.y ?? '', set('y')));
+  if (columns.length > 0) parts.push(select('x', 'x axis', options(columns), state.x, set('x')));
+  if (columns.length > 1) parts.push(select('y', 'y axis', [['', '(nothing: a line)'], ...options(columns.filter((column) => column !== state.x))], state.y ?? '', set('y')));
   fill(document.getElementById('choices'), ...parts);
 }

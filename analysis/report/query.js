@@ -42,8 +42,8 @@ function chartTools(result) {
   };
   return element('details', {toggle: (event) => event.target.open && showChart(figure, result, chosen.x, chosen.y)},
     element('summary', {}, 'As a chart'),
-    element('div', {class: 'choices'}, select('across', 'Across', result.columns.map((column) => [column, column]), chosen.x, again('x')),
-      select('up', 'Up', numbers.map((column) => [column, column]), chosen.y, again('y'))), figure);
+    element('div', {class: 'choices'}, select('across', 'x axis', result.columns.map((column) => [column, column]), chosen.x, again('x')),
+      select('up', 'y axis', numbers.map((column) => [column, column]), chosen.y, again('y'))), figure);
 }
 
 export function askQuestion() {

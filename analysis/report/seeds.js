@@ -59,7 +59,7 @@ export async function showSeeds() {
     {data: {values: means}, mark: {type: 'rule', strokeWidth: 1.5, strokeDash: [5, 3]}, encoding: {x: {field: 'mean', type: 'quantitative'}, color: colour}},
   ]}, {
     name: 'seeds', description: `Histogram of ${title} over ${plural(all.length, 'run')}`,
-    caption: `${title} of ${plural(all.length, 'run')}${apart ? '' : `, ${samples.length} points together`}. Upright dashes: means.${doubtSentence(from, samples.map((sample) => whole.get(sample.point.point_id)))}`,
+    caption: `${title} of ${plural(all.length, 'run')}${apart ? '' : `, ${samples.length} points together`}. Dashed lines: means.${doubtSentence(from, samples.map((sample) => whole.get(sample.point.point_id)))}`,
     command: commandOf(from, quantity, samples.map((sample) => sample.point.point_id)),
     columns: ['point', quantity], rows: samples.flatMap((sample) => sample.values.map((value) => [sample.name, value])),
   });

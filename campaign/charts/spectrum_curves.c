@@ -162,10 +162,11 @@ static void write_caption(struct store *store, const struct curves *curves, char
   char text[UNCERTAINTY_TEXT] = "resolution: not known";
   if (ask_resolution(store, curves->point, "beta", &resolution, NULL) == STATUS_OK)
     uncertainty_resolution(&resolution, text);
-  snprintf(caption, CAPTION,
-           "%s. %s: 95 %% intervals over %s; of \xce\xb2, %s. Grey: fragments are missing (too few particles)",
-           laws[choice->density > 0][choice->cumulative], choice->cumulative ? "Bands" : "Bars",
-           curves->several ? "points" : "seeds", text);
+  snprintf(
+      caption, CAPTION,
+      "%s. %s: 95 %% intervals over %s; of \xce\xb2, %s. Grey: fragments are missing (too few particles or grains)",
+      laws[choice->density > 0][choice->cumulative], choice->cumulative ? "Bands" : "Bars",
+      curves->several ? "points" : "seeds", text);
   charts_doubts(&curves->doubts, caption, CAPTION);
 }
 
