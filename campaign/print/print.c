@@ -284,11 +284,11 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
                                              "runs_as_far", "log_likelihood", NULL});
   table_doubt_columns(table);
   struct ask_doubts sum = {0};
-  bool nothing = false; /* measured above the mass where all is complete */
+  bool nothing = false; /* a spectrum has no fragment above the mass where all are complete */
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
     struct measured_match match;
     TRY(measured_compare(choice->measured, &pool->data.runs, complete, &match, error));
-    nothing |= match.fragments == 0 || !isfinite(match.distance);
+    nothing |= !isfinite(match.distance);
     print_pool_cells(table, &pools, pool);
     table_reals(table, 2, (const double[]){match.from, match.fragments});
     table_integer(table, (int64_t)pool->data.runs.count);
@@ -313,7 +313,8 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
             "as the measured one (one experiment is one specimen; below 0.05 speaks against the point)\n",
             complete, choice->measured->weighed ? "the shares of mass" : "the shapes");
     if (nothing)
-      fputs("clast: measured 0 or -: no measured fragment is that heavy. More particles or grains lower that mass\n",
+      fputs("clast: no distance: the measured or the simulated spectrum has no fragment that heavy; more particles or\n"
+            "grains lower that mass\n",
             stderr);
   }
   return STATUS_OK;
