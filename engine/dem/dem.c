@@ -314,6 +314,7 @@ const struct engine_kind dem_engine = {
     .inputs = &dem_inputs,
     .results = &dem_results,
     .knobs = knobs,
+    .complete = dem_inputs_complete,
     .check = dem_inputs_check,
     .conditions = dem_conditions,
     .headline = headline,

@@ -135,9 +135,10 @@ static const struct field rows[] = {
     REAL(stop.end_time, "s", 2e-2, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = FREE,
          .doc = "End time of the run, also if fracture continues."),
 
-    REAL(fidelity.time_step, "s", 1e-6, 1e-15, 1e3,
+    REAL(fidelity.time_step, "s", 1e-6, 1e-15, 1e3, .flags = FIELD_DERIVED,
          .doc =
-             "Time step, at most the body's longest stable step: 2/omega_max for `verlet`, 0.54/omega_max for `gear`.",
+             "Time step, at most the body's longest stable step: 2/omega_max for `verlet`, 0.54/omega_max for `gear`. "
+             "Unless given: 1 us, or 0.5 us with contact.law: printed, whose jumps of the force let the energy drift.",
          .source = "K99 table 1"),
     CHOICE(fidelity.integrator, integrators,
            .choice_docs = "velocity Verlet: the everyday choice\nfifth-order Gear predictor-corrector: the paper's",
@@ -172,6 +173,12 @@ double dem_inputs_end_time(const struct dem_inputs *in) {
     return in->stop.end_time;
   double strain = in->loading.strain_end, rate = in->loading.rate, ramp = in->loading.ramp;
   return strain >= rate * ramp / 2 ? strain / rate + ramp / 2 : sqrt(2 * ramp * strain / rate);
+}
+
+void dem_inputs_complete(void *inputs, const bool *given) {
+  struct dem_inputs *in = inputs;
+  if (!given[field_find(&dem_inputs, "fidelity.time_step", NULL) - dem_inputs.rows])
+    in->fidelity.time_step = in->contact.law == DEM_CONTACT_PRINTED ? 0.5e-6 : 1e-6;
 }
 
 status dem_inputs_check(const void *inputs, struct error *error) {

@@ -62,6 +62,8 @@ struct dem_inputs {
 
 extern const struct field_table dem_inputs;
 
+/* The time step, which follows from the contact law unless it is given. */
+void dem_inputs_complete(void *inputs, const bool *given);
 /* Checks conditions across fields: sizes that cannot be run, times that contradict each other. STATUS_CONTENT with a
  * remedy. */
 status dem_inputs_check(const void *inputs, struct error *error); /* struct dem_inputs */
