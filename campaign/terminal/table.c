@@ -811,8 +811,10 @@ static void name_columns(struct rows *rows, const struct answer *answer, bool wr
     size_t axis = 0;
     while (axis < axis_count && strcmp(axes[axis].name, name) != 0)
       axis++;
+    const size_t stem = strlen(name) -
+                        (ends_in(name, "_mean") ? strlen("_mean") : 0); /* a mean has its result's unit */
     for (size_t k = 0; k < unit_count && !unit; k++)
-      if (strcmp(units[k].name, name) == 0)
+      if (strcmp(units[k].name, name) == 0 || (strncmp(units[k].name, name, stem) == 0 && !units[k].name[stem]))
         unit = units[k].unit;
     if (axis < axis_count)
       table_key(rows->table, &axes[axis]);

@@ -223,8 +223,8 @@ status ask_columns_units(struct store *store, struct ask_column **columns, size_
   size_t room = 0;
   ANSWER
   answer = answer_to(store, error,
-                     "SELECT column_name, min(unit), NULL FROM column_doc WHERE unit <> '1' GROUP BY column_name "
-                     "HAVING count(DISTINCT unit) = 1");
+                     "SELECT column_name, min(unit), NULL FROM column_doc WHERE unit <> '1' AND table_name NOT LIKE "
+                     "'result\\_%%' ESCAPE '\\' GROUP BY column_name HAVING count(DISTINCT unit) = 1");
   *columns = NULL;
   for (*count = 0; answer_next(&answer);) {
     if (!grow_room(columns, &room, *count + 1, sizeof **columns))

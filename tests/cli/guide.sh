@@ -31,4 +31,6 @@ for key, value in keys.items():
   grep -qF "| \`$key\` |" "$guide" || fail "the guide does not have the key $key"
 done
 ok "all keys are in the guide"
-done_after 3
+expect 0 "$clast" stats guide.db --quantity first_break,energy_kinetic
+prints "first_break [s]"; prints "energy_kinetic [J/m]"
+done_after 4
