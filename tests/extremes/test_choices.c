@@ -199,9 +199,9 @@ static void every_choice_runs(void **state) {
     struct scene *scene = small_scene(k);
     for (size_t i = 0; i < scene->kind->inputs->count; i++) {
       const struct field *row = &scene->kind->inputs->rows[i];
-      const char *const *choices = row->kind == FIELD_CHOICE    ? row->choices
-                                   : row->kind == FIELD_BOOLEAN ? switched
-                                                                : NULL;
+      const char *const *choices = row->kind == FIELD_CHOICE || row->kind == FIELD_TEXT ? row->choices
+                                   : row->kind == FIELD_BOOLEAN                         ? switched
+                                                                                        : NULL;
       if (!choices)
         continue;
       hear();
