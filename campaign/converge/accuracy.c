@@ -351,7 +351,6 @@ static status alternatives_json(const struct accuracy *accuracy, char **json, st
   FILE *out = text_open(json, &size);
   if (!out)
     return status_fail(error, STATUS_MEMORY, "out of memory");
-  fputs("\"alternatives\": ", out);
   const status code = print_alternatives(accuracy, TABLE_JSON, out, error);
   if (code == STATUS_OK && !isnan(accuracy->point_s)) {
     static const struct {

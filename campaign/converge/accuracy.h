@@ -48,8 +48,8 @@ status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign
 enum accuracy_print { ACCURACY_SILENT, ACCURACY_NOTE, ACCURACY_TEXT, ACCURACY_JSON };
 
 /* Calls accuracy_find and accuracy_apply if the campaign has the key `accuracy`. Before it applies the chosen option it
- * prints a sentence about it on stderr, or all options on stdout, or makes *json of them, malloc'd: members of a JSON
- * object. json: NULL, unless asked for. */
+ * prints a sentence about it on stderr, or all options on stdout, or makes *json of them, malloc'd: an array, for a
+ * time followed by members of the object that has it. json: NULL, unless asked for. */
 status accuracy_settle(struct campaign *campaign, const char *path, const char *store, enum accuracy_print print,
                        char **json, struct error *error);
 

@@ -533,7 +533,7 @@ char *plan_print_json(const struct campaign *campaign, const struct plan *plan, 
   number(out, "disk_bytes", plan->disk_bytes);
   number(out, "fields_bytes", plan->fields_bytes);
   if (plan->alternatives)
-    fprintf(out, ", %s", plan->alternatives);
+    fprintf(out, ", \"alternatives\": %s", plan->alternatives);
   fputs(", \"model\": ", out);
   text_json_string(plan->model ? plan->model : "", out);
   fputs("}\n", out);
