@@ -349,6 +349,18 @@ static double hot(const struct condition_run *r) {
   return share_of(run_of(r), is_hot_and_whole, NULL);
 }
 
+/* ---- inputs without effect ---- */
+
+static double no_flaws(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return !sph_derived_scene_cracks(in) && (in->crack_cell.width > 0 || in->crack_front.front != SPH_CRACK_FRONT_NONE);
+}
+
+static double no_lattice(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return in->kind == SPH_IMPACT && in->fidelity.graded && in->target.lattice == SPH_LATTICE_CUBIC;
+}
+
 /* ---- materials ---- */
 
 static double body_moduli(const struct sph_body_inputs *body) {
@@ -540,6 +552,13 @@ const struct condition sph_conditions[] = {
         .bound = 0.01, .doubt = "hot matter that never was in tension has no damage, and counts as whole",
         .reason = "our choice", .remedy = "count energies, not damage", .results = ALL_OF_A_BODY, .withheld = true,
         .after = hot),
+    CONDITION("effect", .number = "fracture.cell or fracture.front where no body has flaws", .bound = 0,
+              .doubt = "it has no effect: nothing cracks", .reason = "modules crack_cell and crack_front need flaws",
+              .remedy = "give the material weibull.m and weibull.k, or leave it out", .results = "",
+              .before = no_flaws),
+    CONDITION("effect", .number = "target.lattice: cubic with fidelity.graded", .bound = 0,
+              .doubt = "it has no effect: a graded body has irregular points", .reason = "engine/sph/README.md",
+              .remedy = "leave it out", .results = "", .before = no_lattice),
     CONDITION("moduli", .number = "the ratio of material.bulk_modulus and material.tillotson.A", .bound = 3,
               .doubt = "the two give the same stiffness, so that waves and cracks follow different ones",
               .reason = "of the built-in materials the largest ratio is 2.8 (granite)", .remedy = "correct one of them",
