@@ -83,7 +83,7 @@ def attempt(words, victim, must):
 
 INPUTS = {"STORE": "self.db", "A": "self.db", "B": "other.db", "STORE...": "self.db", "CAMPAIGN.yaml": "self.yaml",
           "MEASURED.yaml": "measured.yaml", "SCENE": "scene.yaml", "SCENE|CAMPAIGN.yaml": "scene.yaml",
-          "FIELDS.hdf": "fields.h5", "RUN": "1", "scene|campaign": "scene", "SHELL": "bash"}
+          "FIELDS.hdf": "fields.h5", "FIELDS.hdf[.series": "fields.h5", "RUN": "1", "scene|campaign": "scene", "SHELL": "bash"}
 OUTPUTS = {"PICTURE.png": "drawn.png", "TARGET": "made"}
 OWN = {"sensitivity": ["self.db", "self.yaml"], "merge": ["merged.db", "self.db"]}  # a store or a new file: their own rules
 NEEDED = {"plot": ["-x", "strain"], "map": ["-x", "strain", "-y", "angle"], "export": ["--per", "run"]}

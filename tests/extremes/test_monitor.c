@@ -162,8 +162,8 @@ static void doubts_are_in_the_result(void **state) {
   in = SMALL_DISC("charge.energy=200 J/m", "contact.normal_damping=1e6 1/s");
   assert_non_null(strstr(finished(&dem_engine, &in).outcome.warnings, "damping"));
 
-  struct sph_inputs plate = SMALL_PLATE("piston.speed=458 m/s");
-  assert_string_equal(finished(&sph_engine, &plate).outcome.warnings, "");
+  struct sph_inputs plate = SMALL_PLATE("piston.speed=458 m/s"); /* 40 points are too few for its precursor */
+  assert_string_equal(finished(&sph_engine, &plate).outcome.warnings, "precursor");
   plate = SMALL_PLATE("piston.speed=20 km/s", "target.material.porosity.distention=2");
   assert_non_null(strstr(finished(&sph_engine, &plate).outcome.warnings, "piston"));
   assert_string_equal(known(&sph_engine, &plate), "piston ");
@@ -249,9 +249,9 @@ static void short_smoothing_lengths_are_flagged(void **state) {
     const char *smoothing, *correction, *words;
     double least, most; /* error of the shock's pressure; measured 0.2 to 2 % where it is safe */
   } cases[] = {
-      {"fidelity.smoothing=0.86", "method.gradient_correction=false", "kernel, plateau", 0.03, 0.1},
-      {"fidelity.smoothing=0.86", "method.gradient_correction=true", "", 0, 0.02},
-      {"fidelity.smoothing=1", "method.gradient_correction=false", "", 0, 0.02},
+      {"fidelity.smoothing=0.86", "method.gradient_correction=false", "kernel, plateau, precursor", 0.03, 0.1},
+      {"fidelity.smoothing=0.86", "method.gradient_correction=true", "precursor", 0, 0.02},
+      {"fidelity.smoothing=1", "method.gradient_correction=false", "precursor", 0, 0.02},
   };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
     const struct sph_inputs in = SMALL_PLATE(cases[c].smoothing, cases[c].correction);
@@ -259,7 +259,7 @@ static void short_smoothing_lengths_are_flagged(void **state) {
     const double error = fabs(ran.results.sph.shock.pressure / ran.results.sph.shock.pressure_exact - 1);
     print_message("%s, %s: pressure off by %.3f\n", cases[c].smoothing, cases[c].correction, error);
     assert_string_equal(ran.outcome.warnings, cases[c].words);
-    assert_int_equal(strstr(known(&sph_engine, &in), "kernel") != NULL, *cases[c].words != 0);
+    assert_int_equal(strstr(known(&sph_engine, &in), "kernel") != NULL, strstr(cases[c].words, "kernel") != NULL);
     assert_true(error >= cases[c].least && error <= cases[c].most);
   }
 }

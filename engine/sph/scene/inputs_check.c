@@ -130,9 +130,12 @@ status sph_inputs_check_given(const void *scene, const bool *given, struct error
         text_append(others, sizeof others, "%s%s", *others ? ", " : "; also missing: ", row->path);
       first = first ? first : row;
     }
+    char what[320] = "needed";
+    if (strcmp(inputs->material_name, "custom") != 0)
+      snprintf(what, sizeof what, "not given by the material '%s'", inputs->material_name);
     if (first)
-      REFUSE("%s is not given by the material '%s': give it%s (%s)%s", first->path, inputs->material_name,
-             first->flags & FIELD_MAY_BE_OFF ? ", or `off`" : "", first->doc, others);
+      REFUSE("%s is %s: give it%s (%s)%s", first->path, what, first->flags & FIELD_MAY_BE_OFF ? ", or `off`" : "",
+             first->doc, others);
   }
   return STATUS_OK;
 }
