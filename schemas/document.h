@@ -33,8 +33,8 @@ const char *document_text(const struct document *document); /* the file as read,
  * Call before the document is read. STATUS_CONTENT: keys[0] exists and is no mapping; STATUS_MEMORY. */
 status document_change_put(struct document *document, const char *const keys[2], const char *value, const char *origin,
                            struct error *error);
-/* Takes keys out of a mapping, as if the file did not contain them. NULL or no mapping: does nothing. Call before
- * document_change_put. */
+/* Takes keys out of a mapping, as if the file did not contain them. NULL or no mapping: does nothing. A
+ * document_change_put must follow, or document_change_text() has them still. */
 void document_drop(document_node *mapping, const char *const *keys);
 bool document_is_put(const document_node *node); /* is it a value of document_change_put? */
 /* The document as text that document_parse reads to the same values; the caller frees it. It is the file as read or,

@@ -1,6 +1,7 @@
 /* Draws the body of a fields file: grains in the plane or particles in space, as the file holds them. */
 #include "campaign/charts/charts.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,8 +24,8 @@ static double width_of(const struct picture_choice *options) {
 
 enum { DOUBTS = 300 };
 
-/* Writes "! in doubt, 1 of 1 runs: coarse" for a body whose run broke conditions. `aloud`: and prints a line for each
- * of them on stderr. */
+/* Writes "! in doubt, 1 of 1 runs: coarse" for a body whose run broke conditions, and prints a line for each on stderr.
+ */
 static void tell_doubts(const char *fields, char text[DOUBTS]) {
   struct snapshot_read *file;
   struct error error;
@@ -235,22 +236,29 @@ static status draw_fields(const char *fields, const char *picture, const struct 
 enum { MOST_FRAMES = 10000 };
 
 struct movie {
+  char folder[FIELD_TEXT_SIZE]; /* of the pictures that only a .gif needs; "": they are the user's */
   size_t count;
   char *fields[MOST_FRAMES], *picture[MOST_FRAMES]; /* owned: snapshots, and their pictures */
 };
 
 static void movie_free(struct movie *movie) {
   for (size_t i = 0; i < movie->count; i++) {
+    if (*movie->folder && movie->picture[i])
+      unlink(movie->picture[i]);
     free(movie->fields[i]);
     free(movie->picture[i]);
   }
+  if (*movie->folder)
+    rmdir(movie->folder);
 }
 
-/* Reads the list of snapshots that `clast simulate --snapshots` writes. */
-static status read_series(const char *series, const char *picture, struct movie *movie, struct error *error) {
+/* Reads the list of snapshots that `clast simulate --snapshots` writes. Their pictures get names that begin with
+ * `stem`.
+ */
+static status read_series(const char *series, const char *stem, struct movie *movie, struct error *error) {
   struct document *document = NULL;
   TRY(document_open(series, &document, error));
-  const char *slash = strrchr(series, '/'), *ending = strrchr(picture, '.');
+  const char *slash = strrchr(series, '/');
   OWNED char *folder = strndup(series, slash ? (size_t)(slash - series) : 0);
   document_node *files = document_key(document_root(document), "files");
   const size_t count = files ? document_count(files) : 0;
@@ -258,7 +266,7 @@ static status read_series(const char *series, const char *picture, struct movie 
     document_node *name = document_key(document_item(files, i, NULL), "name");
     const char *word = name ? document_scalar(name) : NULL;
     movie->fields[i] = file_name_in(folder, word ? word : "");
-    if (asprintf(&movie->picture[i], "%.*s_%03zu.png", (int)(ending - picture), picture, i) < 0)
+    if (asprintf(&movie->picture[i], "%s_%03zu.png", stem, i) < 0)
       movie->picture[i] = NULL;
     movie->count++;
     if (!movie->fields[i] || !movie->picture[i])
@@ -277,10 +285,9 @@ static status join(const char *picture, const struct picture_choice *options, co
   OWNED const char **name = memory_small(movie->count, sizeof *name);
   OWNED unsigned char *bytes = NULL;
   size_t size = 0;
-  for (size_t i = 0; i < movie->count; i++) {
-    const char *slash = strrchr(movie->picture[i], '/');
-    name[i] = slash ? slash + 1 : movie->picture[i];
-  }
+  const char *slash = strrchr(movie->folder, '/');
+  for (size_t i = 0; i < movie->count; i++)
+    name[i] = movie->picture[i] + (slash ? slash + 1 - movie->folder : 0);
   TRY(file_read(movie->picture[0], "picture", &bytes, &size, error));
   struct picture_page page = charts_page(picture, &options->chart);
   page.width = bytes[18] * 256 + bytes[19]; /* PNG: width at byte 16, height at byte 20, big-endian */
@@ -298,7 +305,17 @@ static status draw_movie(const char *series, const char *picture, const struct p
                        picture);
   if (options->view && strcmp(options->view, "profile") == 0)
     return status_fail(error, STATUS_USAGE, "--view profile is for one snapshot");
-  TRY(read_series(series, picture, &movie, error));
+  char stem[FIELD_TEXT_SIZE + 16];
+  snprintf(stem, sizeof stem, "%.*s", (int)(ending - picture), picture);
+  if (gif) { /* a folder of its own: pictures of these names may be there */
+    snprintf(movie.folder, sizeof movie.folder, "%s.XXXXXX", picture);
+    if (!mkdtemp(movie.folder)) {
+      *movie.folder = '\0';
+      return status_fail(error, STATUS_IO, "cannot make a folder beside %s: %s", picture, strerror(errno));
+    }
+    snprintf(stem, sizeof stem, "%s/frame", movie.folder);
+  }
+  TRY(read_series(series, stem, &movie, error));
   for (size_t i = 0; i < 2 * movie.count; i++) {
     const size_t k = i % movie.count;
     TRY(draw_fields(movie.fields[k], i < movie.count ? NULL : movie.picture[k], options, &frame, error));
@@ -307,10 +324,7 @@ static status draw_movie(const char *series, const char *picture, const struct p
     printf("%zu pictures, %s to %s\n", movie.count, movie.picture[0], movie.picture[movie.count - 1]);
     return STATUS_OK;
   }
-  const status code = join(picture, options, &movie, error);
-  for (size_t i = 0; i < movie.count; i++)
-    unlink(movie.picture[i]);
-  return code;
+  return join(picture, options, &movie, error);
 }
 
 status picture_draw(const char *fields, const char *picture, const struct picture_choice *options,

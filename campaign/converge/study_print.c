@@ -324,8 +324,9 @@ status study_print(const struct study *study, enum table_format format, bool qui
   struct ask_doubts sum;
   TRY(sum_doubts(&printing, study->ladder_count, study->quantity_count, &sum, error));
   uncertainty_doubts(&sum, stderr);
-  if (!quiet)
-    fputs(legend, stderr);
+  if (quiet)
+    return STATUS_OK;
+  fputs(legend, stderr);
   fprintf(stderr,
           "clast: next: `clast stats %s` now has this error beside each value, and `accuracy: {within: ...}` in a "
           "campaign chooses settings by it\n",

@@ -182,7 +182,7 @@ static status print_for_people(const struct scene *scene, int64_t seed, const st
   snprintf(resolution.scene, sizeof resolution.scene, "%.127s",
            scene_builtin_text(scene->name) ? scene->name : "SCENE.yaml");
   uncertainty_resolution(&resolution, text);
-  printf("errors: a single run has none; `clast run` with several seeds gives an interval\n%s\n", text);
+  printf("errors: one run alone has no interval; `clast run` with several seeds gives one\n%s\n", text);
   if (format == TABLE_ALL) {
     putchar('\n');
     TRY(print_long(scene->kind, result, format, error));

@@ -23,6 +23,7 @@ ok "the series lists four snapshots and their times"
 # A movie, and pictures in one frame: all have one size, and the movie has as many frames as there are snapshots.
 expect 0 "$clast" picture basalt-sphere.hdf.series all.png
 prints "4 pictures, all_000.png to all_003.png"
+cp all_000.png movie_000.png # pictures of an earlier call, beside the movie
 expect 0 "$clast" picture basalt-sphere.hdf.series movie.gif
 python - <<'PY'
 import struct
@@ -31,7 +32,8 @@ movie = open("movie.gif", "rb").read()
 assert len(sizes) == 1 and movie[:4] == b"GIF8", sizes
 assert struct.unpack("<HH", movie[6:10]) == struct.unpack(">II", sizes.pop()) and movie.count(b"\x21\xf9\x04") >= 4
 PY
-[ ! -e movie_000.png ] || fail "the frames of the movie stay"
+cmp -s all_000.png movie_000.png || fail "the movie took a picture that was there"
+[ "$(echo movie*)" = "movie.gif movie_000.png" ] || fail "the frames of the movie stay: $(echo movie*)"
 ok "a movie of the snapshots"
 expect 64 "$clast" picture basalt-sphere.hdf.series movie.svg
 
