@@ -188,13 +188,14 @@ static void choose(struct accuracy *accuracy) {
     accuracy->chosen = open;
 }
 
-double accuracy_least(const struct accuracy *accuracy, double point_s) {
+double accuracy_least(const struct accuracy *accuracy, double point_s, bool *open) {
   double least[2] = {NAN, NAN}; /* of options with a limit, without one */
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
     least[option->open] = fmin(least[option->open], total_of(option, seeds_in(option, point_s)));
   }
-  return isnan(least[0]) ? least[1] : least[0];
+  *open = isnan(least[0]);
+  return least[*open];
 }
 
 /* The share of each point in the campaign's time. NaN: the campaign gives an accuracy, not a time. */
@@ -333,17 +334,18 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
   if (isnan(accuracy->point_s) || accuracy->chosen == accuracy->count)
     return;
   const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
-  const double half = accuracy_least(accuracy, accuracy->point_s / 2),
-               twice = accuracy_least(accuracy, accuracy->point_s * 2);
-  const char *more = option->open ? " or more" : "";
+  bool open[2];
+  const double half = accuracy_least(accuracy, accuracy->point_s / 2, &open[0]),
+               twice = accuracy_least(accuracy, accuracy->point_s * 2, &open[1]);
+  const char *const or_more[] = {"", " or more"}, *more = or_more[option->open];
   char time[32];
   progress_duration(campaign->accuracy_time, time, sizeof time);
   fprintf(out, "%s%s \xc2\xb1 %.2g%s in %s of processor time: %s%s%s, %" PRId64 " seeds a point\n", before,
           campaign->accuracy_quantity, option->total, more, time, option->own ? "" : option->knob,
           option->own ? "" : " = ", option->own ? "the scene's own settings" : option->setting, option->seeds);
   fprintf(out, "%s%.2g%s of it is resolution, the rest seeds. In half of the time: ", before, option->error, more);
-  fprintf(out, isnan(half) ? "no result" : "\xc2\xb1 %.2g%s", half, more);
-  fprintf(out, "; in twice: \xc2\xb1 %.2g%s\n", twice, more);
+  fprintf(out, isnan(half) ? "no result" : "\xc2\xb1 %.2g%s", half, or_more[open[0]]);
+  fprintf(out, "; in twice: \xc2\xb1 %.2g%s\n", twice, or_more[open[1]]);
 }
 
 static status alternatives_json(const struct accuracy *accuracy, char **json, struct error *error) {
@@ -358,7 +360,8 @@ static status alternatives_json(const struct accuracy *accuracy, char **json, st
       double factor;
     } times[] = {{"error_in_half_the_time", 0.5}, {"error_in_the_time", 1}, {"error_in_twice_the_time", 2}};
     for (size_t i = 0; i < sizeof times / sizeof times[0]; i++) {
-      const double error_then = accuracy_least(accuracy, times[i].factor * accuracy->point_s);
+      bool open; /* column `known` tells it of each option */
+      const double error_then = accuracy_least(accuracy, times[i].factor * accuracy->point_s, &open);
       fprintf(out, isnan(error_then) ? ", \"%s\": null" : ", \"%s\": %.17g", times[i].name, error_then);
     }
   }

@@ -13,7 +13,8 @@ struct accuracy_option {
   char knob[64], setting[64];
   bool own;          /* the scene's own settings */
   bool extrapolated; /* finer than any level that was run: error by the law, cost by the engine's measure of work */
-  bool open;         /* the results show no limit, so that `error` may be too small: never chosen */
+  bool open;         /* the results show no limit, so that `error` may be too small: chosen for a time only, if no
+                        other can be run */
   double error;      /* change by finer settings of all knobs together, in the quantity's SI unit */
   double deviation;  /* standard deviation between seeds */
   int64_t seeds;     /* of a point: the fewest that reach the accuracy, or as many as the time allows; 0: none do */
@@ -38,8 +39,9 @@ status accuracy_find(const struct campaign *campaign, const char *path, const ch
                      struct error *error);
 void accuracy_clear(struct accuracy *accuracy); /* a zeroed one is fine */
 
-/* The least total when a point may cost so many seconds; NaN: too few for every option. For a time only. */
-double accuracy_least(const struct accuracy *accuracy, double point_s);
+/* The least total when a point may cost so many seconds; NaN: too few for every option. *open: whether the option that
+ * gives it is open. For a time only. */
+double accuracy_least(const struct accuracy *accuracy, double point_s, bool *open);
 
 /* Sets the chosen option's inputs and number of seeds in the campaign. STATUS_CONTENT when no option reaches the
  * accuracy, or the time is too short for each. */

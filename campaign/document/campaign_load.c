@@ -25,8 +25,7 @@ static const struct field rows[] = {
     TEXT("quantity", quantity, .text = OUTCOME_DEFAULT,
          .doc = "The main quantity: shown while running and in the table at the end, and compared by `keep: {fields: "
                 "extremes}`. Any number that a run reports (`clast explain`). Unless given: what the scene is made "
-                "for, such "
-                "as the strength of a compression; where bodies break largest_fraction."),
+                "for, such as the strength of a compression; where bodies break largest_fraction."),
     TEXT("store", store, .text = "",
          .doc = "The results file, relative to the current folder. Default: the name with .db after it."),
     COUNT(

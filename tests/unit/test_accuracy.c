@@ -190,7 +190,8 @@ static void check_time(const char *time, const char *setting, int64_t seeds, dou
   assert_int_equal(chosen->seeds, seeds);
   const double total = error_of_resolution + sample_student((size_t)seeds, 0.95) * 0.02 / sqrt((double)seeds);
   assert_true(fabs(chosen->total - total) < 1e-12);
-  assert_true(chosen->total == accuracy_least(&accuracy, accuracy.point_s));
+  bool open = true;
+  assert_true(chosen->total == accuracy_least(&accuracy, accuracy.point_s, &open) && !open);
   assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_OK);
   assert_int_equal(campaign->per_point, seeds);
   accuracy_clear(&accuracy);
@@ -219,7 +220,9 @@ static void the_least_error_in_a_time(void **state) {
   assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
   assert_true(accuracy.point_s == 30 && accuracy.options[accuracy.chosen].open);
   assert_int_equal(accuracy.options[accuracy.chosen].seeds, 6);
-  assert_true(isnan(accuracy_least(&accuracy, 14)));
+  bool no_limit = false;
+  assert_true(isnan(accuracy_least(&accuracy, 14, &no_limit)));
+  assert_true(accuracy_least(&accuracy, 30, &no_limit) == accuracy.options[accuracy.chosen].total && no_limit);
   accuracy_clear(&accuracy);
   campaign_free(campaign);
 }
