@@ -13,6 +13,7 @@ struct asking {
   bool total;
   size_t blocks, seeds; /* of the subset */
   const uint32_t *block, *seed;
+  uint32_t *in_groups; /* space for the blocks of some groups */
 };
 
 static double at(const struct asking *a, size_t b, size_t point, size_t r) {
@@ -110,10 +111,20 @@ static double index_of(const struct asking *a) {
   return (a->total ? total_effect(a) : first_order(a)) / whole;
 }
 
-static double over_blocks(size_t n, const uint32_t *chosen, void *context) {
+static bool same_group(const struct sensitivity_table *t, size_t a, size_t b) {
+  return t->group && t->group[a] == t->group[b];
+}
+
+static double over_groups(size_t n, const uint32_t *chosen, void *context) {
   struct asking a = *(const struct asking *)context;
-  a.blocks = n;
-  a.block = chosen;
+  a.blocks = 0;
+  for (uint32_t b = 0, group = 0, k = 0; b < a.table->blocks && k < n; b++) {
+    group += b > 0 && !same_group(a.table, b, b - 1);
+    k += group > chosen[k];
+    if (k < n && group == chosen[k])
+      a.in_groups[a.blocks++] = b;
+  }
+  a.block = a.in_groups;
   return index_of(&a);
 }
 
@@ -125,7 +136,10 @@ static double over_seeds(size_t n, const uint32_t *chosen, void *context) {
 }
 
 static struct sample_interval interval_of(struct asking *a) {
-  struct sample_interval interval = sample_jackknife(a->blocks, 0.95, over_blocks, a);
+  size_t groups = 1;
+  for (size_t b = 1; b < a->table->blocks; b++)
+    groups += !same_group(a->table, b, b - 1);
+  struct sample_interval interval = sample_jackknife(groups, 0.95, over_groups, a);
   if (a->seeds < 3) {
     if (a->input == a->table->inputs && !a->total) /* a covariance of two seeds: more blocks do not tell how far off */
       interval.standard_error = interval.half_width = NAN;
@@ -144,9 +158,10 @@ status sensitivity_sobol(const struct sensitivity_table *t, struct sensitivity_i
     return status_fail(error, STATUS_USAGE, "Sobol indices need at least two blocks of points with a result, not %zu",
                        t->blocks);
   OWNED double *centred = NULL;
-  OWNED uint32_t *all = NULL;
+  OWNED uint32_t *all = NULL, *in_groups = NULL;
   double mean = 0;
   TRY(memory_array(&centred, n, sizeof *centred, "the indices", error));
+  TRY(memory_array(&in_groups, t->blocks, sizeof *in_groups, "the indices", error));
   TRY(memory_array(&all, most, sizeof *all, "the indices", error));
   for (size_t i = 0; i < n; i++)
     mean += t->value[i] / (double)n;
@@ -154,7 +169,13 @@ status sensitivity_sobol(const struct sensitivity_table *t, struct sensitivity_i
     centred[i] = t->value[i] - mean;
   for (size_t i = 0; i < most; i++)
     all[i] = (uint32_t)i;
-  struct asking a = {.table = t, .centred = centred, .blocks = t->blocks, .seeds = t->seeds, .block = all, .seed = all};
+  struct asking a = {.table = t,
+                     .centred = centred,
+                     .blocks = t->blocks,
+                     .seeds = t->seeds,
+                     .block = all,
+                     .seed = all,
+                     .in_groups = in_groups};
   for (a.input = 0; a.input <= t->inputs; a.input++) {
     a.total = false;
     index[a.input].first = interval_of(&a);

@@ -602,15 +602,14 @@ status scatter_split(const struct scatter_table *table, struct scatter_part *par
  * i]. */
 struct sensitivity_table {
   size_t inputs, blocks, seeds;
-  const double *value; /* value[(block * points of a block + point) * seeds + r] of the point's r-th seed */
-  bool same_seeds;     /* true: index r is the same seed at all points; false: the seeds of points are independent */
+  const double *value;   /* value[(block * points of a block + point) * seeds + r] of the point's r-th seed */
+  bool same_seeds;       /* true: index r is the same seed at all points; false: the seeds of points are independent */
+  const uint32_t *group; /* group[block], ascending: blocks of one group are spread evenly, groups are independent;
+                          * NULL: all blocks are independent */
 };
 struct sensitivity_index {
-  /* 95 % intervals by the jackknife over blocks and over seeds, whose variances are added (with one or two seeds over
-   * blocks alone, and none of the seed's first order). The jackknife takes blocks as independent. The points of a
-   * design are spread evenly, so its intervals are too wide for smooth functions (2 to 80 times). For the total of an
-   * input that acts through others they can be too narrow: at 64 blocks they held Ishigami's third total in 0.75 of the
-   * cases. */
+  /* 95 % intervals by the jackknife over groups of blocks and over seeds, whose variances are added (with one or two
+   * seeds over groups alone, and none of the seed's first order). */
   struct sample_interval first, total;
 };
 /* index: an array of inputs + 1, the last one for the seed. With one seed all indices are for this seed, and the seed's

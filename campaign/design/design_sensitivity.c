@@ -7,7 +7,8 @@
 #include "schemas/memory.h"
 
 enum { LEVELS = 4 };
-#define MORRIS_MARK (UINT64_C(1) << 61) /* keeps the random numbers of these designs apart from those of others */
+#define SHIFTS_MARK (UINT64_C(1) << 60)
+#define MORRIS_MARK (UINT64_C(1) << 61) /* keep the random numbers of these designs apart from those of others */
 
 struct design_sensitivity {
   enum design_sensitivity_kind kind;
@@ -16,15 +17,27 @@ struct design_sensitivity {
   double *pairs; /* Saltelli: for every block the coordinates of A, then of B */
 };
 
+uint32_t design_sensitivity_group(size_t blocks, size_t block) {
+  enum { GROUPS = 8 };
+  return (uint32_t)(blocks < 2 * GROUPS ? block : block * GROUPS / blocks);
+}
+
 static status fill_pairs(struct design_sensitivity *design, struct error *error) {
   const size_t width = 2 * design->inputs;
   struct design_sobol *sobol = NULL;
   TRY(memory_array(&design->pairs, design->blocks * width, sizeof *design->pairs, "a design", error));
-  const status code = design_sobol_create(width, design->seed, &sobol, error);
-  for (size_t b = 0; code == STATUS_OK && b < design->blocks; b++)
+  for (size_t b = 0; b < design->blocks; b++) {
+    const uint32_t group = design_sensitivity_group(design->blocks, b);
+    if (b == 0 || group != design_sensitivity_group(design->blocks, b - 1)) {
+      uint64_t shift[4];
+      random_bits(design->seed, RANDOM_DESIGN, SHIFTS_MARK | group, 0, shift);
+      design_sobol_free(sobol);
+      TRY(design_sobol_create(width, shift[0], &sobol, error));
+    }
     design_sobol_next(sobol, design->pairs + b * width);
+  }
   design_sobol_free(sobol);
-  return code;
+  return STATUS_OK;
 }
 
 status design_sensitivity_create(enum design_sensitivity_kind kind, size_t inputs, size_t blocks, uint64_t seed,

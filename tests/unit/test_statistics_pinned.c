@@ -356,7 +356,7 @@ static void of_inputs(void) {
     for (int same = 0; same < 2; same++) {
       struct sensitivity_index index[INPUTS + 1];
       const struct sensitivity_table table = {INPUTS, (size_t)(seeds == RUNS ? BLOCKS / 2 : BLOCKS), seeds, value,
-                                              same};
+                                              same, NULL};
       if (sensitivity_sobol(&table, index, NULL) == STATUS_OK)
         for (size_t i = 0; i <= INPUTS; i++)
           SAY("index", index[i].first.estimate, index[i].first.half_width, index[i].total.estimate,
@@ -364,7 +364,7 @@ static void of_inputs(void) {
       const size_t order[4 * INPUTS] = {0, 1, 1, 0, 0, 1, 1, 0};
       const double step[4 * INPUTS] = {0.5, -0.5, 0.25, 0.5, -0.5, 0.5, 0.5, -0.25};
       struct sensitivity_effect effect[INPUTS];
-      const struct sensitivity_table few = {INPUTS, 4, seeds, value, same};
+      const struct sensitivity_table few = {INPUTS, 4, seeds, value, same, NULL};
       if (sensitivity_morris(&few, order, step, effect, NULL) == STATUS_OK)
         for (size_t i = 0; i < INPUTS; i++)
           SAY("effect", effect[i].mean_absolute.estimate, effect[i].mean_absolute.half_width, effect[i].mean,
