@@ -355,8 +355,8 @@ static void of_inputs(void) {
   for (size_t seeds = 1; seeds <= RUNS; seeds++)
     for (int same = 0; same < 2; same++) {
       struct sensitivity_index index[INPUTS + 1];
-      const struct sensitivity_table table = {INPUTS, (size_t)(seeds == RUNS ? BLOCKS / 2 : BLOCKS), seeds, value,
-                                              same, NULL};
+      const struct sensitivity_table table = {INPUTS, (size_t)(seeds == RUNS ? BLOCKS / 2 : BLOCKS), seeds, value, same,
+                                              NULL};
       if (sensitivity_sobol(&table, index, NULL) == STATUS_OK)
         for (size_t i = 0; i <= INPUTS; i++)
           SAY("index", index[i].first.estimate, index[i].first.half_width, index[i].total.estimate,

@@ -189,7 +189,8 @@ double sph_derived_smallest_spacing(const struct sph_inputs *in) {
 
 double sph_derived_cfl(const struct sph_inputs *in) {
   const double growth = pow(2.1, 4) * 0.35, damping = 0.08 * in->viscosity.alpha;
-  const double e_folds = 4; /* of a wave without viscosity, until the end of the run: it begins as rounding */
+  const double
+      e_folds = 1; /* of a wave without viscosity, until the end of the run: a coarse lattice has it from the start */
   double speed = sph_derived_wave_speed(&in->target);
   if (sph_derived_has_projectile(in))
     speed = fmax(speed, sph_derived_wave_speed(&in->projectile));
