@@ -117,8 +117,15 @@ class Store:
         """A row for each run: varied inputs, every result, state, times. counted: only those that enter statistics."""
         return self.query("SELECT * FROM runs" + (" WHERE counts = 1" if counted else ""))
 
+    def excluded(self):
+        """The runs that a person left out of all statistics (`clast exclude`), with the date and the reason."""
+        if "excluded" not in {row[1] for row in self.connection.execute("PRAGMA table_info(run)")}:
+            return self.query("SELECT run_id, point_id, seed FROM run WHERE 0")
+        return self.query("SELECT run_id, point_id, seed, excluded_at AS date, excluded AS reason FROM run WHERE "
+                          "surplus > 1 ORDER BY run_id")
+
     def points(self):
-        """A row for each point: varied inputs; n; _mean, _sd, _se, _hw95, _low95 and
+        """A row for each point: varied inputs; n, excluded; _mean, _sd, _se, _hw95, _low95 and
         _high95 (95 % interval; _hw95 is None when all runs are equal) of the main results."""
         return self.query("SELECT * FROM points")
 

@@ -75,7 +75,7 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   replicate INTEGER NOT NULL, -- which seed of the point, from 0
   seed INTEGER NOT NULL, -- the seed (64 bits, shown as a signed number)
   results_version INTEGER NOT NULL, -- version of the engine's results; statistics never mix two
-  surplus INTEGER NOT NULL, -- 1: beyond the prefix a stopping rule decided on; left out of statistics
+  surplus INTEGER NOT NULL, -- above 0: left out of statistics. 1: beyond the prefix a stopping rule decided on; 2: excluded; 3: both
   attempt INTEGER NOT NULL, -- which attempt succeeded, from 1
   wall_time REAL NOT NULL, -- [s] elapsed time of the successful attempt
   cpu_time REAL NOT NULL, -- [s] processor time of the successful attempt
@@ -85,7 +85,9 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   finished_at REAL NOT NULL, -- [s] when it was stored, seconds since 1970-01-01 UTC
   fields_path TEXT, -- HDF5 file with its fields, relative to the store's folder; NULL when none was kept
   fields_digest TEXT, -- changes when any bit of that file changes; NULL in older rows
-  counts INTEGER NOT NULL CHECK (counts = (surplus = 0 AND state IN ('completed', 'end-time') AND largest_fraction IS NOT NULL AND second_fraction IS NOT NULL AND fragment_count IS NOT NULL AND dust_fraction IS NOT NULL AND mean_fragment_mass IS NOT NULL)), -- 1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)
+  excluded TEXT, -- why a person excluded the run (clast exclude); NULL: it is not excluded
+  excluded_at TEXT, -- when, UTC, ISO 8601
+  counts INTEGER NOT NULL CHECK (counts = (surplus = 0 AND state IN ('completed', 'end-time') AND largest_fraction IS NOT NULL AND second_fraction IS NOT NULL AND fragment_count IS NOT NULL AND dust_fraction IS NOT NULL AND mean_fragment_mass IS NOT NULL)), -- 1: part of the statistics (not surplus or excluded, completed or ended at its time, the main results are numbers)
   digest BLOB CHECK (length(digest) = 16), -- changes when any bit changes of what the run determined: results, masses, estimates, seed, identity
   state TEXT, -- How the run ended: with a usable result (completed, end-time), or without one. One of: completed, end-time, not-finite, time-step, energy, invalid
   message TEXT, -- What went wrong, in words; empty when nothing did.
@@ -131,7 +133,7 @@ CREATE TABLE spectrum ( -- Fragment mass spectrum of each run.
 CREATE TABLE point_total ( -- Running totals of each point, kept in the transaction that adds the runs.
   point_id INTEGER NOT NULL REFERENCES point (point_id), -- the point
   results_version INTEGER NOT NULL, -- version of the engine's results
-  runs INTEGER NOT NULL, -- [1] runs that count: completed, or ended at their time, and not surplus
+  runs INTEGER NOT NULL, -- [1] runs that count: completed, or ended at their time, not surplus, not excluded
   censored INTEGER NOT NULL, -- [1] runs that count and ended at their time: fragments may still have been breaking
   failed INTEGER NOT NULL, -- [1] runs that gave no usable result (NaN, time step, energy, invalid)
   surplus INTEGER NOT NULL, -- [1] runs left out because a stopping rule decided without them
@@ -406,6 +408,8 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   r."rank",
   r."finished_at",
   r."fields_path",
+  r."excluded",
+  r."excluded_at",
   r."counts",
   r."state",
   r."message",
@@ -576,7 +580,7 @@ WITH first AS (
   FROM resolution JOIN point USING (point_id) GROUP BY point_id, results_version)
 SELECT p.point_id, p.engine, p.scene_name AS scene,
   t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS failed,
-  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS failed_attempts,
+  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts = 0 AND r.surplus > 1) AS excluded, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS failed_attempts,
   (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings <> '') AS doubtful,
   ifnull((SELECT group_concat(words, '; ') FROM (SELECT DISTINCT r.warnings AS words FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings <> '' ORDER BY words)), '') AS doubts,
   m0 AS "largest_fraction_mean", d0 AS "largest_fraction_sd", d0 / sqrt(n) AS "largest_fraction_se", h0 AS "largest_fraction_hw95",
@@ -855,7 +859,7 @@ INSERT INTO column_doc VALUES ('estimate', 'window', NULL, 'Window of masses of 
 
 INSERT INTO column_doc VALUES ('estimates', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
+INSERT INTO column_doc VALUES ('estimates', 'counts', NULL, '1: part of the statistics (not surplus or excluded, completed or ended at its time, the main results are numbers)', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.', 0);
 
@@ -981,7 +985,7 @@ INSERT INTO column_doc VALUES ('point_total', 'point_id', NULL, 'the point', 0);
 
 INSERT INTO column_doc VALUES ('point_total', 'results_version', NULL, 'version of the engine''s results', 0);
 
-INSERT INTO column_doc VALUES ('point_total', 'runs', '1', 'runs that count: completed, or ended at their time, and not surplus', 0);
+INSERT INTO column_doc VALUES ('point_total', 'runs', '1', 'runs that count: completed, or ended at their time, not surplus, not excluded', 0);
 
 INSERT INTO column_doc VALUES ('point_total', 'surplus', '1', 'runs left out because a stopping rule decided without them', 0);
 
@@ -1010,6 +1014,8 @@ INSERT INTO column_doc VALUES ('points', 'dust_fraction_se', '1', 'standard erro
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'engine', NULL, 'name of the engine', 0);
+
+INSERT INTO column_doc VALUES ('points', 'excluded', '1', 'runs that a person excluded (clast exclude)', 0);
 
 INSERT INTO column_doc VALUES ('points', 'failed', '1', 'runs that gave no usable result (NaN, time step, energy, invalid)', 0);
 
@@ -1069,7 +1075,7 @@ INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_se', 'kg', 'standar
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_weak', 'kg', '1: too few runs of this kind for the interval of this share: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'n', '1', 'runs that count: completed, or ended at their time, and not surplus', 0);
+INSERT INTO column_doc VALUES ('points', 'n', '1', 'runs that count: completed, or ended at their time, not surplus, not excluded', 0);
 
 INSERT INTO column_doc VALUES ('points', 'point_id', NULL, 'the point', 0);
 
@@ -1325,7 +1331,7 @@ INSERT INTO column_doc VALUES ('run', 'attempt', NULL, 'which attempt succeeded,
 
 INSERT INTO column_doc VALUES ('run', 'complete_mass', 'kg', 'The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 1);
 
-INSERT INTO column_doc VALUES ('run', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
+INSERT INTO column_doc VALUES ('run', 'counts', NULL, '1: part of the statistics (not surplus or excluded, completed or ended at its time, the main results are numbers)', 0);
 
 INSERT INTO column_doc VALUES ('run', 'cpu_time', 's', 'processor time of the successful attempt', 0);
 
@@ -1334,6 +1340,10 @@ INSERT INTO column_doc VALUES ('run', 'digest', NULL, 'changes when any bit chan
 INSERT INTO column_doc VALUES ('run', 'dust_fraction', '1', 'Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 1);
 
 INSERT INTO column_doc VALUES ('run', 'energy_error', '1', 'Energy gained or lost by numerical errors, as a share of the energy put in.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'excluded', NULL, 'why a person excluded the run (clast exclude); NULL: it is not excluded', 0);
+
+INSERT INTO column_doc VALUES ('run', 'excluded_at', NULL, 'when, UTC, ISO 8601', 0);
 
 INSERT INTO column_doc VALUES ('run', 'fields_digest', NULL, 'changes when any bit of that file changes; NULL in older rows', 0);
 
@@ -1383,7 +1393,7 @@ INSERT INTO column_doc VALUES ('run', 'state', NULL, 'How the run ended: with a 
 
 INSERT INTO column_doc VALUES ('run', 'steps', '1', 'Time steps taken.', 1);
 
-INSERT INTO column_doc VALUES ('run', 'surplus', NULL, '1: beyond the prefix a stopping rule decided on; left out of statistics', 0);
+INSERT INTO column_doc VALUES ('run', 'surplus', NULL, 'above 0: left out of statistics. 1: beyond the prefix a stopping rule decided on; 2: excluded; 3: both', 0);
 
 INSERT INTO column_doc VALUES ('run', 'time', 's', 'Simulated time at the end.', 1);
 
@@ -1421,7 +1431,7 @@ INSERT INTO column_doc VALUES ('runs', 'compaction_volume', 'm^3', 'Impact: volu
 
 INSERT INTO column_doc VALUES ('runs', 'complete_mass', 'kg', 'The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
+INSERT INTO column_doc VALUES ('runs', 'counts', NULL, '1: part of the statistics (not surplus or excluded, completed or ended at its time, the main results are numbers)', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'cpu_time', 's', 'processor time of the successful attempt', 0);
 
@@ -1470,6 +1480,10 @@ INSERT INTO column_doc VALUES ('runs', 'energy_vibration', 'J/m', 'Part of the k
 INSERT INTO column_doc VALUES ('runs', 'energy_work_of_held', 'J', 'Work done on the body by matter that is held at a given velocity: the grips of a stretch, the piston; 0 in all other scenes.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'engine', NULL, 'name of the engine', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'excluded', NULL, 'why a person excluded the run (clast exclude); NULL: it is not excluded', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'excluded_at', NULL, 'when, UTC, ISO 8601', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'failure_strain', '1', 'Strain at the largest stress.', 0);
 
@@ -1653,7 +1667,7 @@ INSERT INTO column_doc VALUES ('runs', 'steps', '1', 'Time steps taken.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'strength', 'Pa', 'Largest stress under load.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'surplus', NULL, '1: beyond the prefix a stopping rule decided on; left out of statistics', 0);
+INSERT INTO column_doc VALUES ('runs', 'surplus', NULL, 'above 0: left out of statistics. 1: beyond the prefix a stopping rule decided on; 2: excluded; 3: both', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'target_mass', 'kg', 'Mass of the target. All mass fractions are shares of it, so they leave the projectile out.', 0);
 

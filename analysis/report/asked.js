@@ -31,6 +31,9 @@ function computed(store) {
   const parts = [`${plural(counted, 'run')} in statistics`];
   if (censored) parts.push(`${censored} of them met their end time while fragments may still have been breaking`);
   if (failed) parts.push(`${failed} without a usable result`);
+  const excluded = sum(points, 'excluded');
+  if (excluded) parts.push(`${plural(excluded, 'run')} excluded (clast exclude lists them)`);
+  if (store.facts.chosen) parts.push(`only ${store.facts.chosen}`);
   if (surplus) parts.push(`${surplus} surplus (beyond the prefix of a stopping rule)`);
   const without = points.filter((point) => !point.n).length;
   if (without) parts.push(`${plural(without, 'point')} without a counted run`);

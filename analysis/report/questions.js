@@ -21,7 +21,7 @@ export const failedRuns = `SELECT state AS reason, count(*) AS n, min(message) A
 export const failedAttempts = 'SELECT reason, count(*) AS n, min(message) AS example FROM attempt GROUP BY reason';
 
 // Newer versions of results come later.
-export const points = (axes) => `SELECT point_id, scene, results_version, n, failed, censored, surplus, failed_attempts
+export const points = (axes, counts) => `SELECT point_id, scene, results_version, n, failed, censored, surplus, failed_attempts${counts}
   ${axes.map((axis) => `, ${name(axis)}`).join('')} FROM points ORDER BY point_id, results_version`;
 export const mainStatistics = (quantity) => `SELECT point_id, results_version, n, ${name(`${quantity}_mean`)} AS mean,
   ${name(`${quantity}_sd`)} AS sd FROM points ORDER BY results_version`;

@@ -71,7 +71,8 @@ function describe(store) {
   store.axes = ask(store, questions.axes);
   store.pointColumns = columns('points');
   store.runColumns = new Set(columns('runs'));
-  store.points = newest(ask(store, questions.points(store.axes.map((axis) => axis.column_name))));
+  store.points = newest(ask(store, questions.points(store.axes.map((axis) => axis.column_name),
+    store.pointColumns.includes('excluded') ? ', excluded' : ''))); // an older store has no such column
   store.quantities = quantitiesOf(store);
   store.canned = read('question', questions.canned);
   return store;

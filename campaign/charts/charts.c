@@ -87,6 +87,11 @@ void charts_resolution(struct store *store, const char *quantity, const char *ad
 
 void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size) {
   char words[UNCERTAINTY_TEXT];
+  if (doubts->chosen && *doubts->chosen)
+    text_append(text, size, "%sonly %s", *text ? "; " : "", doubts->chosen);
+  if (doubts->excluded > 0)
+    text_append(text, size, "%s%" PRId64 " run%s excluded", *text ? "; " : "", doubts->excluded,
+                doubts->excluded == 1 ? "" : "s");
   if (doubts->doubtful == 0)
     return;
   ask_doubts_words(doubts, words, sizeof words);

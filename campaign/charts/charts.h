@@ -40,7 +40,8 @@ void charts_intervals(const char *pooled, char *text, size_t size);
  * one. */
 void charts_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size);
 
-/* Appends "; ! in doubt, 3 of 20 runs: coarse, early" to a caption, if there are such runs. */
+/* Appends "; only campaign 2; 1 run excluded; ! in doubt, 3 of 20 runs: coarse, early" to a caption, if there are such
+ * runs. */
 void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size);
 
 /* ---- a quantity over one or two varied inputs: the mean of a result over the runs that share the inputs, or an

@@ -16,7 +16,7 @@
 #include "schemas/text.h"
 
 /* Columns of ask_group after the axes. */
-enum { VERSION = 1, MEAN = 6, LOW = 10, HIGH = 11, RESOLUTION = 13, DOUBTFUL = 16, COLUMNS = 18 };
+enum { VERSION = 1, MEAN = 7, LOW = 11, HIGH = 12, RESOLUTION = 14, DOUBTFUL = 17, COLUMNS = 19 };
 
 enum { MOST_ROWS = 10000, MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, MOST_PLACES = 40, INPUT_TEXT = 200 };
 

@@ -49,7 +49,8 @@
   ENTRY(extremes)                                                                                                      \
   ENTRY(picture)                                                                                                       \
   ENTRY(report)                                                                                                        \
-  /* the store */ ENTRY(check)                                                                                         \
+  /* the store */ ENTRY(exclude)                                                                                       \
+  ENTRY(check)                                                                                                         \
   ENTRY(export)                                                                                                        \
   ENTRY(merge)                                                                                                         \
   ENTRY(replay)                                                                                                        \
@@ -84,10 +85,14 @@ status commands_run(const struct command *command, const struct command_line *li
 /* The first comment line of a built-in document, which says what it is. */
 void commands_headline(const char *text, char *line, size_t size);
 
-/* Opens the store that the first argument names as a reader, calls `ask` and closes the store. */
+/* Opens the store that the first argument names as a reader, chooses the runs, calls `ask`, says how many runs
+ * are excluded, and closes the store. */
 status commands_ask(const struct command_line *line,
                     status (*ask)(struct store *store, const struct command_line *line, struct error *error),
                     struct error *error);
+
+/* Says on stderr that runs of a store are excluded; nothing if none is. */
+void commands_tell_excluded(int64_t count, const char *path);
 
 void help_overview(FILE *out);                           /* what `clast help` prints */
 void help_one(const struct command *command, FILE *out); /* what `clast help COMMAND` prints */
@@ -97,13 +102,7 @@ void help_one(const struct command *command, FILE *out); /* what `clast help COM
 status plan_campaign(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
                      bool no_trial, bool json, struct error *error);
 
-/* Options of several commands: the points and runs that they read. */
-#define COMMANDS_POINT(type_, member_)                                                                                 \
-  OPTION_ROW_INTEGER("point", 'p', "N", type_, member_, 0, INT64_MAX, "0",                                             \
-                     .doc = "Only this point (point_id in the view points); 0: all.")
-#define COMMANDS_WHERE(type_, member_)                                                                                 \
-  OPTION_ROW_TEXT("where", 'w', "SQL", type_, member_, NULL,                                                           \
-                  .doc = "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\".")
+/* An option of several commands: what is pooled. */
 #define COMMANDS_BY(type_, member_)                                                                                    \
   OPTION_ROW_TEXT(                                                                                                     \
       "by", 'b', "AXES", type_, member_, NULL,                                                                         \

@@ -27,7 +27,7 @@ static void print(struct table *table, const struct ask_pairs_row *row, struct a
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   ASK_PAIRS pairs = NULL;
-  TRY(ask_pairs_read(line->arguments[0], line->arguments[1], options->quantity, &pairs, error));
+  TRY(ask_pairs_read(line->arguments[0], line->arguments[1], options->quantity, &line->choice, &pairs, error));
   TABLE table = table_new(line->format, stdout);
   table_columns(table, (const char *const[]){"point_a", "point_b", "inputs", "n_a", "n_b", "pairs", "mean_a", "mean_b",
                                              "difference", "hw95", NULL});
@@ -37,6 +37,11 @@ static status run(const struct command_line *line, struct error *error) {
     print(table, &row, &doubts);
   TRY(ask_pairs_end(pairs, error));
   TRY(table_end(table, error));
+  for (int side = 0; side < 2; side++) {
+    const char *path;
+    const int64_t count = ask_pairs_excluded(pairs, side, &path);
+    commands_tell_excluded(count, path);
+  }
   if (table_for_people(line->format)) {
     uncertainty_doubts(&doubts, stderr);
     fprintf(stderr,
@@ -51,4 +56,5 @@ static const struct option_row rows[] = {
     OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
 };
 
-COMMAND(compare, "results", "A B", COMMAND_OPTIONS(struct options, rows), .has_table = true, .run = run);
+COMMAND(compare, "results", "A B", .chooses_runs = true, COMMAND_OPTIONS(struct options, rows), .has_table = true,
+        .run = run);

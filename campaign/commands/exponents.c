@@ -2,8 +2,7 @@
 #include "campaign/commands/commands.h"
 
 struct options {
-  int64_t point, draws;
-  const char *where;
+  int64_t draws;
 };
 
 /* Prints a point's exponent under its four names, with the goodness of its fit by `draws` samples of the bootstrap.
@@ -42,8 +41,6 @@ static status print_pool(struct table *table, size_t draws, const struct ask_poo
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  const struct ask_pool_choice choice = {.point = options->point, .where = options->where};
-  TRY(ask_points_known(store, options->point, error));
   TABLE table = table_new(line->format, stdout);
   table_column(table, "point_id", NULL);
   table_column(table, "from", "kg");
@@ -57,7 +54,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   table_column(table, "lognormal_p", NULL);
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
-  ASK_POOLS pools = ask_pools(store, &choice, NULL, error);
+  ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, NULL, error);
   for (const struct ask_pool *pool; !table_broken(table) && (pool = ask_pools_next(&pools));) {
     ask_doubts_add(&doubts, &pool->doubts);
     TRY(print_pool(table, (size_t)options->draws, pool, error));
@@ -74,9 +71,8 @@ static status ask(struct store *store, const struct command_line *line, struct e
 }
 
 static const struct option_row option_rows[] = {
-    COMMANDS_POINT(struct options, point),
-    COMMANDS_WHERE(struct options, where),
     OPTION_ROW_INTEGER("draws", 0, "N", struct options, draws, 100, 1000000, "2500"),
 };
 
-COMMAND(exponents, "results", "STORE", COMMAND_OPTIONS(struct options, option_rows), .has_table = true, .ask = ask);
+COMMAND(exponents, "results", "STORE", .chooses_runs = true, COMMAND_OPTIONS(struct options, option_rows),
+        .has_table = true, .ask = ask);

@@ -26,4 +26,5 @@ static const struct option_row rows[] = {
     CHART_OPTIONS(struct options, chart),
 };
 
-COMMAND(plot, "results", "STORE PICTURE.png", COMMAND_OPTIONS(struct options, rows), .check = check, .ask = ask);
+COMMAND(plot, "results", "STORE PICTURE.png", .chooses_runs = true, COMMAND_OPTIONS(struct options, rows),
+        .check = check, .ask = ask);

@@ -22,7 +22,8 @@ struct report_choice {
   size_t count; /* paths of stores, at most STORES */
   char *const *stores;
   const char *output;
-  int64_t refresh; /* s, after which an open page loads itself again; 0: never */
+  struct ask_choice runs; /* of each store */
+  int64_t refresh;        /* s, after which an open page loads itself again; 0: never */
 };
 
 struct making {
@@ -41,7 +42,8 @@ static status add_facts(struct making *making, const char *name, struct error *e
                             {"made_at", now},
                             {"program", "clast " BUILD_VERSION ", commit " BUILD_COMMIT},
                             {"default_quantity", OUTCOME_DEFAULT},
-                            {"refresh", refresh}};
+                            {"refresh", refresh},
+                            {"chosen", ask_chosen(making->store)}};
   for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
     TRY(ask_page_fact(making->page, facts[i][0], facts[i][1], error));
   return STATUS_OK;
@@ -63,7 +65,7 @@ static status add_differences(struct making *making, const char *name, struct er
   for (size_t i = 0; name != first && outcome_main(i); i++) {
     ASK_PAIRS pairs = NULL;
     const char *quantity = outcome_main(i)->path;
-    const status code = ask_pairs_read(first, name, quantity, &pairs, error);
+    const status code = ask_pairs_read(first, name, quantity, &making->choice->runs, &pairs, error);
     if (code)
       return code == STATUS_USAGE ? STATUS_OK : code;
     for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
@@ -117,7 +119,12 @@ static status fill_page(struct making *making, const char *name, struct page_dat
 static status add_store(const struct report_choice *choice, const char *name, struct page_data *data,
                         struct error *error) {
   STORE store = NULL;
+  int64_t excluded = 0;
   TRY(store_open_reader(name, &store, error));
+  TRY(ask_choose(store, &choice->runs, error));
+  TRY(ask_choose_estimates(store, error));
+  TRY(ask_run_excluded_count(store, &excluded, error));
+  commands_tell_excluded(excluded, name);
   struct making making = {.choice = choice, .store = store};
   status code = ask_page_make(store, &making.page, error);
   if (code == STATUS_OK)
@@ -178,7 +185,8 @@ static status run(const struct command_line *line, struct error *error) {
   if (line->count > STORES)
     return status_fail(error, STATUS_USAGE, "a page shows at most %d stores", STORES);
   name_page(line->arguments[0], name, sizeof name);
-  struct report_choice choice = {.count = line->count,
+  struct report_choice choice = {.runs = line->choice,
+                                 .count = line->count,
                                  .stores = line->arguments,
                                  .output = options->output ? options->output : name};
   if (!options->output)
@@ -195,4 +203,4 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_INTEGER("every", 0, "S", struct options, every, 1, EVERY_MOST, "10"),
 };
 
-COMMAND(report, "results", "STORE...", COMMAND_OPTIONS(struct options, option_rows), .run = run);
+COMMAND(report, "results", "STORE...", .chooses_runs = true, COMMAND_OPTIONS(struct options, option_rows), .run = run);

@@ -4,8 +4,7 @@
 #include "campaign/commands/commands.h"
 
 struct options {
-  int64_t point;
-  const char *where, *by, *quantity, *half_width, *picture;
+  const char *by, *quantity, *half_width, *picture;
   bool split, plot, ascii;
   struct chart_options chart;
 };
@@ -24,9 +23,8 @@ static status read_half_width(const char *text, double *half_width, struct error
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  struct scatter_choice choice = {{options->point, options->where, options->by}, options->quantity, NAN};
+  struct scatter_choice choice = {{.by = options->by}, options->quantity, NAN};
   TRY(read_half_width(options->half_width, &choice.half_width, error));
-  TRY(ask_points_known(store, options->point, error));
   if (options->split)
     return print_variance(store, &choice, line->format, error);
   TRY(options->plot ? print_scatter_plots(store, &choice, options->ascii, error)
@@ -38,8 +36,6 @@ static status ask(struct store *store, const struct command_line *line, struct e
 }
 
 static const struct option_row option_rows[] = {
-    COMMANDS_POINT(struct options, point),
-    COMMANDS_WHERE(struct options, where),
     COMMANDS_BY(struct options, by),
     OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
     OPTION_ROW_TEXT("half-width", 0, "NUMBER", struct options, half_width, NULL),
@@ -50,4 +46,5 @@ static const struct option_row option_rows[] = {
     CHART_OPTIONS(struct options, chart),
 };
 
-COMMAND(scatter, "results", "STORE", COMMAND_OPTIONS(struct options, option_rows), .has_table = true, .ask = ask);
+COMMAND(scatter, "results", "STORE", .chooses_runs = true, COMMAND_OPTIONS(struct options, option_rows),
+        .has_table = true, .ask = ask);

@@ -37,5 +37,5 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
 };
 
-COMMAND(sensitivity, "results", "STORE|CAMPAIGN.yaml NEW.yaml", COMMAND_OPTIONS(struct options, option_rows),
-        .has_table = true, .run = run);
+COMMAND(sensitivity, "results", "STORE|CAMPAIGN.yaml NEW.yaml", .chooses_runs = true,
+        COMMAND_OPTIONS(struct options, option_rows), .has_table = true, .run = run);

@@ -3,8 +3,7 @@
 #include "schemas/unit.h"
 
 struct options {
-  int64_t point;
-  const char *where, *by, *size, *with, *picture;
+  const char *by, *size, *with, *picture;
   bool cumulative, runs, plot, ascii;
   struct chart_options chart;
 };
@@ -13,7 +12,6 @@ static status print(struct store *store, const struct options *options, const st
                     enum table_format format, struct error *error) {
   const struct picture_page page = charts_page(options->picture, &options->chart);
   const struct spectrum_drawing drawing = {options->picture ? &page : NULL, options->plot, options->ascii};
-  TRY(ask_points_known(store, options->point, error));
   if (choice->measured)
     TRY(print_spectrum_match(store, choice, format, error));
   else if (!options->plot)
@@ -23,7 +21,7 @@ static status print(struct store *store, const struct options *options, const st
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  struct spectrum_choice choice = {.pool = {options->point, options->where, options->by},
+  struct spectrum_choice choice = {.pool = {.by = options->by},
                                    .cumulative = options->cumulative,
                                    .runs = options->runs};
   __attribute__((cleanup(measured_release))) struct measured measured = {0};
@@ -35,8 +33,6 @@ static status ask(struct store *store, const struct command_line *line, struct e
 }
 
 static const struct option_row option_rows[] = {
-    COMMANDS_POINT(struct options, point),
-    COMMANDS_WHERE(struct options, where),
     COMMANDS_BY(struct options, by),
     OPTION_ROW_FLAG("cumulative", 'c', struct options, cumulative),
     OPTION_ROW_TEXT("size", 0, "DENSITY", struct options, size, NULL),
@@ -48,4 +44,5 @@ static const struct option_row option_rows[] = {
     CHART_OPTIONS(struct options, chart),
 };
 
-COMMAND(spectrum, "results", "STORE", COMMAND_OPTIONS(struct options, option_rows), .has_table = true, .ask = ask);
+COMMAND(spectrum, "results", "STORE", .chooses_runs = true, COMMAND_OPTIONS(struct options, option_rows),
+        .has_table = true, .ask = ask);

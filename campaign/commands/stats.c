@@ -60,5 +60,5 @@ static const struct option_row rows_of_options[] = {
     OPTION_ROW_TEXT("quantity", 'Q', "NAMES", struct options, quantity, OUTCOME_DEFAULT),
 };
 
-COMMAND(stats, "results", "STORE", COMMAND_OPTIONS(struct options, rows_of_options), .has_table = true, .check = check,
-        .ask = ask);
+COMMAND(stats, "results", "STORE", .chooses_runs = true, COMMAND_OPTIONS(struct options, rows_of_options),
+        .has_table = true, .check = check, .ask = ask);

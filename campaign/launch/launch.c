@@ -108,6 +108,9 @@ static void print_summary(const struct driver_summary *summary, const char *stor
   if (summary->runs_censored)
     fprintf(stderr, "%" PRId64 " run%s ended at the hard end time: fragments may still have been breaking\n",
             summary->runs_censored, plural(summary->runs_censored));
+  if (summary->runs_excluded)
+    fprintf(stderr, "%" PRId64 " run%s excluded: clast exclude %s\n", summary->runs_excluded,
+            plural(summary->runs_excluded), store);
   if (summary->runs_doubtful)
     fprintf(stderr, "%" PRId64 " run%s in doubt (!), which means and stopping rules count\n", summary->runs_doubtful,
             plural(summary->runs_doubtful));

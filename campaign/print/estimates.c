@@ -214,6 +214,6 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
   TRY(table_end(table, error));
   if (!table_for_people(format))
     return STATUS_OK;
-  const struct ask_doubts_choice doubts = {.campaign = choice->campaign, .point = choice->point};
+  const struct ask_doubts_choice doubts = {.campaign = choice->campaign};
   return quantity_tell_doubts(store, &doubts, OUTCOME_DEFAULT ",beta", error);
 }

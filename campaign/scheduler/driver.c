@@ -124,18 +124,19 @@ static bool remember(struct driver *driver, int64_t id) {
 static void count_run(struct driver *driver, struct point *point, int64_t r, const struct ask_run_of_point *run,
                       bool fields) {
   struct driver_summary *summary = &driver->summary;
-  const bool usable = outcome_is_usable(run->state);
+  const bool usable = outcome_is_usable(run->state) && !run->excluded;
   const double value = usable ? run->value : NOTHING;
   point_finish_replicate(point, r, POINT_DONE, value);
   point->replicates[r].surplus = run->surplus;
   point->replicates[r].fields = fields || run->state == OUTCOME_INVALID;
   point_cost_learn(&driver->cost, &point->cost, run->wall_s);
   sample_add(&driver->moments, value);
-  summary->runs_failed += !usable;
+  summary->runs_failed += !usable && !run->excluded;
+  summary->runs_excluded += run->excluded;
   summary->runs_surplus += run->surplus;
-  summary->runs_censored += run->state == OUTCOME_END_TIME;
-  summary->runs_doubtful += condition_mark(point->scene->kind->conditions, run->warnings, driver->row->path) !=
-                            CONDITION_SOUND;
+  summary->runs_censored += usable && run->state == OUTCOME_END_TIME;
+  summary->runs_doubtful += !run->excluded && condition_mark(point->scene->kind->conditions, run->warnings,
+                                                             driver->row->path) != CONDITION_SOUND;
 }
 
 /* Takes over a stored run. */

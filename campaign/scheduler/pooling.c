@@ -24,13 +24,7 @@ static void *make_fit(void *context) {
 
 static status write_fit(struct store *store, const struct fit *fit, struct error *error) {
   struct estimate rows[POINT_ESTIMATES];
-  for (int i = 0; i < POINT_ESTIMATES; i++) {
-    const struct point_estimate *made = &fit->fits[i];
-    rows[i] = (struct estimate){.window = made->window, .fit = made->exponent.fit};
-    rows[i].fit.standard_error = made->exponent.interval.standard_error;
-    rows[i].half_width = made->exponent.interval.half_width;
-    rows[i].headline = rows[i].window == ESTIMATES_HEADLINE_WINDOW && rows[i].fit.method == ESTIMATES_HEADLINE_METHOD;
-  }
+  point_estimate_rows(fit->fits, rows);
   return store_set_estimates(store, fit->which->point_id, 0, fit->which->results_version, POINT_ESTIMATES, rows, error);
 }
 

@@ -151,6 +151,7 @@ struct driver_summary {
   int64_t runs_doubtful;   /* whose words mark the main quantity */
   int64_t runs_censored;   /* ended at the hard end time: usable, but fragmentation may be incomplete */
   int64_t runs_surplus;    /* in the store, but left out of statistics */
+  int64_t runs_excluded;   /* by a person: for a rule, runs without a value */
   int64_t fields_written;  /* HDF5 files kept */
   int64_t attempts_failed; /* attempts that failed in this invocation */
   uint64_t points_interval_met, points_cap_reached; /* with `until` */

@@ -14,13 +14,23 @@
 
 enum { HELP_VALUE = 1000, ROW_VALUE = 1001, WORD_MAXIMUM = 63 };
 
-struct table_options {
+/* Options of several commands, whose values are in struct command_line. */
+struct shared_options {
+  struct ask_choice choice;
   bool json, csv, all;
 };
+static const struct option_row choice_rows[] = {
+    OPTION_ROW_INTEGER("point", 'p', "N", struct shared_options, choice.point, 0, INT64_MAX, "0",
+                       .doc = "Only this point (point_id in the view points); 0: all."),
+    OPTION_ROW_TEXT("campaign", 0, "CAMPAIGN", struct shared_options, choice.campaign, NULL,
+                    .doc = "Only the points of this campaign: its number or its name (`clast status` lists them)."),
+    OPTION_ROW_TEXT("where", 'w', "SQL", struct shared_options, choice.where, NULL,
+                    .doc = "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\"."),
+};
 static const struct option_row table_rows[] = {
-    OPTION_ROW_FLAG("json", 0, struct table_options, json, .doc = "Print JSON: one array of objects, SI units."),
-    OPTION_ROW_FLAG("csv", 0, struct table_options, csv, .doc = "Print CSV with a header line, SI units."),
-    OPTION_ROW_FLAG("all", 'a', struct table_options, all,
+    OPTION_ROW_FLAG("json", 0, struct shared_options, json, .doc = "Print JSON: one array of objects, SI units."),
+    OPTION_ROW_FLAG("csv", 0, struct shared_options, csv, .doc = "Print CSV with a header line, SI units."),
+    OPTION_ROW_FLAG("all", 'a', struct shared_options, all,
                     .doc = "Print all columns or lines, also those that are rarely wanted."),
 };
 
@@ -28,6 +38,10 @@ const struct option_row *option_row(const struct command *command, size_t index)
   if (index < command->option_count)
     return &command->options[index];
   index -= command->option_count;
+  enum { CHOICE_ROWS = sizeof choice_rows / sizeof choice_rows[0] };
+  if (command->chooses_runs && index < CHOICE_ROWS)
+    return &choice_rows[index];
+  index -= command->chooses_runs ? CHOICE_ROWS : 0;
   return command->has_table && index < sizeof table_rows / sizeof table_rows[0] ? &table_rows[index] : NULL;
 }
 
@@ -91,14 +105,14 @@ static status take_integer(const struct command *command, const struct option_ro
 struct parse {
   const struct command *command;
   void *options; /* the command's struct */
-  struct table_options table;
+  struct shared_options shared;
   struct option names[LIMITS_OPTIONS + 2]; /* for getopt_long */
   char letters[2 * LIMITS_OPTIONS + 4];
 };
 
 static status take_value(struct parse *parse, size_t index, const char *text, struct error *error) {
   const struct option_row *row = option_row(parse->command, index);
-  char *base = index < parse->command->option_count ? parse->options : (char *)&parse->table;
+  char *base = index < parse->command->option_count ? parse->options : (char *)&parse->shared;
   void *slot = base + row->offset;
   switch (row->kind) {
   case OPTION_FLAG: *(bool *)slot = true; return STATUS_OK;
@@ -153,7 +167,7 @@ static status unknown_option(const struct command *command, const char *typed, i
 /* Fills the tables of getopt_long and sets every option to its default. */
 static status prepare(struct parse *parse, struct error *error) {
   const struct command *command = parse->command;
-  if (command->option_count + 2 > LIMITS_OPTIONS || command->options_size > OPTION_STRUCT_MAXIMUM)
+  if (command->option_count + 6 > LIMITS_OPTIONS || command->options_size > OPTION_STRUCT_MAXIMUM)
     return status_fail(error, STATUS_INTERNAL, "the option table of %s is too large", command->name);
   memset(parse->options, 0, command->options_size);
   char *letter = parse->letters;
@@ -235,9 +249,14 @@ status option_parse(const struct command *command, int argc, char **argv, void *
   line->count = (size_t)(argc - optind);
   line->arguments = argv + optind;
   TRY(check_arguments(command, line->count, line->arguments, error));
-  if (parse.table.json && parse.table.csv)
+  line->chooses_runs = command->chooses_runs;
+  line->choice = parse.shared.choice;
+  if (parse.shared.json && parse.shared.csv)
     return status_fail(error, STATUS_USAGE, "--json and --csv exclude each other");
-  line->format = parse.table.json ? TABLE_JSON : parse.table.csv ? TABLE_CSV : parse.table.all ? TABLE_ALL : TABLE_TEXT;
+  line->format = parse.shared.json  ? TABLE_JSON
+                 : parse.shared.csv ? TABLE_CSV
+                 : parse.shared.all ? TABLE_ALL
+                                    : TABLE_TEXT;
   return STATUS_OK;
 }
 

@@ -67,6 +67,8 @@ struct command_line {
   const void *options; /* the command's struct, filled */
   size_t count;        /* operands, as many as the command takes */
   char **arguments;
+  bool chooses_runs;        /* of the command */
+  struct ask_choice choice; /* by --point, --campaign and --where; all without them */
   enum table_format format; /* by --json and --csv; TABLE_TEXT for a command without them */
   bool help;                /* --help was given; then no other argument was checked */
   int argc;                 /* the whole command line, for provenance */
@@ -82,13 +84,15 @@ struct command {
   size_t option_count;
   size_t options_size; /* sizeof the options struct */
   bool has_table;      /* prints a table: has --json and --csv, too */
+  bool chooses_runs;   /* asks for runs of a store: has --point, --campaign and --where, too */
   bool has_runs;       /* exits 1 and 75 apply */
   bool has_farm;       /* computes with a farm: under mpirun only rank 0 prints an error (launch_quiet_ranks()) */
   /* Data goes to stdout, remarks to stderr; an error is returned, not printed. A command has `run` or `ask`. */
   status (*run)(const struct command_line *line, struct error *error);
   /* Checks the options before that; NULL: there is nothing to check. */
   status (*check)(const struct command_line *line, struct error *error);
-  /* Asks the store that the first argument names, opened as a reader, and prints the answer. */
+  /* Asks the store that the first argument names, opened as a reader, and prints the answer. With
+   * chooses_runs, the store shows the chosen runs alone. */
   status (*ask)(struct store *store, const struct command_line *line, struct error *error);
 };
 /* The options of a command: their struct and their rows (an array). */

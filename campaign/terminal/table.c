@@ -46,6 +46,7 @@ static const struct {
     {"failed", ZERO},
     {"censored", ZERO},
     {"surplus", ZERO},
+    {"excluded", ZERO},
     {"failed_attempts", ZERO},
     {"without_result", ZERO},
     {"warned", ZERO},

@@ -88,7 +88,7 @@ static struct answer ask_judged(struct store *store, const char *question, struc
       "WITH judged AS (SELECT campaign_id, point_id, identity, state, message, %s AS drift, %g AS "
       "drift_allowed, coalesce(warnings, '') AS warnings, CASE WHEN state NOT IN ('completed', 'end-time') "
       "THEN 'refused' WHEN coalesce(warnings, '') <> '' THEN 'warned' ELSE 'safe' END AS class FROM "
-      "campaign_point JOIN run USING (point_id)) %s",
+      "campaign_point JOIN run USING (point_id) WHERE surplus < 2) %s",
       OUTCOME_NAME(energy_error), CONDITION_LARGEST_DRIFT, question);
 }
 
@@ -359,8 +359,6 @@ static void write_choice(sqlite3_str *sql, const struct ask_points_choice *choic
   if (choice->campaign)
     sqlite3_str_appendf(sql, " AND point_id IN (SELECT point_id FROM campaign_point WHERE campaign_id = %lld)",
                         (long long)choice->campaign);
-  if (choice->point)
-    sqlite3_str_appendf(sql, " AND point_id = %lld", (long long)choice->point);
 }
 
 status ask_points_count(struct store *store, const struct ask_points_choice *choice, int64_t *points,
@@ -550,6 +548,22 @@ status ask_run_column_used(struct store *store, int64_t run_id, const char *engi
   return code;
 }
 
+/* An older store lacks the columns, and has no such run. */
+struct answer ask_run_excluded(struct store *store, struct error *error) {
+  const bool has = sqlite3_table_column_metadata(store->db, "main", "run", "excluded", NULL, NULL, NULL, NULL, NULL) ==
+                   SQLITE_OK;
+  return answer_to(store, error,
+                   "SELECT run_id, point_id, seed, %s AS date, %s AS reason FROM run WHERE surplus > 1 ORDER BY run_id",
+                   has ? "excluded_at" : "''", has ? "excluded" : "''");
+}
+
+status ask_run_excluded_count(struct store *store, int64_t *count, struct error *error) {
+  double number = 0;
+  const status code = answer_number(store, &number, error, "SELECT count(*) FROM run WHERE counts = 0 AND surplus > 1");
+  *count = (int64_t)number;
+  return code;
+}
+
 status ask_run_masses(struct store *store, int64_t run_id, double **masses, size_t *count, struct error *error) {
   const void *stored;
   *masses = NULL;
@@ -628,7 +642,8 @@ bool ask_run_of_point_next(struct answer *answer, struct ask_run_of_point *run) 
   *run = (struct ask_run_of_point){
       .replicate = answer_integer(answer, 0),
       .seed = (uint64_t)answer_integer(answer, 1),
-      .surplus = answer_integer(answer, 3) != 0,
+      .surplus = answer_integer(answer, 3) & 1,
+      .excluded = answer_integer(answer, 3) > 1,
       .state = state_of(answer_text(answer, 4)),
       .value = answer_real(answer, 5),
       .withheld = answer_integer(answer, 10) != 0,
@@ -687,7 +702,7 @@ bool ask_specimens_next(struct answer *answer, const struct ask_specimens_quanti
     while (ask_run_of_point_next(answer, &run)) {
       *seed = run.seed;
       *value = run.withheld ? (double)NAN : run.value;
-      if (run.surplus || !outcome_is_usable(run.state))
+      if (run.surplus || run.excluded || !outcome_is_usable(run.state))
         continue;
       (void)ask_doubts_run(doubts, answer_text(answer, 12), run.warnings, quantity->row->path, 1);
       return true;

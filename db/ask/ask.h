@@ -8,13 +8,34 @@
 #include "engine/outcome.h"
 #include "schemas/limits.h"
 
+/* ---- The runs that all further questions to a store see: those of one point, of one campaign, and that meet an SQL
+ * condition on the view runs; and among them, the runs that a person excluded, which no question counts. ---- */
+
+struct ask_choice {
+  int64_t point;        /* 0: all */
+  const char *campaign; /* number or name (several may have it); NULL: all */
+  const char *where;    /* NULL: all */
+};
+/* For a reader. Points without a chosen run are no points. An empty choice: all. STATUS_USAGE: unknown point or
+ * campaign; the condition is no valid SQL. */
+status ask_choose(struct store *store, const struct ask_choice *choice, struct error *error);
+/* The choice in words: "campaign 2, m > 5"; "": all runs, or all of a point. Borrowed. */
+const char *ask_chosen(const struct store *store);
+/* Fits the exponents of the points whose runs were chosen by a condition: the view estimates has them from then on. */
+status ask_choose_estimates(struct store *store, struct error *error);
+
+/* The runs that a person excluded: run_id, point_id, seed, date, reason. */
+struct answer ask_run_excluded(struct store *store, struct error *error);
+/* Their number. */
+status ask_run_excluded_count(struct store *store, int64_t *count, struct error *error);
+
 /* ---- The campaigns and sessions of a store: their progress, their documents, and which of their runs are safe
  * (usable, `warnings` is empty), warned (usable, with warnings) or refused (another state, which gives the reason).
  * ---- */
 
-/* One row per campaign: campaign, name, state, points, runs, counted, censored, failed, surplus, failed_attempts,
- * without_result, cpu_time (s), start and end of its last session, and warned runs that count. `writing`: a process is
- * writing the store (store_is_being_written). */
+/* One row per campaign: campaign, name, state, points, runs, counted, censored, failed, surplus, excluded,
+ * failed_attempts, without_result, cpu_time (s), start and end of its last session, and warned runs that count.
+ * `writing`: a process is writing the store (store_is_being_written). */
 struct answer ask_campaign_progress(struct store *store, bool writing, struct error *error);
 bool ask_campaign_shared(struct store *store); /* have several campaigns the same point? */
 
@@ -50,6 +71,8 @@ struct answer ask_campaign_values(struct store *store, struct error *error);
 /* Runs behind a number. They stay in every mean; a value that is withheld is missing in it. */
 struct ask_doubts {
   int64_t runs, doubtful, withheld; /* that count; whose words mark a result; of these, whose result is withheld */
+  int64_t excluded;                 /* beside these; by a person */
+  const char *chosen;               /* ask_choose() of the store, borrowed from it; NULL, "": all */
   size_t count;
   struct ask_doubt {
     char word[CONDITION_WORD];
@@ -195,7 +218,7 @@ struct ask_points_row {
 
 /* Selects points; 0 means all. */
 struct ask_points_choice {
-  int64_t campaign, point;
+  int64_t campaign;
 };
 
 /* The number of these points, with and without runs. */
@@ -252,7 +275,7 @@ struct ask_run_of_point {
   int64_t replicate;
   uint64_t seed;
   uint8_t identity[16];
-  bool surplus;
+  bool surplus, excluded;
   int state;            /* enum outcome_state */
   double value;         /* of the quantity; NaN when the store has none */
   bool withheld;        /* the value has no meaning */
@@ -311,9 +334,9 @@ bool ask_specimens_next(struct answer *answer, const struct ask_specimens_quanti
 
 /* ---- Statistics of runs grouped by varied inputs, and the names of inputs and results that users abbreviate. ---- */
 
-/* points, n, failed, censored, and of each quantity mean, standard deviation, standard error, 95 % half width,
- * resolution error and its verdict (the worst of all points), of all runs that share the named axes. Last, of each
- * quantity the number of its values in the mean (_n: without withheld ones) and of runs in doubt (_doubtful); and
+/* points, n, failed, censored, excluded, and of each quantity mean, standard deviation, standard error, 95 % half
+ * width, resolution error and its verdict (the worst of all points), of all runs that share the named axes. Last, of
+ * each quantity the number of its values in the mean (_n: without withheld ones) and of runs in doubt (_doubtful); and
  * `doubts`, the words of these runs. A group of one point is a sample of runs (seeds). A group of several points pools
  * over other inputs: its points are the units, each with the mean of its runs, and the interval is that of a mean over
  * such points; the scatter between points includes that of the seeds. `pooled` names these inputs ("threshold.angle,
@@ -361,10 +384,12 @@ struct ask_pairs_row {
 /* Reads the values of both sides: STORE, STORE:POINT or STORE:CAMPAIGN. Of an exponent ("beta", estimates_named()) they
  * are the contributions of the runs: pooled_exponent_of_runs(). STATUS_USAGE: unknown name; STATUS_MISSING: no
  * such store. */
-status ask_pairs_read(const char *first, const char *second, const char *quantity, struct ask_pairs **out,
-                      struct error *error);
+status ask_pairs_read(const char *first, const char *second, const char *quantity, const struct ask_choice *choice,
+                      struct ask_pairs **out, struct error *error);
 /* The next pair; its texts are borrowed from `pairs`. False at the end. */
 bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row);
+/* The runs of a side (0, 1) that a person excluded, and the path of its store, borrowed. */
+int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, const char **path);
 /* After the last pair. STATUS_USAGE: the sides have no point in common. */
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error);
 void ask_pairs_free(struct ask_pairs *pairs); /* NULL is fine */
@@ -409,6 +434,9 @@ enum { POINT_ESTIMATES = 2 * ESTIMATES_WINDOWS }; /* least_squares and masses in
 status point_estimates(const struct point_data *point, double level, struct point_estimate rows[POINT_ESTIMATES],
                        struct error *error);
 
+/* The same as rows of table point_estimate. */
+void point_estimate_rows(const struct point_estimate fits[POINT_ESTIMATES], struct estimate rows[POINT_ESTIMATES]);
+
 /* pooled_exponent_of_runs() in a standard window. `values` has space for point->runs.count numbers. */
 status point_exponent_of_runs(const struct point_data *point, enum exponent_method method, enum estimates_window window,
                               double *values, struct error *error);
@@ -422,10 +450,9 @@ status point_exponent(struct store *store, int64_t point_id, int64_t results_ver
  * means the same in a table, a text plot and a picture. ---- */
 
 struct ask_pool_choice {
-  int64_t point;     /* only this point; 0: all */
-  const char *where; /* only runs that meet this SQL condition on the view runs; NULL: all */
-  const char *by;    /* comma-separated varied inputs (see ask_group): points that share them are one pool; NULL: a pool
-                        per point */
+  int64_t point;  /* only this point; 0: all */
+  const char *by; /* comma-separated varied inputs (see ask_group): points that share them are one pool; NULL: a pool
+                     per point */
 };
 
 enum { ASK_POOL_TEXT = 64, ASK_POOL_LABEL = 256 };

@@ -4,6 +4,7 @@
 #include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
 #include "db/sql.h"
+#include "db/store/internal.h"
 #include "db/store/views.h"
 #include "engine/engine.h"
 #include "schemas/text.h"
@@ -40,6 +41,8 @@ void ask_doubts_add(struct ask_doubts *doubts, const struct ask_doubts *others) 
   doubts->runs += others->runs;
   doubts->doubtful += others->doubtful;
   doubts->withheld += others->withheld;
+  doubts->excluded += others->excluded;
+  doubts->chosen = others->chosen;
   for (size_t k = 0; k < others->count; k++)
     add_word(doubts, others->word[k].word, others->word[k].row, others->word[k].runs);
 }
@@ -59,13 +62,20 @@ status ask_doubts(struct store *store, const struct ask_doubts_choice *choice, c
   if (choice->where)
     sqlite3_str_appendf(where, " AND (%s\n)", choice->where);
   ANSWER
-  answer = answer_to(store, error,
-                     "SELECT engine, warnings, count(*) FROM runs WHERE counts = 1 AND results_version = (SELECT "
-                     "max(results_version) FROM point_total t WHERE t.point_id = runs.point_id AND t.runs > 0)%z "
-                     "GROUP BY engine, warnings ORDER BY engine, warnings",
-                     sqlite3_str_finish(where));
-  while (answer_next(&answer))
-    (void)ask_doubts_run(doubts, answer_text(&answer, 0), answer_text(&answer, 1), results, answer_integer(&answer, 2));
+  answer =
+      answer_to(store, error,
+                "SELECT engine, warnings, sum(counts), sum(surplus > 1) FROM runs WHERE (counts = 1 OR surplus > 1) "
+                "AND results_version = ifnull((SELECT max(results_version) FROM point_total t WHERE t.point_id = "
+                "runs.point_id AND t.runs > 0), results_version)%z GROUP BY engine, warnings ORDER BY engine, "
+                "warnings",
+                sqlite3_str_finish(where));
+  while (answer_next(&answer)) {
+    doubts->excluded += answer_integer(&answer, 3);
+    if (answer_integer(&answer, 2) > 0)
+      (void)ask_doubts_run(doubts, answer_text(&answer, 0), answer_text(&answer, 1), results,
+                           answer_integer(&answer, 2));
+  }
+  doubts->chosen = store->chosen;
   return answer_end(&answer);
 }
 

@@ -128,8 +128,8 @@ static void write_names(FILE *out, const struct names *names) {
 static void write_points(FILE *out, const struct names *axes, const struct names *quantities) {
   fputs("\nFROM (SELECT ", out);
   write_names(out, axes);
-  fputs("engine, results_version, point_id, sum(counts) AS n, sum(counts = 0) AS failed, sum(counts AND state = "
-        "'end-time') AS censored",
+  fputs("engine, results_version, point_id, sum(counts) AS n, sum(counts = 0 AND surplus = 0) AS failed, "
+        "sum(counts AND state = 'end-time') AS censored, sum(surplus > 1) AS excluded",
         out);
   for (size_t i = 0; i < quantities->count; i++) {
     const char *q = quantities->name[i];
@@ -144,7 +144,7 @@ static void write_points(FILE *out, const struct names *axes, const struct names
   for (size_t i = 0; i < quantities->count; i++)
     fprintf(out, "meant(engine, warnings, '%1$s', \"%1$s\") AS \"%1$s\", doubts(engine, warnings, '%1$s') AS w%2$zu, ",
             quantities->name[i], i);
-  fputs("engine, results_version, point_id, counts, state FROM runs WHERE surplus = 0 ORDER BY point_id, "
+  fputs("engine, results_version, point_id, counts, state, surplus FROM runs WHERE surplus <> 1 ORDER BY point_id, "
         "results_version, replicate, seed)\nGROUP BY ",
         out);
   write_names(out, axes);
@@ -166,7 +166,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
     return NULL;
   fputs("SELECT ", out);
   write_names(out, axes);
-  fputs("engine, results_version, points, n, failed, censored", out);
+  fputs("engine, results_version, points, n, failed, censored, excluded", out);
   for (size_t i = 0; i < quantities->count; i++) {
     snprintf(units, sizeof units, "u%zu", i);
     views_statistics_columns(i, quantities->name[i], units, views_is_share(quantities->name[i]), out);
@@ -190,7 +190,8 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   }
   fputs("\nFROM (SELECT ", out);
   write_names(out, axes);
-  fputs("engine, results_version, sum(n > 0) AS points, sum(n) AS n, sum(failed) AS failed, sum(censored) AS censored",
+  fputs("engine, results_version, sum(n > 0) AS points, sum(n) AS n, sum(failed) AS failed, sum(censored) AS censored, "
+        "sum(excluded) AS excluded",
         out);
   for (size_t i = 0; i < quantities->count; i++) { /* in parts, as in views_statistics_columns() */
     fprintf(out,

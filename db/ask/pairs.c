@@ -19,6 +19,8 @@ struct group { /* the runs of one point */
   struct ask_doubts doubts;
 };
 struct side {
+  char path[LIMITS_PATH]; /* of the store */
+  int64_t excluded;       /* runs that a person excluded */
   bool one_point;
   struct group *groups;
   struct difference_value *values;
@@ -33,29 +35,16 @@ static status no_memory(struct error *error) {
   return status_fail(error, STATUS_MEMORY, "no memory for the runs");
 }
 
-/* The values of a column of the runs that count, of the newest results_version, ordered by inputs, point and seed.
- * `point` 0: all; `campaign` NULL: all. */
-static struct answer ask_values(struct store *store, int64_t point, const char *campaign, const char *column,
-                                struct error *error) {
-  char of_point[64] = "";
-  if (point)
-    snprintf(of_point, sizeof of_point, " AND point_id = %lld", (long long)point);
-  char *of_campaign = sqlite3_mprintf(!campaign
-                                          ? ""
-                                          : " AND point_id IN (SELECT point_id FROM campaign_point JOIN campaign USING "
-                                            "(campaign_id) WHERE name = %Q)",
-                                      campaign);
-  if (!of_campaign)
-    return answer_failed(no_memory(error), error);
+/* The values of a column of the runs that count, of the newest results_version, ordered by inputs, point and seed. */
+static struct answer ask_values(struct store *store, const char *column, struct error *error) {
   return answer_to(
       store, error,
       "WITH varied AS MATERIALIZED (SELECT point_id, (SELECT group_concat(v, ', ') FROM (SELECT path || ' = ' || "
       "CAST(value AS TEXT) AS v FROM axis JOIN point_input i USING (path) WHERE i.point_id = p.point_id ORDER BY "
       "path)) AS inputs FROM point p)\nSELECT inputs, point_id, seed, meant(engine, warnings, %Q, \"%w\") FROM runs "
-      "JOIN varied USING (point_id) "
-      "WHERE counts = 1 AND results_version = (SELECT max(results_version) FROM run WHERE counts = 1)%s%z "
-      "ORDER BY inputs, point_id, seed, replicate",
-      column, column, of_point, of_campaign);
+      "JOIN varied USING (point_id) WHERE counts = 1 AND results_version = (SELECT max(results_version) FROM run WHERE "
+      "counts = 1) ORDER BY inputs, point_id, seed, replicate",
+      column, column);
 }
 
 /* Adds a run to its point, which is the last one or a new one. */
@@ -115,72 +104,62 @@ static status read_exponents(struct store *store, enum exponent_method method, e
   return STATUS_OK;
 }
 
-static status read_values(struct store *store, int64_t point, const char *campaign, const char *quantity,
-                          struct side *side, struct error *error) {
+static status read_values(struct store *store, const char *quantity, struct side *side, struct error *error) {
   char column[ASK_GROUP_NAME];
-  double there = 1;
   bool exponent;
   enum exponent_method method;
   enum estimates_window window;
-  TRY(ask_points_known(store, point, error));
-  TRY(ask_register_functions(store, error));
   TRY(estimates_named(quantity, &exponent, &method, &window, error));
   if (exponent)
     snprintf(column, sizeof column, "seed"); /* every run has one */
   else
     TRY(ask_group_quantity(store, quantity, column, error));
-  if (campaign)
-    TRY(answer_number(store, &there, error, "SELECT count(*) FROM campaign WHERE name = %Q", campaign));
-  if (!(there > 0))
-    return status_fail(error, STATUS_USAGE, "the store has no campaign '%.128s'; `clast status` lists them", campaign);
-  ANSWER answer = ask_values(store, point, campaign, column, error);
+  ANSWER answer = ask_values(store, column, error);
   while (answer_next(&answer))
     if (!isnan(answer_real(&answer, 3)))
       TRY(add_run(side, &answer, error));
   TRY(answer_end(&answer));
+  TRY(ask_run_excluded_count(store, &side->excluded, error));
   for (size_t i = 0; i < side->group_count; i++)
     TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = side->groups[i].point},
                    exponent ? OUTCOME_NAME(mean_fragment_mass) : column, &side->groups[i].doubts, error));
   return exponent ? read_exponents(store, method, window, side, error) : STATUS_OK;
 }
 
-static status read_side(const char *operand, const char *quantity, struct side *side, struct error *error) {
-  char path[LIMITS_PATH];
-  int64_t point = 0;
-  const char *campaign = NULL;
+/* STORE:POINT and STORE:CAMPAIGN choose more narrowly than `choice`. */
+static status read_side(const char *operand, const char *quantity, struct ask_choice choice, struct side *side,
+                        struct error *error) {
   const char *colon = strrchr(operand, ':');
-  snprintf(path, sizeof path, "%s", operand);
+  snprintf(side->path, sizeof side->path, "%s", operand);
   if (colon && access(operand, F_OK) != 0) {
-    snprintf(path, sizeof path, "%.*s", (int)(colon - operand), operand);
+    snprintf(side->path, sizeof side->path, "%.*s", (int)(colon - operand), operand);
     char *end = NULL;
-    point = strtoll(colon + 1, &end, 10);
-    if (*end || point < 1) {
-      point = 0;
-      campaign = colon + 1;
-    }
+    const int64_t point = strtoll(colon + 1, &end, 10);
+    if (*end || point < 1)
+      choice.campaign = colon + 1;
+    else
+      choice.point = point;
   }
-  side->one_point = point > 0;
-  struct store *store = NULL;
-  status code = store_open_reader(path, &store, error);
-  if (code)
-    return code;
-  code = read_values(store, point, campaign, quantity, side, error);
-  store_close(store, NULL);
-  if (code == STATUS_OK && side->group_count == 0)
-    code = status_fail(error, STATUS_USAGE, "%s: no run that counts has a value of %s that is not withheld", operand,
-                       quantity);
-  return code;
+  side->one_point = choice.point > 0;
+  STORE store = NULL;
+  TRY(store_open_reader(side->path, &store, error));
+  TRY(ask_choose(store, &choice, error));
+  TRY(read_values(store, quantity, side, error));
+  if (side->group_count > 0)
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE, "%s: no run that counts has a value of %s that is not withheld", operand,
+                     quantity);
 }
 
-status ask_pairs_read(const char *first, const char *second, const char *quantity, struct ask_pairs **out,
-                      struct error *error) {
+status ask_pairs_read(const char *first, const char *second, const char *quantity, const struct ask_choice *choice,
+                      struct ask_pairs **out, struct error *error) {
   struct ask_pairs *pairs = calloc(1, sizeof *pairs);
   *out = NULL;
   if (!pairs)
     return status_fail(error, STATUS_MEMORY, "no memory for a comparison");
-  status code = read_side(first, quantity, &pairs->side[0], error);
+  status code = read_side(first, quantity, *choice, &pairs->side[0], error);
   if (code == STATUS_OK)
-    code = read_side(second, quantity, &pairs->side[1], error);
+    code = read_side(second, quantity, *choice, &pairs->side[1], error);
   if (code == STATUS_OK && pairs->side[0].one_point != pairs->side[1].one_point)
     code = status_fail(error, STATUS_USAGE, "compare a point with a point (STORE:1), or all points with all points");
   if (code) {
@@ -224,6 +203,11 @@ bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
     return true;
   }
   return false;
+}
+
+int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, const char **path) {
+  *path = pairs->side[side].path;
+  return pairs->side[side].excluded;
 }
 
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {

@@ -151,6 +151,16 @@ status point_exponent_of_runs(const struct point_data *point, enum exponent_meth
   return lower > 0 ? pooled_exponent_of_runs(&point->runs, method, lower, values, error) : STATUS_OK;
 }
 
+void point_estimate_rows(const struct point_estimate fits[POINT_ESTIMATES], struct estimate rows[POINT_ESTIMATES]) {
+  for (int i = 0; i < POINT_ESTIMATES; i++) {
+    const struct point_estimate *made = &fits[i];
+    rows[i] = (struct estimate){.window = (int)made->window, .fit = made->exponent.fit};
+    rows[i].fit.standard_error = made->exponent.interval.standard_error;
+    rows[i].half_width = made->exponent.interval.half_width;
+    rows[i].headline = rows[i].window == ESTIMATES_HEADLINE_WINDOW && rows[i].fit.method == ESTIMATES_HEADLINE_METHOD;
+  }
+}
+
 status point_exponent(struct store *store, int64_t point_id, int64_t results_version, enum exponent_method method,
                       enum estimates_window window, double level, struct pooled_exponent *out, struct error *error) {
   struct point_data point;

@@ -28,17 +28,14 @@ static void write_axes(sqlite3_str *sql, const struct ask_pools *pools, bool fir
     sqlite3_str_appendf(sql, "%s\"%w\"", first && a == 0 ? "" : ", ", pools->column[a]);
 }
 
-/* The points with runs, ordered by their inputs. With a condition, the query reads the runs themselves. */
+/* The points with runs, ordered by their inputs. */
 static status find_members(struct ask_pools *pools, struct error *error) {
-  const struct ask_pool_choice *choice = &pools->choice;
   sqlite3_str *sql = sqlite3_str_new(NULL);
   sqlite3_str_appendall(sql, "SELECT point_id, max(results_version)");
   write_axes(sql, pools, false);
-  sqlite3_str_appendall(sql, choice->where ? " FROM runs WHERE counts = 1" : " FROM points WHERE n > 0");
-  if (choice->point)
-    sqlite3_str_appendf(sql, " AND point_id = %lld", (long long)choice->point);
-  if (choice->where)
-    sqlite3_str_appendf(sql, " AND (%s\n)", choice->where);
+  sqlite3_str_appendall(sql, " FROM points WHERE n > 0");
+  if (pools->choice.point)
+    sqlite3_str_appendf(sql, " AND point_id = %lld", (long long)pools->choice.point);
   sqlite3_str_appendall(sql, " GROUP BY point_id");
   write_axes(sql, pools, false);
   sqlite3_str_appendall(sql, " ORDER BY ");
@@ -89,16 +86,12 @@ struct values {
 static status read_values(const struct ask_pools *pools, struct point_data *point, struct values *values,
                           struct error *error) {
   size_t room = 0;
-  char *condition = pools->choice.where ? sqlite3_mprintf(" AND (%s\n)", pools->choice.where) : sqlite3_mprintf("");
-  if (!condition)
-    return no_memory(error);
   ANSWER
   answer = answer_to(pools->store, error,
                      "SELECT run_id, seed, meant(engine, warnings, %Q, \"%w\") FROM runs WHERE point_id = %lld AND "
                      "results_version = %lld AND "
-                     "counts = 1%z ORDER BY replicate, seed",
-                     pools->quantity, pools->quantity, (long long)point->point_id, (long long)point->results_version,
-                     condition);
+                     "counts = 1 ORDER BY replicate, seed",
+                     pools->quantity, pools->quantity, (long long)point->point_id, (long long)point->results_version);
   for (; answer_next(&answer); point->runs.count++) {
     const size_t run = point->runs.count;
     if (run == room) {
@@ -178,10 +171,9 @@ static status read_pool(struct ask_pools *pools, size_t from, size_t end, int64_
     struct values values = {0};
     if (pools->list[i].version != version)
       continue;
-    code = pools->of_values
-               ? read_values(pools, &point, &values, error)
-               : point_read_where(pools->store, point.point_id, version, pools->choice.where, &point, error);
-    const struct ask_doubts_choice runs = {.point = point.point_id, .where = pools->choice.where};
+    code = pools->of_values ? read_values(pools, &point, &values, error)
+                            : point_read(pools->store, point.point_id, version, &point, error);
+    const struct ask_doubts_choice runs = {.point = point.point_id};
     if (code == STATUS_OK)
       code = ask_doubts(pools->store, &runs, pools->of_values ? pools->quantity : OUTCOME_NAME(mean_fragment_mass),
                         &pools->pool.doubts, error);

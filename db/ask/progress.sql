@@ -2,7 +2,8 @@
 -- clocks are set back at times.
 WITH done AS (SELECT campaign_id, count(*) AS runs, sum(counts) AS counted,
   sum(counts AND state = 'end-time') AS censored, sum(counts AND warnings <> '') AS warned,
-  sum(state NOT IN ('completed', 'end-time')) AS failed, sum(surplus) AS surplus, sum(cpu_time) AS cpu_time
+  sum(state NOT IN ('completed', 'end-time') AND surplus < 2) AS failed, sum(surplus = 1) AS surplus,
+  sum(surplus > 1) AS excluded, sum(cpu_time) AS cpu_time
   FROM campaign_point JOIN run USING (point_id) GROUP BY campaign_id),
 tried AS (SELECT campaign_id, count(*) AS failed_attempts
   FROM campaign_point JOIN attempt USING (point_id) GROUP BY campaign_id),
@@ -25,7 +26,7 @@ SELECT campaign_id AS campaign, name,
     ELSE 'killed' END AS state,
   (SELECT count(*) FROM campaign_point AS p WHERE p.campaign_id = campaign.campaign_id) AS points,
   coalesce(runs, 0) AS runs, coalesce(counted, 0) AS counted, coalesce(censored, 0) AS censored,
-  coalesce(failed, 0) AS failed, coalesce(surplus, 0) AS surplus,
+  coalesce(failed, 0) AS failed, coalesce(surplus, 0) AS surplus, coalesce(excluded, 0) AS excluded,
   coalesce(failed_attempts, 0) AS failed_attempts, coalesce(without_result, 0) AS without_result,
   coalesce(cpu_time, 0.0) AS cpu_time, last.started_at AS last_started, last.ended_at AS last_ended,
   coalesce(warned, 0) AS warned

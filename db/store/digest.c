@@ -311,11 +311,12 @@ struct source {
 
 /* All values that follow from inputs, seed and results_version, and the digest of the fields file, which printed
  * digests leave out: a campaign need not keep fields. Left out: times, hosts and ids within the store, and the values
- * that stopping rules change (surplus, counts). The spectrum follows from the masses, bit by bit. */
+ * that stopping rules and people change (surplus, counts, excluded). The spectrum follows from the masses, bit by bit.
+ */
 static const struct source of_runs[] = {
     {"run", "0",
      "'run_id', 'point_id', 'session_id', 'surplus', 'counts', 'attempt', 'wall_time', 'cpu_time', 'peak_memory', "
-     "'host', 'rank', 'finished_at', 'fields_path', 'digest'"},
+     "'host', 'rank', 'finished_at', 'fields_path', 'excluded', 'excluded_at', 'digest'"},
     {"fragment_mass", "0", "'run_id'"},
     {"estimate", "ordinal", "'run_id', 'ordinal'"},
 };

@@ -153,7 +153,8 @@ struct sums { /* all zero: empty */
 struct sums_run {
   int64_t point_id;
   int results_version;
-  bool counts, at_end_time, surplus;
+  bool counts, at_end_time;
+  int surplus; /* as in table run */
 };
 /* Adds a run and its spectrum. False: memory ran out. */
 bool sums_add(struct sums *sums, const struct sums_run *run, size_t count, const struct spectrum_bin_row *bins);
@@ -164,6 +165,9 @@ void sums_clear(struct sums *sums);  /* everything, statements too */
 
 /* Rebuilds the sums of one point from the rows of run and spectrum. Within the caller's transaction. */
 status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error);
+/* Makes the temporary tables chosen_point_total and chosen_point_spectrum from the rows that `run` has, and an empty
+ * chosen_point_estimate. */
+status sums_choose(sqlite3 *db, struct error *error);
 /* *count: rows whose running sums differ from the sums of their rows (doubles: by more than rounding). */
 status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error);
 
@@ -233,6 +237,9 @@ struct store {
   struct digest_tables tables;
   int64_t lowest_bin, highest_bin; /* range covered by table bin; lowest > highest: none */
 
+  char chosen[512];       /* what questions see: ask_choose(); "": all */
+  int64_t excluded_there; /* of the last merge: store_merge_excluded() */
+
   double waits_since, waited_at, wait_until; /* s, monotonic: for another program that holds the file */
   bool in_batch, broken;
   int batch_rows;
@@ -266,6 +273,10 @@ status store_end(struct store *store, status result, int rows, struct error *err
 static inline bool store_run_counts(const struct store_run *run) {
   return !run->surplus && outcome_counts(run->outcome);
 }
+
+/* Inserts the estimates of a point into a table like point_estimate. */
+status store_insert_estimates(sqlite3 *db, const char *table, int64_t point_id, int64_t results_version, size_t count,
+                              const struct estimate *rows, struct error *error);
 
 /* Fills store->masses with a column of fragment_mass. STATUS_MEMORY. */
 status store_take_masses(struct store *store, sqlite3_stmt *row, int column, size_t *count, struct error *error);

@@ -74,7 +74,8 @@ static const struct schema_column run[] = {
     {"replicate", "INTEGER NOT NULL", NULL, "which seed of the point, from 0"},
     {"seed", "INTEGER NOT NULL", NULL, "the seed (64 bits, shown as a signed number)"},
     {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results; statistics never mix two"},
-    {"surplus", "INTEGER NOT NULL", NULL, "1: beyond the prefix a stopping rule decided on; left out of statistics"},
+    {"surplus", "INTEGER NOT NULL", NULL,
+     "above 0: left out of statistics. 1: beyond the prefix a stopping rule decided on; 2: excluded; 3: both"},
     {"attempt", "INTEGER NOT NULL", NULL, "which attempt succeeded, from 1"},
     {"wall_time", "REAL NOT NULL", "s", "elapsed time of the successful attempt"},
     {"cpu_time", "REAL NOT NULL", "s", "processor time of the successful attempt"},
@@ -84,8 +85,11 @@ static const struct schema_column run[] = {
     {"finished_at", "REAL NOT NULL", "s", "when it was stored, seconds since 1970-01-01 UTC"},
     {"fields_path", "TEXT", NULL, "HDF5 file with its fields, relative to the store's folder; NULL when none was kept"},
     {"fields_digest", "TEXT", NULL, "changes when any bit of that file changes; NULL in older rows"},
+    {"excluded", "TEXT", NULL, "why a person excluded the run (clast exclude); NULL: it is not excluded"},
+    {"excluded_at", "TEXT", NULL, "when, UTC, ISO 8601"},
     {"counts", "INTEGER NOT NULL", NULL,
-     "1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)"},
+     "1: part of the statistics (not surplus or excluded, completed or ended at its time, the main results are "
+     "numbers)"},
     {"digest", "BLOB CHECK (length(digest) = 16)", NULL,
      "changes when any bit changes of what the run determined: results, masses, estimates, seed, identity"},
 };
@@ -111,7 +115,7 @@ static const struct schema_column spectrum[] = {
 static const struct schema_column point_total[] = {
     {"point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the point"},
     {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results"},
-    {"runs", "INTEGER NOT NULL", "1", "runs that count: completed, or ended at their time, and not surplus"},
+    {"runs", "INTEGER NOT NULL", "1", "runs that count: completed, or ended at their time, not surplus, not excluded"},
     {"censored", "INTEGER NOT NULL", "1",
      "runs that count and ended at their time: fragments may still have been breaking"},
     {"failed", "INTEGER NOT NULL", "1", "runs that gave no usable result (NaN, time step, energy, invalid)"},
@@ -396,7 +400,8 @@ bool schema_has_column(sqlite3 *db, const char *table, const char *column) {
 }
 
 bool schema_may_lack(const char *table, const char *column) {
-  return strcmp(table, "table_digest") == 0 || (strcmp(table, "run") == 0 && strcmp(column, "fields_digest") == 0);
+  return strcmp(table, "table_digest") == 0 ||
+         (strcmp(table, "run") == 0 && (strcmp(column, "fields_digest") == 0 || strncmp(column, "excluded", 8) == 0));
 }
 
 bool schema_is_complete(sqlite3 *db) {

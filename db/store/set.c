@@ -36,20 +36,25 @@ static status set_of_run(struct store *store, int64_t run_id, size_t count, cons
   return digest_rows_fill(store->db, run_id, error);
 }
 
-static status set_of_point(struct store *store, int64_t point_id, int results_version, size_t count,
-                           const struct estimate *rows, struct error *error) {
+status store_insert_estimates(sqlite3 *db, const char *table, int64_t point_id, int64_t results_version, size_t count,
+                              const struct estimate *rows, struct error *error) {
   struct sql_insert insert = {0};
-  TRY(sql_executef(store->db, writing, error,
-                   "DELETE FROM point_estimate WHERE point_id = %lld AND results_version = %d", (long long)point_id,
-                   results_version));
-  TRY(sql_insert_prepare(store->db, &insert, "point_estimate", 3, of_point, &estimates_table, 1, writing, error));
+  TRY(sql_insert_prepare(db, &insert, table, 3, of_point, &estimates_table, 1, writing, error));
   STATEMENT statement = insert.statement;
   for (size_t i = 0; i < count; i++) {
-    const struct estimate_key key = {point_id, (int64_t)i, results_version};
+    const struct estimate_key key = {point_id, (int64_t)i, (int)results_version};
     sql_insert_bind(&insert, 0, &key, &rows[i]);
     TRY(sql_run(statement, writing, error));
   }
   return STATUS_OK;
+}
+
+static status set_of_point(struct store *store, int64_t point_id, int results_version, size_t count,
+                           const struct estimate *rows, struct error *error) {
+  TRY(sql_executef(store->db, writing, error,
+                   "DELETE FROM point_estimate WHERE point_id = %lld AND results_version = %d", (long long)point_id,
+                   results_version));
+  return store_insert_estimates(store->db, "point_estimate", point_id, results_version, count, rows, error);
 }
 
 status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
@@ -68,15 +73,15 @@ static status set_prefix(struct store *store, int64_t point_id, int64_t prefix, 
   size_t size = 0;
   FILE *out = text_open(&counts, &size);
   TRY(sums_write(&store->sums, store->db, error));
-  snprintf(inside, sizeof inside, "replicate < %lld", (long long)prefix);
+  snprintf(inside, sizeof inside, "surplus < 2 AND replicate < %lld", (long long)prefix);
   if (out)
     schema_write_counts(inside, out);
   if (!out || !text_close(out, &counts))
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   const status
       result = sql_executef(store->db, doing, error,
-                            "UPDATE run SET surplus = replicate >= %lld, counts = %s WHERE point_id = %lld AND "
-                            "surplus <> (replicate >= %lld)",
+                            "UPDATE run SET surplus = (surplus & 2) + (replicate >= %lld), counts = %s WHERE point_id "
+                            "= %lld AND surplus & 1 <> (replicate >= %lld)",
                             (long long)prefix, counts, (long long)point_id, (long long)prefix);
   free(counts);
   TRY(result);
@@ -86,6 +91,53 @@ static status set_prefix(struct store *store, int64_t point_id, int64_t prefix, 
 status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error) {
   TRY(store_begin(store, error));
   return store_end(store, set_prefix(store, point_id, prefix, error), 1, error);
+}
+
+/* ---- runs that a person excludes ---- */
+
+static const char excluding[] = "excluding a run";
+
+/* SQL of `counts` of a run that is excluded no more; sqlite3_free() frees it. NULL: no memory. */
+static char *counts_again(void) {
+  char *counts = NULL, *sql = NULL;
+  size_t size = 0;
+  FILE *out = text_open(&counts, &size);
+  if (out)
+    schema_write_counts("surplus & 1 = 0", out);
+  if (out && text_close(out, &counts))
+    sql = sqlite3_mprintf("surplus = surplus & 1, counts = (%s), excluded = NULL, excluded_at = NULL", counts);
+  free(counts);
+  return sql;
+}
+
+static status exclude(struct store *store, int64_t run_id, const char *reason, struct error *error) {
+  const long long run = run_id;
+  int64_t point = 0, last = 0, surplus = 0;
+  TRY(sums_write(&store->sums, store->db, error));
+  TRY(sql_integerf(store->db, &point, error, "SELECT ifnull(max(point_id), 0) FROM run WHERE run_id = %lld", run));
+  TRY(sql_integer(store->db, "SELECT ifnull(max(run_id), 0) FROM run", 0, &last, error));
+  if (point == 0)
+    return status_fail(error, STATUS_USAGE,
+                       "there is no run %lld: the last run of %s is %lld (run_id in the view runs)", run, store->path,
+                       (long long)last);
+  TRY(sql_integerf(store->db, &surplus, error, "SELECT surplus FROM run WHERE run_id = %lld", run));
+  if (!reason && surplus < 2)
+    return status_fail(error, STATUS_USAGE, "run %lld is not excluded; `clast exclude %s` lists those that are", run,
+                       store->path);
+  SQL_TEXT change = NULL;
+  change = reason ? sqlite3_mprintf("surplus = surplus | 2, counts = 0, excluded = %Q, excluded_at = "
+                                    "strftime('%%Y-%%m-%%dT%%H:%%M:%%SZ', 'now')",
+                                    reason)
+                  : counts_again();
+  if (!change)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", excluding);
+  TRY(sql_executef(store->db, excluding, error, "UPDATE run SET %s WHERE run_id = %lld", change, run));
+  return sums_rebuild(store->db, point, error);
+}
+
+status store_exclude(struct store *store, int64_t run_id, const char *reason, struct error *error) {
+  TRY(store_begin(store, error));
+  return store_end(store, exclude(store, run_id, reason, error), 1, error);
 }
 
 static status set_fields(struct store *store, const uint8_t identity[16], const char *fields_path,

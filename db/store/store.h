@@ -115,6 +115,10 @@ status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id
 /* Call after a decision of a stopping rule: the point's replicates below `prefix` count in its statistics, the others
  * are surplus. The running sums follow. Joins the open batch. */
 status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error);
+/* Excludes a run from all statistics (`reason`: why), or lets it count again (NULL). The running sums follow; the
+ * pooled estimates of its point are gone. Joins the open batch. STATUS_USAGE: there is no such run, or it is not
+ * excluded. */
+status store_exclude(struct store *store, int64_t run_id, const char *reason, struct error *error);
 
 /* One knob of a convergence study, for one quantity. All pointers are borrowed for the call. */
 struct store_convergence {
@@ -167,6 +171,8 @@ status store_check_run(struct store *store, int64_t run_id, bool *whole, struct 
  * runs present in both stores with different masses or states. The version of `store` is kept; the caller must report
  * them. Merging twice adds nothing. */
 status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error);
+/* Runs that count in `store`, and that the source of the last merge excludes: the caller must report them, too. */
+int64_t store_merge_excluded(const struct store *store);
 /* Writes a compact copy (VACUUM INTO); refuses to overwrite. */
 status store_export(struct store *store, const char *path, struct error *error);
 

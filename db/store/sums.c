@@ -71,8 +71,8 @@ bool sums_add(struct sums *sums, const struct sums_run *run, size_t count, const
     return false;
   total->runs += run->counts;
   total->censored += run->counts && run->at_end_time;
-  total->surplus += run->surplus;
-  total->failed += !run->counts && !run->surplus;
+  total->surplus += run->surplus == 1;
+  total->failed += !run->counts && run->surplus == 0;
   double mass = 0; /* summed apart, as in SQL: the bits depend on the order */
   for (size_t i = 0; run->counts && i < count; i++) {
     struct sums_row *row = row_at(sums, run, bins[i].bin);
@@ -174,7 +174,8 @@ void sums_clear(struct sums *sums) {
 
 #define TOTALS(where)                                                                                                  \
   "SELECT point_id, results_version, sum(counts) AS runs, sum(counts AND state = 'end-time') AS censored, "            \
-  "sum(surplus = 0 AND counts = 0) AS failed, sum(surplus) AS surplus, sum(iif(counts, fragments, 0)) AS fragments, "  \
+  "sum(surplus = 0 AND counts = 0) AS failed, sum(surplus = 1) AS surplus, sum(iif(counts, fragments, 0)) AS "         \
+  "fragments, "                                                                                                        \
   "total(iif(counts, mass, 0)) AS mass FROM (SELECT r.point_id, r.results_version, r.counts, r.state, r.surplus, "     \
   "ifnull((SELECT sum(count) FROM spectrum s WHERE s.run_id = r.run_id), 0) AS fragments, (SELECT total(mass) FROM "   \
   "spectrum s WHERE s.run_id = r.run_id) AS mass FROM run r" where ") GROUP BY point_id, results_version"
@@ -198,6 +199,16 @@ status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error) {
                       "INSERT INTO point_spectrum (point_id, results_version, bin, runs, count, count_squared, "
                       "mass) " BINS(" AND r.point_id = %lld"),
                       point);
+}
+
+status sums_choose(sqlite3 *db, struct error *error) {
+  return sql_execute(db,
+                     "CREATE TEMP TABLE chosen_point_total AS " TOTALS(
+                         "") "; CREATE TEMP TABLE chosen_point_spectrum "
+                             "AS " BINS(
+                                 "") "; CREATE TEMP TABLE chosen_point_estimate AS SELECT * FROM main.point_estimate "
+                                     "WHERE false",
+                     "choosing runs", error);
 }
 
 /* Integers must agree; a sum of masses in another order agrees to n units in the last place, with n runs below 1e6. */

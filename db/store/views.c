@@ -258,7 +258,9 @@ static void write_points(struct view *view) {
   fputs("\nSELECT p.point_id, p.engine, p.scene_name AS scene,\n", out);
   write_axes(view);
   fputs("  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS "
-        "failed,\n  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS "
+        "failed,\n  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND "
+        "r.results_version = t.results_version AND r.counts = 0 AND r.surplus > 1) AS excluded, (SELECT count(*) FROM "
+        "attempt a WHERE a.point_id = p.point_id) AS "
         "failed_attempts,\n"
         "  (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND "
         "r.counts AND r.warnings <> '') AS doubtful,\n"

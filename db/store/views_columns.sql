@@ -9,7 +9,8 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
   FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v,
     (VALUES ('scene', 'name of the scene the inputs started from')) w;
 INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
-  ('points', 'n', '1', 'runs that count: completed, or ended at their time, and not surplus'),
+  ('points', 'n', '1', 'runs that count: completed, or ended at their time, not surplus, not excluded'),
+  ('points', 'excluded', '1', 'runs that a person excluded (clast exclude)'),
   ('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers'),
   ('points', 'doubtful', '1', 'runs behind the means that break a condition: their values are in doubt, or have no meaning'),
   ('points', 'doubts', NULL, 'warnings of these runs, each different text once; clast explain WORD says what a word means'),

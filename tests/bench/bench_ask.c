@@ -102,13 +102,15 @@ static void spectra(struct store *store, size_t *rows) {
 }
 
 static void where(struct store *store, size_t *rows) {
-  count_bins(store, &(struct ask_pool_choice){.where = "material_m = 3 AND replicate < 100"}, rows);
+  need(ask_choose(store, &(struct ask_choice){.where = "material_m = 3 AND replicate < 100"}, &error));
+  count_bins(store, &(struct ask_pool_choice){0}, rows);
+  need(ask_choose(store, &(struct ask_choice){0}, &error));
 }
 
 static void compare(struct store *store, size_t *rows) {
   (void)store;
   struct ask_pairs *pairs;
-  need(ask_pairs_read(path, path, "largest_fraction", &pairs, &error));
+  need(ask_pairs_read(path, path, "largest_fraction", &(struct ask_choice){0}, &pairs, &error));
   for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
     ++*rows;
   ask_pairs_free(pairs);

@@ -150,7 +150,7 @@ PY
     kill $pid
     wait $pid || true ;;
   # no numbers of a store that rest on runs: files, bits, other programs
-  retry | scenes | materials | schema | cite | check | merge | replay | help | version | completion) ;;
+  retry | scenes | materials | schema | cite | exclude | check | merge | replay | help | version | completion) ;;
   *) fail "clast $command is new: does it print a number that may be in doubt?" ;;
   esac
 done

@@ -52,5 +52,5 @@ expect 0 env COLUMNS=60 "$toy" stats toy.db --by strain,angle -Q main
 [ "$(widest)" -le 60 ] || fail "wider than COLUMNS"
 prints strain; prints angle
 expect 0 "$toy" stats toy.db --by strain,angle --csv
-prints "stick_strain,stick_angle,engine,results_version,points,n,failed,censored,largest_fraction_mean,largest_fraction_sd"
+prints "stick_strain,stick_angle,engine,results_version,points,n,failed,censored,excluded,largest_fraction_mean,largest_fraction_sd"
 done_after 83

@@ -204,7 +204,7 @@ static void pairs_of_exponents(void **state) {
   OK(point_exponent_of_runs(&point, EXPONENT_MASSES, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW, values, &error));
   OK(store_close(store, &error));
   snprintf(operand, sizeof operand, "%s:%lld", path, (long long)id);
-  OK(ask_pairs_read(operand, operand, "beta", &pairs, &error));
+  OK(ask_pairs_read(operand, operand, "beta", &(struct ask_choice){0}, &pairs, &error));
   assert_true(ask_pairs_next(pairs, &row));
   assert_int_equal(row.difference.n[0], point.runs.count);
   assert_int_equal(row.difference.pairs, point.runs.count);
@@ -213,7 +213,8 @@ static void pairs_of_exponents(void **state) {
   struct sample_summary summary = sample_summarise(point.runs.count, values, 0.95);
   assert_near(summary.half_width, fit.interval.half_width, 1e-9);
   ask_pairs_free(pairs);
-  assert_int_equal(ask_pairs_read(operand, operand, "beta_none", &pairs, &error), STATUS_USAGE);
+  assert_int_equal(ask_pairs_read(operand, operand, "beta_none", &(struct ask_choice){0}, &pairs, &error),
+                   STATUS_USAGE);
   point_release(&point);
 }
 
@@ -265,7 +266,7 @@ static size_t pairs_of(const char *a, const char *b, status expected, struct ask
                        char inputs[100]) {
   struct ask_pairs *pairs = NULL;
   size_t count = 0;
-  OK(ask_pairs_read(a, b, "hardest", &pairs, &error));
+  OK(ask_pairs_read(a, b, "hardest", &(struct ask_choice){0}, &pairs, &error));
   while (count < MOST_PAIRS && ask_pairs_next(pairs, &rows[count]))
     snprintf(inputs, 100, "%s", rows[count++].inputs);
   assert_int_equal(ask_pairs_end(pairs, &error), expected);
@@ -308,12 +309,13 @@ static void pairs_of_points(void **state) {
   assert_true(rows[0].point[0] == 1 && rows[0].point[1] == 9);
 
   struct ask_pairs *pairs = NULL;
-  assert_int_equal(ask_pairs_read(first, b, "hardest", &pairs, &error), STATUS_USAGE); /* a point with all points */
+  assert_int_equal(ask_pairs_read(first, b, "hardest", &(struct ask_choice){0}, &pairs, &error),
+                   STATUS_USAGE); /* a point with all points */
   assert_null(pairs);
   snprintf(point, sizeof point, "%s:99", b);
-  assert_int_equal(ask_pairs_read(first, point, "hardest", &pairs, &error), STATUS_USAGE);
+  assert_int_equal(ask_pairs_read(first, point, "hardest", &(struct ask_choice){0}, &pairs, &error), STATUS_USAGE);
   snprintf(point, sizeof point, "%s:nobody", b);
-  assert_int_equal(ask_pairs_read(a, point, "hardest", &pairs, &error), STATUS_USAGE);
+  assert_int_equal(ask_pairs_read(a, point, "hardest", &(struct ask_choice){0}, &pairs, &error), STATUS_USAGE);
   snprintf(point, sizeof point, "%s:made-up", b);
   assert_int_equal(pairs_of(a, point, STATUS_OK, rows, text), 4);
 

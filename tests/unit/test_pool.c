@@ -71,22 +71,23 @@ static void pools_of_runs(void **state) {
   assert_string_equal(everything.labels, "all points; ");
 
   /* A condition leaves runs and points out. */
-  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.by = "m", .where = "material_k > 5e30 AND replicate = 1"},
-                       NULL, &error),
-             &some));
+  OK(ask_choose(store, &(struct ask_choice){.where = "material_k > 5e30 AND replicate = 1"}, &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.by = "m"}, NULL, &error), &some));
+  OK(ask_choose(store, &(struct ask_choice){0}, &error));
   assert_true(some.pools == 2 && some.points == 4 && some.runs == 4);
   assert_near(some.sum, number(store, "SELECT sum(total_mass) FROM runs WHERE material_k > 5e30 AND replicate = 1"),
               1e-9);
-  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.where = "replicate > 99"}, NULL, &error), &none));
+  OK(ask_choose(store, &(struct ask_choice){.where = "replicate > 99"}, &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){0}, NULL, &error), &none));
   assert_int_equal(none.pools, 0);
-  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.point = 2, .where = "replicate = 0 OR replicate = 2"}, NULL,
-                       &error),
-             &one));
+  OK(ask_choose(store, &(struct ask_choice){.where = "replicate = 0 OR replicate = 2"}, &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.point = 2}, NULL, &error), &one));
+  OK(ask_choose(store, &(struct ask_choice){0}, &error));
   assert_true(one.pools == 1 && one.runs == 2);
   assert_string_equal(one.labels, "m 6, k 1e+31 1/m^3; ");
 
-  assert_int_equal(look_at(ask_pools(store, &(struct ask_pool_choice){.where = "no_such > 1"}, NULL, &error), &none),
-                   STATUS_USAGE);
+  assert_int_equal(ask_choose(store, &(struct ask_choice){.where = "no_such > 1"}, &error), STATUS_USAGE);
+  OK(ask_choose(store, &(struct ask_choice){0}, &error));
   assert_int_equal(look_at(ask_pools(store, &(struct ask_pool_choice){.by = "no_such"}, NULL, &error), &none),
                    STATUS_USAGE);
   {
@@ -104,9 +105,9 @@ static void pools_of_values(void **state) {
   OK(look_at(ask_pools(store, &(struct ask_pool_choice){.by = "k"}, "largest_fraction", &error), &by_k));
   assert_true(by_k.pools == 3 && by_k.points == 6 && by_k.runs == 6 * RUNS);
   assert_near(by_k.sum, number(store, "SELECT sum(largest_fraction) FROM run"), 1e-12);
-  OK(look_at(ask_pools(store, &(struct ask_pool_choice){.where = "material_m > 6.5 AND replicate < 2"}, "hardest",
-                       &error),
-             &some));
+  OK(ask_choose(store, &(struct ask_choice){.where = "material_m > 6.5 AND replicate < 2"}, &error));
+  OK(look_at(ask_pools(store, &(struct ask_pool_choice){0}, "hardest", &error), &some));
+  OK(ask_choose(store, &(struct ask_choice){0}, &error));
   assert_true(some.pools == 3 && some.runs == 6);
   assert_near(some.sum, 3 * (0 + 0.5), 1e-12);
   assert_int_equal(look_at(ask_pools(store, &(struct ask_pool_choice){0}, "no_such", &error), &some), STATUS_USAGE);

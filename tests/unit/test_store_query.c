@@ -207,14 +207,16 @@ static void groups_say_what_they_pool(void **state) {
   assert_true(scatter > 1e-3);
   const double mean = (first + second) / 2;
   char expected[200]; /* the mean of `hardest` is 6 at every point: no scatter, and no interval */
-  snprintf(expected, sizeof expected, "\n6,fake,3,2,50,0,0,6,0,0,nan,nan,nan,nan,nan,not-studied,%.6g,%.6g,%.6g,%.6g,",
-           mean, scatter, scatter / sqrt(2), 12.706204736174 * scatter / sqrt(2) * (1 + SAMPLE_SKEW * scatter / mean));
+  snprintf(expected, sizeof expected,
+           "\n6,fake,3,2,50,0,0,0,6,0,0,nan,nan,nan,nan,nan,not-studied,%.6g,%.6g,%.6g,%.6g,", mean, scatter,
+           scatter / sqrt(2), 12.706204736174 * scatter / sqrt(2) * (1 + SAMPLE_SKEW * scatter / mean));
   if (!strstr(rows.text, expected))
     fail_msg("%s not in %s", expected, rows.text);
   assert_non_null(
-      strstr(rows.text, "material_m,engine,results_version,points,n,failed,censored,hardest_mean,hardest_sd,hardest_se,"
-                        "hardest_hw95,hardest_low95,hardest_high95,hardest_weak,hardest_resolution,"
-                        "hardest_resolution_verdict,largest_fraction_mean"));
+      strstr(rows.text,
+             "material_m,engine,results_version,points,n,failed,censored,excluded,hardest_mean,hardest_sd,hardest_se,"
+             "hardest_hw95,hardest_low95,hardest_high95,hardest_weak,hardest_resolution,"
+             "hardest_resolution_verdict,largest_fraction_mean"));
   OK(keep(ask_group(store, "material.k,m", NULL, pooled, &error), &rows));
   assert_int_equal(rows.count, M * K);
   assert_string_equal(pooled, "");

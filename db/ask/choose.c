@@ -1,0 +1,144 @@
+/* Chooses the runs that all further questions to a store see. The tables that questions read get temporary views of the
+ * same names, which SQLite finds first; so no question knows of the choice. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "db/ask/ask.h"
+#include "db/store/internal.h"
+#include "schemas/text.h"
+
+static const char doing[] = "choosing runs";
+
+/* Tables with a row per point or per point and something else. */
+static const char *const of_points[] = {"point",          "campaign_point", "attempt",
+                                        "point_estimate", "point_total",    "point_spectrum"};
+enum { OF_POINTS = sizeof of_points / sizeof of_points[0], SUMMED = OF_POINTS - 3 }; /* from there: sums over runs */
+
+static status forget(sqlite3 *db, struct error *error) {
+  for (size_t i = 0; i < OF_POINTS; i++)
+    TRY(sql_executef(db, doing, error, "DROP VIEW IF EXISTS temp.%s; DROP TABLE IF EXISTS temp.chosen_%s", of_points[i],
+                     of_points[i])); /* also chosen_point */
+  return sql_execute(db,
+                     "DROP VIEW IF EXISTS temp.run; DROP VIEW IF EXISTS temp.campaign; DROP TABLE IF EXISTS "
+                     "temp.chosen_campaign; DROP TABLE IF EXISTS temp.chosen_run",
+                     doing, error);
+}
+
+static status choose_campaigns(struct store *store, const char *campaign, struct error *error) {
+  int64_t count = 0;
+  TRY(sql_executef(store->db, doing, error,
+                   "CREATE TEMP TABLE chosen_campaign AS SELECT campaign_id FROM main.campaign WHERE name = %Q OR "
+                   "CAST(campaign_id AS TEXT) = %Q",
+                   campaign, campaign));
+  TRY(sql_integer(store->db, "SELECT count(*) FROM temp.chosen_campaign", 0, &count, error));
+  if (count == 0)
+    return status_fail(error, STATUS_USAGE, "the store has no campaign '%.128s'; `clast status` lists them", campaign);
+  TRY(sql_execute(store->db,
+                  "DELETE FROM temp.chosen_point WHERE point_id NOT IN (SELECT point_id FROM main.campaign_point JOIN "
+                  "temp.chosen_campaign USING (campaign_id))",
+                  doing, error));
+  return sql_execute(store->db,
+                     "CREATE TEMP VIEW campaign AS SELECT * FROM main.campaign WHERE campaign_id IN (SELECT "
+                     "campaign_id FROM temp.chosen_campaign)",
+                     doing, error);
+}
+
+/* The condition comes from the command line: it is asked as a question, which can only read. */
+static status choose_runs(struct store *store, const char *where, struct error *error) {
+  STATEMENT insert = NULL;
+  TRY(sql_execute(store->db, "CREATE TEMP TABLE chosen_run (run_id INTEGER PRIMARY KEY)", doing, error));
+  TRY(sql_prepare(store->db, "INSERT INTO temp.chosen_run VALUES (?1)", &insert, doing, error));
+  ANSWER
+  runs = answer_to(store, error,
+                   "SELECT run_id FROM runs WHERE (%s\n) AND point_id IN (SELECT point_id FROM temp.chosen_point)",
+                   where);
+  while (answer_next(&runs)) {
+    sqlite3_bind_int64(insert, 1, answer_integer(&runs, 0));
+    TRY(sql_run(insert, doing, error));
+  }
+  TRY(answer_end(&runs));
+  TRY(sql_execute(store->db,
+                  "DELETE FROM temp.chosen_point WHERE point_id NOT IN (SELECT point_id FROM main.run JOIN "
+                  "temp.chosen_run USING (run_id)); CREATE TEMP VIEW run AS SELECT * FROM main.run WHERE run_id IN "
+                  "(SELECT run_id FROM temp.chosen_run)",
+                  doing, error));
+  return sums_choose(store->db, error);
+}
+
+static status make_views(sqlite3 *db, bool summed, struct error *error) {
+  for (size_t i = 0; i < OF_POINTS; i++)
+    TRY(sql_executef(db, doing, error,
+                     "CREATE TEMP VIEW %s AS SELECT * FROM %s%s WHERE point_id IN (SELECT point_id FROM "
+                     "temp.chosen_point)",
+                     of_points[i], summed && i >= SUMMED ? "temp.chosen_" : "main.", of_points[i]));
+  return STATUS_OK;
+}
+
+static status choose(struct store *store, const struct ask_choice *choice, struct error *error) {
+  TRY(sql_executef(
+      store->db, doing, error,
+      "CREATE TEMP TABLE chosen_point (point_id INTEGER PRIMARY KEY); INSERT INTO temp.chosen_point SELECT "
+      "point_id FROM main.point WHERE %lld IN (0, point_id)",
+      (long long)choice->point));
+  if (choice->campaign)
+    TRY(choose_campaigns(store, choice->campaign, error));
+  if (choice->where)
+    TRY(choose_runs(store, choice->where, error));
+  else
+    TRY(sql_execute(store->db,
+                    "CREATE TEMP VIEW run AS SELECT * FROM main.run WHERE point_id IN (SELECT point_id FROM "
+                    "temp.chosen_point)",
+                    doing, error));
+  return make_views(store->db, choice->where, error);
+}
+
+status ask_choose(struct store *store, const struct ask_choice *choice, struct error *error) {
+  TRY(ask_points_known(store, choice->point, error));
+  sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL); /* it covers temporary tables, too */
+  status code = forget(store->db, error);
+  if (code == STATUS_OK)
+    code = ask_register_functions(store, error);
+  if (code == STATUS_OK && (choice->point || choice->campaign || choice->where))
+    code = choose(store, choice, error);
+  store->chosen[0] = '\0';
+  if (choice->campaign)
+    text_append(store->chosen, sizeof store->chosen, "campaign %s", choice->campaign);
+  if (choice->where)
+    text_append(store->chosen, sizeof store->chosen, "%s%s", choice->campaign ? ", " : "", choice->where);
+  if (!store->writer)
+    sqlite3_exec(store->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
+  return code;
+}
+
+const char *ask_chosen(const struct store *store) {
+  return store->chosen;
+}
+
+static status fit_point(struct store *store, const struct ask_points_version *which, struct error *error) {
+  __attribute__((cleanup(point_release))) struct point_data point = {0};
+  struct point_estimate fits[POINT_ESTIMATES];
+  struct estimate rows[POINT_ESTIMATES];
+  TRY(point_read(store, which->point_id, which->results_version, &point, error));
+  TRY(point_estimates(&point, 0.95, fits, error));
+  point_estimate_rows(fits, rows);
+  return store_insert_estimates(store->db, "chosen_point_estimate", which->point_id, which->results_version,
+                                POINT_ESTIMATES, rows, error);
+}
+
+status ask_choose_estimates(struct store *store, struct error *error) {
+  struct ask_points_version *points = NULL;
+  size_t count = 0;
+  int64_t chosen = 0;
+  TRY(sql_integer(store->db, "SELECT count(*) FROM temp.sqlite_schema WHERE name = 'chosen_point_estimate'", 0, &chosen,
+                  error));
+  if (chosen == 0)
+    return STATUS_OK;
+  status code = ask_points_without_estimates(store, 0, &points, &count, error);
+  sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
+  for (size_t i = 0; code == STATUS_OK && i < count; i++)
+    code = fit_point(store, &points[i], error);
+  sqlite3_exec(store->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
+  free(points);
+  return code;
+}

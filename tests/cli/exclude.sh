@@ -1,0 +1,171 @@
+# Runs that a person excludes (clast exclude): every question leaves them out and says so, nothing computes or replaces them, the
+# reason travels with merge and export, an older store takes them, and --undo gives back the same answers, byte for byte.
+. "$(dirname "$0")/lib.bash"
+
+tiny one
+sed -i 's/per_point: 3/per_point: 5/' one.yaml
+expect 0 "$clast" run one.yaml -j 2 --quiet
+cat >line.yaml <<'YAML'
+name: line
+scene: disc-explosion
+set: {body.diameter: 6 cm, charge.energy: 2 kJ/m, stop.end_time: 0.3 ms}
+vary: {threshold.strain: {uniform: [1 %, 6 %]}, threshold.angle: {uniform: [2 deg, 6 deg]}}
+design: {kind: sobol, points: 4}
+seeds: {per_point: 2}
+YAML
+"$clast" sensitivity line.yaml ask.yaml --design saltelli --blocks 4 >out 2>err || fail "no design"
+expect 0 "$clast" run ask.yaml --store ask.db -j 2 --quiet
+printf '# source: made up\nmass (kg), count\n0.05, 3\n0.2, 1\n' >measured.csv
+
+# Every question to a store, as programs see it. Pictures are compared by the data that gnuplot draws.
+questions=(
+  "stats one.db --by strain,angle --quantity main"
+  "stats one.db"
+  "estimates one.db"
+  "scatter one.db"
+  "scatter one.db --by strain"
+  "scatter one.db --split"
+  "exponents one.db --draws 100"
+  "spectrum one.db"
+  "spectrum one.db --with measured.csv"
+  "compare one.db:1 one.db:2"
+  "sensitivity ask.db ask.yaml"
+)
+answers() { # answers FOLDER: the answers of all questions, and what they say, in files
+  local i
+  mkdir -p "$1"
+  for i in "${!questions[@]}"; do
+    # shellcheck disable=SC2086
+    "$clast" ${questions[$i]} --csv >"$1/$i.csv" 2>"$1/$i.said" || fail "${questions[$i]}: $(cat "$1/$i.said")"
+  done
+  "$clast" plot one.db "$1/plot.svg" -x strain --by angle --keep-script 2>"$1/plot.said" || fail "plot"
+  "$clast" map one.db "$1/map.svg" -x strain -y angle --keep-script 2>"$1/map.said" || fail "map"
+  "$clast" spectrum one.db --picture "$1/spectrum.svg" --keep-script >/dev/null 2>"$1/spectrum.said" || fail "spectrum"
+  "$clast" extremes one.db --csv >"$1/extremes.csv" 2>"$1/extremes.said" || fail "extremes"
+  "$clast" report one.db -o "$1/page.html" 2>"$1/page.said" || fail "report"
+  rm "$1/page.html"
+}
+answers before
+# The first run of point 1 and of the sensitivity design's first point are bad.
+expect 64 "$clast" exclude one.db 1
+says "--reason"
+expect 64 "$clast" exclude one.db 1 --reason ""
+expect 64 "$clast" exclude one.db 999 --reason "none"
+says "there is no run 999"
+expect 64 "$clast" exclude one.db 1 --undo
+says "run 1 is not excluded"
+expect 0 "$clast" exclude one.db
+silent out
+says "no run is excluded"
+expect 0 "$clast" exclude one.db 1 --reason "the camera saw a flaw"
+says "1 run is excluded"
+expect 0 "$clast" exclude one.db
+prints "the camera saw a flaw"
+expect 0 "$clast" exclude one.db --csv
+prints "run_id,point_id,seed,date,reason"
+expect 0 "$clast" exclude ask.db 1 --reason "bad"
+answers after
+for said in after/*.said; do
+  grep -q '1 run is excluded and left out (`clast exclude [a-z]*.db` lists it)' "$said" || fail "$said does not say it: $(cat "$said")"
+  ok "$said says it"
+done
+for before in before/*.csv before/*.dat; do
+  cmp -s "$before" "after/$(basename "$before")" && fail "$before: the answer holds the excluded run"
+  ok "$before: another answer without the run"
+done
+grep -q "1 run excluded" after/plot.gp after/map.gp after/spectrum.gp || fail "no caption says it"
+same "$(grep -l '1 run excluded' after/*.gp | wc -l)" 3 "captions that say it"
+same "$(number one.db 'select n || "/" || excluded from points where point_id = 1')" "4/1" "runs and excluded runs of the point"
+same "$("$clast" stats one.db --by strain,angle --json 2>/dev/null | grep -o '"excluded": 1' | wc -l)" 1 "groups with an excluded run"
+expect 0 "$clast" stats one.db --by strain,angle
+prints "excluded"
+expect 0 "$clast" status one.db
+prints "excluded"
+says "1 run is excluded"
+expect 0 "$clast" check one.db
+expect 0 "$clast" check ask.db
+
+# Nothing computes it again: not the campaign, not more seeds, not a rule, not a retry, not a replay.
+expect 0 "$clast" run one.yaml -j 2
+same "$(number one.db 'select count(*) from run')" 20 "runs after the same campaign"
+same "$(number one.db 'select counts || excluded from run where run_id = 1')" "0the camera saw a flaw" "the run"
+expect 0 "$clast" run one.yaml --seeds 6 -j 2 --quiet
+same "$(number one.db 'select n || "/" || excluded from points where point_id = 1')" "5/1" "of six seeds"
+same "$(number one.db 'select count(*) from run where point_id = 1')" 6 "runs of the point"
+expect 0 "$clast" retry one.db
+says "no run was given up"
+expect 0 "$clast" replay one.db 1
+# A rule takes it for a run without a value.
+sed "s/seeds: .*/seeds: {until: {quantity: largest_fraction, half_width: 0.2}, max: 40}/" one.yaml >until.yaml
+"$clast" run until.yaml --store until.db -j 2 --quiet >out 2>err || fail "the rule"
+"$clast" exclude until.db 1 --reason "bad" 2>err || fail "exclude"
+expect 0 "$clast" run until.yaml --store until.db -j 2 --quiet
+same "$(number until.db 'select counts from run where run_id = 1')" 0 "after the rule"
+expect 0 "$clast" check until.db
+
+# One choice of runs for all questions: each command of the results that reads a store has it.
+without="query picture" # SQL of one's own; a file
+for command in $("$clast" help | sed -n '/^results:/,/^the store:/s/^  \([a-z]*\) .*/\1/p'); do
+  case " $without " in *" $command "*) continue ;; esac
+  "$clast" "$command" --help >out
+  grep -q -- "--campaign CAMPAIGN" out && grep -q -- "--where SQL" out && grep -q -- "--point N" out ||
+    fail "clast $command cannot choose runs"
+done
+ok "every question chooses runs"
+same "$("$clast" stats one.db --by strain --where 'replicate < 2' --csv 2>/dev/null | cut -d, -f4,5 | tail -n 1)" "2,4" "points and runs"
+same "$("$clast" estimates one.db --where 'replicate = 1' --csv 2>/dev/null | grep -c ',from_2,')" 4 "points with the second seed"
+same "$("$clast" estimates one.db --campaign one --point 2 --csv 2>/dev/null | wc -l)" 4 "rows of a point"
+expect 64 "$clast" map one.db no.svg -x strain -y angle --campaign two
+says "the store has no campaign 'two'"
+expect 64 "$clast" stats one.db --where "no_such > 1"
+says "no such column: no_such"
+expect 64 "$clast" stats one.db --where "1) ; DELETE FROM run --"
+expect 0 "$clast" plot one.db chosen.svg -x strain --where "replicate < 2" --keep-script
+grep -q "only replicate < 2" chosen.gp || fail "the caption does not tell the choice"
+expect 0 "$clast" compare one.db one.db --where "threshold_strain < 0.03" --csv
+same "$(wc -l <out)" 3 "pairs of points"
+
+# It travels with the run: an export has it, and so has a merge that adds the run. A store that has the run keeps its own word.
+expect 0 "$clast" export one.db copy.db
+same "$(number copy.db 'select excluded from run where run_id = 1')" "the camera saw a flaw" "in the copy"
+expect 0 "$clast" merge all.db one.db
+same "$(number all.db 'select count(*) from runs where excluded is not null')" 1 "in the merged store"
+expect 0 "$clast" check all.db
+expect 0 "$clast" exclude all.db 1 --undo
+expect 0 "$clast" merge all.db one.db
+same "$(number all.db 'select count(*) from runs where excluded is not null')" 0 "the store's own word"
+says "one.db excludes 1 run that counts in all.db"
+
+# A store without the columns is read, and gets them when it is written.
+expect 0 "$clast" run one.yaml --store old.db -j 2 --quiet
+python - <<'PY'
+import sqlite3
+db = sqlite3.connect("old.db")
+for view in "runs", "points", "spectra", "estimates", "resolution":
+    db.execute(f"DROP VIEW {view}")
+db.executescript("ALTER TABLE run DROP COLUMN excluded; ALTER TABLE run DROP COLUMN excluded_at;")
+PY
+expect 0 "$clast" stats old.db
+expect 0 "$clast" exclude old.db
+says "no run is excluded"
+expect 0 "$clast" exclude old.db 2 3 --reason "two of them"
+expect 0 "$clast" exclude old.db
+same "$(grep -c 'two of them' out)" 2 "runs of an older store"
+
+# Taken back, the answers are the same bytes.
+expect 0 "$clast" run one.yaml --store fresh.db -j 2 --quiet
+cp fresh.db one.db
+"$clast" exclude ask.db 1 --undo 2>err || fail "undo"
+answers again
+"$clast" exclude ask.db 1 --reason "bad" 2>err || fail "exclude"
+expect 0 "$clast" exclude one.db 1 7 --reason "a mistake"
+expect 0 "$clast" exclude one.db 1 7 --undo
+"$clast" exclude ask.db 1 --undo 2>err || fail "undo"
+answers undone
+rm again/page.said # it names its file
+for file in again/*.csv again/*.dat again/*.svg again/*.said; do
+  cmp "$file" "undone/$(basename "$file")" || fail "$file differs after --undo"
+done
+ok "the same answers after --undo"
+expect 0 "$clast" check one.db
+done_after 89
