@@ -53,9 +53,15 @@ uint64_t condition_before(const struct condition *list, const void *inputs, FILE
     if (!condition_broken(c, number))
       continue;
     set |= UINT64_C(1) << k;
-    if (out)
-      fprintf(out, "%s: %s is %.3g, %s %g (clast explain %s)\n", c->word, c->number, number,
-              c->least ? "below" : "above", c->bound, c->word);
+    if (!out)
+      continue;
+    fprintf(out, "%s: %s is %.3g, %s %g", c->word, c->number, number, c->least ? "below" : "above", c->bound);
+    if (c->both) {
+      double both[2];
+      c->both(inputs, both);
+      fprintf(out, ": %.3g and %.3g %s", both[0], both[1], c->unit);
+    }
+    fprintf(out, " (clast explain %s)\n", c->word);
   }
   return set;
 }

@@ -36,6 +36,9 @@ struct condition {
    * end by `after` alone. */
   double (*before)(const void *inputs);
   double (*after)(const struct condition_run *run);
+  /* The two numbers whose ratio `before` is, and their unit; told beside it. NULL: none. */
+  void (*both)(const void *inputs, double both[2]);
+  const char *unit;
 };
 
 /* A row of an engine's list. */

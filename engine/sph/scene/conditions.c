@@ -199,13 +199,20 @@ static bool is_rod_with_flaws(const struct sph_inputs *in) {
 
 /* The strength that particles of their own flaws will have is about 0.7 of the stress that opens one flaw in each of
  * them: measured for m of 4 to 8.5 and 1500 to 50 000 particles, also for cells. */
-static double strength_before(const void *inputs) {
+static void both_strengths(const void *inputs, double both[2]) {
   const struct sph_inputs *in = inputs;
-  if (!is_rod_with_flaws(in))
-    return NAN;
   const double own = pow(fmax(sph_derived_spacing(in), in->crack_cell.width), 3);
-  return 0.7 * sph_material_young_modulus(&in->target.material) *
-         pow(in->target.material.weibull.k * own, -1 / in->target.material.weibull.m) / lawful_strength(in);
+  both[0] = 0.7 * sph_material_young_modulus(&in->target.material) *
+            pow(in->target.material.weibull.k * own, -1 / in->target.material.weibull.m);
+  both[1] = lawful_strength(in);
+}
+
+static double strength_before(const void *inputs) {
+  double both[2];
+  if (!is_rod_with_flaws(inputs))
+    return NAN;
+  both_strengths(inputs, both);
+  return both[0] / both[1];
 }
 
 static double strength_after(const struct condition_run *r) {
@@ -368,35 +375,62 @@ static double body_moduli(const struct sph_body_inputs *body) {
   return body->strength ? fmax(ratio, 1 / ratio) : (double)NAN;
 }
 
-static double moduli(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  const double target = body_moduli(&in->target);
-  return sph_derived_has_projectile(in) ? fmax(target, body_moduli(&in->projectile)) : target;
-}
-
 static double body_poisson(const struct sph_body_inputs *body) {
   return body->strength ? sph_material_poisson_ratio(&body->material) : (double)NAN;
 }
 
+/* The projectile, if its number is beyond the target's (a NaN is not); else the target. */
+static const struct sph_body_inputs *worse(const struct sph_inputs *in,
+                                           double (*number)(const struct sph_body_inputs *), double sign) {
+  const double target = number(&in->target);
+  if (!sph_derived_has_projectile(in))
+    return &in->target;
+  const double projectile = number(&in->projectile);
+  return sign * projectile > sign * target || isnan(target) ? &in->projectile : &in->target;
+}
+
+static double moduli(const void *inputs) {
+  return body_moduli(worse(inputs, body_moduli, 1));
+}
+
+static void both_moduli(const void *inputs, double both[2]) {
+  const struct sph_material *material = &worse(inputs, body_moduli, 1)->material;
+  both[0] = sph_material_bulk_modulus(material);
+  both[1] = material->tillotson.A;
+}
+
 static double poisson(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  const double target = body_poisson(&in->target);
-  return sph_derived_has_projectile(in) ? fmin(target, body_poisson(&in->projectile)) : target;
+  return body_poisson(worse(inputs, body_poisson, -1));
+}
+
+static void both_of_poisson(const void *inputs, double both[2]) {
+  const struct sph_material *material = &worse(inputs, body_poisson, -1)->material;
+  both[0] = sph_material_bulk_modulus(material);
+  both[1] = material->elastic.shear_modulus;
 }
 
 /* Compliance of the pores along the elastic branch over that along the crush curve, where the two meet. */
-static double body_crush(const struct sph_body_inputs *body) {
+static bool slopes(const struct sph_body_inputs *body, double both[2]) {
   struct sph_palpha_law law;
   if (!is_porous(body) || sph_palpha_prepare(&body->material.palpha, &body->material, &law, NULL))
-    return NAN;
+    return false;
   const double just_above = law.given.elastic_pressure * (1 + 1e-9) + 1e-9 * law.given.solid_pressure;
-  return sph_palpha_elastic_slope(&law, law.elastic_distention) / sph_palpha_crush_slope(&law, just_above);
+  both[0] = fabs(sph_palpha_elastic_slope(&law, law.elastic_distention));
+  both[1] = fabs(sph_palpha_crush_slope(&law, just_above));
+  return true;
+}
+
+static double body_crush(const struct sph_body_inputs *body) {
+  double both[2];
+  return slopes(body, both) ? both[0] / both[1] : (double)NAN;
 }
 
 static double crush(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  const double target = body_crush(&in->target);
-  return sph_derived_has_projectile(in) ? fmax(target, body_crush(&in->projectile)) : target;
+  return body_crush(worse(inputs, body_crush, 1));
+}
+
+static void both_slopes(const void *inputs, double both[2]) {
+  slopes(worse(inputs, body_crush, 1), both);
 }
 
 /* What an impact does to its target. */
@@ -489,8 +523,8 @@ const struct condition sph_conditions[] = {
               .doubt = "every particle must fail by a flaw of its own, so that the strength grows with the number of "
                        "particles as N^(1/m)",
               .reason = "our choice; tensile-rod has 1.4 with 3000 particles and 1.9 with 50 000",
-              .remedy = "give fracture.cell, the width of cells that crack as one", .before = strength_before,
-              .after = strength_after),
+              .remedy = "give fracture.cell, the width of cells that crack as one", .both = both_strengths,
+              .unit = "Pa", .before = strength_before, .after = strength_after),
     CONDITION(
         "front", .number = "the width of a shock that closes pores, over the target's extent,", .bound = 0.1,
         .doubt = "the artificial viscosity smears the shock over the body, and too few pores close",
@@ -562,15 +596,16 @@ const struct condition sph_conditions[] = {
     CONDITION("moduli", .number = "the ratio of material.bulk_modulus and material.tillotson.A", .bound = 3,
               .doubt = "the two give the same stiffness, so that waves and cracks follow different ones",
               .reason = "of the built-in materials the largest ratio is 2.8 (granite)", .remedy = "correct one of them",
-              .before = moduli),
+              .before = moduli, .both = both_moduli, .unit = "Pa"),
     CONDITION("poisson", .number = "Poisson's ratio, by material.bulk_modulus and material.shear_modulus,", .bound = 0,
               .least = true, .doubt = "no rock widens when it is pulled", .reason = "K below 2/3 of the shear modulus",
-              .remedy = "correct one of them", .before = poisson),
+              .remedy = "correct one of them", .before = poisson, .both = both_of_poisson, .unit = "Pa"),
     CONDITION(
         "crush",
         .number = "the compliance of the pores on the elastic branch, over that on the crush curve where the two meet,",
         .bound = 1, .doubt = "the elastic branch is the softer one, so that shocks follow it and not the crush curve",
         .reason = "pores that close for good give way more",
-        .remedy = "raise porosity.sound_speed, or lower porosity.solid_pressure", .before = crush),
+        .remedy = "raise porosity.sound_speed, or lower porosity.solid_pressure", .before = crush, .both = both_slopes,
+        .unit = "1/Pa"),
     {0},
 };
