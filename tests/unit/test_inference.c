@@ -500,6 +500,30 @@ static void errors_of_data_by_hand(void **state) {
   }
 }
 
+/* A point with one run takes no part: the surface is that of the others. */
+static void points_of_one_run_are_left_out(void **state) {
+  (void)state;
+  enum { ALL = 5 };
+  double z[ALL] = {-1, -0.5, 0.5, 1, 0}, values[2 * ALL];
+  const struct posterior_datum data = {.value = 1, .error = 1, .specimens = 1};
+  const bool bounded = false;
+  double at[2];
+  struct error error;
+  for (int i = 0; i < ALL; i++)
+    values[2 * i] = 2 * z[i] + 0.1, values[2 * i + 1] = 2 * z[i] - 0.1;
+  for (int with = 0; with < 2; with++) {
+    values[2 * (ALL - 1)] = 100, values[2 * (ALL - 1) + 1] = NAN;
+    const struct surfaces_runs runs =
+        {.points = with ? ALL : ALL - 1, .inputs = 1, .outputs = 1, .replicates = 2, .z = z, .values = values};
+    struct surfaces surfaces;
+    assert_int_equal(surfaces_fit(&runs, &data, &bounded, &surfaces, &error), STATUS_OK);
+    assert_int_equal(surfaces.used[0], ALL - 1);
+    at[with] = kriging_predict(surfaces.surface[0], &(double){0.25}, NULL);
+    surfaces_clear(&surfaces);
+  }
+  assert_true(at[0] == at[1]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kalman_gives_the_posterior_of_a_linear_model),
@@ -507,6 +531,7 @@ int main(void) {
       cmocka_unit_test(scatter_of_seeds_is_recovered),
       cmocka_unit_test(correlation_of_two_outputs),
       cmocka_unit_test(errors_of_data_by_hand),
+      cmocka_unit_test(points_of_one_run_are_left_out),
       cmocka_unit_test(scatter_knows_two_heaps_and_too_few_runs),
       cmocka_unit_test(kriging_passes_through_a_smooth_function),
       cmocka_unit_test(kriging_knows_what_seeds_leave),

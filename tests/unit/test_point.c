@@ -116,6 +116,18 @@ static void views_and_c_agree(void **state) {
   OK(store_close(store, &error));
 }
 
+/* A point without a window has no exponent of any run. */
+static void no_window_no_exponents(void **state) {
+  (void)state;
+  const size_t first[] = {0, 1, 2};
+  const double masses[] = {1, 1};
+  double values[] = {7, 7};
+  struct point_data point = {.runs = {.count = 2, .first = first, .masses = masses}};
+  assert_false(point_window(&point, ESTIMATES_FROM_5) > 0);
+  OK(point_exponent_of_runs(&point, EXPONENT_MASSES, ESTIMATES_FROM_5, values, &error));
+  assert_true(isnan(values[0]) && isnan(values[1]));
+}
+
 static void runs_that_count_in_order(void **state) {
   (void)state;
   char path[64];
@@ -339,7 +351,8 @@ static void pairs_of_points(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(runs_that_count_in_order),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(no_window_no_exponents),
+                                     cmocka_unit_test(runs_that_count_in_order),
                                      cmocka_unit_test(views_and_c_agree),
                                      cmocka_unit_test(pairs_of_points),
                                      cmocka_unit_test(methods_of_older_stores),
