@@ -291,6 +291,13 @@ void field_label_unit(const char *unit, char *text, size_t size) {
   text[0] = '\0';
   if (!unit || strcmp(unit, "1") == 0)
     return;
+  char inverse[64];
+  text_unit(unit, inverse, sizeof inverse);
+  const char *power = strstr(inverse, "^-");
+  if (power && strncmp(unit, "1/", 2) == 0 && power[2] >= '0' && power[2] <= '9') {
+    text_append(text, size, "%.*s\xe2\x81\xbb%s", (int)(power - inverse), inverse, raised[power[2] - '0']);
+    return;
+  }
   while (*unit) {
     const size_t plain = strcspn(unit, "^");
     if (plain == 0 && unit[1] >= '0' && unit[1] <= '9') {

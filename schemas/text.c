@@ -259,6 +259,51 @@ void text_append_fixed(char *text, size_t size, double number, int decimals) {
     text_append(text, size, "%.*f", decimals, number);
 }
 
+/* Copies a number with an exponent from `at` on, its mantissa `mantissa` bytes before it. Returns the bytes after "e".
+ */
+static size_t write_power(const char *at, size_t mantissa, char *made, size_t size) {
+  char *end = NULL;
+  const long exponent = strtol(at + 1, &end, 10);
+  if (mantissa == 1 && at[-1] == '1')
+    made[strlen(made) - 1] = '\0';
+  else
+    text_append(made, size, "\xc3\x97");
+  text_append(made, size, "10^%ld", exponent);
+  return (size_t)(end - at);
+}
+
+void text_powers(char *text, size_t size) {
+  char made[1024] = "";
+  size_t mantissa = 0; /* bytes of the number before *at */
+  for (const char *at = text; *at;) {
+    const bool power = *at == 'e' && mantissa > 0 && (at[1] == '+' || at[1] == '-') && at[2] >= '0' && at[2] <= '9';
+    if (power) {
+      at += write_power(at, mantissa, made, sizeof made);
+      mantissa = 0;
+      continue;
+    }
+    mantissa = (*at >= '0' && *at <= '9') || (*at == '.' && mantissa > 0) ? mantissa + 1 : 0;
+    const size_t used = strlen(made);
+    if (used + 1 < sizeof made) {
+      made[used] = *at;
+      made[used + 1] = '\0';
+    }
+    at++;
+  }
+  text[0] = '\0';
+  text_append(text, size, "%s", made);
+}
+
+void text_unit(const char *unit, char *text, size_t size) {
+  const size_t name = unit && strncmp(unit, "1/", 2) == 0 ? strcspn(unit + 2, "^ /()*") : 0;
+  const char *power = name ? unit + 2 + name : "";
+  text[0] = '\0';
+  if (name && (!*power || (power[0] == '^' && power[1] && !power[2])))
+    text_append(text, size, "%.*s^-%s", (int)name, unit + 2, *power ? power + 1 : "1");
+  else if (unit && strcmp(unit, "1") != 0)
+    text_append(text, size, "%s", unit);
+}
+
 void text_hex(const void *bytes, size_t size, char *text) {
   static const char digits[] = "0123456789abcdef";
   const unsigned char *at = bytes;

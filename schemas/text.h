@@ -38,6 +38,14 @@ bool text_append(char *text, size_t size, const char *format, ...) __attribute__
  * people do not count digits. */
 void text_append_fixed(char *text, size_t size, double number, int decimals);
 
+/* Turns numbers such as 2.5e+33 and 1e-05 within a text into those that people write: 2.5×10^33, 10^-5. What does not
+ * fit is cut.
+ */
+void text_powers(char *text, size_t size);
+
+/* A unit as people write it: "m^-3" for "1/m^3"; "" for a pure number. */
+void text_unit(const char *unit, char *text, size_t size);
+
 /* Writes 2 * `size` hexadecimal digits and a NUL. */
 void text_hex(const void *bytes, size_t size, char *text);
 

@@ -61,6 +61,8 @@ static status add_row(struct quantity *quantity, const struct query_value *input
       snprintf(row.text[i], INPUT_TEXT, "%s", value.text);
     else if (value.kind != QUERY_NULL)
       snprintf(row.text[i], INPUT_TEXT, "%.6g", value.real);
+    if (value.kind != QUERY_TEXT)
+      text_powers(row.text[i], INPUT_TEXT);
   }
   quantity->row[quantity->count++] = row;
   return STATUS_OK;

@@ -247,9 +247,9 @@ static status print_quantity(const struct printing *printing, size_t from, size_
   printf("%s, quantity %s%s%s%s\n", study->ladder[from].base->name, what->name, named ? " (" : "", named ? unit : "",
          named ? ")" : "");
   TABLE table = table_new(TABLE_TEXT, stdout);
-  table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skew", "upper_mode", "cpu_s",
-                                             "bias", "bias_hw95", "corr", "corr_low", "corr_high", "break_even",
-                                             "error", "frontier", NULL});
+  table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skewness",
+                                             "share of upper mode", "cpu_s", "bias", "bias_hw95", "correlation", "low",
+                                             "high", "pays from correlation", "error", "frontier", NULL});
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++) {
       struct ask_doubts doubts;
@@ -295,9 +295,11 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
 static const char legend[] =
     "* the scene's own setting; ref: what bias is measured against. bias: mean minus that of ref, with the half width\n"
     "of its 95 % interval. error: largest distance to the limit (none seen: |bias| + half width, perhaps too small),\n"
-    "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer. corr: with\n"
-    "the next finer level; a control variate would save time from break_even on. upper_mode: share of the runs in the\n"
-    "upper of two modes.\n";
+    "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer. "
+    "correlation:\n"
+    "of the runs of a seed with those at the next finer level; from `pays from` on, the coarse level as a control "
+    "variate\n"
+    "would save time. share of upper mode: of the runs, where their values have two modes (peaks).\n";
 
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error) {
   OWNED struct study_found *found = NULL;

@@ -10,6 +10,7 @@
 
 #include "engine/grow.h"
 #include "schemas/csv.h"
+#include "schemas/file.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
@@ -21,6 +22,7 @@ struct reading {
   struct campaign *campaign;
   document_node *node; /* the document's node that names the file */
   struct csv csv;
+  char folder[LIMITS_PATH];     /* of the file of points: files that its cells name are looked for there */
   const char *units[CSV_CELLS]; /* units of the columns; "" for none */
   size_t capacity;              /* capacity of every axis and of the lines */
   int reports;
@@ -53,9 +55,11 @@ static bool open_points(struct reading *r, const char *folder) {
                     strerror(errno));
   else if (!S_ISREG(facts.st_mode) || facts.st_size > LARGEST)
     document_report(r->node, "design.file", "'%s' is no plain file of up to %d MiB", path, LARGEST >> 20);
-  else if (csv_open(&r->csv, path, "file of points", &error) == STATUS_OK)
+  else if (csv_open(&r->csv, path, "file of points", &error) == STATUS_OK) {
+    const char *slash = strrchr(path, '/');
+    snprintf(r->folder, sizeof r->folder, "%.*s", slash ? (int)(slash - path) : 0, path);
     return true;
-  else
+  } else
     document_report(r->node, "design.file", "%s", error.message);
   return false;
 }
@@ -97,6 +101,17 @@ static bool read_header(struct reading *r) {
   return good;
 }
 
+/* A material that is no built-in one is a file. */
+static bool in_folder(struct reading *r, const struct field *row, struct field_value *value) {
+  if (row->kind != FIELD_TEXT || !row->choices || field_is_choice(row, value->text))
+    return true;
+  OWNED char *whole = file_name_in(r->folder, value->text);
+  if (!whole || strlen(whole) >= FIELD_TEXT_SIZE)
+    return wrong(r, "%s: the name of this file is too long with its folder", row->path);
+  field_copy_text(value->text, whole);
+  return true;
+}
+
 /* A bare number gets the column's unit. */
 static bool read_cell(struct reading *r, size_t column) {
   struct design_axis *axis = &r->campaign->axes[column];
@@ -116,7 +131,7 @@ static bool read_cell(struct reading *r, size_t column) {
   struct field_value *value = &axis->levels[r->campaign->design.points];
   const status code = plain ? field_parse_si(axis->row, cell->text, value, &error)
                             : field_parse(axis->row, text, value, &error);
-  return code == STATUS_OK || wrong(r, "%s", error.message);
+  return code == STATUS_OK ? in_folder(r, axis->row, value) : wrong(r, "%s", error.message);
 }
 
 static bool reserve(struct reading *r) {

@@ -103,7 +103,7 @@ static void mean_cell(struct table *table, const struct ask_points_row *row) {
   if (row->mean >= 1 && isnan(row->half_width) && isfinite(row->low))
     snprintf(text, sizeof text, "%.3f \xe2\x89\xa5 %.3f", row->mean, row->low);
   else
-    uncertainty_cell(row->mean, row->half_width, text);
+    uncertainty_share_cell(row->mean, row->half_width, text);
   if (row->weak)
     text_append(text, sizeof text, "~");
   table_text(table, text);
@@ -179,7 +179,8 @@ static status print_point(struct printing *printing, const struct ask_points_row
 static const char *const estimates_legend =
     "runs: those that count; 19/20: one of 20 failed. M_1/M: mass share of the largest fragment. !: in\n"
     "doubt. \xc2\xb1: half width of the 95 % interval over seeds; one run has none. ~: weak, too few runs\n"
-    "(`clast explain weak`). 1.000 \xe2\x89\xa5 0.905: all runs are 1, and the mean is at least 0.905. \xc2\xb1res:\n"
+    "(`clast explain weak`). 0.11 (0 to 0.27): the ends of this interval, where it reaches 0 or 1.\n"
+    "1.000 \xe2\x89\xa5 0.905: all runs are 1, and the mean is at least 0.905. \xc2\xb1res:\n"
     "how far finer settings may move M_1/M, and beta ML (`clast converge` measures it, with -Q beta;\n"
     "?: not studied). beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together.\n"
     "LSQ: least squares on logarithmic bins of one decade, as in the paper; it needs a fragment in every\n"

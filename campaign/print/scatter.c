@@ -15,6 +15,7 @@
 enum { COLUMNS = 100 };
 
 struct printing {
+  bool people;
   const struct scatter_choice *choice;
   struct table *table;
   const struct ask_pools *pools;
@@ -49,8 +50,8 @@ static void print_scatter(const struct printing *printing, struct scatter *s) {
   row(printing, "skewness", s->skewness, NAN, NAN);
   for (int q = 0; q < SCATTER_QUANTILES; q++)
     row(printing, names[q], s->quantile[q].value, s->quantile[q].low, s->quantile[q].high);
-  row(printing, "dip", s->dip, NAN, NAN);
-  row(printing, "dip p", s->dip_share, NAN, NAN);
+  row(printing, printing->people ? "Hartigan's dip" : "dip", s->dip, NAN, NAN);
+  row(printing, printing->people ? "p of one mode (dip test)" : "dip p", s->dip_share, NAN, NAN);
   if (isfinite(s->between)) {
     row(printing, "lower mode", s->lower_mode, s->sorted[0], s->between);
     row(printing, "upper mode", s->upper_mode, s->between, s->sorted[s->n - 1]);
@@ -65,7 +66,7 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
   ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
   TRY(pools.code);
   TABLE table = table_new(format, stdout);
-  struct printing printing = {.choice = choice, .table = table, .pools = &pools};
+  struct printing printing = {.people = table_for_people(format), .choice = choice, .table = table, .pools = &pools};
   print_pool_columns(table, &pools);
   table_columns(table, (const char *const[]){"statistic", "value", "low", "high", NULL});
   table_doubt_columns(table);
@@ -82,10 +83,10 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
   TRY(table_end(table, error));
   if (table_for_people(format)) {
     uncertainty_doubts(&doubts, stderr);
-    fputs(
-        "clast: low and high: 95 % intervals over runs; of modes the values that belong to them. dip p below 0.05: the "
-        "runs have two modes\n",
-        stderr);
+    fputs("clast: (low to high): 95 % intervals over runs; of a mode, the values that belong to it. Modes are peaks; p "
+          "of one "
+          "mode below 0.05: the runs have two\n",
+          stderr);
   }
   if (several)
     fputs("clast: pooled over points: the scatter holds that of the inputs; the intervals take the runs as "

@@ -95,12 +95,15 @@ static status begin(void *context, struct scheduler *scheduler, struct error *er
     return STATUS_CONTENT;
   TRY(campaign_walk_begin(&driver->walk, campaign, error));
 
-  char plan[256];
+  char plan[4096];
   struct driver_summary *summary = &driver->summary;
   snprintf(plan, sizeof plan,
-           "{\"design\": %d, \"points\": %llu, \"replicates_least\": %lld, \"replicates_most\": %lld}",
+           "{\"design\": %d, \"points\": %llu, \"replicates_least\": %lld, \"replicates_most\": %lld, \"axes\": [",
            campaign->design.kind, (unsigned long long)design_points(driver->walk.design),
            (long long)campaign_replicates_least(campaign), (long long)campaign_replicates_most(campaign));
+  for (size_t i = 0; i < campaign->axis_count && strlen(plan) + 2 * FIELD_TEXT_SIZE < sizeof plan; i++)
+    text_append(plan, sizeof plan, "%s\"%s\"", i ? ", " : "", driver->paths[i]); /* their order in tables */
+  text_append(plan, sizeof plan, "]}");
   TRY(scheduler_announce(scheduler, campaign, plan, &summary->session_id, &summary->campaign_id, error));
   TRY(store_set_session(scheduler->store, summary->session_id, summary->campaign_id, error));
   return store_flush(scheduler->store, error);

@@ -10,6 +10,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "db/store/views.h"
 #include "engine/grow.h"
 #include "schemas/csv.h"
 #include "schemas/limits.h"
@@ -72,6 +73,7 @@ struct column {
   size_t width;     /* in the table for people, characters */
   bool text;        /* aligned left */
   bool marked;      /* a number has a mark behind it; the others leave its room free */
+  bool share;       /* of an ERROR: its value is between 0 and 1 */
   bool left_out;    /* people do not see it */
   const char *rest; /* of the text that is being printed */
 };
@@ -130,12 +132,14 @@ static bool ends_in(const char *name, const char *end) {
 }
 
 /* The column of the value whose half width has this name: "x" or "x_mean" of "x_hw95" and "x_weak", the last one of
- * "hw95". */
+ * "hw95", the one before "low" and "high". */
 static bool find_value(const struct table *table, const char *name, size_t *value) {
   const size_t stem = ends_in(name, "_hw95") || ends_in(name, "_weak") ? strlen(name) - strlen("_hw95") : 0;
   for (size_t c = table->column_count; c-- > 0;) {
     const char *const other = table->columns[c].name;
     *value = c;
+    if ((strcmp(name, "low") == 0 || strcmp(name, "high") == 0) && strcmp(other, "low") != 0)
+      return true;
     if (stem ? strncmp(other, name, stem) == 0 && (!other[stem] || strcmp(other + stem, "_mean") == 0)
              : strcmp(name, "hw95") == 0)
       return true;
@@ -156,8 +160,9 @@ static enum role role_of(const struct table *table, const char *name, size_t *va
 
 /* A name or a unit can come from a store, too: the heading cannot control the terminal. */
 static char *heading(struct table *table, const char *name, const char *unit) {
-  char text[512] = "";
-  text_append(text, sizeof text, unit ? "%s [%s]" : "%s", strcmp(name, "point_id") == 0 ? "point" : name, unit);
+  char text[512] = "", shown[128] = "";
+  text_unit(unit, shown, sizeof shown);
+  text_append(text, sizeof text, *shown ? "%s [%s]" : "%s", strcmp(name, "point_id") == 0 ? "point" : name, shown);
   text_make_plain(text, "");
   return copy(table, text);
 }
@@ -176,9 +181,18 @@ void table_column(struct table *table, const char *name, const char *unit) {
     column->unit = copy(table, unit);
   if (table->people && !table->broken) {
     column->role = role_of(table, name, &column->value);
-    column->head = heading(table, name, column->unit);
+    const char *head = !table->asked && strcmp(name, "surplus") == 0 ? "after the rule's stop" : name;
+    column->head = heading(table, head, column->unit);
   }
   table->column_count++;
+  if (column->role == ERROR) {
+    char value[256];
+    snprintf(value, sizeof value, "%s", columns[column->value].name);
+    char *end = strstr(value, "_mean");
+    if (end)
+      *end = '\0';
+    column->share = views_is_share(value);
+  }
   if (column->role == ERROR && ends_in(columns[column->value].name, "_mean")) { /* "x" is enough above "1 +- 0.1" */
     char *end = strstr(columns[column->value].head, "_mean");
     if (end)
@@ -529,21 +543,39 @@ static void keep(struct table *table, const struct cell *cell) {
   }
   struct kept *kept = &table->kept[table->kept_count];
   const bool marked = *table->mark && cell->kind != CELL_MISSING;
-  snprintf(text, sizeof text, "%.*s%s", UNCERTAINTY_TEXT, cell->shown, table->mark);
-  *kept = (struct kept){copy(table, marked ? text : cell->shown), strlen(cell->shown), cell->number,
+  char shown[UNCERTAINTY_TEXT];
+  const bool is_number = cell->kind == CELL_NUMBER && strlen(cell->shown) < sizeof shown / 2;
+  if (is_number) {
+    snprintf(shown, sizeof shown, "%s", cell->shown);
+    text_powers(shown, sizeof shown);
+  }
+  const char *const plain = is_number ? shown : cell->shown;
+  snprintf(text, sizeof text, "%.*s%s", UNCERTAINTY_TEXT, plain, table->mark);
+  *kept = (struct kept){copy(table, marked ? text : plain), strlen(plain), cell->number,
                         cell->kind == CELL_TEXT && *cell->shown};
   if (!kept->text)
     return;
   table->kept_count++;
   struct kept *value = kept - table->cell + column->value;
-  if (column->role != ERROR || !(cell->number > 0) || !isfinite(value->number) || !isfinite(cell->number))
+  const bool is_end = strcmp(column->name, "high") == 0, is_low = strcmp(column->name, "low") == 0;
+  if (column->role != ERROR || is_low || !isfinite(value->number) ||
+      (is_end ? !isfinite(kept[-1].number) && !isfinite(cell->number) : !(cell->number > 0 && isfinite(cell->number))))
     return;
-  if (ends_in(column->name, "_weak"))
+  if (is_end) {
+    char interval[UNCERTAINTY_TEXT];
+    snprintf(interval, sizeof interval, "%.*s (", (int)value->digits, value->text);
+    text_append(interval, sizeof interval, isfinite(kept[-1].number) ? "%.3g" : "?", kept[-1].number);
+    text_append(interval, sizeof interval, isfinite(cell->number) ? " to %.3g)" : " to ?)", cell->number);
+    text_powers(interval, sizeof interval);
+    snprintf(text, sizeof text, "%s%.*s", interval, UNCERTAINTY_TEXT, value->text + value->digits);
+    value->digits = strlen(interval);
+  } else if (ends_in(column->name, "_weak"))
     snprintf(text, sizeof text, "%.*s~%.*s", (int)value->digits, value->text, UNCERTAINTY_TEXT,
              value->text + value->digits);
   else {
     char number[UNCERTAINTY_TEXT];
-    uncertainty_cell(value->number, cell->number, number);
+    (column->share ? uncertainty_share_cell : uncertainty_cell)(value->number, cell->number, number);
+    text_powers(number, sizeof number);
     snprintf(text, sizeof text, "%s%.*s", number, UNCERTAINTY_TEXT, value->text + value->digits);
     value->digits = strlen(number);
   }

@@ -9,10 +9,12 @@
  * The table for people has one rule, whatever it shows. It is 100 characters wide at most (on a terminal, as wide as
  * that; COLUMNS says otherwise). Columns that tell rows apart always stand in it: varied inputs and numbers of points.
  * The half width of an interval (NAME_hw95) stands in the cell of its value, as "0.349 ± 0.003"; both have the
- * digits that it allows. Other numbers have five digits. Units are in the headings. If the table is too wide, headings
- * get several lines, then texts, then it leaves columns out, the last ones first. It also leaves out columns that are
- * rarely wanted, and those that have the same cell in all rows (engine, failed: table.c names them). A note on stderr
- * names what is left out. With --all nothing is; the table has several parts if need be. */
+ * digits that it allows; a share has its interval instead where the half width passes 0 or 1. Columns low and high
+ * stand in the cell of the value before them, as "0.35 (0.31 to 0.4)". Other numbers have five digits. Units are in the
+ * headings. If the table is too wide, headings get several lines, then texts, then it leaves columns out, the last ones
+ * first. It also leaves out columns that are rarely wanted, and those that have the same cell in all rows (engine,
+ * failed: table.c names them). A note on stderr names what is left out. With --all nothing is; the table has several
+ * parts if need be. */
 #ifndef CLAST_CAMPAIGN_TERMINAL_TABLE_H
 #define CLAST_CAMPAIGN_TERMINAL_TABLE_H
 
@@ -96,11 +98,14 @@ void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_T
 /* The same as a cell of a table: "0.349 ± 0.003". */
 void uncertainty_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]);
 
+/* The same of a share: "0.11 (0 to 0.27)", its interval, where the half width passes 0 or 1. */
+void uncertainty_share_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]);
+
 /* "0.03 +- 0.02 below its limit", of a mean less its limit. */
 void uncertainty_distance(double distance, double half_width, char text[UNCERTAINTY_TEXT]);
 
-/* "0.349 +- 0.003 (seeds, 95 %)", or "(seeds, 95 %, weak)"; "1 (all 30 runs; 0.905 to 1)" when all values of a share
- * are equal; "0.349" without an interval. */
+/* "0.349 +- 0.003 (seeds, 95 %)", or "(seeds, 95 %, weak)"; "0.11 (0 to 0.27; seeds, 95 %)"; "1 (all 30 runs; 0.905 to
+ * 1)" when all values of a share are equal; "0.349" without an interval. */
 void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_TEXT]);
 
 /* "0.03 +- 0.02 below its limit (resolution: particles)", "+- 0.06 (resolution: particles)", "up to +- 0.06

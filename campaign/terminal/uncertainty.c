@@ -36,6 +36,19 @@ void uncertainty_cell(double value, double half_width, char text[UNCERTAINTY_TEX
     memcpy(sign, "\xc2\xb1", 2); /* both have two bytes */
 }
 
+void uncertainty_share_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]) {
+  uncertainty_cell(value, half_width, text);
+  const char *sign = strstr(text, " \xc2\xb1"), *point = strchr(text, '.');
+  if (!sign || (value - half_width >= 0 && value + half_width <= 1))
+    return;
+  const int decimals = point && point < sign ? (int)(sign - point) - 1 : 0;
+  char ends[2][32];
+  snprintf(ends[0], sizeof ends[0], "%.*f", decimals, value - half_width);
+  snprintf(ends[1], sizeof ends[1], "%.*f", decimals, value + half_width);
+  snprintf(text, UNCERTAINTY_TEXT, "%.*f (%s to %s)", decimals, value, value - half_width <= 0 ? "0" : ends[0],
+           value + half_width >= 1 ? "1" : ends[1]);
+}
+
 void uncertainty_distance(double distance, double half_width, char text[UNCERTAINTY_TEXT]) {
   uncertainty_number(fabs(distance), half_width, text);
   text_append(text, UNCERTAINTY_TEXT, " %s its limit", distance > 0 ? "above" : "below");
@@ -49,6 +62,15 @@ void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_
     if (isfinite(mean->low))
       text_append(text, UNCERTAINTY_TEXT, " (all %zu runs; %.3g to %.3g)", mean->n, mean->low, mean->high);
     return;
+  }
+  if (mean->high > mean->low && (mean->low > mean->mean - half_width || mean->high < mean->mean + half_width)) {
+    uncertainty_share_cell(mean->mean, half_width, text);
+    char *end = strchr(text, ')');
+    if (end) {
+      *end = '\0';
+      text_append(text, UNCERTAINTY_TEXT, "; seeds, 95 %%%s)", weak);
+      return;
+    }
   }
   uncertainty_number(mean->mean, half_width, text);
   text_append(text, UNCERTAINTY_TEXT, " (seeds, 95 %%%s)", weak);

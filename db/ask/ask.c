@@ -175,8 +175,11 @@ static const char *short_word(const struct ask_column *axes, size_t count, size_
 status ask_columns_axes(struct store *store, bool written, size_t most, struct ask_column *axes, size_t *count,
                         struct error *error) {
   const char *word[LIMITS_AXES_OF_STORE];
-  ANSWER answer = answer_to(store, error, "SELECT column_name, unit, %s, path FROM axis ORDER BY path",
-                            written ? "written_unit" : "NULL");
+  ANSWER answer = answer_to(
+      store, error, "SELECT column_name, unit, %s, path FROM axis ORDER BY %spath", written ? "written_unit" : "NULL",
+      written ? "ifnull((SELECT min(campaign_id * 1000 + key) FROM campaign, json_each(iif(json_valid(plan), plan, "
+                "'{}'), '$.axes') AS j WHERE j.value = axis.path), 1e18), "
+              : "");
   for (*count = 0; *count < most && answer_next(&answer); ++*count) {
     read_column(&answer, &axes[*count]);
     snprintf(axes[*count].word, sizeof axes->word, "%s", answer_text(&answer, 3));
@@ -464,9 +467,10 @@ status ask_points_label(struct store *store, int64_t point_id, char *text, size_
     if (answer_value(&answer, 3).kind == QUERY_TEXT)
       ask_columns_write_in(&column, answer_text(&answer, 3));
     const struct query_value value = answer_value(&answer, 1), shown = ask_columns_value(&column, &value);
-    const char *unit = strcmp(column.unit, "1") != 0 ? column.unit : "";
-    char number[64], item[256];
+    char number[64], item[256], unit[sizeof column.unit + 8];
+    text_unit(column.unit, unit, sizeof unit);
     snprintf(number, sizeof number, "%.3g", shown.real);
+    text_powers(number, sizeof number);
     const int length = snprintf(item, sizeof item, "%s%s %.63s%s%s", used ? ", " : "", word ? word + 1 : path,
                                 shown.kind == QUERY_TEXT ? shown.text : number, *unit ? " " : "", unit);
     if (length <= 0 || (size_t)length >= sizeof item || used + (size_t)length >= size)

@@ -130,8 +130,8 @@ struct ask_column {
   double factor;  /* SI value of one of this unit; values of the store are SI */
 };
 
-/* The columns of the varied inputs, in the order of their paths; at most `most` (LIMITS_AXES_OF_STORE) of them.
- * `written`: in the units that the campaign uses; else in SI units. */
+/* The columns of the varied inputs, at most `most` (LIMITS_AXES_OF_STORE) of them. `written`: in the units and the
+ * order that the campaign uses; else in SI units, in the order of their paths. */
 status ask_columns_axes(struct store *store, bool written, size_t most, struct ask_column *axes, size_t *count,
                         struct error *error);
 /* One column by name, with the campaign's unit if it is a varied input, else with its unit in the store. */

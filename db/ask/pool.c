@@ -193,13 +193,15 @@ static status write_label(struct store *store, struct ask_pool *pool, struct err
     return ask_points_label(store, pool->point[0], pool->label, sizeof pool->label, error);
   snprintf(pool->label, sizeof pool->label, "%s", pool->axes ? "" : "all points");
   for (size_t a = 0; a < pool->axes; a++) {
-    char unit[64] = "", value[ASK_POOL_TEXT] = "off";
+    char si[64] = "", unit[72] = "", value[ASK_POOL_TEXT] = "off";
     const struct query_value *input = &pool->input[a];
-    TRY(ask_columns_unit(store, pool->column[a], unit, sizeof unit, error));
+    TRY(ask_columns_unit(store, pool->column[a], si, sizeof si, error));
+    text_unit(si, unit, sizeof unit);
     if (input->kind == QUERY_TEXT)
       snprintf(value, sizeof value, "%s", input->text);
     else if (input->kind != QUERY_NULL)
       snprintf(value, sizeof value, "%.3g", input->real);
+    text_powers(value, sizeof value);
     char column[sizeof pool->column[a]];
     snprintf(column, sizeof column, "%s", pool->column[a]);
     char *word = strrchr(column, '_');

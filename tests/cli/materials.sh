@@ -107,4 +107,13 @@ mv rocks/own.yaml rocks/other.yaml
 scene rocks/other.yaml >s.yaml
 expect 0 "$clast" run a.yaml --quiet
 same "$(sqlite3 same.db "select count(*) from run")" 1 "runs of the same rock in another file"
-done_after 43
+
+# A material in a file of points is looked for beside that file.
+mkdir -p far/points
+cp rocks/other.yaml far/points/rock.yaml
+printf 'target.material.name\nrock.yaml\nbasalt\n' >far/points/two.csv
+printf 'name: two\nscene: %s\ndesign: {file: points/two.csv}\nseeds: 1\nstore: two.db\n' "$PWD/s.yaml" >far/two.yaml
+scene basalt >s.yaml
+expect 0 "$clast" run far/two.yaml --store two.db --quiet
+same "$(sqlite3 two.db "select count(*) from run")" 2 "runs of a file of points with a material's file"
+done_after 45

@@ -84,7 +84,7 @@ static void pools_of_runs(void **state) {
   OK(look_at(ask_pools(store, &(struct ask_pool_choice){.point = 2}, NULL, &error), &one));
   OK(ask_choose(store, &(struct ask_choice){0}, &error));
   assert_true(one.pools == 1 && one.runs == 2);
-  assert_string_equal(one.labels, "m 6, k 1e+31 1/m^3; ");
+  assert_string_equal(one.labels, "m 6, k 10^31 m^-3; ");
 
   assert_int_equal(ask_choose(store, &(struct ask_choice){.where = "no_such > 1"}, &error), STATUS_USAGE);
   OK(ask_choose(store, &(struct ask_choice){0}, &error));
