@@ -276,6 +276,9 @@ static void equal_parts_have_no_exponent(void **state) {
     struct pooled_exponent out;
     assert_int_equal(pooled_exponent(&runs, EXPONENT_MASSES, 2.5, 0.95, &out, NULL), STATUS_OK);
     assert_true(isnan(out.fit.beta) && isnan(out.interval.half_width));
+    struct pooled_goodness goodness;
+    assert_int_equal(pooled_goodness(&runs, 2.5, 100, &goodness, NULL), STATUS_OK);
+    assert_true(isnan(goodness.distance) && isnan(goodness.p) && goodness.draws == 0);
   }
   const double unlike[12] = {24, 20, 18, 15, 30, 21, 17, 9, 19, 18, 11, 10};
   const struct pooled_runs runs = {3, (const size_t[]){0, 4, 8, 12}, unlike};
