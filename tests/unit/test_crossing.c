@@ -1,0 +1,158 @@
+/* The crossing of a level: likelihoods, intervals and next places by hand, and every kind of answer. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+
+#include "analysis/analysis.h"
+#include "analysis/inference/crossing.h"
+
+#define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+static struct crossing find(size_t n, const double *x, const double *y, double level, double share) {
+  struct error error;
+  struct crossing found;
+  const struct crossing_data data = {.n = n, .x = x, .y = y, .level = level, .share = share};
+  assert_int_equal(crossing_find(&data, &found, &error), STATUS_OK);
+  return found;
+}
+
+/* Means -2, 0 and 2 are in order, so the curve goes through them. Squares about it: 2 + 2 + 4.5 with 6 - 3 degrees of
+ * freedom: variance 8.5 / 3, weight of a mean 6 / 8.5 = 0.705882. A crossing below 0 would put the first mean at 0:
+ * 4 * 0.705882 = 2.823529, likelihood exp(-1.411765) = 0.243713; likewise above 1. Both are far below 1.4 t^2 = 14.2.
+ * Gaps of 0.1, 0.5, 0.5 and 0.1 have the weights 0.0243713, 0.5, 0.5, 0.0243713; an eighth of their sum is 0.131093. */
+static void means_by_hand(void **state) {
+  (void)state;
+  const double x[6] = {1, 0.5, 0, 0, 0.5, 1}, y[6] = {10.5, 9, 7, 9, 11, 13.5};
+  struct crossing found = find(6, x, y, 10, NAN);
+  assert_int_equal(found.kind, CROSSING_OPEN);
+  assert_true(isnan(found.share) && found.rising && found.n == 6);
+  NEAR(found.low, -0.1, 1e-12);
+  NEAR(found.high, 1.1, 1e-12);
+  NEAR(found.at, 0.5, 1e-12);
+  NEAR(found.next[0], 0.131093 - 0.0243713, 1e-6);
+  NEAR(found.next[3], 1 - found.next[0], 1e-12);
+  double mirrored[6];
+  for (int i = 0; i < 6; i++)
+    mirrored[i] = 20 - y[i];
+  found = find(6, x, mirrored, 10, NAN);
+  assert_false(found.rising);
+  NEAR(found.next[0], 0.106722, 1e-6);
+}
+
+/* Two modes: -1 and 3 about the level, so their mean is at it for a share of 1/4 of the upper one. Below the crossing
+ * are n runs of the lower mode. If the crossing were below all places, their share would be at least 1/4: minus twice
+ * the logarithm of the likelihood is -2 n ln(3/4) = 0.575364 n. The limit is 1.4 * 3.841459 = 5.378042, so 9 runs do
+ * not exclude it and 10 runs do. Above, -2 n ln(1/4) = 2.772589 n: two runs. */
+static void modes_by_hand(void **state) {
+  (void)state;
+  double x[12], y[12];
+  for (int n = 9; n <= 10; n++) {
+    for (int i = 0; i < n + 2; i++) {
+      x[i] = i < n ? 0 : 1;
+      y[i] = i < n ? 4 : 8;
+    }
+    const struct crossing found = find((size_t)n + 2, x, y, 5, NAN);
+    NEAR(found.share, 0.25, 1e-12);
+    assert_int_equal(found.kind, n == 10 ? CROSSING_FOUND : CROSSING_OPEN);
+    NEAR(found.low, n == 10 ? 0 : -0.1, 1e-12);
+    NEAR(found.high, 1, 1e-12);
+  }
+  const struct crossing found = find(12, x, y, 5, 0.25); /* the same, as was asked for */
+  NEAR(found.high - found.low, 1, 1e-12);
+  assert_true(crossing_is_answer(&found, 1) && !crossing_is_answer(&found, 0.5));
+}
+
+/* A run of the upper mode at 0.4 and one of the lower at 0.6 are out of order; the curve pools them: 0, 1/2, 1. */
+static void places_out_of_order_are_pooled(void **state) {
+  (void)state;
+  const double x[22] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.4, 0.6, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+  const double y[22] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+  const struct crossing found = find(22, x, y, 0.5, 0.5);
+  /* Gaps (0, 0.4), (0.4, 0.6), (0.6, 1): the best curves have 0, 1/2, 1/2, 1, all with 4 ln 2, of equal likelihood. */
+  NEAR(found.low, 0, 1e-12);
+  NEAR(found.high, 1, 1e-12);
+  NEAR(found.at, 0.5, 1e-3);
+}
+
+enum { PLACES = 21, EACH = 8 };
+static struct crossing of_curve(double (*curve)(double), double noise) {
+  static double x[PLACES * EACH], y[PLACES * EACH];
+  for (int i = 0; i < PLACES * EACH; i++) {
+    x[i] = i / EACH / (PLACES - 1.0);
+    y[i] = curve(x[i]) + noise * (i % 2 ? 1 : -1);
+  }
+  return find(PLACES * EACH, x, y, 0, NAN);
+}
+
+static double high(double x) {
+  return 1 + x;
+}
+static double low(double x) {
+  return x - 2;
+}
+static double humps(double x) {
+  return sin(15 * x + 0.5);
+}
+static double shelf(double x) {
+  return x < 0.32 ? x - 0.32 : x > 0.68 ? x - 0.68 : 0;
+}
+static double nothing(double x) {
+  (void)x;
+  return 0;
+}
+
+static void kinds(void **state) {
+  (void)state;
+  assert_int_equal(of_curve(high, 0.1).kind, CROSSING_ABOVE);
+  assert_int_equal(of_curve(low, 0.1).kind, CROSSING_BELOW);
+  assert_int_equal(of_curve(low, 0).kind, CROSSING_BELOW);
+  /* 15 x + 0.5 passes pi, 2 pi, 3 pi and 4 pi: at 0.176, 0.386, 0.595 and 0.804. */
+  const struct crossing found = of_curve(humps, 0.1);
+  assert_int_equal(found.kind, CROSSING_SEVERAL);
+  assert_int_equal(found.parts, 4);
+  for (size_t i = 0; i < found.parts; i++) {
+    const double at = ((double)(i + 1) * 3.14159265 - 0.5) / 15;
+    assert_true(found.part[i].low <= at && at <= found.part[i].high);
+    NEAR(found.part[i].high, found.part[i].low, 0.16);
+  }
+  const struct crossing flat = of_curve(shelf, 0.001);
+  assert_int_equal(flat.kind, CROSSING_PLATEAU);
+  assert_true(flat.low <= 0.35 && flat.high >= 0.65 && crossing_is_answer(&flat, 0));
+  assert_int_equal(of_curve(nothing, 0).kind, CROSSING_PLATEAU);
+}
+
+static void runs_without_results(void **state) {
+  (void)state;
+  struct error error;
+  struct crossing found;
+  const double x[4] = {0, 1, 1, 1}, y[4] = {1, NAN, NAN, HUGE_VAL};
+  const struct crossing_data data = {.n = 4, .x = x, .y = y, .level = 0, .share = NAN};
+  assert_int_equal(crossing_find(&data, &found, &error), STATUS_CONTENT);
+  assert_int_equal(found.kind, CROSSING_OPEN);
+}
+
+static void rounds_grow_by_a_sixth(void **state) {
+  (void)state;
+  const struct crossing found = {.next = {0.1, 0.2, 0.3, 0.4}};
+  double place[CROSSING_PLACES];
+  assert_int_equal(crossing_next(&found, 20, place), 2);
+  assert_int_equal(crossing_next(&found, 96, place), 4);
+  NEAR(place[2], 0.3, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(means_by_hand),
+      cmocka_unit_test(modes_by_hand),
+      cmocka_unit_test(places_out_of_order_are_pooled),
+      cmocka_unit_test(kinds),
+      cmocka_unit_test(runs_without_results),
+      cmocka_unit_test(rounds_grow_by_a_sixth),
+  };
+  analysis_init();
+  return cmocka_run_group_tests_name("crossing", tests, NULL, NULL);
+}
