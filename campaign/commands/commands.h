@@ -27,6 +27,7 @@
   ENTRY(plan)                                                                                                          \
   ENTRY(simulate)                                                                                                      \
   ENTRY(converge)                                                                                                      \
+  ENTRY(find)                                                                                                          \
   ENTRY(fit)                                                                                                           \
   ENTRY(serve)                                                                                                         \
   ENTRY(retry)                                                                                                         \

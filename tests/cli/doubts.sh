@@ -106,6 +106,10 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
     --knob time_step=4us,1us --seeds 2 --within off --store study.db --quiet)
     marked "2 of 4" "${study[@]}"
     columns 1 "${study[@]}" ;;
+  find) search=(find unknown.yaml --level 0.5 --max-runs 20 --store found.db --quiet)
+    marked "20 of 20" "${search[@]}"
+    columns 0 "${search[@]}"
+    caption o "${search[@]}" --picture o.png ;;
   fit) marked "72 of 72" fit measured.yaml unknown.yaml --rounds 3 --quiet
     columns 0 fit measured.yaml unknown.yaml --rounds 3 --quiet
     caption q fit measured.yaml unknown.yaml --rounds 3 --quiet --picture q.png ;;
@@ -191,4 +195,4 @@ db.execute(\"UPDATE run SET warnings = 'soot' WHERE point_id = 1\")
 db.commit()"
 expect 0 "$clast" stats old.db --by time_step
 says "marked (!), 3 of 12 runs: soot: a word of another version of clast"
-done_after 81
+done_after 89

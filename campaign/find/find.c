@@ -1,0 +1,386 @@
+/* The request of `clast find`, and its rounds as a series of campaigns. */
+#include "campaign/find/find.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "campaign/converge/accuracy.h"
+#include "schemas/memory.h"
+
+/* ---- places of the bracket ---- */
+
+static double number_of(const struct field_value *value) {
+  return value->kind == FIELD_INTEGER ? (double)value->integer : value->number;
+}
+
+void find_value(const struct find *find, double x, struct field_value *value) {
+  const double low = find->from, high = find->to;
+  const double exact = find->logarithmic ? low * pow(high / low, x) : low + (high - low) * x;
+  *value = (struct field_value){.kind = find->input->kind};
+  if (value->kind == FIELD_INTEGER) {
+    value->integer = (int64_t)round(exact);
+    return;
+  }
+  const double step = pow(10, floor(log10(find->logarithmic ? exact : high - low)) - 4);
+  value->number = x <= 0 ? low : x >= 1 ? high : fmin(fmax(round(exact / step) * step, low), high);
+  char text[32];
+  snprintf(text, sizeof text, "%.12g", value->number); /* the number that a person would write */
+  value->number = strtod(text, NULL);
+}
+
+double find_place(const struct find *find, const struct field_value *value) {
+  const double number = number_of(value);
+  return find->logarithmic ? log(number / find->from) / log(find->to / find->from)
+                           : (number - find->from) / (find->to - find->from);
+}
+
+/* Widest interval of an answer as a share of the bracket, for the interval found. An interval between neighbouring
+ * whole numbers cannot become narrower. */
+static double widest(const struct find *find) {
+  struct field_value low, high;
+  find_value(find, find->found.low, &low);
+  find_value(find, find->found.high, &high);
+  const double width = number_of(&high) - number_of(&low), share = find->found.high - find->found.low;
+  if (find->input->kind == FIELD_INTEGER && width <= 1)
+    return share;
+  return find->relative ? find->within : find->within / width * share;
+}
+
+/* ---- the request ---- */
+
+/* An axis with one value is part of the scene. */
+static bool varies(const struct design_axis *axis) {
+  return axis->kind == DESIGN_AXIS_LINKED || axis->level_count != 1;
+}
+
+static status find_input(struct find *find, const char *name, struct error *error) {
+  const struct campaign *campaign = find->campaign;
+  const struct design_axis *only = NULL;
+  size_t count = 0;
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    if (varies(&campaign->axes[i])) {
+      only = &campaign->axes[i];
+      count++;
+    }
+  if (!name && count != 1)
+    return status_fail(error, STATUS_USAGE, "the campaign varies %zu inputs: name one with --input", count);
+  const struct scene *scene = campaign->scene;
+  find->input = name ? field_find_in(scene->kind->inputs, name, scene->inputs, error) : only->row;
+  if (!find->input)
+    return STATUS_USAGE;
+  if (find->input->kind != FIELD_REAL && find->input->kind != FIELD_INTEGER)
+    return status_fail(error, STATUS_USAGE, "--input %s: not a number, so nothing can be between two of its values",
+                       find->input->path);
+  return STATUS_OK;
+}
+
+static bool is_set(const struct find *find, const struct option_list *set, const struct field *row) {
+  char path[FIELD_TEXT_SIZE];
+  const char *value;
+  struct error error;
+  const struct scene *scene = find->campaign->scene;
+  for (size_t i = 0; i < set->count; i++)
+    if (campaign_change_split(set->items[i], path, &value, &error) == STATUS_OK &&
+        field_find_in(scene->kind->inputs, path, scene->inputs, &error) == row)
+      return true;
+  return false;
+}
+
+/* The scene of the campaign with `set`. Only the input may have several values. */
+static status find_base(struct find *find, const struct option_list *set, struct error *error) {
+  const struct campaign *campaign = find->campaign;
+  OWNED struct field_value *values = NULL;
+  TRY(memory_array(&values, campaign->axis_count + 1, sizeof *values, "a point", error));
+  for (size_t i = 0; i < campaign->axis_count; i++) {
+    const struct design_axis *axis = &campaign->axes[i];
+    if (axis->row != find->input && varies(axis) && !is_set(find, set, axis->row))
+      return status_fail(error, STATUS_USAGE,
+                         "the campaign varies %s as well as %s, and a crossing is along one input: --set %s=VALUE",
+                         axis->row->path, find->input->path, axis->row->path);
+    if (axis->level_count)
+      values[i] = axis->levels[0];
+    else if (axis->kind != DESIGN_AXIS_LINKED)
+      design_axis_quantile(axis, 0.5, &values[i]);
+  }
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    if (campaign->axes[i].kind == DESIGN_AXIS_LINKED)
+      design_axis_follow(&campaign->axes[i], &values[campaign->axes[i].linked], 0, &values[i]);
+  find->base = campaign_point_scene(campaign, values, error);
+  return find->base ? option_set_inputs(find->base, set, error) : STATUS_CONTENT;
+}
+
+static status read_end(const struct field *row, const char *option, const char *text, double *end,
+                       struct error *error) {
+  struct field_value value;
+  struct error why;
+  if (!text)
+    return STATUS_OK;
+  if (field_parse(row, text, &value, &why) != STATUS_OK)
+    return status_fail(error, STATUS_USAGE, "--%s %s: %s", option, text, why.message);
+  *end = number_of(&value);
+  return STATUS_OK;
+}
+
+static status find_bracket(struct find *find, const struct find_request *request, struct error *error) {
+  const struct field *row = find->input;
+  const struct design_axis *axis = campaign_axis(find->campaign, row);
+  find->from = find->to = NAN;
+  for (size_t i = 0; axis && i < axis->level_count; i++) {
+    find->from = fmin(find->from, number_of(&axis->levels[i]));
+    find->to = fmax(find->to, number_of(&axis->levels[i]));
+  }
+  if (axis && (axis->kind == DESIGN_AXIS_UNIFORM || axis->kind == DESIGN_AXIS_LOG_UNIFORM)) {
+    find->from = axis->a;
+    find->to = axis->b;
+  }
+  TRY(read_end(row, "from", request->from, &find->from, error));
+  TRY(read_end(row, "to", request->to, &find->to, error));
+  if (isnan(find->from) || isnan(find->to))
+    return status_fail(error, STATUS_USAGE,
+                       "the campaign has no range of %s: give --from and --to, its least and "
+                       "largest value",
+                       row->path);
+  if (!(find->from < find->to))
+    return status_fail(error, STATUS_USAGE, "--from must be less than --to, in %s", row->path);
+  find->logarithmic = find->from > 0 && find->to / find->from >= 20; /* as the axes of charts */
+  return STATUS_OK;
+}
+
+static status read_number(const char *option, const char *text, double *number, const char **rest,
+                          struct error *error) {
+  char *end = NULL;
+  *number = strtod(text, &end);
+  *rest = end + strspn(end, " ");
+  return end != text && isfinite(*number) ? STATUS_OK
+                                          : status_fail(error, STATUS_USAGE, "--%s %s: no number", option, text);
+}
+
+static status find_level(struct find *find, const struct find_request *request, struct error *error) {
+  const char *name = request->quantity ? request->quantity : find->campaign->quantity, *rest;
+  struct ask_specimens_quantity *quantity = &find->quantity;
+  quantity->kind = ASK_SPECIMENS_RESULT;
+  quantity->row = campaign_quantity(find->base->kind, name, &quantity->of_outcome, error);
+  if (!quantity->row)
+    return STATUS_USAGE;
+  if (!request->level)
+    return status_fail(error, STATUS_USAGE, "--level is missing: the value of %s that is looked for",
+                       quantity->row->path);
+  struct field real = *quantity->row; /* the mean of whole numbers need not be one */
+  real.kind = FIELD_REAL;
+  TRY(read_end(&real, "level", request->level, &find->level, error));
+  find->share = NAN;
+  if (!request->share)
+    return STATUS_OK;
+  TRY(read_number("share", request->share, &find->share, &rest, error));
+  if (*rest == '%')
+    find->share /= 100;
+  return find->share > 0 && find->share < 1
+             ? STATUS_OK
+             : status_fail(error, STATUS_USAGE, "--share %s: expected a share of the runs between 0 and 1",
+                           request->share);
+}
+
+static status find_within(struct find *find, const char *text, struct error *error) {
+  const char *rest;
+  TRY(read_number("within", text, &find->within, &rest, error));
+  find->relative = strcmp(rest, "%") == 0;
+  struct field width = *find->input; /* a width has no range, and "%" is of the bracket */
+  width.kind = FIELD_REAL;
+  width.minimum = -HUGE_VAL;
+  width.maximum = HUGE_VAL;
+  width.flags = 0;
+  if (find->relative)
+    find->within /= 100;
+  else
+    TRY(read_end(&width, "within", text, &find->within, error));
+  return find->within > 0 ? STATUS_OK : status_fail(error, STATUS_USAGE, "--within %s: expected a width above 0", text);
+}
+
+static status read_request(const struct find_request *request, const char *path, struct find *find,
+                           struct error *error) {
+  TRY(campaign_load(path, &find->campaign, error));
+  struct campaign *campaign = find->campaign;
+  if (request->store)
+    snprintf(campaign->store, sizeof campaign->store, "%s", request->store);
+  TRY(find_input(find, request->input, error));
+  TRY(find_bracket(find, request, error));
+  if (!launch_other_rank())
+    TRY(accuracy_settle(campaign, path, campaign->store, request->launch.quiet ? ACCURACY_SILENT : ACCURACY_NOTE, NULL,
+                        error));
+  TRY(find_base(find, &request->set, error));
+  TRY(find_level(find, request, error));
+  TRY(find_within(find, request->within, error));
+  driver_list_reference(campaign, path, find->reference, sizeof find->reference);
+  find->most = (size_t)request->most_runs;
+  find->axis = (struct design_axis){.row = find->input};
+  find->limits = *campaign;
+  find->limits.axes = &find->axis;
+  find->limits.axis_count = 1;
+  find->limits.independent = true; /* equal seeds would move all places alike, which no place can tell */
+  TRY(memory_array(&find->x, find->most, sizeof *find->x, "the runs of a search", error));
+  return memory_array(&find->y, find->most, sizeof *find->y, "the runs of a search", error);
+}
+
+static void clear(struct find *find) {
+  scene_free(find->base);
+  campaign_free(find->campaign);
+  free(find->x);
+  free(find->y);
+}
+
+/* ---- a round as a campaign ---- */
+
+/* The next round's places, each once: whole numbers and six digits may meet. */
+static void choose_places(struct find *find) {
+  double next[CROSSING_FIRST];
+  size_t count = CROSSING_FIRST;
+  for (size_t i = 0; i < count; i++)
+    next[i] = (double)i / (CROSSING_FIRST - 1);
+  find->each = CROSSING_RUNS;
+  if (find->runs > 0) {
+    count = CROSSING_PLACES;
+    find->each = crossing_next(&find->found, find->runs, next);
+  }
+  find->places = 0;
+  for (size_t i = 0; i < count; i++) {
+    struct field_value *value = &find->place[find->places];
+    find_value(find, next[i], value);
+    find->places += find->places == 0 || number_of(value) != number_of(value - 1);
+  }
+}
+
+static status make_campaign(const struct find *find, struct campaign **out, struct error *error) {
+  TRY(driver_list_begin(&find->limits, find->base, 1, find->places, out, error));
+  struct campaign *campaign = *out;
+  campaign->axes[0].row = find->input;
+  memcpy(campaign->axes[0].levels, find->place, find->places * sizeof *find->place);
+  campaign->per_point = (int64_t)find->each;
+  campaign->first_seed += (int64_t)find->runs; /* a place that comes again has new seeds */
+  snprintf(campaign->name, sizeof campaign->name, "%.120s find %.120s", find->campaign->name, find->input->path);
+  return driver_list_end(campaign, find->reference, "Written by clast find: a round of its runs.", error);
+}
+
+static status next_round(void *context, const struct scheduler *scheduler, struct campaign **campaign,
+                         struct error *error) {
+  (void)scheduler;
+  struct find *find = context;
+  if (find->answered)
+    return STATUS_OK;
+  choose_places(find);
+  find->answered = find->runs + find->places * find->each > find->most;
+  return find->answered ? STATUS_OK : make_campaign(find, campaign, error);
+}
+
+/* Adds the runs of a place of this round. */
+static status read_place(struct find *find, struct store *store, const struct field_value *place, struct error *error) {
+  struct campaign round = find->limits;
+  struct error invalid = {0};
+  int64_t point = 0;
+  SCENE scene = campaign_point_scene_from(find->base, &find->limits, place, &invalid);
+  round.first_seed += (int64_t)find->runs;
+  if (scene)
+    TRY(store_point_find(store, scene, &point, error));
+  double *y = find->y + find->runs + (size_t)(place - find->place) * find->each;
+  double *x = find->x + (y - find->y), value;
+  for (size_t r = 0; r < find->each; r++) {
+    x[r] = find_place(find, place);
+    y[r] = NAN;
+  }
+  if (!point)
+    return STATUS_OK;
+  uint64_t seed;
+  struct ask_doubts doubts = {0};
+  ANSWER runs = ask_specimens(store, point, scene->kind, &find->quantity, error);
+  for (; ask_specimens_next(&runs, &find->quantity, &seed, &value, &doubts); doubts = (struct ask_doubts){0})
+    for (size_t r = 0; r < find->each; r++)
+      if (campaign_seed(&round, scene, (int64_t)r) == seed) {
+        y[r] = value;
+        ask_doubts_add(&find->doubts, &doubts);
+      }
+  return answer_end(&runs);
+}
+
+static void tell(const struct find *find) {
+  char low[FIND_TEXT], high[FIND_TEXT], text[3 * FIND_TEXT];
+  snprintf(text, sizeof text, "%zu runs: between %s and %s", find->runs, find_show(find, fmax(find->found.low, 0), low),
+           find_show(find, fmin(find->found.high, 1), high));
+  find->note(find->note_context, text);
+}
+
+static status end_round(void *context, const struct scheduler *scheduler, struct error *error) {
+  struct find *find = context;
+  for (size_t i = 0; i < find->places; i++)
+    TRY(read_place(find, scheduler->store, &find->place[i], error));
+  find->runs += find->places * find->each;
+  const struct crossing_data data = {.n = find->runs,
+                                     .x = find->x,
+                                     .y = find->y,
+                                     .level = find->level,
+                                     .share = find->share};
+  TRY(crossing_find(&data, &find->found, error));
+  find->failed = find->runs - find->found.n;
+  find->answered = find->narrow = crossing_is_answer(&find->found, widest(find));
+  tell(find);
+  return STATUS_OK;
+}
+
+/* ---- from the document to the answer ---- */
+
+struct launching {
+  struct find *find;
+  const struct find_request *request;
+  enum table_format format;
+};
+
+static status run_rounds(void *context, struct launch *launch, struct error *error) {
+  const struct launching *launching = context;
+  const struct find_request *request = launching->request;
+  struct find *find = launching->find;
+  const struct series series = {.context = find, .limits = &find->limits, .next = next_round, .done = end_round};
+  struct series_summary summary;
+  find->note = launch_note;
+  find->note_context = &launch->notes;
+  launch->scheduler.store_path = find->limits.store;
+  if (launch->manager && !launch->notes.quiet)
+    fprintf(stderr, "clast: at most %zu runs, %d at first; --plan tells what they cost\n", find->most,
+            FIND_FEWEST_RUNS);
+  const status code = driver_run_series(&series, launch->farm, &launch->scheduler, &summary, error);
+  launch_tell_series(launch, code, find->limits.store, &summary, true);
+  if (!launch->manager || code != STATUS_OK)
+    return code;
+  TRY(find_print(find, launching->format, error));
+  return request->picture ? find_print_picture(find, request->picture, &request->chart, error) : STATUS_OK;
+}
+
+/* The cost of most runs, spread over the bracket. */
+static status print_plan(struct find *find, const struct find_request *request, bool json, struct error *error) {
+  CAMPAIGN campaign = NULL;
+  struct plan plan;
+  const struct plan_options options = {.store_path = find->limits.store, .slots = launch_slots(request->launch.slots)};
+  choose_places(find);
+  find->each = find->most / find->places;
+  TRY(make_campaign(find, &campaign, error));
+  TRY(plan_make(campaign, &options, &plan, error));
+  OWNED char *text = json ? plan_print_json(campaign, &plan, options.slots) : NULL;
+  if (text)
+    puts(text);
+  else if (!json)
+    printf("At most %zu runs, %d at first; fewer when the crossing is known before.\n", find->most, FIND_FEWEST_RUNS);
+  if (!json)
+    plan_print(campaign, &plan, options.slots, stdout);
+  plan_clear(&plan);
+  return text || !json ? STATUS_OK : status_fail(error, STATUS_MEMORY, "out of memory");
+}
+
+status find_launch(const struct find_request *request, const struct command_line *line, struct error *error) {
+  OWNED struct find *find = memory_small(1, sizeof *find);
+  struct launching launching = {find, request, line->format};
+  status code = read_request(request, line->arguments[0], find, error);
+  if (code == STATUS_OK)
+    code = request->plan ? print_plan(find, request, line->format == TABLE_JSON, error)
+                         : launch_farm(&find->limits, &request->launch, line, run_rounds, &launching, error);
+  clear(find);
+  return code;
+}

@@ -1,0 +1,68 @@
+/* `clast find`: where a result crosses a level along one input. Rounds of runs, each a campaign of the store, are
+ * chosen by analysis/inference/crossing.h. The rounds depend only on the document and the request, so that a repeated
+ * command finds its runs in the store and goes on. */
+#ifndef CLAST_CAMPAIGN_FIND_FIND_H
+#define CLAST_CAMPAIGN_FIND_FIND_H
+
+#include "analysis/inference/crossing.h"
+#include "campaign/charts/charts.h"
+#include "campaign/launch/launch.h"
+
+enum { FIND_FEWEST_RUNS = CROSSING_FIRST * CROSSING_RUNS, FIND_MOST_RUNS = 5000 };
+
+struct find_request { /* as on the command line; texts may be NULL */
+  struct launch_options launch;
+  struct option_list set;
+  const char *quantity, *level, *share, *input, *from, *to, *within, *store, *picture;
+  int64_t most_runs;
+  struct chart_options chart;
+  bool plan;
+};
+
+struct find {
+  struct campaign *campaign; /* owned */
+  struct campaign limits;    /* what every round has; borrows from the campaign. Its one axis is the input */
+  struct design_axis axis;
+  struct scene *base; /* owned: the scene of every run but for the input */
+  char reference[2 * FIELD_TEXT_SIZE];
+  const struct field *input;
+  struct ask_specimens_quantity quantity;
+  double level, share; /* SI; share: NaN for the mean */
+  double from, to;     /* SI */
+  bool logarithmic;
+  double within; /* widest interval of an answer: SI, or a share of the bracket */
+  bool relative;
+
+  /* The runs so far. Owned. */
+  size_t most, runs, failed;
+  double *x, *y;
+  struct crossing found;
+  struct ask_doubts doubts;
+  bool answered, narrow; /* no more rounds; the interval is as narrow as asked, or there is another answer */
+
+  /* The round under way. */
+  struct field_value place[CROSSING_FIRST];
+  size_t places, each;
+  void (*note)(void *context, const char *text);
+  void *note_context;
+};
+
+/* Value of the input at a place of the bracket, as a document can show it (to 1e-4 of the bracket's decade), and back.
+ */
+void find_value(const struct find *find, double x, struct field_value *value);
+double find_place(const struct find *find, const struct field_value *value);
+
+/* Reads the request, runs the rounds and, on rank 0, prints the answer. STATUS_USAGE: wrong input, level or bracket. */
+status find_launch(const struct find_request *request, const struct command_line *line, struct error *error);
+
+/* ---- find_print.c ---- */
+
+/* For people a sentence and a table of the runs along the input. For programs a row per crossing. */
+status find_print(const struct find *find, enum table_format format, struct error *error);
+status find_print_picture(const struct find *find, const char *path, const struct chart_options *chart,
+                          struct error *error);
+/* A value of the input as people read it. */
+enum { FIND_TEXT = 96 };
+const char *find_show(const struct find *find, double x, char text[FIND_TEXT]);
+
+#endif

@@ -1,0 +1,268 @@
+/* The answer of a search as a sentence, as rows, and as a picture. */
+#include "campaign/find/find.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/memory.h"
+#include "schemas/text.h"
+
+enum { BINS = 10, SENTENCE = 2048 };
+
+const char *find_show(const struct find *find, double x, char text[FIND_TEXT]) {
+  struct field_value value;
+  find_value(find, x, &value);
+  field_show(find->input, &value, text, FIND_TEXT);
+  return text;
+}
+
+/* The median with the digits that the interval allows. */
+static const char *middle(const struct find *find, char text[FIND_TEXT]) {
+  struct field_value low, high, at;
+  find_value(find, find->found.low, &low);
+  find_value(find, find->found.high, &high);
+  find_value(find, find->found.at, &at);
+  if (at.kind == FIELD_REAL && high.number > low.number) {
+    const double step = pow(10, floor(log10(high.number - low.number)) - 1);
+    at.number = round(at.number / step) * step;
+  }
+  field_show(find->input, &at, text, FIND_TEXT);
+  return text;
+}
+
+/* ---- the sentence ---- */
+
+static void write_subject(const struct find *find, char *text, size_t size) {
+  char level[FIND_TEXT];
+  const struct field *row = find->quantity.row;
+  const struct field_value value = {.kind = FIELD_REAL, .number = find->level};
+  struct field real = *row;
+  real.kind = FIELD_REAL;
+  field_show(&real, &value, level, sizeof level);
+  if (isnan(find->share))
+    snprintf(text, size, "the mean of %s\n%s", row->path, level);
+  else
+    snprintf(text, size, "the share of runs with %s above %s\n%g", row->path, level, find->share);
+}
+
+static void write_sentence(const struct find *find, char text[SENTENCE]) {
+  const struct crossing *found = &find->found;
+  char subject[FIELD_TEXT_SIZE + 3 * FIND_TEXT], low[FIND_TEXT], high[FIND_TEXT], at[FIND_TEXT], mark[UNCERTAINTY_TEXT];
+  write_subject(find, subject, sizeof subject);
+  char *level = strchr(subject, '\n');
+  *level++ = '\0';
+  subject[0] = 'T';
+  const char *input = find->input->path;
+  find_show(find, fmax(found->low, 0), low);
+  find_show(find, fmin(found->high, 1), high);
+  uncertainty_mark(&find->doubts, mark);
+  text[0] = '\0';
+  switch (found->kind) {
+  case CROSSING_FOUND:
+    text_append(text, SENTENCE, "%s %s through %s at %s = %s%s (95 %% interval %s to %s).", subject,
+                found->rising ? "rises" : "falls", level, input, middle(find, at), mark, low, high);
+    break;
+  case CROSSING_ABOVE:
+  case CROSSING_BELOW:
+    text_append(text, SENTENCE, "%s is %s %s for %s from %s to %s%s: no crossing in the bracket.", subject,
+                found->kind == CROSSING_ABOVE ? "above" : "below", level, input, find_show(find, 0, low),
+                find_show(find, 1, high), mark);
+    break;
+  case CROSSING_SEVERAL:
+    text_append(text, SENTENCE, "%s crosses %s several times%s", subject, level, mark);
+    for (size_t i = 0; i < found->parts; i++)
+      text_append(text, SENTENCE, "%s between %s and %s", i ? "," : ", at ", find_show(find, found->part[i].low, low),
+                  find_show(find, found->part[i].high, high));
+    text_append(text, SENTENCE, " of %s. Choose one with --from and --to.", input);
+    break;
+  case CROSSING_PLATEAU:
+    text_append(text, SENTENCE, "%s has a plateau at %s, within 3 %% of its range, for %s from %s to %s%s.", subject,
+                level, input, low, high, mark);
+    break;
+  case CROSSING_OPEN:
+    text_append(text, SENTENCE, "Not decided%s: %s crosses %s ", mark, subject + 4, level);
+    text_append(text, SENTENCE,
+                found->low < 0 && found->high > 1 ? "anywhere, or not in the bracket of %s."
+                : found->low < 0                  ? "at %s below %s, or not in the bracket."
+                                                  : "at %s above %s, or not in the bracket.",
+                input, found->low < 0 ? high : low);
+    break;
+  }
+}
+
+/* ---- the runs along the input ---- */
+
+struct bin {
+  double low, high, x; /* places, and the mean of the runs' */
+  size_t n, above;
+  struct sample_summary mean;
+};
+
+static int by_x(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Pools the runs, in order of the input, into at most `BINS` + 1 bins of whole places. */
+static status make_bins(const struct find *find, struct bin *bins, size_t *count, struct error *error) {
+  OWNED double(*pairs)[2] = NULL;
+  OWNED double *values = NULL;
+  size_t n = 0;
+  TRY(memory_array(&pairs, find->runs, sizeof *pairs, "the runs of a search", error));
+  TRY(memory_array(&values, find->runs, sizeof *values, "the runs of a search", error));
+  for (size_t i = 0; i < find->runs; i++)
+    if (isfinite(find->y[i])) {
+      pairs[n][0] = find->x[i];
+      pairs[n++][1] = find->y[i];
+    }
+  qsort(pairs, n, sizeof *pairs, by_x);
+  *count = 0;
+  for (size_t i = 0, from = 0; i < n; i++) {
+    values[i - from] = pairs[i][1];
+    const size_t in = i + 1 - from;
+    if (i + 1 < n && (in < n / BINS || pairs[i + 1][0] == pairs[i][0]))
+      continue;
+    struct bin *bin = &bins[(*count)++];
+    *bin = (struct bin){.low = pairs[from][0], .high = pairs[i][0], .n = in};
+    for (size_t k = from; k <= i; k++) {
+      bin->x += pairs[k][0] / (double)in;
+      bin->above += pairs[k][1] > find->level;
+    }
+    bin->mean = sample_summarise(in, values, 0.95);
+    if (field_is_share(find->quantity.row))
+      sample_of_share(&bin->mean, 0.95);
+    from = i + 1;
+  }
+  return STATUS_OK;
+}
+
+static status print_bins(const struct find *find, struct error *error) {
+  struct bin bins[2 * BINS + 2];
+  size_t count;
+  char text[FIND_TEXT], mean[UNCERTAINTY_TEXT];
+  TRY(make_bins(find, bins, &count, error));
+  TABLE table = table_new(TABLE_TEXT, stdout);
+  table_columns(table, (const char *const[]){find->input->path, "to", "runs", find->quantity.row->path, "above", NULL});
+  for (size_t i = 0; i < count; i++) {
+    table_text(table, find_show(find, bins[i].low, text));
+    table_text(table, find_show(find, bins[i].high, text));
+    table_integer(table, (int64_t)bins[i].n);
+    uncertainty_cell(bins[i].mean.mean, bins[i].mean.half_width, mean);
+    table_text(table, mean);
+    table_fixed(table, (double)bins[i].above / (double)bins[i].n, 2);
+  }
+  return table_end(table, error);
+}
+
+/* ---- rows for programs ---- */
+
+static double value_at(const struct find *find, double x) {
+  struct field_value value;
+  if (!(x >= 0 && x <= 1))
+    return NAN;
+  find_value(find, x, &value);
+  return value.kind == FIELD_INTEGER ? (double)value.integer : value.number;
+}
+
+static status print_rows(const struct find *find, enum table_format format, struct error *error) {
+  const struct crossing *found = &find->found;
+  const bool has = found->kind != CROSSING_ABOVE && found->kind != CROSSING_BELOW;
+  const size_t parts = found->kind == CROSSING_SEVERAL ? found->parts : 1;
+  TABLE table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"kind", "quantity", "level", "share", "input", "unit", "at", "low95",
+                                             "high95", "rising", "narrow", "from", "to", "runs", "runs_without", NULL});
+  table_doubt_columns(table);
+  for (size_t i = 0; i < parts; i++) {
+    const bool one = found->kind == CROSSING_FOUND;
+    const double low = found->parts > 1 ? found->part[i].low : found->low;
+    const double high = found->parts > 1 ? found->part[i].high : found->high;
+    table_text(table, crossing_kind_names[found->kind]);
+    table_text(table, find->quantity.row->path);
+    table_reals(table, 2, (const double[]){find->level, find->share});
+    table_text(table, find->input->path);
+    table_text(table, find->input->unit);
+    table_reals(table, 3,
+                (const double[]){value_at(find, one ? found->at : (double)NAN), value_at(find, has ? low : (double)NAN),
+                                 value_at(find, has ? high : (double)NAN)});
+    if (one)
+      table_boolean(table, found->rising);
+    else
+      table_missing(table);
+    table_boolean(table, find->narrow);
+    table_reals(table, 2, (const double[]){find->from, find->to});
+    table_integer(table, (int64_t)find->runs);
+    table_integer(table, (int64_t)find->failed);
+    table_doubt_cells(table, &find->doubts);
+  }
+  return table_end(table, error);
+}
+
+status find_print(const struct find *find, enum table_format format, struct error *error) {
+  char text[SENTENCE];
+  if (!table_for_people(format))
+    return print_rows(find, format, error);
+  write_sentence(find, text);
+  puts(text);
+  if (!find->narrow)
+    puts("The interval is wider than asked, and the runs are used up: a larger --max-runs goes on.");
+  TRY(print_bins(find, error));
+  fflush(stdout);
+  uncertainty_doubts(&find->doubts, stderr);
+  if (find->failed)
+    fprintf(stderr, "clast: %zu of %zu runs have no such result and are left out\n", find->failed, find->runs);
+  return STATUS_OK;
+}
+
+/* ---- the picture ---- */
+
+status find_print_picture(const struct find *find, const char *path, const struct chart_options *chart,
+                          struct error *error) {
+  struct bin bins[2 * BINS + 2];
+  struct picture_mean means[2 * BINS + 2], level[2], interval[2];
+  size_t count;
+  char x[CHARTS_LABEL], y[CHARTS_LABEL], column[FIELD_TEXT_SIZE], title[SENTENCE], caption[CHARTS_LABEL] = "";
+  const struct crossing *found = &find->found;
+  const bool is_share = !isnan(find->share);
+  const double at = is_share ? find->share : find->level;
+  double least = at, most = at;
+  STORE store = NULL;
+  TRY(store_open_reader(find->limits.store, &store, error));
+  TRY(make_bins(find, bins, &count, error));
+  for (size_t i = 0; i < count; i++) {
+    const double share = (double)bins[i].above / (double)bins[i].n;
+    const struct sample_summary *mean = &bins[i].mean;
+    means[i] = (struct picture_mean){value_at(find, bins[i].x),
+                                     is_share ? share : mean->mean,
+                                     is_share ? (double)NAN : mean->low,
+                                     is_share ? (double)NAN : mean->high,
+                                     NAN,
+                                     find->doubts.doubtful > 0};
+    least = fmin(least, means[i].y);
+    most = fmax(most, means[i].y);
+  }
+  const double low = value_at(find, fmax(found->low, 0)), high = value_at(find, fmin(found->high, 1));
+  for (int i = 0; i < 2; i++) {
+    level[i] = (struct picture_mean){i ? find->to : find->from, at, at, at, NAN, false};
+    interval[i] = (struct picture_mean){i ? high : low, at, least, most, NAN, false};
+  }
+  const struct picture_curve curves[] = {
+      {.label = is_share ? "share of runs above" : "mean of neighbouring runs, 95 % interval",
+       .count = count,
+       .mean = means},
+      {.label = "level", .count = 2, .mean = level, .band = true},
+      {.label = "95 % interval of the crossing", .count = 2, .mean = interval, .band = true},
+  };
+  const bool one = found->kind == CROSSING_FOUND || found->kind == CROSSING_PLATEAU;
+  field_column_name(find->input->path, column, sizeof column);
+  TRY(charts_axis(store, column, x, error));
+  field_column_name(find->quantity.row->path, column, sizeof column);
+  TRY(charts_axis(store, column, y, error));
+  if (is_share)
+    snprintf(y, sizeof y, "share of runs above the level");
+  write_sentence(find, title);
+  charts_doubts(&find->doubts, caption, sizeof caption);
+  const struct picture_page page = charts_page(path, chart);
+  const struct picture_words words = {title, caption, x, y};
+  return picture_curves(&page, &words, one ? 3 : 2, curves, error);
+}

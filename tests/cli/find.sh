@@ -1,0 +1,117 @@
+#!/usr/bin/env bash
+# clast find: a crossing of discs, its runs in the store, going on after a kill, the same answer with one and two workers and
+# under MPI, the other answers, and wrong command lines.
+. "$(dirname "$0")/lib.bash"
+
+cat >disc.yaml <<'YAML'
+name: disc
+scene: disc-explosion
+vary: {threshold.strain: {from: 1 %, to: 6 %, n: 3}}
+set: {body.diameter: 8 cm, charge.energy: 900 J/m, stop.end_time: 4 ms}
+seeds: {per_point: 2}
+store: disc.db
+YAML
+search=(disc.yaml --level 0.5 --share 50% --within "25 %")
+
+expect 0 "$clast" find "${search[@]}" --plan
+prints "At most 400 runs, 20 at first"; prints "a run"; [ ! -e disc.db ] || fail "a plan stores nothing"
+expect 0 "$clast" find "${search[@]}" -j 1 --picture disc.png
+[ -s disc.png ] || fail "no picture"
+head -1 out | grep -qE '^The share of runs with largest_fraction above 0.5 rises through 0.5 at threshold.strain = [0-9.]+ %( !)? \(95 % interval [0-9.]+ % to [0-9.]+ %\)\.$' ||
+  fail "the first line is not the answer"
+ok "the first line answers"
+says "at most 400 runs"
+runs=$(number disc.db "select count(*) from run")
+expect 0 "$clast" find "${search[@]}" -j 2 --json
+says "0 runs computed"; says "$runs found in the store"
+cp out one.json
+python - "$runs" <<'PY'
+import json, sqlite3, sys
+row, = json.load(open('one.json'))
+assert list(row) == ['kind', 'quantity', 'level', 'share', 'input', 'unit', 'at', 'low95', 'high95', 'rising', 'narrow', 'from', 'to',
+                     'runs', 'runs_without', 'doubtful', 'doubts'], list(row)
+assert row['kind'] == 'crossing' and row['rising'] and row['narrow'] and row['runs'] == int(sys.argv[1]), row
+assert row['from'] == 0.01 and row['to'] == 0.06 and row['high95'] - row['low95'] <= 0.25 * 0.05 + 1e-12, row
+assert row['low95'] <= row['at'] <= row['high95'] and row['level'] == row['share'] == 0.5, row
+# The ends of the interval are places where runs are, and every run has a seed of its own.
+db = sqlite3.connect('file:disc.db?mode=ro', uri=True)
+places = {v for v, in db.execute("select distinct value from point_input where path = 'threshold.strain'")}
+assert {row['low95'], row['high95']} <= places, places
+assert db.execute('select count(distinct seed) = count(*) from run').fetchone()[0] == 1
+PY
+ok "the keys and numbers of the row"
+expect 0 "$clast" find "${search[@]}" -j 2 --json --store two.db
+cmp -s out one.json || fail "two workers answer otherwise"
+results="select threshold_strain, seed, largest_fraction, steps from runs order by 1, 2"
+same "$(sqlite3 two.db "$results" | sha256sum)" "$(sqlite3 disc.db "$results" | sha256sum)" "the same bits with two workers"
+expect 0 mpirun -n 2 "$clast" find "${search[@]}" --json --store mpi.db
+cmp -s out one.json || fail "the answer under MPI is another"
+expect 0 "$clast" check disc.db
+
+# A search that is killed goes on, and answers as one that was not.
+"$clast" find "${search[@]}" -j 1 --store killed.db >out 2>err &
+for _ in $(seq 1000); do
+  [ "$(sqlite3 killed.db 'select count(*) from run' 2>/dev/null || echo 0)" -gt 5 ] && break
+  sleep 0.02
+done
+kill -9 $! 2>/dev/null || true
+wait || true
+[ "$(number killed.db 'select count(*) from run')" -lt "$runs" ] || fail "the search was over before the kill"
+expect 0 "$clast" find "${search[@]}" -j 1 --store killed.db --json
+cmp -s out one.json || fail "a search that was killed answers otherwise"
+same "$(number killed.db 'select count(*) from run')" "$runs" "runs after a kill"
+
+# A narrower interval goes on from these runs; few runs end with a wide one.
+expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --within 0.001 --max-runs "$((runs + 8))"
+says "$runs found in the store"; prints "a larger --max-runs goes on"
+# Other answers.
+expect 0 "$clast" find disc.yaml --level 1
+prints "is below 1 for threshold.strain from 1 % to 6 %"; prints "no crossing in the bracket."
+expect 0 "$clast" find disc.yaml --level 1 --json
+python -c "
+import json; row, = json.load(open('out'))
+assert row['kind'] == 'below' and row['narrow'] and row['at'] is row['low95'] is row['high95'] is row['rising'] is None, row"
+ok "no crossing for programs"
+expect 0 "$clast" find disc.yaml --level 0.5 --from 5% --to 6%
+prints "is above 0.5 for threshold.strain from 5 % to 6 %"
+# Of a whole number, the interval is one step. Mass grows with the columns, without noise.
+cat >block.yaml <<'YAML'
+name: block
+scene: block-impact
+vary: {body.columns: [4, 20]}
+set: {body.rows: 4, stop.end_time: 0.01 ms}
+seeds: {per_point: 2}
+store: block.db
+YAML
+expect 0 "$clast" find block.yaml -Q total_mass --level '15 kg' --json
+python - <<'PY'
+import json, sqlite3
+row, = json.load(open('out'))
+assert row['kind'] == 'crossing' and row['high95'] == row['low95'] + 1 and row['narrow'] and row['rising'], row
+db = sqlite3.connect('file:block.db?mode=ro', uri=True)
+mass = dict(db.execute('select body_columns, avg(total_mass) from runs group by 1'))
+assert mass[row['low95']] < 15 < mass[row['high95']], (row, mass)
+PY
+ok "the interval between two whole numbers"
+# Runs in doubt mark the answer.
+sed 's/stop.end_time: 4 ms/stop.end_time: 0.3 ms, fidelity.time_step: 4 us/; s/disc.db/coarse.db/' disc.yaml >coarse.yaml
+expect 0 "$clast" find coarse.yaml --level 0.5 --max-runs 40
+head -1 out | grep -q ' !' || fail "no mark"
+says "marked (!), 30 of 36 runs: step: fidelity.time_step over"
+
+# Wrong command lines.
+for wrong in "--share 0.5|--level is missing" "--level 1.5|at most 1, got 1.5" "--level nine|expected a number" "--level 0.5 -Q largest_friction|largest_fraction" \
+  "--level 0.5 --input contact.law|not a number" "--level 0.5 --input charge.energy|no range of charge.energy" \
+  "--level 0.5 --from 6% --to 1%|--from must be less than --to" "--level 0.5 --from 3|is a percentage" "--level 0.5 --share 2|between 0 and 1" \
+  "--level 0.5 --within -1|above 0" "--level 0.5 --max-runs 3|from 20 to 5000"; do
+  expect 64 "$clast" find disc.yaml ${wrong%%|*}
+  says "${wrong#*|}"; one_error; silent out
+done
+sed 's/^vary: {/vary: {threshold.angle: [1 deg, 2 deg], /' disc.yaml >two.yaml
+expect 64 "$clast" find two.yaml --level 0.5
+says "varies 2 inputs: name one"
+expect 64 "$clast" find two.yaml --level 0.5 --input strain
+says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
+expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
+prints "The mean of largest_fraction"
+done_after 33
