@@ -23,11 +23,10 @@ void find_value(const struct find *find, double x, struct field_value *value) {
     value->integer = (int64_t)round(exact);
     return;
   }
-  const double step = pow(10, floor(log10(find->logarithmic ? exact : high - low)) - 4);
-  value->number = x <= 0 ? low : x >= 1 ? high : fmin(fmax(round(exact / step) * step, low), high);
   char text[32];
-  snprintf(text, sizeof text, "%.12g", value->number); /* the number that a person would write */
-  value->number = strtod(text, NULL);
+  const double step = pow(10, floor(log10(find->logarithmic ? exact : high - low)) - 4);
+  snprintf(text, sizeof text, "%.12g", round(exact / step) * step); /* the number that a person would write */
+  value->number = x <= 0 ? low : x >= 1 ? high : fmin(fmax(strtod(text, NULL), low), high);
 }
 
 double find_place(const struct find *find, const struct field_value *value) {

@@ -52,7 +52,7 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
   write_subject(find, subject, sizeof subject);
   char *level = strchr(subject, '\n');
   *level++ = '\0';
-  subject[0] = 'T';
+  subject[0] = found->kind == CROSSING_OPEN ? 't' : 'T';
   const char *input = find->input->path;
   find_show(find, fmax(found->low, 0), low);
   find_show(find, fmin(found->high, 1), high);
@@ -81,7 +81,7 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
                 level, input, low, high, mark);
     break;
   case CROSSING_OPEN:
-    text_append(text, SENTENCE, "Not decided%s: %s crosses %s ", mark, subject + 4, level);
+    text_append(text, SENTENCE, "Not decided%s: %s crosses %s ", mark, subject, level);
     text_append(text, SENTENCE,
                 found->low < 0 && found->high > 1 ? "anywhere, or not in the bracket of %s."
                 : found->low < 0                  ? "at %s below %s, or not in the bracket."

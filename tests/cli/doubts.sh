@@ -106,8 +106,8 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
     --knob time_step=4us,1us --seeds 2 --within off --store study.db --quiet)
     marked "2 of 4" "${study[@]}"
     columns 1 "${study[@]}" ;;
-  find) search=(find unknown.yaml --level 0.5 --max-runs 20 --store found.db --quiet)
-    marked "20 of 20" "${search[@]}"
+  find) search=(find unknown.yaml --level 0.25 --max-runs 20 --store found.db --quiet)
+    marked "12 of 19" "${search[@]}"
     columns 0 "${search[@]}"
     caption o "${search[@]}" --picture o.png ;;
   fit) marked "72 of 72" fit measured.yaml unknown.yaml --rounds 3 --quiet
