@@ -218,6 +218,7 @@ static status read_request(const struct find_request *request, const char *path,
   find->limits.axes = &find->axis;
   find->limits.axis_count = 1;
   find->limits.independent = true; /* equal seeds would move all places alike, which no place can tell */
+  TRY(memory_array(&find->doubtful, find->most, sizeof *find->doubtful, "the runs of a search", error));
   TRY(memory_array(&find->x, find->most, sizeof *find->x, "the runs of a search", error));
   return memory_array(&find->y, find->most, sizeof *find->y, "the runs of a search", error);
 }
@@ -227,6 +228,7 @@ static void clear(struct find *find) {
   campaign_free(find->campaign);
   free(find->x);
   free(find->y);
+  free(find->doubtful);
 }
 
 /* ---- a round as a campaign ---- */
@@ -296,6 +298,7 @@ static status read_place(struct find *find, struct store *store, const struct fi
     for (size_t r = 0; r < find->each; r++)
       if (campaign_seed(&round, scene, (int64_t)r) == seed) {
         y[r] = value;
+        find->doubtful[y + r - find->y] = doubts.doubtful > 0;
         ask_doubts_add(&find->doubts, &doubts);
       }
   return answer_end(&runs);

@@ -36,6 +36,7 @@ struct find {
   /* The runs so far. Owned. */
   size_t most, runs, failed;
   double *x, *y;
+  bool *doubtful;
   struct crossing found;
   struct ask_doubts doubts;
   bool answered, narrow; /* no more rounds; the interval is as narrow as asked, or there is another answer */

@@ -96,6 +96,7 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
 struct bin {
   double low, high, x; /* places, and the mean of the runs' */
   size_t n, above;
+  struct ask_doubts doubts; /* only the number of runs in doubt */
   struct sample_summary mean;
 };
 
@@ -106,7 +107,7 @@ static int by_x(const void *a, const void *b) {
 
 /* Pools the runs, in order of the input, into at most `BINS` + 1 bins of whole places. */
 static status make_bins(const struct find *find, struct bin *bins, size_t *count, struct error *error) {
-  OWNED double(*pairs)[2] = NULL;
+  OWNED double(*pairs)[3] = NULL;
   OWNED double *values = NULL;
   size_t n = 0;
   TRY(memory_array(&pairs, find->runs, sizeof *pairs, "the runs of a search", error));
@@ -114,6 +115,7 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
   for (size_t i = 0; i < find->runs; i++)
     if (isfinite(find->y[i])) {
       pairs[n][0] = find->x[i];
+      pairs[n][2] = find->doubtful[i];
       pairs[n++][1] = find->y[i];
     }
   qsort(pairs, n, sizeof *pairs, by_x);
@@ -128,6 +130,7 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
     for (size_t k = from; k <= i; k++) {
       bin->x += pairs[k][0] / (double)in;
       bin->above += pairs[k][1] > find->level;
+      bin->doubts.doubtful += pairs[k][2] > 0;
     }
     bin->mean = sample_summarise(in, values, 0.95);
     if (field_is_share(find->quantity.row))
@@ -140,7 +143,7 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
 static status print_bins(const struct find *find, struct error *error) {
   struct bin bins[2 * BINS + 2];
   size_t count;
-  char text[FIND_TEXT], mean[UNCERTAINTY_TEXT];
+  char text[FIND_TEXT], mean[2 * UNCERTAINTY_TEXT];
   TRY(make_bins(find, bins, &count, error));
   TABLE table = table_new(TABLE_TEXT, stdout);
   table_columns(table, (const char *const[]){find->input->path, "to", "runs", find->quantity.row->path, "above", NULL});
@@ -149,6 +152,7 @@ static status print_bins(const struct find *find, struct error *error) {
     table_text(table, find_show(find, bins[i].high, text));
     table_integer(table, (int64_t)bins[i].n);
     uncertainty_cell(bins[i].mean.mean, bins[i].mean.half_width, mean);
+    uncertainty_mark(&bins[i].doubts, mean + strlen(mean));
     table_text(table, mean);
     table_fixed(table, (double)bins[i].above / (double)bins[i].n, 2);
   }
@@ -237,7 +241,7 @@ status find_print_picture(const struct find *find, const char *path, const struc
                                      is_share ? (double)NAN : mean->low,
                                      is_share ? (double)NAN : mean->high,
                                      NAN,
-                                     find->doubts.doubtful > 0};
+                                     bins[i].doubts.doubtful > 0};
     least = fmin(least, means[i].y);
     most = fmax(most, means[i].y);
   }

@@ -195,4 +195,4 @@ db.execute(\"UPDATE run SET warnings = 'soot' WHERE point_id = 1\")
 db.commit()"
 expect 0 "$clast" stats old.db --by time_step
 says "marked (!), 3 of 12 runs: soot: a word of another version of clast"
-done_after 89
+done_after 86
