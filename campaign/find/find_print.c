@@ -54,6 +54,7 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
   *level++ = '\0';
   subject[0] = found->kind == CROSSING_OPEN ? 't' : 'T';
   const char *input = find->input->path;
+  double least, most; /* places with results */
   find_show(find, fmax(found->low, 0), low);
   find_show(find, fmin(found->high, 1), high);
   uncertainty_mark(&find->doubts, mark);
@@ -65,9 +66,16 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
     break;
   case CROSSING_ABOVE:
   case CROSSING_BELOW:
+    least = 1;
+    most = 0;
+    for (size_t i = 0; i < find->runs; i++)
+      if (isfinite(find->y[i])) {
+        least = fmin(least, find->x[i]);
+        most = fmax(most, find->x[i]);
+      }
     text_append(text, SENTENCE, "%s is %s %s for %s from %s to %s%s: no crossing in the bracket.", subject,
-                found->kind == CROSSING_ABOVE ? "above" : "below", level, input, find_show(find, 0, low),
-                find_show(find, 1, high), mark);
+                found->kind == CROSSING_ABOVE ? "above" : "below", level, input, find_show(find, least, low),
+                find_show(find, most, high), mark);
     break;
   case CROSSING_SEVERAL:
     text_append(text, SENTENCE, "%s crosses %s several times%s", subject, level, mark);
