@@ -1,7 +1,7 @@
 /* A result knows when it is valid: a condition is a row beside the engine that needs it. It compares a dimensionless
  * number with a bound, before the run from the inputs, at the end from the run itself, or both. A run beyond a bound is
  * marked with the condition's word in its result `warnings`; it stays in every mean. What the program says before a
- * run, the marks beside numbers and `clast explain warnings` follow from these rows. */
+ * run, the marks beside numbers and `clast explain conditions` follow from these rows. */
 #ifndef CLAST_ENGINE_CONDITION_H
 #define CLAST_ENGINE_CONDITION_H
 

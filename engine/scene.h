@@ -85,7 +85,8 @@ const char *scene_headline(const struct scene *scene);
 void scene_schema(const struct engine_kind *kind, FILE *out);
 
 char *scene_json(const struct scene *scene); /* resolved: engine, name and every active input; malloc'd */
-/* 128-bit identity of a run: hash of engine, results_version, sorted active inputs as %a, and seed. */
+/* 128-bit identity of a run: hash of engine, results_version, seed and sorted active inputs as %a, without those at
+ * their value of absence (field.h, .absent). */
 void scene_identity(const struct scene *scene, uint64_t seed, uint8_t identity[16]);
 
 #endif

@@ -48,6 +48,7 @@ struct sample_summary sample_summarise_moments(const struct sample_moments *mome
   return summary;
 }
 
+/* db/store/views.c has the same rule in SQL, analysis/report/statistics.js in JavaScript. */
 void sample_of_share(struct sample_summary *summary, double level) {
   const double n = (double)summary->n, mean = summary->mean, deviation = summary->standard_deviation;
   if (summary->n < 2 || isnan(deviation))

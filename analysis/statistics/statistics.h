@@ -528,7 +528,7 @@ struct scatter {
   double lower_mode, upper_mode, between;
   double upper_share, upper_low, upper_high;
 };
-/* STATUS_MEMORY. */
+/* The interval of out->mean is Student's; for shares the caller passes it to sample_of_share(). STATUS_MEMORY. */
 status scatter_make(size_t n, const double *values, struct scatter *out, struct error *error);
 void scatter_release(struct scatter *scatter);
 /* One that is released where its block is left: SCATTER scatter = {0}; */

@@ -1,4 +1,4 @@
-/* Changes at the break of a beam: lanes, log, ledger, contact. */
+/* Changes at the break of a beam: lanes, log, ledger, contact. The criterion is bond_break() in bond_range.h. */
 #include "engine/dem/step/system_layout.h"
 
 #include <math.h>

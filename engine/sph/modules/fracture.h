@@ -47,7 +47,7 @@ COLUMN(open_below) /* and this, */
 COLUMN(open_rate)  /* D^(1/3) grows at this rate, 1/s (or is capped) */
 COLUMN(crack_rate) /* c_g / R_s, 1/s */
 
-TIME_STEP_LIMIT(DAMAGE, damage, "the growth of damage")
+TIME_STEP_LIMIT(DAMAGE, damage, "the growth of damage") /* set in motion.h, which has the rate of the step */
 
 #ifdef SPH_MODULE_LOOPS
 

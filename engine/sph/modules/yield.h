@@ -1,15 +1,13 @@
-/* Von Mises' yield limit, Y0 (1 - u/u_melt) and 0 beyond .
+/* Von Mises' yield limit of each particle, Y0 (1 - u/u_melt), zero beyond [BA95 eqs. 8-10]. A yield law only writes the
+ * limit. tension_limit lowers it in thin matter, palpha by the distention, and `elastic` brings the stress back to it.
  *
  *   material.yield_stress   Y0; off: the body never yields
  *   material.melt_energy    u_melt; off: the limit does not depend on the energy
  *
  * Another yield law is a module like this one: its loop of the stage SPH_YIELD writes the terms' yield_limit, a bound
  * of sqrt(3 J2) of the solid's stress in Pa, and its descriptor sets SPH_SETS_YIELD_LIMIT. In declarations.h it comes
- * after this one and before tension_limit; where it is on, this one is off. It may read pressure (of the body),
- * density, energy and, where sph_solid_has(body, SPH_COLUMN(damage)), the predicted D^(1/3).
- *
- * Von Mises: Y = Y0 (1 - u/u_melt), zero beyond, as the yield limit of each particle [BA95 eqs. 8-10]. A yield law only
- * writes the limit; `elastic` brings the stress back to it. */
+ * after this one and before tension_limit; where it is on, modules.c turns this one off. It may read pressure (of the
+ * body), density, energy and, where sph_solid_has(body, SPH_COLUMN(damage)), the predicted D^(1/3). */
 
 MODULE(yield)
 MODULE_HOOKS(yield)
