@@ -8,6 +8,7 @@
 
 #include "campaign/converge/accuracy.h"
 #include "schemas/memory.h"
+#include "schemas/unit.h"
 
 /* ---- places of the bracket ---- */
 
@@ -147,17 +148,17 @@ static status find_bracket(struct find *find, const struct find_request *request
   return STATUS_OK;
 }
 
-static status read_number(const char *option, const char *text, double *number, const char **rest,
-                          struct error *error) {
-  char *end = NULL;
-  *number = strtod(text, &end);
-  *rest = end + strspn(end, " ");
-  return end != text && isfinite(*number) ? STATUS_OK
-                                          : status_fail(error, STATUS_USAGE, "--%s %s: no number", option, text);
+/* A number above 0 in this unit. */
+static status read_above_zero(const char *option, const char *text, const char *unit, double *number,
+                              struct error *error) {
+  struct error why = {.message = "expected a number above 0"};
+  if (unit_read(text, unit, number, &why) != STATUS_OK || !(*number > 0))
+    return status_fail(error, STATUS_USAGE, "--%s %s: %s", option, text, why.message);
+  return STATUS_OK;
 }
 
 static status find_level(struct find *find, const struct find_request *request, struct error *error) {
-  const char *name = request->quantity ? request->quantity : find->campaign->quantity, *rest;
+  const char *name = request->quantity ? request->quantity : find->campaign->quantity;
   struct ask_specimens_quantity *quantity = &find->quantity;
   quantity->kind = ASK_SPECIMENS_RESULT;
   quantity->row = campaign_quantity(find->base->kind, name, &quantity->of_outcome, error);
@@ -172,29 +173,10 @@ static status find_level(struct find *find, const struct find_request *request, 
   find->share = NAN;
   if (!request->share)
     return STATUS_OK;
-  TRY(read_number("share", request->share, &find->share, &rest, error));
-  if (*rest == '%')
-    find->share /= 100;
-  return find->share > 0 && find->share < 1
-             ? STATUS_OK
-             : status_fail(error, STATUS_USAGE, "--share %s: expected a share of the runs between 0 and 1",
-                           request->share);
-}
-
-static status find_within(struct find *find, const char *text, struct error *error) {
-  const char *rest;
-  TRY(read_number("within", text, &find->within, &rest, error));
-  find->relative = strcmp(rest, "%") == 0;
-  struct field width = *find->input; /* a width has no range, and "%" is of the bracket */
-  width.kind = FIELD_REAL;
-  width.minimum = -HUGE_VAL;
-  width.maximum = HUGE_VAL;
-  width.flags = 0;
-  if (find->relative)
-    find->within /= 100;
-  else
-    TRY(read_end(&width, "within", text, &find->within, error));
-  return find->within > 0 ? STATUS_OK : status_fail(error, STATUS_USAGE, "--within %s: expected a width above 0", text);
+  TRY(read_above_zero("share", request->share, "1", &find->share, error));
+  return find->share < 1 ? STATUS_OK
+                         : status_fail(error, STATUS_USAGE, "--share %s: expected a share of the runs between 0 and 1",
+                                       request->share);
 }
 
 static status read_request(const struct find_request *request, const char *path, struct find *find,
@@ -210,7 +192,8 @@ static status read_request(const struct find_request *request, const char *path,
                         error));
   TRY(find_base(find, &request->set, error));
   TRY(find_level(find, request, error));
-  TRY(find_within(find, request->within, error));
+  find->relative = strchr(request->within, '%');
+  TRY(read_above_zero("within", request->within, find->relative ? "1" : find->input->unit, &find->within, error));
   driver_list_reference(campaign, path, find->reference, sizeof find->reference);
   find->most = (size_t)request->most_runs;
   find->axis = (struct design_axis){.row = find->input};
