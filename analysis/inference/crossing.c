@@ -16,6 +16,7 @@ static const double BEYOND = 0.1; /* width that stands for what is beyond an end
 static const double FREEDOM = 12, FREEDOM_SHARE = 0.25;  /* or this share of all runs */
 static const double PLATEAU = 0.2, PLATEAU_RANGE = 0.03; /* a plateau is wider, and within this share of the range */
 enum { PLATEAU_RUNS = 60 };
+static const double CHECKED = 0.25;  /* an interval that is narrower is checked by the places outside */
 static const double OTHER_SIDE = 2;  /* standard errors of a place on the other side, which is looked at again */
 static const double SEVERAL = 0.998; /* confidence of each part of a response that crosses several times */
 
@@ -292,36 +293,41 @@ static bool is_above(const struct response *response) {
   return all.sum > 0;
 }
 
-/* The place that is farthest on the other side of the level than the response as a whole, in standard errors. False:
- * there is none. */
-static bool find_other_side(const struct response *response, bool above, size_t *place) {
+/* The place that is farthest from where the answer has it, in standard errors: on the wrong side of the crossing, or of
+ * the level when nothing crosses. False: there is none. */
+static bool find_other_side(const struct response *response, const struct crossing *out, size_t *place) {
   double most = 0;
   for (size_t i = 0; i < response->count; i++) {
+    const double x = response->place[i].x, after = x >= out->high ? 1 : x <= out->low ? -1 : 0;
+    const double side = out->kind == CROSSING_FOUND   ? after * (out->rising ? 1 : -1)
+                        : out->kind == CROSSING_ABOVE ? 1
+                                                      : -1;
     struct stretch alone = {0};
-    const double z = add_place(response, i, &alone) * (above ? -1 : 1);
+    const double z = -side * add_place(response, i, &alone);
     if (z > most) {
       most = z;
       *place = i;
     }
   }
-  return most > (is_share(response) ? 0 : OTHER_SIDE);
+  return most > (is_share(response) && out->kind != CROSSING_FOUND ? 0 : OTHER_SIDE);
 }
 
-/* No monotone curve crosses. The answer waits while a place lies on the other side: the next runs are there. */
-static void tell_none(const struct response *response, struct crossing *out) {
+/* The answer waits while a place contradicts it, as a second crossing would: the next runs are there. */
+static void doubt(const struct response *response, struct crossing *out) {
   const struct place *place = response->place;
-  const bool above = is_above(response);
   size_t i = 0;
-  out->kind = above ? CROSSING_ABOVE : CROSSING_BELOW;
-  if (!find_other_side(response, above, &i))
+  if (!find_other_side(response, out, &i))
     return;
-  out->kind = CROSSING_OPEN;
-  out->low = -BEYOND;
-  out->high = 1 + BEYOND;
+  out->contradicted = true;
   for (int k = 0; k < CROSSING_PLACES; k++)
     out->next[k] = place[i].x;
   out->next[0] = i > 0 ? (place[i - 1].x + place[i].x) / 2 : place[i].x;
   out->next[CROSSING_PLACES - 1] = i + 1 < response->count ? (place[i].x + place[i + 1].x) / 2 : place[i].x;
+  if (out->kind == CROSSING_FOUND)
+    return;
+  out->kind = CROSSING_OPEN;
+  out->low = -BEYOND;
+  out->high = 1 + BEYOND;
 }
 
 static void tell_kind(const struct response *response, struct crossing *out) {
@@ -330,11 +336,13 @@ static void tell_kind(const struct response *response, struct crossing *out) {
   if (out->parts >= 2)
     out->kind = CROSSING_SEVERAL;
   else if (out->high <= least || out->low >= most)
-    tell_none(response, out);
+    out->kind = is_above(response) ? CROSSING_ABOVE : CROSSING_BELOW;
   else if (is_plateau(response, out))
     out->kind = CROSSING_PLATEAU;
   else
     out->kind = out->low < 0 || out->high > 1 ? CROSSING_OPEN : CROSSING_FOUND;
+  if (out->kind == CROSSING_FOUND ? out->high - out->low < CHECKED : out->kind <= CROSSING_BELOW)
+    doubt(response, out);
 }
 
 /* The share of the upper of two modes at which the mean is at the level. NaN: results lie near the level. */
@@ -396,5 +404,6 @@ size_t crossing_next(const struct crossing *found, size_t runs, double place[CRO
 }
 
 bool crossing_is_answer(const struct crossing *found, double within) {
-  return found->kind == CROSSING_FOUND ? found->high - found->low <= within : found->kind != CROSSING_OPEN;
+  return found->kind == CROSSING_FOUND ? !found->contradicted && found->high - found->low <= within
+                                       : found->kind != CROSSING_OPEN;
 }

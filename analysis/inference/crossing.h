@@ -45,9 +45,10 @@ struct crossing {
   enum crossing_kind kind;
   double at, low, high; /* median and 95 % interval; low -0.1 or high 1.1: beyond the bracket */
   bool rising;
-  size_t n;     /* runs with a result */
-  double share; /* share of runs above the level at the crossing, if only this share was used; else NaN */
-  size_t parts; /* of CROSSING_SEVERAL */
+  bool contradicted; /* a place lies on the wrong side of the answer: the next runs are there */
+  size_t n;          /* runs with a result */
+  double share;      /* share of runs above the level at the crossing, if only this share was used; else NaN */
+  size_t parts;      /* of CROSSING_SEVERAL */
   struct crossing_part {
     double low, high;
   } part[CROSSING_PARTS];
@@ -60,9 +61,9 @@ struct crossing {
  * STATUS_CONTENT: fewer than two places have results. STATUS_MEMORY. */
 status crossing_find(const struct crossing_data *data, struct crossing *out, struct error *error);
 
-/* Places of the next round: shares of 1/8, 3/8, 5/8 and 7/8 of the likelihood of the crossing; if no monotone curve
- * crosses, around the place that is on the other side. Returns the number of
- * runs at each place when `runs` were made so far, so that a round adds about a sixth. */
+/* Places of the next round: shares of 1/8, 3/8, 5/8 and 7/8 of the likelihood of the crossing; or around a place that
+ * contradicts the answer. Returns the number of runs at each place when `runs` were made so far, so that a round adds
+ * about a sixth. */
 size_t crossing_next(const struct crossing *found, size_t runs, double place[CROSSING_PLACES]);
 
 /* Is this an answer? A crossing is one if its interval is at most this wide. */

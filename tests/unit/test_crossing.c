@@ -135,6 +135,30 @@ static void runs_without_results(void **state) {
   assert_int_equal(found.kind, CROSSING_OPEN);
 }
 
+/* Scatter of 0.5 about the means -1, 1 and, at the end, -0.65. Pooled within the places the variance of a run is 0.25 *
+ * 4 / 3, so the mean of four has an error of 0.289, and the last place is 2.25 errors below the level, after a crossing
+ * between 0.45 and 0.55. It proves no second one, but no answer is given before runs around it have been made. */
+static void a_place_that_contradicts_is_looked_at(void **state) {
+  (void)state;
+  const double places[9] = {0, 0.15, 0.3, 0.45, 0.55, 0.65, 0.75, 0.85, 1};
+  double x[36], y[36];
+  for (int i = 0; i < 36; i++) {
+    x[i] = places[i / 4];
+    y[i] = (i < 16 ? -1 : i < 32 ? 1 : -0.65) + (i % 2 ? 0.5 : -0.5);
+  }
+  struct crossing found = find(36, x, y, 0, NAN);
+  assert_int_equal(found.kind, CROSSING_FOUND);
+  NEAR(found.low, 0.45, 1e-12);
+  NEAR(found.high, 0.55, 1e-12);
+  assert_true(found.contradicted && !crossing_is_answer(&found, 0.2));
+  NEAR(found.next[0], 0.925, 1e-12);
+  NEAR(found.next[3], 1, 1e-12);
+  for (int i = 32; i < 36; i++)
+    y[i] += 1.65;
+  found = find(36, x, y, 0, NAN);
+  assert_true(!found.contradicted && crossing_is_answer(&found, 0.2));
+}
+
 static void rounds_grow_by_a_sixth(void **state) {
   (void)state;
   const struct crossing found = {.next = {0.1, 0.2, 0.3, 0.4}};
@@ -151,6 +175,7 @@ int main(void) {
       cmocka_unit_test(places_out_of_order_are_pooled),
       cmocka_unit_test(kinds),
       cmocka_unit_test(runs_without_results),
+      cmocka_unit_test(a_place_that_contradicts_is_looked_at),
       cmocka_unit_test(rounds_grow_by_a_sixth),
   };
   analysis_init();

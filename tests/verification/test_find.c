@@ -125,7 +125,7 @@ static const struct law others[] = {
     {"logistic 0.1, more noise there", logistic, 0.1, MORE, 0.1, false},
     {"logistic 0.1, heavy tails 10 %", logistic, 0.1, HEAVY, 0.1, false},
     {"two modes, Gompertz 0.1, share", gompertz, 0.1, MODES, 0.02, true},
-    {"two modes, asymmetric 0.2, mean", gompertz, 0.2, MODES, 0.05, false},
+    {"two modes, Gompertz 0.2, mean", gompertz, 0.2, MODES, 0.05, false},
 };
 
 static const struct law no_single_crossing[] = {
