@@ -61,7 +61,7 @@ enum picture_part { PICTURE_CORE, PICTURE_LAYER, PICTURE_DUST, PICTURE_LEFT_OUT,
 struct picture_cloud {
   size_t n;
   double (*position)[3]; /* m, finite */
-  double *size;          /* m, cube root of a particle's volume: above 0 */
+  double *size;          /* m, cube root of a particle's volume: above 0; in thin matter of a smaller one */
   double *mass;          /* kg, above 0 */
   int64_t *fragment;     /* number of its fragment by descending mass, below n; negative: none */
   int64_t *part;         /* enum picture_part */

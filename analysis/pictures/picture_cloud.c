@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/pictures/snapshot_read.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 #define COLUMN "VTKHDF/PointData/"
@@ -63,12 +64,50 @@ static const char *read_particles(struct snapshot_read *file, struct picture_clo
   return NULL;
 }
 
+/* A particle and its mass and density, sorted by mass. */
+struct weighed {
+  double mass, density;
+  size_t particle;
+};
+
+static int by_mass(const void *a, const void *b) {
+  const struct weighed *p = a, *q = b;
+  return (p->mass > q->mass) - (p->mass < q->mass);
+}
+
+static int by_density(const void *a, const void *b) {
+  const struct weighed *p = a, *q = b;
+  return (p->density > q->density) - (p->density < q->density);
+}
+
+/* Matter that has expanded to the least density would look like boulders. A particle is drawn at most MOST times as
+ * large, in volume, as one of its mass in dense matter: the upper quartile of the density. */
+static void limit_sizes(struct picture_cloud *cloud) {
+  static const double MOST = 1.5, ALIKE = 1.05;
+  OWNED struct weighed *list = malloc((cloud->n + 1) * sizeof *list);
+  if (!list)
+    return; /* drawn as they are */
+  for (size_t i = 0; i < cloud->n; i++)
+    list[i] = (struct weighed){cloud->mass[i], cloud->mass[i] / pow(cloud->size[i], 3), i};
+  qsort(list, cloud->n, sizeof *list, by_mass);
+  for (size_t from = 0, end; from < cloud->n; from = end) {
+    for (end = from + 1; end < cloud->n && list[end].mass <= ALIKE * list[end - 1].mass;)
+      end++;
+    qsort(list + from, end - from, sizeof *list, by_density);
+    const double dense = list[from + 3 * (end - from) / 4].density;
+    for (size_t k = from; k < end; k++)
+      cloud->size[list[k].particle] = fmin(cloud->size[list[k].particle], cbrt(MOST * list[k].mass / dense));
+  }
+}
+
 status picture_cloud_read(const char *path, struct picture_cloud *cloud, struct error *error) {
   *cloud = (struct picture_cloud){.time = NAN};
   struct snapshot_read *file;
   TRY(snapshot_read_open(path, &file, error));
 
   const char *why = read_particles(file, cloud);
+  if (!why)
+    limit_sizes(cloud);
   if (!why && !snapshot_read_text(file, "run", "engine", cloud->engine, sizeof cloud->engine))
     why = "its engine has no name that can be shown";
   snapshot_read_integer(file, "run", "seed", &cloud->seed);

@@ -8,11 +8,11 @@ const sum = (points, key) => points.reduce((total, point) => total + (point[key]
 
 const when = (time) => (time ? `${time.slice(0, 16).replace('T', ' ')} UTC` : '(running or killed)'); // as people write it
 
-// "disc-explosion, 20 seeds a point"
+// "disc-explosion, 1093 grains, 20 seeds a point"
 function scene(stores) {
   const points = stores.flatMap((store) => store.points), runs = points.map((point) => point.n);
   const names = [...new Set(points.map((point) => point.scene))].join(', '), least = Math.min(...runs), most = Math.max(...runs);
-  return points.length ? `Scene ${names}, ${least < most ? `${least} to ` : ''}${plural(most, 'seed')} a point. ` : '';
+  return points.length ? `Scene ${names}, ${stores[0].facts.elements ? `${stores[0].facts.elements}, ` : ''}${least < most ? `${least} to ` : ''}${plural(most, 'seed')} a point. ` : '';
 }
 
 function varied(store) {

@@ -66,7 +66,7 @@ function axisOf(column, rows, title) {
   const numeric = values.every((value) => typeof value === 'number');
   if (numeric && values.length > MOST_CELLS) return {discrete: false, encoding: {field: column, type: 'quantitative', scale: scale(values), title}};
   const order = values.slice().sort((a, b) => (typeof a === 'number' && typeof b === 'number' ? a - b : String(a).localeCompare(String(b))));
-  return {discrete: true, encoding: {field: column, type: 'ordinal', sort: order, title, axis: {labelAngle: 0, labelExpr: "isNumber(datum.value) ? format(datum.value, '.4~g') : datum.value"}}};
+  return {discrete: true, encoding: {field: column, type: 'ordinal', sort: order, title, axis: {labelAngle: 0, labelExpr: "isNumber(datum.value) ? replace(replace(format(datum.value, '.4~g'), /e[+]?/, '×10^'), /^1×/, '') : datum.value"}}};
 }
 
 // Where a row stands on an axis, as a number: the place of its value, or how far along the scale it is.
@@ -103,6 +103,7 @@ function data(quantity) {
     ...(state.y ? {[state.y]: placeOf(state.y, cell[state.y])} : {}),
     shown: marked(withInterval(cell), cell.doubt, cell.n),
     text: number(cell.mean, 3),
+    told: cell.hw95 === null ? number(cell.mean, 3) : withInterval({...cell, weak: false}),
     mark: cell.doubt ? ' !' : '',
     doubtText: doubtText(cell),
     low: cell.low95 ?? cell.mean - cell.hw95,
@@ -146,7 +147,7 @@ function planeSpec(rows, title) {
     layers.push({transform: [{filter: isChosen}], mark: {type: 'rect', filled: false, stroke: '#D40000', strokeWidth: 4, tooltip: null}, encoding: place});
   if (grid && room >= 50 && !several)
     layers.push({mark: {type: 'text', baseline: 'middle', tooltip: null, fontSize: 12},
-      transform: [{calculate: "datum.mean === null ? '-' : datum.text + (datum.hw95 === null ? '' : ' ±' + format(datum.hw95, '.1~g')) + (datum.weak ? '~' : '') + datum.mark", as: 'cell'},
+      transform: [{calculate: "datum.mean === null ? '-' : datum.told + (datum.weak ? '~' : '') + datum.mark", as: 'cell'},
         {calculate: room >= 130 ? "datum.cell + '  n=' + datum.n" : room >= 90 ? 'datum.cell' : 'datum.text + datum.mark', as: 'cell'}],
       encoding: {...place, text: {field: 'cell'}, color: {condition: {test: `datum.mean === null || datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
   if (rows.some((row) => row.twoModes))

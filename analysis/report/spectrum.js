@@ -8,6 +8,9 @@ import {pool} from './statistics.js';
 import {ask, has, newest} from './stores.js';
 import {inUnit, marked, number, plural, shellFile, unitOf, withError} from './words.js';
 
+// 10^3 at a power of ten, and plain digits beside it.
+const POWERS = "abs(log(datum.value) / LN10 - round(log(datum.value) / LN10)) < 1e-9 ? '10^' + round(log(datum.value) / LN10) : format(datum.value, '.1~r')";
+
 export const inputsOf = (from, point) => from.axes.map((axis) => `${axis.path.split('.').pop()} ${number(inUnit(state.stores, axis.column_name, point[axis.column_name]))}${unitOf(state.stores, axis.column_name)}`).join(', ');
 
 export const nameOf = (from, point) =>
@@ -87,8 +90,8 @@ export async function showSpectrum() {
     return nothing(figure, chosenPoints().length ? 'No spectrum of the chosen points is on this page (see "left out here").' : 'Choose a point.');
   const rows = drawn.flatMap(bandOf), fits = drawn.map(fitOf), complete = completeMass(drawn[0].from, drawn[0].points);
   const names = drawn.map((curve) => curve.name);
-  const x = {field: 'mass', type: 'quantitative', scale: {type: 'log', nice: false}, title: 'fragment mass m (kg)', axis: {format: '.0e', tickCount: 6}};
-  const y = (field) => ({field, type: 'quantitative', scale: {type: 'log'}, title: 'F(m), fragments per kg and run', axis: {format: '.0e', tickCount: 6}});
+  const x = {field: 'mass', type: 'quantitative', scale: {type: 'log', nice: false}, title: 'fragment mass m (kg)', axis: {labelExpr: POWERS, tickCount: 6}};
+  const y = (field) => ({field, type: 'quantitative', scale: {type: 'log'}, title: 'F(m), fragments per kg and run', axis: {labelExpr: POWERS, tickCount: 6}});
   const legend = drawn.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null;
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend};
   const layer = [

@@ -1,21 +1,35 @@
 // Numbers, names and shell words for people.
 
+// "2.5×10^33" for "2.500e+33", "10^-5" for "1.000e-5".
+const powers = (text) => text.replace(/(\.\d*?)0*e\+?/, '$1e').replace('.e', 'e').replace(/^(-?)1e/, '$110^').replace('e', '×10^');
+
 export function number(value, digits = 4) {
   if (value === null || value === undefined || Number.isNaN(value)) return '-';
   if (typeof value !== 'number') return String(value);
-  if (Number.isInteger(value) && Math.abs(value) < 1e15) return String(value);
   const size = Math.abs(value);
-  if (size >= 1e5 || size < 1e-3) return value.toExponential(digits - 1).replace(/\.?0+e/, 'e').replace('e+', 'e');
+  if (Number.isInteger(value) && size < 1e6) return String(value);
+  if (size >= 1e5 || size < 1e-3) return powers(value.toExponential(digits - 1));
   return String(Number(value.toPrecision(digits)));
 }
 
-export const withError = (mean, half) =>
-  half === null || half === undefined ? `${number(mean)}` : `${number(mean)} ± ${number(half, 2)}`;
+// Decimals that an error allows: one digit of it, two after a leading 1. Below 0: of numbers that are shown by powers.
+function decimals(mean, half) {
+  const leading = Math.floor(Math.log10(half)), last = half < 2 * 10 ** leading ? leading - 1 : leading;
+  return Math.abs(mean) < 1e5 && half >= 1e-6 ? Math.max(0, -last) : -1;
+}
+
+export function withError(mean, half) {
+  if (half === null || half === undefined) return number(mean);
+  const places = half > 0 && typeof mean === 'number' ? decimals(mean, half) : -1;
+  return places < 0 ? `${number(mean)} ± ${number(half, 2)}` : `${mean.toFixed(places)} ± ${half.toFixed(places)}`;
+}
 
 // A mean with its interval; of equal shares, what they bound.
 export function withInterval({mean, hw95, low95, high95, weak}) {
   if (hw95 === null && typeof low95 === 'number') return `${number(mean)} (all equal: ${number(low95, 3)} to ${number(high95, 3)})`;
-  return withError(mean, hw95) + (weak ? ' (weak)' : '');
+  const cut = typeof low95 === 'number' && hw95 > 0 && (low95 - (mean - hw95) > 1e-6 || mean + hw95 - high95 > 1e-6);
+  const told = cut ? `${number(mean, 2)} (${number(low95, 2)} to ${number(high95, 2)})` : withError(mean, hw95); // a share
+  return told + (weak ? ' (weak)' : '');
 }
 
 // A number that rests on runs in doubt has a "!"; where the values of some are withheld, also the number of the others.

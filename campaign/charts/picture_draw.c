@@ -50,6 +50,26 @@ static void name_file(const char *fields, char *text, size_t size) {
   snprintf(text, size, "%.*s", length < 32 ? (int)length : 0, base);
 }
 
+/* "disc_000003: dem, seed 1, 812 µs" */
+static void name_run(const char *fields, char *text, size_t size) {
+  struct snapshot_read *file;
+  char engine[64] = "";
+  long long seed = 0;
+  double time = NAN;
+  name_file(fields, text, size);
+  if (snapshot_read_open(fields, &file, NULL))
+    return;
+  const bool known = snapshot_read_text(file, "run", "engine", engine, sizeof engine) &&
+                     snapshot_read_integer(file, "run", "seed", &seed);
+  if (!snapshot_read_real(file, "run", "time", &time))
+    time = NAN;
+  if (!snapshot_read_close(file) || !known)
+    return;
+  text_append(text, size, "%s%s, seed %lld", *text ? ": " : "", engine, seed);
+  if (isfinite(time))
+    text_append(text, size, ", %.4g \xc2\xb5s", 1e6 * time);
+}
+
 /* Widens a frame to what the picture of the body would show. */
 static status widen(struct picture_frame *frame, const struct picture_body *body) {
   double view[4];
@@ -68,7 +88,7 @@ static status draw_grains(const char *fields, const char *picture, const struct 
   char numbers[160], title[FIELD_TEXT_SIZE], doubts[DOUBTS] = "";
   status code = STATUS_OK;
   TRY(picture_fragments_read(fields, &panel.body, error));
-  name_file(fields, title, sizeof title);
+  name_run(fields, title, sizeof title);
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
   if (!frame) /* all pictures of a movie have one size */
     tell_doubts(fields, doubts);

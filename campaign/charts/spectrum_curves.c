@@ -21,7 +21,7 @@ status spectrum_curves_measured(struct store *store, const char *path, struct sp
 
 /* A pool's spectrum with its headline fit, which only a pool of one point has. */
 struct curve {
-  char label[ASK_POOL_LABEL + 64], fit_label[96];
+  char label[ASK_POOL_LABEL + 64], fit_label[160];
   struct pooled_form form;
   struct pooled_bin *bins; /* owned */
   size_t count;
@@ -60,6 +60,8 @@ static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct cu
     return STATUS_OK;
   const double runs = (double)pool->data.runs.count;
   label_fit(curve, headline.fit.beta, headline.interval.half_width);
+  text_append(curve->fit_label, sizeof curve->fit_label, "; %zu fragments from %.2g kg on", headline.fit.n,
+              headline.fit.lower);
   curve->fit = (struct picture_fit){NULL,
                                     headline.fit.beta,
                                     headline.fit.lower,
@@ -180,7 +182,7 @@ static status draw_picture(struct store *store, const struct curves *curves, con
   struct picture_series series[PICTURE_SERIES];
   OWNED struct pooled_bin *bins = NULL;
   size_t count = 0;
-  char caption[CAPTION], label[300];
+  char caption[CAPTION], label[300], title[300], scenes[200];
   struct pooled_form form = {.cumulative = choice->cumulative, .size = {choice->density, 3}};
   if (curves->count)
     form = curves->curve[0].form;
@@ -198,8 +200,9 @@ static status draw_picture(struct store *store, const struct curves *curves, con
     series[count++].label = label;
   }
   write_caption(store, curves, caption);
-  const struct picture_words words = {sizes ? "Fragment sizes, pooled over runs" : "Fragment masses, pooled over runs",
-                                      caption, sizes ? "fragment size L (m)" : "fragment mass m (kg)",
+  TRY(ask_points_scenes(store, scenes, sizeof scenes, error));
+  snprintf(title, sizeof title, "Fragment %s of %s, pooled over runs", sizes ? "sizes" : "masses", scenes);
+  const struct picture_words words = {title, caption, sizes ? "fragment size L (m)" : "fragment mass m (kg)",
                                       names[sizes][choice->cumulative]};
   return picture_spectrum(page, &words, &form, count, series, error);
 }

@@ -13,6 +13,7 @@
 #include "analysis/statistics/statistics.h"
 #include "campaign/scheduler/point.h"
 #include "schemas/clock.h"
+#include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
@@ -236,10 +237,11 @@ static void write_hidden(const struct scene *scene, const struct field *row, con
   text_append(text, size, "%s%s (%s there, %s here)", *text ? ", " : "", row->path, other, mine);
 }
 
-/* Warns of points in the store that are of an earlier form of this campaign and look the same in tables. `id`: the
- * first point. */
+/* Warns of points in the store that are of an earlier form of this campaign. The inputs that differ become varied
+ * inputs of the store, so that tables show them and --by takes them. `id`: the first point. */
 static status tell_hidden_inputs(struct driver *driver, const struct scene *scene, int64_t id, struct error *error) {
   enum { NAMED = 8 };
+  const struct field *differs[LIMITS_AXES_OF_POOL];
   const struct field_table *inputs = scene->kind->inputs;
   char names[2048] = "", text[2600];
   size_t count = 0;
@@ -247,16 +249,21 @@ static status tell_hidden_inputs(struct driver *driver, const struct scene *scen
   while (answer_next(&hidden)) {
     const struct field *row = field_find(inputs, answer_text(&hidden, 0), NULL);
     const struct query_value theirs = answer_value(&hidden, 1);
-    if (row && is_chosen(scene, row) && count++ < NAMED)
+    if (!row || !is_chosen(scene, row) || count == LIMITS_AXES_OF_POOL)
+      continue;
+    differs[count] = row;
+    if (count++ < NAMED)
       write_hidden(scene, row, &theirs, names, sizeof names);
   }
   TRY(answer_end(&hidden));
   if (count == 0)
     return STATUS_OK;
+  for (size_t i = 0; i < count; i++)
+    TRY(store_add_axis(driver->scheduler->store, differs[i], "", error));
   snprintf(
       text, sizeof text,
-      "warning: the store has other points of campaign %s, which look the same in tables: %s%s differs, but is not "
-      "varied. Vary it, name another store, or ask for one campaign: clast estimates STORE --campaign %lld",
+      "warning: the store has other points of campaign %s: %s%s differs, and is a varied input of this store from now "
+      "on (--by). For one campaign alone, name another store or ask with --campaign %lld",
       driver->campaign->name, names, count > NAMED ? " and more" : "", (long long)driver->summary.campaign_id);
   scheduler_note(driver->scheduler, text);
   return STATUS_OK;

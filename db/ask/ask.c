@@ -481,6 +481,14 @@ status ask_points_label(struct store *store, int64_t point_id, char *text, size_
   return answer_end(&answer);
 }
 
+status ask_points_scenes(struct store *store, char *names, size_t size, struct error *error) {
+  ANSWER answer = answer_to(
+      store, error, "SELECT group_concat(scene_name, ', ') FROM (SELECT DISTINCT scene_name FROM point ORDER BY 1)");
+  snprintf(names, size, "%s", answer_next(&answer) ? answer_text(&answer, 0) : "");
+  text_make_plain(names, "");
+  return answer_end(&answer);
+}
+
 status ask_points_without_estimates(struct store *store, int64_t campaign, struct ask_points_version **list,
                                     size_t *count, struct error *error) {
   size_t room = 0;

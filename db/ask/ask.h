@@ -239,6 +239,9 @@ bool ask_points_next(struct answer *answer, struct ask_points_row *row);
  * Inputs that do not fit are left out. "point 7" when nothing was varied. */
 status ask_points_label(struct store *store, int64_t point_id, char *label, size_t size, struct error *error);
 
+/* The names of the scenes of all points: "disc-explosion", "a, b". */
+status ask_points_scenes(struct store *store, char *names, size_t size, struct error *error);
+
 struct ask_points_version {
   int64_t point_id;
   int results_version;

@@ -267,9 +267,28 @@ static status read_results(struct reading *reading, struct store *store, struct 
   return end_point(reading, true, error);
 }
 
+/* The numbers of particles or grains of the points, for the head of the page. */
+static status tell_elements(struct reading *reading, struct error *error) {
+  static const char *const names[] = {"particles", "grains"};
+  char text[128] = "";
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    ANSWER numbers = answer_to(&reading->page->store, error,
+                               "SELECT min(mean), max(mean) FROM means WHERE quantity = %Q", names[i]);
+    if (answer_next(&numbers) && answer_real(&numbers, 0) > 0) {
+      text_append(text, sizeof text, "%s%.0f", *text ? ", " : "", answer_real(&numbers, 0));
+      if (answer_real(&numbers, 1) > answer_real(&numbers, 0))
+        text_append(text, sizeof text, " to %.0f", answer_real(&numbers, 1));
+      text_append(text, sizeof text, " %s", names[i]);
+    }
+    TRY(answer_end(&numbers));
+  }
+  return ask_page_fact(reading->page, "elements", text, error);
+}
+
 /* Removes results with the same value everywhere, and the last rows beyond the limit. */
 static status thin_means(struct reading *reading, struct error *error) {
   sqlite3 *db = reading->page->store.db;
+  TRY(tell_elements(reading, error));
   int64_t rows = 0, points = 0;
   for (size_t i = 0; i < reading->count; i++)
     if (reading->column[i].number && !reading->column[i].varies)

@@ -168,4 +168,13 @@ for file in again/*.csv again/*.dat again/*.svg again/*.said; do
 done
 ok "the same answers after --undo"
 expect 0 "$clast" check one.db
-done_after 89
+
+# Settings of one store that differ, although no campaign varies them, are inputs of its tables.
+tiny settings
+sed -i 's/settings.db/fresh.db/; s/name: settings/name: one/; s/seeds: .*/seeds: 2/; s/stop.end_time: 1 ms/stop.end_time: 0.9 ms/' settings.yaml
+expect 0 "$clast" run settings.yaml -j 2 --quiet
+says "stop.end_time (0.001 s there, 0.0009 s here) differs, and is a varied input of this store from now on"
+expect 0 "$clast" stats fresh.db --by end_time --csv
+same "$(cut -d, -f1 out | tail -n +2 | tr '\r\n' '  ' | tr -s ' ')" "0.0009 0.001 " "settings"
+expect 0 "$clast" check fresh.db
+done_after 93

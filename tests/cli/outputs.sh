@@ -87,7 +87,7 @@ INPUTS = {"STORE": "self.db", "A": "self.db", "B": "other.db", "STORE...": "self
 OUTPUTS = {"PICTURE.png": "drawn.png", "TARGET": "made"}
 OWN = {"sensitivity": ["self.db", "self.yaml"], "merge": ["merged.db", "self.db"]}  # a store or a new file: their own rules
 NEEDED = {"plot": ["-x", "strain"], "map": ["-x", "strain", "-y", "angle"], "export": ["--per", "run"]}
-NONE = {"NAME", "WORD...", "PATH|WORD|SCENE", "NAME|FILE", "COMMAND", "SQL"}
+NONE = {"NAME", "WORD...", "RUN...", "PATH|WORD|SCENE", "NAME|FILE", "COMMAND", "SQL"}
 
 
 def victims(picture, reads):

@@ -118,7 +118,7 @@ def keyboard(browser):
     with sqlite3.connect(f"file:{store}?mode=ro", uri=True) as db:
         where = "from points where threshold_angle < 0.05 and threshold_strain > 0.03"
         (mean, point) = db.execute(f"select largest_fraction_mean, point_id {where}").fetchone()
-    assert " 2, " in corner and " 5:" in corner and f"{mean:.4g}" in corner, (corner, mean)
+    assert " 2, " in corner and " 5:" in corner and f": {mean:.2g} (0 to " in corner, (corner, mean)
     browser.key(" ")
     assert (point in chosen(browser)) == ("chosen" in text(browser, "#framed")), text(browser, "#framed")
     browser.key(" ")
@@ -202,7 +202,7 @@ def drop(browser):
     assert "The stores side by side" in text(browser, "#compare") and not browser.js("document.querySelector('#compare').hidden")
     with sqlite3.connect(f"file:{other}?mode=ro", uri=True) as db:
         (mean,) = db.execute("select avg(largest_fraction) from run where counts and point_id = 1").fetchone()
-    assert f"mean{mean:.4g}" in text(browser, "#seeds .body"), (mean, text(browser, "#seeds .body"))
+    assert f"mean{mean:.2f} ± " in text(browser, "#seeds .body"), (mean, text(browser, "#seeds .body"))
     whole_store(browser)
     written_store(browser)
     with open("no-store.db", "w") as file:

@@ -67,7 +67,8 @@ ok "snapshots, fields and picture"
 sleep 1 # HDF5 knows seconds
 expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --fields later.h5
 cmp -s end.h5 later.h5 || fail "the fields of the same run differ from one second to the next"
-expect 0 "$clast" picture end.h5 again.png --caption "disc-explosion, seed 7"
+time=$(python -c "import h5py; print('%.4g' % (1e6 * float(h5py.File('end.h5')['run'].attrs['time'])))") # s
+expect 0 "$clast" picture end.h5 again.png --caption "disc-explosion: dem, seed 7, $time µs"
 cmp -s end.png again.png || fail "the picture of the same fields differs"
 expect 66 "$clast" picture missing.h5 x.png
 head -c 5000 /dev/urandom >noise.h5
