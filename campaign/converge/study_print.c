@@ -26,6 +26,7 @@ status study_print_knobs(enum table_format format, struct error *error) {
 
 /* What the study prints, and the store of its runs. */
 struct printing {
+  enum table_format format;
   const struct study *study;
   struct store *store;
 };
@@ -246,10 +247,16 @@ static status print_quantity(const struct printing *printing, size_t from, size_
   print_sentence(study, from, quantity, count, found);
   printf("%s, quantity %s%s%s%s\n", study->ladder[from].base->name, what->name, named ? " (" : "", named ? unit : "",
          named ? ")" : "");
-  TABLE table = table_new(TABLE_TEXT, stdout);
-  table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skewness",
-                                             "share of upper mode", "cpu_s", "bias", "bias_hw95", "correlation", "low",
-                                             "high", "pays from correlation", "error", "frontier", NULL});
+  TABLE table = table_new(printing->format, stdout);
+  table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skewness", NULL});
+  table_rare(table);
+  table_column(table, "share of upper mode", NULL);
+  table_rare(table);
+  table_columns(table, (const char *const[]){"cpu_s", "bias", "bias_hw95", "correlation", NULL});
+  table_rare(table);
+  table_columns(table, (const char *const[]){"low", "high", "pays from correlation", NULL});
+  table_rare(table);
+  table_columns(table, (const char *const[]){"error", "frontier", NULL});
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++) {
       struct ask_doubts doubts;
@@ -306,7 +313,7 @@ status study_print(const struct study *study, enum table_format format, bool qui
   TRY(memory_array(&found, LIMITS_STUDY_KNOBS, sizeof *found, "the rows of a study", error));
   STORE store = NULL;
   TRY(store_open_reader(study->limits.store, &store, error));
-  struct printing printing = {.study = study, .store = store};
+  struct printing printing = {.format = format, .study = study, .store = store};
   TABLE table = table_for_people(format) ? NULL : table_new(format, stdout);
   for (size_t c = 0; table && c < convergence_table.count; c++)
     table_column(table, convergence_table.rows[c].path, convergence_table.rows[c].unit);

@@ -46,7 +46,9 @@ static status print_inputs(const struct fit *fit, struct error *error) {
   const struct ask_doubts doubts = all_doubts(fit);
   for (size_t i = 0; i < fit->inputs; i++) {
     table_text(table, row_of(fit, i)->path);
-    table_text(table, row_of(fit, i)->unit);
+    char unit[64];
+    text_unit(row_of(fit, i)->unit, unit, sizeof unit);
+    table_text(table, unit);
     input_cells(fit, i, &doubts, table);
   }
   return table_end(table, error);
