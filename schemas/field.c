@@ -60,12 +60,21 @@ static void list_paths(const struct field_table *table, const char *suffix, char
 
 static void fail_unknown(const struct field_table *table, const char *path, struct error *error) {
   const size_t length = strlen(path);
+  const char *last = "";
+  char members[512] = "";
   for (size_t i = 0; i < table->count; i++) {
     const char *known = table->rows[i].path;
     if (strncmp(known, path, length) != 0 || known[length] != '.')
       continue;
-    status_fail(error, STATUS_CONTENT, "'%.*s' is a section of the %s; name what is in it, such as '%s'", QUOTE, path,
-                table->name, known);
+    const char *member = known + length + 1;
+    const size_t size = strcspn(member, ".");
+    if (strncmp(member, last, size) != 0 || last[size] != '.') /* not another of a section within */
+      text_append(members, sizeof members, "%s'%.*s'", *members ? ", " : "", (int)size, member);
+    last = member;
+  }
+  if (*members) {
+    status_fail(error, STATUS_CONTENT, "'%.*s' is a section of the %s; name what is in it, behind a dot: %s", QUOTE,
+                path, table->name, members);
     return;
   }
   const char *near = field_nearest(table, path);
