@@ -15,8 +15,11 @@ static status write_design(const struct command_line *line, struct error *error)
                                                morris ? DESIGN_SENSITIVITY_MORRIS : DESIGN_SENSITIVITY_SALTELLI,
                                                (size_t)options->blocks, (uint64_t)options->seed, error);
   if (code == STATUS_OK)
-    fprintf(stderr, "clast: wrote %s and its points beside it; `clast plan %s` tells what it costs\n",
-            line->arguments[1], line->arguments[1]);
+    fprintf(
+        stderr,
+        "clast: wrote %s and its points beside it; `clast plan %s` tells what it costs, `clast run %s` fills a store "
+        "of its own\n",
+        line->arguments[1], line->arguments[1], line->arguments[1]);
   return code;
 }
 

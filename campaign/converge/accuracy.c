@@ -287,8 +287,8 @@ status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign
   if (accuracy->chosen == accuracy->count) {
     const struct accuracy_option *best = &accuracy->options[accuracy->reference];
     return status_fail(error, STATUS_CONTENT,
-                       "accuracy: no studied level gives %s within %g. The smallest error is %.2g%s, with %s = %s; "
-                       "`clast plan` prints the alternatives. Allow a larger error, or study finer levels",
+                       "accuracy: no studied level gives %s within %g (in its own unit, not a share of its value). The "
+                       "smallest error is %.2g%s, with %s = %s. Allow a larger error, or study finer levels",
                        campaign->accuracy_quantity, campaign->accuracy_within, best->error,
                        best->open ? " or more" : "", best->knob, best->setting);
   }

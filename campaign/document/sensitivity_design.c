@@ -42,13 +42,23 @@ static void write_points(FILE *out, const struct campaign *campaign, const struc
   }
 }
 
-/* The document without its keys `vary` and `design`, which begin a line; their values are indented, or on that line. */
+/* The document with the name of its file, and so a store of its own, and without its keys `vary` and `design`. Keys
+ * begin a line; their values are indented, or on that line. */
 static void write_document(FILE *out, const char *text, const char *points) {
+  static const char *const keys[] = {"name:", "store:", "vary:", "design:"};
   bool dropped = false;
+  char name[LIMITS_PATH];
+  snprintf(name, sizeof name, "%.*s", (int)(strlen(points) - strlen(".csv")), points);
+  fputs("name: ", out);
+  text_json_string(name, out);
+  fputc('\n', out);
   while (*text) {
     const size_t length = strcspn(text, "\n") + (strchr(text, '\n') != NULL);
-    if (!strchr(" \t\r\n#-}", *text))
-      dropped = strncmp(text, "vary:", 5) == 0 || strncmp(text, "design:", 7) == 0;
+    if (!strchr(" \t\r\n#-}", *text)) {
+      dropped = false;
+      for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
+        dropped = dropped || strncmp(text, keys[k], strlen(keys[k])) == 0;
+    }
     if (!dropped)
       fwrite(text, 1, length, out);
     text += length;
@@ -145,9 +155,11 @@ status sensitivity_design_find(const struct campaign *campaign, enum design_sens
   *blocks = rows / (n + 1);
   if (rows > 0 && rows % (n + 1) == 0 && is_morris(campaign, rows))
     return STATUS_OK;
-  return status_fail(error, STATUS_USAGE,
-                     "the points of this campaign are no design for sensitivity indices: `clast sensitivity "
-                     "CAMPAIGN.yaml NEW.yaml --design saltelli` writes one");
+  return status_fail(
+      error, STATUS_USAGE,
+      "the points of this campaign are no design for sensitivity indices: `clast sensitivity "
+      "CAMPAIGN.yaml NEW.yaml --design saltelli` writes one, `clast run NEW.yaml` fills its store NEW.db, "
+      "and `clast sensitivity NEW.db NEW.yaml` prints them");
 }
 
 /* A step of an input with few values may change no value. Such a step is attributed to an input that no other step

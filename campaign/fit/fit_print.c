@@ -39,10 +39,14 @@ static void input_cells(const struct fit *fit, size_t i, const struct ask_doubts
   table_real(table, (posterior_share(z[2]) - posterior_share(z[0])) / 0.9);
 }
 
-static status print_inputs(const struct fit *fit, struct error *error) {
-  TABLE table = table_new(TABLE_TEXT, stdout);
-  table_columns(table,
-                (const char *const[]){"input", "unit", "prior_05", "prior_95", "q05", "median", "q95", "kept", NULL});
+static status print_inputs(const struct fit *fit, enum table_format format, struct error *error) {
+  TABLE table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"input", "unit", NULL});
+  table_column(table, "prior_05", NULL);
+  table_rare(table);
+  table_column(table, "prior_95", NULL);
+  table_rare(table);
+  table_columns(table, (const char *const[]){"q05", "median", "q95", "kept", NULL});
   const struct ask_doubts doubts = all_doubts(fit);
   for (size_t i = 0; i < fit->inputs; i++) {
     table_text(table, row_of(fit, i)->path);
@@ -88,8 +92,8 @@ static void value_cells(const struct fit *fit, size_t k, struct table *table) {
               (const double[]){datum->value, datum->error, seeds_of(fit, k), fit->data[k].resolution * slope});
 }
 
-static status print_data(const struct fit *fit, struct error *error) {
-  TABLE table = table_new(TABLE_TEXT, stdout);
+static status print_data(const struct fit *fit, enum table_format format, struct error *error) {
+  TABLE table = table_new(format, stdout);
   char label[LABEL];
   table_columns(table, (const char *const[]){"measured", "value", "error", "sd_seeds", "sd_resolution", "q05", "median",
                                              "q95", "below", NULL});
@@ -340,9 +344,9 @@ static void tell(const struct fit *fit, FILE *out) {
 status fit_print(const struct fit *fit, enum table_format format, struct error *error) {
   if (!table_for_people(format))
     return print_rows(fit, format, error);
-  TRY(print_inputs(fit, error));
+  TRY(print_inputs(fit, format, error));
   putchar('\n');
-  TRY(print_data(fit, error));
+  TRY(print_data(fit, format, error));
   putchar('\n');
   tell(fit, stdout);
   const struct ask_doubts doubts = all_doubts(fit);

@@ -543,15 +543,8 @@ static void keep(struct table *table, const struct cell *cell) {
   }
   struct kept *kept = &table->kept[table->kept_count];
   const bool marked = *table->mark && cell->kind != CELL_MISSING;
-  char shown[UNCERTAINTY_TEXT];
-  const bool is_number = cell->kind == CELL_NUMBER && strlen(cell->shown) < sizeof shown / 2;
-  if (is_number) {
-    snprintf(shown, sizeof shown, "%s", cell->shown);
-    text_powers(shown, sizeof shown);
-  }
-  const char *const plain = is_number ? shown : cell->shown;
-  snprintf(text, sizeof text, "%.*s%s", UNCERTAINTY_TEXT, plain, table->mark);
-  *kept = (struct kept){copy(table, marked ? text : plain), strlen(plain), cell->number,
+  snprintf(text, sizeof text, "%.*s%s", UNCERTAINTY_TEXT, cell->shown, table->mark);
+  *kept = (struct kept){copy(table, marked ? text : cell->shown), strlen(cell->shown), cell->number,
                         cell->kind == CELL_TEXT && *cell->shown};
   if (!kept->text)
     return;
@@ -566,7 +559,6 @@ static void keep(struct table *table, const struct cell *cell) {
     snprintf(interval, sizeof interval, "%.*s (", (int)value->digits, value->text);
     text_append(interval, sizeof interval, isfinite(kept[-1].number) ? "%.3g" : "?", kept[-1].number);
     text_append(interval, sizeof interval, isfinite(cell->number) ? " to %.3g)" : " to ?)", cell->number);
-    text_powers(interval, sizeof interval);
     snprintf(text, sizeof text, "%s%.*s", interval, UNCERTAINTY_TEXT, value->text + value->digits);
     value->digits = strlen(interval);
   } else if (ends_in(column->name, "_weak"))
@@ -575,7 +567,6 @@ static void keep(struct table *table, const struct cell *cell) {
   else {
     char number[UNCERTAINTY_TEXT];
     (column->share ? uncertainty_share_cell : uncertainty_cell)(value->number, cell->number, number);
-    text_powers(number, sizeof number);
     snprintf(text, sizeof text, "%s%.*s", number, UNCERTAINTY_TEXT, value->text + value->digits);
     value->digits = strlen(number);
   }

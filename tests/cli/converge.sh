@@ -102,7 +102,7 @@ prints "standard *"; prints "reference ref"
 same "$(number named.db "select count(*) from convergence where knob = 'settings' and error > 0")" 3 "errors of named settings"
 same "$(number named.db "select count(*) from resolution")" 3 "points with a known error"
 expect 0 "$clast" simulate named.yaml@draft --set body.diameter='8 cm' --all
-prints "2×10^-6"
+prints "2e-06"
 expect 66 "$clast" simulate named.yaml@drat
 says "standard, draft, reference"
 printf 'name: named\nscene: ./named.yaml@draft\nset: {body.diameter: 8 cm}\nseeds: {per_point: 1}\n' >draft.yaml

@@ -33,8 +33,8 @@ vary: {target.material.weibull.m: [8, 9], target.material.weibull.k: [1e34 1/m^3
 seeds: {per_point: 2}
 YAML
 expect 0 "$clast" run two.yaml -j 1 --quiet
-same "$(head -1 out | sed -E 's/^point +k( \[1.m\^3\])? +m .*/k m/')" "k m" "varied inputs of the table"
-same "$(sed 1d out | grep -cE ' (1e|5e)\+34.* (8|9) ')" 4 "rows of four points"
+same "$(head -1 out | sed -E "s/^point +m +k \[m\^-3\] .*/m k/")" "m k" "varied inputs of the table, in the order of the campaign"
+same "$(sed 1d out | grep -cE ' (8|9) +(1e|5e)\+34 ')" 4 "rows of four points"
 [ "$(LC_ALL=C.UTF-8 awk '{ if (length($0) > n) n = length($0) } END { print n }' out)" -le 100 ] || fail "wider than 100 columns"
 one many 'vary: {threshold.strain: [2 %], threshold.angle: [2 deg], contact.friction: [0.1], charge.energy: [2000 J/m], threshold.modulus: [10], contact.bonded: [true], stop.least_time: [0.02 ms]}'
 sed -i 's/threshold.modulus: \[10\], //' many.yaml
