@@ -89,8 +89,8 @@ static void columns_for_people(struct printing *printing) {
   table_column(table, "point_id", NULL);
   for (size_t i = 0; i < printing->axes; i++)
     table_key(table, &printing->axis[i]);
-  table_columns(table, (const char *const[]){"runs", "M_1/M", "window", "beta ML", "beta ML_hw95", "\xc2\xb1res M_1/M",
-                                             "n", "\xc2\xb1res beta", "beta LSQ", "beta LSQ_hw95", NULL});
+  table_columns(table, (const char *const[]){"runs", "M_1/M", "\xc2\xb1res M_1/M", "window", "n", "beta ML",
+                                             "beta ML_hw95", "\xc2\xb1res beta", "beta LSQ", "beta LSQ_hw95", NULL});
 }
 
 /* "0.928 ± 0.009", "0.928 ± 0.009~" when the interval is weak, "1.000 ≥ 0.905" when all runs are equal. */
@@ -133,10 +133,12 @@ static status row_for_people(struct printing *printing, const struct ask_points_
     table_text(table, runs);
     table_rests_on(table, &row->doubts);
     mean_cell(table, row);
+    resolution_cell(table, row->resolution_verdict, row->resolution);
   }
-  for (size_t i = 0; !first && i < printing->axes + 3; i++)
+  for (size_t i = 0; !first && i < printing->axes + 4; i++)
     table_text(table, "");
   table_text(table, estimates_window_names[window]);
+  table_integer(table, fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n);
   for (int m = METHODS; m-- > 0;) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
     table_rests_on(table, &doubts->masses);
@@ -144,11 +146,6 @@ static status row_for_people(struct printing *printing, const struct ask_points_
     table_real(table, fit->interval.half_width);
     if (m != MASSES)
       continue;
-    if (first)
-      resolution_cell(table, row->resolution_verdict, row->resolution);
-    else
-      table_text(table, "");
-    table_integer(table, fit->fit.n);
     struct ask_resolution resolution;
     TRY(read_resolution(printing, row, MASSES, window, &resolution, error));
     resolution_cell(table, resolution.verdict, resolution.half_width);
