@@ -254,7 +254,11 @@ static status print_quantity(const struct printing *printing, size_t from, size_
   table_rare(table);
   table_columns(table, (const char *const[]){"cpu_s", "bias", "bias_hw95", "correlation", NULL});
   table_rare(table);
-  table_columns(table, (const char *const[]){"low", "high", "pays from correlation", NULL});
+  table_column(table, "correlation low", NULL);
+  table_rare(table);
+  table_column(table, "correlation high", NULL);
+  table_rare(table);
+  table_column(table, "pays from correlation", NULL);
   table_rare(table);
   table_columns(table, (const char *const[]){"error", "frontier", NULL});
   for (size_t i = 0; i < count; i++)

@@ -83,7 +83,7 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
   TRY(table_end(table, error));
   if (table_for_people(format)) {
     uncertainty_doubts(&doubts, stderr);
-    fputs("clast: (low to high): 95 % intervals over runs; of a mode, the values that belong to it. Modes are peaks; p "
+    fputs("clast: low and high: 95 % intervals over runs; of a mode, the values that belong to it. Modes are peaks; p "
           "of one "
           "mode below 0.05: the runs have two\n",
           stderr);

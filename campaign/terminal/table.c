@@ -132,14 +132,12 @@ static bool ends_in(const char *name, const char *end) {
 }
 
 /* The column of the value whose half width has this name: "x" or "x_mean" of "x_hw95" and "x_weak", the last one of
- * "hw95", the one before "low" and "high". */
+ * "hw95". */
 static bool find_value(const struct table *table, const char *name, size_t *value) {
   const size_t stem = ends_in(name, "_hw95") || ends_in(name, "_weak") ? strlen(name) - strlen("_hw95") : 0;
   for (size_t c = table->column_count; c-- > 0;) {
     const char *const other = table->columns[c].name;
     *value = c;
-    if ((strcmp(name, "low") == 0 || strcmp(name, "high") == 0) && strcmp(other, "low") != 0)
-      return true;
     if (stem ? strncmp(other, name, stem) == 0 && (!other[stem] || strcmp(other + stem, "_mean") == 0)
              : strcmp(name, "hw95") == 0)
       return true;
@@ -550,18 +548,9 @@ static void keep(struct table *table, const struct cell *cell) {
     return;
   table->kept_count++;
   struct kept *value = kept - table->cell + column->value;
-  const bool is_end = strcmp(column->name, "high") == 0, is_low = strcmp(column->name, "low") == 0;
-  if (column->role != ERROR || is_low || !isfinite(value->number) ||
-      (is_end ? !isfinite(kept[-1].number) && !isfinite(cell->number) : !(cell->number > 0 && isfinite(cell->number))))
+  if (column->role != ERROR || !(cell->number > 0) || !isfinite(value->number) || !isfinite(cell->number))
     return;
-  if (is_end) {
-    char interval[UNCERTAINTY_TEXT];
-    snprintf(interval, sizeof interval, "%.*s (", (int)value->digits, value->text);
-    text_append(interval, sizeof interval, isfinite(kept[-1].number) ? "%.3g" : "?", kept[-1].number);
-    text_append(interval, sizeof interval, isfinite(cell->number) ? " to %.3g)" : " to ?)", cell->number);
-    snprintf(text, sizeof text, "%s%.*s", interval, UNCERTAINTY_TEXT, value->text + value->digits);
-    value->digits = strlen(interval);
-  } else if (ends_in(column->name, "_weak"))
+  if (ends_in(column->name, "_weak"))
     snprintf(text, sizeof text, "%.*s~%.*s", (int)value->digits, value->text, UNCERTAINTY_TEXT,
              value->text + value->digits);
   else {

@@ -9,8 +9,8 @@
  * The table for people has one rule, whatever it shows. It is 100 characters wide at most (on a terminal, as wide as
  * that; COLUMNS says otherwise). Columns that tell rows apart always stand in it: varied inputs and numbers of points.
  * The half width of an interval (NAME_hw95) stands in the cell of its value, as "0.349 ± 0.003"; both have the
- * digits that it allows; a share has its interval instead where the half width passes 0 or 1. Columns low and high
- * stand in the cell of the value before them, as "0.35 (0.31 to 0.4)". Other numbers have five digits. Units are in the
+ * digits that it allows; a share has its interval instead where the half width passes 0 or 1. Other numbers
+ * have five digits. Units are in the
  * headings. If the table is too wide, headings get several lines, then texts, then it leaves columns out, the last ones
  * first. It also leaves out columns that are rarely wanted, and those that have the same cell in all rows (engine,
  * failed: table.c names them). A note on stderr names what is left out. With --all nothing is; the table has several
