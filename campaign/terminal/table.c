@@ -863,7 +863,8 @@ static void print_row(struct rows *rows, const struct answer *answer) {
       continue;
     if (rows->doubtful[i]) {
       const int64_t doubtful = answer_integer(answer, rows->doubtful[i]), n = answer_integer(answer, rows->n);
-      const int64_t withheld = n - answer_integer(answer, rows->doubtful[i] - 1);
+      /* unsigned: a hostile store has any numbers */
+      const int64_t withheld = (int64_t)((uint64_t)n - (uint64_t)answer_integer(answer, rows->doubtful[i] - 1));
       table_rests_on(rows->table, &(struct ask_doubts){.runs = n, .doubtful = doubtful, .withheld = withheld});
     }
     if (value.kind == QUERY_BLOB)

@@ -111,7 +111,7 @@ void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double hal
 }
 
 void uncertainty_mark(const struct ask_doubts *doubts, char text[UNCERTAINTY_TEXT]) {
-  const int64_t values = doubts->runs - doubts->withheld;
+  const int64_t values = (int64_t)((uint64_t)doubts->runs - (uint64_t)doubts->withheld); /* of any store */
   text[0] = 0;
   if (doubts->doubtful > 0 && doubts->withheld > 0)
     snprintf(text, UNCERTAINTY_TEXT, " (%" PRId64 ")" UNCERTAINTY_MARK, values);
