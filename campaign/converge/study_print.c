@@ -308,7 +308,8 @@ static const char legend[] =
     "of its 95 % interval. error: largest distance to the limit (none seen: |bias| + half width, perhaps too small),\n"
     "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer. "
     "correlation:\n"
-    "of the runs of a seed with those at the next finer level; from `pays from` on, the coarse level as a control "
+    "of the runs of a seed with those at the next finer level; from `pays from correlation` on, the coarse level as a "
+    "control "
     "variate\n"
     "would save time. share of upper mode: of the runs, where their values have two modes (peaks).\n";
 

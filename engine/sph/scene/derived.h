@@ -40,9 +40,10 @@ double sph_derived_approach(const struct sph_inputs *inputs);
 #define SPH_DERIVED_SLOW 0.03
 double sph_derived_crossing(const struct sph_inputs *inputs); /* s, of a wave through the target's longest extent */
 double sph_derived_smallest_spacing(const struct sph_inputs *inputs); /* m, of all bodies */
-/* Largest Courant number, at most SPH_INPUTS_CFL, at which waves as short as the spacing do not grow until
- * stop.end_time. The step lets a wave of frequency w grow by (w dt)^4/4 in a step [its matrix of growth], with w = 2.1
- * c_L/h for the shortest one; viscosity damps it by about 0.08 alpha c_L dt/h. tests/verification/sph_time_step.md */
+/* Largest Courant number, at most SPH_INPUTS_CFL, at which waves as short as the spacing grow by a factor of e at most
+ * until stop.end_time. The step lets a wave of frequency w grow by (w dt)^4/4 in a step [its matrix of growth], with w
+ * = 2.1 c_L/h for the shortest one; viscosity damps it by about 0.08 alpha c_L dt/h.
+ * tests/verification/sph_time_step.md */
 double sph_derived_cfl(const struct sph_inputs *inputs);
 /* Target and projectile at the start, and the unit direction of flight. The projectile hits the target where the normal
  * is z; the angle between flight and normal is impact.angle, whatever the gap. STATUS_CONTENT. */
