@@ -34,6 +34,16 @@ struct picture_body {
 status picture_fragments_read(const char *path, struct picture_body *body, struct error *error);
 void picture_fragments_clear(struct picture_body *body);
 
+/* A sheet: pictures of one run in rows, in one frame, with a caption under each and one legend. Each call of
+ * picture_particles() with look->sheet, or of picture_fragments_on_sheet(), draws the next of `count` pictures. The
+ * frame is that of all of them. */
+struct picture_sheet; /* opaque */
+struct picture_frame;
+status picture_sheet_open(const char *path, size_t count, const struct picture_frame *frame,
+                          struct picture_sheet **sheet, struct error *error);
+/* Frees the sheet. The file appears when `code` is STATUS_OK. Returns code, or the error of writing. */
+status picture_sheet_close(struct picture_sheet *sheet, status code, struct error *error);
+
 struct picture_panel {
   struct picture_body body;
   const char *caption; /* under the panel; NULL: none */
@@ -42,6 +52,10 @@ struct picture_panel {
 /* Draws one to three panels side by side, each with its own scale bar. subtitle may be NULL. */
 status picture_fragments(const char *path, double width, const char *title, const char *subtitle, size_t panels,
                          const struct picture_panel *panel, struct error *error);
+
+/* title: of the sheet; caption: of this picture. panel->caption is the note under the last one. */
+status picture_fragments_on_sheet(struct picture_sheet *sheet, const char *title, const char *caption,
+                                  const struct picture_panel *panel, struct error *error);
 
 /* The view that a body's panel would get: all of it without distant dust. STATUS_MEMORY. */
 status picture_fragments_view(const struct picture_body *body, double view[4]);
@@ -90,7 +104,7 @@ status picture_cloud_read_axis(const char *path, const char *name, double **valu
                                struct error *error);
 void picture_cloud_clear(struct picture_cloud *cloud);
 
-/* One frame for several pictures: the pictures of a movie. Begin with PICTURE_NO_FRAME. */
+/* One frame for several pictures: those of a movie or a sheet. Begin with PICTURE_NO_FRAME. */
 struct picture_frame {
   double view[4];   /* m: x0, y0, x1, y1 */
   double low, high; /* of the values */
@@ -114,6 +128,7 @@ struct picture_look {
   const char *doubts;           /* stands in the note under the picture; NULL: none */
   const char *quantity, *unit;  /* of the values: "damage", "1"; "pressure", "Pa" */
   struct picture_frame *frame;  /* NULL: the picture's own */
+  struct picture_sheet *sheet;  /* NULL: a picture of its own; else title is the sheet's, and subtitle the caption */
 };
 /* Draws particles as discs of their size. The colour range is 0..1 for values of unit 1 within 0..1. Otherwise it is
  * the range of the drawn particles, without the outermost percent at both ends and without bodies that have no

@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "schemas/memory.h"
+
 static bool ends_in(const char *path, const char *ending) {
   size_t a = strlen(path), b = strlen(ending);
   return a > b && strcmp(path + a - b, ending) == 0;
@@ -105,6 +107,35 @@ void picture_canvas_head(cairo_t *cairo, double x, double width, double font, co
   cairo_set_source_rgb(cairo, 0.35, 0.35, 0.35);
   if (subtitle)
     picture_canvas_text(cairo, x, line, fitting(cairo, width, small, false, subtitle), PICTURE_LEFT, false, subtitle);
+}
+
+void picture_canvas_note(cairo_t *cairo, double x, double y, double width, double font, const char *text) {
+  const size_t length = strlen(text);
+  const char *second = text;
+  cairo_set_source_rgb(cairo, 0.35, 0.35, 0.35);
+  if (picture_canvas_text_width(cairo, font, false, text) > width)
+    second = strchr(text + length / 2, ' ');
+  if (second == text || !second) {
+    picture_canvas_text(cairo, x, y, fitting(cairo, width, font, false, text), PICTURE_LEFT, false, text);
+    return;
+  }
+  OWNED char *first = strndup(text, (size_t)(second - text));
+  const char *line[2] = {first ? first : "", second + 1};
+  for (int k = 0; k < 2; k++)
+    picture_canvas_text(cairo, x, y + 1.3 * font * k, fitting(cairo, width, font, false, line[k]), PICTURE_LEFT, false,
+                        line[k]);
+}
+
+double picture_canvas_place(cairo_t *cairo, const double view[4], double left, double top, double width,
+                            double height) {
+  const double scale = fmin(width / (view[2] - view[0]), height / (view[3] - view[1]));
+  cairo_save(cairo);
+  cairo_rectangle(cairo, left, top, width, height);
+  cairo_clip(cairo);
+  cairo_translate(cairo, left + width / 2, top + height / 2);
+  cairo_scale(cairo, scale, -scale);
+  cairo_translate(cairo, -(view[0] + view[2]) / 2, -(view[1] + view[3]) / 2);
+  return scale;
 }
 
 static double companded(double linear) {

@@ -26,6 +26,12 @@ void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum p
 /* Title and subtitle at the head of a picture of a body; NULL: none. */
 void picture_canvas_head(cairo_t *cairo, double x, double width, double font, const char *title, double small,
                          const char *subtitle);
+/* A sentence under a picture, on at most two lines that fit the width. */
+void picture_canvas_note(cairo_t *cairo, double x, double y, double width, double font, const char *text);
+/* Clips to a rectangle of the page and sets coordinates in which it shows the view (m, y upwards), until
+ * cairo_restore(). Returns pixels per metre. */
+double picture_canvas_place(cairo_t *cairo, const double view[4], double left, double top, double width, double height);
+
 double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const char *text);
 /* Perceptual colours (OKLCH, Ottosson 2020): lightness 0..1, chroma 0..0.2, hue in degrees. */
 void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, double hue, double alpha);

@@ -2,6 +2,7 @@
  * every fragment, cracks inside them. */
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"
+#include "analysis/pictures/picture_sheet.h"
 #include "analysis/pictures/snapshot_read.h"
 
 #include <math.h>
@@ -222,23 +223,17 @@ void picture_fragments_numbers(const struct picture_body *body, const char *cell
   }
 }
 
-static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, const double view[4], double left,
-                         double top, double width, double height, double font) {
+/* In the coordinates of picture_canvas_place(). */
+static status draw_body(cairo_t *cairo, const struct picture_panel *panel, const double view[4]) {
   const struct picture_body *body = &panel->body;
   const bool chosen = panel->view[2] >
                       panel->view[0]; /* a chosen part of the body: its fragments may extend beyond the panel */
   GROUPING grouping = {0};
   TRY(group(body, &grouping));
-  double scale = fmin(width / (view[2] - view[0]), height / (view[3] - view[1])), area = 0;
+  double area = 0;
   for (size_t i = 0; i < body->cells; i++)
     area += area_of(body, i);
   const double cell = sqrt(area / (double)body->cells); /* a typical size */
-  cairo_save(cairo);
-  cairo_rectangle(cairo, left, top, width, height);
-  cairo_clip(cairo);
-  cairo_translate(cairo, left + width / 2, top + height / 2);
-  cairo_scale(cairo, scale, -scale);
-  cairo_translate(cairo, -(view[0] + view[2]) / 2, -(view[1] + view[3]) / 2);
   for (size_t f = grouping.fragments; f-- > 0;)
     if (chosen || is_inside(body, &grouping, f, view))
       draw_fragment(cairo, body, &grouping, f, cell); /* the largest is drawn last, on top */
@@ -251,13 +246,20 @@ static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, cons
   cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
   cairo_set_line_width(cairo, 0.11 * cell);
   cairo_stroke(cairo);
+  return STATUS_OK;
+}
+
+static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, const double view[4], double left,
+                         double top, double width, double height, double font) {
+  const double scale = picture_canvas_place(cairo, view, left, top, width, height);
+  const status code = draw_body(cairo, panel, view);
   cairo_restore(cairo);
   picture_canvas_scale_bar(cairo, left + 0.02 * width, top + height + 1.75 * font, scale, width, font);
   cairo_set_source_rgb(cairo, 0.25, 0.25, 0.25);
   if (panel->caption)
     picture_canvas_text(cairo, left + width * 0.98, top + height + 1.75 * font, font, PICTURE_RIGHT, false,
                         panel->caption);
-  return STATUS_OK;
+  return code;
 }
 
 static status fail(const char *path, status code, struct error *error) {
@@ -302,6 +304,19 @@ status picture_fragments(const char *path, double width, const char *title, cons
       fail(path, code, error);
   }
   return picture_canvas_close(&canvas, code, error);
+}
+
+status picture_fragments_on_sheet(struct picture_sheet *sheet, const char *title, const char *caption,
+                                  const struct picture_panel *panel, struct error *error) {
+  cairo_t *cairo = sheet->canvas.cairo;
+  const double scale = picture_sheet_next(sheet, title, caption);
+  const status code = draw_body(cairo, panel, sheet->view);
+  cairo_restore(cairo);
+  if (sheet->drawn == 1)
+    picture_canvas_scale_bar(cairo, sheet->gap, sheet->below + 3 * sheet->font, scale, sheet->wide, sheet->font);
+  if (sheet->drawn == sheet->count && panel->caption)
+    picture_canvas_note(cairo, sheet->gap, sheet->below + 5 * sheet->font, sheet->right, sheet->font, panel->caption);
+  return code ? fail(sheet->canvas.file.path, code, error) : STATUS_OK;
 }
 
 /* ---- reading from a fields file ---- */

@@ -2,6 +2,7 @@
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/picture_layout.h"
+#include "analysis/pictures/picture_sheet.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -420,7 +421,7 @@ static void legend(cairo_t *cairo, const struct scene *s, double x, double y, do
 }
 
 /* Writes a note under the picture about particles that are missing or have no value. */
-static void note(cairo_t *cairo, const struct scene *s, double left, double y, double font) {
+static void note(cairo_t *cairo, const struct scene *s, double left, double y, double width, double font) {
   char text[600] = "";
   size_t grey = 0;
   if (s->look->doubts && *s->look->doubts)
@@ -434,8 +435,23 @@ static void note(cairo_t *cairo, const struct scene *s, double left, double y, d
                 100 * s->hidden);
   if (s->left_out)
     text_append(text, sizeof text, "%zu particles are beyond the frame.", s->left_out);
-  cairo_set_source_rgb(cairo, 0.35, 0.35, 0.35);
-  picture_canvas_text(cairo, left, y, 0.9 * font, PICTURE_LEFT, false, text);
+  picture_canvas_note(cairo, left, y, width, 0.9 * font, text);
+}
+
+static void draw_on_sheet(struct picture_sheet *sheet, struct scene *s) {
+  cairo_t *cairo = sheet->canvas.cairo;
+  const double font = sheet->font, scale = picture_sheet_next(sheet, s->look->title, s->look->subtitle);
+  draw_discs(cairo, s);
+  cairo_restore(cairo);
+  if (sheet->drawn == 1) {
+    axes(cairo, s->axis, sheet->gap + 0.5 * font, sheet->below + 3 * font, font);
+    picture_canvas_scale_bar(cairo, sheet->gap + 7 * font, sheet->below + 3 * font, scale, sheet->wide, font);
+    if (s->cloud->value)
+      picture_canvas_colour_bar(cairo, s->ramp, sheet->right, sheet->top, 1.2 * font, fmin(sheet->tall, 26 * font),
+                                font, s->low / s->scale, s->high / s->scale, s->label);
+  }
+  if (sheet->drawn == sheet->count)
+    note(cairo, s, sheet->gap, sheet->below + 5 * font, sheet->right, font);
 }
 
 static status draw(const char *path, double width, struct scene *s, struct error *error) {
@@ -446,23 +462,17 @@ static status draw(const char *path, double width, struct scene *s, struct error
   if (!isfinite(tall))
     return status_fail(error, STATUS_USAGE, "%s: the particles have no extent to draw", path);
   tall = fmin(fmax(tall, 14 * font), 1.1 * wide);
-  double scale = fmin(wide / (s->view[2] - s->view[0]), tall / (s->view[3] - s->view[1]));
   double top = font * (1.2 + (look->title ? 1.9 : 0) + (look->subtitle ? 1.6 : 0));
   struct picture_canvas canvas;
-  TRY(picture_canvas_open(&canvas, path, width, top + tall + 6.6 * font, error));
+  TRY(picture_canvas_open(&canvas, path, width, top + tall + 7.7 * font, error));
   cairo_t *cairo = canvas.cairo;
-  cairo_save(cairo);
-  cairo_rectangle(cairo, gap, top, wide, tall);
-  cairo_clip(cairo);
-  cairo_translate(cairo, gap + wide / 2, top + tall / 2);
-  cairo_scale(cairo, scale, -scale);
-  cairo_translate(cairo, -(s->view[0] + s->view[2]) / 2, -(s->view[1] + s->view[3]) / 2);
+  const double scale = picture_canvas_place(cairo, s->view, gap, top, wide, tall);
   draw_discs(cairo, s);
   cairo_restore(cairo);
   picture_canvas_head(cairo, gap, width - 2 * gap, font, look->title, 0.95 * font, look->subtitle);
   axes(cairo, s->axis, gap + 0.5 * font, top + tall + 3.9 * font, font);
   picture_canvas_scale_bar(cairo, gap + 7 * font, top + tall + 3.9 * font, scale, wide, font);
-  note(cairo, s, gap, top + tall + 5.7 * font, font);
+  note(cairo, s, gap, top + tall + 5.7 * font, width - 2 * gap, font);
   if (s->cloud->value)
     picture_canvas_colour_bar(cairo, s->ramp, gap + wide + 1.2 * font, top, 1.2 * font, fmin(tall, 26 * font), font,
                               s->low / s->scale, s->high / s->scale, s->label);
@@ -513,7 +523,9 @@ status picture_particles(const char *path, double width, const struct picture_cl
   status code = cloud->n ? choose(&s) : STATUS_OK;
   if (code == STATUS_OK && !path)
     return STATUS_OK;
-  if (code == STATUS_OK && s.discs > 0)
+  if (code == STATUS_OK && s.discs > 0 && look->sheet)
+    draw_on_sheet(look->sheet, &s);
+  else if (code == STATUS_OK && s.discs > 0)
     code = draw(path, width, &s, error);
   else if (code == STATUS_OK)
     code = status_fail(error, STATUS_USAGE,

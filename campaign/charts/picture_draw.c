@@ -22,11 +22,21 @@ static double width_of(const struct picture_choice *options) {
   return options->width > 0 ? options->width : WIDTH;
 }
 
-enum { DOUBTS = 300 };
+enum { DOUBTS = 300, MOST_FRAMES = 10000 };
 
-/* Writes "! in doubt, 1 of 1 runs: coarse" for a body whose run broke conditions, and prints a line for each on stderr.
- */
-static void tell_doubts(const char *fields, char text[DOUBTS]) {
+/* All snapshots of a run, in one frame and one range of colours: a movie, or a sheet. */
+struct movie {
+  struct picture_frame frame;
+  struct picture_sheet *sheet; /* NULL: a movie */
+  const char *series;
+  char folder[FIELD_TEXT_SIZE]; /* of the pictures that a movie needs; "": none */
+  size_t count, at;
+  char *fields[MOST_FRAMES], *picture[MOST_FRAMES]; /* owned: snapshots, and their pictures */
+};
+
+/* Writes "! in doubt, 1 of 1 runs: coarse" for a body whose run broke conditions. Prints a line for each on stderr, of
+ * a movie for its last snapshot. */
+static void tell_doubts(const char *fields, const struct movie *movie, char text[DOUBTS]) {
   struct snapshot_read *file;
   struct error error;
   struct ask_doubts doubts = {0};
@@ -40,34 +50,36 @@ static void tell_doubts(const char *fields, char text[DOUBTS]) {
     return;
   ask_doubts_run(&doubts, engine, words, OUTCOME_DEFAULT, 1);
   charts_doubts(&doubts, text, DOUBTS);
-  uncertainty_doubts(&doubts, stderr);
+  if (!movie || movie->at + 1 == movie->count)
+    uncertainty_doubts(&doubts, stderr);
 }
 
-/* The scene and the number of a snapshot are the file's name; the fields of a stored run are named by a hash. */
-static void name_file(const char *fields, char *text, size_t size) {
-  const char *slash = strrchr(fields, '/'), *base = slash ? slash + 1 : fields;
+/* "812 µs", "10 ms" */
+static void write_time(double seconds, char text[32]) {
+  static const char *const unit[] = {"s", "ms", "\xc2\xb5s", "ns"};
+  size_t k = 0;
+  text[0] = 0;
+  if (!isfinite(seconds))
+    return;
+  for (; k < 3 && seconds != 0 && fabs(seconds) < 0.9999; k++)
+    seconds *= 1e3;
+  snprintf(text, 32, "%.4g %s", seconds, unit[k]);
+}
+
+/* "disc_000003: dem, seed 1, 812 µs". The scene and the number of a snapshot are the file's name; the fields of a
+ * stored run are named by a hash. Of a sheet: the name of its series, and no time. */
+static void name_run(const char *fields, const struct movie *movie, const char *engine, long long seed, double time,
+                     char *text, size_t size) {
+  const char *path = movie && movie->sheet ? movie->series : fields;
+  const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
   const size_t length = strcspn(base, ".");
+  char shown[32];
   snprintf(text, size, "%.*s", length < 32 ? (int)length : 0, base);
-}
-
-/* "disc_000003: dem, seed 1, 812 µs" */
-static void name_run(const char *fields, char *text, size_t size) {
-  struct snapshot_read *file;
-  char engine[64] = "";
-  long long seed = 0;
-  double time = NAN;
-  name_file(fields, text, size);
-  if (snapshot_read_open(fields, &file, NULL))
-    return;
-  const bool known = snapshot_read_text(file, "run", "engine", engine, sizeof engine) &&
-                     snapshot_read_integer(file, "run", "seed", &seed);
-  if (!snapshot_read_real(file, "run", "time", &time))
-    time = NAN;
-  if (!snapshot_read_close(file) || !known)
-    return;
-  text_append(text, size, "%s%s, seed %lld", *text ? ": " : "", engine, seed);
-  if (isfinite(time))
-    text_append(text, size, ", %.4g \xc2\xb5s", 1e6 * time);
+  if (*engine)
+    text_append(text, size, "%s%s, seed %lld", *text ? ": " : "", engine, seed);
+  write_time(time, shown);
+  if (*shown && path == fields)
+    text_append(text, size, ", %s", shown);
 }
 
 /* Widens a frame to what the picture of the body would show. */
@@ -81,30 +93,47 @@ static status widen(struct picture_frame *frame, const struct picture_body *body
   return STATUS_OK;
 }
 
-/* Grains in the plane have one picture only. `frame` NULL: the picture's own; `picture` NULL: only widens the frame. */
+/* Grains in the plane have one picture only. `picture` NULL: only widens the movie's frame. */
 static status draw_grains(const char *fields, const char *picture, const struct picture_choice *options,
-                          struct picture_frame *frame, struct error *error) {
+                          struct movie *movie, struct error *error) {
   struct picture_panel panel = {0};
-  char numbers[160], title[FIELD_TEXT_SIZE], doubts[DOUBTS] = "";
+  struct snapshot_read *file;
+  char numbers[160], title[FIELD_TEXT_SIZE], doubts[DOUBTS] = "", engine[64] = "", caption[64];
+  long long seed = 0;
+  double time = NAN;
   status code = STATUS_OK;
-  TRY(picture_fragments_read(fields, &panel.body, error));
-  name_run(fields, title, sizeof title);
-  picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
-  if (!frame) /* all pictures of a movie have one size */
-    tell_doubts(fields, doubts);
-  panel.caption = *doubts ? doubts : NULL;
-  if (frame && picture)
-    memcpy(panel.view, frame->view, sizeof panel.view);
   if (options->what || options->view || options->axis || options->at)
-    code = status_fail(error, STATUS_USAGE,
+    return status_fail(error, STATUS_USAGE,
                        "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
                        "are for particles in space",
                        fields);
-  else if (!picture)
-    code = widen(frame, &panel.body);
-  else
+  TRY(picture_fragments_read(fields, &panel.body, error));
+  if (movie && !picture) {
+    code = widen(&movie->frame, &panel.body);
+    goto cleanup;
+  }
+  if (snapshot_read_open(fields, &file, NULL) == STATUS_OK) {
+    snapshot_read_text(file, "run", "engine", engine, sizeof engine);
+    snapshot_read_integer(file, "run", "seed", &seed);
+    snapshot_read_real(file, "run", "time", &time);
+    snapshot_read_close(file);
+  }
+  name_run(fields, movie, engine, seed, time, title, sizeof title);
+  picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
+  tell_doubts(fields, movie, doubts);
+  panel.caption = *doubts ? doubts : NULL;
+  if (movie)
+    memcpy(panel.view, movie->frame.view, sizeof panel.view);
+  if (movie && movie->sheet) {
+    const char *largest = strstr(numbers, "largest");
+    write_time(time, caption);
+    text_append(caption, sizeof caption, "; %s", largest ? largest : "");
+    code = picture_fragments_on_sheet(movie->sheet, options->caption ? options->caption : title, caption, &panel,
+                                      error);
+  } else
     code = picture_fragments(picture, width_of(options), options->caption ? options->caption : title, numbers, 1,
                              &panel, error);
+cleanup:
   picture_fragments_clear(&panel.body);
   return code;
 }
@@ -140,13 +169,9 @@ static status choose_look(const struct picture_choice *options, struct picture_l
   return unit_read(options->at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
 }
 
-static void name_look(const char *fields, const struct picture_look *look, const struct picture_cloud *cloud,
-                      char *text, size_t size) {
-  name_file(fields, text, size);
-  if (*cloud->engine)
-    text_append(text, size, "%s%s, seed %lld", *text ? ": " : "", cloud->engine, cloud->seed);
-  if (isfinite(cloud->time))
-    text_append(text, size, ", %.4g \xc2\xb5s", 1e6 * cloud->time);
+static void name_look(const char *fields, const struct movie *movie, const struct picture_look *look,
+                      const struct picture_cloud *cloud, char *text, size_t size) {
+  name_run(fields, movie, cloud->engine, cloud->seed, cloud->time, text, size);
   if (look->view == PICTURE_CUT && isfinite(look->plane))
     text_append(text, size, ", cut at %c = %.4g m", 'x' + look->axis, look->plane);
   else if (look->view == PICTURE_CUT)
@@ -169,7 +194,7 @@ static status read_quantity(const char *fields, bool chosen, struct picture_clou
 }
 
 static status draw_particles(const char *fields, const char *picture, const struct picture_choice *options,
-                             struct picture_frame *frame, struct error *error) {
+                             struct movie *movie, struct error *error) {
   struct picture_look look;
   __attribute__((cleanup(picture_cloud_clear))) struct picture_cloud cloud = {0};
   const char *what;
@@ -177,16 +202,20 @@ static status draw_particles(const char *fields, const char *picture, const stru
   TRY(choose_look(options, &look, &what, error));
   TRY(picture_cloud_read(fields, &cloud, error));
   TRY(read_quantity(fields, options->what != NULL, &cloud, &what, unit, error));
-  name_look(fields, &look, &cloud, title, sizeof title);
-  picture_particles_numbers(&cloud, numbers, sizeof numbers);
-  if (!frame) /* all pictures of a movie have one size */
-    tell_doubts(fields, doubts);
+  name_look(fields, movie, &look, &cloud, title, sizeof title);
+  if (movie && movie->sheet)
+    write_time(cloud.time, numbers);
+  else
+    picture_particles_numbers(&cloud, numbers, sizeof numbers);
+  if (picture)
+    tell_doubts(fields, movie, doubts);
   look.doubts = doubts;
   look.title = options->caption ? options->caption : title;
   look.subtitle = numbers;
   look.quantity = what;
   look.unit = unit;
-  look.frame = frame;
+  look.frame = movie ? &movie->frame : NULL;
+  look.sheet = movie ? movie->sheet : NULL;
   return picture_particles(picture, width_of(options), &cloud, &look, error);
 }
 
@@ -231,8 +260,8 @@ static status draw_profile(const char *fields, const char *picture, const struct
   }
   if (code)
     goto cleanup;
-  tell_doubts(fields, doubts);
-  name_look(fields, &(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
+  tell_doubts(fields, NULL, doubts);
+  name_look(fields, NULL, &(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
   const struct picture_page page = charts_page(picture, &options->chart);
   const struct picture_words words = {options->caption ? options->caption : title, doubts, "depth at the start (m)",
                                       NULL};
@@ -246,20 +275,12 @@ cleanup:
 }
 
 static status draw_fields(const char *fields, const char *picture, const struct picture_choice *options,
-                          struct picture_frame *frame, struct error *error) {
-  return picture_cloud_in_file(fields) ? draw_particles(fields, picture, options, frame, error)
-                                       : draw_grains(fields, picture, options, frame, error);
+                          struct movie *movie, struct error *error) {
+  return picture_cloud_in_file(fields) ? draw_particles(fields, picture, options, movie, error)
+                                       : draw_grains(fields, picture, options, movie, error);
 }
 
-/* ---- movies: NAME_000.png, NAME_001.png, ... of all snapshots of a run, in one frame and one range of colours ---- */
-
-enum { MOST_FRAMES = 10000 };
-
-struct movie {
-  char folder[FIELD_TEXT_SIZE]; /* of the pictures that only a .gif needs; "": they are the user's */
-  size_t count;
-  char *fields[MOST_FRAMES], *picture[MOST_FRAMES]; /* owned: snapshots, and their pictures */
-};
+/* ---- movies and sheets ---- */
 
 static void movie_free(struct movie *movie) {
   for (size_t i = 0; i < movie->count; i++) {
@@ -314,36 +335,38 @@ static status join(const char *picture, const struct picture_choice *options, co
   return picture_movie(&page, bytes[22] * 256 + bytes[23], movie->count, name, error);
 }
 
+static status draw_sheet(const char *picture, const struct picture_choice *options, struct movie *movie,
+                         struct error *error) {
+  status code = STATUS_OK;
+  TRY(picture_sheet_open(picture, movie->count, &movie->frame, &movie->sheet, error));
+  for (movie->at = 0; movie->at < movie->count && !code; movie->at++)
+    code = draw_fields(movie->fields[movie->at], picture, options, movie, error);
+  return picture_sheet_close(movie->sheet, code, error);
+}
+
 static status draw_movie(const char *series, const char *picture, const struct picture_choice *options,
                          struct error *error) {
-  __attribute__((cleanup(movie_free))) struct movie movie = {0};
-  struct picture_frame frame = PICTURE_NO_FRAME;
+  __attribute__((cleanup(movie_free))) struct movie movie = {.frame = PICTURE_NO_FRAME, .series = series};
+  char stem[FIELD_TEXT_SIZE + 16];
   const char *ending = strrchr(picture, '.');
   const bool gif = ending && strcmp(ending, ".gif") == 0;
-  if (!gif && (!ending || strcmp(ending, ".png") != 0))
-    return status_fail(error, STATUS_USAGE, "%s: all snapshots become a movie, NAME.gif, or pictures, NAME.png",
-                       picture);
   if (options->view && strcmp(options->view, "profile") == 0)
     return status_fail(error, STATUS_USAGE, "--view profile is for one snapshot");
-  char stem[FIELD_TEXT_SIZE + 16];
-  snprintf(stem, sizeof stem, "%.*s", (int)(ending - picture), picture);
-  if (gif) { /* a folder of its own: pictures of these names may be there */
+  if (gif) {
     snprintf(movie.folder, sizeof movie.folder, "%s.XXXXXX", picture);
     if (!mkdtemp(movie.folder)) {
       *movie.folder = '\0';
       return status_fail(error, STATUS_IO, "cannot make a folder beside %s: %s", picture, strerror(errno));
     }
-    snprintf(stem, sizeof stem, "%s/frame", movie.folder);
   }
+  snprintf(stem, sizeof stem, "%s/frame", movie.folder);
   TRY(read_series(series, stem, &movie, error));
-  for (size_t i = 0; i < 2 * movie.count; i++) {
-    const size_t k = i % movie.count;
-    TRY(draw_fields(movie.fields[k], i < movie.count ? NULL : movie.picture[k], options, &frame, error));
-  }
-  if (!gif) {
-    printf("%zu pictures, %s to %s\n", movie.count, movie.picture[0], movie.picture[movie.count - 1]);
-    return STATUS_OK;
-  }
+  for (size_t i = 0; i < movie.count; i++)
+    TRY(draw_fields(movie.fields[i], NULL, options, &movie, error));
+  if (!gif)
+    return draw_sheet(picture, options, &movie, error);
+  for (movie.at = 0; movie.at < movie.count; movie.at++)
+    TRY(draw_fields(movie.fields[movie.at], movie.picture[movie.at], options, &movie, error));
   return join(picture, options, &movie, error);
 }
 

@@ -27,8 +27,8 @@ static status simulate(const struct scene *scene, const struct one_run_options *
   condition_tell(scene->kind->conditions, result.outcome.warnings,
                  condition_before(scene->kind->conditions, scene->inputs, NULL), "clast: warning: ", stderr);
   if (options->snapshots && !options->quiet && table_for_people(format))
-    fprintf(stderr, "clast: `clast picture %s.hdf.series %s.gif` makes a movie of the snapshots\n", scene->name,
-            scene->name);
+    fprintf(stderr, "clast: `clast picture %s.hdf.series %s.gif` makes a movie of the snapshots, %s.png one picture\n",
+            scene->name, scene->name, scene->name);
   return code;
 }
 

@@ -1,5 +1,5 @@
 # Pictures of one size after each other: frame[1], frame[2], ... are files in the folder above.
-set terminal gif animate delay 25 loop 0 size page_width,page_height background rgb 'white'
+set terminal gif truecolor animate delay 25 loop 0 size page_width,page_height background rgb 'white'
 set output output_file
 unset label
 unset border
