@@ -61,6 +61,12 @@ static status take_open(struct finding *finding, const struct convergence_row *r
   (void)error;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   finding->studied = true;
+  if (row->base) {
+    finding->accuracy->mean = row->mean;
+    finding->accuracy->n = row->n;
+    finding->accuracy->within = finding->campaign->accuracy_within *
+                                (finding->campaign->accuracy_of_value ? fabs(row->mean) : 1);
+  }
   if (knob && knob->group == KNOB_RESOLUTION && row->base && row->open && finding->open[0] != knob)
     finding->open[finding->open[0] != NULL] = knob;
   return STATUS_OK;
@@ -94,9 +100,8 @@ static status add_option(struct finding *finding, const struct convergence_row *
     return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
   snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
   option->deviation = row->deviation;
-  option->seeds = isnan(accuracy->point_s)
-                      ? accuracy_seeds(row->deviation, finding->campaign->accuracy_within - option->error)
-                      : seeds_in(option, accuracy->point_s);
+  option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(row->deviation, accuracy->within - option->error)
+                                           : seeds_in(option, accuracy->point_s);
   option->total = total_of(option, option->seeds);
   option->cpu_s = option->seeds ? (double)option->seeds * option->run_s : (double)NAN;
   accuracy->options[accuracy->count++] = *option;
@@ -247,7 +252,7 @@ status accuracy_find(const struct campaign *campaign, const char *path, const ch
                      struct accuracy *accuracy, struct error *error) {
   struct finding finding = {.campaign = campaign, .accuracy = accuracy};
   STORE store = NULL;
-  *accuracy = (struct accuracy){0};
+  *accuracy = (struct accuracy){.within = campaign->accuracy_within, .path = path};
   TRY(divide_time(campaign, accuracy, error));
   const status code = store_open_reader(store_path, &store, error);
   if (code == STATUS_MISSING)
@@ -259,6 +264,7 @@ status accuracy_find(const struct campaign *campaign, const char *path, const ch
   if (accuracy->count == 0)
     return no_study(campaign, path, store_path, error);
   choose(accuracy);
+  accuracy->open = finding.open[0];
   return STATUS_OK;
 }
 
@@ -281,17 +287,51 @@ static status too_short(const struct accuracy *accuracy, const struct campaign *
                      given, FEWEST_SEEDS, campaign->accuracy_time / accuracy->point_s, needed);
 }
 
+/* No level reaches the accuracy: what would. */
+static status out_of_reach(const struct accuracy *accuracy, const struct campaign *campaign, struct error *error) {
+  const struct accuracy_option *best = &accuracy->options[accuracy->reference];
+  const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
+  const double seeds = ceil((double)accuracy->n * pow(best->error / accuracy->within, 2));
+  double finest = NAN;
+  char next[400] = "";
+  for (size_t i = 0; accuracy->open && i < accuracy->count; i++) {
+    const double setting = strtod(accuracy->options[i].setting, NULL);
+    if (strcmp(accuracy->options[i].knob, accuracy->open->name) == 0 && !accuracy->options[i].own)
+      finest = accuracy->open->step_power < 0 ? fmax(finest, setting) : fmin(finest, setting);
+  }
+  if (isfinite(finest)) {
+    const double finer = accuracy->open->step_power < 0 ? 2 : 0.5;
+    struct error ignored;
+    const struct field *row = field_find(campaign->scene->kind->inputs, accuracy->open->inputs[0].path, &ignored);
+    const char *unit = row && row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
+    text_append(next, sizeof next,
+                "%s shows no limit, so more seeds alone do not help. Finer levels may show one: clast converge %s "
+                "--knob %s=%.4g%s,%.4g%s,%.4g%s",
+                accuracy->open->name, path, accuracy->open->name, finest / finer, unit, finest, unit, finest * finer,
+                unit);
+  } else if (seeds <= MOST_SEEDS)
+    text_append(next, sizeof next,
+                "The error shrinks with the seeds of the study, which has %" PRId64
+                "; about %.0f are needed: clast converge %s --max-seeds %.0f --within off --seeds %.0f",
+                accuracy->n, seeds, path, seeds, seeds);
+  else
+    text_append(next, sizeof next,
+                "More than %d seeds of the study would be needed, so no setting is known to reach it", MOST_SEEDS);
+  return status_fail(
+      error, STATUS_CONTENT,
+      "accuracy: no setting gives %s within %.2g of its mean %.3g. The smallest error is %.2g%s, with %s "
+      "= %s. %s. Or allow more, such as %.2g; or ask for the least error in a time: clast plan %s --within "
+      "10min; or take another result: clast converge %s --quantity fragment_count,kinetic_energy_share "
+      "tells how near these are",
+      quantity, accuracy->within, accuracy->mean, best->error, best->open ? " or more" : "", best->knob, best->setting,
+      next, 1.3 * best->error, path, path);
+}
+
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {
   if (accuracy->chosen == accuracy->count && !isnan(accuracy->point_s))
     return too_short(accuracy, campaign, error);
-  if (accuracy->chosen == accuracy->count) {
-    const struct accuracy_option *best = &accuracy->options[accuracy->reference];
-    return status_fail(error, STATUS_CONTENT,
-                       "accuracy: no studied level gives %s within %g (in its own unit, not a share of its value). The "
-                       "smallest error is %.2g%s, with %s = %s. Allow a larger error, or study finer levels",
-                       campaign->accuracy_quantity, campaign->accuracy_within, best->error,
-                       best->open ? " or more" : "", best->knob, best->setting);
-  }
+  if (accuracy->chosen == accuracy->count)
+    return out_of_reach(accuracy, campaign, error);
   const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
   campaign->per_point = option->seeds;
   if (option->own)
@@ -382,9 +422,9 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
     print_choice(&accuracy, campaign, "clast: ", stderr);
   if (print == ACCURACY_TEXT) {
     if (isnan(accuracy.point_s))
-      printf("accuracy  %s within %g. total: error of resolution and 95 %% interval together. run_cost: against the "
+      printf("accuracy  %s within %.3g. total: error of resolution and 95 %% interval together. run_cost: against the "
              "smallest error\n",
-             campaign->accuracy_quantity, campaign->accuracy_within);
+             campaign->accuracy_quantity, accuracy.within);
     print_choice(&accuracy, campaign, "accuracy  ", stdout);
     TRY(print_alternatives(&accuracy, TABLE_TEXT, stdout, error));
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)

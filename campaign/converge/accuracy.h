@@ -26,9 +26,14 @@ struct accuracy_option {
 struct accuracy {
   struct accuracy_option *options; /* owned; by cpu_s, for a time by total; then those that do not reach it, by error */
   size_t count;
-  double point_s;   /* processor time that a point may cost, s; NaN: an accuracy is given, not a time */
-  size_t chosen;    /* the cheapest option that reaches the accuracy, or that with the least total; count: none does */
-  size_t reference; /* the option with the smallest error; costs are relative to it */
+  double point_s; /* processor time that a point may cost, s; NaN: an accuracy is given, not a time */
+  size_t chosen;  /* the cheapest option that reaches the accuracy, or that with the least total; count: none does */
+  double within;  /* the campaign's, in the quantity's SI unit; NaN for a time */
+  double mean;    /* with the scene's own settings */
+  int64_t n;      /* seeds of the study there */
+  const struct knob *open; /* of resolution, without a limit; NULL: none */
+  const char *path;        /* the campaign's file; borrowed */
+  size_t reference;        /* the option with the smallest error; costs are relative to it */
 };
 
 /* Finds the options of a campaign with the key `accuracy`. Looks for a study of the campaign's scene, then of its

@@ -53,6 +53,7 @@ struct campaign {
   double until_level;      /* 0.95 */
   int64_t until_minimum, until_batch;
   char accuracy_quantity[FIELD_TEXT_SIZE];
+  bool accuracy_of_value; /* accuracy_within is a share of the mean: given in per cent */
   double accuracy_within; /* limit of |error| plus half width of the mean's interval, in the quantity's SI unit; NaN:
                              not given */
   double accuracy_time;   /* processor time of the campaign in which that sum shall be least, s; NaN: not given */

@@ -55,7 +55,9 @@ static const struct field rows[] = {
     ROW("accuracy.within", accuracy_within, FIELD_REAL, "1", .number = NAN, .minimum = 0, .maximum = HUGE_VAL,
         .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
         .doc = "Choose settings and number of seeds so that the error of resolution and the 95 % interval of the mean "
-               "together are at most this, in the SI unit of the quantity, at the least processor time. The choice "
+               "together are at most this, at the least processor time: a number in the SI unit of the quantity, or a "
+               "share "
+               "of its mean (5 %). The choice "
                "comes from a study in the store (`clast converge`). off: settings and seeds are as written."),
     ROW("accuracy.processor_time", accuracy_time, FIELD_REAL, "s", .number = NAN, .minimum = 0, .maximum = 1e12,
         .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,

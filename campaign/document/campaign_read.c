@@ -159,6 +159,8 @@ static void check_accuracy(document_node *root, struct campaign *campaign) {
     document_report(accuracy, "accuracy",
                     "give one of 'within', the largest error of the result, and 'processor_time', which the campaign "
                     "may cost");
+  const char *within = key_of(accuracy, "within") ? document_scalar(key_of(accuracy, "within")) : NULL;
+  campaign->accuracy_of_value = within && strchr(within, '%');
   if (seeds || key_of(document_key(root, "seeds"), "until"))
     document_report(accuracy, "accuracy",
                     "accuracy finds the number of seeds; leave seeds.per_point and seeds.until "

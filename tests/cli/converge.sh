@@ -177,6 +177,17 @@ says "leave seeds.per_point"
 sed -i 's/0.05/1e-9/' sharp.yaml
 expect 65 "$clast" run sharp.yaml
 says "smallest error"
+says "or ask for the least error in a time: clast plan sharp.yaml --within 10min"
+# A share is one of the mean, as for --within of converge and find.
+sed 's/1e-9/20 %/' sharp.yaml >share.yaml
+expect 0 "$clast" plan share.yaml
+python - <<'PY'
+import re, sqlite3
+mean, = sqlite3.connect("sharp.db").execute("select mean from convergence where base and quantity = 'largest_fraction'").fetchone()
+within = float(re.search(r"within ([0-9.e-]+)\. total", open("out").read())[1])
+assert abs(within / (0.2 * mean) - 1) < 0.01, (within, mean)
+PY
+ok "a share of the mean"
 
 # Points of a file are scenes like those of axes.
 printf 'threshold.strain,threshold.angle\n2 %%,2 deg\n5 %%,6 deg\n' >points.csv
@@ -205,4 +216,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 54
+done_after 56
