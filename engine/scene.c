@@ -77,7 +77,7 @@ static bool is_named(const struct field_table *inputs, const char *section, cons
   return false;
 }
 
-status scene_material_like(document_node *root, const struct engine_materials *materials, struct error *error) {
+static status take_like(document_node *root, const struct engine_materials *materials, struct error *error) {
   document_node *node = document_key(root, "like");
   const char *word = node ? document_scalar(node) : "", *text = word && *word ? materials->text(word) : NULL;
   OWNED void *unused = memory_small(1, materials->values->size);
@@ -92,10 +92,30 @@ status scene_material_like(document_node *root, const struct engine_materials *m
                                                     : status_fail(error, STATUS_MEMORY, "no memory for a material");
 }
 
-/* The file's own name, which the input `name` gets. */
-static const char *own_name(const char *file) {
-  const char *slash = strrchr(file, '/');
-  return slash ? slash + 1 : file;
+status scene_material_complete(document_node *root, const struct engine_materials *materials, struct error *error) {
+  const status code = take_like(root, materials, error);
+  for (const char *const *word = materials->not_values; word && *word; word++)
+    if (document_key(root, *word)) {
+      document_graft_drop(root, *word);
+      return status_fail(error, STATUS_CONTENT, "'%s' is no value of a material: %s", *word, materials->instead);
+    }
+  return code;
+}
+
+/* What the input `name` gets: the file's own name, after the rock's, "weak sandstone - rock.yaml", if that is another
+ * one and not that of a built-in material. The ending says that it is a document's. */
+static void own_name(const char *file, struct document *document, const struct engine_materials *materials,
+                     char name[FIELD_TEXT_SIZE]) {
+  enum { LONGEST = 40 };
+  const char *slash = strrchr(file, '/'), *base = slash ? slash + 1 : file;
+  const size_t stem = strcspn(base, ".");
+  document_node *node = document ? document_key(document_root(document), "material") : NULL;
+  const char *rock = node ? document_scalar(node) : NULL;
+  bool plain = rock && *rock && strlen(rock) <= LONGEST && !materials->text(rock) &&
+               !(strlen(rock) == stem && strncmp(rock, base, stem) == 0);
+  for (const char *c = rock; plain && *c; c++)
+    plain = *c != '/' && (unsigned char)*c >= ' ' && *c != 127;
+  snprintf(name, FIELD_TEXT_SIZE, "%s%s%s", plain ? rock : "", plain ? " - " : "", base);
 }
 
 /* `place`: where errors about the file are reported. */
@@ -106,15 +126,17 @@ static void include_material(document_node *section, document_node *place, const
   OWNED char *whole = file_name_in(folder, file);
   status code = whole ? document_open(whole, &other, &error)
                       : status_fail(&error, STATUS_MEMORY, "no memory for a path");
+  char name[FIELD_TEXT_SIZE];
+  own_name(file, code ? NULL : other, kind->materials, name);
   if (code == STATUS_OK) {
-    code = scene_material_like(document_root(other), kind->materials, &error);
+    code = scene_material_complete(document_root(other), kind->materials, &error);
     if (!document_graft(section, other, material_words))
       code = status_fail(&error, STATUS_MEMORY, "no memory for a material");
   }
   document_graft_drop(section, "name");
   if (code != STATUS_OK)
     document_report_error(place, path, &error);
-  if (!document_graft_word(section, "name", own_name(file)))
+  if (!document_graft_word(section, "name", name))
     document_report_memory(place, path);
 }
 
@@ -531,7 +553,7 @@ static status take_own(struct scene *scene, const struct field *row, const char 
   document_free(document);
   for (size_t i = 0; code == STATUS_OK && i < table->count; i++) {
     struct field_value value;
-    if (!own->given[i] || scene->overridden[i])
+    if (!own->given[i] || (scene->overridden[i] && &table->rows[i] != row))
       continue;
     field_get(&table->rows[i], own->inputs, &value);
     field_set_unchecked(&table->rows[i], scene->inputs, &value);
@@ -562,7 +584,7 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
   TRY(set_file(row, &taken, error));
   field_get(row, scene->inputs, &before);
   if (is_open(row))
-    field_copy_text(taken.text, own_name(value->text));
+    field_copy_text(taken.text, strrchr(value->text, '/') ? strrchr(value->text, '/') + 1 : value->text);
   TRY(field_set(row, scene->inputs, &taken, error));
   scene->overridden[row - table->rows] = true;
   if (is_open(row) && strcmp(before.text, value->text) != 0)

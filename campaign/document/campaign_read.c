@@ -26,11 +26,14 @@ bool campaign_read_value(document_node *node, const struct field *row, const cha
   return whole && strlen(whole) < FIELD_TEXT_SIZE;
 }
 
-/* Reads one entry of `set`. Returns the input; NULL: reported. */
+/* Reads one entry of `set`. Returns the input; NULL: not found, reported. *good: false after a report. */
 static const struct field *read_set_value(document_node *node, const char *key, const char *path, const char *folder,
-                                          const struct campaign *campaign, struct scene *scene, const char *varied) {
+                                          const struct campaign *campaign, struct scene *scene, const char *varied,
+                                          bool *good) {
   struct error error = {0};
   struct field_value value;
+  const bool before = *good;
+  *good = false;
   if (!key || document_kind(node) != DOCUMENT_SCALAR) {
     document_report(node, path, "expected one value; several values belong in `vary`");
     return NULL;
@@ -41,17 +44,20 @@ static const struct field *read_set_value(document_node *node, const char *key, 
   else if (!row ||
            (campaign_read_value(node, row, folder, &value) && scene_set(scene, row->path, &value, &error) != STATUS_OK))
     document_report_error(node, path, &error);
+  else
+    *good = before;
   return row;
 }
 
-void campaign_read_set(document_node *set, const char *folder, const struct campaign *campaign, struct scene *scene,
+bool campaign_read_set(document_node *set, const char *folder, const struct campaign *campaign, struct scene *scene,
                        bool stored, const char *varied) {
   const struct field_table *inputs = scene->kind->inputs;
+  bool good = true;
   if (!set)
-    return;
+    return true;
   if (document_kind(set) != DOCUMENT_MAPPING) {
     document_report(set, "set", "expected a mapping of paths to values, e.g. contact.friction: 0.2");
-    return;
+    return false;
   }
   const char **names = memory_small(inputs->count, sizeof *names); /* the key that has set an input */
   for (size_t i = 0; i < document_count(set); i++) {
@@ -59,7 +65,7 @@ void campaign_read_set(document_node *set, const char *folder, const struct camp
     char path[320];
     document_node *node = document_item(set, i, &key);
     snprintf(path, sizeof path, "set.%.300s", key ? key : "");
-    const struct field *row = read_set_value(node, key, path, folder, campaign, scene, varied);
+    const struct field *row = read_set_value(node, key, path, folder, campaign, scene, varied, &good);
     if (!row)
       continue;
     const char **name = &names[row - inputs->rows];
@@ -72,6 +78,33 @@ void campaign_read_set(document_node *set, const char *folder, const struct camp
     *name = key;
   }
   free(names);
+  return good;
+}
+
+/* Two rocks of one name in a list could not be told apart in a table. */
+static bool check_rocks(document_node *vary, const struct campaign *campaign) {
+  struct error error;
+  for (size_t a = 0; a < campaign->axis_count; a++) {
+    const struct design_axis *axis = &campaign->axes[a];
+    if (axis->row->kind != FIELD_TEXT || !axis->row->choices || axis->kind != DESIGN_AXIS_LEVELS)
+      continue;
+    OWNED struct field_value *name = memory_small(axis->level_count, sizeof *name);
+    for (size_t i = 0; i < axis->level_count; i++) {
+      SCENE scene = scene_copy(campaign->scene);
+      if (scene_set(scene, axis->row->path, &axis->levels[i], &error) == STATUS_OK)
+        field_get(axis->row, scene->inputs, &name[i]);
+      for (size_t k = 0; k < i; k++)
+        if (*name[i].text && strcmp(name[i].text, name[k].text) == 0 &&
+            strcmp(axis->levels[i].text, axis->levels[k].text) != 0) {
+          document_report(vary, axis->row->path,
+                          "%s and %s would have one name in all tables, '%s': give one of them another `material:` or "
+                          "another file name",
+                          axis->levels[k].text, axis->levels[i].text, name[i].text);
+          return false;
+        }
+    }
+  }
+  return true;
 }
 
 /* The number of "first 12": at least 1, up to 9 digits, no sign or blanks. 0: the text has another form. */
@@ -266,9 +299,9 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
     varied = campaign_points_read(file, folder, campaign) && !vary;
   else
     varied = campaign_vary_read(vary, folder, campaign);
-  campaign_read_set(set, folder, campaign, campaign->scene, stored,
-                    "set here and varied in `vary`; leave one of them out");
+  const bool good = campaign_read_set(set, folder, campaign, campaign->scene, stored,
+                                      "set here and varied in `vary`; leave one of them out");
   check_quantities(root, campaign);
-  if (plain && varied)
+  if (plain && varied && good && (stored || check_rocks(file ? file : vary, campaign)))
     check_points(root, campaign);
 }

@@ -11,8 +11,8 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
 
 /* Reads `set` (NULL: none) into `scene`. An input that is an axis of the campaign is refused with the words `varied`.
  * One input under two of its names is a slip, which the document of a store may still have. A value of the command line
- * replaces that of the document. */
-void campaign_read_set(document_node *set, const char *folder, const struct campaign *campaign, struct scene *scene,
+ * replaces that of the document. False after a report. */
+bool campaign_read_set(document_node *set, const char *folder, const struct campaign *campaign, struct scene *scene,
                        bool stored, const char *varied);
 /* One value of an input. The name of a material's file is relative to `folder`, on the command line to the current one.
  * False: reported. */

@@ -100,6 +100,26 @@ same "$(sqlite3 mix.db "select count(*) from run")" 6 "runs after the same comma
 expect 0 "$clast" plot mix.db bars.png -x material
 expect 0 "$clast" check mix.db
 
+# A rock is shown by its own name, with the file's; two rocks of one name are refused. A value that a reader expects, once.
+mkdir -p other
+sed 's/^material: .*/material: weak sandstone/; s/^density: .*/density: 2.2 g\/cm^3/' granite.yaml >other/own.yaml
+printf 'name: rocks\nscene: s.yaml\nvary: {target.material: [rocks/own.yaml, other/own.yaml]}\nseeds: 1\n' >rocks.yaml
+expect 0 "$clast" run rocks.yaml --quiet
+expect 0 "$clast" stats rocks.db --by material --csv
+prints "weak sandstone - own.yaml,"; prints "own.yaml,"
+expect 0 "$clast" replay rocks.db 2
+expect 0 "$clast" run rocks.yaml --quiet
+same "$(sqlite3 rocks.db "select count(*) from run")" 2 "runs of two rocks"
+sed -i 's/^material: .*/material: granite/' other/own.yaml
+expect 65 "$clast" plan rocks.yaml
+says "would have one name in all tables, 'own.yaml'"
+printf 'material: stiff\nlike: basalt\nyoung_modulus: 40 GPa\n' >stiff.yaml
+printf 'name: stiff\nscene: s.yaml\nset: {target.material: stiff.yaml}\nseeds: 1\n' >set.yaml
+expect 65 "$clast" plan set.yaml
+says "give bulk_modulus: E / (3 (1 - 2 nu)) and shear_modulus"; one_error
+expect 65 "$clast" materials ./stiff.yaml
+says "give bulk_modulus: E / (3 (1 - 2 nu)) and shear_modulus"; one_error
+
 # The identity of a run is its values: the name of the file is no part of it.
 printf 'name: a\nscene: s.yaml\nseeds: 1\nstore: same.db\n' >a.yaml
 expect 0 "$clast" run a.yaml --quiet
@@ -116,4 +136,4 @@ printf 'name: two\nscene: %s\ndesign: {file: points/two.csv}\nseeds: 1\nstore: t
 scene basalt >s.yaml
 expect 0 "$clast" run far/two.yaml --store two.db --quiet
 same "$(sqlite3 two.db "select count(*) from run")" 2 "runs of a file of points with a material's file"
-done_after 45
+done_after 53

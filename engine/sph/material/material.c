@@ -90,8 +90,8 @@ static status read_material(struct document *document, struct sph_material *out,
   status code;
   field_defaults(&sph_materials_table, out);
   document_node *root = document_root(document);
-  if (scene_material_like(root, &sph_materials, &unknown))
-    document_report_error(root, "like", &unknown);
+  if (scene_material_complete(root, &sph_materials, &unknown))
+    document_report_error(root, NULL, &unknown);
   else if (document_read(root, &sph_materials_table, own_keys, out) && !(out->tillotson.E_cv > out->tillotson.E_iv))
     document_report(root, "tillotson.E_cv", "must be above tillotson.E_iv");
   read_sources(document_key(root, "sources"));
@@ -157,14 +157,19 @@ status sph_materials_load(const char *name, void *out, struct error *error) {
                      near ? "; did you mean '" : ";", near ? near : "", near ? "'?" : "");
 }
 
+static const char *const not_values[] = {"young_modulus", "youngs_modulus", "poisson_ratio", "poissons_ratio", NULL};
 static const char *const overview[][2] = {{"density", "density"},
-                                          {"bulk_modulus", "tillotson.A"},
+                                          {"tillotson_A", "tillotson.A"},
                                           {"shear_modulus", "shear_modulus"},
                                           {"weibull_m", "weibull.m"},
                                           {"weibull_k", "weibull.k"},
                                           {NULL, NULL}};
 const struct engine_materials sph_materials = {.values = &sph_materials_table,
                                                .overview = overview,
+                                               .not_values = not_values,
+                                               .instead = "of Young's modulus E and Poisson's ratio nu, give "
+                                                          "bulk_modulus: E / (3 (1 - 2 nu)) and shear_modulus: E / "
+                                                          "(2 (1 + nu))",
                                                .name = sph_materials_name,
                                                .text = sph_materials_text,
                                                .load = sph_materials_load,
