@@ -89,9 +89,9 @@ export async function showSpectrum() {
   if (drawn.length === 0)
     return nothing(figure, chosenPoints().length ? 'No spectrum of the chosen points is on this page (see "left out here").' : 'Choose a point.');
   const rows = drawn.flatMap(bandOf), fits = drawn.map(fitOf), complete = completeMass(drawn[0].from, drawn[0].points);
-  const names = drawn.map((curve) => curve.name);
-  const x = {field: 'mass', type: 'quantitative', scale: {type: 'log', nice: false}, title: 'fragment mass m (kg)', axis: {labelExpr: POWERS, tickCount: 6}};
-  const y = (field) => ({field, type: 'quantitative', scale: {type: 'log'}, title: 'F(m), fragments per kg and run', axis: {labelExpr: POWERS, tickCount: 6}});
+  const names = drawn.map((curve) => curve.name), kg = drawn[0].from.facts.mass_unit ?? 'kg';
+  const x = {field: 'mass', type: 'quantitative', scale: {type: 'log', nice: false}, title: `fragment mass m (${kg})`, axis: {labelExpr: POWERS, tickCount: 6}};
+  const y = (field) => ({field, type: 'quantitative', scale: {type: 'log'}, title: `F(m), fragments per run and ${kg}`, axis: {labelExpr: POWERS, tickCount: 6}});
   const legend = drawn.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null;
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend};
   const layer = [
@@ -99,7 +99,7 @@ export async function showSpectrum() {
     {mark: {type: 'point', filled: true, size: 50}, encoding: {x, y: y('density'), color: colour,
       shape: {field: 'name', type: 'nominal', scale: {domain: names, range: SHAPES}, legend},
       opacity: {condition: {test: `datum.lower < ${complete}`, value: 0.3}, value: 1},
-      tooltip: [{field: 'name', title: 'point'}, {field: 'mass', format: '.3~e', title: 'm (kg)'}, {field: 'shown', title: 'F(m)'}, {field: 'count', title: 'fragments'}]}},
+      tooltip: [{field: 'name', title: 'point'}, {field: 'mass', format: '.3~e', title: `m (${kg})`}, {field: 'shown', title: 'F(m)'}, {field: 'count', title: 'fragments'}]}},
     {data: {values: fits.flatMap((fit) => fit?.ends ?? [])}, mark: {type: 'line', strokeWidth: 2, clip: true}, encoding: {x, y: y('density'),
       color: colour, strokeDash: {field: 'name', type: 'nominal', scale: {domain: names, range: DASHES}, legend}}},
   ];
@@ -108,7 +108,7 @@ export async function showSpectrum() {
   const told = drawn.map((curve, i) => marked(`${curve.name}${fits[i] ? `: ${fits[i].text}` : ''}`, of(curve).some((cell) => cell.doubt) && {withheld: 0})).join('; ');
   await draw(figure, {data: {values: rows}, height: 340, layer}, {
     name: 'spectrum', description: `Fragment mass spectrum of ${told}`,
-    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood; p (clast exponents): below 0.1 a power law does not fit.${complete ? ` Pale marks: below ${number(complete, 2)} kg fragments are missing (too few particles or grains).` : ''}${doubtSentence(drawn[0].from, drawn.flatMap(of))}`,
+    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood; p (clast exponents): below 0.1 a power law does not fit.${complete ? ` Pale marks: below ${number(complete, 2)} ${kg} fragments are missing (too few particles or grains).` : ''}${doubtSentence(drawn[0].from, drawn.flatMap(of))}`,
     command: commandOf(drawn),
     columns: ['point', 'lower_kg', 'upper_kg', 'fragments', 'density', 'density_hw95'],
     rows: rows.map((row) => [row.name, row.lower, row.upper, row.count, row.density, row.hw95]),

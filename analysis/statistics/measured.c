@@ -20,11 +20,30 @@ void measured_release(struct measured *measured) {
   *measured = (struct measured){0};
 }
 
+/* N(>= mass[i]) for a sieve table: the mass of a class over its mean mass, that of equal masses per decade; of the last
+ * class, which has no upper end, over its lower one. whole: kg of all classes with a lower end above 0. */
+static double number_above(const struct measured *measured, double whole, size_t i) {
+  const double *mass = measured->mass, *above = measured->above;
+  size_t first = 0;
+  while (first + 1 < measured->n && !(mass[first] > 0))
+    first++;
+  const double scale = above[first] > 0 ? whole / above[first] : 0;
+  double sum = 0;
+  for (; i < measured->n; i++) {
+    const bool last = i + 1 == measured->n;
+    if (mass[i] > 0 && (last || mass[i + 1] > mass[i]))
+      sum += scale * (last ? above[i] / mass[i]
+                           : (above[i] - above[i + 1]) * log(mass[i + 1] / mass[i]) / (mass[i + 1] - mass[i]));
+  }
+  return sum;
+}
+
 /* The bin of threshold i: N(>= m) there, or the density up to the next threshold. The last class has no upper end, so
  * it has no density. */
-static struct pooled_bin bin_of(const struct measured *measured, const struct pooled_form *form, size_t i) {
+static struct pooled_bin bin_of(const struct measured *measured, const struct pooled_form *form, double whole,
+                                size_t i) {
   const bool last = i + 1 == measured->n;
-  const double above = measured->above[i];
+  const double above = measured->weighed ? number_above(measured, whole, i) : measured->above[i];
   struct pooled_bin bin = {.lower = spectrum_size_of(&form->size, measured->mass[i]), .half_width = NAN};
   if (form->cumulative || last) {
     bin.count = (int64_t)llround(above);
@@ -32,7 +51,7 @@ static struct pooled_bin bin_of(const struct measured *measured, const struct po
     bin.value = form->cumulative ? above : 0;
     return bin;
   }
-  const double inside = above - measured->above[i + 1];
+  const double inside = above - (measured->weighed ? number_above(measured, whole, i + 1) : measured->above[i + 1]);
   bin.count = (int64_t)llround(inside);
   bin.upper = spectrum_size_of(&form->size, measured->mass[i + 1]);
   bin.value = inside / (bin.upper - bin.lower);
@@ -40,15 +59,11 @@ static struct pooled_bin bin_of(const struct measured *measured, const struct po
 }
 
 /* Single fragments are binned like simulated ones; thresholds are their own bins. */
-status measured_bins(const struct measured *measured, const struct pooled_form *form, struct pooled_bin **bins,
-                     size_t *count, struct error *error) {
+status measured_bins(const struct measured *measured, const struct pooled_form *form, double whole,
+                     struct pooled_bin **bins, size_t *count, struct error *error) {
   const struct pooled_form one = {.cumulative = form->cumulative, .size = form->size};
   *count = 0;
   *bins = NULL;
-  if (measured->weighed)
-    return status_fail(error, STATUS_CONTENT,
-                       "the measured spectrum has masses of classes and no numbers of fragments, so it has no curve "
-                       "here; leave --picture out");
   if (measured->single && !form->cumulative) {
     const size_t first[2] = {0, measured->n};
     const struct pooled_runs runs = {1, first, measured->mass};
@@ -58,8 +73,8 @@ status measured_bins(const struct measured *measured, const struct pooled_form *
   for (size_t i = 0; i < measured->n; i++) {
     if (i > 0 && measured->mass[i] == measured->mass[i - 1])
       continue; /* equal masses: only the first has the right N(>= m) */
-    const struct pooled_bin bin = bin_of(measured, form, i);
-    if (bin.value > 0)
+    const struct pooled_bin bin = bin_of(measured, form, whole, i);
+    if (bin.value > 0 && bin.lower > 0)
       (*bins)[(*count)++] = bin;
   }
   return STATUS_OK;

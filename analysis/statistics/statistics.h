@@ -482,9 +482,10 @@ status measured_read(const char *path, const struct spectrum_size *size, struct 
 void measured_release(struct measured *measured); /* a zeroed one is fine */
 
 /* Converts to bins of a spectrum, to be drawn beside others of the same form. Without intervals. The caller frees
- * *bins. STATUS_CONTENT: a sieve table has no numbers. */
-status measured_bins(const struct measured *measured, const struct pooled_form *form, struct pooled_bin **bins,
-                     size_t *count, struct error *error);
+ * *bins. whole: of a sieve table, the mass in kg that its classes get together, without that of fragments below the
+ * finest sieve; the number of a class follows from its mass. */
+status measured_bins(const struct measured *measured, const struct pooled_form *form, double whole,
+                     struct pooled_bin **bins, size_t *count, struct error *error);
 
 /* Agreement of runs with measured data, for fragments of at least `complete` only. Shapes are compared, each normalised
  * by its own number of fragments; the numbers are given separately. Sieve tables: shares of the mass are compared

@@ -26,6 +26,7 @@ struct curve {
   struct pooled_bin *bins; /* owned */
   size_t count;
   double complete_mass; /* kg; NaN: not known */
+  double sieved;        /* kg of a run, in fragments that the finest sieve of a measured table retains */
   struct picture_fit fit;
   struct pooled_rivals rivals; /* n 0: not requested */
   struct picture_thin *thin;   /* one for each run; owned with their bins */
@@ -60,8 +61,8 @@ static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct cu
     return STATUS_OK;
   const double runs = (double)pool->data.runs.count;
   label_fit(curve, headline.fit.beta, headline.interval.half_width);
-  text_append(curve->fit_label, sizeof curve->fit_label, "; %zu fragments from %.2g kg on", headline.fit.n,
-              headline.fit.lower);
+  text_append(curve->fit_label, sizeof curve->fit_label, "; %zu fragments from %.2g %s on", headline.fit.n,
+              headline.fit.lower, ask_pool_mass_unit(pool->data.dimensions));
   curve->fit = (struct picture_fit){NULL,
                                     headline.fit.beta,
                                     headline.fit.lower,
@@ -97,6 +98,13 @@ static status make_curve(const struct spectrum_choice *choice, bool with_rivals,
     snprintf(curve->label, sizeof curve->label, "%s, %zu run%s%s", pool->label, runs, runs == 1 ? "" : "s", mark);
   else
     snprintf(curve->label, sizeof curve->label, "%s, %zu points, %zu runs%s", pool->label, pool->points, runs, mark);
+  const struct measured *measured = choice->measured;
+  size_t finest = 0;
+  while (measured && finest + 1 < measured->n && !(measured->mass[finest] > 0))
+    finest++;
+  for (size_t i = 0; measured && i < pool->data.runs.first[runs]; i++)
+    if (pool->data.runs.masses[i] >= measured->mass[finest])
+      curve->sieved += pool->data.runs.masses[i] / (double)runs;
   TRY(pooled_spectrum(&pool->data.runs, &curve->form, &curve->bins, &curve->count, error));
   TRY(fit_curve(pool, with_rivals, curve, error));
   if (choice->runs)
@@ -123,7 +131,7 @@ static void print_rivals(const struct pooled_rivals *rivals) {
     return;
   printf("  exponential cut-off: ");
   if (isfinite(rivals->cutoff_mass))
-    printf("beta %.2f, cut-off mass %.3g kg, 2 dlnL %.1f, p %.2g\n", rivals->cutoff_beta, rivals->cutoff_mass,
+    printf("beta %.2f, cut-off mass %.3g, 2 dlnL %.1f, p %.2g\n", rivals->cutoff_beta, rivals->cutoff_mass,
            rivals->cutoff_ratio, rivals->cutoff_p);
   else
     printf("none\n");
@@ -174,7 +182,7 @@ static void write_caption(struct store *store, const struct curves *curves, char
 
 static status draw_picture(struct store *store, const struct curves *curves, const struct picture_page *page,
                            struct error *error) {
-  static const char *const names[2][2] = {{"F(m), fragments per run and kg", "N(>m), fragments per run"},
+  static const char *const names[2][2] = {{"F(m), fragments per run and %s", "N(>m), fragments per run"},
                                           {"F(L), fragments per run and m", "N(>L), fragments per run"}};
   const struct spectrum_choice *choice = curves->choice;
   const struct measured *measured = choice->measured;
@@ -188,22 +196,22 @@ static status draw_picture(struct store *store, const struct curves *curves, con
     form = curves->curve[0].form;
   for (; count < curves->count; count++)
     series[count] = series_of(&curves->curve[count]);
-  if (measured && measured->weighed)
-    fputs("clast: a sieve table has masses and no numbers of fragments, so the picture has no curve of it; the table "
-          "compares shares of mass\n",
-          stderr);
-  else if (measured) {
+  if (measured && measured->n) {
     series[count] = (struct picture_series){.measured = true, .complete_mass = measured->complete};
-    TRY(measured_bins(measured, &form, &bins, &series[count].count, error));
-    snprintf(label, sizeof label, "measured%s%s", *measured->source ? ": " : "", measured->source);
+    TRY(measured_bins(measured, &form, curves->curve[0].sieved, &bins, &series[count].count, error));
+    snprintf(label, sizeof label, "measured%s%s%s", *measured->source ? ": " : "", measured->source,
+             measured->weighed ? " (sieves: number of a class from its share of the mass of a run)" : "");
     series[count].bins = bins;
     series[count++].label = label;
   }
   write_caption(store, curves, caption);
   TRY(ask_points_scenes(store, scenes, sizeof scenes, error));
   snprintf(title, sizeof title, "Fragment %s of %s, pooled over runs", sizes ? "sizes" : "masses", scenes);
-  const struct picture_words words = {title, caption, sizes ? "fragment size L (m)" : "fragment mass m (kg)",
-                                      names[sizes][choice->cumulative]};
+  char x[64], y[64];
+  const char *kg = ask_pool_mass_unit(form.size.dimensions);
+  snprintf(x, sizeof x, sizes ? "fragment size L (m)" : "fragment mass m (%s)", kg);
+  snprintf(y, sizeof y, names[sizes][choice->cumulative], kg);
+  const struct picture_words words = {title, caption, x, y};
   return picture_spectrum(page, &words, &form, count, series, error);
 }
 
@@ -213,7 +221,7 @@ static void print_plots(const struct curves *curves, bool ascii) {
     const struct curve *curve = &curves->curve[i];
     const struct picture_series series = series_of(curve);
     printf("%s%s\n", i ? "\n" : "", curve->label);
-    text_plot_spectrum(stdout, COLUMNS, !ascii, sizes ? "m" : "kg",
+    text_plot_spectrum(stdout, COLUMNS, !ascii, sizes ? "m" : ask_pool_mass_unit(curve->form.size.dimensions),
                        curve->form.cumulative ? (sizes ? "N(>L)" : "N(>m)") : (sizes ? "F(L)" : "F(m)"), &curve->form,
                        &series);
     print_rivals(&curve->rivals);

@@ -38,7 +38,10 @@ static status add_facts(struct making *making, const char *name, struct error *e
   const time_t seconds = time(NULL);
   strftime(now, sizeof now, "%Y-%m-%d %H:%M:%S UTC", gmtime(&seconds));
   snprintf(refresh, sizeof refresh, "%lld", (long long)making->choice->refresh);
+  int dimensions;
+  TRY(ask_pool_dimensions(making->store, &dimensions, error));
   const char *facts[][2] = {{"store", name},
+                            {"mass_unit", ask_pool_mass_unit(dimensions)},
                             {"made_at", now},
                             {"program", "clast " BUILD_VERSION ", commit " BUILD_COMMIT},
                             {"default_quantity", OUTCOME_DEFAULT},

@@ -134,8 +134,8 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
   }
   answer("M_1/M", o->largest_fraction, condition_mark(conditions, o->warnings, OUTCOME_NAME(largest_fraction)),
          "mass of the largest fragment over the total mass");
-  snprintf(says, sizeof says, "%lld of one grain or particle; the spectrum is complete from %.3g kg on",
-           (long long)o->single_count, o->complete_mass);
+  snprintf(says, sizeof says, "%lld of one grain or particle; the spectrum is complete from %.3g %s on",
+           (long long)o->single_count, o->complete_mass, ask_pool_mass_unit(scene->kind->dimensions));
   answer("fragments", (double)o->fragment_count, condition_mark(conditions, o->warnings, OUTCOME_NAME(fragment_count)),
          says);
   const struct estimate *fit = NULL;
@@ -232,7 +232,10 @@ static status print_bins(struct table *table, const struct spectrum_choice *choi
 status print_spectrum(struct store *store, const struct spectrum_choice *choice, enum table_format format,
                       struct error *error) {
   const bool sizes = choice->density > 0;
-  const char *unit = sizes ? "m" : "kg", *per_unit = choice->cumulative ? NULL : sizes ? "1/m" : "1/kg";
+  int dimensions;
+  TRY(ask_pool_dimensions(store, &dimensions, error));
+  const char *unit = sizes ? "m" : ask_pool_mass_unit(dimensions);
+  const char *per_unit = choice->cumulative ? NULL : sizes ? "1/m" : dimensions == 2 ? "m/kg" : "1/kg";
   ASK_POOLS pools = ask_pools(store, &choice->pool, NULL, error);
   TRY(pools.code);
   TABLE table = table_new(format, stdout);
@@ -268,9 +271,16 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   return STATUS_OK;
 }
 
+static const double SAME_MASS = 1.5; /* bodies whose masses differ by a smaller factor can be compared */
+
 status print_spectrum_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
                             struct error *error) {
-  double complete = choice->measured->complete; /* kg; likelihoods are compared above one mass */
+  const struct measured *measured = choice->measured;
+  double complete = measured->complete; /* kg; likelihoods are compared above one mass */
+  double heaviest = 0, whole = 0, given = 0;
+  int dimensions;
+  TRY(ask_pool_dimensions(store, &dimensions, error));
+  const char *kg = ask_pool_mass_unit(dimensions);
   ASK_POOLS before = ask_pools(store, &choice->pool, NULL, error);
   for (const struct ask_pool *pool; (pool = ask_pools_next(&before));)
     complete = fmax(complete, pool->data.complete_mass); /* fmax ignores a NaN */
@@ -279,7 +289,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   TRY(pools.code);
   TABLE table = table_new(format, stdout);
   print_pool_columns(table, &pools);
-  table_column(table, "from", "kg");
+  table_column(table, "from", kg);
   table_columns(table, (const char *const[]){"measured", "runs", "fragments_mean", "fragments_hw95", "distance",
                                              "runs_as_far", "log_likelihood", NULL});
   table_doubt_columns(table);
@@ -289,6 +299,13 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
     struct measured_match match;
     TRY(measured_compare(choice->measured, &pool->data.runs, complete, &match, error));
     nothing |= !isfinite(match.distance);
+    const struct pooled_runs *runs = &pool->data.runs;
+    double mass = 0;
+    for (size_t i = 0; i < runs->first[runs->count]; i++) {
+      heaviest = fmax(heaviest, runs->masses[i]);
+      mass += runs->masses[i] / (double)runs->count;
+    }
+    whole = fmax(whole, mass);
     print_pool_cells(table, &pools, pool);
     table_reals(table, 2, (const double[]){match.from, match.fragments});
     table_integer(table, (int64_t)pool->data.runs.count);
@@ -308,14 +325,29 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   if (table_for_people(format)) {
     uncertainty_doubts(&sum, stderr);
     fprintf(stderr,
-            "clast: fragments from %.3g kg on, where the measured and all simulated spectra are complete.\n"
+            "clast: fragments from %.3g %s on, where the measured and all simulated spectra are complete.\n"
             "distance: Kolmogorov's, of %s. runs_as_far: share of the runs that are as far from the others\n"
             "as the measured one (one experiment is one specimen; below 0.05 speaks against the point)\n",
-            complete, choice->measured->weighed ? "the shares of mass" : "the shapes");
+            complete, kg, measured->weighed ? "the shares of mass" : "the shapes");
     if (nothing)
-      fputs("clast: no distance: the measured or the simulated spectrum has no fragment that heavy; more particles or\n"
-            "grains lower that mass\n",
+      fprintf(stderr,
+              "clast: no distance: the heaviest measured fragment has %.3g kg, the heaviest simulated one %.3g %s\n",
+              measured->n ? measured->mass[measured->n - 1] : 0, heaviest, kg);
+    for (size_t i = 0; !measured->weighed && i < measured->n; i++) {
+      const double beyond = i + 1 < measured->n ? measured->above[i + 1] : 0;
+      given += measured->mass[i] * (measured->single ? 1 : measured->above[i] - beyond); /* at least, with thresholds */
+    }
+    if (dimensions == 2)
+      fputs("clast: this scene is two-dimensional: its masses are per metre of thickness. Give the measured ones as a "
+            "disc of 1 m has them\n",
             stderr);
+    else if (given > 0 && fmax(given / whole, whole / given) > SAME_MASS)
+      fprintf(stderr,
+              "clast: the measured fragments have %.3g kg or more together, a run has %.3g kg. Masses are compared as "
+              "they are: give\nthe body of the scene the size of the specimen\n",
+              given, whole);
+    else if (nothing)
+      fputs("clast: more particles or grains lower the mass from which a spectrum is complete\n", stderr);
   }
   return STATUS_OK;
 }

@@ -215,11 +215,22 @@ struct query_value ask_columns_value(const struct ask_column *column, const stru
   return shown;
 }
 
+/* Rows of results are for all engines; of one in the plane, masses are per metre of thickness. */
+static status per_metre(struct store *store, char *unit, size_t size, struct error *error) {
+  int dimensions;
+  if (strcmp(unit, "kg") != 0)
+    return STATUS_OK;
+  TRY(ask_pool_dimensions(store, &dimensions, error));
+  snprintf(unit, size, "%s", ask_pool_mass_unit(dimensions));
+  return STATUS_OK;
+}
+
 status ask_columns_unit(struct store *store, const char *column, char *unit, size_t size, struct error *error) {
   ANSWER answer = answer_to(store, error, "SELECT min(unit) FROM column_doc WHERE column_name = %Q AND unit <> '1'",
                             column);
   snprintf(unit, size, "%s", answer_next(&answer) ? answer_text(&answer, 0) : "");
-  return answer_end(&answer);
+  TRY(answer_end(&answer));
+  return per_metre(store, unit, size, error);
 }
 
 status ask_columns_units(struct store *store, struct ask_column **columns, size_t *count, struct error *error) {
@@ -234,7 +245,10 @@ status ask_columns_units(struct store *store, struct ask_column **columns, size_
       return status_fail(error, STATUS_MEMORY, "no memory for the units of the columns");
     read_column(&answer, &(*columns)[(*count)++]);
   }
-  return answer_end(&answer);
+  TRY(answer_end(&answer));
+  for (size_t i = 0; i < *count; i++)
+    TRY(per_metre(store, (*columns)[i].unit, sizeof(*columns)[i].unit, error));
+  return STATUS_OK;
 }
 
 struct answer ask_columns_view(struct store *store, const char *view, struct error *error) {

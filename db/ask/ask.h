@@ -511,6 +511,7 @@ void ask_pools_drop(struct ask_pools *pools); /* for ASK_POOLS */
 
 /* Dimensions of the engine of the store's first point, 2 or 3: masses in the plane are kg per metre. */
 status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error);
+const char *ask_pool_mass_unit(int dimensions); /* "kg/m", "kg" */
 
 /* The pool in the form that the pooled spectrum needs. Mean and interval are over the runs of a point, or over the
  * points. */

@@ -277,6 +277,10 @@ status ask_pool_dimensions(struct store *store, int *dimensions, struct error *e
   return answer_end(&answer);
 }
 
+const char *ask_pool_mass_unit(int dimensions) {
+  return dimensions == 2 ? "kg/m" : "kg";
+}
+
 struct pooled_form ask_pool_form(const struct ask_pool *pool, bool cumulative, double density) {
   return (struct pooled_form){.cumulative = cumulative,
                               .size = {density, pool->data.dimensions},

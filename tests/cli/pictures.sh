@@ -6,7 +6,7 @@ tiny small
 expect 0 "$clast" run small.yaml -j 2
 
 expect 0 "$clast" spectrum small.db --point 1 --plot
-prints "from kg"
+prints "from kg/m"
 prints "●"
 expect 0 "$clast" spectrum small.db --point 1 --plot --ascii
 prints "*"
@@ -61,9 +61,14 @@ import csv
 rows = list(csv.DictReader(open("out")))
 assert len(rows) == 4 and all(0 <= float(r["distance"]) <= 1 and r["measured"] == r["log_likelihood"] == "" for r in rows), rows
 PY
-expect 0 "$clast" spectrum small.db --with sieves.csv --picture sieves.svg
-says "the picture has no curve of it"
-ok "shares of mass from a sieve table"
+expect 0 "$clast" spectrum small.db --point 1 --with sieves.csv --picture sieves.svg --keep-script
+grep -q "number of a class from its share of the mass" sieves.gp || fail "the sieve table has no curve"
+python - <<'PY'
+blocks = open("sieves.dat").read().split("\n\n\n")
+sieve = [[float(x) for x in l.split()] for b in blocks[1:] for l in b.splitlines() if l and l[0] != "#"]
+assert len([r for r in sieve if r[1] > 0]) >= 3, blocks
+PY
+ok "shares of mass from a sieve table, and their curve"
 expect 0 "$clast" spectrum small.db --point 1 --runs --cumulative --json
 python -c "
 import json; rows = json.load(open('out'))

@@ -57,7 +57,7 @@ static void compare(const struct measured *m) {
     must(error.message[0]);
   for (int cumulative = 0; cumulative < 2; cumulative++) {
     const struct pooled_form form = {.cumulative = cumulative};
-    if (measured_bins(m, &form, &bins, &count, &error) == STATUS_OK)
+    if (measured_bins(m, &form, 1, &bins, &count, &error) == STATUS_OK)
       for (size_t i = 0; i < count; i++)
         must(bins[i].value >= 0 && bins[i].upper >= bins[i].lower);
     free(bins);

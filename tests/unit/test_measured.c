@@ -49,7 +49,7 @@ static void the_three_kinds(void **state) {
   assert_true(!m.single && m.n == 3 && m.above[0] == 16 && m.above[1] == 6 && m.above[2] == 1);
   struct pooled_bin *bins;
   size_t count;
-  assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, &bins, &count, &error), STATUS_OK);
+  assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, 0, &bins, &count, &error), STATUS_OK);
   assert_int_equal(count, 2); /* the last class has no upper end */
   assert_true(bins[0].value == 10 && bins[1].value == 2.5 && isnan(bins[0].half_width));
   free(bins);
@@ -187,8 +187,17 @@ static void sieves(void **state) {
   near(match.distance, 4 / 9.0 - 2 / 9.0);
   struct pooled_bin *bins;
   size_t count;
-  assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, &bins, &count, &error), STATUS_CONTENT);
-  assert_null(bins);
+  /* 20 kg in all: 4 kg from 2 to 3 kg are 4 ln(3/2) fragments, as if each decade had the same mass. */
+  assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, 20, &bins, &count, &error), STATUS_OK);
+  assert_int_equal(count, 3);
+  near(bins[1].value, 4 * log(1.5));
+  assert_true(bins[1].lower == 2 && bins[1].upper == 3);
+  free(bins);
+  assert_int_equal(measured_bins(&m, &(struct pooled_form){.cumulative = true}, 20, &bins, &count, &error), STATUS_OK);
+  assert_int_equal(count, 4);
+  near(bins[3].value, 1); /* 4 kg from 4 kg on */
+  near(bins[2].value, 1 + 10 * log(4 / 3.0));
+  free(bins);
   measured_release(&m);
 }
 
