@@ -26,6 +26,8 @@ static status nothing_to_draw(const struct picture_page *page, struct error *err
 
 static const double LOG_FROM = 20; /* x is logarithmic if its ends differ by at least this factor */
 
+static const double none_of_seven[7] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+
 static void write_curve(struct chart *chart, const struct picture_curve *curve) {
   chart_columns(chart, "x mean low high thin_low thin_high doubtful");
   for (size_t i = 0; i < curve->count; i++) {
@@ -42,9 +44,11 @@ static void write_curve(struct chart *chart, const struct picture_curve *curve) 
       row[5] = high + m->resolution;
     }
     chart_row(chart, 7, row);
+    if (curve->scattered)
+      chart_row(chart, 7, none_of_seven); /* ends the line */
   }
   if (curve->count == 0)
-    chart_row(chart, 7, (double[]){NAN, NAN, NAN, NAN, NAN, NAN, NAN});
+    chart_row(chart, 7, none_of_seven);
   chart_block_end(chart);
 }
 

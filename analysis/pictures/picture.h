@@ -200,6 +200,7 @@ struct picture_curve {
   const char *label; /* may be NULL */
   size_t count;
   const struct picture_mean *mean; /* x ascending */
+  bool scattered;                  /* marks without a line: between them other inputs change, too */
   bool band;                       /* a smooth line in a band from low to high, without marks */
   size_t places;                   /* of the first curve, > 0: bars; the x axis has these words at 1, 2, ... */
   const char *const *place;

@@ -35,6 +35,7 @@ struct quantity {
   char column[2][256];           /* the axes' columns in the views */
   char name[256];                /* column of the quantity, or the exponent's name */
   char pooled[ASK_GROUP_POOLED]; /* other varied inputs that the means average over, with points as units; "": none */
+  bool sampled;                  /* every point has its own values of the inputs that are not drawn */
   struct row *row;               /* owned */
   size_t count, room;
   struct ask_column written[LIMITS_AXES_OF_TABLE]; /* the varied inputs, in the units that the campaign gives */
@@ -145,6 +146,7 @@ static status read_quantity(struct store *store, const char *x, const char *y, c
   ANSWER groups = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : name, quantity->pooled, error);
   TRY(answer_status(&groups));
   TRY(read_names(quantity, &groups, refusal, error));
+  quantity->sampled = !*quantity->pooled && quantity->written_count > quantity->axes;
   if (!quantity->exponent)
     return read_groups(quantity, &groups, error);
   quantity->pooled[0] = '\0'; /* exponents belong to single points */
@@ -290,6 +292,25 @@ static void label_lines(struct plot *plot, const char *by) {
   }
 }
 
+/* In a caption and on stderr: every point has values of its own of the other inputs, as a sample has. */
+static void tell_sampled(const struct quantity *quantity, char *caption, size_t size) {
+  char others[400] = "", sentence[500];
+  for (size_t i = 0; i < quantity->written_count; i++) {
+    const char *name = quantity->written[i].name;
+    bool drawn = false;
+    for (size_t a = 0; a < quantity->axes; a++)
+      drawn |= strcmp(name, quantity->column[a]) == 0;
+    if (!drawn)
+      text_append(others, sizeof others, "%s%s", *others ? ", " : "", name);
+  }
+  charts_labels(others, sentence, sizeof sentence);
+  text_append(caption, size, "; from mark to mark %s changes, too", sentence);
+  fprintf(
+      stderr,
+      "clast: no line joins the points: from one to the next %s changes, too; `clast sensitivity` ranks the inputs\n",
+      sentence);
+}
+
 /* Takes the rows of a quantity as lines and draws them. */
 static status draw_lines(struct store *store, struct plot *plot, const struct picture_page *page, struct error *error) {
   const struct quantity *quantity = &plot->quantity;
@@ -310,6 +331,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
     curves[i].places = plot->places;
     curves[i].place = plot->place;
     curves[i].mean = plot->line[i].means;
+    curves[i].scattered = quantity->sampled;
   }
   charts_label(quantity->name, name);
   charts_label(quantity->column[0], over);
@@ -320,6 +342,8 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   charts_intervals(quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "thin bars add ", resolution, sizeof resolution);
   snprintf(caption, sizeof caption, "Bars: %s; %s", intervals, resolution);
+  if (quantity->sampled)
+    tell_sampled(quantity, caption, sizeof caption);
   TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
   return picture_curves(page, &(struct picture_words){title, caption, x, y}, plot->count, curves, error);
 }

@@ -40,14 +40,8 @@ status commands_ask(const struct command_line *line,
   int64_t excluded = 0;
   if (line->chooses_runs)
     TRY(ask_run_excluded_count(store, &excluded, error));
-  commands_tell_excluded(excluded, line->arguments[0]);
+  uncertainty_excluded(excluded, line->arguments[0]);
   return STATUS_OK;
-}
-
-void commands_tell_excluded(int64_t count, const char *path) {
-  if (count > 0)
-    fprintf(stderr, "clast: %" PRId64 " run%s excluded and left out (`clast exclude %s` lists %s)\n", count,
-            count == 1 ? " is" : "s are", path, count == 1 ? "it" : "them");
 }
 
 static void stop_waiting(int number) {

@@ -92,9 +92,6 @@ status commands_ask(const struct command_line *line,
                     status (*ask)(struct store *store, const struct command_line *line, struct error *error),
                     struct error *error);
 
-/* Says on stderr that runs of a store are excluded; nothing if none is. */
-void commands_tell_excluded(int64_t count, const char *path);
-
 void help_overview(FILE *out);                           /* what `clast help` prints */
 void help_one(const struct command *command, FILE *out); /* what `clast help COMMAND` prints */
 

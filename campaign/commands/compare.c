@@ -40,7 +40,7 @@ static status run(const struct command_line *line, struct error *error) {
   for (int side = 0; side < 2; side++) {
     const char *path;
     const int64_t count = ask_pairs_excluded(pairs, side, &path);
-    commands_tell_excluded(count, path);
+    uncertainty_excluded(count, path);
   }
   if (table_for_people(line->format)) {
     uncertainty_doubts(&doubts, stderr);

@@ -289,8 +289,9 @@ static status read_place(struct find *find, struct store *store, const struct fi
 
 static void tell(const struct find *find) {
   char low[FIND_TEXT], high[FIND_TEXT], text[3 * FIND_TEXT];
-  snprintf(text, sizeof text, "%zu runs: between %s and %s", find->runs, find_show(find, fmax(find->found.low, 0), low),
-           find_show(find, fmin(find->found.high, 1), high));
+  snprintf(text, sizeof text, "%zu runs: between %s and %s", find->runs,
+           find_show_within(find, find->found.low, find->found.low, find->found.high, low),
+           find_show_within(find, find->found.high, find->found.low, find->found.high, high));
   find->note(find->note_context, text);
 }
 
@@ -329,8 +330,10 @@ static status run_rounds(void *context, struct launch *launch, struct error *err
   find->note_context = &launch->notes;
   launch->scheduler.store_path = find->limits.store;
   if (launch->manager && !launch->notes.quiet)
-    fprintf(stderr, "clast: at most %zu runs, %d at first; --plan tells what they cost\n", find->most,
-            FIND_FEWEST_RUNS);
+    fprintf(stderr,
+            "clast: at most %zu runs, %d at first; --plan tells what they cost. Their points join those of %s in %s: "
+            "--campaign %s leaves them out of a question\n",
+            find->most, FIND_FEWEST_RUNS, find->campaign->name, find->limits.store, find->campaign->name);
   const status code = driver_run_series(&series, launch->farm, &launch->scheduler, &summary, error);
   launch_tell_series(launch, code, find->limits.store, &summary, true);
   if (!launch->manager || code != STATUS_OK)

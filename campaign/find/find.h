@@ -64,6 +64,7 @@ status find_print_picture(const struct find *find, const char *path, const struc
                           struct error *error);
 /* A value of the input as people read it. */
 enum { FIND_TEXT = 96 };
-const char *find_show(const struct find *find, double x, char text[FIND_TEXT]);
+/* With the digits that a range of places allows, two of its width; its own ends are rounded outwards. */
+const char *find_show_within(const struct find *find, double x, double low, double high, char text[FIND_TEXT]);
 
 #endif

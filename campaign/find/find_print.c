@@ -10,24 +10,26 @@
 
 enum { BINS = 10, SENTENCE = 2048 };
 
-const char *find_show(const struct find *find, double x, char text[FIND_TEXT]) {
+static const char *show(const struct find *find, double x, char text[FIND_TEXT]) {
   struct field_value value;
   find_value(find, x, &value);
   field_show(find->input, &value, text, FIND_TEXT);
   return text;
 }
 
-/* The median with the digits that the interval allows. */
-static const char *middle(const struct find *find, char text[FIND_TEXT]) {
-  struct field_value low, high, at;
-  find_value(find, find->found.low, &low);
-  find_value(find, find->found.high, &high);
-  find_value(find, find->found.at, &at);
-  if (at.kind == FIELD_REAL && high.number > low.number) {
-    const double step = pow(10, floor(log10(high.number - low.number)) - 1);
-    at.number = round(at.number / step) * step;
+const char *find_show_within(const struct find *find, double x, double low, double high, char text[FIND_TEXT]) {
+  struct field_value ends[2], value;
+  find_value(find, fmax(low, 0), &ends[0]);
+  find_value(find, fmin(high, 1), &ends[1]);
+  find_value(find, fmin(fmax(x, 0), 1), &value);
+  const double width = fabs(ends[1].number - ends[0].number);
+  if (value.kind == FIELD_REAL && width > 0) {
+    const double scale = strcmp(find->input->unit, "rad") == 0 ? M_PI / 180 : 1; /* shown in degrees */
+    const double step = pow(10, floor(log10(width / scale)) - 1) * scale;
+    const double places = value.number / step;
+    value.number = step * (x == low ? floor(places + 1e-6) : x == high ? ceil(places - 1e-6) : round(places));
   }
-  field_show(find->input, &at, text, FIND_TEXT);
+  field_show(find->input, &value, text, FIND_TEXT);
   return text;
 }
 
@@ -55,14 +57,15 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
   subject[0] = found->kind == CROSSING_OPEN ? 't' : 'T';
   const char *input = find->input->path;
   double least, most; /* places with results */
-  find_show(find, fmax(found->low, 0), low);
-  find_show(find, fmin(found->high, 1), high);
+  find_show_within(find, found->low, found->low, found->high, low);
+  find_show_within(find, found->high, found->low, found->high, high);
   uncertainty_mark(&find->doubts, mark);
   text[0] = '\0';
   switch (found->kind) {
   case CROSSING_FOUND:
     text_append(text, SENTENCE, "%s %s through %s at %s = %s%s (95 %% interval %s to %s).", subject,
-                found->rising ? "rises" : "falls", level, input, middle(find, at), mark, low, high);
+                found->rising ? "rises" : "falls", level, input,
+                find_show_within(find, found->at, found->low, found->high, at), mark, low, high);
     break;
   case CROSSING_ABOVE:
   case CROSSING_BELOW:
@@ -74,14 +77,15 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
         most = fmax(most, find->x[i]);
       }
     text_append(text, SENTENCE, "%s is %s %s for %s from %s to %s%s: no crossing in the bracket.", subject,
-                found->kind == CROSSING_ABOVE ? "above" : "below", level, input, find_show(find, least, low),
-                find_show(find, most, high), mark);
+                found->kind == CROSSING_ABOVE ? "above" : "below", level, input, show(find, least, low),
+                show(find, most, high), mark);
     break;
   case CROSSING_SEVERAL:
     text_append(text, SENTENCE, "%s crosses %s several times%s", subject, level, mark);
     for (size_t i = 0; i < found->parts; i++)
-      text_append(text, SENTENCE, "%s between %s and %s", i ? "," : ", at ", find_show(find, found->part[i].low, low),
-                  find_show(find, found->part[i].high, high));
+      text_append(text, SENTENCE, "%s between %s and %s", i ? "," : ", at ",
+                  find_show_within(find, found->part[i].low, found->part[i].low, found->part[i].high, low),
+                  find_show_within(find, found->part[i].high, found->part[i].low, found->part[i].high, high));
     text_append(text, SENTENCE, " of %s. Choose one with --from and --to.", input);
     break;
   case CROSSING_PLATEAU:
@@ -156,8 +160,8 @@ static status print_bins(const struct find *find, struct error *error) {
   TABLE table = table_new(TABLE_TEXT, stdout);
   table_columns(table, (const char *const[]){find->input->path, "to", "runs", find->quantity.row->path, "above", NULL});
   for (size_t i = 0; i < count; i++) {
-    table_text(table, find_show(find, bins[i].low, text));
-    table_text(table, find_show(find, bins[i].high, text));
+    table_text(table, find_show_within(find, bins[i].low, 0, 0.1, text));
+    table_text(table, find_show_within(find, bins[i].high, 0, 0.1, text));
     table_integer(table, (int64_t)bins[i].n);
     uncertainty_cell(bins[i].mean.mean, bins[i].mean.half_width, mean);
     uncertainty_mark(&bins[i].doubts, mean + strlen(mean));

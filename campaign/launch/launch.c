@@ -35,6 +35,11 @@ void launch_tell_runs(const char *store, int64_t computed, int64_t found, double
 
 void launch_tell_series(const struct launch *launch, status code, const char *store,
                         const struct series_summary *summary, bool found) {
+  STORE answers = NULL;
+  int64_t excluded = 0; /* a run can belong to several campaigns of the series */
+  if (launch->manager && store_open_reader(store, &answers, NULL) == STATUS_OK &&
+      ask_run_excluded_count(answers, &excluded, NULL) == STATUS_OK)
+    uncertainty_excluded(excluded, store);
   if (!launch->manager || launch->notes.quiet)
     return;
   if (code == STATUS_OK || code == STATUS_STOPPED)
@@ -108,9 +113,7 @@ static void print_summary(const struct driver_summary *summary, const char *stor
   if (summary->runs_censored)
     fprintf(stderr, "%" PRId64 " run%s ended at the hard end time: fragments may still have been breaking\n",
             summary->runs_censored, plural(summary->runs_censored));
-  if (summary->runs_excluded)
-    fprintf(stderr, "%" PRId64 " run%s excluded: clast exclude %s\n", summary->runs_excluded,
-            plural(summary->runs_excluded), store);
+  uncertainty_excluded(summary->runs_excluded, store);
   if (summary->runs_doubtful)
     fprintf(stderr, "%" PRId64 " run%s in doubt (!), which means and stopping rules count\n", summary->runs_doubtful,
             plural(summary->runs_doubtful));

@@ -364,9 +364,12 @@ status print_variance(struct store *store, const struct scatter_choice *choice, 
     uncertainty_doubts(&cells.doubts, stderr);
     fprintf(stderr,
             "clast: %zu points with %zu seeds each, which count alike. An input: variance of its means over the other "
-            "inputs (in a full grid; else ask `clast sensitivity`); what the inputs together have beyond their sum is "
-            "their interaction. Low, high: 95 %% interval over seeds\n",
-            cells.count, runs);
+            "inputs%s what the inputs together have beyond their sum is their interaction. Low, high: 95 %% interval "
+            "over seeds\n",
+            cells.count, runs,
+            isnan(parts[0].share) ? ", which only a full grid tells: `clast sensitivity STORE.db` ranks those of other "
+                                    "designs;"
+                                  : ";");
   }
   return STATUS_OK;
 }

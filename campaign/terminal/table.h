@@ -101,7 +101,11 @@ void uncertainty_cell(double value, double half_width, char text[UNCERTAINTY_TEX
 /* The same of a share: "0.11 (0 to 0.27)", its interval, where the half width passes 0 or 1. */
 void uncertainty_share_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]);
 
-/* "0.03 +- 0.02 below its limit", of a mean less its limit. */
+/* Says on stderr that so many runs of a store are excluded; nothing for 0. */
+void uncertainty_excluded(int64_t count, const char *store);
+
+/* "0.01 to 0.05 below its limit", or "from 0.01 below to 0.02 above its limit", of a mean less its limit: the whole 95
+ * % interval, as its middle is no better known than its ends. */
 void uncertainty_distance(double distance, double half_width, char text[UNCERTAINTY_TEXT]);
 
 /* "0.349 +- 0.003 (seeds, 95 %)", or "(seeds, 95 %, weak)"; "0.11 (0 to 0.27; seeds, 95 %)"; "1 (all 30 runs; 0.905 to

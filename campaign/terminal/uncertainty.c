@@ -49,9 +49,22 @@ void uncertainty_share_cell(double value, double half_width, char text[UNCERTAIN
            value + half_width >= 1 ? "1" : ends[1]);
 }
 
+void uncertainty_excluded(int64_t count, const char *store) {
+  if (count > 0)
+    fprintf(stderr, "clast: %" PRId64 " run%s excluded and left out (`clast exclude %s` lists %s)\n", count,
+            count == 1 ? " is" : "s are", store, count == 1 ? "it" : "them");
+}
+
 void uncertainty_distance(double distance, double half_width, char text[UNCERTAINTY_TEXT]) {
-  uncertainty_number(fabs(distance), half_width, text);
-  text_append(text, UNCERTAINTY_TEXT, " %s its limit", distance > 0 ? "above" : "below");
+  const double width = fmax(half_width, 0), ends[2] = {distance - width, distance + width};
+  const bool across = ends[0] < 0 && ends[1] > 0, below = ends[1] <= 0;
+  const double near = fabs(ends[below]), far = fabs(ends[!below]);
+  text[0] = 0;
+  if (width > 0)
+    text_append(text, UNCERTAINTY_TEXT, near < 100 ? "%s%.2g%s to " : "%s%.4g%s to ", across ? "from " : "", near,
+                across ? " below" : "");
+  text_append(text, UNCERTAINTY_TEXT, far < 100 ? "%.2g %s its limit" : "%.4g %s its limit", far,
+              below ? "below" : "above");
 }
 
 void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_TEXT]) {

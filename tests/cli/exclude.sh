@@ -65,6 +65,20 @@ expect 0 "$clast" exclude one.db --csv
 prints "run_id,point_id,seed,date,reason"
 expect 0 "$clast" exclude ask.db 1 --reason "bad"
 answers after
+cat >ball.yaml <<'YAML'
+name: ball
+scene: disc-explosion
+set: {body.diameter: 6 cm, charge.energy: 2 kJ/m, stop.end_time: 0.3 ms}
+vary: {threshold.strain: {uniform: [1 %, 6 %]}}
+design: {kind: sobol, points: 8}
+seeds: 2
+store: both.db
+YAML
+printf 'name: shot\nsource: made up\nshots: [{measured: [{quantity: largest_fraction, value: 0.3, error: 0.05}]}]\n' >shot.yaml
+cp one.db both.db
+expect 0 "$clast" fit shot.yaml ball.yaml --rounds 3 -j 2 --quiet --store both.db
+mv err after/fit.said
+"$clast" converge one.yaml --knob integrator --seeds 2 --within off -j 2 --quiet --store both.db >out 2>after/converge.said || fail "converge"
 for said in after/*.said; do
   grep -q '1 run is excluded and left out (`clast exclude [a-z]*.db` lists it)' "$said" || fail "$said does not say it: $(cat "$said")"
   ok "$said says it"
@@ -177,4 +191,4 @@ says "stop.end_time (0.001 s there, 0.0009 s here) differs, and is a varied inpu
 expect 0 "$clast" stats fresh.db --by end_time --csv
 same "$(cut -d, -f1 out | tail -n +2 | tr '\r\n' '  ' | tr -s ' ')" "0.0009 0.001 " "settings"
 expect 0 "$clast" check fresh.db
-done_after 93
+done_after 96

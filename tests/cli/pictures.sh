@@ -227,4 +227,14 @@ for r in json.load(open("out")):
         assert abs(r["F(L)"] - r["N(>L)"] - 1) < 1e-12 and 0 < r["p"] <= 1 and 0 < r["distance"] < 1, r
 PY
 ok "exponents by their names"
-done_after 85
+# A sample: no line joins points between which other inputs change, too; a grid has lines.
+tiny sampled
+sed -i 's/\[2 %, 5 %\]/{uniform: [2 %, 5 %]}/; s/\[2 deg, 6 deg\]/{uniform: [2 deg, 6 deg]}/' sampled.yaml
+printf 'design: {kind: latin_hypercube, points: 8}\n' >>sampled.yaml
+expect 0 "$clast" run sampled.yaml -j 2 --quiet
+expect 0 "$clast" plot sampled.db sampled.png -x strain --keep-script
+says "no line joins the points"
+same "$(sed '/^$/,$d' sampled.dat | grep -c '^NaN')" 8 "gaps between the points of a sample"
+expect 0 "$clast" plot small.db grid.png -x strain --by angle --keep-script
+same "$(sed '/^$/,$d' grid.dat | grep -c '^NaN' || true)" 0 "gaps between the points of a grid"
+done_after 90
