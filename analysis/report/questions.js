@@ -12,7 +12,11 @@ export const units = `SELECT column_name, min(unit) AS unit FROM column_doc WHER
 export const axes = 'SELECT column_name, path, unit, meaning FROM axis ORDER BY path';
 export const canned = 'SELECT name, doc, sql, parameters FROM question';
 
-export const campaigns = 'SELECT campaign_id, name, document, added_at FROM campaign ORDER BY campaign_id';
+// Without an earlier form of a campaign: one whose points a later campaign of its name has.
+export const campaigns = `SELECT campaign_id, name, document, added_at FROM campaign WHERE NOT EXISTS (SELECT 1 FROM campaign AS later
+  WHERE later.name = campaign.name AND later.campaign_id > campaign.campaign_id AND NOT EXISTS (SELECT 1 FROM campaign_point AS p
+    WHERE p.campaign_id = campaign.campaign_id
+    AND p.point_id NOT IN (SELECT point_id FROM campaign_point AS q WHERE q.campaign_id = later.campaign_id))) ORDER BY campaign_id`;
 export const sessions = `SELECT started_at, ended_at, outcome, host, json_extract(facts, '$.version') AS version,
   json_extract(facts, '$.commit') AS commit_id, json_extract(facts, '$.compiler') AS compiler
   FROM session ORDER BY session_id`;

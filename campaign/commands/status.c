@@ -3,7 +3,8 @@
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const bool writing = store_is_being_written(line->arguments[0]);
-  TRY(table_answer(ask_campaign_progress(store, writing, error), true, line->format, stdout));
+  TRY(table_answer(ask_campaign_progress(store, writing, line->format != TABLE_TEXT, error), true, line->format,
+                   stdout));
   if (table_for_people(line->format) && ask_campaign_shared(store))
     fputs("clast: campaigns share points: all runs of a shared point count in each of them\n", stderr);
   return STATUS_OK;

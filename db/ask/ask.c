@@ -19,9 +19,9 @@
 
 extern const char progress_sql[]; /* db/ask/progress.sql, which the build embeds */
 
-struct answer ask_campaign_progress(struct store *store, bool writing, struct error *error) {
-  const struct query_parameter parameter = {"writing", writing ? "1" : "0"};
-  return answer_to_user(store, progress_sql, 1, &parameter, 0, error);
+struct answer ask_campaign_progress(struct store *store, bool writing, bool earlier, struct error *error) {
+  const struct query_parameter parameters[] = {{"writing", writing ? "1" : "0"}, {"earlier", earlier ? "1" : "0"}};
+  return answer_to_user(store, progress_sql, 2, parameters, 0, error);
 }
 
 bool ask_campaign_shared(struct store *store) {

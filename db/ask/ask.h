@@ -35,8 +35,9 @@ status ask_run_excluded_count(struct store *store, int64_t *count, struct error 
 
 /* One row per campaign: campaign, name, state, points, runs, counted, censored, failed, surplus, excluded,
  * failed_attempts, without_result, cpu_time (s), start and end of its last session, and warned runs that count.
- * `writing`: a process is writing the store (store_is_being_written). */
-struct answer ask_campaign_progress(struct store *store, bool writing, struct error *error);
+ * `writing`: a process is writing the store (store_is_being_written). `earlier`: also campaigns whose points a later
+ * one of their name has. */
+struct answer ask_campaign_progress(struct store *store, bool writing, bool earlier, struct error *error);
 bool ask_campaign_shared(struct store *store); /* have several campaigns the same point? */
 
 /* Name and YAML text of a campaign (0: the last one); the caller frees both. Both NULL: the store has no campaign. */

@@ -1,4 +1,5 @@
--- The progress of campaigns. :writing is 1 while a process writes the store. The last session has the largest number:
+-- The progress of campaigns. :earlier is 0 for those without an earlier form of a campaign, one whose points a later
+-- campaign of its name has. :writing is 1 while a process writes the store. The last session has the largest number:
 -- clocks are set back at times.
 WITH done AS (SELECT campaign_id, count(*) AS runs, sum(counts) AS counted,
   sum(counts AND state = 'end-time') AS censored, sum(counts AND warnings <> '') AS warned,
@@ -33,4 +34,7 @@ SELECT campaign_id AS campaign, name,
 FROM campaign LEFT JOIN done USING (campaign_id) LEFT JOIN tried USING (campaign_id)
   LEFT JOIN given_up USING (campaign_id) LEFT JOIN last USING (campaign_id)
   LEFT JOIN planned USING (campaign_id) LEFT JOIN filled USING (campaign_id)
+WHERE :earlier OR NOT EXISTS (SELECT 1 FROM campaign AS later WHERE later.name = campaign.name AND later.campaign_id > campaign.campaign_id
+    AND NOT EXISTS (SELECT 1 FROM campaign_point AS p WHERE p.campaign_id = campaign.campaign_id
+      AND p.point_id NOT IN (SELECT point_id FROM campaign_point AS q WHERE q.campaign_id = later.campaign_id)))
 ORDER BY campaign_id
