@@ -6,6 +6,24 @@
 FIELD_WORDS(engine_knob_groups, KNOB_GROUPS, [KNOB_RESOLUTION] = "resolution", [KNOB_PART] = "part",
             [KNOB_MODEL] = "model", [KNOB_SETTINGS] = "settings");
 
+static bool commands_allowed;
+
+void engine_allow_commands(void) {
+  commands_allowed = true;
+}
+
+bool engine_commands_allowed(void) {
+  return commands_allowed;
+}
+
+status engine_ready(const struct engine_kind *kind, const void *inputs, struct error *error) {
+  return kind->ready ? kind->ready(inputs, error) : STATUS_OK;
+}
+
+status engine_has_fields(const struct engine_kind *kind, const char *what, struct error *error) {
+  return kind->write_snapshot ? STATUS_OK : status_fail(error, STATUS_USAGE, "engine %s has no %s", kind->name, what);
+}
+
 size_t engine_count(void) {
   size_t count = 0;
   while (engines_list[count])

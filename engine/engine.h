@@ -6,6 +6,7 @@
 
 #include "engine/condition.h"
 #include "engine/outcome.h"
+#include "schemas/document.h"
 #include "schemas/field.h"
 
 /* Knobs: inputs that make a run coarser or finer, or change the physics that it models. Each engine lists its own
@@ -76,6 +77,18 @@ struct engine_kind {
   const struct knob *knobs;          /* what a convergence study varies; NULL: nothing */
   const struct engine_materials *materials; /* NULL: the engine has no named materials */
 
+  /* An engine whose scenes tell their own rows, knobs and program (engine/command): makes the engine of one scene from
+   * its document; files are relative to `folder`. It lives as long as the process and has the same name. NULL: errors
+   * were reported. The member is NULL where all scenes have the rows above. */
+  const struct engine_kind *(*of_scene)(document_node *root, const char *folder);
+  /* The same from `task` of such an engine, in another process. NULL: *error says why. */
+  const struct engine_kind *(*of_task)(const char *text, size_t size, struct error *error);
+  const char *definition, *task; /* such an engine: members of the scene's JSON in a store and in a task; else NULL */
+  bool same_bits; /* such an engine: the same inputs and seed give the same bits, which all others promise */
+  /* May and can such a scene run here? STATUS_USAGE: not without the user's word; STATUS_MISSING: no program. NULL:
+   * always. */
+  status (*ready)(const void *inputs, struct error *error);
+
   /* Fills inputs that were not given (one flag per input row) and follow from others, such as the values of a named
    * material. The result depends only on the given inputs. Called again after every change. NULL: no such inputs. */
   void (*complete)(void *inputs, const bool *given);
@@ -108,7 +121,7 @@ struct engine_kind {
   status (*finish)(void *run, struct outcome *outcome, void *result, struct fragment **fragments,
                    size_t *fragment_count, struct error *error);
   /* Big fields (grains, beams, break log, curves; particles) as one self-describing HDF5 file, written to a temporary
-   * name and renamed. Pictures are drawn from it, too. */
+   * name and renamed. Pictures are drawn from it, too. NULL: the engine has none, and no restart files. */
   status (*write_snapshot)(void *run, const char *path, struct error *error);
   /* The moving system as system_size bytes, for restart files (engine/restart.h). load_system: STATUS_CONTENT when the
    * bytes fit no system of this run, STATUS_MEMORY. */
@@ -121,6 +134,14 @@ struct engine_kind {
 extern const struct engine_kind *const engines_list[]; /* ended by NULL: engines.c */
 size_t engine_count(void);
 const struct engine_kind *engine_at(size_t index);
+/* The user's word that scenes may run programs of their own in this process and those forked from it (option
+ * --allow-commands). */
+void engine_allow_commands(void);
+bool engine_commands_allowed(void);
+/* STATUS_OK, or what kind->ready says. */
+status engine_ready(const struct engine_kind *kind, const void *inputs, struct error *error);
+/* STATUS_USAGE when the engine writes no `what`, such as fields files. */
+status engine_has_fields(const struct engine_kind *kind, const char *what, struct error *error);
 /* NULL when there is none of that name; *error lists the known ones. */
 const struct engine_kind *engine_find(const char *name, struct error *error);
 /* NULL + STATUS_USAGE with the known names of this engine. */

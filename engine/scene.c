@@ -345,6 +345,7 @@ static void read_settings(document_node *node, struct scene *scene) {
 /* ---- reading ---- */
 
 static const char *const own_keys[] = {"engine", "name", "source", "settings", NULL};
+static const char *const own_keys_defined[] = {"engine", "name", "source", "settings", "command", NULL};
 
 static const struct field name_row = {.path = "name", .kind = FIELD_TEXT, .doc = "The scene's name"};
 static const struct field source_row = {.path = "source",
@@ -398,12 +399,16 @@ static void read_scene(document_node *root, const char *folder, const char *fall
   struct field_value name;
   const struct engine_kind *kind = read_engine(root);
   read_name(root, fallback, &name);
+  const bool defined = kind && kind->of_scene;
+  if (defined)
+    kind = kind->of_scene(root, folder);
   if (!kind)
     return;
   struct scene *scene = *out = create(kind);
   take_materials(root, kind, "", folder);
   take_files(root, kind->inputs, folder);
-  document_read_given(root, kind->inputs, own_keys, scene->inputs, scene->given, kind->complete);
+  document_read_given(root, kind->inputs, defined ? own_keys_defined : own_keys, scene->inputs, scene->given,
+                      kind->complete);
   snprintf(scene->name, sizeof scene->name, "%s", name.text);
   read_settings(document_key(root, "settings"), scene);
 }
@@ -680,6 +685,8 @@ char *scene_json(const struct scene *scene) {
   text_json_string(scene->kind->name, out);
   fputs(",\"name\":", out);
   text_json_string(scene->name, out);
+  if (scene->kind->definition)
+    fprintf(out, ",%s", scene->kind->definition);
   fputc(',', out);
   field_json_members(scene->kind->inputs, scene->inputs, out);
   fputc('}', out);
@@ -700,7 +707,14 @@ void scene_schema(const struct engine_kind *kind, FILE *out) {
            "each name, such as draft: {fidelity.particles: 3000}. SCENE@draft runs the scene with them.\", "
            "\"additionalProperties\": {\"type\": \"object\"}}",
            kind->name, FIELD_TEXT_SIZE - 1, FIELD_TEXT_SIZE - 1);
-  json_schema_write(kind->inputs, title, extra, "engine", out);
+  if (kind->of_scene) /* the other keys are the inputs that its section names */
+    fprintf(out,
+            "{\n  \"$schema\": \"http://json-schema.org/draft-07/schema#\",\n  \"title\": \"%s\",\n  \"type\": "
+            "\"object\",\n  \"required\": [\"engine\", \"command\"],\n  \"properties\": {\n    %s,\n    \"command\": "
+            "{\"type\": \"object\", \"required\": [\"program\", \"version\"]}\n  }\n}\n",
+            title, extra);
+  else
+    json_schema_write(kind->inputs, title, extra, "engine", out);
 }
 
 void scene_identity(const struct scene *scene, uint64_t seed, uint8_t identity[16]) {

@@ -7,6 +7,7 @@
 status status_fail(struct error *error, status code, const char *format, ...) {
   if (error) {
     error->status = code;
+    error->cause = ERROR_PLAIN;
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(error->message, sizeof error->message, format, arguments);

@@ -25,10 +25,14 @@ typedef enum status {
 #undef STATUS_ENUM
 } status;
 
+/* Why a run gave no result, where the attempt at it must tell (campaign/farm). */
+enum error_cause { ERROR_PLAIN, ERROR_TIME_LIMIT, ERROR_CRASH };
+
 /* Owned by the caller. `message` holds whole sentences for a person: what happened, where, what to do. It may span
  * lines: a report of a document with a few dozen errors fits (schemas/document.h). */
 struct error {
   status status;
+  enum error_cause cause; /* status_fail() makes it plain */
   char message[LIMITS_MESSAGE];
 };
 

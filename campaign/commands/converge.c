@@ -27,5 +27,5 @@ static const struct option_row rows[] = {
     LAUNCH_OPTIONS(struct study_request, launch),
 };
 
-COMMAND(converge, "running", "[SCENE|CAMPAIGN.yaml]", .has_runs = true, .has_farm = true,
+COMMAND(converge, "running", "[SCENE|CAMPAIGN.yaml]", .has_runs = true, .computes = true, .has_farm = true,
         COMMAND_OPTIONS(struct study_request, rows), .has_table = true, .run = run);

@@ -23,5 +23,5 @@ static const struct option_row rows[] = {
     LAUNCH_OPTIONS(struct find_request, launch),
 };
 
-COMMAND(find, "running", "CAMPAIGN.yaml", .has_runs = true, .has_farm = true,
+COMMAND(find, "running", "CAMPAIGN.yaml", .has_runs = true, .computes = true, .has_farm = true,
         COMMAND_OPTIONS(struct find_request, rows), .has_table = true, .run = run);

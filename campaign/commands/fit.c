@@ -15,5 +15,5 @@ static const struct option_row rows[] = {
     LAUNCH_OPTIONS(struct fit_launch, launch),
 };
 
-COMMAND(fit, "running", "MEASURED.yaml CAMPAIGN.yaml", .has_runs = true, .has_farm = true,
+COMMAND(fit, "running", "MEASURED.yaml CAMPAIGN.yaml", .has_runs = true, .computes = true, .has_farm = true,
         COMMAND_OPTIONS(struct fit_launch, rows), .has_table = true, .run = run);

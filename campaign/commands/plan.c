@@ -46,4 +46,4 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("json", 0, struct options, json),
 };
 
-COMMAND(plan, "running", "CAMPAIGN.yaml", COMMAND_OPTIONS(struct options, rows), .run = run);
+COMMAND(plan, "running", "CAMPAIGN.yaml", .computes = true, COMMAND_OPTIONS(struct options, rows), .run = run);

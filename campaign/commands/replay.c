@@ -44,7 +44,11 @@ static status ask(struct store *store, const struct command_line *line, struct e
   TRY(replay_compute(&stored, run_id, options->fields, &scene, &result, error));
   TRY(print_differences(store, run_id, scene->kind, &result, line->format, &comparison, error));
   tell(run_id, &stored, &comparison, result.fragment_count);
-  TRY(replay_verdict(store, run_id, &stored, &comparison, error));
+  const bool promised = !scene->kind->definition || scene->kind->same_bits;
+  TRY(replay_verdict(store, run_id, &stored, &comparison, promised, error));
+  if (comparison.different && !promised)
+    fprintf(stderr, "clast: %zu of %zu results differ; the scene's program promises no bits (same_bits)\n",
+            comparison.different, comparison.compared);
   if (options->fields && result.outcome.state == OUTCOME_INVALID)
     fprintf(stderr, "clast: the run is invalid and has no fields: %s is not written\n", options->fields);
   return STATUS_OK;
@@ -61,5 +65,5 @@ static const struct option_row rows[] = {
     OPTION_ROW_OUTPUT(OPTION_OUTPUT, "fields", 0, "FILE.h5", struct options, fields),
 };
 
-COMMAND(replay, "the store", "STORE RUN", COMMAND_OPTIONS(struct options, rows), .has_table = true, .check = check,
-        .ask = ask);
+COMMAND(replay, "the store", "STORE RUN", .computes = true, COMMAND_OPTIONS(struct options, rows), .has_table = true,
+        .check = check, .ask = ask);

@@ -55,5 +55,5 @@ static const struct option_row rows[] = {
     LAUNCH_OPTIONS(struct options, launch),
 };
 
-COMMAND(retry, "running", "STORE", .has_runs = true, .has_farm = true, COMMAND_OPTIONS(struct options, rows),
-        .has_table = true, .check = check, .run = run);
+COMMAND(retry, "running", "STORE", .has_runs = true, .computes = true, .has_farm = true,
+        COMMAND_OPTIONS(struct options, rows), .has_table = true, .check = check, .run = run);

@@ -32,5 +32,5 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("dry-run", 0, struct options, dry_run),
 };
 
-COMMAND(run, "running", "CAMPAIGN.yaml", .has_runs = true, .has_farm = true, COMMAND_OPTIONS(struct options, rows),
-        .has_table = true, .run = run);
+COMMAND(run, "running", "CAMPAIGN.yaml", .has_runs = true, .computes = true, .has_farm = true,
+        COMMAND_OPTIONS(struct options, rows), .has_table = true, .run = run);

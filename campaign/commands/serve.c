@@ -77,4 +77,5 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("in-process", 0, struct options, launch.in_process),
 };
 
-COMMAND(serve, "running", "CAMPAIGN.yaml", .has_farm = true, COMMAND_OPTIONS(struct options, rows), .run = run);
+COMMAND(serve, "running", "CAMPAIGN.yaml", .computes = true, .has_farm = true, COMMAND_OPTIONS(struct options, rows),
+        .run = run);

@@ -49,5 +49,5 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("quiet", 'q', struct options, run.quiet),
 };
 
-COMMAND(simulate, "running", "SCENE", .has_runs = true, COMMAND_OPTIONS(struct options, rows), .has_table = true,
-        .run = run);
+COMMAND(simulate, "running", "SCENE", .has_runs = true, .computes = true, COMMAND_OPTIONS(struct options, rows),
+        .has_table = true, .run = run);

@@ -297,6 +297,8 @@ status study_launch(const struct study_request *request, const struct command_li
   OWNED struct study_subject *subject = memory_small(1, sizeof *subject);
   struct launching launching = {&subject->study, request, line->format};
   status code = study_request_read(request, line->arguments[0], subject, error);
+  if (code == STATUS_OK && subject->scene_count)
+    code = engine_ready(subject->scenes[0]->kind, subject->scenes[0]->inputs, error);
   if (code == STATUS_OK)
     code = launch_farm(&subject->study.limits, &request->launch, line, run_study, &launching, error);
   study_request_clear(subject);

@@ -292,6 +292,8 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
     document_report_error(scene, "scene", &error);
     return;
   }
+  if (campaign->keep != CAMPAIGN_KEEP_NONE && engine_has_fields(campaign->scene->kind, "fields files", &error))
+    document_report_error(document_key(root, "keep"), "keep", &error);
   bool varied = true;
   if (file && vary)
     document_report(vary, "vary", "the columns of design.file are the varied inputs; leave vary out");

@@ -75,6 +75,10 @@ int farm_slots_total(const struct farm *farm); /* slots of all ranks */
  * the whole process group: the manager decides what these mean. */
 enum farm_ending { FARM_DONE, FARM_FAILED, FARM_TIME_LIMIT, FARM_MEMORY_LIMIT, FARM_CRASHED, FARM_LOST };
 
+/* farm_work calls it before it returns an error: how the attempt ended, other than FARM_FAILED (a program that the task
+ * ran crashed, or met a limit of its own). */
+void farm_end_as(enum farm_ending ending);
+
 struct farm_task {
   uint64_t id;          /* chosen by the caller */
   const uint8_t *bytes; /* copied by the farm when it takes the task */

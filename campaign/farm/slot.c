@@ -70,6 +70,12 @@ void farm_allow_memory(size_t bytes) {
   setrlimit(RLIMIT_AS, &limit);
 }
 
+static enum farm_ending told_ending; /* farm_end_as(); FARM_DONE: it was not called */
+
+void farm_end_as(enum farm_ending ending) {
+  told_ending = ending;
+}
+
 static bool renew_pipe(struct isolate *isolate) {
   for (int i = 0; i < 2; i++) {
     if (isolate->result[i] >= 0)
@@ -108,7 +114,7 @@ static void write_all(int file, const uint8_t *bytes, size_t size) {
 
 struct answer { /* of a run; the child's is borrowed from the pipe's buffer */
   bool there;
-  int64_t verdict;
+  int64_t verdict;    /* status of the work, and above 32 bits what farm_end_as() said */
   struct iovec bytes; /* the result, or with a verdict other than STATUS_OK the message */
 };
 
@@ -119,12 +125,14 @@ static struct answer compute(const struct serving *s, const uint8_t *task, size_
   uint8_t *result = NULL;
   if (memory_limit)
     limit_memory(memory_limit);
+  told_ending = FARM_DONE;
   answer.verdict = s->setup->work(task, size, &result, &answer.bytes.iov_len, error);
   if (memory_limit)
     limit_memory(0); /* the limit holds for the work, not for its answer */
   answer.bytes.iov_base = result;
   if (answer.verdict != STATUS_OK) {
     free(result);
+    answer.verdict |= (int64_t)told_ending << 32;
     answer.bytes = (struct iovec){error->message, strlen(error->message)};
   }
   return answer;
@@ -246,6 +254,8 @@ static struct answer read_answer(struct isolate *isolate, uint64_t handle, int e
 static enum farm_ending ending_of(int64_t verdict, bool limited) {
   if (verdict == STATUS_OK)
     return FARM_DONE;
+  if (verdict >> 32)
+    return (enum farm_ending)(verdict >> 32);
   if (verdict == STATUS_MEMORY)
     return limited ? FARM_MEMORY_LIMIT : FARM_LOST;
   return verdict == STATUS_IO ? FARM_LOST : FARM_FAILED;
@@ -280,7 +290,7 @@ static void judge_end(struct farm_result *head, bool in_time, int ended, double 
 static bool append_answer(struct farm_bytes *out, uint64_t handle, struct farm_result *head,
                           const struct answer *answer, bool limited) {
   const bool done = answer->verdict == STATUS_OK;
-  head->exit_code = (int)answer->verdict;
+  head->exit_code = (int)(answer->verdict & 0xff);
   head->ending = ending_of(answer->verdict, limited);
   head->size = done ? answer->bytes.iov_len : 0;
   if (farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2, (struct iovec[]){{head, sizeof *head}, answer->bytes}))

@@ -366,6 +366,8 @@ status find_launch(const struct find_request *request, const struct command_line
   OWNED struct find *find = memory_small(1, sizeof *find);
   struct launching launching = {find, request, line->format};
   status code = read_request(request, line->arguments[0], find, error);
+  if (code == STATUS_OK && !request->plan)
+    code = engine_ready(find->base->kind, find->base->inputs, error);
   if (code == STATUS_OK)
     code = request->plan ? print_plan(find, request, line->format == TABLE_JSON, error)
                          : launch_farm(&find->limits, &request->launch, line, run_rounds, &launching, error);

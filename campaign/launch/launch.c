@@ -57,6 +57,8 @@ status launch_farm(const struct campaign *limits, const struct launch_options *o
                                       .use_mpi = farm_under_mpi()};
   struct farm *farm = NULL;
   scheduler_limits(limits, &farm_options);
+  if (limits->scene)
+    TRY(engine_ready(limits->scene->kind, limits->scene->inputs, error));
   TRY(farm_start(&farm_options, run_work, &farm, error));
   struct launch launch = {.farm = farm, .manager = farm_rank(farm) == 0, .notes = {.quiet = options->quiet}};
   OWNED char *facts = provenance_json(farm_ranks(farm), farm_slots_total(farm), line->argc, line->argv);

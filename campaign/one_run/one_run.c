@@ -215,6 +215,9 @@ static status compute(const struct scene *scene, const struct one_run_options *o
 status one_run(const struct scene *scene, const struct one_run_options *options, struct run_result *result,
                struct error *error) {
   char temporary[FIELD_TEXT_SIZE] = "";
+  if (options->fields || options->picture || options->snapshots || options->restart)
+    TRY(engine_has_fields(scene->kind, "fields, pictures and restart files", error));
+  TRY(engine_ready(scene->kind, scene->inputs, error));
   const char *fields = options->fields;
   if (options->picture && !fields) { /* the picture is drawn from a fields file */
     snprintf(temporary, sizeof temporary, "%s.%ld.h5", options->picture, (long)getpid());

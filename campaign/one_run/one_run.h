@@ -42,9 +42,9 @@ status replay_compare(struct store *store, int64_t run_id, const struct engine_k
                       const struct run_result *result, struct table *table, struct replay_compare *out,
                       struct error *error);
 
-/* STATUS_CONTENT: a bit of the run has changed since it was stored, or results differ. Call it after the table of
- * differences, which shows the stored values. */
+/* STATUS_CONTENT: a bit of the run has changed since it was stored, or results differ although the same bits are
+ * `promised`. Call it after the table of differences, which shows the stored values. */
 status replay_verdict(struct store *store, int64_t run_id, const struct ask_run *stored,
-                      const struct replay_compare *comparison, struct error *error);
+                      const struct replay_compare *comparison, bool promised, struct error *error);
 
 #endif

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "campaign/converge/ladder.h"
 #include "db/store/store.h"
@@ -27,14 +28,22 @@ static void mark(struct plan_trial *run) {
   run->mark_progress[run->marks++] = run->progress;
 }
 
+/* Processor time of this process and of programs that it ran and that have ended, s. */
+static double spent_s(void) {
+  struct rusage usage;
+  getrusage(RUSAGE_CHILDREN, &usage);
+  return clock_cpu_s() + (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+         1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
 static status step(const struct engine_kind *kind, void *state, double until, struct plan_trial *run,
                    struct error *error) {
   uint64_t block = 1;
   status code = STATUS_OK;
-  while (code == STATUS_OK && !run->finished && clock_cpu_s() < until) {
-    const double from = clock_cpu_s();
+  while (code == STATUS_OK && !run->finished && spent_s() < until) {
+    const double from = spent_s();
     code = kind->step(state, block, &run->finished, error);
-    const double took = clock_cpu_s() - from;
+    const double took = spent_s() - from;
     run->step_s += took;
     run->steps += (double)block;
     run->progress = kind->progress ? kind->progress(state) : (double)NAN;
@@ -51,19 +60,19 @@ status plan_try(const struct scene *scene, uint64_t seed, double seconds, struct
   OWNED void *result = NULL;
   OWNED struct fragment *list = NULL;
   struct outcome outcome;
-  const double begin = clock_cpu_s();
+  const double begin = spent_s();
   *run = (struct plan_trial){0};
   SCENE alone = scene_copy(scene); /* one thread: the processor time of several includes their waiting */
   if (kind->threads)
     *kind->threads(alone->inputs) = 1;
   TRY(kind->prepare(alone->inputs, seed, &state, error));
-  run->prepare_s = clock_cpu_s() - begin;
+  run->prepare_s = spent_s() - begin;
   status code = step(kind, state, begin + seconds, run, error);
   if (code == STATUS_OK) {
-    const double stepped = clock_cpu_s();
+    const double stepped = spent_s();
     result = memory_small(1, kind->results->size);
     code = kind->finish(state, &outcome, result, &list, &run->fragments, error);
-    run->finish_s = clock_cpu_s() - stepped;
+    run->finish_s = spent_s() - stepped;
   }
   kind->free(state);
   return code;
@@ -243,7 +252,7 @@ static double time_points(const struct campaign *campaign, const struct looking 
                           double one, double until) {
   double sum = 0;
   size_t count = 0;
-  for (size_t i = 0; i < looking->sampled && clock_cpu_s() < until; i++) {
+  for (size_t i = 0; i < looking->sampled && spent_s() < until; i++) {
     struct error ignored;
     struct plan_trial run = {0};
     const struct scene *point = looking->sample[i];
@@ -251,7 +260,7 @@ static double time_points(const struct campaign *campaign, const struct looking 
     if (setting && !coarse)
       continue;
     const uint64_t seed = campaign_seed(campaign, point, 0);
-    const status code = plan_try(coarse ? coarse : point, seed, until - clock_cpu_s(), &run, &ignored);
+    const status code = plan_try(coarse ? coarse : point, seed, until - spent_s(), &run, &ignored);
     scene_free(coarse);
     if (code != STATUS_OK || !run.finished)
       continue;
@@ -287,7 +296,7 @@ static status try_run(const struct campaign *campaign, const struct looking *loo
                       size_t *fragments, struct error *error) {
   const struct scene *scene = looking->costliest;
   const uint64_t seed = campaign_seed(campaign, scene, 0);
-  const double begin = clock_cpu_s();
+  const double begin = spent_s();
   char setting[64] = "";
   struct plan_trial run = {0};
   TRY(plan_try(scene, seed, seconds / 2, &run, error));
@@ -367,7 +376,8 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
 
   code = look(campaign, store, plan, &looking, error);
   const struct scene *scene = looking.costliest;
-  if (code == STATUS_OK && !options->no_trial)
+  const bool trial = !options->no_trial && (!scene || !engine_ready(scene->kind, scene->inputs, &ignored));
+  if (code == STATUS_OK && trial)
     code = try_run(campaign, &looking, options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
   else if (code == STATUS_OK && store)
     ask_run_wall_times(store, &plan->run_s_mean, &plan->run_s_most, &ignored);

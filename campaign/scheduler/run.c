@@ -14,7 +14,7 @@
 
 /* The encodings begin with these marks. All ranks of a farm run one binary, so arrays of structs are sent as they are
  * in memory. The marks, the sizes and the hashes of the tables find anything else. */
-#define TASK_MARK   "clast task 2"
+#define TASK_MARK   "clast task 3"
 #define RESULT_MARK "clast result 3"
 
 void run_result_clear(struct run_result *result) {
@@ -185,6 +185,9 @@ static void write_task(struct wire *wire, const struct run_request *request) {
   snprintf(path, sizeof path, "%s", request->fields_path ? request->fields_path : "");
   pass_mark(wire, TASK_MARK);
   pass_mark(wire, request->kind->name);
+  const char *definition = request->kind->task ? request->kind->task : "";
+  pass_count(wire, strlen(definition));
+  pass(wire, (void *)definition, strlen(definition));
   pass_count(wire, request->seed);
   pass_text(wire, path, sizeof path);
   pass_object(wire, request->kind->inputs, (void *)request->inputs);
@@ -261,10 +264,14 @@ static status decode_task(const uint8_t *task, size_t size, struct run_request *
   char name[64];
   pass_mark(&wire, TASK_MARK);
   pass_text(&wire, name, sizeof name);
+  const uint64_t length = pass_count(&wire, 0);
+  const uint8_t *definition = next_bytes(&wire, length);
   request->seed = pass_count(&wire, 0);
   pass_text(&wire, fields_path, LIMITS_PATH);
   if (wire.good) {
     request->kind = engine_find(name, error);
+    if (request->kind && request->kind->of_task)
+      request->kind = request->kind->of_task((const char *)definition, (size_t)length, error);
     if (!request->kind)
       return STATUS_INTERNAL;
     *inputs = memory_small(1, request->kind->inputs->size);
@@ -295,8 +302,13 @@ status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t 
   if (request.kind->threads)
     farm_allow_memory(threads_stacks(*request.kind->threads(inputs) - 1));
   status code = run_simulate(&request, NULL, NULL, 0, &values, error);
-  if (code != STATUS_OK && !values.result)
+  if (code != STATUS_OK && !values.result) {
+    if (error->cause == ERROR_TIME_LIMIT)
+      farm_end_as(FARM_TIME_LIMIT);
+    else if (error->cause == ERROR_CRASH)
+      farm_end_as(FARM_CRASHED);
     return code;
+  }
   if (code == STATUS_OK && request.fields_path && values.outcome.state != OUTCOME_INVALID)
     code = store_digest_fields(request.fields_path, values.fields_digest, error);
   if (code != STATUS_OK && error)

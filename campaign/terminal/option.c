@@ -17,7 +17,7 @@ enum { HELP_VALUE = 1000, ROW_VALUE = 1001, WORD_MAXIMUM = 63 };
 /* Options of several commands, whose values are in struct command_line. */
 struct shared_options {
   struct ask_choice choice;
-  bool json, csv, all;
+  bool json, csv, all, allow_commands;
 };
 static const struct option_row choice_rows[] = {
     OPTION_ROW_INTEGER("point", 'p', "N", struct shared_options, choice.point, 0, INT64_MAX, "0",
@@ -34,6 +34,10 @@ static const struct option_row table_rows[] = {
                     .doc = "Print all columns or lines, also those that are rarely wanted."),
 };
 
+static const struct option_row allow_row = OPTION_ROW_FLAG(
+    "allow-commands", 0, struct shared_options, allow_commands,
+    .doc = "Let a scene of engine command run its program on this machine. Only for scenes that you trust.");
+
 const struct option_row *option_row(const struct command *command, size_t index) {
   if (index < command->option_count)
     return &command->options[index];
@@ -42,6 +46,9 @@ const struct option_row *option_row(const struct command *command, size_t index)
   if (command->chooses_runs && index < CHOICE_ROWS)
     return &choice_rows[index];
   index -= command->chooses_runs ? CHOICE_ROWS : 0;
+  if (command->computes && index == 0)
+    return &allow_row;
+  index -= command->computes;
   return command->has_table && index < sizeof table_rows / sizeof table_rows[0] ? &table_rows[index] : NULL;
 }
 
@@ -250,6 +257,8 @@ status option_parse(const struct command *command, int argc, char **argv, void *
   line->arguments = argv + optind;
   TRY(check_arguments(command, line->count, line->arguments, error));
   line->chooses_runs = command->chooses_runs;
+  if (parse.shared.allow_commands)
+    engine_allow_commands();
   line->choice = parse.shared.choice;
   if (parse.shared.json && parse.shared.csv)
     return status_fail(error, STATUS_USAGE, "--json and --csv exclude each other");

@@ -86,6 +86,7 @@ struct command {
   bool has_table;      /* prints a table: has --json and --csv, too */
   bool chooses_runs;   /* asks for runs of a store: has --point, --campaign and --where, too */
   bool has_runs;       /* exits 1 and 75 apply */
+  bool computes;       /* may compute runs: has --allow-commands, too */
   bool has_farm;       /* computes with a farm: under mpirun only rank 0 prints an error (launch_quiet_ranks()) */
   /* Data goes to stdout, remarks to stderr; an error is returned, not printed. A command has `run` or `ask`. */
   status (*run)(const struct command_line *line, struct error *error);

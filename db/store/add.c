@@ -40,6 +40,29 @@ static status name_columns(struct store *store, struct store_kind *kind, struct 
   return digest_names_make(&kind->names, results.name, kind->kind->results, error);
 }
 
+/* Results that a scene names itself: scenes that give one name to results of different units need different stores. */
+static status check_defined(struct store *store, const struct engine_kind *kind, const char *table,
+                            struct error *error) {
+  for (size_t i = 0; kind->definition && i < kind->results->count; i++) {
+    const struct field *row = &kind->results->rows[i];
+    SQL_TEXT unit = NULL;
+    if (sqlite3_keyword_check(row->path, (int)strlen(row->path)))
+      return status_fail(error, STATUS_CONTENT, "result '%s' of the scene is a word of SQL: give it another name",
+                         row->path);
+    TRY(sql_textf(
+        store->db, &unit, adding_run, error,
+        "SELECT ifnull((SELECT ifnull(unit, '1') FROM column_doc WHERE table_name = %Q AND column_name = %Q), '')",
+        table, row->path));
+    if (unit && *unit && strcmp(unit, row->unit) != 0)
+      return status_fail(
+          error, STATUS_CONTENT,
+          "the store has a result '%s' of another scene with the unit %s, here it is %s: give it another "
+          "name, or name another store",
+          row->path, unit, row->unit);
+  }
+  return STATUS_OK;
+}
+
 /* Prepares all tables that the store keeps for an engine: creates its result table, or adds missing columns. */
 static status open_kind(struct store *store, const struct engine_kind *kind, struct store_kind *entry, bool *grown,
                         struct error *error) {
@@ -47,6 +70,7 @@ static status open_kind(struct store *store, const struct engine_kind *kind, str
   const struct schema_table table = schema_result_table(kind);
   int64_t before = 0, after = 0, filled = 0;
   entry->kind = kind;
+  TRY(check_defined(store, kind, table.name, error));
   TRY(sql_integer(store->db, version, 0, &before, error));
   TRY(schema_complete(store->db, &table, error));
   TRY(sql_integer(store->db, version, 0, &after, error));
@@ -232,10 +256,18 @@ static status find_or_add_point(struct store *store, const struct scene *scene, 
 /* *grown: the views need another column. */
 static status add_axis(struct store *store, const struct field *row, bool *grown, struct error *error) {
   char name[SCHEMA_NAME_SIZE];
-  TRY(sql_prepare_once(store->db, &store->axis_find, "SELECT 1 FROM axis WHERE path = ?1", adding_point, error));
+  TRY(sql_prepare_once(store->db, &store->axis_find,
+                       "SELECT ifnull(unit, '') <> ifnull(?2, '') FROM axis WHERE path = ?1", adding_point, error));
   sql_bind_text(store->axis_find, 1, row->path);
+  sql_bind_text(store->axis_find, 2, row->unit);
   const bool known = sqlite3_step(store->axis_find) == SQLITE_ROW;
+  const bool other = known && sqlite3_column_int(store->axis_find, 0); /* of another scene that names its own inputs */
   sqlite3_reset(store->axis_find);
+  if (other)
+    return status_fail(error, STATUS_CONTENT,
+                       "the store has an input '%s' of another scene with another unit: name "
+                       "another store",
+                       row->path);
   if (known)
     return STATUS_OK;
   *grown = true;

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include "db/store/internal.h"
+#include "db/store/schema.h"
 #include "db/store/views.h"
 
 static const char doing[] = "merging";
@@ -195,6 +196,26 @@ static status make_tables(sqlite3 *db, struct error *error) {
   return sql_execute(db, tables, doing, error);
 }
 
+/* Adds columns of results that scenes name themselves. */
+static status add_columns(sqlite3 *db, const char *table, struct error *error) {
+  SQL_TEXT columns = NULL;
+  SQL_TEXT units = NULL;
+  TRY(sql_textf(db, &units, doing, error,
+                "SELECT ifnull((SELECT column_name FROM main.column_doc a JOIN other.column_doc b USING (table_name, "
+                "column_name) WHERE table_name = %Q AND ifnull(a.unit, '1') <> ifnull(b.unit, '1')), '')",
+                table));
+  if (units && *units)
+    return status_fail(error, STATUS_CONTENT, "result '%.100s' has different units in the two stores: keep them apart",
+                       units);
+  TRY(sql_textf(
+      db, &columns, doing, error,
+      "SELECT ifnull(group_concat(format('ALTER TABLE main.\"%%w\" ADD COLUMN \"%%w\" REAL;', %Q, name), ''), "
+      "'') FROM pragma_table_info(%Q, 'other') WHERE name NOT IN (SELECT name FROM pragma_table_info(%Q, "
+      "'main'))",
+      table, table, table));
+  return sql_execute(db, columns, doing, error);
+}
+
 static status copy_results(sqlite3 *db, struct error *error) {
   STATEMENT tables = NULL;
   status result = sql_prepare(db,
@@ -211,6 +232,9 @@ static status copy_results(sqlite3 *db, struct error *error) {
 static status copy_all(struct store *store, struct error *error) {
   sqlite3 *db = store->db;
   TRY(make_tables(db, error));
+  for (size_t i = 0; i < engine_count(); i++)
+    if (engine_at(i)->of_scene)
+      TRY(add_columns(db, schema_result_table(engine_at(i)).name, error));
   TRY(sql_execute(db, merge_parents_sql, doing, error));
   TRY(copy_runs(db, error));
   TRY(copy_results(db, error));

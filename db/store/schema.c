@@ -262,13 +262,28 @@ struct schema_table schema_result_table(const struct engine_kind *kind) {
   return table;
 }
 
+/* The next engine from `index` on whose results are the same for all scenes. A table of another one comes with its
+ * scenes. */
+static size_t next_engine(size_t index) {
+  while (index < engine_count() && engine_at(index)->of_scene)
+    index++;
+  return index;
+}
+
 size_t schema_table_count(void) {
-  return schema_tables_count + engine_count();
+  size_t count = schema_tables_count;
+  for (size_t i = next_engine(0); i < engine_count(); i = next_engine(i + 1))
+    count++;
+  return count;
 }
 
 struct schema_table schema_table_at(size_t index) {
-  return index < schema_tables_count ? schema_tables[index]
-                                     : schema_result_table(engine_at(index - schema_tables_count));
+  if (index < schema_tables_count)
+    return schema_tables[index];
+  size_t engine = next_engine(0);
+  for (size_t left = index - schema_tables_count; left > 0; left--)
+    engine = next_engine(engine + 1);
+  return schema_result_table(engine_at(engine));
 }
 
 /* A store is also read without clast, so the meaning of a column names the choices. */

@@ -1,0 +1,277 @@
+#!/usr/bin/env bash
+# Other people's programs (engine command): the user's word before any program runs, one run, a campaign with its store, the
+# same bits in any way of computing, and programs that hang, crash, or write nonsense, too much or nothing.
+. "$(dirname "$0")/lib.bash"
+
+cp "$source"/campaign/examples/bundle/* .
+word=--allow-commands
+mkdir tmp
+export TMPDIR=$work/tmp
+
+# scene NAME [LINE...]: NAME.yaml runs the script on stdin with sh; the lines belong to its section.
+scene() {
+  local name=$1 line
+  shift
+  cat >"$name.sh"
+  cat >"$name.yaml" <<YAML
+engine: command
+name: $name
+command:
+  program: sh
+  version: "1"
+  arguments: [$name.sh, "{{a}}", "{{seed}}"]
+  files: [$name.sh]
+  inputs: {a: {default: 2, least: 0, most: 100, resolution: larger, doc: A number.}}
+YAML
+  for line in "$@"; do echo "  $line" >>"$name.yaml"; done
+  grep -q ' results:' "$name.yaml" || echo '  results: {x: {doc: A result.}}' >>"$name.yaml"
+  grep -q ' limits:' "$name.yaml" || echo '  limits: {time: 20 s, output: 100 kB}' >>"$name.yaml"
+  printf 'name: %s\nscene: %s.yaml\nseeds: {per_point: 1}\nlimits: {attempts: 1}\n' "$name" "$name" >"$name-runs.yaml"
+}
+nothing_left() { # no folder of a run, and no process in one
+  [ -z "$(ls tmp)" ] || fail "$1: folders of runs are left: $(ls tmp)"
+}
+
+# ---- no program runs without the user's word ----
+scene mark <<SH
+echo >$work/touched
+echo '{"x": 1}'
+SH
+(cat mark-runs.yaml; echo 'vary: {a: [1, 2]}') >vary.yaml
+for command in "simulate mark.yaml" "run mark-runs.yaml" "find mark-runs.yaml --input a --from 1 --to 2 --level 1" \
+  "serve vary.yaml" "converge mark.yaml"; do
+  expect 64 "$clast" $command
+done
+expect 64 "$clast" simulate mark.yaml
+says "give --allow-commands if you trust it"; says "the program sh"; one_error
+expect 0 "$clast" plan mark-runs.yaml
+prints "not known without a trial run"
+expect 0 "$clast" explain mark.yaml
+prints "runs the program: sh mark.sh {{a}} {{seed}}"
+[ ! -e touched ] || fail "a program was run without the user's word"
+expect 0 "$clast" simulate mark.yaml $word
+[ -e touched ] || fail "the program was not run with the user's word"
+expect 0 "$clast" run mark-runs.yaml $word
+rm touched
+expect 64 "$clast" replay mark.db 1
+expect 0 "$clast" report mark.db
+expect 0 "$clast" merge mark2.db mark.db
+expect 0 "$clast" check mark2.db
+[ ! -e touched ] || fail "a store ran a program without the user's word"
+
+# ---- scenes that are wrong ----
+sed 's/  version: .*//' mark.yaml >wrong.yaml
+expect 65 "$clast" explain wrong.yaml
+says "command.version: is missing"
+sed 's/{{a}}/{{b}}/' mark.yaml >wrong.yaml
+expect 65 "$clast" explain wrong.yaml
+says "{{b}} is no input of the command"; says "wrong.yaml:6:"
+sed 's/doc: A result/unit: km, doc: A result/' mark.yaml >wrong.yaml
+expect 65 "$clast" explain wrong.yaml
+says "SI unit without prefix"
+sed 's/{x: {/{largest_fraction: {/' mark.yaml >wrong.yaml
+expect 65 "$clast" explain wrong.yaml
+says "is a word of clast"
+sed 's/files: .*/files: [none.sh]/' mark.yaml >wrong.yaml
+expect 65 "$clast" explain wrong.yaml
+says "none.sh"
+sed 's/program: sh/program: no-such-program/' mark.yaml >wrong.yaml
+expect 66 "$clast" simulate wrong.yaml $word
+says "no-such-program is in no folder of PATH"
+expect 65 "$clast" simulate mark.yaml $word --set program.version=2
+says "follow from the scene's section"
+expect 64 "$clast" simulate mark.yaml $word --set a=101
+says "at most 100"
+expect 64 "$clast" simulate mark.yaml $word --fields x.h5
+says "has no fields"
+(echo 'keep: {fields: all}'; cat mark-runs.yaml) >keep.yaml
+expect 65 "$clast" run keep.yaml $word
+
+# ---- inputs, templates, units, results ----
+scene all 'templates: {in.txt: "speed {{speed}} law {{law}} wet {{wet}} n {{n}} seed {{seed}} {{small_seed}} {brace} ${{speed}}"}' \
+  'results: {x: {unit: J, written_in: kJ, name: deep.x, doc: A.}, y: {doc: B.}}' 'output: out.json' \
+  'fragments: {file: masses.csv, name: m, unit: g, element_mass: 0.001 kg}' <<'SH'
+cat in.txt >&2
+env | sort | sed "s|$PWD|HERE|" >&2
+printf '{"deep": {"x": 1.5}, "y": null}' >out.json
+printf 'id,m\n1,4\n2,1\n3,15\n' >masses.csv
+exit 3
+SH
+sed -i 's/inputs: {/inputs: {speed: {unit: m\/s, written_in: km\/s, default: 5 km\/s, doc: S.}, law: {kind: choice, choices: [soft, hard], default: hard, doc: L.}, wet: {kind: switch, default: true, doc: W.}, n: {kind: count, default: 7, doc: N.}, /' all.yaml
+expect 1 "$clast" simulate all.yaml $word --seed 900000123
+says "ended with exit code 3"
+says "TZ=UTC"
+sed -i 's/^exit 3/exit 0/; s/^env.*//' all.sh
+sed -i 's/^cat in.txt.*/cat in.txt >lines; grep -qxF "speed 5 law hard wet true n 7 seed 900000123 125 {brace} $""5" lines || exit 4/' all.sh
+expect 0 "$clast" simulate all.yaml $word --seed 900000123 --json
+python - <<'PY'
+import json
+row = json.load(open('out'))[0]
+assert row['x'] == 1500 and row['fragment_count'] == 3 and row['single_count'] == 1, row
+assert abs(row['total_mass'] - 0.02) < 1e-15 and row['largest_fraction'] == 0.75, row
+PY
+ok "units, keys, columns and masses"
+
+# ---- bad programs ----
+# bad NAME REASON WORDS [LINE...]: one run says WORDS; in a campaign it is an attempt that failed for REASON.
+bad() {
+  local name=$1 reason=$2 words=$3
+  shift 3
+  scene "$name" "$@"
+  expect 1 "$clast" simulate "$name.yaml" $word
+  says "$words"
+  one_error
+  nothing_left "$name"
+  expect 1 "$clast" run "$name-runs.yaml" $word --quiet
+  same "$(number "$name.db" 'select reason from attempt')" "$reason" "$name"
+  nothing_left "$name"
+}
+bad hang time_limit "did not end within 1 s" 'limits: {time: 1 s}' <<'SH'
+trap '' TERM INT HUP
+setsid sleep 1000 &
+sleep 1001
+SH
+bad crash crash "killed by signal 11" <<'SH'
+kill -SEGV $$
+SH
+bad code exit "its last words: 'no licence'" <<'SH'
+echo no licence >&2
+exit 7
+SH
+bad garbage exit "is no JSON" <<'SH'
+head -c 3000 /dev/urandom
+SH
+bad prose exit "expected a number for x, got 'about two'" <<'SH'
+echo '{"x": "about two"}'
+SH
+bad keyless exit "has no key \`x\`" <<'SH'
+echo '{"y": 2}'
+SH
+bad columns exit "has no column \`x\`" 'output: out.csv' <<'SH'
+printf 'y,z\n1,2\n' >out.csv
+SH
+bad ragged exit "out.csv, line 3" 'output: out.csv' <<'SH'
+printf 'x,z\n1,2\n3\n' >out.csv
+SH
+bad flood exit "limits: output" <<'SH'
+exec head -c 1000000000 /dev/zero
+SH
+bad none exit "wrote no file out.json" 'output: out.json' <<'SH'
+exit 0
+SH
+bad silent exit "its last words: 'cannot read the mesh'" <<'SH'
+echo cannot read the mesh >&2
+SH
+bad sorry exit "has the key \`error\`: no convergence" <<'SH'
+echo '{"error": "no convergence", "x": 1}'
+SH
+bad link exit "wrote no file out.json" 'output: out.json' <<'SH'
+ln -s /etc/passwd out.json
+SH
+bad fifo exit "is no plain file" 'output: out.json' <<'SH'
+mkfifo out.json
+SH
+bad mass exit "which is not above 0" 'fragments: {file: m.txt}' <<'SH'
+echo '{"x": 1}'; echo '3 2 -1' >m.txt
+SH
+for value in NaN -Infinity 1e999; do
+  scene nan <<SH
+echo '{"x": $value}'
+SH
+  rm -f nan.db
+  expect 1 "$clast" run nan-runs.yaml $word --quiet
+  same "$(number nan.db 'select state from run')" not-finite "$value"
+done
+scene states 'exit_codes: {3: end-time, 4: invalid}' <<'SH'
+echo '{"x": 1}'
+echo "code $1" >&2
+exit "$1"
+SH
+expect 0 "$clast" simulate states.yaml $word --set a=3 --json
+prints end-time
+expect 1 "$clast" simulate states.yaml $word --set a=4
+says "code 4"
+
+# Children of a program end with it, and the program with clast, also if clast is killed.
+scene orphan <<SH
+(trap '' TERM HUP; setsid sleep 998.5) >/dev/null 2>&1 &
+sleep 0.2
+echo '{"x": 1}'
+SH
+expect 0 "$clast" simulate orphan.yaml $word
+! pgrep -f 'sleep 998.5' >out || fail "a child of the program goes on"
+scene killed <<'SH'
+sleep 997.5
+SH
+"$clast" simulate killed.yaml $word >/dev/null 2>&1 &
+pid=$!
+for _ in $(seq 100); do pgrep -f 'sleep 997.5' >/dev/null && break; sleep 0.1; done
+kill -KILL $pid
+wait $pid || true
+for _ in $(seq 100); do pgrep -f 'sleep 997.5' >/dev/null || [ -n "$(ls tmp)" ] || break; sleep 0.1; done
+! pgrep -f 'sleep 997.5' >out || fail "the program outlives clast"
+for _ in $(seq 100); do [ -z "$(ls tmp)" ] && break; sleep 0.1; done
+nothing_left "clast killed"
+ok "programs end with clast"
+scene longer <<'SH'
+(setsid sleep 996.5) &
+sleep 996.5
+SH
+sed -i 's/attempts: 1/attempts: 1, time: 1 s/' longer-runs.yaml
+expect 1 "$clast" run longer-runs.yaml $word --quiet
+same "$(number longer.db 'select reason from attempt')" time_limit "the campaign's limit"
+for _ in $(seq 100); do [ -z "$(ls tmp)" ] && break; sleep 0.1; done
+nothing_left "the campaign's limit"
+! pgrep -f 'sleep 996.5' >out || fail "a program outlives the campaign's limit"
+
+# ---- a campaign: the same bits in any way of computing, statistics, resuming ----
+sed 's/per_point: 20/per_point: 6/; s/^name: .*/name: one/' strengths.yaml >one.yaml
+expect 0 "$clast" run one.yaml $word -j 1
+"$clast" export one.db reference.bits --bits
+expect 0 "$clast" run one.yaml $word --store two.db -j 2 --in-process
+same_bits two.db reference.bits "in process"
+expect 0 mpirun -n 3 "$clast" run one.yaml $word --store mpi.db --quiet
+same_bits mpi.db reference.bits "three ranks"
+expect 0 "$clast" run one.yaml $word
+says "0 runs computed"
+expect 0 "$clast" stats one.db --quantity strength --by modulus --json
+python - <<'PY'
+import json
+rows = json.load(open('out'))
+assert len(rows) == 3, rows
+means = [r['strength_mean'] for r in rows]
+assert means == sorted(means), means # less scatter of the fibres, more strength
+PY
+ok "means over seeds"
+expect 0 "$clast" spectrum one.db
+expect 0 "$clast" report one.db
+expect 0 "$clast" replay one.db 5 $word
+says "agree to the last bit"
+sed -i 's/  version: "1"/  version: "2"/' bundle.yaml
+expect 0 "$clast" run one.yaml $word
+same "$(number one.db 'select count(*) from point')" 6 "another version, other points"
+expect 0 "$clast" check one.db
+
+# A program that promises no bits is no fault in replay.
+scene dice <<'SH'
+echo "{\"x\": $(date +%N | sed 's/^0*//')}"
+SH
+expect 0 "$clast" run dice-runs.yaml $word
+expect 0 "$clast" replay dice.db 1 $word
+says "promises no bits"
+
+# Two scenes in one store: their results are columns of one table. One name has one unit.
+scene length 'results: {x: {unit: m, doc: A length.}}' <<'SH'
+echo '{"x": 1}'
+SH
+expect 65 "$clast" run length-runs.yaml $word --store dice.db
+says "unit"
+scene more 'results: {x: {doc: As before.}, z: {unit: m, doc: Another.}}' <<'SH'
+echo '{"x": 1, "z": 2}'
+SH
+expect 0 "$clast" run more-runs.yaml $word --store dice.db
+expect 0 "$clast" check dice.db
+expect 0 "$clast" merge mark.db dice.db
+expect 0 "$clast" check mark.db
+same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
+done_after 106
