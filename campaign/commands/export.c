@@ -7,7 +7,7 @@
 
 struct options {
   const char *per, *license, *author;
-  bool csv, lines, bits, cinema, crate;
+  bool csv, lines, bits, cinema, crate, dakota;
 };
 
 /* Does the name promise a table? */
@@ -28,11 +28,11 @@ static status check(const struct command_line *line, struct error *error) {
     bool broken;
     const char *text;
   } rules[] = {
-      {options->csv + options->lines + options->bits + options->cinema + options->crate > 1,
-       "--csv, --jsonl, --bits, --cinema and --crate exclude each other"},
+      {options->csv + options->lines + options->bits + options->cinema + options->crate + options->dakota > 1,
+       "--csv, --jsonl, --bits, --cinema, --crate and --dakota exclude each other"},
       {options->per && other, "--per excludes --bits, --cinema and --crate"},
       {(options->license || options->author) && !options->crate, "--license and --author belong to --crate"},
-      {options->lines && !options->per, "--jsonl needs --per run or --per point"},
+      {(options->lines || options->dakota) && !options->per, "--jsonl and --dakota need --per run or --per point"},
       {!options->per && !options->csv && !other && line->count > 1 && is_table(line->arguments[1]),
        "without an option the target is a store. For rows give --per run or --per point (--jsonl for JSON), for a "
        "folder "
@@ -53,7 +53,9 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct options *options = line->options;
   const char *target = line->count > 1 ? line->arguments[1] : NULL;
   const struct export_crate_options crate = {target, options->license, options->author};
-  if (options->per)
+  if (options->dakota)
+    TRY(export_files_tabular(store, target, strcmp(options->per, "run") == 0 ? "runs" : "points", error));
+  else if (options->per)
     TRY(export_files_write(store, target, strcmp(options->per, "run") == 0 ? "runs" : "points",
                            options->lines ? TABLE_JSON_LINES : TABLE_CSV, error));
   else if (options->csv)
@@ -74,6 +76,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
 static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("per", 0, "run|point", struct options, per, NULL),
     OPTION_ROW_FLAG("jsonl", 0, struct options, lines),
+    OPTION_ROW_FLAG("dakota", 0, struct options, dakota),
     OPTION_ROW_FLAG("csv", 0, struct options, csv),
     OPTION_ROW_FLAG("bits", 0, struct options, bits),
     OPTION_ROW_FLAG("cinema", 0, struct options, cinema),

@@ -11,6 +11,10 @@
 status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
                           struct error *error);
 
+/* The varied inputs (SI units) and the main results of each run, or their means of each point (view "points"), as a
+ * tabular file of Dakota, annotated: eval_id is the number of the run or point. */
+status export_files_tabular(struct store *store, const char *path, const char *view, struct error *error);
+
 /* runs.csv, points.csv, spectra.csv, estimates.csv and column_doc.csv in the folder, which is made. */
 status export_files_folder(struct store *store, const char *folder, struct error *error);
 
