@@ -84,6 +84,7 @@ struct engine_kind {
   /* The same from `task` of such an engine, in another process. NULL: *error says why. */
   const struct engine_kind *(*of_task)(const char *text, size_t size, struct error *error);
   const char *definition, *task; /* such an engine: members of the scene's JSON in a store and in a task; else NULL */
+  const struct field_table *const *sections; /* of the scenes of such an engine: keys for `clast explain`; NULL-ended */
   bool same_bits; /* such an engine: the same inputs and seed give the same bits, which all others promise */
   /* May and can such a scene run here? STATUS_USAGE: not without the user's word; STATUS_MISSING: no program. NULL:
    * always. */

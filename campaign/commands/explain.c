@@ -252,6 +252,8 @@ static bool explain_whole(const char *word) {
   } else if (kind) {
     explain_table(kind->inputs, "");
     explain_table(kind->results, "\n");
+    for (size_t i = 0; kind->sections && kind->sections[i]; i++)
+      explain_table(kind->sections[i], "\n");
   } else {
     return false;
   }

@@ -275,7 +275,7 @@ static char *describe(const void *inputs, bool all) {
     free(out ? text_close(out, &text) : NULL);
     return NULL;
   }
-  fprintf(out, "runs the program: %s", d->settings.program);
+  fprintf(out, "runs the program: %s", d->place ? d->place : d->settings.program);
   for (size_t i = 0; i < d->word_count; i++)
     fprintf(out, " %s", d->words[i]);
   fprintf(out, "\nversion: %s (%s)\n", d->settings.version,
@@ -293,7 +293,10 @@ static char *describe(const void *inputs, bool all) {
     fprintf(out, "  %s (%s): %s\n", d->result_rows[i].path, d->result[i].unit, d->result[i].doc);
   if (d->settings.fragments.name[0] || d->settings.fragments.file[0])
     fprintf(out, "  masses of fragments (%s)\n", d->settings.fragments.unit);
-  return text_close(out, &text);
+  if (!text_close(out, &text))
+    return NULL;
+  text_make_plain(text, "\n\t"); /* a scene from a stranger must not move the cursor over what it runs */
+  return text;
 }
 
 static size_t memory(const void *inputs) {
@@ -324,6 +327,7 @@ const struct engine_kind command_engine = {
     .results = &no_results,
     .of_scene = of_scene,
     .of_task = of_task,
+    .sections = definition_sections,
     .check = check,
     .ready = ready,
     .headline = headline,

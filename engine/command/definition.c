@@ -83,6 +83,8 @@ static const struct field result_rows[] = {
 static const struct field_table result_table = FIELD_TABLE(result_rows, struct definition_result, "result of a command",
                                                            "A result of the program.");
 
+const struct field_table *const definition_sections[] = {&settings_table, &input_table, &result_table, NULL};
+
 static const struct field program_rows[] = {
     ROW_OF(definition_program, program.digest, digest, FIELD_TEXT, NULL, .text = "",
            .doc = "Digest of the scene's section `command`: program, arguments, files, and how results are read."),
@@ -170,7 +172,7 @@ static void read_choices(struct reading *r, document_node *node, struct field *r
   const char **words = memory_small(document_count(list) + 1, sizeof *words);
   for (size_t i = 0; i < document_count(list); i++) {
     const char *word = document_scalar(document_item(list, i, NULL));
-    if (!word || !*word || strlen(word) >= NAME)
+    if (!word || !*word || strlen(word) >= NAME || !text_is_plain(word))
       wrong(r, list, "choices", "expected short words");
     words[i] = copy_of(word ? word : "");
   }
@@ -377,23 +379,40 @@ static void read_words(struct reading *r, document_node *list) {
   }
 }
 
-/* The text of a file in the scene's folder. */
+/* The path of a file in or below the scene's folder: a scene from a stranger must not copy others into a store. NULL:
+ * it is elsewhere, or there is none. */
+static char *path_in_folder(const char *folder, const char *name) {
+  OWNED char *base = folder ? realpath(*folder ? folder : ".", NULL) : NULL;
+  OWNED char *path = folder ? file_name_in(folder, name) : NULL;
+  char *real = path ? realpath(path, NULL) : NULL;
+  const size_t length = base ? strlen(base) : 0;
+  if (real && base && strncmp(real, base, length) == 0 && (real[length] == '/' || length == 1))
+    return real;
+  free(real);
+  return NULL;
+}
+
+/* The text of such a file. */
 static char *text_of(struct reading *r, document_node *node, const char *name) {
   struct error error;
-  OWNED char *path = file_name_in(r->folder, name);
+  OWNED char *path = path_in_folder(r->folder, name);
   unsigned char *bytes = NULL;
   size_t size = 0;
-  if (!path)
-    memory_refused();
+  if (!path) {
+    document_report(node, "command.files", "there is no file %.200s in the folder of the scene", name);
+    r->good = false;
+    return copy_of("");
+  }
   if (file_read(path, "file of the command", &bytes, &size, &error)) {
     document_report_error(node, "command.files", &error);
     r->good = false;
     return copy_of("");
   }
   for (size_t i = 0, length; i < size; i += length) {
-    length = bytes[i] ? text_utf8_length((const char *)bytes + i, size - i) : 0;
-    if (length == 0) {
-      wrong(r, node, "command.files", "the file is no text in UTF-8; name binary files in an argument instead");
+    length = text_utf8_length((const char *)bytes + i, size - i);
+    const uint32_t c = length ? text_utf8_character((const char *)bytes + i, length) : 0;
+    if (!(c == '\n' || c == '\r' || c == '\t' || (c >= 0x20 && (c < 0x7f || c > 0x9f)))) { /* a store holds the text */
+      wrong(r, node, "command.files", "the file is no plain text in UTF-8; name it in an argument instead");
       break;
     }
   }

@@ -61,6 +61,7 @@ struct definition {
 };
 
 extern const struct field_table definition_base; /* inputs of the engine without a scene */
+extern const struct field_table *const definition_sections[];
 
 /* Reads the section; an equal one of before is found again. Functions come from `base`. NULL: errors were reported to
  * the document. */

@@ -75,6 +75,24 @@ says "is a word of clast"
 sed 's/files: .*/files: [none.sh]/' mark.yaml >wrong.yaml
 expect 65 "$clast" explain wrong.yaml
 says "none.sh"
+sed 's|files: .*|files: [../mark.sh]|' mark.yaml >wrong.yaml
+mkdir -p below && cp wrong.yaml below
+expect 65 "$clast" explain below/wrong.yaml
+says "there is no file ../mark.sh in the folder of the scene"
+ln -s ../mark.sh below/link.sh
+sed -i 's|files: .*|files: [link.sh]|' below/wrong.yaml
+expect 65 "$clast" explain below/wrong.yaml
+sed 's|"{{a}}"|"\\e[2K\\rinnocent"|' mark.yaml >wrong.yaml
+expect 65 "$clast" explain wrong.yaml
+says "control character"
+printf 'echo \033[2Kinnocent\n' >below/bad.sh
+sed -i 's|files: .*|files: [bad.sh]|' below/wrong.yaml
+expect 65 "$clast" explain below/wrong.yaml
+says "no plain text"
+printf 'echo é\r\n\techo\n' >below/bad.sh
+expect 0 "$clast" explain below/wrong.yaml
+expect 0 "$clast" explain command
+prints "limits.output"
 sed 's/program: sh/program: no-such-program/' mark.yaml >wrong.yaml
 expect 66 "$clast" simulate wrong.yaml $word
 says "no-such-program is in no folder of PATH"
@@ -247,6 +265,23 @@ expect 0 "$clast" spectrum one.db
 expect 0 "$clast" report one.db
 expect 0 "$clast" replay one.db 5 $word
 says "agree to the last bit"
+expect 0 "$clast" converge bundle.yaml $word --quantity strength --max-seeds 8 --within off
+prints "fibres"
+(sed 's/^name: .*/name: search/; s/modulus: .*/modulus: {from: 0.7, to: 10, n: 2}}/; s/quantity: .*//' one.yaml; echo 'set: {fibres: 50}') >search.yaml
+expect 0 "$clast" find search.yaml $word --quantity strength --level 0.5 --within 40%
+prints "rises through 0.5"
+"$clast" serve search.yaml $word --port 0 -Q strength >/dev/null 2>serve.err &
+pid=$!
+for _ in $(seq 100); do grep -q 'at port' serve.err && break; sleep 0.1; done
+python - "$(sed -n 's/.*at port \([0-9]*\).*/\1/p' serve.err)" <<'PY'
+import json, sys, urllib.request
+ask = json.dumps({'name': 'search', 'input': [[3.0]], 'config': {}}).encode()
+answer = json.load(urllib.request.urlopen(f'http://127.0.0.1:{sys.argv[1]}/Evaluate', ask, timeout=60))
+assert 0.3 < answer['output'][0][0] < 0.7, answer
+PY
+kill -TERM $pid
+wait $pid || true
+ok "a server of models"
 sed -i 's/  version: "1"/  version: "2"/' bundle.yaml
 expect 0 "$clast" run one.yaml $word
 same "$(number one.db 'select count(*) from point')" 6 "another version, other points"
@@ -274,4 +309,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 106
+done_after 115
