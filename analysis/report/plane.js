@@ -125,6 +125,13 @@ function frame(place, grid) {
   return [line('white', 5, [1, 0]), line('black', 3, [6, 3])];
 }
 
+// What a cell may hold, the longest text first.
+function cellTexts(row) {
+  if (row.mean === null) return ['-', '-', '-'];
+  const told = row.told + (row.weak ? '~' : '') + row.mark;
+  return [`${told}  n=${row.n}`, told, row.text + row.mark];
+}
+
 function planeSpec(rows, title) {
   const x = axisOf(state.x, rows, label(state.stores, state.x)), y = axisOf(state.y, rows, label(state.stores, state.y));
   const grid = x.discrete && y.discrete;
@@ -145,17 +152,17 @@ function planeSpec(rows, title) {
   }];
   if (grid) // over the white lines of the neighbours
     layers.push({transform: [{filter: isChosen}], mark: {type: 'rect', filled: false, stroke: '#D40000', strokeWidth: 4, tooltip: null}, encoding: place});
-  if (grid && room >= 50 && !several)
+  const texts = rows.map(cellTexts), LETTER = 7.5; // pixels
+  const fitting = [0, 1, 2].find((k) => texts.every((text) => text[k].length * LETTER <= room)); // undefined: the colour alone
+  if (grid && fitting !== undefined && !several)
     layers.push({mark: {type: 'text', baseline: 'middle', tooltip: null, fontSize: 12},
-      transform: [{calculate: "datum.mean === null ? '-' : datum.told + (datum.weak ? '~' : '') + datum.mark", as: 'cell'},
-        {calculate: room >= 130 ? "datum.cell + '  n=' + datum.n" : room >= 90 ? 'datum.cell' : 'datum.text + datum.mark', as: 'cell'}],
       encoding: {...place, text: {field: 'cell'}, color: {condition: {test: `datum.mean === null || datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
   if (rows.some((row) => row.twoModes))
     layers.push({transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: room >= 90 ? '◆ two modes' : '◆', dy: 15, fontSize: 12, tooltip: null},
       encoding: {...place, color: {condition: {test: `datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
   layers.push(...frame(place, grid));
   const height = y.discrete ? Math.min(560, Math.max(300, 130 + 40 * new Set(rows.map((row) => row[state.y])).size)) : 420;
-  return {params: PARAMETERS, data: {values: rows}, height, layer: layers};
+  return {params: PARAMETERS, data: {values: rows.map((row, i) => ({...row, cell: texts[i][fitting ?? 2]}))}, height, layer: layers};
 }
 
 function lineSpec(rows, title) {
