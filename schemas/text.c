@@ -272,6 +272,46 @@ static size_t write_power(const char *at, size_t mantissa, char *made, size_t si
   return (size_t)(end - at);
 }
 
+/* A whole number with a space before each three of its digits, from 10 000 on. */
+static void write_whole(double number, FILE *out) {
+  char digits[32];
+  const int count = snprintf(digits, sizeof digits, "%.0f", number);
+  for (int i = 0; i < count; i++) {
+    if (i > 0 && count > 4 && (count - i) % 3 == 0)
+      fputc(' ', out);
+    fputc(digits[i], out);
+  }
+}
+
+char *text_people(const char *text) {
+  enum { DIGITS = 6 };
+  char *made = NULL;
+  size_t size = 0;
+  FILE *out = text_open(&made, &size);
+  for (const char *at = text; out && *at;) {
+    const size_t mantissa = strspn(at, "0123456789.");
+    const char *power = at + mantissa;
+    char *end = NULL;
+    const bool has = mantissa > 0 && *power == 'e' && (power[1] == '+' || power[1] == '-') && power[2] >= '0' &&
+                     power[2] <= '9';
+    const long exponent = has ? strtol(power + 1, &end, 10) : 0;
+    if (has && exponent > 0 && exponent <= DIGITS) {
+      write_whole(strtod(at, NULL), out);
+    } else if (has) {
+      if (mantissa > 1 || *at != '1')
+        fprintf(out, "%.*s\xc3\x97", (int)mantissa, at);
+      fprintf(out, "10^%ld", exponent);
+    } else {
+      const size_t plain = mantissa > 0 ? mantissa : 1;
+      fwrite(at, 1, plain, out);
+      at += plain;
+      continue;
+    }
+    at = end;
+  }
+  return out && text_close(out, &made) ? made : NULL;
+}
+
 void text_powers(char *text, size_t size) {
   char made[1024] = "";
   size_t mantissa = 0; /* bytes of the number before *at */

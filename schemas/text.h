@@ -42,6 +42,9 @@ void text_append_fixed(char *text, size_t size, double number, int decimals);
  * fit is cut.
  */
 void text_powers(char *text, size_t size);
+/* The same of a long text, and in words of a million or less all digits: 3.8e+06 becomes 3 800 000, 1e+03 1000.
+ * malloc'd; NULL: no memory. */
+char *text_people(const char *text);
 
 /* A unit as people write it: "m^-3" for "1/m^3"; "" for a pure number. */
 void text_unit(const char *unit, char *text, size_t size);

@@ -113,7 +113,26 @@ static void answer(const char *name, double value, enum condition_mark mark, con
   printf("%-14s %-10s %s\n", name, text, says);
 }
 
-/* What most people want of a run, in six lines. */
+/* A crater and what it threw out, of an engine that has them. */
+static void print_crater(const struct scene *scene, const struct run_result *result) {
+  static const char *const paths[] = {"crater.depth", "crater.radius", "ejecta.mass_fraction"};
+  double value[3];
+  for (int i = 0; i < 3; i++) {
+    struct field_value found = {.number = NAN};
+    const struct field *row = field_find(scene->kind->results, paths[i], NULL);
+    if (row)
+      field_get(row, result->result, &found);
+    value[i] = found.number;
+  }
+  if (!(value[0] > 0))
+    return;
+  char depth[64], says[128];
+  snprintf(depth, sizeof depth, "%.3g m", value[0]);
+  snprintf(says, sizeof says, "deep, radius %.3g m; ejecta: %.3g of the target's mass", value[1], value[2]);
+  printf("%-14s %-10s %s\n", "crater", depth, says);
+}
+
+/* What most people want of a run, in six lines; of a crater in seven. */
 static void print_answers(const struct scene *scene, int64_t seed, const struct run_result *result) {
   const struct outcome *o = &result->outcome;
   const struct condition *conditions = scene->kind->conditions;
@@ -132,6 +151,7 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
     text_sentence(kind ? kind + 2 : row->doc, says + strlen(says), sizeof says - strlen(says));
     answer(headline, value.number, condition_mark(conditions, o->warnings, headline), says);
   }
+  print_crater(scene, result);
   answer("M_1/M", o->largest_fraction, condition_mark(conditions, o->warnings, OUTCOME_NAME(largest_fraction)),
          "mass of the largest fragment over the total mass");
   snprintf(says, sizeof says, "%lld of one grain or particle; the spectrum is complete from %.3g %s on",
@@ -145,7 +165,10 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
       fit = &result->estimates[i];
   snprintf(says, sizeof says, "beta of F(m) ~ m^-beta, of %zu fragments (maximum likelihood, %s)", fit ? fit->fit.n : 0,
            estimates_window_names[ESTIMATES_HEADLINE_WINDOW]);
-  answer("exponent", fit ? fit->fit.beta : (double)NAN,
+  /* As many digits as the number of fragments allows. */
+  const double beta = fit ? fit->fit.beta : (double)NAN,
+               digit = fit ? pow(10, floor(log10(fit->fit.standard_error))) : 0;
+  answer("exponent", digit > 0 && digit < 1 ? digit * round(beta / digit) : beta,
          condition_mark(conditions, o->warnings, OUTCOME_NAME(mean_fragment_mass)), says);
   answer("energy error", o->energy_error, CONDITION_SOUND, "of the energy put in, by numerical errors");
   printf("in doubt (!)   %s\n", *o->warnings ? o->warnings : "nothing");

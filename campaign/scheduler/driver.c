@@ -229,16 +229,17 @@ static void write_hidden(const struct scene *scene, const struct field *row, con
   struct field_value here, there = {.kind = row->kind, .number = theirs->real, .integer = theirs->integer};
   char mine[FIELD_TEXT_SIZE + 40], other[FIELD_TEXT_SIZE + 40] = "none";
   field_get(row, scene->inputs, &here);
-  field_print(row, &here, mine, sizeof mine);
+  field_show(row, &here, mine, sizeof mine);
   if (theirs->text)
     snprintf(other, sizeof other, "%s", theirs->text);
   else if (theirs->kind != QUERY_NULL)
-    field_print(row, &there, other, sizeof other);
+    field_show(row, &there, other, sizeof other);
   text_append(text, size, "%s%s (%s there, %s here)", *text ? ", " : "", row->path, other, mine);
 }
 
-/* Warns of points in the store that are of an earlier form of this campaign. The inputs that differ become varied
- * inputs of the store, so that tables show them and --by takes them. `id`: the first point. */
+/* Warns of points in the store of an earlier form of this campaign, or of another campaign of the scene. The inputs
+ * that differ become varied inputs of the store, so that tables show them and --by takes them. `id`: the first point.
+ */
 static status tell_hidden_inputs(struct driver *driver, const struct scene *scene, int64_t id, struct error *error) {
   enum { NAMED = 8 };
   const struct field *differs[LIMITS_AXES_OF_POOL];
@@ -259,12 +260,12 @@ static status tell_hidden_inputs(struct driver *driver, const struct scene *scen
   if (count == 0)
     return STATUS_OK;
   for (size_t i = 0; i < count; i++)
-    TRY(store_add_axis(driver->scheduler->store, differs[i], "", error));
-  snprintf(
-      text, sizeof text,
-      "warning: the store has other points of campaign %s: %s%s differs, and is a varied input of this store from now "
-      "on (--by). For one campaign alone, name another store or ask with --campaign %lld",
-      driver->campaign->name, names, count > NAMED ? " and more" : "", (long long)driver->summary.campaign_id);
+    TRY(store_add_axis(driver->scheduler->store, differs[i],
+                       strcmp(differs[i]->unit ? differs[i]->unit : "", "rad") == 0 ? "deg" : "", error));
+  snprintf(text, sizeof text,
+           "warning: the store has other points of this campaign or scene: %s%s differs, and is a varied input of this "
+           "store from now on (--by). For one campaign alone, name another store or ask with --campaign %lld",
+           names, count > NAMED ? " and more" : "", (long long)driver->summary.campaign_id);
   scheduler_note(driver->scheduler, text);
   return STATUS_OK;
 }

@@ -73,11 +73,14 @@ struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, 
   return answer_to(
       store, error,
       "WITH other AS (SELECT campaign_id, min(point_id) AS first FROM campaign JOIN campaign_point USING (campaign_id)"
-      " WHERE campaign_id <> %lld AND name = (SELECT name FROM campaign WHERE campaign_id = %lld) GROUP BY campaign_id)"
+      " WHERE campaign_id <> %lld GROUP BY campaign_id HAVING name = (SELECT name FROM campaign WHERE campaign_id = "
+      "%lld) OR (SELECT engine || scene_name FROM point WHERE point_id = first) = (SELECT engine || scene_name FROM "
+      "point WHERE "
+      "point_id = %lld))"
       " SELECT mine.path, theirs.value, max(other.campaign_id) FROM other JOIN point_input mine ON mine.point_id = %lld"
       " LEFT JOIN point_input theirs ON theirs.point_id = other.first AND theirs.path = mine.path WHERE theirs.value IS"
       " NOT mine.value AND mine.path NOT IN (SELECT path FROM axis) GROUP BY mine.path ORDER BY mine.path",
-      (long long)campaign, (long long)campaign, (long long)point);
+      (long long)campaign, (long long)campaign, (long long)point, (long long)point);
 }
 
 /* The runs of each campaign with their class: safe (usable, no warnings), warned (usable, with warnings), refused

@@ -52,9 +52,9 @@ struct answer ask_campaign_sessions(struct store *store, struct error *error);
 /* One row per campaign: campaign, name, document. */
 struct answer ask_campaign_documents(struct store *store, struct error *error);
 
-/* Inputs that differ between the point and the first points of other campaigns with the name of this one, and that no
- * campaign of the store varies, so that tables do not show them. A row per input: path, value of the last such campaign
- * that differs (SI; NULL: the input does not apply there). */
+/* Inputs that differ between the point and the first points of other campaigns with the name or the scene of this one,
+ * and that no campaign of the store varies, so that tables do not show them. A row per input: path, value of the last
+ * such campaign that differs (SI; NULL: the input does not apply there). */
 struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, int64_t point, struct error *error);
 
 /* A row per campaign: runs, safe, warned, refused, runs given up without a result, the largest energy_error of usable

@@ -93,7 +93,13 @@ sed -i 's/set: {/set: {contact.friction: 0.3, /' changed.yaml
 expect 0 "$clast" run changed.yaml -j 1 --quiet
 says "contact.friction ("
 says "0.3 here)"
-says "other points of campaign changed"
+says "other points of this campaign or scene"
+# So is an input that differs between campaigns of other names, and --by takes it.
+one others '' '' 2
+sed -i 's/set: {/set: {contact.friction: 0.4, /; s/^store: .*//' others.yaml
+expect 0 "$clast" run others.yaml -j 1 --quiet --store changed.db
+expect 0 "$clast" stats changed.db --by friction --csv
+same "$(tail -n +2 out | wc -l)" 3 "values of an input that differs between campaigns"
 
 # A link to a store is the store, with its fields beside the file; also a link that leads to no file yet.
 one kept 'keep: {fields: all}'
@@ -180,4 +186,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 50
+done_after 53

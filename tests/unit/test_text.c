@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "schemas/text.h"
@@ -65,12 +66,25 @@ static void test_hexadecimal(void **state) {
   assert_string_equal(text, "");
 }
 
+static void test_numbers_for_people(void **state) {
+  (void)state;
+  const char *const cases[][2] = {{"E 5e+08 Pa, 1e-06 s", "E 5\xc3\x97"
+                                                          "10^8 Pa, 10^-6 s"},
+                                  {"3.8e+06 steps, 1e+03 grains of 1.1e+03", "3 800 000 steps, 1000 grains of 1100"},
+                                  {"5e34 1/m^3, 0.5, c_p 4593 m/s; 5e+04", "5e34 1/m^3, 0.5, c_p 4593 m/s; 50 000"},
+                                  {"", ""}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char *text = text_people(cases[i][0]);
+    assert_string_equal(text, cases[i][1]);
+    free(text);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_append_stays_in_its_array),
-      cmocka_unit_test(test_append_cuts_whole_characters),
-      cmocka_unit_test(test_fixed_has_few_digits),
-      cmocka_unit_test(test_hexadecimal),
+      cmocka_unit_test(test_append_stays_in_its_array), cmocka_unit_test(test_append_cuts_whole_characters),
+      cmocka_unit_test(test_fixed_has_few_digits),      cmocka_unit_test(test_hexadecimal),
+      cmocka_unit_test(test_numbers_for_people),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
