@@ -142,7 +142,8 @@ static status row_for_people(struct printing *printing, const struct ask_points_
   for (int m = METHODS; m-- > 0;) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
     table_rests_on(table, &doubts->masses);
-    table_fixed(table, fit->fit.beta, 2);
+    const double spread = fit->fit.standard_error; /* without an interval it gives the digits */
+    table_fixed(table, fit->fit.beta, isfinite(fit->interval.half_width) || !(spread >= 0.1) ? 2 : spread < 1 ? 1 : 0);
     table_real(table, fit->interval.half_width);
     if (m != MASSES)
       continue;

@@ -106,7 +106,7 @@ edit "update convergence set resolution = resolution / 100 where level = 0 and q
 edit "update convergence_limit set verdict = 'order' where quantity = 'largest_fraction'" "table convergence_limit: a bit of its rows has changed"
 edit "update point_input set path = path || char(0) || 'x' where point_id = 1 and path = 'threshold.angle'" "point 1: a bit of its scene or inputs has changed"
 edit "delete from attempt where attempt_id = 2" "table attempt: 12 rows were stored, and 11 are there"
-edit "delete from table_digest where table_name = 'axis'" "table axis: no number of rows were stored, and 3 are there"
+edit "delete from table_digest where table_name = 'axis'" "table axis: no number of rows were stored, and $(number edited.db 'select count(*) from axis') are there"
 edit "update bin set upper = upper * (1 + 2.3e-16) where bin = (select min(bin) from bin)" "its edges"
 edit "update column_doc set unit = 'g' where table_name = 'points' and unit = 'kg' and column_name = 'mean_fragment_mass_mean'" "its unit is g, not kg"
 
