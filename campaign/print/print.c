@@ -113,26 +113,7 @@ static void answer(const char *name, double value, enum condition_mark mark, con
   printf("%-14s %-10s %s\n", name, text, says);
 }
 
-/* A crater and what it threw out, of an engine that has them. */
-static void print_crater(const struct scene *scene, const struct run_result *result) {
-  static const char *const paths[] = {"crater.depth", "crater.radius", "ejecta.mass_fraction"};
-  double value[3];
-  for (int i = 0; i < 3; i++) {
-    struct field_value found = {.number = NAN};
-    const struct field *row = field_find(scene->kind->results, paths[i], NULL);
-    if (row)
-      field_get(row, result->result, &found);
-    value[i] = found.number;
-  }
-  if (!(value[0] > 0))
-    return;
-  char depth[64], says[128];
-  snprintf(depth, sizeof depth, "%.3g m", value[0]);
-  snprintf(says, sizeof says, "deep, radius %.3g m; ejecta: %.3g of the target's mass", value[1], value[2]);
-  printf("%-14s %-10s %s\n", "crater", depth, says);
-}
-
-/* What most people want of a run, in six lines; of a crater in seven. */
+/* What most people want of a run, in six lines; with what the engine tells in seven. */
 static void print_answers(const struct scene *scene, int64_t seed, const struct run_result *result) {
   const struct outcome *o = &result->outcome;
   const struct condition *conditions = scene->kind->conditions;
@@ -151,7 +132,9 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
     text_sentence(kind ? kind + 2 : row->doc, says + strlen(says), sizeof says - strlen(says));
     answer(headline, value.number, condition_mark(conditions, o->warnings, headline), says);
   }
-  print_crater(scene, result);
+  char told[160];
+  if (scene->kind->tell && scene->kind->tell(result->result, told, sizeof told))
+    puts(told);
   answer("M_1/M", o->largest_fraction, condition_mark(conditions, o->warnings, OUTCOME_NAME(largest_fraction)),
          "mass of the largest fragment over the total mass");
   snprintf(says, sizeof says, "%lld of one grain or particle; the spectrum is complete from %.3g %s on",

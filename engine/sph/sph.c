@@ -103,6 +103,7 @@ const struct engine_kind sph_engine = {
     .conditions = sph_conditions,
     .headline = headline,
     .describe = sph_describe_scene,
+    .tell = sph_results_tell,
     .memory = sph_describe_memory,
     .work = sph_describe_work,
     .threads = threads,

@@ -2,6 +2,7 @@
 #include "engine/sph/observe/results.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static FIELD_WORDS(reasons, SPH_STOPS, [SPH_STOP_RUNNING] = "running", [SPH_STOP_QUIET] = "quiet",
                    [SPH_STOP_END_TIME] = "end-time", [SPH_STOP_FAULT] = "fault");
@@ -131,6 +132,17 @@ static const struct field_table nested = FIELD_TABLE(rows, struct sph_results, "
                                                      "Results of engine sph beside the common outcome.");
 struct field_table sph_results;
 FIELD_TABLE_AT_START(sph_results, nested)
+
+bool sph_results_tell(const void *results, char *text, size_t size) {
+  const struct sph_results *r = results;
+  char depth[32];
+  if (!(r->crater.depth > 0))
+    return false;
+  snprintf(depth, sizeof depth, "%.3g m", r->crater.depth);
+  snprintf(text, size, "%-14s %-10s deep, radius %.3g m; ejecta: %.3g of the target's mass", "crater", depth,
+           r->crater.radius, r->ejecta.mass_fraction);
+  return true;
+}
 
 double sph_results_finite(double value) {
   return isfinite(value) ? value : (double)NAN;
