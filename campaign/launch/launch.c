@@ -6,6 +6,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "campaign/charts/charts.h"
 #include "campaign/print/print.h"
 #include "campaign/scheduler/run.h"
 #include "schemas/clock.h"
@@ -126,9 +127,29 @@ static void print_summary(const struct driver_summary *summary, const char *stor
     fputs("stopped; the same command goes on\n", stderr);
 }
 
+/* Means of the campaign's main quantity. */
+static status print_means(struct store *store, const char *path, int64_t campaign, const char *quantity,
+                          enum table_format format, bool quiet, struct error *error) {
+  struct ask_column axes[LIMITS_AXES_OF_POOL];
+  size_t count;
+  char number[24], by[LIMITS_AXES_OF_POOL * sizeof axes->name] = "", pooled[ASK_GROUP_POOLED] = "";
+  snprintf(number, sizeof number, "%" PRId64, campaign);
+  TRY(ask_choose(store, &(struct ask_choice){.campaign = number}, error));
+  TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_POOL, axes, &count, error));
+  for (size_t i = 0; i < count; i++)
+    text_append(by, sizeof by, "%s%s", i ? "," : "", axes[i].name);
+  TRY(table_answer(ask_group(store, by, quantity, pooled, error), true, format, stdout));
+  TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){.campaign = campaign}, quantity, error));
+  if (quiet)
+    return STATUS_OK;
+  quantity_tell_resolutions(store, quantity, pooled);
+  fprintf(stderr, "fragments, M_1/M and exponents: clast estimates %s\n", path);
+  return STATUS_OK;
+}
+
 /* Reads the store again, so that it prints what any later reader will find. */
-static status print_answers(const char *path, int64_t campaign, enum table_format format, bool quiet,
-                            struct error *error) {
+static status print_answers(const char *path, int64_t campaign, const char *quantity, enum table_format format,
+                            bool quiet, struct error *error) {
   STORE store = NULL;
   const struct ask_points_choice choice = {.campaign = campaign};
   int64_t points = 0;
@@ -139,6 +160,8 @@ static status print_answers(const char *path, int64_t campaign, enum table_forma
             campaign);
     return STATUS_OK;
   }
+  if (table_for_people(format) && strcmp(quantity, OUTCOME_DEFAULT) != 0 && strncmp(quantity, "beta", 4) != 0)
+    return print_means(store, path, campaign, quantity, format, quiet, error);
   TRY(print_estimates(store, &choice, format, stdout, error));
   if (table_for_people(format) && !quiet) {
     fflush(stdout); /* the legend comes below the table */
@@ -175,8 +198,8 @@ static status run_campaign(void *context, struct launch *launch, struct error *e
     print_summary(&summary, launching->store, wall_s, code);
   if (!done)
     return code;
-  const status printed = print_answers(launching->store, summary.campaign_id, launching->format, quiet,
-                                       code ? NULL : error);
+  const status printed = print_answers(launching->store, summary.campaign_id, launching->campaign->quantity,
+                                       launching->format, quiet, code ? NULL : error);
   return printed ? printed : code;
 }
 

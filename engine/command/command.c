@@ -256,9 +256,7 @@ static status finish(void *pointer, struct outcome *outcome, void *result, struc
 
 static const char *headline(const void *inputs) {
   const struct definition *d = NULL;
-  if (definition_of(inputs, &d, NULL) || d->settings.fragments.name[0] || d->settings.fragments.file[0])
-    return NULL;
-  return d->result_rows[0].path;
+  return definition_of(inputs, &d, NULL) ? NULL : d->result_rows[0].path; /* NULL: it names none */
 }
 
 static status check(const void *inputs, struct error *error) {

@@ -261,6 +261,9 @@ means = [r['strength_mean'] for r in rows]
 assert means == sorted(means), means # less scatter of the fibres, more strength
 PY
 ok "means over seeds"
+expect 0 "$clast" simulate bundle.yaml $word
+[[ $(sed -n 2p out) == "strength "* ]] || fail "the main quantity is the first result that the scene names"
+ok "the scene's own result stands first"
 expect 0 "$clast" spectrum one.db
 expect 0 "$clast" report one.db
 expect 0 "$clast" replay one.db 5 $word
@@ -309,4 +312,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 115
+done_after 117
