@@ -553,36 +553,50 @@ static char *write_section(const struct definition *d, const char *program) {
   return text;
 }
 
-/* What decides the results of a run. Words for people, ranges, defaults and limits may change. */
+static void add_identity(const struct field_table *table, const void *object, const char *name, FILE *out) {
+  OWNED char *text = field_identity(table, object);
+  fprintf(out, "[%s]\n%s", name, text);
+}
+
+/* What decides the results of a run. Words for people, ranges, defaults and limits may change. A new row of a table
+ * needs a value of absence, as every input does: else all digests change. */
 static void make_digest(struct definition *d) {
-  struct definition plain = *d;
-  plain.settings.same_bits = false;
-  plain.settings.limits.time = plain.settings.limits.output = 1e6;
-  plain.settings.limits.memory = NAN;
-  plain.input_rows = memory_small(d->input_count + PROGRAM_ROWS, sizeof *plain.input_rows);
-  plain.input = memory_small(d->input_count + 1, sizeof *plain.input);
-  plain.result = memory_small(d->result_count + 1, sizeof *plain.result);
+  struct definition_settings settings = d->settings;
+  uint8_t digest[16];
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = text_open(&text, &size);
+  if (!out)
+    memory_refused();
+  settings.same_bits = false;
+  settings.limits.time = settings.limits.memory = settings.limits.output = 0;
+  add_identity(&settings_table, &settings, "command", out);
+  for (size_t i = 0; i < d->word_count; i++)
+    fprintf(out, "argument %zu %s\n", strlen(d->words[i]), d->words[i]);
+  for (size_t i = 0; i < d->file_count; i++)
+    fprintf(out, "%s %s %zu %s\n", d->files[i].is_template ? "template" : "file", d->files[i].name,
+            strlen(d->files[i].text), d->files[i].text);
+  for (size_t i = 0; i < d->code_count; i++)
+    fprintf(out, "exit code %d %d\n", d->codes[i].code, d->codes[i].state);
   for (size_t i = 0; i < d->input_count; i++) {
-    struct field *row = &plain.input_rows[PROGRAM_ROWS + i];
-    *row = d->input_rows[PROGRAM_ROWS + i];
-    row->flags = FIELD_REQUIRED;
-    row->minimum = -HUGE_VAL;
-    row->maximum = HUGE_VAL;
-    plain.input[i] = d->input[i];
-    plain.input[i].doc[0] = '\0';
-    plain.input[i].resolution = NO_RESOLUTION;
+    struct definition_input input = d->input[i];
+    const struct field *row = &d->input_rows[PROGRAM_ROWS + i];
+    input.resolution = NO_RESOLUTION;
+    input.doc[0] = '\0';
+    add_identity(&input_table, &input, row->path, out);
+    for (size_t k = 0; row->choices && row->choices[k]; k++)
+      fprintf(out, "choice %s\n", row->choices[k]);
   }
   for (size_t i = 0; i < d->result_count; i++) {
-    plain.result[i] = d->result[i];
-    plain.result[i].doc[0] = '\0';
+    struct definition_result result = d->result[i];
+    result.doc[0] = '\0';
+    add_identity(&result_table, &result, d->result_rows[i].path, out);
   }
-  OWNED char *text = write_section(&plain, d->settings.program);
-  uint8_t digest[16];
+  if (!text_close(out, &text))
+    memory_refused();
   blake2s(text, strlen(text), digest);
   text_hex(digest, sizeof digest, d->digest);
-  free(plain.input_rows);
-  free(plain.input);
-  free(plain.result);
+  free(text);
 }
 
 /* ---- definitions of this process ---- */

@@ -270,7 +270,7 @@ expect 0 "$clast" replay one.db 5 $word
 says "agree to the last bit"
 expect 0 "$clast" converge bundle.yaml $word --quantity strength --max-seeds 8 --within off
 prints "fibres"
-(sed 's/^name: .*/name: search/; s/modulus: .*/modulus: {from: 0.7, to: 10, n: 2}}/; s/quantity: .*//' one.yaml; echo 'set: {fibres: 50}') >search.yaml
+(sed 's/^name: .*/name: search/; s/modulus: .*/modulus: {from: 1.5, to: 10, n: 2}}/; s/quantity: .*//' one.yaml; echo 'set: {fibres: 300}') >search.yaml
 expect 0 "$clast" find search.yaml $word --quantity strength --level 0.5 --within 40%
 prints "rises through 0.5"
 "$clast" serve search.yaml $word --port 0 -Q strength >/dev/null 2>serve.err &
