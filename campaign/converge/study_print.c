@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "campaign/charts/charts.h"
@@ -95,6 +96,8 @@ static void print_level(struct table *table, const struct convergence_row *row, 
 
 /* ---- sentences ---- */
 
+enum { WIDTH = 100 };
+
 /* The first line of a quantity says what is known of it at one level: the scene's own, or the finest that has runs. */
 static bool find_told(size_t count, const struct study_found *found, size_t *knob, size_t *level) {
   bool any = false;
@@ -112,7 +115,7 @@ static bool find_told(size_t count, const struct study_found *found, size_t *kno
 }
 
 /* The change between the two finest levels as one of a doubling, or a halving, of the knob's first input. */
-static void print_change(const struct knob *knob, const struct study_found *found) {
+static void print_change(const struct knob *knob, const struct study_found *found, FILE *out) {
   const struct convergence_row *row[2] = {NULL, NULL}; /* the two finest levels with runs */
   char text[UNCERTAINTY_TEXT];
   for (size_t l = 0; l < found->count; l++)
@@ -123,33 +126,33 @@ static void print_change(const struct knob *knob, const struct study_found *foun
   const double factor = row[0] ? log(2) * fabs(knob->step_power) / log(row[0]->step / row[1]->step) : 1;
   const struct limit_range *change = &found->limit.change;
   uncertainty_number(factor * change->value, factor * (change->high - change->low) / 2, text);
-  printf("no limit seen, moving by %s per %s", text, knob->step_power < 0 ? "doubling" : "halving");
+  fprintf(out, "no limit seen, moving by %s per %s", text, knob->step_power < 0 ? "doubling" : "halving");
 }
 
-static void print_distance(const struct knob *knob, const struct study_found *found,
-                           const struct convergence_row *row) {
+static void print_distance(const struct knob *knob, const struct study_found *found, const struct convergence_row *row,
+                           FILE *out) {
   char text[UNCERTAINTY_TEXT];
   switch ((enum limit_verdict)found->limit.verdict) {
   case LIMIT_SEEN:
     uncertainty_distance(row->distance, row->distance_half_width, text);
-    printf("%s", text);
+    fprintf(out, "%s", text);
     break;
-  case LIMIT_NOT_SEEN: print_change(knob, found); break;
+  case LIMIT_NOT_SEEN: print_change(knob, found, out); break;
   case LIMIT_CONSTANT:
     if (isnan(row->resolution))
-      printf("all runs are equal, so that the limit cannot be told");
+      fprintf(out, "all runs are equal, so that the limit cannot be told");
     else
-      printf("all runs are equal, so that the mean may be off by up to %.2g", row->resolution);
+      fprintf(out, "all runs are equal, so that the mean may be off by up to %.2g", row->resolution);
     break;
   case LIMIT_TOO_FEW:
-  case LIMIT_VERDICTS: printf("no limit inferred, which needs three levels and three seeds"); break;
+  case LIMIT_VERDICTS: fprintf(out, "no limit inferred, which needs three levels and three seeds"); break;
   }
-  printf(" (%s)", knob->name);
+  fprintf(out, " (%s)", knob->name);
 }
 
 /* "M_1/M = 0.218 +- 0.026 (seeds, 95 %), 0.03 +- 0.02 below its limit (particles)". */
 static void print_sentence(const struct study *study, size_t from, size_t quantity, size_t count,
-                           const struct study_found *found) {
+                           const struct study_found *found, FILE *out) {
   const struct field *field = study->quantity[quantity].row;
   size_t knob = 0, level = 0;
   if (!find_told(count, found, &knob, &level))
@@ -163,8 +166,8 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
     sample_of_share(&mean, 0.95);
   uncertainty_seeds(&mean, text);
   if (!told->base)
-    printf("%s = %s: ", told->knob, told->setting);
-  printf("%s = %s", label, text);
+    fprintf(out, "%s = %s: ", told->knob, told->setting);
+  fprintf(out, "%s = %s", label, text);
   for (size_t i = 0; i < count; i++) {
     const struct convergence_row *row = i == knob ? told : NULL;
     for (size_t l = 0; l < found[i].count && told->base; l++)
@@ -172,48 +175,49 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
         row = &found[i].rows[l];
     if (!found[i].adds || !row || row->n == 0)
       continue;
-    printf(", ");
-    print_distance(study->ladder[from + i].levels.knob, &found[i], row);
+    fprintf(out, ", ");
+    print_distance(study->ladder[from + i].levels.knob, &found[i], row, out);
   }
-  putchar('\n');
+  fputc('\n', out);
 }
 
 /* The law of a knob, which levels it leaves out and why, and why the knob has no more runs. */
-static void print_limit(const struct study_ladder *ladder, const struct study_found *found) {
+static void print_limit(const struct study_ladder *ladder, const struct study_found *found, FILE *out) {
   const struct convergence_limit_row *limit = &found->limit;
   const struct knob *knob = ladder->levels.knob;
   const char *before = "";
-  printf("%s: ", limit->knob);
+  fprintf(out, "%s: ", limit->knob);
   if (limit->verdict == LIMIT_SEEN)
-    printf("limit %.5g (%.5g to %.5g), order %.2g (%.2g to %.2g); ", limit->limit.value, limit->limit.low,
-           limit->limit.high, limit->order.value, limit->order.low, limit->order.high);
+    fprintf(out, "limit %.5g (%.5g to %.5g), order %.2g (%.2g to %.2g); ", limit->limit.value, limit->limit.low,
+            limit->limit.high, limit->order.value, limit->order.low, limit->order.high);
   else if (limit->verdict == LIMIT_NOT_SEEN) {
-    print_change(knob, found);
-    printf(": a law of order 0.5 to 2 would be this far from the three finest levels in %.2g of the cases; ",
-           limit->fit);
+    print_change(knob, found, out);
+    fprintf(out, ": a law of order 0.5 to 2 would be this far from the three finest levels in %.2g of the cases; ",
+            limit->fit);
   }
   int64_t dropped = limit->verdict == LIMIT_SEEN ? limit->dropped : 0;
   for (size_t l = 0; l < found->count && dropped > 0; l++)
     if (found->rows[l].n > 0) {
-      printf("%s%s", *before ? ", " : "the law leaves out ", found->rows[l].setting);
+      fprintf(out, "%s%s", *before ? ", " : "the law leaves out ", found->rows[l].setting);
       before = ",";
       dropped--;
     }
   if (*before)
-    printf(", as it fits all finer levels (%.2g) and not with the next one (%.2g); ", limit->fit, limit->fit_with);
-  printf("ended: %s", ladder->end);
+    fprintf(out, ", as it fits all finer levels (%.2g) and not with the next one (%.2g); ", limit->fit,
+            limit->fit_with);
+  fprintf(out, "ended: %s", ladder->end);
   before = "; without";
   for (size_t l = 0; l < found->count; l++)
     if (found->rows[l].n == 0) {
-      printf("%s %s", before, found->rows[l].setting);
+      fprintf(out, "%s %s", before, found->rows[l].setting);
       before = ",";
     }
-  putchar('\n');
+  fputc('\n', out);
 }
 
 /* Prints whether a cheaper level would save runs of a finer one. Levels that do not differ from the reference are
  * skipped, because the cheaper level can replace the reference. */
-static void print_gain(size_t count, const struct study_found *found) {
+static void print_gain(size_t count, const struct study_found *found, FILE *out) {
   const double worth_it = 1.5; /* below this gain the estimator is not worth its effort */
   const struct convergence_row *best = NULL;
   double most = 0;
@@ -227,13 +231,15 @@ static void print_gain(size_t count, const struct study_found *found) {
       }
     }
   if (!best)
-    puts("control variates: no level that differs from its reference has a known correlation with the next finer one");
+    fputs(
+        "control variates: no level that differs from its reference has a known correlation with the next finer one\n",
+        out);
   else
-    printf("control variates: %s; the best is %s = %s, gain %.2g with its next finer level (at least %.2g)\n",
-           most >= worth_it ? "a pair of levels would save time"
-                            : "no pair of levels is sure to gain 1.5, so that plain "
-                              "runs are the better use of time",
-           best->knob, best->setting, best->gain, most);
+    fprintf(out, "control variates: %s; the best is %s = %s, gain %.2g with its next finer level (at least %.2g)\n",
+            most >= worth_it ? "a pair of levels would save time"
+                             : "no pair of levels is sure to gain 1.5, so that plain "
+                               "runs are the better use of time",
+            best->knob, best->setting, best->gain, most);
 }
 
 static status print_quantity(const struct printing *printing, size_t from, size_t quantity, size_t count,
@@ -244,7 +250,15 @@ static status print_quantity(const struct printing *printing, size_t from, size_
   const bool named = unit && strcmp(unit, "1") != 0;
   if (from || quantity)
     putchar('\n');
-  print_sentence(study, from, quantity, count, found);
+  OWNED char *sentences = NULL;
+  size_t size;
+  FILE *out = text_open(&sentences, &size);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  print_sentence(study, from, quantity, count, found, out);
+  if (!text_close(out, &sentences))
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  text_wrap_lines(sentences, WIDTH, stdout);
   printf("%s, quantity %s%s%s%s\n", study->ladder[from].base->name, what->name, named ? " (" : "", named ? unit : "",
          named ? ")" : "");
   TABLE table = table_new(printing->format, stdout);
@@ -268,9 +282,17 @@ static status print_quantity(const struct printing *printing, size_t from, size_
       print_level(table, &found[i].rows[l], &doubts);
     }
   TRY(table_end(table, error));
+  free(sentences);
+  sentences = NULL;
+  out = text_open(&sentences, &size);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
   for (size_t i = 0; i < count; i++)
-    print_limit(&study->ladder[from + i], &found[i]);
-  print_gain(count, found);
+    print_limit(&study->ladder[from + i], &found[i], out);
+  print_gain(count, found, out);
+  if (!text_close(out, &sentences))
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  text_wrap_lines(sentences, WIDTH, stdout);
   return STATUS_OK;
 }
 
