@@ -10,6 +10,7 @@
 
 #include "engine/fragments.h"
 #include "schemas/field.h"
+#include "schemas/limits.h"
 #include "schemas/status.h"
 
 /* ---- samples ----
@@ -630,5 +631,47 @@ struct sensitivity_effect {             /* in units of y for the whole range of 
 /* step: signed change of the quantile at each step, step[block * inputs + i]; order as above. */
 status sensitivity_morris(const struct sensitivity_table *table, const size_t *order, const double *step,
                           struct sensitivity_effect *effect, struct error *error);
+
+/* First-order indices from any points: Latin hypercube, random, Sobol, lists, grids. An input is taken by the ranks of
+ * its values, so a logarithmic axis is like any other; the index is of the values as the points have them.
+ *
+ * The means of the points are fitted by a sum of polynomials, one of each input. What a polynomial leaves is found in
+ * the residuals, whose products are not 0 on average between neighbours along the input (as the estimator of Gamboa,
+ * Gremaud, Klein & Lagnoux 2022 takes the values themselves, doi 10.3150/21-BEJ1421; the fit takes off the scatter that
+ * other inputs make, which is most of the error there). The variance of the coefficients, by leaving points out, is
+ * taken off, and an estimate is moved into its interval: with few points it is rather too small than too large.
+ * Intervals: the law of an index is a gamma law with the variance that the influence of single points gives; points are
+ * independent, seeds of a point are not points. Coverage: tests/verification/sensitivity_points.md. */
+struct sensitivity_points {
+  size_t inputs, points; /* inputs: at most LIMITS_AXES_OF_POOL */
+  const double *x;       /* x[point * inputs + i]; of values without an order, their numbers */
+  const bool *named;     /* named[i]: its values have no order */
+  size_t most;           /* most runs of a point */
+  const size_t *runs;    /* of each point, at least one */
+  const double *value;   /* value[point * most + r] */
+  bool same_seeds;       /* every point has the same seeds, in the same order */
+};
+struct sensitivity_share {
+  double estimate, low, high; /* of the variance; the 95 % interval is within 0 and 1. NaN: not known */
+};
+struct sensitivity_point {
+  enum {
+    SENSITIVITY_TOLD,
+    SENSITIVITY_ONE_VALUE, /* the input does not vary */
+    SENSITIVITY_MOVES,     /* the other inputs, most of all `with`, tell its value: their effects cannot be separated */
+    SENSITIVITY_SAME,  /* its values have the order of those of `with`, whose index is that of both: linked inputs */
+    SENSITIVITY_STEPS, /* pairs of points differ in one input alone, as those of Saltelli: they are not independent
+                        */
+  } verdict;
+  size_t with;
+  struct sensitivity_share of_runs;  /* share of the variance of single runs, which has the scatter over seeds */
+  struct sensitivity_share of_means; /* of the variance of the means over seeds. NaN: one seed, or too few points */
+  size_t first_rank, last_rank;      /* by of_runs: an input with an interval that overlaps may be before or behind */
+};
+/* index: an array of inputs + 1, the last one for the seeds (NaN with one seed for each point). What is left of the
+ * whole is what inputs do together, and with one seed also the scatter over seeds. *needed: the least number of points
+ * for an answer; if there are fewer, index has only verdicts of one value. STATUS_USAGE: all means are equal. */
+status sensitivity_points(const struct sensitivity_points *given, struct sensitivity_point *index, size_t *needed,
+                          struct error *error);
 
 #endif

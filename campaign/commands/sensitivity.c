@@ -1,4 +1,5 @@
-/* `clast sensitivity`: writes a design for sensitivity indices, and computes the indices from a store. */
+/* `clast sensitivity`: which input matters, from any points of a store; and Sobol indices with totals, from a design
+ * that it writes. */
 #include "campaign/commands/commands.h"
 
 struct options {
@@ -8,6 +9,11 @@ struct options {
 
 static status write_design(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
+  if (line->count < 2)
+    return status_fail(error, STATUS_USAGE,
+                       "--design writes a campaign: clast sensitivity CAMPAIGN.yaml NEW.yaml "
+                       "--design %s",
+                       options->design);
   const bool morris = strcmp(options->design, "morris") == 0;
   if (!morris && strcmp(options->design, "saltelli") != 0)
     return status_fail(error, STATUS_USAGE, "--design is saltelli or morris, not '%s'", options->design);
@@ -25,7 +31,9 @@ static status write_design(const struct command_line *line, struct error *error)
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  return print_sensitivity(store, line->arguments[1], options->quantity, line->format, error);
+  const struct scatter_choice choice = {.quantity = options->quantity};
+  return line->count > 1 ? print_sensitivity(store, line->arguments[1], options->quantity, line->format, error)
+                         : print_sensitivity_points(store, &choice, line->format, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {
@@ -40,5 +48,5 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
 };
 
-COMMAND(sensitivity, "results", "STORE|CAMPAIGN.yaml NEW.yaml", .chooses_runs = true,
+COMMAND(sensitivity, "results", "STORE|CAMPAIGN.yaml [NEW.yaml]", .chooses_runs = true,
         COMMAND_OPTIONS(struct options, option_rows), .has_table = true, .run = run);

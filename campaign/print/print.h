@@ -60,6 +60,11 @@ status print_scatter_picture(struct store *store, const struct scatter_choice *c
 status print_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
                       struct error *error);
 
+/* Prints a sentence that answers, and a row for each input: first-order indices from the points of the store, of any
+ * design. STATUS_USAGE: no input varies, or no run has the result. */
+status print_sensitivity_points(struct store *store, const struct scatter_choice *choice, enum table_format format,
+                                struct error *error);
+
 /* campaign: path of the campaign whose runs are in the store. Prints a row for each input and one for the seed. Blocks
  * of the design that lack a point are left out and reported. STATUS_USAGE: the campaign's points are not such a design,
  * or the store lacks them. */

@@ -205,6 +205,12 @@ static int by_seed(const void *a, const void *b) {
   return p < q ? -1 : p > q;
 }
 
+static void release_cell(struct run_cells *cells, size_t c) {
+  free(cells->cell[c].run);
+  for (size_t a = 0; a < cells->axes; a++)
+    free(cells->cell[c].input[a]);
+}
+
 static status add_cell(struct run_cells *cells, const struct ask_pool *pool, struct error *error) {
   if (!grow_room(&cells->cell, &cells->room, cells->count + 1, sizeof *cells->cell))
     return status_fail(error, STATUS_MEMORY, "no memory for the runs of the points");
@@ -225,6 +231,10 @@ static status add_cell(struct run_cells *cells, const struct ask_pool *pool, str
   for (size_t r = 0; r < pool->data.runs.count; r++)
     if (isfinite(pool->value[r]))
       cell->run[cell->runs++] = (struct run_cells_run){pool->seed[r], pool->value[r]};
+  if (cell->runs == 0) { /* a point whose runs lack the result is none */
+    release_cell(cells, --cells->count);
+    return STATUS_OK;
+  }
   qsort(cell->run, cell->runs, sizeof *cell->run, by_seed);
   return STATUS_OK;
 }
@@ -239,11 +249,8 @@ static status run_cells_read(struct store *store, const struct ask_pool_choice *
 }
 
 static void run_cells_release(struct run_cells *cells) {
-  for (size_t c = 0; c < cells->count; c++) {
-    free(cells->cell[c].run);
-    for (size_t a = 0; a < cells->axes; a++)
-      free(cells->cell[c].input[a]);
-  }
+  for (size_t c = 0; c < cells->count; c++)
+    release_cell(cells, c);
   free(cells->cell);
 }
 #define RUN_CELLS __attribute__((cleanup(run_cells_release))) struct run_cells
@@ -344,20 +351,27 @@ static status print_parts(const struct run_cells *cells, const struct scatter_pa
   return table_end(table, error);
 }
 
-status print_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
-                      struct error *error) {
+/* Reads a cell for each set of the varied inputs, or of those that the choice names. */
+static status read_points(struct store *store, const struct scatter_choice *choice, struct run_cells *cells,
+                          struct error *error) {
   struct ask_column axis[LIMITS_AXES_OF_POOL];
-  RUN_CELLS cells = {0};
-  struct scatter_part parts[LIMITS_AXES_OF_POOL + SCATTER_PARTS];
   char by[LIMITS_AXES_OF_POOL * (sizeof axis[0].name + 1)] = "";
-  size_t axes = 0, runs = 0;
+  size_t axes = 0;
   struct ask_pool_choice pool = choice->pool;
   TRY(ask_columns_axes(store, false, LIMITS_AXES_OF_POOL, axis, &axes, error));
   for (size_t a = 0; a < axes; a++)
     text_append(by, sizeof by, "%s%s", a ? "," : "", axis[a].name);
   if (!pool.by)
     pool.by = by;
-  TRY(run_cells_read(store, &pool, choice->quantity, &cells, error));
+  return run_cells_read(store, &pool, choice->quantity, cells, error);
+}
+
+status print_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
+                      struct error *error) {
+  RUN_CELLS cells = {0};
+  struct scatter_part parts[LIMITS_AXES_OF_POOL + SCATTER_PARTS];
+  size_t runs = 0;
+  TRY(read_points(store, choice, &cells, error));
   TRY(split(&cells, parts, &runs, error));
   TRY(print_parts(&cells, parts, format, error));
   if (table_for_people(format)) {
@@ -371,6 +385,247 @@ status print_variance(struct store *store, const struct scatter_choice *choice, 
                                     "designs;"
                                   : ";");
   }
+  return STATUS_OK;
+}
+
+/* ---- first-order indices from any points ---- */
+
+struct from_points {
+  struct run_cells cells;
+  struct sensitivity_points data;
+  double *x, *value;
+  size_t *runs, needed;
+  bool named[LIMITS_AXES_OF_POOL];
+  struct sensitivity_point index[LIMITS_AXES_OF_POOL + 1];
+  size_t order[LIMITS_AXES_OF_POOL]; /* inputs by their shares, the largest first */
+  char column[ASK_GROUP_NAME];       /* of the result */
+};
+
+static void release_points(struct from_points *p) {
+  run_cells_release(&p->cells);
+  free(p->x);
+  free(p->value);
+  free(p->runs);
+}
+
+/* Values that are no numbers, such as names of materials and "off", have no order. */
+static status fill_inputs(struct from_points *p, struct error *error) {
+  const struct run_cells *cells = &p->cells;
+  OWNED uint32_t *level = NULL;
+  TRY(memory_array(&level, cells->count * cells->axes, sizeof *level, "the points", error));
+  TRY(memory_array(&p->x, cells->count * cells->axes, sizeof *p->x, "the points", error));
+  number_levels(cells, level);
+  for (size_t a = 0; a < cells->axes; a++) {
+    for (size_t c = 0; c < cells->count; c++) {
+      char *end;
+      p->x[c * cells->axes + a] = strtod(cells->cell[c].input[a], &end);
+      p->named[a] |= *end != '\0';
+    }
+    for (size_t c = 0; p->named[a] && c < cells->count; c++)
+      p->x[c * cells->axes + a] = level[c * cells->axes + a];
+  }
+  return STATUS_OK;
+}
+
+static status fill_runs(struct from_points *p, struct error *error) {
+  struct run_cells *cells = &p->cells;
+  const size_t count = cells->count;
+  size_t most = 0;
+  OWNED struct run_cell **all = NULL;
+  TRY(memory_array(&all, count, sizeof *all, "the points", error));
+  TRY(memory_array(&p->runs, count, sizeof *p->runs, "the points", error));
+  for (size_t c = 0; c < count; c++)
+    all[c] = &cells->cell[c];
+  p->data = (struct sensitivity_points){.inputs = cells->axes, .points = count, .runs = p->runs, .named = p->named};
+  run_cells_balance(count, all, &p->data.same_seeds);
+  for (size_t c = 0; c < count; c++)
+    most = cells->cell[c].runs > most ? cells->cell[c].runs : most;
+  TRY(memory_array(&p->value, count * most, sizeof *p->value, "the points", error));
+  for (size_t c = 0; c < count; c++) {
+    p->runs[c] = cells->cell[c].runs;
+    for (size_t r = 0; r < p->runs[c]; r++)
+      p->value[c * most + r] = cells->cell[c].run[r].value;
+  }
+  p->data.most = most;
+  p->data.value = p->value;
+  TRY(fill_inputs(p, error));
+  p->data.x = p->x;
+  return STATUS_OK;
+}
+
+static const struct sensitivity_share *share_of(const struct from_points *p, size_t input) {
+  const struct sensitivity_point *index = &p->index[input];
+  return isfinite(index->of_means.estimate) ? &index->of_means : &index->of_runs;
+}
+
+static void sort_inputs(struct from_points *p) {
+  for (size_t a = 0; a < p->cells.axes; a++) {
+    size_t at = a;
+    const double own = share_of(p, a)->estimate;
+    for (; at > 0 && (isnan(share_of(p, p->order[at - 1])->estimate) || own > share_of(p, p->order[at - 1])->estimate);
+         at--)
+      p->order[at] = p->order[at - 1];
+    p->order[at] = a;
+  }
+}
+
+static bool is_told(const struct from_points *p, size_t input) {
+  return isfinite(share_of(p, input)->estimate);
+}
+
+/* An input, and those that move with it like one. */
+static void append_input(const struct from_points *p, size_t a, char *text, size_t size) {
+  text_append(text, size, "%s", p->cells.column[a]);
+  for (size_t b = 0; b < p->cells.axes; b++)
+    if (p->index[b].verdict == SENSITIVITY_SAME && p->index[b].with == a)
+      text_append(text, size, " (with %s)", p->cells.column[b]);
+}
+
+/* Appends the inputs of one kind: "a, b and c". Returns their number. */
+enum listed { DO_NOTHING, AS_MUCH, ONE_VALUE, MOVING };
+static size_t list_inputs(const struct from_points *p, enum listed kind, char *text, size_t size) {
+  size_t member[LIMITS_AXES_OF_POOL], count = 0;
+  for (size_t i = 0; i < p->cells.axes; i++) {
+    const size_t a = p->order[i];
+    const enum listed own = p->index[a].verdict == SENSITIVITY_ONE_VALUE ? ONE_VALUE
+                            : p->index[a].verdict == SENSITIVITY_MOVES   ? MOVING
+                            : share_of(p, a)->low > 0                    ? AS_MUCH
+                                                                         : DO_NOTHING;
+    if (p->index[a].verdict != SENSITIVITY_SAME && own == kind &&
+        (kind != AS_MUCH || (i > 0 && p->index[a].first_rank == 1)) && (own > AS_MUCH || is_told(p, a)))
+      member[count++] = a;
+  }
+  for (size_t i = 0; i < count; i++) {
+    text_append(text, size, "%s", i == 0 ? "" : i + 1 < count ? ", " : " and ");
+    append_input(p, member[i], text, size);
+  }
+  return count;
+}
+
+/* The answer: what matters most, what may matter as much, and what cannot be told. */
+static void write_answer(const struct from_points *p) {
+  const size_t first = p->order[0];
+  const struct sensitivity_share *share = share_of(p, first);
+  char text[2048] = "";
+  if (p->index[0].verdict == SENSITIVITY_STEPS) {
+    puts("These points do not tell it: pairs of them differ in one input alone, as in a design of Saltelli or Morris. "
+         "Give\nits campaign, too: clast sensitivity STORE CAMPAIGN.yaml");
+    return;
+  }
+  if (p->data.points < p->needed) {
+    printf("%zu points are too few to tell which of %zu inputs matters: %zu would do.\n", p->data.points, p->cells.axes,
+           p->needed);
+    return;
+  }
+  if (is_told(p, first)) {
+    char others[1024] = "";
+    const bool certain = share->low > 0;
+    if (!certain)
+      text_append(text, sizeof text, "No input can be told from one that does nothing: ");
+    append_input(p, first, text, sizeof text);
+    text_append(text, sizeof text, certain ? " matters most" : " comes first");
+    text_append(text, sizeof text, ": alone it explains %.0f %% (%.0f to %.0f %%) of the variance of %s %s",
+                100 * fmax(share->estimate, 0), 100 * share->low, 100 * share->high, p->column,
+                share == &p->index[first].of_means ? "between points" : "of single runs");
+    if (certain && list_inputs(p, AS_MUCH, others, sizeof others))
+      text_append(text, sizeof text, "; %s may matter as much", others);
+    *others = '\0';
+    if (certain && list_inputs(p, DO_NOTHING, others, sizeof others))
+      text_append(text, sizeof text, "; %s cannot be told from 0", others);
+    text_append(text, sizeof text, ".");
+  }
+  for (enum listed kind = ONE_VALUE; kind <= MOVING; kind++) {
+    char others[1024] = "";
+    const size_t count = list_inputs(p, kind, others, sizeof others);
+    if (count)
+      text_append(text, sizeof text, "%s%s %s", *text ? " " : "", others,
+                  kind == MOVING ? "move together in these points: their effects cannot be told apart."
+                  : count > 1    ? "have one value each: nothing is known of them."
+                                 : "has one value: nothing is known of it.");
+  }
+  text_wrap(text, 0, 0, COLUMNS, stdout);
+}
+
+static void print_index(const struct from_points *p, size_t a, struct table *table) {
+  const struct sensitivity_point *index = &p->index[a];
+  const bool seeds = a == p->cells.axes;
+  const struct sensitivity_share *const share[] = {&index->of_means, &index->of_runs};
+  char text[ASK_GROUP_NAME + 64] = "";
+  table_text(table, seeds ? "seed" : p->cells.column[a]);
+  for (int s = 0; s < 2; s++) {
+    table_rests_on(table, &p->cells.doubts);
+    table_fixed(table, share[s]->estimate, 3);
+    table_fixed(table, share[s]->low, 3);
+    table_fixed(table, share[s]->high, 3);
+  }
+  if (is_told(p, a) && index->first_rank < index->last_rank)
+    text_append(text, sizeof text, "%zu to %zu", index->first_rank, index->last_rank);
+  else if (is_told(p, a) && !seeds)
+    text_append(text, sizeof text, "%zu", index->first_rank);
+  table_text(table, *text ? text : NULL);
+  *text = '\0';
+  if (index->verdict == SENSITIVITY_MOVES || index->verdict == SENSITIVITY_SAME)
+    text_append(text, sizeof text, index->verdict == SENSITIVITY_SAME ? "as %s" : "moves with %s",
+                p->cells.column[index->with]);
+  else if (index->verdict != SENSITIVITY_TOLD)
+    text_append(text, sizeof text, index->verdict == SENSITIVITY_STEPS ? "steps of one input" : "one value");
+  else if (!seeds && p->data.points < p->needed)
+    text_append(text, sizeof text, "too few points");
+  table_text(table, *text ? text : NULL);
+  table_doubt_cells(table, &p->cells.doubts);
+}
+
+static status print_indices(struct from_points *p, enum table_format format, struct error *error) {
+  TABLE table = table_new(format, stdout);
+  const bool several = p->data.most > 1;
+  table_column(table, "input", NULL);
+  for (int s = 0; s < 2; s++)
+    for (int c = 0; c < 3; c++) {
+      static const char *const names[2][3] = {{"of_means", "means_low", "means_high"},
+                                              {"of_runs", "runs_low", "runs_high"}};
+      table_column(table, names[s][c], NULL);
+      if (s == 0 ? !several : several && c > 0)
+        table_rare(table);
+    }
+  table_columns(table, (const char *const[]){"rank", "not_told", NULL});
+  table_doubt_columns(table);
+  for (size_t i = 0; i < p->cells.axes; i++)
+    print_index(p, p->order[i], table);
+  if (isfinite(p->index[p->cells.axes].of_runs.estimate))
+    print_index(p, p->cells.axes, table);
+  return table_end(table, error);
+}
+
+status print_sensitivity_points(struct store *store, const struct scatter_choice *choice, enum table_format format,
+                                struct error *error) {
+  __attribute__((cleanup(release_points))) struct from_points p = {0};
+  TRY(ask_group_quantity(store, choice->quantity, p.column, error));
+  TRY(read_points(store, choice, &p.cells, error));
+  if (p.cells.axes == 0 || p.cells.count == 0)
+    return status_fail(error, STATUS_USAGE,
+                       p.cells.count ? "no input varies between the points" : "no finished run has a value of %s",
+                       choice->quantity);
+  TRY(fill_runs(&p, error));
+  TRY(sensitivity_points(&p.data, p.index, &p.needed, error));
+  if (p.data.points < p.needed || p.index[0].verdict == SENSITIVITY_STEPS) /* no numbers */
+    for (size_t a = 0; a <= p.cells.axes; a++)
+      p.index[a].of_means = p.index[a].of_runs = (struct sensitivity_share){NAN, NAN, NAN};
+  sort_inputs(&p);
+  if (table_for_people(format))
+    write_answer(&p);
+  TRY(print_indices(&p, format, error));
+  if (!table_for_people(format))
+    return STATUS_OK;
+  fprintf(stderr,
+          "clast: shares of the variance that an input explains alone, with 95 %% intervals, of %zu points%s; what the "
+          "shares leave is of inputs together%s. rank: inputs with overlapping intervals share it. Four times the "
+          "points halve the intervals\n",
+          p.data.points,
+          p.data.most > 1 ? ". of_means: variance of the means over seeds; of_runs: of single runs, with their scatter "
+                            "over seeds"
+                          : " with one seed each",
+          p.data.most > 1 ? "" : " and of the scatter over seeds");
+  uncertainty_doubts(&p.cells.doubts, stderr);
   return STATUS_OK;
 }
 

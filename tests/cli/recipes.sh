@@ -18,11 +18,12 @@ while IFS= read -r line; do
   count=$((count + 1))
   case $line in
     "clast run discs.yaml") [ "$count" -gt 1 ] || { cp discs.db first.db; python recipe.py >out || fail "the program of the page"; } ;;
+    "clast sensitivity which.db") grep -q '^charge_energy matters most: alone it explains 5. % (' out || fail "another answer" ;;
     *fields_path*) grep -q 'discs' out || fail "no fields were kept" ;;
     *--snapshots*) [ -s disc-explosion.hdf.series ] || fail "no series for ParaView" ;;
   esac
 done <commands
-same "$count" 13 "commands that work"
+same "$count" 15 "commands that work"
 same "$(number discs.db 'select count(*) from runs where counts')" 18 "runs of the extended campaign"
 same "$(sqlite3 discs.db "attach 'first.db' as f; select count(*) from f.run a join main.run b on a.identity = b.identity and a.digest = b.digest")" \
   8 "old runs kept their bits"

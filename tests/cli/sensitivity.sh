@@ -67,6 +67,50 @@ assert [r['input'] for r in rows] == ['threshold.strain', 'threshold.angle']
 assert all(r['mean_absolute'] >= abs(r['mean']) >= 0 and r['noise'] > 0 for r in rows), rows"
 ok "elementary effects"
 
+# ---- any points: a Latin hypercube with a linked axis, and what cannot be told
+cat >latin.yaml <<'YAML'
+name: latin
+scene: disc-explosion
+set: {body.diameter: 8 cm, stop.end_time: 0.3 ms, contact.tangential_damping: 1e4 1/s}
+vary:
+  threshold.strain: {log_uniform: [1 %, 6 %]}
+  charge.energy: {log_uniform: [0.5 kJ/m, 4 kJ/m]}
+  contact.friction: {uniform: [0, 0.8]}
+  grain.young_modulus: {uniform: [0.9 GPa, 1.1 GPa]}
+  beam.young_modulus: {linked: grain.young_modulus, factor: 0.5}
+design: {kind: latin_hypercube, points: 40}
+seeds: {per_point: 2}
+YAML
+expect 0 "$clast" run latin.yaml -j 2 --quiet
+expect 0 "$clast" sensitivity latin.db
+prints "matters most: alone it explains"
+prints "between points"
+[ "$(wc -L <out)" -le 100 ] || fail "a line of more than 100 columns"
+expect 0 "$clast" sensitivity latin.db -Q fragment_count --csv
+python - <<'PY'
+import csv
+rows = {r["input"]: r for r in csv.DictReader(open("out"))}
+assert len(rows) == 6 and list(rows)[-1] == "seed", rows
+assert [n for n, r in rows.items() if r["not_told"]] == ["grain_young_modulus"], rows
+assert rows["grain_young_modulus"]["not_told"] == "as beam_young_modulus"
+for name, r in rows.items():
+    if not r["not_told"]:
+        low, high = float(r["runs_low"]), float(r["runs_high"])
+        assert 0 <= low <= high <= 1, r
+told = [float(r["of_means"]) for r in rows.values() if r["of_means"]]
+assert told == sorted(told, reverse=True) and len(told) == 4, told
+assert float(rows["threshold_strain"]["of_means"]) > 0.2 and float(rows["contact_friction"]["means_low"]) < 0.1
+PY
+ok "first-order indices from any points"
+expect 0 "$clast" sensitivity latin.db --where 'threshold_strain < 0.015'
+prints "points are too few to tell which of 5 inputs matters: 15 would do."
+expect 0 "$clast" sensitivity latin.db --campaign latin --json
+python -c "import json; assert len(json.load(open('out'))) == 6"
+expect 64 "$clast" sensitivity latin.db -Q nothing
+expect 64 "$clast" sensitivity sweep.yaml --design morris
+says "--design writes a campaign"
+ok "what these points cannot tell"
+
 expect 64 "$clast" sensitivity ask.db sweep.yaml
 says "are no design for sensitivity indices"
 expect 64 "$clast" sensitivity sweep.yaml new.yaml --design grid
@@ -75,4 +119,4 @@ expect 65 "$clast" sensitivity ask.yaml new.yaml --design morris
 says "expected the key vary"
 expect 66 "$clast" sensitivity none.db ask.yaml
 [ ! -e new.yaml ] && [ ! -e new.csv ] || fail "a file of a refused design"
-done_after 23
+done_after 32
