@@ -85,8 +85,8 @@ static status play_farm(struct play *play, struct scheduler *scheduler, struct e
     }
     int pick = play->order ? (int)(random_draw(play->order, RANDOM_RESAMPLE, turn, 0) * count) : 0;
     uint64_t seed = 0;
-    /* mark, name, seed: see run.c */
-    memcpy(&seed, out[pick].bytes + 8 + 12 + 8 + 3, sizeof seed);
+    /* mark, name, length of the definition, seed: see run.c */
+    memcpy(&seed, out[pick].bytes + 8 + 12 + 8 + 3 + 8, sizeof seed);
     enum play_fate fate = play->fate ? play->fate(seed, 0) : PLAY_RUN;
     struct farm_report report =
         {.id = out[pick].task.id, .ending = FARM_DONE, .wall_s = 0.01, .cpu_s = 0.01, .host = "here", .message = ""};

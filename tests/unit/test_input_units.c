@@ -53,7 +53,8 @@ static void inputs_with_a_unit_refuse_bare_numbers(void **state) {
         refuses_bare_numbers(&inputs->rows[i]);
         tried++;
       }
-    assert_true(tried >= 10); /* otherwise the loop tests nothing */
+    assert_true(tried >= 10 ||
+                engine_at(e)->of_scene); /* otherwise the loop tests nothing; scenes name the inputs of a command */
   }
 }
 
