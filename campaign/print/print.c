@@ -113,6 +113,14 @@ static void answer(const char *name, double value, enum condition_mark mark, con
   printf("%-14s %-10s %s\n", name, text, says);
 }
 
+/* Has the result at this offset no meaning in this run? */
+static bool is_withheld(const struct engine_kind *kind, const char *warnings, size_t offset) {
+  for (size_t i = 0; i < kind->results->count; i++)
+    if (kind->results->rows[i].offset == offset)
+      return condition_mark(kind->conditions, warnings, kind->results->rows[i].path) == CONDITION_WITHHELD;
+  return false;
+}
+
 /* What most people want of a run, in six lines; with what the engine tells in seven. */
 static void print_answers(const struct scene *scene, int64_t seed, const struct run_result *result) {
   const struct outcome *o = &result->outcome;
@@ -133,7 +141,8 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
     answer(headline, value.number, condition_mark(conditions, o->warnings, headline), says);
   }
   char told[160];
-  if (scene->kind->tell && scene->kind->tell(result->result, told, sizeof told))
+  if (scene->kind->tell && !is_withheld(scene->kind, o->warnings, scene->kind->tells) &&
+      scene->kind->tell(result->result, told, sizeof told))
     puts(told);
   answer("M_1/M", o->largest_fraction, condition_mark(conditions, o->warnings, OUTCOME_NAME(largest_fraction)),
          "mass of the largest fragment over the total mass");

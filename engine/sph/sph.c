@@ -104,6 +104,7 @@ const struct engine_kind sph_engine = {
     .headline = headline,
     .describe = sph_describe_scene,
     .tell = sph_results_tell,
+    .tells = offsetof(struct sph_results, crater.depth),
     .memory = sph_describe_memory,
     .work = sph_describe_work,
     .threads = threads,
