@@ -104,10 +104,8 @@ struct engine_kind {
   /* What is modelled, memory, expected cost: text for `clast explain scene` and `plan`. `all`: also why, with sources.
    * malloc'd. */
   char *(*describe)(const void *inputs, bool all);
-  /* A line about what else a run is made for, in columns of 15 and 11 letters: "crater         0.02 m     deep, ...".
-   * False, or NULL: nothing. */
-  bool (*tell)(const void *results, char *text, size_t size);
-  size_t tells;                         /* offset of the result that the line is about: withheld, there is no line */
+  const size_t *also; /* offsets of results that `simulate` shows beside the headline where they are above 0 */
+  size_t also_count;
   size_t (*memory)(const void *inputs); /* bytes a run will need, before anything is allocated */
   double (*work)(const void *inputs); /* a-priori cost in arbitrary units (grain- or particle-steps), for scheduling */
   int64_t *(*threads)(void *inputs);  /* the input that says how many threads one run takes. NULL: always one */

@@ -344,7 +344,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   largest_speed REAL, -- [m/s] Speed of the largest fragment's centre of mass. Off when that has fewer than 100 particles.
   second_mass REAL, -- [kg] Mass of the second largest fragment; off when there is only one.
   second_angle REAL, -- [rad] Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.
-  ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target that moves outwards faster than crater.ejection_speed.
+  ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target leaving faster than crater.ejection_speed.
   ejecta_momentum REAL, -- [kg m/s] Impact: momentum of the ejecta along the outward normal.
   ejecta_momentum_enhancement REAL, -- [1] Impact: 1 plus the momentum of the ejecta over that of the projectile, both along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.
   crater_depth REAL, -- [m] Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.
@@ -1213,7 +1213,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'crater_volume', 'm^3', 'Impact: vo
 
 INSERT INTO column_doc VALUES ('result_sph', 'density_held_share', '1', 'Share of all particle steps that held the density at its lower limit. Such a step adds no energy.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target that moves outwards faster than crater.ejection_speed.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target leaving faster than crater.ejection_speed.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of the ejecta along the outward normal.', 1);
 
@@ -1449,7 +1449,7 @@ INSERT INTO column_doc VALUES ('runs', 'density_held_share', '1', 'Share of all 
 
 INSERT INTO column_doc VALUES ('runs', 'dust_fraction', '1', 'Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target that moves outwards faster than crater.ejection_speed.', 0);
+INSERT INTO column_doc VALUES ('runs', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target leaving faster than crater.ejection_speed.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of the ejecta along the outward normal.', 0);
 

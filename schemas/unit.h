@@ -21,8 +21,8 @@ struct unit {
 
 /* Grammar: names joined by space, '*', '.', '/' with integer powers '^n' or '**n'; parentheses; SI prefixes, and
  * Ki Mi Gi Ti for bytes (B). "1" and "%" are dimensionless. A '/' may come first ("/m^3"); typeset dots, minus signs
- * and powers ("m⁻³") are known. A product behind a '/' needs parentheses: "J/(kg K)". STATUS_CONTENT with the nearest
- * known unit on a bad name. */
+ * and powers ("m⁻³") are known. A product behind a '/' needs parentheses: "J/(kg K)". STATUS_CONTENT with the
+ * nearest known unit on a bad name. */
 status unit_parse(const char *text, struct unit *unit, struct error *error);
 bool unit_same_dimension(const struct unit *a, const struct unit *b);
 

@@ -26,8 +26,8 @@ struct chart_options {
 /* A page of the usual width. */
 struct picture_page charts_page(const char *path, const struct chart_options *options);
 
-/* The name of a column of the views by its row: "mass share of the largest fragment M₁/M"; of an exponent "exponent β
- * of F(m)". Without a row: the words of the column. */
+/* The name of a column of the views by its row: "mass share of the largest fragment M₁/M"; of an exponent
+ * "exponent β of F(m)". Without a row: the words of the column. */
 enum { CHARTS_LABEL = 300 };
 void charts_label(const char *column, char label[CHARTS_LABEL]);
 /* The same with the unit in the store: "impact speed (m/s)". */

@@ -410,8 +410,7 @@ static status explain_scene(const struct scene *scene, enum table_format format,
   if (!description || !doubt || !text_close(doubt, &doubts))
     return status_fail(error, STATUS_MEMORY, "out of memory");
   printf("%s, engine %s\n", scene->name, scene->kind->name);
-  OWNED char *shown = text_people(description);
-  text_wrap_lines(shown ? shown : description, WIDTH, stdout);
+  text_wrap_lines(description, WIDTH, stdout);
   text_wrap_lines(doubts, WIDTH, stdout);
   putchar('\n');
   TRY(print_inputs(scene, all, error));

@@ -113,15 +113,32 @@ static void answer(const char *name, double value, enum condition_mark mark, con
   printf("%-14s %-10s %s\n", name, text, says);
 }
 
-/* Has the result at this offset no meaning in this run? */
-static bool is_withheld(const struct engine_kind *kind, const char *warnings, size_t offset) {
-  for (size_t i = 0; i < kind->results->count; i++)
-    if (kind->results->rows[i].offset == offset)
-      return condition_mark(kind->conditions, warnings, kind->results->rows[i].path) == CONDITION_WITHHELD;
-  return false;
+/* A result of the engine, with the mark of this run. */
+static void answer_result(const struct engine_kind *kind, const struct run_result *result, const struct field *row) {
+  struct field_value value;
+  field_get(row, result->result, &value);
+  char says[256];
+  const bool plain = !row->unit || strcmp(row->unit, "1") == 0;
+  snprintf(says, sizeof says, "%s%s", plain ? "" : row->unit, plain ? "" : "; ");
+  const char *of = strstr(row->doc, ": "); /* "Piston: mean pressure" */
+  text_sentence(of ? of + 2 : row->doc, says + strlen(says), sizeof says - strlen(says));
+  answer(row->path, value.number, condition_mark(kind->conditions, result->outcome.warnings, row->path), says);
 }
 
-/* What most people want of a run, in six lines; with what the engine tells in seven. */
+/* What else such a run is made for: a crater, where there is one. */
+static void answer_also(const struct engine_kind *kind, const struct run_result *result) {
+  for (size_t i = 0; i < kind->also_count; i++)
+    for (size_t k = 0; k < kind->results->count; k++) {
+      const struct field *row = &kind->results->rows[k];
+      struct field_value value;
+      field_get(row, result->result, &value);
+      if (row->offset == kind->also[i] && value.number > 0 &&
+          condition_mark(kind->conditions, result->outcome.warnings, row->path) != CONDITION_WITHHELD)
+        answer_result(kind, result, row);
+    }
+}
+
+/* What most people want of a run, in six lines, and what else the scene is made for. */
 static void print_answers(const struct scene *scene, int64_t seed, const struct run_result *result) {
   const struct outcome *o = &result->outcome;
   const struct condition *conditions = scene->kind->conditions;
@@ -132,18 +149,8 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
          (long long)o->steps);
   const char *headline = scene_headline(scene);
   const struct field *row = field_find(scene->kind->results, headline, NULL);
-  if (row) {
-    struct field_value value;
-    field_get(row, result->result, &value);
-    snprintf(says, sizeof says, "%s; ", row->unit ? row->unit : "1");
-    const char *kind = strstr(row->doc, ": "); /* "Piston: mean pressure" */
-    text_sentence(kind ? kind + 2 : row->doc, says + strlen(says), sizeof says - strlen(says));
-    answer(headline, value.number, condition_mark(conditions, o->warnings, headline), says);
-  }
-  char told[160];
-  if (scene->kind->tell && !is_withheld(scene->kind, o->warnings, scene->kind->tells) &&
-      scene->kind->tell(result->result, told, sizeof told))
-    puts(told);
+  if (row)
+    answer_result(scene->kind, result, row);
   answer("M_1/M", o->largest_fraction, condition_mark(conditions, o->warnings, OUTCOME_NAME(largest_fraction)),
          "mass of the largest fragment over the total mass");
   snprintf(says, sizeof says, "%lld of one grain or particle; the spectrum is complete from %.3g %s on",
@@ -164,6 +171,7 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
          condition_mark(conditions, o->warnings, OUTCOME_NAME(mean_fragment_mass)), says);
   answer("energy error", o->energy_error, CONDITION_SOUND, "of the energy put in, by numerical errors");
   printf("in doubt (!)   %s\n", *o->warnings ? o->warnings : "nothing");
+  answer_also(scene->kind, result);
 }
 
 static status print_long(const struct engine_kind *kind, const struct run_result *result, enum table_format format,

@@ -458,7 +458,7 @@ static void print_times(const struct plan *plan, int slots, FILE *out) {
   fprintf(out, " (%s of processor time)\n", a);
 }
 
-static void print_plan(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
+void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
   char a[64], b[64];
   print_design(campaign, plan, out);
   campaign_warn(campaign, "warning   ", out);
@@ -481,20 +481,8 @@ static void print_plan(const struct campaign *campaign, const struct plan *plan,
 
   if (plan->model) {
     fputc('\n', out);
-    OWNED char *model = text_people(plan->model);
-    text_wrap_lines(model ? model : plan->model, 100, out);
+    text_wrap_lines(plan->model, 100, out);
   }
-}
-
-void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
-  char *text = NULL;
-  size_t size = 0;
-  FILE *made = text_open(&text, &size);
-  if (made)
-    print_plan(campaign, plan, slots, made);
-  OWNED char *shown = made && text_close(made, &text) ? text_people(text) : NULL;
-  fputs(shown ? shown : "", out);
-  free(text);
 }
 
 static void number(FILE *out, const char *name, double value) {

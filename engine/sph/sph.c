@@ -31,6 +31,9 @@ static status load_system(void *run, const void *bytes, size_t size, struct erro
   return status_fail(error, code, "%s", r->system->failure);
 }
 
+static const size_t crater[] = {offsetof(struct sph_results, crater.depth), offsetof(struct sph_results, crater.radius),
+                                offsetof(struct sph_results, ejecta.mass_fraction)};
+
 static const struct knob knobs[] = {
     KNOB("particles", RESOLUTION, .inputs = {{"fidelity.particles", 1}}, KNOB_THIRDS, .step_power = -1.0 / 3,
          .meaning = "number of particles of the target; the projectile's spacing follows"),
@@ -103,8 +106,8 @@ const struct engine_kind sph_engine = {
     .conditions = sph_conditions,
     .headline = headline,
     .describe = sph_describe_scene,
-    .tell = sph_results_tell,
-    .tells = offsetof(struct sph_results, crater.depth),
+    .also = crater,
+    .also_count = sizeof crater / sizeof *crater,
     .memory = sph_describe_memory,
     .work = sph_describe_work,
     .threads = threads,

@@ -123,18 +123,6 @@ static void compacted(void **state) {
 }
 
 /* A ball that is ejected completely: its crater is the ball, without the space below it. */
-static void told(void **state) {
-  (void)state;
-  char text[120] = "";
-  struct sph_results r = {.crater = {.depth = 0}};
-  assert_false(sph_results_tell(&r, text, sizeof text));
-  r.crater.depth = 0.02;
-  r.crater.radius = 0.03;
-  r.ejecta.mass_fraction = 0.01;
-  assert_true(sph_results_tell(&r, text, sizeof text));
-  assert_string_equal(text, "crater         0.02 m     deep, radius 0.03 m; ejecta: 0.01 of the target's mass");
-}
-
 static void nothing_left(void **state) {
   (void)state;
   struct sph_particles *start = slab(), *now = slab();
@@ -173,8 +161,8 @@ static void hardly_porous(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(untouched),     cmocka_unit_test(thrown_out),
-                                     cmocka_unit_test(told),          cmocka_unit_test(nothing_left),
-                                     cmocka_unit_test(hardly_porous), cmocka_unit_test(compacted)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(untouched), cmocka_unit_test(thrown_out),
+                                     cmocka_unit_test(nothing_left), cmocka_unit_test(hardly_porous),
+                                     cmocka_unit_test(compacted)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

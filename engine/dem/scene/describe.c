@@ -5,6 +5,7 @@
 
 #include "engine/dem/run/run.h"
 #include "engine/dem/step/system_layout.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum { MEASURED_UP_TO = 20000 }; /* grains; larger bodies are not built for a description */
@@ -157,7 +158,8 @@ char *dem_describe_scene(const void *inputs, bool all) {
   else
     body(in, out);
   fprintf(out, "  at most %.3g steps of %.3g grains\n", dem_inputs_end_time(in) / in->fidelity.time_step, grains);
-  return text_close(out, &text);
+  OWNED char *plain = text_close(out, &text);
+  return plain ? text_people(plain) : NULL;
 }
 
 double dem_describe_stable_step(const struct dem_inputs *in) {

@@ -169,7 +169,7 @@ static const struct sph_module elastic_module = {
 #ifdef SPH_MODULE_MATERIAL_ROWS
 MATERIAL_REAL(bulk_modulus, elastic.bulk_modulus, "Pa", NAN, 1, 1e15, .flags = FIELD_MAY_BE_OFF,
               .when = "../strength=true",
-              .doc = "K where Young's modulus and the speed of cracks are made from it. off: tillotson.A.",
+              .doc = "K for Young's modulus and the speed of cracks; waves follow tillotson.A. off: tillotson.A.",
               .source = "Benz & Asphaug 1995, eq. 21"),
     MATERIAL_REAL(shear_modulus, elastic.shear_modulus, "Pa", NAN, 1, 1e15, .flags = FIELD_MAY_BE_OFF,
                   .when = "../strength=true", .doc = "mu: shear modulus.", .source = "Benz & Asphaug 1995, eq. 6"),

@@ -55,8 +55,7 @@ static const struct field rows[] = {
          .doc = "Impact: angle between the directions from the centre of mass to the point of impact and to the second "
                 "largest fragment. pi is the antipode. Off when that has fewer than 100 particles.",
          .source = "BA95 section 5.2"),
-    SHARE(ejecta.mass_fraction,
-          .doc = "Impact: mass share of the target that moves outwards faster than crater.ejection_speed.",
+    SHARE(ejecta.mass_fraction, .doc = "Impact: mass share of the target leaving faster than crater.ejection_speed.",
           .source = "Jutzi & Benz, section 3"),
     REAL(ejecta.momentum, "kg m/s", 0, .doc = "Impact: momentum of the ejecta along the outward normal."),
     REAL(ejecta.momentum_enhancement, "1", 1,
@@ -132,17 +131,6 @@ static const struct field_table nested = FIELD_TABLE(rows, struct sph_results, "
                                                      "Results of engine sph beside the common outcome.");
 struct field_table sph_results;
 FIELD_TABLE_AT_START(sph_results, nested)
-
-bool sph_results_tell(const void *results, char *text, size_t size) {
-  const struct sph_results *r = results;
-  char depth[32];
-  if (!(r->crater.depth > 0))
-    return false;
-  snprintf(depth, sizeof depth, "%.3g m", r->crater.depth);
-  snprintf(text, size, "%-14s %-10s deep, radius %.3g m; ejecta: %.3g of the target's mass", "crater", depth,
-           r->crater.radius, r->ejecta.mass_fraction);
-  return true;
-}
 
 double sph_results_finite(double value) {
   return isfinite(value) ? value : (double)NAN;

@@ -56,9 +56,6 @@ struct sph_results {
 
 extern struct field_table sph_results; /* constant once main() begins */
 
-/* The crater, if there is one, and what it threw out. */
-bool sph_results_tell(const void *results, char *text, size_t size);
-
 /* A result that is not finite is off (NaN). */
 double sph_results_finite(double value);
 /* part / whole; off when the whole is not above 0. The value is not clamped: a share outside of 0..1 is an error of the

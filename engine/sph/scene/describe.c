@@ -10,6 +10,7 @@
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 /* Memory beside the moving system: per particle (particles as set up and as read back, and fragments at the end; the
@@ -247,5 +248,6 @@ char *sph_describe_scene(const void *inputs, bool all) {
           : seconds < 6000 ? "minutes"
                            : "hours",
           speed);
-  return text_close(out, &text);
+  OWNED char *plain = text_close(out, &text);
+  return plain ? text_people(plain) : NULL;
 }
