@@ -43,7 +43,7 @@ static void rows_are_well_formed(void **state) {
           fail_msg("%s, %s: %s is no result", kind->name, c->word, path);
       assert_true(!c->withheld || c->results); /* a run without any result would be no run */
       for (const struct condition *other = c + 1; other->word; other++)
-        if (strcmp(other->word, c->word) == 0 && other != c + 1)
+        if (strcmp(other->word, c->word) == 0 && strcmp(other[-1].word, c->word) != 0)
           fail_msg("rows of %s do not stand together", c->word);
     }
     assert_true(count <= 64);
@@ -174,6 +174,12 @@ static const struct twin {
      {"fidelity.particles=700", "fidelity.fine_spacing=15 mm", "fidelity.fine_radius=10 mm", "impact.gap=0.1 mm",
       "stop.end_time=0.1 us", "fidelity.projectile_spacing=0.1"},
      {"target.lattice=cubic"},
+     {NULL}},
+    {"effect",
+     "gabbro-crater",
+     {"fidelity.particles=700", "fidelity.fine_spacing=15 mm", "fidelity.fine_radius=10 mm", "impact.gap=0.1 mm",
+      "stop.end_time=0.1 us", "fidelity.projectile_spacing=0.1"},
+     {"fidelity.spacings_per_radius=0.2"},
      {NULL}},
     {"turn",
      "disruption",

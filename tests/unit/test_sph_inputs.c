@@ -264,6 +264,7 @@ static void what_cannot_be_run_is_refused(void **state) {
   refused("{kind: collision, target: {shape: cylinder, radius: 1 cm}, fidelity: {particles: 2e9}}",
           "lower fidelity.particles or target.length");
   refused("fidelity: {graded: true, fine_spacing: 1 cm}", "fine_spacing");
+  refused("fidelity: {graded: true, spacings_per_radius: 0.9}", "spacings_per_radius");
   accepted("impact: {speed: 0}");
   accepted("impact: {speed: 70 km/s}");
   accepted("target: {radius: 1e-6 m}\nprojectile: {radius: 1e-7 m}");
@@ -284,6 +285,12 @@ static void sizes_follow(void **state) {
   double mass = 4.0 / 3 * M_PI * 2.7e-5 * 2700;
   assert_true(fabs(sph_derived_projectile_mass(&in) / (2 * 3000 * mass / (3200.0 * 3200)) - 1) < 1e-12);
   assert_true(fabs(sph_derived_specific_energy(&in) / 3000 - 1) < 1e-12);
+  in = good("impact: {projectile: mass, mass: 0.2 g}\nfidelity: {graded: true, spacings_per_radius: 6}");
+  assert_true(fabs(6 * in.fidelity.fine_spacing / cbrt(3 * 2e-4 / (4 * M_PI * 1185)) - 1) < 1e-12); /* nylon */
+  assert_true(in.fidelity.fine_radius == 4 * in.fidelity.fine_spacing);
+  in = good(
+      "impact: {projectile: mass, mass: 0.2 g}\nfidelity: {graded: true, spacings_per_radius: 6, fine_spacing: 1 mm}");
+  assert_true(in.fidelity.fine_spacing == 1e-3);
   /* weakest flaw of kV = 5e34 x 1.131e-4 at m = 8.5: E Gamma(1 + 1/8.5) (kV)^(-1/8.5) */
   assert_true(fabs(in.fragments.static_strength / (53.06e9 * tgamma(1 + 1 / 8.5) * pow(5e34 * mass / 2700, -1 / 8.5)) -
                    1) < 1e-4);

@@ -70,9 +70,7 @@ static double spacings(const void *inputs) {
   const struct sph_inputs *in = inputs;
   if (!sph_derived_has_projectile(in))
     return NAN;
-  const struct sph_shape projectile = sph_derived_projectile(in);
-  return cbrt(3 * sph_shape_volume(&projectile) / (4 * M_PI)) /
-         (sph_derived_fine_spacing(in) * fmax(1, in->fidelity.projectile_spacing));
+  return sph_derived_projectile_radius(in) / (sph_derived_fine_spacing(in) * fmax(1, in->fidelity.projectile_spacing));
 }
 
 static double wall(const struct sph_body_inputs *body) {
@@ -368,6 +366,13 @@ static double no_lattice(const void *inputs) {
   return in->kind == SPH_IMPACT && in->fidelity.graded && in->target.lattice == SPH_LATTICE_CUBIC;
 }
 
+static double no_say(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  const double spacings = in->fidelity.spacings_per_radius;
+  return in->kind == SPH_IMPACT && in->fidelity.graded && sph_derived_has_projectile(in) && spacings > 0 &&
+         fabs(in->fidelity.fine_spacing * spacings / sph_derived_projectile_radius(in) - 1) > 1e-9;
+}
+
 /* ---- materials ---- */
 
 static double body_moduli(const struct sph_body_inputs *body) {
@@ -477,7 +482,7 @@ const struct condition sph_conditions[] = {
         .doubt = "the shock of the impact is not resolved, and all that follows from it moves with the particles",
         .reason =
             "benchmarks of impact codes ask for 10 to 20 (Pierazzo and others 2008, Meteorit. Planet. Sci. 43, 1917)",
-        .remedy = "take more particles, or fidelity.graded: true with a fidelity.fine_spacing of a tenth of the radius",
+        .remedy = "take more particles, or fidelity: {graded: true, spacings_per_radius: 5, projectile_spacing: 1}",
         .results = ALL_OF_AN_IMPACT, .before = spacings),
     CONDITION("wall", .number = "the number of particle spacings through the wall of colliding rings or cylinders",
               .bound = 4, .least = true,
@@ -593,6 +598,9 @@ const struct condition sph_conditions[] = {
     CONDITION("effect", .number = "target.lattice: cubic with fidelity.graded", .bound = 0,
               .doubt = "it has no effect: a graded body has irregular points", .reason = "engine/sph/README.md",
               .remedy = "leave it out", .results = "", .before = no_lattice),
+    CONDITION("effect", .number = "fidelity.spacings_per_radius beside another fidelity.fine_spacing", .bound = 0,
+              .doubt = "it has no effect: fidelity.fine_spacing decides", .reason = "engine/sph/README.md",
+              .remedy = "leave one of them out", .results = "", .before = no_say),
     CONDITION("moduli", .number = "the ratio of material.bulk_modulus and material.tillotson.A", .bound = 1.2,
               .doubt = "waves are as fast as tillotson.A makes them, cracks as bulk_modulus does",
               .reason = "at 1.2 the wave speeds of the two differ by 5 % in a rock of Poisson's ratio 0.25",

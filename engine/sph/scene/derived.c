@@ -102,6 +102,11 @@ struct sph_shape sph_derived_projectile(const struct sph_inputs *in) {
                             .radius = cbrt(3 * mass / (4 * M_PI * sph_derived_density(&in->projectile)))};
 }
 
+double sph_derived_projectile_radius(const struct sph_inputs *in) {
+  const struct sph_shape projectile = sph_derived_projectile(in);
+  return cbrt(3 * sph_shape_volume(&projectile) / (4 * M_PI));
+}
+
 struct sph_shape sph_derived_piston(const struct sph_inputs *in) {
   struct sph_shape shape = sph_derived_target(in);
   shape.side[0] = PISTON_LAYERS * sph_derived_spacing(in);

@@ -22,7 +22,8 @@ double sph_derived_shortest_side(const struct sph_body_inputs *body); /* m, of a
 /* Outlines of target and projectile (of the size that impact.projectile selects), both at the origin. */
 struct sph_shape sph_derived_target(const struct sph_inputs *inputs);
 struct sph_shape sph_derived_projectile(const struct sph_inputs *inputs);
-struct sph_shape sph_derived_piston(const struct sph_inputs *inputs); /* outline of the piston, at the origin */
+double sph_derived_projectile_radius(const struct sph_inputs *inputs); /* m, of the sphere of its volume */
+struct sph_shape sph_derived_piston(const struct sph_inputs *inputs);  /* outline of the piston, at the origin */
 /* Thickness, m, of a body that repeats along y or z (direction 1 or 2): whole periods of the target's lattice, not less
  * than `at_least`, and thick enough that no particle meets its own image. */
 double sph_derived_thickness(const struct sph_inputs *inputs, int direction, double at_least);

@@ -247,8 +247,13 @@ static const struct field rows[] = {
     REAL(fidelity.projectile_spacing, "1", 0.5, 1e-3, 1e3, .when = "kind=impact",
          .doc = "Particle spacing of the projectile over the target's where it hits."),
     SWITCH(fidelity.graded, 0, .when = "kind=impact", .doc = "Particles are finer near the point of impact."),
+    REAL(fidelity.spacings_per_radius, "1", NAN, 1e-3, 1e3, .absent = "off", .flags = FIELD_MAY_BE_OFF,
+         .when = "fidelity.graded=true",
+         .doc = "Particle spacings in the projectile's radius (of a sphere of its volume), near the point of impact. "
+                "Decides fidelity.fine_spacing; off: that input decides itself."),
     REAL(fidelity.fine_spacing, "m", NAN, 1e-12, 1e9, .flags = FIELD_DERIVED, .when = "fidelity.graded=true",
-         .doc = "Particle spacing near the point of impact; half of the uniform one unless given."),
+         .doc = "Particle spacing near the point of impact. Unless given: by fidelity.spacings_per_radius, or half of "
+                "the uniform one."),
     REAL(fidelity.fine_radius, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "fidelity.graded=true",
          .doc = "Distance from the point of impact up to which fine_spacing holds; four fine spacings unless given."),
     REAL(fidelity.smoothing, "1", SPH_BODIES_H, 0.7, 3,

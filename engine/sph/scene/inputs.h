@@ -77,6 +77,7 @@ struct sph_fidelity {
   int64_t particles, points;
   double projectile_spacing; /* 1, over the target's */
   bool graded;
+  double spacings_per_radius;       /* 1, of the projectile where it hits; NaN: fine_spacing decides */
   double fine_spacing, fine_radius; /* m */
   double smoothing, cfl;            /* 1 */
   double skin;                      /* 1, over h */

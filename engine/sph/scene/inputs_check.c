@@ -227,8 +227,8 @@ static status check_impact(const struct sph_inputs *in, struct error *error) {
            "fidelity.particles, or take a larger projectile",
            pieces, in->fidelity.projectile_spacing);
   if (in->fidelity.graded && in->fidelity.fine_spacing > sph_derived_spacing(in))
-    REFUSE("fidelity.fine_spacing is %.4g m, above the uniform spacing %.4g m of so many particles: lower it, or set "
-           "fidelity.graded: false",
+    REFUSE("fidelity.fine_spacing is %.4g m, above the uniform spacing %.4g m of so many particles: lower it, raise "
+           "fidelity.spacings_per_radius, or set fidelity.graded: false",
            in->fidelity.fine_spacing, sph_derived_spacing(in));
   return STATUS_OK;
 }

@@ -95,7 +95,9 @@ void sph_inputs_complete(void *inputs, const bool *given) {
   COMPLETE(projectile.turned, specimens);
   const double spacing = sph_derived_spacing(in), crossing = sph_derived_crossing(in);
   COMPLETE(sides.depth, 0.1 * sph_derived_shortest_side(&in->target));
-  COMPLETE(fidelity.fine_spacing, 0.5 * spacing);
+  const bool by_radius = sph_derived_has_projectile(in) && in->fidelity.spacings_per_radius > 0;
+  COMPLETE(fidelity.fine_spacing,
+           by_radius ? sph_derived_projectile_radius(in) / in->fidelity.spacings_per_radius : 0.5 * spacing);
   COMPLETE(fidelity.fine_radius, 4 * in->fidelity.fine_spacing);
   COMPLETE(gradient_correction.on, can_turn(in));
   COMPLETE(method.negative_energy,
