@@ -3,11 +3,10 @@
 
 #include <errno.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "schemas/text.h"
+#include "schemas/memory.h"
 
 /* `system`: errno of the failed call, or 0 */
 static const char *remedy(int code, int system) {
@@ -112,24 +111,35 @@ status sql_execute(sqlite3 *db, const char *sql, const char *doing, struct error
   return code == SQLITE_OK ? STATUS_OK : sql_fail(db, code, doing, error);
 }
 
-static status no_memory(const char *doing, struct error *error) {
-  return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+char *sql_format_of(const char *format, va_list arguments) {
+  char *text = sqlite3_vmprintf(format, arguments);
+  if (!text)
+    memory_refused();
+  return text;
+}
+
+char *sql_format(const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  char *text = sql_format_of(format, arguments);
+  va_end(arguments);
+  return text;
 }
 
 status sql_executef(sqlite3 *db, const char *doing, struct error *error, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  SQL_TEXT sql = sqlite3_vmprintf(format, arguments);
+  SQL_TEXT sql = sql_format_of(format, arguments);
   va_end(arguments);
-  return sql ? sql_execute(db, sql, doing, error) : no_memory(doing, error);
+  return sql_execute(db, sql, doing, error);
 }
 
 status sql_preparef(sqlite3 *db, sqlite3_stmt **out, const char *doing, struct error *error, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  SQL_TEXT sql = sqlite3_vmprintf(format, arguments);
+  SQL_TEXT sql = sql_format_of(format, arguments);
   va_end(arguments);
-  return sql ? sql_prepare(db, sql, out, doing, error) : no_memory(doing, error);
+  return sql_prepare(db, sql, out, doing, error);
 }
 
 status sql_prepare(sqlite3 *db, const char *sql, sqlite3_stmt **out, const char *doing, struct error *error) {
@@ -177,9 +187,9 @@ status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out
 status sql_integerf(sqlite3 *db, int64_t *out, struct error *error, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  SQL_TEXT sql = sqlite3_vmprintf(format, arguments);
+  SQL_TEXT sql = sql_format_of(format, arguments);
   va_end(arguments);
-  return sql ? sql_integer(db, sql, 0, out, error) : no_memory("reading", error);
+  return sql_integer(db, sql, 0, out, error);
 }
 
 status sql_textf(sqlite3 *db, char **text, const char *doing, struct error *error, const char *format, ...) {
@@ -187,13 +197,13 @@ status sql_textf(sqlite3 *db, char **text, const char *doing, struct error *erro
   status result = STATUS_OK;
   va_list arguments;
   va_start(arguments, format);
-  SQL_TEXT sql = sqlite3_vmprintf(format, arguments);
+  SQL_TEXT sql = sql_format_of(format, arguments);
   va_end(arguments);
-  TRY(sql ? sql_prepare(db, sql, &statement, doing, error) : no_memory(doing, error));
+  TRY(sql_prepare(db, sql, &statement, doing, error));
   const bool there = sql_next(statement, &result, doing, error);
   TRY(result);
   *text = sqlite3_mprintf("%s", there ? sql_text(statement, 0) : "");
-  return *text ? STATUS_OK : no_memory(doing, error);
+  return *text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
 }
 
 void sql_write_name(const char *name, FILE *out) {
@@ -262,87 +272,48 @@ void sql_bind(sqlite3_stmt *statement, int index, struct sql_value value) {
   }
 }
 
-void sql_bind_all(sqlite3_stmt *statement, size_t count, const struct sql_value *values) {
+int sql_bind_all(sqlite3_stmt *statement, size_t count, const struct sql_value *values) {
   for (size_t i = 0; i < count; i++)
     sql_bind(statement, (int)i + 1, values[i]);
+  return (int)count + 1;
 }
 
 void sql_bind_text(sqlite3_stmt *statement, int index, const char *text) {
   sql_bind(statement, index, sql_of_text(text));
 }
 
-static void bind_column(sqlite3_stmt *statement, int index, const struct sql_column *column, const void *object) {
-  const char *place = (const char *)object + column->offset;
-  switch (column->kind) {
-  case SQL_COLUMN_INTEGER: sqlite3_bind_int64(statement, index, *(const int64_t *)(const void *)place); break;
-  case SQL_COLUMN_KEY: {
-    int64_t key = *(const int64_t *)(const void *)place;
-    if (key)
-      sqlite3_bind_int64(statement, index, key);
-    else
-      sqlite3_bind_null(statement, index);
-    break;
-  }
-  case SQL_COLUMN_INT: sqlite3_bind_int(statement, index, *(const int *)(const void *)place); break;
-  case SQL_COLUMN_BOOLEAN: sqlite3_bind_int(statement, index, *(const bool *)place); break;
-  case SQL_COLUMN_REAL: sqlite3_bind_double(statement, index, *(const double *)(const void *)place); break;
-  case SQL_COLUMN_TEXT: sql_bind_text(statement, index, *(const char *const *)(const void *)place); break;
-  case SQL_COLUMN_IDENTITY: sqlite3_bind_blob(statement, index, place, 16, SQLITE_STATIC); break;
-  }
-}
-
-static char *insert_sql(const struct sql_insert *insert, const char *table) {
-  char *sql = NULL;
-  size_t size = 0, fields = insert->fields ? insert->fields->count : 0, columns = insert->column_count + fields;
-  FILE *out = text_open(&sql, &size);
-  if (!out)
-    return NULL;
-  fprintf(out, "INSERT INTO %s (", table);
-  for (size_t i = 0; i < insert->column_count; i++)
-    fprintf(out, "%s%s", i ? ", " : "", insert->columns[i].name);
-  for (size_t i = 0; i < fields; i++) {
-    char name[FIELD_TEXT_SIZE];
-    field_column_name(insert->fields->rows[i].path, name, sizeof name);
-    fprintf(out, ", \"%s\"", name);
-  }
-  fputs(") VALUES ", out);
-  for (size_t row = 0; row < insert->rows; row++) {
-    fputs(row ? "), (?" : "(?", out);
-    for (size_t i = 1; i < columns; i++)
-      fputs(", ?", out);
-  }
-  fputs(")", out);
-  return text_close(out, &sql);
-}
-
-status sql_insert_prepare(sqlite3 *db, struct sql_insert *insert, const char *table, size_t column_count,
-                          const struct sql_column *columns, const struct field_table *fields, size_t rows,
-                          const char *doing, struct error *error) {
-  if (insert->statement && insert->rows == rows)
+status sql_prepare_insert(sqlite3 *db, sqlite3_stmt **out, const char *table, const char *columns,
+                          const struct field_table *fields, size_t rows, const char *doing, struct error *error) {
+  size_t more = 0; /* parameters of a row behind the first one */
+  if (*out)
     return STATUS_OK;
-  sqlite3_finalize(insert->statement);
-  *insert = (struct sql_insert){NULL, columns, column_count, fields, rows};
-  char *sql = insert_sql(insert, table);
-  if (!sql)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  status result = sql_prepare(db, sql, &insert->statement, doing, error);
-  free(sql);
-  return result;
+  sqlite3_str *sql = sqlite3_str_new(db);
+  sqlite3_str_appendf(sql, "INSERT INTO \"%w\" (%s", table, columns);
+  for (; fields && more < fields->count; more++) {
+    char name[FIELD_TEXT_SIZE];
+    field_column_name(fields->rows[more].path, name, sizeof name);
+    sqlite3_str_appendf(sql, ", \"%w\"", name);
+  }
+  for (const char *comma = columns; (comma = strchr(comma, ',')); comma++)
+    more++;
+  sqlite3_str_appendall(sql, ") VALUES ");
+  for (size_t row = 0; row < rows; row++) {
+    sqlite3_str_appendall(sql, row ? "), (?" : "(?");
+    for (size_t i = 0; i < more; i++)
+      sqlite3_str_appendall(sql, ", ?");
+  }
+  return sql_preparef(db, out, doing, error, "%z)", sqlite3_str_finish(sql));
 }
 
-void sql_insert_bind(const struct sql_insert *insert, size_t index, const void *object, const void *described) {
-  const struct field_table *fields = insert->fields;
-  size_t columns = insert->column_count + (fields ? fields->count : 0);
-  int place = 1 + (int)(index * columns);
-  for (size_t i = 0; i < insert->column_count; i++)
-    bind_column(insert->statement, place++, &insert->columns[i], object);
-  for (size_t i = 0; fields && i < fields->count; i++, place++) {
+int sql_bind_fields(sqlite3_stmt *statement, int at, const struct field_table *fields, const void *object) {
+  for (size_t i = 0; i < fields->count; i++, at++) {
     const struct field *row = &fields->rows[i];
-    if (row->when && !field_is_active(fields, row, described))
-      sqlite3_bind_null(insert->statement, place);
+    if (row->when && !field_is_active(fields, row, object))
+      sqlite3_bind_null(statement, at);
     else
-      sql_bind(insert->statement, place, sql_of_field(row, described, false));
+      sql_bind(statement, at, sql_of_field(row, object, false));
   }
+  return at;
 }
 
 const char *sql_type(const struct field *row) {

@@ -3,6 +3,7 @@
 #define CLAST_DB_SQL_H
 
 #include <sqlite3.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -22,9 +23,12 @@ bool sql_values_are_wrong(sqlite3 *db, int code);
 #define STATEMENT __attribute__((cleanup(sql_finalize))) sqlite3_stmt *
 void sql_finalize(sqlite3_stmt **statement); /* for STATEMENT */
 
-/* A text of sqlite3_mprintf() that is freed where its block is left. */
+/* A text of SQLite, such as one of sql_format(), that is freed where its block is left. */
 #define SQL_TEXT __attribute__((cleanup(sql_free_text))) char *
 void sql_free_text(char **text); /* for SQL_TEXT */
+/* A text of SQL by sqlite3_mprintf(). Never NULL: without memory the process ends (schemas/memory.h). */
+char *sql_format(const char *format, ...) __attribute__((returns_nonnull));
+char *sql_format_of(const char *format, va_list arguments) __attribute__((returns_nonnull));
 
 /* The first character of a text of SQL that is neither in `blanks` nor in a comment. */
 const char *sql_skip(const char *text, const char *blanks);
@@ -67,6 +71,9 @@ struct sql_value {
 static inline struct sql_value sql_of_integer(int64_t value) {
   return (struct sql_value){.type = SQLITE_INTEGER, .integer = value};
 }
+static inline struct sql_value sql_of_key(int64_t key) { /* 0 is NULL */
+  return key ? sql_of_integer(key) : (struct sql_value){.type = SQLITE_NULL};
+}
 static inline struct sql_value sql_of_real(double value) {
   return (struct sql_value){.type = SQLITE_FLOAT, .real = value}; /* SQLite stores NaN as NULL */
 }
@@ -86,45 +93,21 @@ static inline struct sql_value sql_of_column(sqlite3_stmt *statement, int column
 /* Binds it by reference: its bytes must stay valid until the statement has run. */
 void sql_bind(sqlite3_stmt *statement, int index, struct sql_value value);
 /* Binds values to the parameters from the first one on: SQL_BIND(statement, sql_of_integer(run_id), sql_of_text(name)).
- */
+ * The value is the parameter behind them. */
 #define SQL_BIND(statement, ...)                                                                                       \
   sql_bind_all(statement, sizeof((const struct sql_value[]){__VA_ARGS__}) / sizeof(struct sql_value),                  \
                (const struct sql_value[]){__VA_ARGS__})
-void sql_bind_all(sqlite3_stmt *statement, size_t count, const struct sql_value *values);
+int sql_bind_all(sqlite3_stmt *statement, size_t count, const struct sql_value *values);
 /* A text bound by reference; NULL binds NULL. */
 void sql_bind_text(sqlite3_stmt *statement, int index, const char *text);
 
-/* A column that no field table describes, and its place in a struct. */
-enum sql_column_kind {
-  SQL_COLUMN_INTEGER,  /* int64_t or uint64_t */
-  SQL_COLUMN_KEY,      /* int64_t; 0 is NULL */
-  SQL_COLUMN_INT,      /* int */
-  SQL_COLUMN_BOOLEAN,  /* bool */
-  SQL_COLUMN_REAL,     /* double */
-  SQL_COLUMN_TEXT,     /* const char *; NULL is NULL */
-  SQL_COLUMN_IDENTITY, /* uint8_t[16] */
-};
-struct sql_column {
-  const char *name;
-  enum sql_column_kind kind;
-  size_t offset;
-};
-
-/* An INSERT of these columns, followed by those of a field table (NULL: none). All zero: not prepared yet. */
-struct sql_insert {
-  sqlite3_stmt *statement;
-  const struct sql_column *columns;
-  size_t column_count;
-  const struct field_table *fields;
-  size_t rows; /* rows that one execution inserts */
-};
-/* Prepares the statement, unless it is prepared for that many rows already. */
-status sql_insert_prepare(sqlite3 *db, struct sql_insert *insert, const char *table, size_t column_count,
-                          const struct sql_column *columns, const struct field_table *fields, size_t rows,
-                          const char *doing, struct error *error);
-/* Binds the index-th row (from 0): the columns from *object, the fields from *described. Both must live until the
- * statement has run. */
-void sql_insert_bind(const struct sql_insert *insert, size_t index, const void *object, const void *described);
+/* Prepares an INSERT of these columns ("run_id, ordinal"), followed by those of a field table (NULL: none), for so many
+ * rows at once; but only if *out is NULL. */
+status sql_prepare_insert(sqlite3 *db, sqlite3_stmt **out, const char *table, const char *columns,
+                          const struct field_table *fields, size_t rows, const char *doing, struct error *error);
+/* Binds what the table describes in *object, from parameter `at` on. Returns the parameter behind them. The object must
+ * live until the statement has run. */
+int sql_bind_fields(sqlite3_stmt *statement, int at, const struct field_table *fields, const void *object);
 
 /* STRICT type of a row's column. */
 const char *sql_type(const struct field *row);

@@ -10,6 +10,7 @@
 
 #include "schemas/document_tree.h"
 #include "schemas/file.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 /* A document that holds a copy of the text; NULL without memory. */
@@ -129,18 +130,15 @@ static char *whole_report(struct document *document) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = text_open(&text, &size);
-  if (!out)
-    return NULL;
   const char *between = "";
   for (struct document *other = document; other; other = (struct document *)after(document, other)) {
-    char *report = other->error_count ? document_report_text(other) : NULL;
-    if (report) {
-      fprintf(out, "%s%s", between, report);
-      between = "\n";
-    }
-    free(report);
+    if (!other->error_count)
+      continue;
+    OWNED char *report = document_report_text(other);
+    fprintf(out, "%s%s", between, report);
+    between = "\n";
   }
-  return text_close(out, &text);
+  return text_close_small(out, &text);
 }
 
 status document_finish(struct document *document, const char **report) {
@@ -150,7 +148,7 @@ status document_finish(struct document *document, const char **report) {
     return STATUS_OK;
   free(document->report);
   document->report = whole_report(document);
-  *report = document->report ? document->report : "no memory for the report of errors";
+  *report = document->report;
   for (const struct document *other = document; other; other = after(document, other))
     if (other->no_memory)
       return STATUS_MEMORY;
@@ -349,8 +347,6 @@ char *document_change_text(const struct document *document) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = text_open(&text, &size);
-  if (!out)
-    return NULL;
   fprintf(out, "# as read, with values of the %s; comments are left out\n", document->origin);
   for (size_t i = 0; i < document->root->count; i++) {
     write_scalar(document->root->pairs[i].key, out);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "schemas/document_tree.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum { SHOWN = 120, BEFORE = 70 }; /* shown bytes of a long line, and how many of them precede the error */
@@ -26,7 +27,7 @@ static void add(struct document *document, size_t start, size_t end, bool put, c
   for (char *at = message; *at; at++)
     if (*at == '\n' || *at == '\r')
       *at = ' ';
-  document->errors[order] = (struct document_error){start, end, order, put, strdup(message)};
+  document->errors[order] = (struct document_error){start, end, order, put, memory_small_text(message)};
 }
 
 void document_report_at(struct document *document, size_t start, size_t end, const char *path, const char *format,
@@ -126,7 +127,7 @@ static void write_marker(const char *text, const struct excerpt *e, size_t start
 
 /* Writes one error as text. Columns count characters from 1, as editors do. */
 static void write_error(const struct document *document, const struct document_error *error, FILE *out) {
-  const char *text = document->text, *message = error->message ? error->message : "(no memory for the message)";
+  const char *text = document->text, *message = error->message;
   if (error->put) {
     fprintf(out, "%s: error: %s\n", document->origin, message);
     return;
@@ -155,13 +156,11 @@ static bool append_error(const struct document *document, const struct document_
                          const size_t *size, size_t limit) {
   char *text = NULL;
   size_t length = 0;
-  FILE *memory = text_open(&text, &length);
-  if (!memory)
-    return false;
-  write_error(document, error, memory);
-  const bool whole = fclose(memory) == 0;
+  FILE *one = text_open(&text, &length);
+  write_error(document, error, one);
+  text_close_small(one, &text);
   fflush(out); /* updates *size */
-  const bool fits = whole && *size + length <= limit;
+  const bool fits = *size + length <= limit;
   if (fits)
     fwrite(text, 1, length, out);
   free(text);
@@ -178,14 +177,13 @@ char *document_report_text(struct document *document) {
   char *text = NULL;
   size_t size = 0, shown = 0;
   FILE *out = text_open(&text, &size);
-  if (!out)
-    return NULL;
   while (shown < kept && append_error(document, &document->errors[shown], out, &size, LIMIT))
     shown++;
   if (shown < document->error_count)
     fprintf(out, "%.60s: error: and %zu more; correct the ones above first\n", document->name,
             document->error_count - shown);
-  if (text_close(out, &text) && size && text[size - 1] == '\n')
+  text_close_small(out, &text);
+  if (size && text[size - 1] == '\n')
     text[size - 1] = 0; /* remove the line end: messages have none */
   return text;
 }

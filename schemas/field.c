@@ -457,8 +457,6 @@ char *field_identity(const struct field_table *table, const void *object) {
   size_t size = 0, count = 0;
   const struct field **rows = memory_small(table->count + 1, sizeof *rows);
   FILE *out = text_open(&text, &size);
-  if (!out)
-    memory_refused();
   for (size_t i = 0; i < table->count; i++)
     if (field_is_active(table, &table->rows[i], object) && !is_absent(&table->rows[i], object))
       rows[count++] = &table->rows[i];
@@ -472,7 +470,5 @@ char *field_identity(const struct field_table *table, const void *object) {
     fputc('\n', out);
   }
   free(rows);
-  if (!text_close(out, &text))
-    memory_refused();
-  return text;
+  return text_close_small(out, &text);
 }

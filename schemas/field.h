@@ -205,13 +205,13 @@ void field_print(const struct field *row, const struct field_value *value, char 
 void field_show(const struct field *row, const struct field_value *value, char *buffer, size_t size);
 
 /* Resolved object as JSON text (nested, active rows only, shortest round-trip numbers, "off" as "off"). The caller
- * frees it; NULL: no memory. */
+ * frees it. Never NULL: without memory the process ends (schemas/memory.h). */
 char *field_json(const struct field_table *table, const void *object);
 /* Parts of that text, for a caller that writes the outer object: the members without braces; one value. */
 void field_json_members(const struct field_table *table, const void *object, FILE *out);
 void field_json_value(const struct field *row, const struct field_value *value, FILE *out);
 /* Canonical identity text: sorted lines `path=%a\n` of the active rows (text and choices by name), without those that
- * have their value of absence. The caller frees it. Never NULL: without memory the process ends (schemas/memory.h). */
+ * have their value of absence. The caller frees it. Never NULL, as above. */
 char *field_identity(const struct field_table *table, const void *object);
 /* `clast explain`: one row, or every row under a prefix ("" = all), as text for people. Returns how many rows. */
 size_t field_explain(const struct field_table *table, const char *prefix, FILE *out);

@@ -127,15 +127,13 @@ void field_describe_inactive(const struct field_table *table, const struct field
   char *wanted = NULL, came[FIELD_TEXT_SIZE];
   size_t length = 0;
   FILE *words = text_open(&wanted, &length);
-  if (!words)
-    return;
   field_describe_condition(link, words);
-  fclose(words);
+  text_close_small(words, &wanted);
 
   struct field_value value;
   field_get(other, object, &value);
   field_print(other, &value, came, sizeof came);
-  snprintf(text, size, "used only when %s is %s; here it is %s", other->path, wanted ? wanted : "", came);
+  snprintf(text, size, "used only when %s is %s; here it is %s", other->path, wanted, came);
   free(wanted);
 }
 
@@ -363,12 +361,10 @@ char *field_json(const struct field_table *table, const void *object) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = text_open(&text, &size);
-  if (!out)
-    return NULL;
   fputc('{', out);
   field_json_members(table, object, out);
   fputc('}', out);
-  return text_close(out, &text);
+  return text_close_small(out, &text);
 }
 
 void field_json_members(const struct field_table *table, const void *object, FILE *out) {

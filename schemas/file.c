@@ -120,11 +120,11 @@ status file_read(const char *path, const char *what, unsigned char **bytes, size
     return status_fail(error, STATUS_IO, "cannot read the %s '%s': it is no plain file", what, path);
   }
   FILE *copy = text_open(&text, size);
-  while (copy && (got = fread(block, 1, sizeof block, file)) > 0)
+  while ((got = fread(block, 1, sizeof block, file)) > 0)
     fwrite(block, 1, got, copy);
   const int why = ferror(file) ? errno : 0;
   fclose(file);
-  if (!copy || !text_close(copy, &text))
+  if (!text_close(copy, &text))
     return status_fail(error, STATUS_MEMORY, "no memory to read '%s'", path);
   *bytes = (unsigned char *)text;
   if (!why)

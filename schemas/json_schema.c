@@ -116,11 +116,9 @@ static void description(const struct field *row, FILE *out) {
   char *text = NULL;
   size_t size = 0;
   FILE *words = text_open(&text, &size);
-  if (!words)
-    return;
   describe(row, words);
-  if (text_close(words, &text))
-    text_json_string(*text == ' ' ? text + 1 : text, out);
+  text_close_small(words, &text);
+  text_json_string(*text == ' ' ? text + 1 : text, out);
   free(text);
 }
 

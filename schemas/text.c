@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/memory.h"
+
 /* UTF-8 sequences by length: the pattern of the first byte, and the first character that needs this length. */
 static const struct {
   unsigned char mask, first;
@@ -151,30 +153,26 @@ static int end_text(void *context) {
 }
 
 FILE *text_open(char **text, size_t *size) {
-  struct growing *g = malloc(sizeof *g);
-  *text = calloc(1, 1);
+  struct growing *g = memory_small(1, sizeof *g);
+  *text = memory_small(1, 1);
   *size = 0;
-  FILE *out = NULL;
-  if (g && *text) {
-    *g = (struct growing){.text = text, .size = size, .room = 1};
-    out = fopencookie(g, "w", (cookie_io_functions_t){.write = grow_text, .seek = place_in_text, .close = end_text});
-  }
-  if (!out)
-    free(g);
+  *g = (struct growing){.text = text, .size = size, .room = 1};
+  FILE *out = fopencookie(g, "w",
+                          (cookie_io_functions_t){.write = grow_text, .seek = place_in_text, .close = end_text});
   /* The stream's buffer is made here: where the first write makes it and memory is refused, that text is lost. */
-  if (out && setvbuf(out, NULL, _IOFBF, 0) != 0) {
-    (void)fclose(out); /* frees g */
-    out = NULL;
-  }
-  if (!out) {
-    free(*text);
-    *text = NULL;
-  }
+  if (!out || setvbuf(out, NULL, _IOFBF, 0) != 0)
+    memory_refused();
   return out;
 }
 
 char *text_close(FILE *out, char **text) {
   (void)fclose(out);
+  return *text;
+}
+
+char *text_close_small(FILE *out, char **text) {
+  if (!text_close(out, text))
+    memory_refused();
   return *text;
 }
 
@@ -288,7 +286,7 @@ char *text_people(const char *text) {
   char *made = NULL;
   size_t size = 0;
   FILE *out = text_open(&made, &size);
-  for (const char *at = text; out && *at;) {
+  for (const char *at = text; *at;) {
     const size_t mantissa = strspn(at, "0123456789.");
     const char *power = at + mantissa;
     char *end = NULL;
@@ -309,7 +307,7 @@ char *text_people(const char *text) {
     }
     at = end;
   }
-  return out && text_close(out, &made) ? made : NULL;
+  return text_close(out, &made);
 }
 
 void text_powers(char *text, size_t size) {

@@ -66,11 +66,13 @@ const char *text_next_item(const char *list, char *item, size_t size);
 
 /* A stream that makes *text, which the caller frees: open_memstream() that does not cut the text where memory runs out.
  * *text and *size are right after fflush() or the end; *text is NULL after the end when memory ran out, and fclose()
- * tells so. ftell() gives the length so far. NULL: no memory. */
-FILE *text_open(char **text, size_t *size);
+ * tells so. ftell() gives the length so far. Never NULL: the stream itself is small memory (schemas/memory.h). */
+FILE *text_open(char **text, size_t *size) __attribute__((returns_nonnull));
 /* Closes the stream that text_open made for *text. Returns the text, which the caller frees; NULL (and *text is NULL)
  * when memory ran out. */
 char *text_close(FILE *out, char **text);
+/* The same for a text whose length does not grow with a file or a store: without memory the process ends. */
+char *text_close_small(FILE *out, char **text) __attribute__((returns_nonnull));
 
 /* Writes the words of `text` in lines of at most `width` columns, each line indented, and ends the last line. The
  * cursor is at column `at`, which is at most `indent`. */

@@ -3,7 +3,6 @@
 
 #include <errno.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -159,21 +158,12 @@ struct answer answer_to_user(struct store *store, const char *sql, size_t parame
   return answer;
 }
 
-static struct answer made(struct store *store, struct error *error, const char *format, va_list arguments) {
-  char *sql = sqlite3_vmprintf(format, arguments);
-  if (!sql)
-    return answer_failed(status_fail(error, STATUS_MEMORY, "no memory for a question to the store"), error);
-  const struct answer answer = answer_to_user(store, sql, 0, NULL, 0, error);
-  sqlite3_free(sql);
-  return answer;
-}
-
 struct answer answer_to(struct store *store, struct error *error, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  const struct answer answer = made(store, error, format, arguments);
+  SQL_TEXT sql = sql_format_of(format, arguments);
   va_end(arguments);
-  return answer;
+  return answer_to_user(store, sql, 0, NULL, 0, error);
 }
 
 struct answer answer_failed(status code, struct error *error) {
@@ -224,10 +214,6 @@ status answer_end(struct answer *answer) {
 
 status answer_status(const struct answer *answer) {
   return answer->code;
-}
-
-void answer_drop(struct answer *answer) {
-  (void)answer_end(answer);
 }
 
 size_t answer_count(const struct answer *answer) {
@@ -294,8 +280,9 @@ bool answer_masses(struct answer *answer, size_t column, const char *of, const v
 status answer_number(struct store *store, double *number, struct error *error, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  struct answer answer = made(store, error, format, arguments);
+  SQL_TEXT sql = sql_format_of(format, arguments);
   va_end(arguments);
+  struct answer answer = answer_to_user(store, sql, 0, NULL, 0, error);
   *number = answer_next(&answer) ? answer_real(&answer, 0) : (double)NAN;
   return answer_end(&answer);
 }

@@ -23,7 +23,7 @@ struct answer {
   status code;
   bool limited; /* has a time limit */
 };
-#define ANSWER __attribute__((cleanup(answer_drop))) struct answer
+#define ANSWER __attribute__((cleanup(answer_end))) struct answer
 
 /* Asks a question of the program. `format` is that of sqlite3_mprintf(): write what comes from outside with %Q (text)
  * or
@@ -46,7 +46,6 @@ bool answer_next(struct answer *answer);
 status answer_end(struct answer *answer);
 /* The status so far. */
 status answer_status(const struct answer *answer);
-void answer_drop(struct answer *answer); /* for ANSWER */
 
 /* Columns, also before the first row. */
 size_t answer_count(const struct answer *answer);

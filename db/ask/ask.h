@@ -496,7 +496,7 @@ struct ask_pools {
   double *value;
   int64_t *seed;
 };
-#define ASK_POOLS __attribute__((cleanup(ask_pools_drop))) struct ask_pools
+#define ASK_POOLS __attribute__((cleanup(ask_pools_end))) struct ask_pools
 
 /* Asks for every pool that has a run, in the order of the inputs of `by` or of the points; one pool at a time is in
  * memory. `quantity` NULL: with the fragments of the runs; else with the values of a result column of the view runs
@@ -508,7 +508,6 @@ struct ask_pools ask_pools(struct store *store, const struct ask_pool_choice *ch
 const struct ask_pool *ask_pools_next(struct ask_pools *pools);
 /* The last call: frees the pools and returns their status. */
 status ask_pools_end(struct ask_pools *pools);
-void ask_pools_drop(struct ask_pools *pools); /* for ASK_POOLS */
 
 /* Dimensions of the engine of the store's first point, 2 or 3: masses in the plane are kg per metre. */
 status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error);

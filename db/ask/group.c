@@ -7,6 +7,7 @@
 #include "db/store/views.h"
 #include "engine/engine.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum { NAME = 128, NAMED = 6 };
@@ -162,8 +163,6 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   char *sql = NULL, units[32], quantile[32];
   size_t size = 0;
   FILE *out = text_open(&sql, &size);
-  if (!out)
-    return NULL;
   fputs("SELECT ", out);
   write_names(out, axes);
   fputs("engine, results_version, points, n, failed, censored, excluded", out);
@@ -214,7 +213,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   fputs("engine, results_version))) ORDER BY ", out);
   write_names(out, axes);
   fputs("engine, results_version", out);
-  return text_close(out, &sql);
+  return text_close_small(out, &sql);
 }
 
 /* What differs within a group: `scene`, and the varied inputs or, when the points of a group differ in none of them,
@@ -301,12 +300,8 @@ struct answer ask_group(struct store *store, const char *by, const char *quantit
     for (size_t i = 0; i < results.count; i++)
       snprintf(results.name[i], NAME, "%s", names[i]);
   }
-  char *sql = group_sql(&axes, &results);
-  if (!sql)
-    return answer_failed(status_fail(error, STATUS_MEMORY, "the statistics: memory ran out"), error);
-  const struct answer answer = answer_to(store, error, "%s", sql);
-  free(sql);
-  return answer;
+  OWNED char *sql = group_sql(&axes, &results);
+  return answer_to(store, error, "%s", sql);
 }
 
 /* Points are compared input by input only where their varied inputs agree; other points differ anyway. */

@@ -13,6 +13,7 @@
 #include "engine/engine.h"
 #include "engine/grow.h"
 #include "engine/outcome.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 static const char doing[] = "making the page";
@@ -387,17 +388,11 @@ static status add_sentences(struct reading *reading, struct error *error) {
   TRY(sql_prepare(reading->page->store.db, "INSERT INTO doubt_word VALUES (?1, ?2, ?3)", &insert, doing, error));
   for (size_t e = 0; e < engine_count(); e++)
     for (const struct condition *c = engine_at(e)->conditions; c && c->word; c++) {
-      char *text = NULL;
-      size_t size = 0;
-      FILE *out = text_open(&text, &size);
-      if (out)
-        fprintf(out, "%s is %s %g: %s; %s", c->number, c->least ? "below" : "above", c->bound, c->doubt, c->remedy);
-      if (!out || !text_close(out, &text))
-        return status_fail(error, STATUS_MEMORY, "no memory for the page");
-      sql_bind_text(insert, 1, engine_at(e)->name);
-      sql_bind_text(insert, 2, c->word);
-      sqlite3_bind_text(insert, 3, text, -1, SQLITE_TRANSIENT);
-      free(text);
+      OWNED char *text = NULL;
+      if (asprintf(&text, "%s is %s %g: %s; %s", c->number, c->least ? "below" : "above", c->bound, c->doubt,
+                   c->remedy) < 0)
+        memory_refused();
+      SQL_BIND(insert, sql_of_text(engine_at(e)->name), sql_of_text(c->word), sql_of_text(text));
       TRY(sql_run(insert, doing, error));
     }
   return STATUS_OK;

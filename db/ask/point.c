@@ -52,19 +52,18 @@ static status read_version(struct store *store, struct point_data *out, struct e
 static status read_runs(struct store *store, const char *where, struct point_data *out, struct error *error) {
   const long long point = out->point_id, version = out->results_version;
   struct growing growing = {.point = out};
-  char *condition = where ? sqlite3_mprintf(" AND run_id IN (SELECT run_id FROM runs WHERE point_id = %lld AND (%s\n))",
-                                            point, where)
-                          : sqlite3_mprintf("");
+  SQL_TEXT condition = where ? sql_format(" AND run_id IN (SELECT run_id FROM runs WHERE point_id = %lld AND (%s\n))",
+                                          point, where)
+                             : sql_format("");
   char of[64];
   snprintf(of, sizeof of, "a run of point %lld", point);
   ANSWER answer =
-      !condition || make_room(&growing, 0)
+      make_room(&growing, 0)
           ? answer_failed(status_fail(error, STATUS_MEMORY, "no memory for %s", of), error)
           : answer_to(store, error,
                       "SELECT masses, run_id, seed FROM run JOIN fragment_mass USING (run_id) WHERE point_id = "
                       "%lld AND results_version = %lld AND counts = 1%s ORDER BY replicate, seed",
                       point, version, condition);
-  sqlite3_free(condition);
   if (answer_status(&answer) == STATUS_OK)
     out->first[0] = 0;
   const void *masses;

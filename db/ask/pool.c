@@ -249,10 +249,6 @@ status ask_pools_end(struct ask_pools *pools) {
   return pools->code;
 }
 
-void ask_pools_drop(struct ask_pools *pools) {
-  (void)ask_pools_end(pools);
-}
-
 static status begin(struct ask_pools *pools, const char *quantity, struct error *error) {
   TRY(ask_register_functions(pools->store, error));
   if (quantity)

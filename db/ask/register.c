@@ -144,10 +144,6 @@ static void hist_sum_final(sqlite3_context *context) {
     return;
   }
   FILE *out = text_open(&text, &size);
-  if (!out) {
-    sqlite3_result_error_nomem(context);
-    return;
-  }
   fputc('[', out);
   for (int i = 0; h && i < BINS; i++) {
     if (h->count[i] == 0)
@@ -156,11 +152,7 @@ static void hist_sum_final(sqlite3_context *context) {
     first = false;
   }
   fputc(']', out);
-  if (text_close(out, &text))
-    sqlite3_result_text(context, text, -1, SQLITE_TRANSIENT);
-  else
-    sqlite3_result_error_nomem(context);
-  free(text);
+  sqlite3_result_text(context, text_close_small(out, &text), -1, free);
 }
 
 static const struct {

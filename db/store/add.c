@@ -10,6 +10,7 @@
 #include "engine/grow.h"
 #include "engine/scene.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 
 static const char adding_point[] = "adding a point";
 static const char adding_campaign[] = "adding a campaign";
@@ -24,10 +25,8 @@ static double wall_clock(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static const struct sql_column run_id_column = {"run_id", SQL_COLUMN_INTEGER, 0};
-
 /* The column names for digest_run(), made once for a store and an engine. */
-static status name_columns(struct store *store, struct store_kind *kind, struct error *error) {
+static void name_columns(struct store *store, struct store_kind *kind) {
   const struct schema_table results = schema_result_table(kind->kind);
   store->name_of.identity = digest_name("run", "identity");
   store->name_of.replicate = digest_name("run", "replicate");
@@ -35,9 +34,9 @@ static status name_columns(struct store *store, struct store_kind *kind, struct 
   store->name_of.results_version = digest_name("run", "results_version");
   store->name_of.fields_digest = digest_name("run", "fields_digest");
   store->name_of.masses = digest_name("fragment_mass", "masses");
-  TRY(digest_names_make(&store->outcome_names, "run", &outcome_table, error));
-  TRY(digest_names_make(&store->estimate_names, "estimate", &estimates_table, error));
-  return digest_names_make(&kind->names, results.name, kind->kind->results, error);
+  digest_names_make(&store->outcome_names, "run", &outcome_table);
+  digest_names_make(&store->estimate_names, "estimate", &estimates_table);
+  digest_names_make(&kind->names, results.name, kind->kind->results);
 }
 
 /* Results that a scene names itself: scenes that give one name to results of different units need different stores. */
@@ -75,11 +74,11 @@ static status open_kind(struct store *store, const struct engine_kind *kind, str
   TRY(schema_complete(store->db, &table, error));
   TRY(sql_integer(store->db, version, 0, &after, error));
   *grown = *grown || before != after;
-  TRY(sql_insert_prepare(store->db, &entry->insert, table.name, 1, &run_id_column, kind->results, 1, adding_run,
-                         error));
+  TRY(sql_prepare_insert(store->db, &entry->insert, table.name, "run_id", kind->results, 1, adding_run, error));
   TRY(sql_integerf(store->db, &filled, error, "SELECT EXISTS (SELECT 1 FROM \"%w\")", table.name));
   entry->first = filled == 0;
-  return name_columns(store, entry, error);
+  name_columns(store, entry);
+  return STATUS_OK;
 }
 
 /* Gives the store's entry for the engine in *found. *grown becomes true when the views need another column. */
@@ -243,12 +242,10 @@ static status find_or_add_point(struct store *store, const struct scene *scene, 
   TRY(store_point_find(store, scene, point_id, error));
   if (*point_id != 0)
     return STATUS_OK;
-  char *json = scene_json(scene);
+  OWNED char *json = scene_json(scene);
   if (!json)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_point);
-  const status result = add_point_row(store, scene, json, point_id, error);
-  free(json);
-  TRY(result);
+  TRY(add_point_row(store, scene, json, point_id, error));
   TRY(add_inputs(store, *point_id, scene, error));
   return add_shapes(store, scene, error);
 }
@@ -419,37 +416,6 @@ status store_add_spectrum(struct store *store, int64_t run_id, const struct sums
 
 /* ---- runs ---- */
 
-/* The columns of table run that are not results. */
-struct run_row {
-  struct store_run run;
-  int results_version;
-  bool counts;
-  double finished_at;
-  uint8_t digest[16];
-};
-#define RUN(name_, kind_, member_)                                                                                     \
-  { name_, SQL_COLUMN_##kind_, offsetof(struct run_row, member_) }
-static const struct sql_column run_columns[] = {
-    RUN("point_id", INTEGER, run.point_id),
-    RUN("session_id", KEY, run.session_id),
-    RUN("identity", IDENTITY, run.identity),
-    RUN("replicate", INTEGER, run.replicate),
-    RUN("seed", INTEGER, run.seed),
-    RUN("results_version", INT, results_version),
-    RUN("surplus", BOOLEAN, run.surplus),
-    RUN("counts", BOOLEAN, counts),
-    RUN("attempt", INT, run.attempt),
-    RUN("wall_time", REAL, run.wall_s),
-    RUN("cpu_time", REAL, run.cpu_s),
-    RUN("peak_memory", INTEGER, run.peak_memory),
-    RUN("host", TEXT, run.host),
-    RUN("rank", INT, run.rank),
-    RUN("finished_at", REAL, finished_at),
-    RUN("fields_path", TEXT, run.fields_path),
-    RUN("fields_digest", TEXT, run.fields_digest),
-    RUN("digest", IDENTITY, digest),
-};
-
 /* The digest of the rows of a run that is about to be stored. digest_rows() computes the same from the
  * rows. */
 static void digest_run(const struct store *store, const struct store_kind *kind, const struct store_run *run,
@@ -472,15 +438,23 @@ static void digest_run(const struct store *store, const struct store_kind *kind,
 
 static status add_row(struct store *store, const struct store_kind *kind, const struct store_run *run, int64_t *run_id,
                       struct error *error) {
-  struct run_row row = {.run = *run,
-                        .results_version = run->kind->results_version,
-                        .counts = store_run_counts(run),
-                        .finished_at = wall_clock()};
-  TRY(sql_insert_prepare(store->db, &store->run, "run", sizeof run_columns / sizeof run_columns[0], run_columns,
-                         &outcome_table, 1, adding_run, error));
-  digest_run(store, kind, run, row.digest);
-  sql_insert_bind(&store->run, 0, &row, run->outcome);
-  const status result = sql_run(store->run.statement, adding_run, error);
+  uint8_t digest[16];
+  TRY(sql_prepare_insert(
+      store->db, &store->run, "run",
+      "point_id, session_id, identity, replicate, seed, results_version, surplus, counts, attempt, "
+      "wall_time, cpu_time, peak_memory, host, rank, finished_at, fields_path, fields_digest, digest",
+      &outcome_table, 1, adding_run, error));
+  digest_run(store, kind, run, digest);
+  const int behind = SQL_BIND(store->run, sql_of_integer(run->point_id), sql_of_key(run->session_id),
+                              sql_of_bytes(run->identity, sizeof run->identity), sql_of_integer(run->replicate),
+                              sql_of_integer((int64_t)run->seed), sql_of_integer(run->kind->results_version),
+                              sql_of_integer(run->surplus), sql_of_integer(store_run_counts(run)),
+                              sql_of_integer(run->attempt), sql_of_real(run->wall_s), sql_of_real(run->cpu_s),
+                              sql_of_integer(run->peak_memory), sql_of_text(run->host), sql_of_integer(run->rank),
+                              sql_of_real(wall_clock()), sql_of_text(run->fields_path), sql_of_text(run->fields_digest),
+                              sql_of_bytes(digest, sizeof digest));
+  sql_bind_fields(store->run, behind, &outcome_table, run->outcome);
+  const status result = sql_run(store->run, adding_run, error);
   *run_id = sqlite3_last_insert_rowid(store->db);
   return result;
 }
@@ -491,8 +465,8 @@ static status add_result(struct store *store, struct store_kind *kind, int64_t r
                          struct error *error) {
   if (!values)
     return STATUS_OK;
-  sql_insert_bind(&kind->insert, 0, &run_id, values);
-  TRY(sql_run(kind->insert.statement, adding_run, error));
+  sql_bind_fields(kind->insert, SQL_BIND(kind->insert, sql_of_integer(run_id)), kind->kind->results, values);
+  TRY(sql_run(kind->insert, adding_run, error));
   if (!kind->first)
     return STATUS_OK;
   kind->first = false;
@@ -535,46 +509,23 @@ status store_add_run(struct store *store, const struct store_run *run, struct er
 
 /* ---- attempts ---- */
 
-struct attempt_row {
-  struct store_attempt attempt;
-  double failed_at;
-};
-#define ATTEMPT(name_, kind_, member_)                                                                                 \
-  { name_, SQL_COLUMN_##kind_, offsetof(struct attempt_row, member_) }
-static const struct sql_column attempt_columns[] = {
-    ATTEMPT("identity", IDENTITY, attempt.identity),
-    ATTEMPT("point_id", INTEGER, attempt.point_id),
-    ATTEMPT("replicate", INTEGER, attempt.replicate),
-    ATTEMPT("seed", INTEGER, attempt.seed),
-    ATTEMPT("session_id", KEY, attempt.session_id),
-    ATTEMPT("number", INT, attempt.attempt),
-    ATTEMPT("reason", TEXT, attempt.reason),
-    ATTEMPT("exit_code", INT, attempt.exit_code),
-    ATTEMPT("signal", INT, attempt.signal),
-    ATTEMPT("wall_time", REAL, attempt.wall_s),
-    ATTEMPT("peak_memory", INTEGER, attempt.peak_memory),
-    ATTEMPT("limited_to", REAL, attempt.limit),
-    ATTEMPT("message", TEXT, attempt.message),
-    ATTEMPT("host", TEXT, attempt.host),
-    ATTEMPT("rank", INT, attempt.rank),
-    ATTEMPT("failed_at", REAL, failed_at),
-};
-
 static status add_attempt(struct store *store, const struct store_attempt *attempt, struct error *error) {
   static const char doing[] = "adding an attempt";
-  TRY(sql_insert_prepare(store->db, &store->attempt, "attempt", sizeof attempt_columns / sizeof attempt_columns[0],
-                         attempt_columns, NULL, 1, doing, error));
+  TRY(sql_prepare_insert(store->db, &store->attempt, "attempt",
+                         "identity, point_id, replicate, seed, session_id, number, reason, exit_code, signal, "
+                         "wall_time, peak_memory, limited_to, message, host, rank, failed_at",
+                         NULL, 1, doing, error));
   struct identities_state *state = identities_add(&store->identities, attempt->identity);
   if (!state)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-
-  struct attempt_row row = {.attempt = *attempt, .failed_at = wall_clock()};
-  if (!attempt->reason)
-    row.attempt.reason = "exit";
-  if (!attempt->message)
-    row.attempt.message = "";
-  sql_insert_bind(&store->attempt, 0, &row, NULL);
-  TRY(sql_run(store->attempt.statement, doing, error));
+  SQL_BIND(store->attempt, sql_of_bytes(attempt->identity, sizeof attempt->identity), sql_of_integer(attempt->point_id),
+           sql_of_integer(attempt->replicate), sql_of_integer((int64_t)attempt->seed), sql_of_key(attempt->session_id),
+           sql_of_integer(attempt->attempt), sql_of_text(attempt->reason ? attempt->reason : "exit"),
+           sql_of_integer(attempt->exit_code), sql_of_integer(attempt->signal), sql_of_real(attempt->wall_s),
+           sql_of_integer(attempt->peak_memory), sql_of_real(attempt->limit),
+           sql_of_text(attempt->message ? attempt->message : ""), sql_of_text(attempt->host),
+           sql_of_integer(attempt->rank), sql_of_real(wall_clock()));
+  TRY(sql_run(store->attempt, doing, error));
   state->attempts++;
   return STATUS_OK;
 }

@@ -11,6 +11,7 @@
 #include "db/store/schema.h"
 #include "db/store/views.h"
 #include "engine/scene.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 static const char checking[] = "checking";
@@ -80,11 +81,10 @@ static status check_pages(struct report *report, struct error *error) {
 /* Every fragment of a run that counts has a mass. */
 static status check_fragment_counts(struct report *report, struct error *error) {
   const char *count = OUTCOME_NAME(fragment_count);
-  SQL_TEXT sql = NULL;
-  sql = sqlite3_mprintf("SELECT 'run ' || run_id || ': ' || (length(masses) / 8.0) || ' masses, but %s is ' || %s "
-                        "FROM run JOIN fragment_mass USING (run_id) WHERE counts AND length(masses) <> 8 * %s",
-                        count, count, count);
-  return sql ? no_rows(report, sql, error) : status_fail(error, STATUS_MEMORY, "%s: memory ran out", checking);
+  SQL_TEXT sql = sql_format("SELECT 'run ' || run_id || ': ' || (length(masses) / 8.0) || ' masses, but %s is ' || %s "
+                            "FROM run JOIN fragment_mass USING (run_id) WHERE counts AND length(masses) <> 8 * %s",
+                            count, count, count);
+  return no_rows(report, sql, error);
 }
 
 /* Runs without a row in the table of their engine, for every engine in the store. */
@@ -136,8 +136,6 @@ static status check_ranges(struct report *report, struct error *error) {
     char *sql = NULL;
     size_t size = 0;
     FILE *text = text_open(&sql, &size);
-    if (!text)
-      return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
     fputs("SELECT 'run ' || run_id || ', out of range:' || wrong FROM (SELECT run_id, ", text);
     const bool any = range_columns(report->store, name, k % 2 ? kind->results : &outcome_table, text);
     fprintf(text,
@@ -145,8 +143,7 @@ static status check_ranges(struct report *report, struct error *error) {
             "%d) WHERE wrong <> ''",
             k % 2 ? " JOIN \"" : "", k % 2 ? name : "", k % 2 ? "\" USING (run_id)" : "", kind->name,
             kind->results_version);
-    if (!text_close(text, &sql))
-      return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
+    text_close_small(text, &sql);
     if (any)
       result = no_rows(report, sql, error);
     free(sql);
@@ -166,16 +163,13 @@ static status check_files(struct report *report, struct error *error) {
                                "SELECT run_id, fields_path, %s FROM run WHERE fields_path IS NOT NULL",
                                digests ? "fields_digest" : "NULL");
   while (sql_next(statement, &result, checking, error)) {
-    char *path = paths_of_fields(report->store->path, sql_text(statement, 1));
-    if (!path)
-      return status_fail(error, STATUS_MEMORY, "%s: memory ran out", checking);
+    OWNED char *path = paths_of_fields(report->store->path, sql_text(statement, 1));
     const bool here = access(path, R_OK) == 0;
     if (!here || !paths_whole(path, sqlite3_column_type(statement, 2) == SQLITE_NULL ? NULL : sql_text(statement, 2)))
       say(report,
           "run %lld: its fields file %s is %s; `clast run` of a campaign with keep.fields makes it again, or "
           "`clast replay --fields`",
           (long long)sqlite3_column_int64(statement, 0), path, here ? "damaged" : "missing");
-    free(path);
   }
   return result;
 }
@@ -309,17 +303,16 @@ static status check_rows(struct report *report, struct error *error) {
   sqlite3 *db = report->store->db;
   for (size_t i = 0; schema_has_column(db, "table_digest", NULL) && i < schema_tables_count; i++) {
     SQL_TEXT rows = NULL;
-    SQL_TEXT sql = NULL;
     if (!schema_tables[i].has_digest)
       continue;
     TRY(digest_of_rows(db, schema_tables[i].name, &rows, error));
-    sql = sqlite3_mprintf(
+    SQL_TEXT sql = sql_format(
         "SELECT format('table %%s: %%s', table_name, iif(d.row_count = r.row_count, 'a bit of its rows has changed "
         "since they were stored', format('%%s rows were stored, and %%d are there', ifnull(d.row_count, 'no number "
         "of'), r.row_count))) FROM (%s) r LEFT JOIN main.table_digest d USING (table_name) WHERE (d.row_count, "
         "d.digest) IS NOT (r.row_count, r.digest)",
         rows);
-    TRY(sql ? no_rows(report, sql, error) : status_fail(error, STATUS_MEMORY, "%s: memory ran out", checking));
+    TRY(no_rows(report, sql, error));
   }
   return STATUS_OK;
 }

@@ -64,19 +64,15 @@ void digest_add(struct digest *sum, struct digest name, uint64_t row, struct sql
   sum->b += state.b;
 }
 
-status digest_names_make(struct digest_names *names, const char *table, const struct field_table *fields,
-                         struct error *error) {
+void digest_names_make(struct digest_names *names, const char *table, const struct field_table *fields) {
   if (names->of)
-    return STATUS_OK;
-  names->of = calloc(fields->count + 1, sizeof *names->of);
-  if (!names->of)
-    return status_fail(error, STATUS_MEMORY, "memory ran out for digests");
+    return;
+  names->of = memory_small(fields->count + 1, sizeof *names->of);
   for (size_t i = 0; i < fields->count; i++) {
     char column[FIELD_TEXT_SIZE];
     field_column_name(fields->rows[i].path, column, sizeof column);
     names->of[i] = digest_name(table, column);
   }
-  return STATUS_OK;
 }
 
 void digest_names_clear(struct digest_names *names) {
@@ -214,9 +210,9 @@ static status list_values(sqlite3 *db, const char *table, const char *prefix, ch
 status digest_of_rows(sqlite3 *db, const char *table, char **sql, struct error *error) {
   SQL_TEXT values = NULL;
   TRY(list_values(db, table, "", &values, error));
-  *sql = sqlite3_mprintf("SELECT %Q AS table_name, count(*) AS row_count, rows_digest(%s) AS digest FROM main.\"%w\"",
-                         table, values, table);
-  return *sql ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: memory ran out", keeping);
+  *sql = sql_format("SELECT %Q AS table_name, count(*) AS row_count, rows_digest(%s) AS digest FROM main.\"%w\"", table,
+                    values, table);
+  return STATUS_OK;
 }
 
 status digest_tables_fill(sqlite3 *db, struct error *error) {
@@ -337,9 +333,7 @@ static status open_table(struct digest_rows *rows, const struct source *source, 
   TRY(sql_preparef(rows->db, &table->rows, doing, error, "SELECT %s%s FROM main.\"%w\" WHERE %s = ?1", source->row,
                    columns, source->table, rows->key));
   const int count = sqlite3_column_count(table->rows);
-  table->names = calloc((size_t)count, sizeof *table->names);
-  if (!table->names)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  table->names = memory_small((size_t)count, sizeof *table->names);
   for (int i = 1; i < count; i++)
     table->names[i] = digest_name(source->table, sqlite3_column_name(table->rows, i));
   return STATUS_OK;
@@ -421,10 +415,6 @@ status digest_rows_end(struct digest_rows *rows) {
   rows->numbers = NULL;
   rows->count = 0;
   return rows->code;
-}
-
-void digest_rows_drop(struct digest_rows *rows) {
-  (void)digest_rows_end(rows);
 }
 
 status digest_rows_fill(sqlite3 *db, int64_t run_id, struct error *error) {

@@ -316,11 +316,8 @@ static status judge_table(struct guard *guard, const struct schema_table *table,
   char *ours = NULL;
   size_t size = 0;
   FILE *out = text_open(&ours, &size);
-  if (!out)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", reading);
   status result = write_table(guard, table, out, error);
-  if (!text_close(out, &ours))
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", reading);
+  text_close_small(out, &ours);
   for (size_t i = 0; guard->version >= SCHEMA_READABLE && i < table->count; i++)
     if (!schema_may_lack(table->name, table->columns[i].name) &&
         !schema_has_column(guard->db, table->name, table->columns[i].name))
@@ -371,11 +368,8 @@ status guard_schema(sqlite3 *db, const char *path, int version, struct error *er
   char *names = NULL;
   size_t size = 0;
   struct guard guard = {.db = db, .version = version, .out = text_open(&names, &size)};
-  if (!guard.out)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   status result = judge(&guard, error);
-  if (!text_close(guard.out, &names))
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
+  text_close_small(guard.out, &names);
   if (result == STATUS_OK && guard.strangers > 0)
     result = status_fail(error, STATUS_CONTENT,
                          "%s is not as clast makes its stores: %.6000s%s. clast ran and changed nothing. Remove your "

@@ -29,15 +29,14 @@ struct digest digest_name(const char *table, const char *column);
 struct digest_names {
   struct digest *of;
 };
-/* Makes the names, unless they exist. STATUS_MEMORY. */
-status digest_names_make(struct digest_names *names, const char *table, const struct field_table *fields,
-                         struct error *error);
+/* Makes the names, unless they exist. */
+void digest_names_make(struct digest_names *names, const char *table, const struct field_table *fields);
 void digest_names_clear(struct digest_names *names);
 
 /* Adds a value to a digest; NULL adds nothing. `name`: the digest of its column's name. `row`: number that
  * distinguishes several rows of one run. */
 void digest_add(struct digest *sum, struct digest name, uint64_t row, struct sql_value value);
-/* Adds what sql_insert_bind() stores of *object. */
+/* Adds what sql_bind_fields() stores of *object. */
 void digest_add_fields(struct digest *sum, const struct digest_names *names, const struct field_table *fields,
                        uint64_t row, const void *object);
 /* The row number for a row whose key is a text. */
@@ -84,13 +83,12 @@ struct digest_rows {
   } tables[DIGEST_TABLES];
   size_t count;
 };
-#define DIGEST_ROWS __attribute__((cleanup(digest_rows_drop))) struct digest_rows
+#define DIGEST_ROWS __attribute__((cleanup(digest_rows_end))) struct digest_rows
 /* only: the number of one row; 0: all. to_print: in the order of identities, without runs that are surplus. */
 struct digest_rows digest_rows(sqlite3 *db, enum digest_kind kind, int64_t only, bool to_print, struct error *error);
 /* False at the end and after an error. */
 bool digest_rows_next(struct digest_rows *rows);
 status digest_rows_end(struct digest_rows *rows);
-void digest_rows_drop(struct digest_rows *rows); /* for DIGEST_ROWS */
 
 /* Prints a line for each point, or each run that is not surplus, in the order of identities: "run", its identity, and
  * the digest of its contents as they are now. STATUS_IO: `out` failed. */
@@ -194,7 +192,7 @@ status guard_schema(sqlite3 *db, const char *path, int version, struct error *er
 /* ---- fields files ---- */
 
 /* Locations of fields files. Table run keeps their paths relative to the store's folder, so that both can move
- * together. This is the path of one as this process can open it; the caller frees it. NULL: memory ran out. */
+ * together. This is the path of one as this process can open it; the caller frees it. Never NULL. */
 char *paths_of_fields(const char *store_path, const char *fields_path);
 
 /* Can this file be read? */
@@ -203,12 +201,12 @@ bool paths_readable(const char *store_path, const char *fields_path);
 /* Has the file the digest of store_digest_fields() that was stored (NULL: none, and true)? Reads the whole file.
  * `path`: as this process can open it. */
 bool paths_whole(const char *path, const char *digest);
-/* The file that a symbolic link leads to, else the path itself. The caller frees it. NULL: memory ran out. */
+/* The file that a symbolic link leads to, else the path itself. The caller frees it. Never NULL. */
 char *paths_followed(const char *path);
 
 /* The prefix that turns a path relative to the folder of the store `source` into one relative to the folder of
  * `target`: "" when the folders are the same, else "../" and names, with a slash at the end. The caller frees it. NULL:
- * a folder does not exist, or memory ran out. */
+ * a folder does not exist. */
 char *paths_between(const char *target, const char *source);
 
 /* ---- the open store ---- */
@@ -219,7 +217,7 @@ enum { STORE_BATCH_ROWS = 500 };
 struct store_kind { /* fills result_<engine> */
   const struct engine_kind *kind;
   bool first; /* no run of this engine is stored yet: the views have no columns for its results */
-  struct sql_insert insert;
+  sqlite3_stmt *insert;
   struct digest_names names;
 };
 
@@ -251,7 +249,8 @@ struct store {
   struct {
     struct digest identity, replicate, seed, results_version, fields_digest, masses;
   } name_of; /* columns of a run's digest */
-  struct sql_insert run, attempt, estimate;
+  sqlite3_stmt *run, *attempt, *estimate;
+  size_t estimate_rows; /* that `estimate` inserts */
   sqlite3_stmt *mass_row, *spectrum, *spectrum_together;
   sqlite3_stmt *point_find, *point, *point_input, *campaign_point, *axis_find;
   struct store_kind kinds[LIMITS_ENGINES];

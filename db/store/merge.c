@@ -8,6 +8,7 @@
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "db/store/views.h"
+#include "schemas/memory.h"
 
 static const char doing[] = "merging";
 
@@ -268,18 +269,16 @@ static status take_paths(struct store *store, const char *way, struct error *err
 
 /* Fields files are not moved: the paths of the added runs are made relative to the folder of this store. */
 static status merge_paths(struct store *store, const char *source, const struct merged *merged, struct error *error) {
-  char *followed = paths_followed(source), *way = followed ? paths_between(store->path, followed) : NULL;
-  free(followed);
+  OWNED char *followed = paths_followed(source);
+  OWNED char *way = paths_between(store->path, followed);
   if (!way)
     return status_fail(error, STATUS_IO, "%s: the path of its folder cannot be resolved", source);
-  status result = sql_executef(store->db, doing, error,
-                               "UPDATE main.run SET fields_path = %Q || fields_path WHERE run_id IN (SELECT ours FROM "
-                               "merge_run) AND fields_path NOT LIKE '/%%'",
-                               way);
-  if (result == STATUS_OK && merged->common)
-    result = take_paths(store, way, error);
-  free(way);
-  return result;
+  TRY(sql_executef(
+      store->db, doing, error,
+      "UPDATE main.run SET fields_path = %Q || fields_path WHERE run_id IN (SELECT ours FROM merge_run) AND "
+      "fields_path NOT LIKE '/%%'",
+      way));
+  return merged->common ? take_paths(store, way, error) : STATUS_OK;
 }
 
 /* Copies what is missing, within a transaction that the caller ends. */

@@ -8,6 +8,7 @@
 
 #include "db/store/internal.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum { PATHS_LONGEST = 2 * LIMITS_PATH };
@@ -15,18 +16,15 @@ enum { PATHS_LONGEST = 2 * LIMITS_PATH };
 char *paths_of_fields(const char *store_path, const char *fields_path) {
   const char *slash = strrchr(store_path, '/');
   const int folder = slash && fields_path[0] != '/' ? (int)(slash - store_path + 1) : 0;
-  const size_t size = (size_t)folder + strlen(fields_path) + 1;
-  char *path = malloc(size);
-  if (path)
-    snprintf(path, size, "%.*s%s", folder, store_path, fields_path);
+  char *path = NULL;
+  if (asprintf(&path, "%.*s%s", folder, store_path, fields_path) < 0)
+    memory_refused();
   return path;
 }
 
 bool paths_readable(const char *store_path, const char *fields_path) {
-  char *path = paths_of_fields(store_path, fields_path);
-  const bool readable = path && access(path, R_OK) == 0;
-  free(path);
-  return readable;
+  OWNED char *path = paths_of_fields(store_path, fields_path);
+  return access(path, R_OK) == 0;
 }
 
 bool paths_whole(const char *path, const char *digest) {
@@ -45,31 +43,24 @@ status store_check_fields(struct store *store, const uint8_t identity[16], bool 
   sqlite3_bind_blob(run, 1, identity, 16, SQLITE_STATIC);
   if (!sql_next(run, &result, doing, error))
     return result;
-  char *path = paths_of_fields(store->path, sql_text(run, 0));
-  if (!path)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  OWNED char *path = paths_of_fields(store->path, sql_text(run, 0));
   *whole = paths_whole(path, sql_text(run, 1));
-  free(path);
   return STATUS_OK;
 }
 
 char *paths_followed(const char *path) {
   struct stat file;
   char *real = lstat(path, &file) == 0 && S_ISLNK(file.st_mode) ? realpath(path, NULL) : NULL;
-  return real ? real : strdup(path);
+  return real ? real : memory_small_text(path);
 }
 
 /* The folder of a file, with symbolic links resolved and a slash at the end. */
 static char *folder_of(const char *file, char resolved[PATHS_LONGEST]) {
-  char *copy = strdup(file);
-  if (!copy)
-    return NULL;
-  char *folder = realpath(dirname(copy), NULL);
-  free(copy);
+  OWNED char *copy = memory_small_text(file);
+  OWNED char *folder = realpath(dirname(copy), NULL);
   if (!folder)
     return NULL;
   snprintf(resolved, PATHS_LONGEST, "%s%s", folder, strcmp(folder, "/") == 0 ? "" : "/");
-  free(folder);
   return resolved;
 }
 
@@ -82,11 +73,9 @@ char *paths_between(const char *target, const char *source) {
     if (from[i] == '/')
       shared = i + 1;
   FILE *out = text_open(&way, &size);
-  if (!out)
-    return NULL;
   for (const char *at = from + shared; *at; at++)
     if (*at == '/')
       fputs("../", out);
   fputs(to + shared, out);
-  return text_close(out, &way);
+  return text_close_small(out, &way);
 }

@@ -435,10 +435,8 @@ static status write_doc(sqlite3 *db, const char *table, const struct column *col
   char *meaning = NULL;
   size_t size = 0;
   FILE *out = text_open(&meaning, &size);
-  if (out)
-    write_column_meaning(column, out);
-  if (!out || !text_close(out, &meaning))
-    return status_fail(error, STATUS_MEMORY, "documenting columns: memory ran out");
+  write_column_meaning(column, out);
+  text_close_small(out, &meaning);
   const status result = sql_executef(db, "documenting columns", error,
                                      "INSERT OR REPLACE INTO column_doc (table_name, column_name, unit, meaning, "
                                      "deterministic) VALUES (%Q, %Q, %Q, %Q, %d)",
@@ -451,14 +449,11 @@ static status create(sqlite3 *db, const struct schema_table *table, struct error
   char *sql = NULL;
   size_t size = 0;
   FILE *text = text_open(&sql, &size);
-  if (!text)
-    return status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
   schema_write_table(table, text);
   for (size_t i = 0; i < schema_indexes_count; i++)
     if (strcmp(schema_indexes[i].table, table->name) == 0)
       schema_write_index(&schema_indexes[i], text);
-  const status result = text_close(text, &sql) ? sql_execute(db, sql, "creating tables", error)
-                                               : status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
+  const status result = sql_execute(db, text_close_small(text, &sql), "creating tables", error);
   free(sql);
   return result;
 }

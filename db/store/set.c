@@ -3,29 +3,28 @@
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 static const char writing[] = "writing estimates";
 
-/* The key of an estimate. The estimates of a run have no results_version. */
-struct estimate_key {
-  int64_t owner, ordinal;
-  int results_version;
-};
-#define KEY(name_, kind_, member_)                                                                                     \
-  { name_, SQL_COLUMN_##kind_, offsetof(struct estimate_key, member_) }
-static const struct sql_column of_run[] = {KEY("run_id", INTEGER, owner), KEY("ordinal", INTEGER, ordinal)};
-static const struct sql_column of_point[] = {KEY("point_id", INTEGER, owner),
-                                             KEY("results_version", INT, results_version),
-                                             KEY("ordinal", INTEGER, ordinal)};
-
 /* One statement inserts all rows of a run: every run has the same number of them. */
 status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
                                 struct error *error) {
-  TRY(sql_insert_prepare(store->db, &store->estimate, "estimate", 2, of_run, &estimates_table, count, writing, error));
-  for (size_t i = 0; i < count; i++)
-    sql_insert_bind(&store->estimate, i, &(struct estimate_key){.owner = run_id, .ordinal = (int64_t)i}, &rows[i]);
-  return sql_run(store->estimate.statement, writing, error);
+  if (store->estimate_rows != count) {
+    sqlite3_finalize(store->estimate);
+    store->estimate = NULL;
+  }
+  store->estimate_rows = count;
+  TRY(sql_prepare_insert(store->db, &store->estimate, "estimate", "run_id, ordinal", &estimates_table, count, writing,
+                         error));
+  int at = 1;
+  for (size_t i = 0; i < count; i++) {
+    sql_bind(store->estimate, at++, sql_of_integer(run_id));
+    sql_bind(store->estimate, at++, sql_of_integer((int64_t)i));
+    at = sql_bind_fields(store->estimate, at, &estimates_table, &rows[i]);
+  }
+  return sql_run(store->estimate, writing, error);
 }
 
 static status set_of_run(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
@@ -38,13 +37,14 @@ static status set_of_run(struct store *store, int64_t run_id, size_t count, cons
 
 status store_insert_estimates(sqlite3 *db, const char *table, int64_t point_id, int64_t results_version, size_t count,
                               const struct estimate *rows, struct error *error) {
-  struct sql_insert insert = {0};
-  TRY(sql_insert_prepare(db, &insert, table, 3, of_point, &estimates_table, 1, writing, error));
-  STATEMENT statement = insert.statement;
+  STATEMENT insert = NULL;
+  TRY(sql_prepare_insert(db, &insert, table, "point_id, results_version, ordinal", &estimates_table, 1, writing,
+                         error));
   for (size_t i = 0; i < count; i++) {
-    const struct estimate_key key = {point_id, (int64_t)i, (int)results_version};
-    sql_insert_bind(&insert, 0, &key, &rows[i]);
-    TRY(sql_run(statement, writing, error));
+    const int behind = SQL_BIND(insert, sql_of_integer(point_id), sql_of_integer(results_version),
+                                sql_of_integer((int64_t)i));
+    sql_bind_fields(insert, behind, &estimates_table, &rows[i]);
+    TRY(sql_run(insert, writing, error));
   }
   return STATUS_OK;
 }
@@ -66,25 +66,27 @@ status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id
                    1, error);
 }
 
+/* SQL of `counts`, which the caller frees. */
+static char *counts_of(const char *not_surplus) {
+  char *counts = NULL;
+  size_t size = 0;
+  FILE *out = text_open(&counts, &size);
+  schema_write_counts(not_surplus, out);
+  return text_close_small(out, &counts);
+}
+
 /* Replicates from `prefix` on become surplus. */
 static status set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error) {
   static const char doing[] = "moving a stopping prefix";
-  char *counts = NULL, inside[64];
-  size_t size = 0;
-  FILE *out = text_open(&counts, &size);
+  char inside[64];
   TRY(sums_write(&store->sums, store->db, error));
   snprintf(inside, sizeof inside, "surplus < 2 AND replicate < %lld", (long long)prefix);
-  if (out)
-    schema_write_counts(inside, out);
-  if (!out || !text_close(out, &counts))
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  const status
-      result = sql_executef(store->db, doing, error,
-                            "UPDATE run SET surplus = (surplus & 2) + (replicate >= %lld), counts = %s WHERE point_id "
-                            "= %lld AND surplus & 1 <> (replicate >= %lld)",
-                            (long long)prefix, counts, (long long)point_id, (long long)prefix);
-  free(counts);
-  TRY(result);
+  OWNED char *counts = counts_of(inside);
+  TRY(sql_executef(
+      store->db, doing, error,
+      "UPDATE run SET surplus = (surplus & 2) + (replicate >= %lld), counts = %s WHERE point_id = %lld AND "
+      "surplus & 1 <> (replicate >= %lld)",
+      (long long)prefix, counts, (long long)point_id, (long long)prefix));
   return sqlite3_changes64(store->db) > 0 ? sums_rebuild(store->db, point_id, error) : STATUS_OK;
 }
 
@@ -96,19 +98,6 @@ status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, s
 /* ---- runs that a person excludes ---- */
 
 static const char excluding[] = "excluding a run";
-
-/* SQL of `counts` of a run that is excluded no more; sqlite3_free() frees it. NULL: no memory. */
-static char *counts_again(void) {
-  char *counts = NULL, *sql = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&counts, &size);
-  if (out)
-    schema_write_counts("surplus & 1 = 0", out);
-  if (out && text_close(out, &counts))
-    sql = sqlite3_mprintf("surplus = surplus & 1, counts = (%s), excluded = NULL, excluded_at = NULL", counts);
-  free(counts);
-  return sql;
-}
 
 static status exclude(struct store *store, int64_t run_id, const char *reason, struct error *error) {
   const long long run = run_id;
@@ -124,13 +113,12 @@ static status exclude(struct store *store, int64_t run_id, const char *reason, s
   if (!reason && surplus < 2)
     return status_fail(error, STATUS_USAGE, "run %lld is not excluded; `clast exclude %s` lists those that are", run,
                        store->path);
-  SQL_TEXT change = NULL;
-  change = reason ? sqlite3_mprintf("surplus = surplus | 2, counts = 0, excluded = %Q, excluded_at = "
-                                    "strftime('%%Y-%%m-%%dT%%H:%%M:%%SZ', 'now')",
-                                    reason)
-                  : counts_again();
-  if (!change)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", excluding);
+  OWNED char *counts = counts_of("surplus & 1 = 0");
+  SQL_TEXT change = reason ? sql_format("surplus = surplus | 2, counts = 0, excluded = %Q, excluded_at = "
+                                        "strftime('%%Y-%%m-%%dT%%H:%%M:%%SZ', 'now')",
+                                        reason)
+                           : sql_format("surplus = surplus & 1, counts = (%s), excluded = NULL, excluded_at = NULL",
+                                        counts);
   TRY(sql_executef(store->db, excluding, error, "UPDATE run SET %s WHERE run_id = %lld", change, run));
   return sums_rebuild(store->db, point, error);
 }
@@ -163,45 +151,32 @@ status store_set_fields(struct store *store, const uint8_t identity[16], const c
 
 static const char writing_study[] = "writing a study of convergence";
 
-struct level_key {
-  int64_t base_point_id, level, point_id;
-  int results_version;
-};
-#define LEVEL(name_, kind_, member_)                                                                                   \
-  { name_, SQL_COLUMN_##kind_, offsetof(struct level_key, member_) }
-static const struct sql_column of_level[] = {LEVEL("base_point_id", INTEGER, base_point_id),
-                                             LEVEL("results_version", INT, results_version),
-                                             LEVEL("level", INTEGER, level), LEVEL("point_id", INTEGER, point_id)};
-enum { LEVEL_COLUMNS = 4, LIMIT_COLUMNS = 2 }; /* of a limit: the first two */
-
-/* Replaces the rows that `where` selects, those of the knob and quantity of this scene, in a table: by `count` rows of
- * `size` bytes that `fields` describes. */
-static status replace_rows(struct store *store, const struct store_convergence *study, const char *where,
-                           const char *table, size_t columns, const struct field_table *fields, size_t count,
-                           size_t size, const void *rows, struct error *error) {
-  struct sql_insert insert = {0};
-  TRY(sql_executef(store->db, writing_study, error, "DELETE FROM \"%w\" WHERE %s", table, where));
-  TRY(sql_insert_prepare(store->db, &insert, table, columns, of_level, fields, 1, writing_study, error));
-  STATEMENT statement = insert.statement;
-  for (size_t i = 0; i < count; i++) {
-    const struct level_key key = {study->base_point_id, (int64_t)i, study->count ? study->point_ids[i] : 0,
-                                  study->results_version};
-    sql_insert_bind(&insert, 0, &key, (const char *)rows + i * size);
-    TRY(sql_run(statement, writing_study, error));
-  }
-  return STATUS_OK;
+static status insert_level(sqlite3_stmt *insert, const struct store_convergence *study, size_t level,
+                           struct error *error) {
+  const int behind = SQL_BIND(insert, sql_of_integer(study->base_point_id), sql_of_integer(study->results_version),
+                              sql_of_integer((int64_t)level), sql_of_integer(study->point_ids[level]));
+  sql_bind_fields(insert, behind, &convergence_table, &study->rows[level]);
+  return sql_run(insert, writing_study, error);
 }
 
+/* Replaces the rows of the knob and quantity of this scene. */
 static status replace_study(struct store *store, const struct store_convergence *study, struct error *error) {
-  SQL_TEXT where = sqlite3_mprintf("base_point_id = %lld AND results_version = %d AND knob = %Q AND quantity = %Q",
-                                   (long long)study->base_point_id, study->results_version, study->limit->knob,
-                                   study->limit->quantity);
-  if (!where)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", writing_study);
-  TRY(replace_rows(store, study, where, "convergence", LEVEL_COLUMNS, &convergence_table, study->count,
-                   sizeof *study->rows, study->rows, error));
-  return replace_rows(store, study, where, "convergence_limit", LIMIT_COLUMNS, &convergence_limit_table, 1, 0,
-                      study->limit, error);
+  STATEMENT levels = NULL;
+  STATEMENT limit = NULL;
+  SQL_TEXT where = sql_format("base_point_id = %lld AND results_version = %d AND knob = %Q AND quantity = %Q",
+                              (long long)study->base_point_id, study->results_version, study->limit->knob,
+                              study->limit->quantity);
+  TRY(sql_executef(store->db, writing_study, error,
+                   "DELETE FROM convergence WHERE %s; DELETE FROM convergence_limit WHERE %s", where, where));
+  TRY(sql_prepare_insert(store->db, &levels, "convergence", "base_point_id, results_version, level, point_id",
+                         &convergence_table, 1, writing_study, error));
+  for (size_t i = 0; i < study->count; i++)
+    TRY(insert_level(levels, study, i, error));
+  TRY(sql_prepare_insert(store->db, &limit, "convergence_limit", "base_point_id, results_version",
+                         &convergence_limit_table, 1, writing_study, error));
+  const int behind = SQL_BIND(limit, sql_of_integer(study->base_point_id), sql_of_integer(study->results_version));
+  sql_bind_fields(limit, behind, &convergence_limit_table, study->limit);
+  return sql_run(limit, writing_study, error);
 }
 
 status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error) {

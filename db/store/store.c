@@ -19,6 +19,7 @@
 #include "schemas/clock.h"
 #include "schemas/file.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 
 #define ALONE_S 10.0 /* SQLite waits so long for another program where no function was given to store_on_wait() */
 #define TOLD_S  1.0
@@ -331,9 +332,7 @@ static status back_up(sqlite3 *db, const char *path, int version, struct error *
   char *copy = NULL;
   for (int i = 0; i < 100; i++) { /* an earlier attempt may have left a copy */
     sqlite3_free(copy);
-    copy = i ? sqlite3_mprintf("%s.version%d.%d", path, version, i) : sqlite3_mprintf("%s.version%d", path, version);
-    if (!copy)
-      return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
+    copy = i ? sql_format("%s.version%d.%d", path, version, i) : sql_format("%s.version%d", path, version);
     if (access(copy, F_OK) != 0)
       break;
   }
@@ -387,29 +386,24 @@ static const char lacks_wal_text[] =
 enum { EMPTY_STORE = 4096 }; /* bytes: SQLite's first page, without any table */
 
 static struct store *allocate(const char *path) {
-  struct store *store = calloc(1, sizeof *store);
-  if (!store)
-    return NULL;
+  struct store *store = memory_small(1, sizeof *store);
   store->lock = -1;
   store->wait_until = INFINITY;
   store->lowest_bin = 1;
   store->path = paths_followed(path);
-  if (store->path)
-    return store;
-  free(store);
-  return NULL;
+  return store;
 }
 
 static void release(struct store *store) {
   sqlite3_stmt *const statements[] = {
-      store->run.statement, store->attempt.statement, store->estimate.statement, store->mass_row,
-      store->spectrum,      store->spectrum_together, store->point_find,         store->point,
-      store->point_input,   store->campaign_point,    store->axis_find,
+      store->run,         store->attempt,           store->estimate,   store->mass_row,
+      store->spectrum,    store->spectrum_together, store->point_find, store->point,
+      store->point_input, store->campaign_point,    store->axis_find,
   };
   for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++)
     sqlite3_finalize(statements[i]);
   for (size_t i = 0; i < LIMITS_ENGINES; i++) {
-    sqlite3_finalize(store->kinds[i].insert.statement);
+    sqlite3_finalize(store->kinds[i].insert);
     digest_names_clear(&store->kinds[i].names);
   }
   digest_names_clear(&store->outcome_names);
@@ -545,12 +539,6 @@ static void write_warning(const struct store *store, char *warning, size_t size)
     warning[0] = '\0';
 }
 
-static status follow_again(struct store *store, const char *path, struct error *error) {
-  free(store->path);
-  store->path = paths_followed(path);
-  return store->path ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
-}
-
 status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size,
                          struct error *error) {
   bool held = false;
@@ -562,15 +550,15 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   TRY(file_input(path, error));
   TRY(check_file(path, error));
   struct store *store = allocate(path);
-  if (!store)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   store->writer = true;
   struct stat file;
   const off_t before = stat(path, &file) == 0 ? file.st_size : -1;
   store->lacks_wal = lacks_wal(store->path);
   status result = take_lock(path, &store->lock, &held, error);
-  if (result == STATUS_OK && before < 0) /* a link to a free path: now there is a file */
-    result = follow_again(store, path, error);
+  if (result == STATUS_OK && before < 0) { /* a link to a free path: now there is a file */
+    free(store->path);
+    store->path = paths_followed(path);
+  }
   if (result == STATUS_OK)
     result = check_second_name(path, store->lacks_wal, error);
   if (result != STATUS_OK) {
@@ -626,8 +614,6 @@ status store_open_reader(const char *path, struct store **out, struct error *err
   TRY(file_input(path, error));
   TRY(check_file(path, error));
   struct store *store = allocate(path);
-  if (!store)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   store->lacks_wal = lacks_wal(store->path);
   status result = check_second_name(path, store->lacks_wal, error);
   if (result == STATUS_OK)
@@ -824,7 +810,7 @@ int store_attempts(struct store *store, const uint8_t identity[16], double time_
 static status keep_paths(const struct store *store, const char *copy, struct error *error) {
   sqlite3 *db = NULL;
   struct digest_tables tables;
-  char *way = paths_between(copy, store->path);
+  OWNED char *way = paths_between(copy, store->path);
   if (!way)
     return status_fail(error, STATUS_IO, "%s: the path of its folder cannot be resolved", copy);
   status result = STATUS_OK;
@@ -841,7 +827,6 @@ static status keep_paths(const struct store *store, const char *copy, struct err
       result = digest_tables_write(db, &tables, error);
   }
   sqlite3_close(db);
-  free(way);
   return result;
 }
 

@@ -136,9 +136,8 @@ void views_statistics_write(size_t count, const char *const *names, FILE *out) {
 
 /* A study names a quantity without its engine; the view runs may have the engine's table as a prefix. */
 static void write_is_quantity(const char *name, FILE *out) {
-  char *sql = sqlite3_mprintf("%Q IN (quantity, 'result_' || engine || '_' || quantity)", name);
-  fputs(sql ? sql : "NULL", out); /* without memory the next query fails too */
-  sqlite3_free(sql);
+  SQL_TEXT sql = sql_format("%Q IN (quantity, 'result_' || engine || '_' || quantity)", name);
+  fputs(sql, out);
 }
 
 void views_statistics_resolution(size_t count, const char *const *names, FILE *out) {
@@ -173,12 +172,9 @@ static void write_rows(struct view *view, const char *sql) {
     fputs(sql_text(statement, 0), view->out);
 }
 
-/* The same for SQL that sqlite3_mprintf made; frees it. */
+/* The same for SQL of sql_format(); frees it. */
 static void write_rows_of(struct view *view, char *sql) {
-  if (sql)
-    write_rows(view, sql);
-  else if (view->result == STATUS_OK)
-    view->result = status_fail(view->error, STATUS_MEMORY, "%s: memory ran out", doing);
+  write_rows(view, sql);
   sqlite3_free(sql);
 }
 
@@ -199,13 +195,13 @@ static char *result_tables(struct view *view) {
   while (view->result == STATUS_OK && sql_next(names, &view->result, doing, view->error)) {
     const char *name = sql_text(names, 0);
     int64_t rows = 0;
-    all = sqlite3_mprintf("%z%s%Q", all, all ? ", " : "", name);
+    all = sql_format("%z%s%Q", all, all ? ", " : "", name);
     view->result = sql_integerf(view->db, &rows, view->error, "SELECT EXISTS (SELECT 1 FROM main.\"%w\")", name);
     if (rows)
-      filled = sqlite3_mprintf("%z%s%Q", filled, filled ? ", " : "", name);
+      filled = sql_format("%z%s%Q", filled, filled ? ", " : "", name);
   }
   sqlite3_free(filled ? all : NULL);
-  return filled ? filled : all ? all : sqlite3_mprintf("''");
+  return filled ? filled : all ? all : sql_format("''");
 }
 
 /* Writes the columns of run, then of the engines' result tables. An engine's column with the name of another column
@@ -215,7 +211,7 @@ static void write_result_columns(struct view *view, const char *tables) {
                    "IN ('run_id', 'point_id', 'replicate', 'seed', 'identity', 'fields_digest', 'digest')");
   write_rows_of(
       view,
-      sqlite3_mprintf(
+      sql_format(
           "WITH mine AS MATERIALIZED (SELECT t.name AS place, c.name AS name, c.cid AS cid FROM main.sqlite_schema t, "
           "pragma_table_xinfo(t.name, 'main') c WHERE t.type = 'table' AND t.name IN (%s) AND c.name <> 'run_id'), "
           "shared AS MATERIALIZED (SELECT name FROM pragma_table_xinfo('run', 'main') UNION ALL SELECT name FROM mine "
@@ -232,10 +228,10 @@ static void write_runs(struct view *view) {
   write_axes(view);
   write_result_columns(view, tables);
   fputs("  lower(hex(r.identity)) AS identity\nFROM run r JOIN point p ON p.point_id = r.point_id", view->out);
-  write_rows_of(
-      view, sqlite3_mprintf("SELECT format(char(10) || '  LEFT JOIN \"%%w\" ON \"%%w\".run_id = r.run_id', name, name) "
-                            "FROM main.sqlite_schema WHERE type = 'table' AND name IN (%s) ORDER BY name",
-                            tables));
+  write_rows_of(view,
+                sql_format("SELECT format(char(10) || '  LEFT JOIN \"%%w\" ON \"%%w\".run_id = r.run_id', name, name) "
+                           "FROM main.sqlite_schema WHERE type = 'table' AND name IN (%s) ORDER BY name",
+                           tables));
   fputs(";\n", view->out);
 }
 
@@ -330,26 +326,23 @@ static status make(sqlite3 *db, const char *place, char *const text[VIEWS_COUNT]
   return STATUS_OK;
 }
 
-static status write_and_make(sqlite3 *db, bool stored, char *text[VIEWS_COUNT], struct error *error) {
-  static void (*const writers[VIEWS_COUNT])(struct view *) = {write_runs, write_points, write_spectra, write_estimates,
-                                                              write_resolution};
-  for (size_t i = 0; i < VIEWS_COUNT; i++) {
-    size_t size = 0;
-    struct view view = {.db = db, .out = text_open(&text[i], &size), .error = error};
-    if (view.out)
-      writers[i](&view);
-    if (!view.out || !text_close(view.out, &text[i]))
-      return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-    TRY(view.result);
-  }
-  TRY(make(db, "temp", text, error));
-  return stored ? make(db, "main", text, error) : STATUS_OK;
-}
-
 /* Makes the views of the connection and, with `stored`, those of the file. */
 static status make_all(sqlite3 *db, bool stored, struct error *error) {
+  static void (*const writers[VIEWS_COUNT])(struct view *) = {write_runs, write_points, write_spectra, write_estimates,
+                                                              write_resolution};
   char *text[VIEWS_COUNT] = {NULL}; /* after their CREATE VIEW and schema: "runs AS SELECT ...;" */
-  const status result = write_and_make(db, stored, text, error);
+  status result = STATUS_OK;
+  for (size_t i = 0; result == STATUS_OK && i < VIEWS_COUNT; i++) {
+    size_t size = 0;
+    struct view view = {.db = db, .out = text_open(&text[i], &size), .error = error};
+    writers[i](&view);
+    text_close_small(view.out, &text[i]);
+    result = view.result;
+  }
+  if (result == STATUS_OK)
+    result = make(db, "temp", text, error);
+  if (result == STATUS_OK && stored)
+    result = make(db, "main", text, error);
   for (size_t i = 0; i < VIEWS_COUNT; i++)
     free(text[i]);
   return result;

@@ -99,13 +99,8 @@ static status prepare(const void *inputs, uint64_t seed, void **out, struct erro
 static char *filled(const struct run *run, const char *text, size_t *size) {
   char *out_text = NULL;
   FILE *out = text_open(&out_text, size);
-  if (!out)
-    memory_refused();
   definition_fill(run->d, text, run->inputs, run->seed, out);
-  if (!text_close(out, &out_text))
-    memory_refused();
-  *size = strlen(out_text);
-  return out_text;
+  return text_close_small(out, &out_text);
 }
 
 static status put_files(const struct run *run, const struct child *child, struct error *error) {
@@ -268,11 +263,9 @@ static char *describe(const void *inputs, bool all) {
   const struct definition *d = NULL;
   char *text = NULL;
   size_t size = 0;
-  FILE *out = text_open(&text, &size);
-  if (!out || definition_of(inputs, &d, NULL)) {
-    free(out ? text_close(out, &text) : NULL);
+  if (definition_of(inputs, &d, NULL))
     return NULL;
-  }
+  FILE *out = text_open(&text, &size);
   fprintf(out, "runs the program: %s", d->place ? d->place : d->settings.program);
   for (size_t i = 0; i < d->word_count; i++)
     fprintf(out, " %s", d->words[i]);
@@ -291,9 +284,8 @@ static char *describe(const void *inputs, bool all) {
     fprintf(out, "  %s (%s): %s\n", d->result_rows[i].path, d->result[i].unit, d->result[i].doc);
   if (d->settings.fragments.name[0] || d->settings.fragments.file[0])
     fprintf(out, "  masses of fragments (%s)\n", d->settings.fragments.unit);
-  if (!text_close(out, &text))
-    return NULL;
-  text_make_plain(text, "\n\t"); /* a scene from a stranger must not move the cursor over what it runs */
+  text_make_plain(text_close_small(out, &text),
+                  "\n\t"); /* a scene from a stranger must not move the cursor over what it runs */
   return text;
 }
 

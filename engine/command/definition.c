@@ -521,8 +521,6 @@ static char *write_section(const struct definition *d, const char *program) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = text_open(&text, &size);
-  if (!out)
-    memory_refused();
   field_copy_text(settings.program, program);
   fputs("\"command\":{", out);
   field_json_members(&settings_table, &settings, out);
@@ -548,9 +546,7 @@ static char *write_section(const struct definition *d, const char *program) {
     fputc('}', out);
   }
   fputs("}}", out);
-  if (!text_close(out, &text))
-    memory_refused();
-  return text;
+  return text_close_small(out, &text);
 }
 
 static void add_identity(const struct field_table *table, const void *object, const char *name, FILE *out) {
@@ -566,8 +562,6 @@ static void make_digest(struct definition *d) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = text_open(&text, &size);
-  if (!out)
-    memory_refused();
   settings.same_bits = false;
   settings.limits.time = settings.limits.memory = settings.limits.output = 0;
   add_identity(&settings_table, &settings, "command", out);
@@ -592,9 +586,8 @@ static void make_digest(struct definition *d) {
     result.doc[0] = '\0';
     add_identity(&result_table, &result, d->result_rows[i].path, out);
   }
-  if (!text_close(out, &text))
-    memory_refused();
-  blake2s(text, strlen(text), digest);
+  text_close_small(out, &text);
+  blake2s(text, size, digest);
   text_hex(digest, sizeof digest, d->digest);
   free(text);
 }
