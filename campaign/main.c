@@ -7,6 +7,7 @@
 
 #include "analysis/analysis.h"
 #include "campaign/commands/commands.h"
+#include "campaign/terminal/words.h"
 #include "engine/cpu_class.h"
 
 static bool colour(void) {
@@ -79,6 +80,7 @@ static void keep_standard_files(void) {
 
 int main(int argc, char **argv) {
   keep_standard_files();
+  words_wrap_stderr();
   signal(SIGPIPE, SIG_IGN); /* a closed pipe (`| head`) must not end the program in the middle of a commit */
   signal(SIGXFSZ, SIG_IGN); /* a file at its limit (`ulimit -f`) then gives a write error, like a full disk */
   analysis_init();

@@ -1,6 +1,7 @@
 /* Bias, correlation and frontier of the levels of a knob, and the rows of a study. */
 #include "analysis/statistics/convergence.h"
 
+#include <float.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
@@ -13,19 +14,25 @@
 enum { FEWEST_PAIRS = 4 };
 #define NOTHING ((double)NAN)
 
+/* a - b; 0 where rounding alone may have made it. NaN when either is missing. */
+static double difference_of(double a, double b) {
+  const double rounding = 4 * DBL_EPSILON * fmax(fabs(a), fabs(b));
+  return fabs(a - b) <= rounding ? 0 : a - b;
+}
+
 struct convergence_difference convergence_bias(size_t n, const double *level, const double *reference, bool paired,
                                                double confidence) {
   if (paired) {
     struct sample_moments moments = {0};
     for (size_t i = 0; i < n; i++)
-      sample_add(&moments, level[i] - reference[i]); /* NaN when either value is missing */
+      sample_add(&moments, difference_of(level[i], reference[i]));
     const struct sample_summary summary = sample_summarise_moments(&moments, confidence);
     const bool equal = summary.n > 1 && isnan(summary.half_width); /* by equal seeds: the bias is exact */
     return (struct convergence_difference){summary.n, summary.mean, equal ? 0 : summary.half_width};
   }
   const struct sample_summary a = sample_summarise(n, level, confidence);
   const struct sample_summary b = sample_summarise(n, reference, confidence);
-  struct convergence_difference difference = {a.n < b.n ? a.n : b.n, a.mean - b.mean, NOTHING};
+  struct convergence_difference difference = {a.n < b.n ? a.n : b.n, difference_of(a.mean, b.mean), NOTHING};
   if (difference.n < 2)
     return difference;
 

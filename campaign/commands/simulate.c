@@ -7,14 +7,14 @@ struct options {
   struct option_list set;
 };
 
-static status simulate(const struct scene *scene, const struct one_run_options *options, enum table_format format,
-                       struct error *error) {
+static status simulate(const struct scene *scene, const char *reference, const struct one_run_options *options,
+                       enum table_format format, struct error *error) {
   RUN_RESULT result = {0};
   campaign_warn_scene(scene, "clast: warning: ", stderr);
   status code = one_run(scene, options, &result, error);
   /* Results are printed also when a file could not be written: hours of computing must not be lost for that. */
   if (result.result) {
-    const status printed = print_results(scene, options->seed, &result, format, code ? NULL : error);
+    const status printed = print_results(scene, reference, options->seed, &result, format, code ? NULL : error);
     code = code ? code : printed;
   }
   TRY(code);
@@ -36,7 +36,7 @@ static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   SCENE scene = NULL;
   TRY(option_load_scene(line->arguments[0], &options->set, &scene, error));
-  return simulate(scene, &options->run, line->format, error);
+  return simulate(scene, line->arguments[0], &options->run, line->format, error);
 }
 
 static const struct option_row rows[] = {

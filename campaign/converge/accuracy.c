@@ -10,6 +10,7 @@
 #include "campaign/converge/study.h"
 #include "campaign/terminal/progress.h"
 #include "campaign/terminal/table.h"
+#include "campaign/terminal/words.h"
 #include "db/ask/ask.h"
 #include "engine/grow.h"
 #include "engine/scene.h"
@@ -61,7 +62,7 @@ static status take_open(struct finding *finding, const struct convergence_row *r
   (void)error;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   finding->studied = true;
-  if (row->base) {
+  if (row->base && row->n > finding->accuracy->n) {
     finding->accuracy->mean = row->mean;
     finding->accuracy->n = row->n;
     finding->accuracy->within = finding->campaign->accuracy_within *
@@ -243,8 +244,8 @@ static status read_points(struct finding *finding, struct store *store, struct e
 
 static status no_study(const struct campaign *campaign, const char *path, const char *store, struct error *error) {
   return status_fail(error, STATUS_CONTENT,
-                     "accuracy: %s has no study of %s for this campaign. Make it: clast converge %s --quantity %s "
-                     "--store %s",
+                     "accuracy: %s has no study of %s for this campaign. Make it: `clast converge %s --quantity %s "
+                     "--store %s`",
                      store, campaign->accuracy_quantity, path, campaign->accuracy_quantity, store);
 }
 
@@ -287,44 +288,77 @@ static status too_short(const struct accuracy *accuracy, const struct campaign *
                      given, FEWEST_SEEDS, campaign->accuracy_time / accuracy->point_s, needed);
 }
 
+/* The finest studied level of the knob without a limit; NULL: there is none. */
+static const struct accuracy_option *finest_open(const struct accuracy *accuracy) {
+  const struct accuracy_option *finest = NULL;
+  for (size_t i = 0; accuracy->open && i < accuracy->count; i++) {
+    const struct accuracy_option *option = &accuracy->options[i];
+    const double finer = finest ? strtod(option->setting, NULL) / strtod(finest->setting, NULL) : 1;
+    if (strcmp(option->knob, accuracy->open->name) == 0 && !option->own &&
+        (!finest || (accuracy->open->step_power < 0 ? finer > 1 : finer < 1)))
+      finest = option;
+  }
+  return finest;
+}
+
+/* More levels: with which, and what a run of the finest one takes. */
+static void advise_levels(const struct accuracy *accuracy, const struct campaign *campaign,
+                          const struct accuracy_option *finest, char *next, size_t size) {
+  const struct knob *knob = accuracy->open;
+  const double value = strtod(finest->setting, NULL), finer = knob->step_power < 0 ? 2 : 0.5;
+  struct error ignored;
+  const struct field *row = field_find(campaign->scene->kind->inputs, knob->inputs[0].path, &ignored);
+  const char *unit = row && row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
+  char setting[64], time[32];
+  snprintf(setting, sizeof setting, "%.6g", value * finer);
+  const double run_s = finest->run_s * work_at(campaign, knob, setting) / work_at(campaign, knob, finest->setting);
+  progress_duration(run_s, time, sizeof time);
+  text_append(
+      next, size,
+      "The results show no limit in %s up to %.4g%s: no value of it is known to be enough, and more seeds alone "
+      "do not help. Finer levels may show a limit%s%s%s: `clast converge %s --knob %s=%.4g%s,%.4g%s,%.4g%s`",
+      knob->name, value, unit, run_s > 0 ? " (a run of the finest takes " : "", run_s > 0 ? time : "",
+      run_s > 0 ? ")" : "", accuracy->path, knob->name, value / finer, unit, value, unit, value * finer, unit);
+}
+
+/* More seeds: how many, and what they take at all levels. */
+static void advise_seeds(const struct accuracy *accuracy, double seeds, char *next, size_t size) {
+  double time_s = 0;
+  char time[32];
+  for (size_t i = 0; i < accuracy->count; i++)
+    if (!accuracy->options[i].extrapolated)
+      time_s += (seeds - (double)accuracy->n) * accuracy->options[i].run_s;
+  progress_duration(time_s, time, sizeof time);
+  text_append(next, size,
+              "The error shrinks with the seeds of the study, which has %" PRId64
+              "; about %.0f at every level are needed, which take %s of processor time: `clast converge %s "
+              "--max-seeds %.0f --within off --seeds %.0f`",
+              accuracy->n, seeds, time, accuracy->path, seeds, seeds);
+}
+
 /* No level reaches the accuracy: what would. */
 static status out_of_reach(const struct accuracy *accuracy, const struct campaign *campaign, struct error *error) {
-  const struct accuracy_option *best = &accuracy->options[accuracy->reference];
+  const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double seeds = ceil((double)accuracy->n * pow(best->error / accuracy->within, 2));
-  double finest = NAN;
-  char next[400] = "";
-  for (size_t i = 0; accuracy->open && i < accuracy->count; i++) {
-    const double setting = strtod(accuracy->options[i].setting, NULL);
-    if (strcmp(accuracy->options[i].knob, accuracy->open->name) == 0 && !accuracy->options[i].own)
-      finest = accuracy->open->step_power < 0 ? fmax(finest, setting) : fmin(finest, setting);
-  }
-  if (isfinite(finest)) {
-    const double finer = accuracy->open->step_power < 0 ? 2 : 0.5;
-    struct error ignored;
-    const struct field *row = field_find(campaign->scene->kind->inputs, accuracy->open->inputs[0].path, &ignored);
-    const char *unit = row && row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
-    text_append(next, sizeof next,
-                "%s shows no limit, so more seeds alone do not help. Finer levels may show one: clast converge %s "
-                "--knob %s=%.4g%s,%.4g%s,%.4g%s",
-                accuracy->open->name, path, accuracy->open->name, finest / finer, unit, finest, unit, finest * finer,
-                unit);
-  } else if (seeds <= MOST_SEEDS)
-    text_append(next, sizeof next,
-                "The error shrinks with the seeds of the study, which has %" PRId64
-                "; about %.0f are needed: clast converge %s --max-seeds %.0f --within off --seeds %.0f",
-                accuracy->n, seeds, path, seeds, seeds);
+  char next[600] = "", share[32] = "";
+  if (campaign->accuracy_of_value)
+    snprintf(share, sizeof share, "%.3g %% (", 100 * campaign->accuracy_within);
+  if (finest)
+    advise_levels(accuracy, campaign, finest, next, sizeof next);
+  else if (seeds <= MOST_SEEDS)
+    advise_seeds(accuracy, seeds, next, sizeof next);
   else
     text_append(next, sizeof next,
                 "More than %d seeds of the study would be needed, so no setting is known to reach it", MOST_SEEDS);
   return status_fail(
       error, STATUS_CONTENT,
-      "accuracy: no setting gives %s within %.2g of its mean %.3g. The smallest error is %.2g%s, with %s "
-      "= %s. %s. Or allow more, such as %.2g; or ask for the least error in a time: clast plan %s --within "
-      "10min; or take another result: clast converge %s --quantity fragment_count,kinetic_energy_share "
+      "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g. The smallest error is %.2g%s, with %s "
+      "= %s. %s. Or allow more, such as %.2g; or ask for the least error in a time: `clast plan %s --within "
+      "10min`; or take another result: `clast converge %s --quantity fragment_count,kinetic_energy_share` "
       "tells how near these are",
-      quantity, accuracy->within, accuracy->mean, best->error, best->open ? " or more" : "", best->knob, best->setting,
-      next, 1.3 * best->error, path, path);
+      quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, best->error, best->open ? " or more" : "",
+      best->knob, best->setting, next, 1.3 * best->error, path, path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {
@@ -371,21 +405,32 @@ static status print_alternatives(const struct accuracy *accuracy, enum table_for
 /* What is chosen for the time, which error it gives, and what half and twice the time would give. */
 static void print_choice(const struct accuracy *accuracy, const struct campaign *campaign, const char *before,
                          FILE *out) {
-  if (isnan(accuracy->point_s) || accuracy->chosen == accuracy->count)
+  if (accuracy->chosen == accuracy->count)
     return;
   const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
+  char time[32];
+  if (isnan(accuracy->point_s)) {
+    progress_duration(option->cpu_s, time, sizeof time);
+    words_print(out, before, "%s \xc2\xb1 %.2g with %s%s%s and %" PRId64 " seeds a point: %s of processor time",
+                campaign->accuracy_quantity, accuracy->within, option->own ? "" : option->knob,
+                option->own ? "" : " = ", option->own ? "the scene's own settings" : option->setting, option->seeds,
+                time);
+    return;
+  }
   bool open[2];
   const double half = accuracy_least(accuracy, accuracy->point_s / 2, &open[0]),
                twice = accuracy_least(accuracy, accuracy->point_s * 2, &open[1]);
   const char *const or_more[] = {"", " or more"}, *more = or_more[option->open];
-  char time[32];
+  char in_half[48] = "no result";
   progress_duration(campaign->accuracy_time, time, sizeof time);
-  fprintf(out, "%s%s \xc2\xb1 %.2g%s in %s of processor time: %s%s%s, %" PRId64 " seeds a point\n", before,
-          campaign->accuracy_quantity, option->total, more, time, option->own ? "" : option->knob,
-          option->own ? "" : " = ", option->own ? "the scene's own settings" : option->setting, option->seeds);
-  fprintf(out, "%s%.2g%s of it is resolution, the rest seeds. In half of the time: ", before, option->error, more);
-  fprintf(out, isnan(half) ? "no result" : "\xc2\xb1 %.2g%s", half, or_more[open[0]]);
-  fprintf(out, "; in twice: \xc2\xb1 %.2g%s\n", twice, or_more[open[1]]);
+  words_print(out, before, "%s \xc2\xb1 %.2g%s in %s of processor time: %s%s%s, %" PRId64 " seeds a point",
+              campaign->accuracy_quantity, option->total, more, time, option->own ? "" : option->knob,
+              option->own ? "" : " = ", option->own ? "the scene's own settings" : option->setting, option->seeds);
+  if (!isnan(half))
+    snprintf(in_half, sizeof in_half, "\xc2\xb1 %.2g%s", half, or_more[open[0]]);
+  words_print(out, before,
+              "%.2g%s of it is resolution, the rest seeds. In half of the time: %s; in twice: \xc2\xb1 %.2g%s",
+              option->error, more, in_half, twice, or_more[open[1]]);
 }
 
 static status alternatives_json(const struct accuracy *accuracy, char **json, struct error *error) {
@@ -422,15 +467,17 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
     print_choice(&accuracy, campaign, "clast: ", stderr);
   if (print == ACCURACY_TEXT) {
     if (isnan(accuracy.point_s))
-      printf("accuracy  %s within %.3g. total: error of resolution and 95 %% interval together. run_cost: against the "
-             "smallest error\n",
-             campaign->accuracy_quantity, accuracy.within);
+      words_print(stdout, "accuracy  ",
+                  "%s within %.3g. total: error of resolution and 95 %% interval together. run_cost: against "
+                  "the smallest error",
+                  campaign->accuracy_quantity, accuracy.within);
     print_choice(&accuracy, campaign, "accuracy  ", stdout);
     TRY(print_alternatives(&accuracy, TABLE_TEXT, stdout, error));
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
-      printf("The chosen setting is finer than any level that was run. Its error is that of the finest level times "
-             "(its step over that step)^%g, and its cost is by the engine's measure of work.\n",
-             LIMIT_ORDER_LEAST);
+      words_print(stdout, "",
+                  "The chosen setting is finer than any level that was run. Its error is that of the finest level "
+                  "times (its step over that step)^%g, and its cost is by the engine's measure of work.",
+                  LIMIT_ORDER_LEAST);
     putchar('\n');
   }
   return accuracy_apply(&accuracy, campaign, error);

@@ -8,6 +8,7 @@
 
 #include "campaign/charts/charts.h"
 #include "campaign/terminal/table.h"
+#include "campaign/terminal/words.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
@@ -98,20 +99,20 @@ static void print_level(struct table *table, const struct convergence_row *row, 
 
 enum { WIDTH = 100 };
 
-/* The first line of a quantity says what is known of it at one level: the scene's own, or the finest that has runs. */
+/* The first line of a quantity says what is known of it at one level: the scene's own, of the knob with most seeds, or
+ * the finest that has runs. */
 static bool find_told(size_t count, const struct study_found *found, size_t *knob, size_t *level) {
-  bool any = false;
+  const struct convergence_row *told = NULL;
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++) {
-      if (found[i].rows[l].n == 0)
+      const struct convergence_row *row = &found[i].rows[l];
+      if (row->n == 0 || (told && told->base && (!row->base || row->n <= told->n)))
         continue;
       *knob = i;
       *level = l;
-      any = true;
-      if (found[i].rows[l].base)
-        return true;
+      told = row;
     }
-  return any;
+  return told;
 }
 
 /* The change between the two finest levels as one of a doubling, or a halving, of the knob's first input. */
@@ -326,14 +327,13 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
 }
 
 static const char legend[] =
-    "* the scene's own setting; ref: what bias is measured against. bias: mean minus that of ref, with the half width\n"
-    "of its 95 % interval. error: largest distance to the limit (none seen: |bias| + half width, perhaps too small),\n"
-    "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer. "
-    "correlation:\n"
-    "of the runs of a seed with those at the next finer level; from `pays from correlation` on, the coarse level as a "
-    "control "
-    "variate\n"
-    "would save time. share of upper mode: of the runs, where their values have two modes (peaks).\n";
+    "* the scene's own setting; ref: what bias is measured against. bias: mean minus that of ref, with the half width "
+    "of its 95 % interval. error: largest distance to the limit (none seen: |bias| + half width, perhaps too small), "
+    "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer.";
+static const char legend_of_all[] =
+    "correlation: of the runs of a seed with those at the next finer level; from \"pays from correlation\" on, the "
+    "coarse level as a control variate would save time. share of upper mode: of the runs, where their values have two "
+    "modes (peaks).";
 
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error) {
   OWNED struct study_found *found = NULL;
@@ -362,10 +362,12 @@ status study_print(const struct study *study, enum table_format format, bool qui
   uncertainty_doubts(&sum, stderr);
   if (quiet)
     return STATUS_OK;
-  fputs(legend, stderr);
+  words_print(stderr, "", "%s", legend);
+  if (format == TABLE_ALL)
+    words_print(stderr, "", "%s", legend_of_all);
   fprintf(stderr,
-          "clast: next: `clast stats %s` now has this error beside each value, and `accuracy: {within: ...}` in a "
-          "campaign chooses settings by it\n",
+          "clast: next: `clast estimates %s` now has this error beside M_1/M of each level, and `accuracy: {within: "
+          "...}` in a campaign chooses settings by it\n",
           study->limits.store);
   return STATUS_OK;
 }

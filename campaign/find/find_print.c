@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "campaign/terminal/words.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
@@ -219,7 +220,7 @@ status find_print(const struct find *find, enum table_format format, struct erro
   if (!table_for_people(format))
     return print_rows(find, format, error);
   write_sentence(find, text);
-  puts(text);
+  words_print(stdout, "", "%s", text);
   if (!find->narrow)
     puts("The interval is wider than asked, and the runs are used up: a larger --max-runs goes on.");
   TRY(print_bins(find, error));

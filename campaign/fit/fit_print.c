@@ -3,9 +3,9 @@
 #include "campaign/fit/fit.h"
 
 #include <math.h>
-#include <stdarg.h>
 
 #include "campaign/terminal/table.h"
+#include "campaign/terminal/words.h"
 #include "schemas/text.h"
 
 enum { WIDTH = 110, LABEL = 2 * FIELD_TEXT_SIZE, PARAGRAPH = (OBSERVED_DATA + 4) * LABEL };
@@ -151,18 +151,6 @@ static status print_rows(const struct fit *fit, enum table_format format, struct
 
 /* ---- the sentences under the tables ---- */
 
-static void say(FILE *out, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-/* A paragraph of words, wrapped. */
-static void say(FILE *out, const char *format, ...) {
-  char text[PARAGRAPH];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  text_wrap(text, 0, 0, WIDTH, out);
-}
-
 static size_t count_mixed(const struct fit *fit, size_t direction) {
   size_t count = 0;
   for (size_t i = 0; i < fit->inputs; i++)
@@ -207,7 +195,8 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
   const double information = fit->found.direction[direction].information;
   list_mixed(fit, direction, names);
   if (count_mixed(fit, direction) > 1) {
-    say(out,
+    words_print(
+        out, "",
         "RIDGE: these data cannot tell %s apart. What was measured hardly changes while they change together: %s. "
         "Along this line the data tell %.2g times what the priors tell; its ends are set by the priors. Quote the "
         "inputs together, or measure something that changes along it.",
@@ -217,17 +206,17 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
   size_t input = 0;
   while (input + 1 < fit->inputs && !identify_mixed(&fit->found, direction, input))
     input++;
-  say(out, "NOT DETERMINED: %s. The data say %.2g times as much as its prior says%s", names, information,
-      fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (kept)."
-                                       : "; its interval is that of the prior.");
+  words_print(out, "", "NOT DETERMINED: %s. The data say %.2g times as much as its prior says%s", names, information,
+              fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (kept)."
+                                               : "; its interval is that of the prior.");
 }
 
 /* What the data determine of several inputs together, though not of each. */
 static void tell_together(const struct fit *fit, size_t direction, FILE *out) {
   char names[PARAGRAPH], ends[PARAGRAPH];
   if (count_mixed(fit, direction) > 1)
-    say(out, "TOGETHER: the data determine %s together, to one standard deviation on either side: %s.",
-        list_mixed(fit, direction, names), list_ends(fit, direction, ends));
+    words_print(out, "", "TOGETHER: the data determine %s together, to one standard deviation on either side: %s.",
+                list_mixed(fit, direction, names), list_ends(fit, direction, ends));
 }
 
 /* Share of predicted experiments beyond this datum, on the side where fewer are. */
@@ -244,20 +233,23 @@ static void tell_determined(const struct fit *fit, FILE *out) {
   for (size_t i = 0; i < p; i++)
     as_wide = as_wide || fit->found.kept[i] >= AS_WIDE;
   if (missed) {
-    say(out,
+    words_print(
+        out, "",
         "OUTSIDE: the measured values lie outside of what the priors can make (MISFIT). The intervals of the inputs "
         "lean on the ends of the priors and are no estimates: widen the priors, or ask what the model lacks.");
     return;
   }
   if (known == p && as_wide)
-    say(out, "The data tell more than the priors at most places, and yet they leave an input its whole range (kept): "
-             "inputs that are far apart give what was measured.");
+    words_print(
+        out, "",
+        "The data tell more than the priors at most places, and yet they leave an input its whole range (kept): "
+        "inputs that are far apart give what was measured.");
   else if (known == p)
-    say(out, "The data determine %s: in every direction they tell more than the priors.",
-        p == 1 ? "the input" : "all inputs");
+    words_print(out, "", "The data determine %s: in every direction they tell more than the priors.",
+                p == 1 ? "the input" : "all inputs");
   else
-    say(out, "The data determine %zu combination%s of the %zu unknown input%s.", known, known == 1 ? "" : "s", p,
-        p == 1 ? "" : "s");
+    words_print(out, "", "The data determine %zu combination%s of the %zu unknown input%s.", known,
+                known == 1 ? "" : "s", p, p == 1 ? "" : "s");
   for (size_t i = 0; known < p && i < known; i++)
     tell_together(fit, i, out);
   for (size_t i = known; i < p; i++)
@@ -274,7 +266,8 @@ static void tell_not_studied(const struct fit *fit, FILE *out) {
     text_append(names, sizeof names, "%s %s", *names ? "," : "", label);
   }
   if (*names)
-    say(out,
+    words_print(
+        out, "",
         "RESOLUTION: what a finer resolution would change is not known and counts as 0 for%s. The intervals are too "
         "narrow. Give `resolution` with the value, or study it: `clast converge %s --store %s` with what the campaign "
         "sets (--set).",
@@ -286,8 +279,10 @@ static void tell_errors(const struct fit *fit, FILE *out) {
   for (size_t s = 0; s < fit->observed->shot_count; s++)
     single += fit->observed->shots[s].specimens == 1;
   if (single)
-    say(out, "One experiment is one specimen: sd_seeds is the scatter between seeds, not the standard error of a mean, "
-             "and the intervals hold it.");
+    words_print(
+        out, "",
+        "One experiment is one specimen: sd_seeds is the scatter between seeds, not the standard error of a mean, "
+        "and the intervals hold it.");
   tell_not_studied(fit, out);
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     char label[LABEL];
@@ -296,7 +291,8 @@ static void tell_errors(const struct fit *fit, FILE *out) {
         r->verdict == ASK_RESOLUTION_NOT_STUDIED)
       continue;
     observed_label(fit->observed, k, label, sizeof label);
-    say(out,
+    words_print(
+        out, "",
         "RESOLUTION: %s %s with resolution; the study in the store tells an error of at least %.2g, which is in the "
         "intervals.",
         label, r->verdict == ASK_RESOLUTION_DIVERGES ? "does not converge" : "has no limit in sight", r->half_width);
@@ -313,15 +309,18 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
     /* For a normal law, skewness and excess have standard errors sqrt(6/n) and sqrt(24/n). */
     const double n = (double)scatter->freedom;
     if (fabs(scatter->skewness) > 4 * sqrt(6 / n) || fabs(scatter->excess) > 4 * sqrt(24 / n))
-      say(out,
+      words_print(
+          out, "",
           "SCATTER: %s is not normal over seeds (skewness %.2g, excess kurtosis %.2g%s), as the likelihood takes it "
           "to be. A sampler without a formula (pyabc, on `clast serve`) fits without that.",
           label, scatter->skewness, scatter->excess, scatter->excess < -1 ? ": two heaps" : "");
     if (beyond(fit, k) < 0.025)
-      say(out, "MISFIT: no inputs within the priors predict %s well: only %.2g of predicted experiments lie %s it.",
-          label, below < 0.5 ? below : 1 - below, below < 0.5 ? "below" : "above");
+      words_print(out, "",
+                  "MISFIT: no inputs within the priors predict %s well: only %.2g of predicted experiments lie %s it.",
+                  label, below < 0.5 ? below : 1 - below, below < 0.5 ? "below" : "above");
     if (fit->surfaces.left_out[k] > 1.5)
-      say(out,
+      words_print(
+          out, "",
           "SURFACE: for %s the points are missed by %.2g times what the surface says of its own error; more members "
           "or more seeds help.",
           label, fit->surfaces.left_out[k]);
@@ -332,7 +331,8 @@ static void tell(const struct fit *fit, FILE *out) {
   tell_determined(fit, out);
   tell_errors(fit, out);
   tell_doubts(fit, out);
-  say(out,
+  words_print(
+      out, "",
       "Surfaces through %zu points of %zu seeds in %zu rounds; posterior %s. kept: width of the 90 %% interval over "
       "that of the prior. below: share of predicted experiments below the value. Source of the data: %.200s",
       fit->points, fit->replicates, fit->rounds, fit->posterior.sampled ? "sampled" : "on a grid",

@@ -196,14 +196,13 @@ static status print_long(const struct engine_kind *kind, const struct run_result
   return table_end(table, error);
 }
 
-static status print_for_people(const struct scene *scene, int64_t seed, const struct run_result *result,
-                               enum table_format format, struct error *error) {
+static status print_for_people(const struct scene *scene, const char *reference, int64_t seed,
+                               const struct run_result *result, enum table_format format, struct error *error) {
   struct ask_resolution resolution;
   char text[UNCERTAINTY_TEXT];
   print_answers(scene, seed, result);
   TRY(ask_resolution(NULL, 0, OUTCOME_DEFAULT, &resolution, error));
-  snprintf(resolution.scene, sizeof resolution.scene, "%.127s",
-           scene_builtin_text(scene->name) ? scene->name : "SCENE.yaml");
+  snprintf(resolution.scene, sizeof resolution.scene, "%.127s", reference);
   uncertainty_resolution(&resolution, text);
   printf("errors: one run alone has no interval; `clast run` with several seeds gives one\n%s\n", text);
   if (format == TABLE_ALL) {
@@ -215,9 +214,9 @@ static status print_for_people(const struct scene *scene, int64_t seed, const st
   return table_flush(stdout, error);
 }
 
-status print_results(const struct scene *scene, int64_t seed, const struct run_result *result, enum table_format format,
-                     struct error *error) {
-  return table_for_people(format) ? print_for_people(scene, seed, result, format, error)
+status print_results(const struct scene *scene, const char *reference, int64_t seed, const struct run_result *result,
+                     enum table_format format, struct error *error) {
+  return table_for_people(format) ? print_for_people(scene, reference, seed, result, format, error)
                                   : print_wide(scene->kind, seed, result, format, error);
 }
 

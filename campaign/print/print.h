@@ -12,8 +12,9 @@
 /* Path, value (off and NaN are missing), unit and first sentence of a row of the object: four cells. */
 void print_results_row(struct table *table, const struct field *row, const void *object);
 
-status print_results(const struct scene *scene, int64_t seed, const struct run_result *result, enum table_format format,
-                     struct error *error);
+/* reference: the scene as the user named it. */
+status print_results(const struct scene *scene, const char *reference, int64_t seed, const struct run_result *result,
+                     enum table_format format, struct error *error);
 
 /* ---- estimates: the table that `clast run` prints at its end, and `clast estimates` prints again ---- */
 

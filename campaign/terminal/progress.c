@@ -20,9 +20,13 @@ struct progress {
   int last_share;   /* twentieths reported so far (plain lines) */
 };
 
+static int file_of(FILE *out) {
+  return out == stderr ? STDERR_FILENO : fileno(out); /* stderr may be wrapped: words.h */
+}
+
 enum progress_style progress_style_of(FILE *out) {
   const char *term = getenv("TERM");
-  return isatty(fileno(out)) && term && *term && strcmp(term, "dumb") != 0 ? PROGRESS_BAR : PROGRESS_PLAIN;
+  return isatty(file_of(out)) && term && *term && strcmp(term, "dumb") != 0 ? PROGRESS_BAR : PROGRESS_PLAIN;
 }
 
 struct progress *progress_create(FILE *out, enum progress_style style, bool colour, int columns) {
@@ -35,8 +39,8 @@ static int width(const struct progress *progress) {
   struct winsize size;
   if (progress->columns > 0)
     return progress->columns;
-  if (ioctl(fileno(progress->out), TIOCGWINSZ, &size) == 0 && size.ws_col >= 20)
-    return size.ws_col;
+  if (ioctl(file_of(progress->out), TIOCGWINSZ, &size) == 0 && size.ws_col >= 20)
+    return size.ws_col < 100 ? size.ws_col : 100;
   return 80;
 }
 

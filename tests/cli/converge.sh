@@ -123,7 +123,7 @@ accuracy: {within: 0.05}
 store: sharp.db
 YAML
 expect 65 "$clast" run sharp.yaml
-says "clast converge sharp.yaml --quantity largest_fraction --store sharp.db"
+says "\`clast converge sharp.yaml --quantity largest_fraction --store sharp.db"
 expect 0 "$clast" converge sharp.yaml --knob time_step --seeds 8 --max-seeds 8 --store sharp.db -j 2
 expect 0 "$clast" plan sharp.yaml --json
 python - <<'PY'
@@ -139,7 +139,7 @@ assert all(a['point_cpu'] is None or a['point_cpu'] >= chosen['point_cpu'] for a
 PY
 ok "the plan takes the cheapest alternative"
 expect 0 "$clast" plan sharp.yaml
-prints "chosen"
+prints "chosen"; prints "seeds a point: "
 expect 0 "$clast" run sharp.yaml -j 2 --quiet --csv
 same "$(number sharp.db "select value from campaign join campaign_point using (campaign_id) join point_input using (point_id) \
   where name = 'sharp' and path = 'fidelity.time_step'")" "$(cat setting)" "time step of the campaign's point"
@@ -177,7 +177,7 @@ says "leave seeds.per_point"
 sed -i 's/0.05/1e-9/' sharp.yaml
 expect 65 "$clast" run sharp.yaml
 says "smallest error"
-says "or ask for the least error in a time: clast plan sharp.yaml --within 10min"
+says "or ask for the least error in a time: \`clast plan sharp.yaml --within 10min\`"
 # A share is one of the mean, as for --within of converge and find.
 sed 's/1e-9/20 %/' sharp.yaml >share.yaml
 expect 0 "$clast" plan share.yaml
@@ -188,6 +188,19 @@ within = float(re.search(r"within ([0-9.e-]+)\. total", open("out").read())[1])
 assert abs(within / (0.2 * mean) - 1) < 0.01, (within, mean)
 PY
 ok "a share of the mean"
+
+# Of several knobs, `plan` and `converge` tell the mean of the one with most seeds. Advice of seeds tells its cost.
+sed 's/sharp/mean/' sharp.yaml >mean.yaml
+expect 0 "$clast" converge mean.yaml --knob grains=1.2cm,1.069cm,0.9cm --seeds 8 --within off --store mean.db -j 2
+expect 0 "$clast" converge mean.yaml --knob time_step --seeds 3 --within off --store mean.db -j 2
+says "clast estimates mean.db"
+expect 65 "$clast" run mean.yaml
+python - <<'PY'
+import re, sqlite3
+mean, = sqlite3.connect("mean.db").execute("select mean from convergence where base and n = 8").fetchone()
+assert float(re.search(r"its mean ([0-9.e-]+)\.", open("err").read())[1]) == float("%.4g" % mean), mean
+PY
+ok "the mean of most seeds"
 
 # Points of a file are scenes like those of axes.
 printf 'threshold.strain,threshold.angle\n2 %%,2 deg\n5 %%,6 deg\n' >points.csv
@@ -216,4 +229,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 56
+done_after 60

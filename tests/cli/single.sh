@@ -49,6 +49,8 @@ cp out first.json
 expect 0 "$clast" simulate ./disc-explosion.yaml --seed 7 "${small[@]}" --json
 cmp -s out first.json || fail "a built-in scene and its own document differ"
 ok "the built-in scene and its document give the same bits"
+expect 0 "$clast" simulate ./disc-explosion.yaml --seed 7 "${small[@]}"
+prints '`clast converge ./disc-explosion.yaml`'
 expect 0 "$clast" simulate disc-explosion --seed 8 "${small[@]}" --json
 if cmp -s out first.json; then fail "another seed gives the same result"; fi
 expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --fields end.h5 --snapshots 3 --picture end.png
@@ -110,4 +112,4 @@ expect 0 "$clast" explain vary
 prints "log_uniform"
 expect 65 "$clast" explain desing
 says "design"
-done_after $((33 + 3 * $(echo "$scenes" | wc -w)))
+done_after $((34 + 3 * $(echo "$scenes" | wc -w)))

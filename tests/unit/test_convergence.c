@@ -30,6 +30,11 @@ static void biases(void **state) {
   assert_true(isnan(convergence_bias(1, a, b, false, 0.95).half_width));
   assert_true(isfinite(convergence_bias(2, a, b, false, 0.95).half_width));
   /* Equal bits: the bias is zero, known exactly. */
+  /* So do values that differ by rounding alone. */
+  const double rounded[] = {nextafter(b[0], 9), b[1], b[2], nextafter(b[3], 9)};
+  for (int paired = 0; paired < 2; paired++)
+    assert_true(convergence_bias(4, rounded, b, paired, 0.95).value == 0);
+  assert_true(convergence_bias(4, rounded, b, true, 0.95).half_width == 0);
   d = convergence_bias(4, b, b, true, 0.95);
   assert_true(d.value == 0 && d.half_width == 0);
 }

@@ -1,0 +1,15 @@
+/* Sentences for people, in lines that a terminal shows whole. */
+#ifndef CLAST_CAMPAIGN_TERMINAL_WORDS_H
+#define CLAST_CAMPAIGN_TERMINAL_WORDS_H
+
+#include <stdio.h>
+
+/* A paragraph in lines of at most 100 columns, behind `head` and as far indented. */
+void words_print(FILE *out, const char *head, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* From now on, all that is printed on stderr has lines of at most 100 columns, or the terminal's if that is narrower.
+ * Nothing changes where stderr is no terminal: programs read whole lines. Commands in `...` stay whole, so that they
+ * can be copied. stderr has no fileno() then. */
+void words_wrap_stderr(void);
+
+#endif
