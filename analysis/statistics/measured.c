@@ -435,13 +435,21 @@ static status add_unit(const struct reading *r, const char *text, const char *un
   return STATUS_OK;
 }
 
+/* The unit of a mass: kg, or also kg/m of a two-dimensional scene. */
+static const char *mass_unit(const struct reading *r, const char *quantity) {
+  double ignored;
+  return r->size.dimensions == 2 && unit_read(quantity, "kg/m", &ignored, NULL) == STATUS_OK ? "kg/m" : "kg";
+}
+
 /* Reads "0.5" in the unit of the column, or "0.5 g", as a mass in kg. */
 static status read_mass(const struct reading *r, const char *text, const char *unit, double *mass,
                         struct error *error) {
   char quantity[QUANTITY];
   double place;
   TRY(add_unit(r, text, unit, quantity, error));
-  const status code = unit_read(quantity, r->by_size ? "m" : "kg", &place, error);
+  const char *expected = r->by_size ? "m" : mass_unit(r, quantity);
+  const status code = unit_read(quantity, expected, &place, error);
+  r->out->bodies |= r->size.dimensions == 2 && strcmp(expected, "kg") == 0;
   if (code == STATUS_OK && r->kind >= RETAINED && place == 0) { /* below the finest sieve */
     *mass = 0;
     return STATUS_OK;
@@ -458,14 +466,15 @@ static status read_mass(const struct reading *r, const char *text, const char *u
 static status read_complete(struct reading *r, struct error *error) {
   double *mass = &r->out->complete;
   r->csv.line = r->complete_line;
-  if (r->by_size && !unit_is_bare(r->complete) && unit_read(r->complete, "kg", mass, NULL) == STATUS_OK && *mass > 0)
+  if (r->by_size && !unit_is_bare(r->complete) &&
+      unit_read(r->complete, mass_unit(r, r->complete), mass, NULL) == STATUS_OK && *mass > 0)
     return STATUS_OK;
   return read_mass(r, r->complete, "", mass, error);
 }
 
 /* A number of fragments, a mass in kg, or a share of the mass. */
 static status read_amount(struct reading *r, const char *text, double *amount, struct error *error) {
-  struct unit unit, mass;
+  struct unit unit, mass, of_length;
   char quantity[QUANTITY];
   if (r->kind == COUNT || r->kind == COUNT_ABOVE) {
     const size_t whole = strspn(text, "0123456789");
@@ -476,14 +485,16 @@ static status read_amount(struct reading *r, const char *text, double *amount, s
     return STATUS_OK;
   }
   TRY(unit_parse("kg", &mass, error));
+  TRY(unit_parse("kg/m", &of_length, error));
   if (*r->amount_unit && unit_parse(r->amount_unit, &unit, error))
     return refuse(r, error, "the unit of masses is g, kg or %, not", r->amount_unit);
-  const bool weighed = *r->amount_unit && unit_same_dimension(&unit, &mass);
+  const bool weighed = *r->amount_unit && (unit_same_dimension(&unit, &mass) ||
+                                           (r->size.dimensions == 2 && unit_same_dimension(&unit, &of_length)));
   r->shares = !weighed;
   if (weighed && r->kind == PASSING)
     return refuse(r, error, "the mass that passes is given in % of the whole, not in", r->amount_unit);
   TRY(add_unit(r, text, r->amount_unit, quantity, error));
-  if (unit_read(quantity, weighed ? "kg" : "1", amount, error))
+  if (unit_read(quantity, weighed ? mass_unit(r, quantity) : "1", amount, error))
     return refuse(r, error, "expected a mass of fragments, not", quantity);
   if (!(*amount >= 0) || (!weighed && *amount > 1))
     return refuse(r, error, weighed ? "expected a mass of 0 or more, not" : "expected a share from 0 to 100 %, not",

@@ -464,11 +464,13 @@ const char *estimates_short_name(const char *name);
  *     cumulative retained   the mass of all fragments of at least this mass or size
  *     passing (%)           the mass of all smaller fragments
  *
+ * Beside a two-dimensional scene, masses are per metre of depth: mass (kg/m), retained (kg/m).
  * measured.c has the other names that laboratories use. `name`, `id`, `note` and the like are not read; a column
  * of any other name is refused. */
 
 struct measured {
   bool single;      /* true: `mass` has every fragment; false: `mass` has thresholds, and `above` their numbers */
+  bool bodies;      /* masses in kg beside those of a two-dimensional scene, kg/m: as if the bodies were 1 m deep */
   bool weighed;     /* `above` has masses, in any unit: a sieve table */
   size_t n;         /* masses, or thresholds */
   double *mass;     /* kg, ascending; owned */

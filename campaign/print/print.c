@@ -353,21 +353,22 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
             complete, kg, measured->weighed ? "the shares of mass" : "the shapes");
     if (nothing)
       fprintf(stderr,
-              "clast: no distance: the heaviest measured fragment has %.3g kg, the heaviest simulated one %.3g %s\n",
-              measured->n ? measured->mass[measured->n - 1] : 0, heaviest, kg);
+              "clast: no distance: the heaviest measured fragment has %.3g %s, the heaviest simulated one %.3g %s\n",
+              measured->n ? measured->mass[measured->n - 1] : 0, measured->bodies ? "kg" : kg, heaviest, kg);
     for (size_t i = 0; !measured->weighed && i < measured->n; i++) {
       const double beyond = i + 1 < measured->n ? measured->above[i + 1] : 0;
       given += measured->mass[i] * (measured->single ? 1 : measured->above[i] - beyond); /* at least, with thresholds */
     }
-    if (dimensions == 2)
-      fputs("clast: this scene is two-dimensional: its masses are per metre of thickness. Give the measured ones as a "
-            "disc of 1 m has them\n",
-            stderr);
+    if (measured->bodies)
+      fputs(
+          "clast: this scene is two-dimensional: its masses are per metre of thickness, the measured ones in kg count "
+          "as of 1 m. Divide them by the thickness of the specimen, and name the column mass (kg/m)\n",
+          stderr);
     else if (given > 0 && fmax(given / whole, whole / given) > SAME_MASS)
       fprintf(stderr,
-              "clast: the measured fragments have %.3g kg or more together, a run has %.3g kg. Masses are compared as "
-              "they are: give\nthe body of the scene the size of the specimen\n",
-              given, whole);
+              "clast: the measured fragments have %.3g %s or more together, a run has %.3g %s. Masses are compared as "
+              "they are: give the body of the scene the size of the specimen\n",
+              given, kg, whole, kg);
     else if (nothing)
       fputs("clast: more particles or grains lower the mass from which a spectrum is complete\n", stderr);
   }

@@ -72,6 +72,23 @@ static void the_three_kinds(void **state) {
   measured_release(&m);
 }
 
+/* The masses of a two-dimensional scene are per metre of depth; those of bodies are told. */
+static void two_dimensions(void **state) {
+  (void)state;
+  static const struct spectrum_size flat = {0, 2};
+  struct measured m;
+  assert_int_equal(read_text("# complete from: 1 g/m\nmass (g/m), retained (kg/m)\n2,1\n4,3\n", &flat, &m), STATUS_OK);
+  assert_true(m.n == 2 && m.weighed && m.above[0] == 4 && !m.bodies);
+  near(m.mass[0], 0.002);
+  near(m.complete, 0.001);
+  measured_release(&m);
+  assert_int_equal(read_text("mass (g)\n2\n4\n", &flat, &m), STATUS_OK);
+  assert_true(m.n == 2 && m.bodies);
+  measured_release(&m);
+  assert_int_equal(read_text("mass (kg/m)\n2\n4\n", &no_size, &m), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "kg/m"));
+}
+
 static void bad_files(void **state) {
   (void)state;
   static const struct {
@@ -279,11 +296,9 @@ static void a_run_among_runs(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_three_kinds),
-                                     cmocka_unit_test(bad_files),
-                                     cmocka_unit_test(forms_of_laboratories),
-                                     cmocka_unit_test(sieves),
-                                     cmocka_unit_test(distances),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_three_kinds), cmocka_unit_test(two_dimensions),
+                                     cmocka_unit_test(bad_files),       cmocka_unit_test(forms_of_laboratories),
+                                     cmocka_unit_test(sieves),          cmocka_unit_test(distances),
                                      cmocka_unit_test(a_run_among_runs)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
