@@ -67,10 +67,10 @@ static void write_time(double seconds, char text[32]) {
 }
 
 /* "disc_000003: dem, seed 1, 812 µs". The scene and the number of a snapshot are the file's name; the fields of a
- * stored run are named by a hash. Of a sheet: the name of its series, and no time. */
+ * stored run are named by a hash. Of a movie: the name of its series; of a sheet, also no time. */
 static void name_run(const char *fields, const struct movie *movie, const char *engine, long long seed, double time,
                      char *text, size_t size) {
-  const char *path = movie && movie->sheet ? movie->series : fields;
+  const char *path = movie ? movie->series : fields;
   const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
   const size_t length = strcspn(base, ".");
   char shown[32];
@@ -78,7 +78,7 @@ static void name_run(const char *fields, const struct movie *movie, const char *
   if (*engine)
     text_append(text, size, "%s%s, seed %lld", *text ? ": " : "", engine, seed);
   write_time(time, shown);
-  if (*shown && path == fields)
+  if (*shown && !(movie && movie->sheet))
     text_append(text, size, ", %s", shown);
 }
 

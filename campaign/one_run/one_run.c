@@ -80,8 +80,9 @@ static void path_of_list(const struct snapshots *s, char path[PATH]) {
 }
 
 /* `count` files NAME_000000.hdf, ... evenly over the longest time that a run may take, the first one near its
- * beginning. `resumed`: the run goes on from a restart file; earlier snapshots are on the disk and stay in the list.
- * STATUS_MEMORY, and the statuses of file_claim(). The caller frees s->time, also after an error. */
+ * beginning, the last one at its end; a single one at the end. `resumed`: the run goes on from a restart file; earlier
+ * snapshots are on the disk and stay in the list. STATUS_MEMORY, and the statuses of file_claim(). The caller frees
+ * s->time, also after an error. */
 static status snapshots_open(struct snapshots *s, const char *name, int64_t count, bool resumed, struct error *error) {
   char path[PATH];
   *s = (struct snapshots){.count = count, .resumed = resumed, .time = malloc((size_t)count * sizeof *s->time)};
@@ -98,10 +99,15 @@ static status snapshots_open(struct snapshots *s, const char *name, int64_t coun
   return STATUS_OK;
 }
 
+/* How many snapshots are due before this share of the longest time. */
+static double due_before(const struct snapshots *s, double progress) {
+  return s->count > 1 ? progress * (double)(s->count - 1) : floor(progress);
+}
+
 /* Reads the times of the earlier snapshots of a restored run, which are on the disk. */
 static void find_earlier(struct snapshots *s, double progress) {
   s->resumed = false;
-  s->next = (int64_t)ceil(progress * (double)s->count);
+  s->next = (int64_t)ceil(due_before(s, progress));
   for (int64_t k = 0; k < s->next && k < s->count; k++) {
     char path[PATH];
     struct snapshot_read *file;
@@ -149,7 +155,7 @@ static status snapshots_look(struct snapshots *s, const struct engine_kind *kind
   double progress = kind->progress(run);
   if (s->resumed)
     find_earlier(s, progress);
-  if (s->next >= s->count || progress * (double)s->count < (double)s->next)
+  if (s->next >= s->count || due_before(s, progress) < (double)s->next || (s->count == 1 && progress < 1))
     return STATUS_OK;
   char path[PATH];
   int64_t number = s->next;
@@ -157,7 +163,7 @@ static status snapshots_look(struct snapshots *s, const struct engine_kind *kind
   TRY(kind->write_snapshot(run, path, error));
   s->time[number] = kind->time(run);
   s->next = number + 1;
-  while (s->next < s->count && progress < 1 && progress * (double)s->count >= (double)s->next)
+  while (s->next < s->count && progress < 1 && due_before(s, progress) >= (double)s->next)
     s->next++; /* a step longer than the interval: the missed snapshots are left out */
   if (progress >= 1)
     s->next = s->count; /* the run has ended, perhaps before its longest time: this was the last snapshot */
