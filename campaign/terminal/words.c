@@ -1,3 +1,4 @@
+/* Sentences in lines that a terminal shows whole. */
 #include "campaign/terminal/words.h"
 
 #include <stdarg.h>
