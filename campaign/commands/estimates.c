@@ -3,10 +3,7 @@
 #include "campaign/commands/commands.h"
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
-  TRY(print_estimates(store, &(struct ask_points_choice){0}, line->format, stdout, error));
-  if (table_for_people(line->format))
-    print_estimates_legend(store);
-  return STATUS_OK;
+  return print_estimates(store, &(struct ask_points_choice){0}, line->format, true, error);
 }
 
 COMMAND(estimates, "results", "STORE", .chooses_runs = true, .has_table = true, .ask = ask);

@@ -3,6 +3,7 @@
 
 #include "analysis/statistics/statistics.h"
 #include "campaign/commands/commands.h"
+#include "campaign/terminal/words.h"
 #include "db/store/schema.h"
 #include "schemas/file.h"
 
@@ -66,13 +67,15 @@ static bool explain_conditions(const char *word) {
       if (word && strcmp(word, c->word) != 0)
         continue;
       found = true;
-      printf("- **%s** (%s): a run has this word when %s is %s %g.\n", c->word, engine_at(i)->name, c->number,
-             c->least ? "below" : "above", c->bound);
-      printf("  Then: %s.\n  The bound: %s.\n  What to do: %s.\n  Results that rest on it%s: %s.\n", c->doubt,
-             c->reason, c->remedy, c->withheld ? ", which are withheld" : "",
-             !c->results    ? "all"
-             : !*c->results ? "none, it is only told before the run"
-                            : c->results);
+      words_print(stdout, "- ", "**%s** (%s): a run has this word when %s is %s %g.", c->word, engine_at(i)->name,
+                  c->number, c->least ? "below" : "above", c->bound);
+      words_print(stdout, "  ", "Then: %s.", c->doubt);
+      words_print(stdout, "  ", "The bound: %s.", c->reason);
+      words_print(stdout, "  ", "What to do: %s.", c->remedy);
+      words_print(stdout, "  ", "Results that rest on it%s: %s.", c->withheld ? ", which are withheld" : "",
+                  !c->results    ? "all"
+                  : !*c->results ? "none, it is only told before the run"
+                                 : c->results);
     }
   return found;
 }

@@ -159,25 +159,33 @@ void design_axis_follow(const struct design_axis *axis, const struct field_value
 
 enum { SHOWN = 12, VALUE_SIZE = FIELD_TEXT_SIZE + 64 };
 
-static const char *value_text(const struct field *row, const struct field_value *value, char text[VALUE_SIZE]) {
-  field_show(row, value, text, VALUE_SIZE);
+/* In the campaign's unit. */
+static const char *value_text(const struct design_axis *axis, const struct field_value *value, char text[VALUE_SIZE]) {
+  struct unit unit;
+  if (value->kind == FIELD_REAL && isfinite(value->number) && *axis->unit &&
+      unit_parse(axis->unit, &unit, NULL) == STATUS_OK)
+    snprintf(text, VALUE_SIZE, "%.6g %s", value->number / unit.factor, axis->unit);
+  else
+    field_show(axis->row, value, text, VALUE_SIZE);
   return text;
 }
 
 /* The mean of an integer's law need not be an integer. */
-static const char *number_text(const struct field *row, double number, char text[VALUE_SIZE]) {
-  struct field real = *row;
+static const char *number_text(const struct design_axis *axis, double number, char text[VALUE_SIZE]) {
+  struct field real = *axis->row;
+  struct design_axis of_reals = *axis;
   real.kind = FIELD_REAL;
-  return value_text(&real, &(struct field_value){.kind = FIELD_REAL, .number = number}, text);
+  of_reals.row = &real;
+  return value_text(&of_reals, &(struct field_value){.kind = FIELD_REAL, .number = number}, text);
 }
 
 static void print_levels(const struct design_axis *axis, FILE *out) {
   char text[VALUE_SIZE];
   const size_t n = axis->level_count, shown = n > SHOWN ? SHOWN - 1 : n;
   for (size_t i = 0; i < shown; i++)
-    fprintf(out, "%s%s", i ? ", " : "", value_text(axis->row, &axis->levels[i], text));
+    fprintf(out, "%s%s", i ? ", " : "", value_text(axis, &axis->levels[i], text));
   if (shown < n)
-    fprintf(out, " ... %s: %zu values", value_text(axis->row, &axis->levels[n - 1], text), n);
+    fprintf(out, " ... %s: %zu values", value_text(axis, &axis->levels[n - 1], text), n);
 }
 
 void design_axis_describe(const struct design_axis *axes, size_t index, FILE *out) {
@@ -190,8 +198,8 @@ void design_axis_describe(const struct design_axis *axes, size_t index, FILE *ou
     print_levels(axis, out);
     return;
   }
-  number_text(row, axis->a, a);
-  number_text(row, axis->b, b);
+  number_text(axis, axis->a, a);
+  number_text(axis, axis->b, b);
   switch ((enum design_axis_kind)axis->kind) {
   case DESIGN_AXIS_LEVELS: break;
   case DESIGN_AXIS_UNIFORM: fprintf(out, "uniform from %s to %s", a, b); return;
@@ -207,7 +215,7 @@ void design_axis_describe(const struct design_axis *axes, size_t index, FILE *ou
     break;
   }
   if (axis->lower > row->minimum)
-    fprintf(out, ", not below %s", number_text(row, axis->lower, a));
+    fprintf(out, ", not below %s", number_text(axis, axis->lower, a));
   if (axis->upper < row->maximum)
-    fprintf(out, ", not above %s", number_text(row, axis->upper, b));
+    fprintf(out, ", not above %s", number_text(axis, axis->upper, b));
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "campaign/terminal/words.h"
 #include "engine/outcome.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
@@ -64,10 +65,14 @@ static void print(const struct doubts *doubts, const char *before, bool counted,
   for (size_t k = 0; k < CONDITIONS; k++) {
     if (doubts->count[k] == 0)
       continue;
-    fputs(before, out);
+    char text[LINE + 64] = "";
     if (counted)
-      fprintf(out, "%zu of %zu points: ", doubts->count[k], doubts->points);
-    fprintf(out, "%s\n", doubts->first[k]);
+      text_append(text, sizeof text, "%zu of %zu points: ", doubts->count[k], doubts->points);
+    text_append(text, sizeof text, "%s", doubts->first[k]);
+    if (out == stderr)
+      fprintf(out, "%s%s\n", before, text); /* wrapped on a terminal, see words.h */
+    else
+      words_print(out, before, "%s", text);
   }
 }
 

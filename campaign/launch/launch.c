@@ -162,12 +162,7 @@ static status print_answers(const char *path, int64_t campaign, const char *quan
   }
   if (table_for_people(format) && strcmp(quantity, OUTCOME_DEFAULT) != 0 && strncmp(quantity, "beta", 4) != 0)
     return print_means(store, path, campaign, quantity, format, quiet, error);
-  TRY(print_estimates(store, &choice, format, stdout, error));
-  if (table_for_people(format) && !quiet) {
-    fflush(stdout); /* the legend comes below the table */
-    print_estimates_legend(store);
-  }
-  return STATUS_OK;
+  return print_estimates(store, &choice, format, !quiet, error);
 }
 
 struct launching {

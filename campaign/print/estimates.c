@@ -4,11 +4,18 @@
 
 #include "campaign/print/print.h"
 #include "campaign/terminal/table.h"
+#include "campaign/terminal/words.h"
 #include "db/ask/ask.h"
 #include "schemas/limits.h"
 #include "schemas/text.h"
 
+/* What of the legend occurs in the table for people. */
+struct seen {
+  bool failed, single, interval, ends, weak, all_one, unknown, beta;
+};
+
 struct printing {
+  struct seen seen;
   struct store *store;
   enum table_format format;
   struct table *table;
@@ -94,7 +101,9 @@ static void columns_for_people(struct printing *printing) {
 }
 
 /* "0.928 ± 0.009", "0.928 ± 0.009~" when the interval is weak, "1.000 ≥ 0.905" when all runs are equal. */
-static void mean_cell(struct table *table, const struct ask_points_row *row) {
+static void mean_cell(struct printing *printing, const struct ask_points_row *row) {
+  struct table *table = printing->table;
+  struct seen *seen = &printing->seen;
   char text[UNCERTAINTY_TEXT + 4] = "";
   if (isnan(row->mean)) {
     table_missing(table);
@@ -104,18 +113,24 @@ static void mean_cell(struct table *table, const struct ask_points_row *row) {
     snprintf(text, sizeof text, "%.3f \xe2\x89\xa5 %.3f", row->mean, row->low);
   else
     uncertainty_share_cell(row->mean, row->half_width, text);
+  seen->all_one |= strstr(text, "\xe2\x89\xa5") != NULL;
+  seen->ends |= strchr(text, '(') != NULL;
+  seen->interval |= strstr(text, "\xc2\xb1") != NULL;
+  seen->single |= row->n == 1;
+  seen->weak |= row->weak;
   if (row->weak)
     text_append(text, sizeof text, "~");
   table_text(table, text);
 }
 
-static void resolution_cell(struct table *table, enum ask_resolution_verdict verdict, double half_width) {
+static void resolution_cell(struct printing *printing, enum ask_resolution_verdict verdict, double half_width) {
   char text[UNCERTAINTY_TEXT];
+  printing->seen.unknown |= verdict == ASK_RESOLUTION_NOT_STUDIED;
   if (verdict == ASK_RESOLUTION_NOT_STUDIED)
     snprintf(text, sizeof text, "?");
   else
     uncertainty_resolution_cell(verdict, half_width, text);
-  table_text(table, text);
+  table_text(printing->table, text);
 }
 
 static status row_for_people(struct printing *printing, const struct ask_points_row *row, int window,
@@ -128,12 +143,13 @@ static status row_for_people(struct printing *printing, const struct ask_points_
     for (size_t i = 0; i < printing->axes; i++)
       table_value(table, &row->inputs[i]);
     text_append(runs, sizeof runs, "%lld", (long long)row->n);
+    printing->seen.failed |= row->failed > 0;
     if (row->failed)
       text_append(runs, sizeof runs, "/%.0f", (double)row->n + (double)row->failed); /* a sum that cannot overflow */
     table_text(table, runs);
     table_rests_on(table, &row->doubts);
-    mean_cell(table, row);
-    resolution_cell(table, row->resolution_verdict, row->resolution);
+    mean_cell(printing, row);
+    resolution_cell(printing, row->resolution_verdict, row->resolution);
   }
   for (size_t i = 0; !first && i < printing->axes + 4; i++)
     table_text(table, "");
@@ -142,6 +158,7 @@ static status row_for_people(struct printing *printing, const struct ask_points_
   for (int m = METHODS; m-- > 0;) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
     table_rests_on(table, &doubts->masses);
+    printing->seen.beta |= isfinite(fit->fit.beta);
     const double spread = fit->fit.standard_error; /* without an interval it gives the digits */
     table_fixed(table, fit->fit.beta, isfinite(fit->interval.half_width) || !(spread >= 0.1) ? 2 : spread < 1 ? 1 : 0);
     table_real(table, fit->interval.half_width);
@@ -149,7 +166,7 @@ static status row_for_people(struct printing *printing, const struct ask_points_
       continue;
     struct ask_resolution resolution;
     TRY(read_resolution(printing, row, MASSES, window, &resolution, error));
-    resolution_cell(table, resolution.verdict, resolution.half_width);
+    resolution_cell(printing, resolution.verdict, resolution.half_width);
   }
   return STATUS_OK;
 }
@@ -174,25 +191,37 @@ static status print_point(struct printing *printing, const struct ask_points_row
   return STATUS_OK;
 }
 
-static const char *const estimates_legend =
-    "runs: those that count; 19/20: one of 20 failed. M_1/M: mass share of the largest fragment. !: in\n"
-    "doubt. \xc2\xb1: half width of the 95 % interval over seeds; one run has none. ~: weak, too few runs\n"
-    "(`clast explain weak`). 0.11 (0 to 0.27): the ends of this interval, where it reaches 0 or 1.\n"
-    "1.000 \xe2\x89\xa5 0.905: all runs are 1, and the mean is at least 0.905. \xc2\xb1res:\n"
-    "how far finer settings may move M_1/M, and beta ML (`clast converge` measures it, with -Q beta;\n"
-    "?: not studied). beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together.\n"
-    "LSQ: least squares on logarithmic bins of one decade, as in the paper; it needs a fragment in every\n"
-    "bin. ML: maximum likelihood, without the largest fragment of each run. window from_5: n fragments\n"
-    "heavier than 4.5 mean grains (or particles), from_10: than 9.5, from_2: than 1.5.\n";
-
-void print_estimates_legend(struct store *store) {
-  fputs(estimates_legend, stderr);
-  quantity_tell_resolution(store, OUTCOME_DEFAULT, "");
-  quantity_tell_resolution(store, "beta", "");
+/* What occurs in the table. */
+static void print_legend(const struct printing *printing, FILE *out) {
+  const struct seen *seen = &printing->seen;
+  char text[1024] = "M_1/M: mass share of the largest fragment";
+  if (seen->interval)
+    text_append(text, sizeof text, ", \xc2\xb1 half width of its 95 %% interval over seeds");
+  if (seen->ends)
+    text_append(text, sizeof text, "; (a to b): the ends of the interval, where it reaches 0 or 1");
+  if (seen->weak)
+    text_append(text, sizeof text, "; ~: weak, too few runs");
+  if (seen->all_one)
+    text_append(text, sizeof text, "; 1.000 \xe2\x89\xa5 a: all runs are 1, and the mean is at least a");
+  if (seen->single)
+    text_append(text, sizeof text, "; one run has no interval");
+  text_append(text, sizeof text, ". \xc2\xb1res: how far finer settings may move the number before it%s",
+              seen->unknown ? " (?: not studied)" : "");
+  if (seen->failed)
+    text_append(text, sizeof text, ". runs 19/20: one of 20 failed");
+  if (seen->beta)
+    text_append(text, sizeof text,
+                ". beta: exponent of F(m) ~ m^-beta, of the n fragments that all runs of a point have in the window. "
+                "`clast explain WORD` tells of beta, ML, LSQ, window%s",
+                seen->weak ? ", weak" : "");
+  words_print(out, "", "%s.", text);
+  quantity_tell_resolution(printing->store, OUTCOME_DEFAULT, "");
+  if (seen->beta)
+    quantity_tell_resolution(printing->store, "beta", "");
 }
 
-status print_estimates(struct store *store, const struct ask_points_choice *choice, enum table_format format, FILE *out,
-                       struct error *error) {
+status print_estimates(struct store *store, const struct ask_points_choice *choice, enum table_format format,
+                       bool legend, struct error *error) {
   struct printing printing = {.store = store, .format = format};
   TRY(ask_columns_axes(store, table_for_people(format), LIMITS_AXES_OF_POOL, printing.axis, &printing.axes, error));
   TRY(ask_resolution_of_exponents(store, &printing.studied, error));
@@ -200,7 +229,7 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
   for (size_t i = 0; i < printing.axes; i++)
     inputs[i] = printing.axis[i].name;
 
-  TABLE table = table_new(format, out);
+  TABLE table = table_new(format, stdout);
   printing.table = table;
   if (table_for_people(format))
     columns_for_people(&printing);
@@ -213,6 +242,10 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
   TRY(table_end(table, error));
   if (!table_for_people(format))
     return STATUS_OK;
+  fflush(stdout); /* what follows comes below the table */
   const struct ask_doubts_choice doubts = {.campaign = choice->campaign};
-  return quantity_tell_doubts(store, &doubts, OUTCOME_DEFAULT ",beta", error);
+  TRY(quantity_tell_doubts(store, &doubts, OUTCOME_DEFAULT ",beta", error));
+  if (legend)
+    print_legend(&printing, stderr);
+  return STATUS_OK;
 }

@@ -540,7 +540,7 @@ static void tick(void *context, int running, bool last) {
       .total_is_minimum = driver->campaign->per_point == 0 && open_points > 0,
       .rate = rated ? (double)driver->started_done / elapsed : NOTHING,
       .seconds_left = last ? NOTHING : time_left(driver, now),
-      .quantity = driver->row->path,
+      .quantity = last ? NULL : driver->row->path, /* the table has the mean of the runs that count */
       .mean = mean,
       .doubtful = summary->runs_doubtful > 0,
   };

@@ -122,7 +122,7 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
   plan) expect 0 "$clast" plan marked.yaml --no-trial
     cat out err | grep -q "2 of 4 points: step: fidelity.time_step" || fail "plan does not tell the condition" ;;
   explain) expect 0 "$clast" explain step
-    prints "above 0.25" ;;
+    prints "0.25." ;;
   report) ;; # cli.report looks at the page
   # raw values, with the words beside them: clast query, clast export
   query) ;;

@@ -34,6 +34,8 @@ for name, (target, projectile) in want.items():
 PY
 ok "masses of both bodies, and the angles"
 printf 'name: pores\nscene: ./digger.yaml\nvary: {target.material.porosity.fraction: [20 %%, 50 %%, 78 %%]}\nseeds: {per_point: 1}\n' >pores.yaml
+expect 65 "$clast" explain pumice-sphere --set target.material.porosity.fraction=80%
+says "porosity.fraction is 0.8 (distention 5)"
 expect 0 "$clast" plan pores.yaml --no-trial
 prints "3 points"
-done_after 9
+done_after 10

@@ -399,12 +399,12 @@ static void axes_are_shown_with_units(void **state) {
   (void)state;
   axis_text("threshold.strain: [1 %, 0.1 %]", "1 %, 0.1 %");
   axis_text("threshold.angle: [4 deg]", "4 deg");
-  axis_text("beam.young_modulus: {uniform: [1 GPa, 2 GPa]}", "uniform from 1e9 Pa to 2e9 Pa");
-  axis_text("charge.energy: {log_uniform: [1 kJ/m, 1 MJ/m]}", "uniform in the logarithm from 1000 J/m to 1e6 J/m");
+  axis_text("beam.young_modulus: {uniform: [1 GPa, 2 GPa]}", "uniform from 1 GPa to 2 GPa");
+  axis_text("charge.energy: {log_uniform: [1 kJ/m, 1 MJ/m]}", "uniform in the logarithm from 1 kJ/m to 1000 kJ/m");
   axis_text("threshold.strain: {normal: {mean: 3 %, sd: 1 %}, truncated: [1 %, 5 %]}",
             "normal, mean 3 %, standard deviation 1 %, not below 1 %, not above 5 %");
   axis_text("grain.density: {lognormal: {median: 5 g/cm^3, sigma: 0.1}}",
-            "lognormal, median 5000 kg/m^3, sigma of the natural logarithm 0.1");
+            "lognormal, median 5 g/cm^3, sigma of the natural logarithm 0.1");
   axis_text("grain.young_modulus: [1 GPa, 2 GPa], beam.young_modulus: {linked: grain.young_modulus, factor: 0.5}",
             "follows grain.young_modulus: 0.5 times it");
   axis_text("threshold.strain: {from: 1 %, to: 20 %, n: 20}",

@@ -112,6 +112,14 @@ static status refuse(struct error *error, const char *what, double value, const 
   return status_fail(error, STATUS_CONTENT, "porosity.%s is %.9g: %s", what, value, remedy);
 }
 
+/* By the name that the document gave. */
+static status refuse_pores(struct error *error, const struct sph_palpha_material *given, const char *remedy) {
+  if (given->by_fraction)
+    return status_fail(error, STATUS_CONTENT, "porosity.fraction is %.9g (distention %.9g): %s",
+                       1 - 1 / given->distention, given->distention, remedy);
+  return refuse(error, "distention", given->distention, remedy);
+}
+
 static status check_curve(const struct sph_palpha_material *g, struct error *error) {
   if (g->curve != SPH_CRUSH_QUADRATIC && g->curve != SPH_CRUSH_TWO_POWER)
     return refuse(error, "curve", g->curve, "it must be quadratic or two-power");
@@ -176,21 +184,22 @@ static status find_ratio(const struct sph_palpha_law *law, double *ratio, struct
 }
 
 static status too_soft(const struct sph_palpha_law *law, struct error *error) {
-  return refuse(error, "distention", law->given.distention,
-                "with this sound_speed the pores give way before elastic_pressure: give a higher sound_speed, or off, "
-                "or a lower elastic_pressure");
+  return refuse_pores(
+      error, &law->given,
+      "with this sound_speed the pores give way before elastic_pressure: give a higher sound_speed, or off, "
+      "or a lower elastic_pressure");
 }
 
 /* alpha_e is given. */
 static status prepare_two_power(struct sph_palpha_law *law, double ratio, struct error *error) {
   const struct sph_palpha_material *given = &law->given;
   if (!set_stiffness(law, ratio, given->elastic_distention))
-    return refuse(error, "distention", given->distention,
-                  "it is too far above elastic_distention for sound_speed: lower it, or raise one of the others");
+    return refuse_pores(error, given,
+                        "it is too far above elastic_distention for sound_speed: lower it, or raise one of the others");
   const double begin = sph_palpha_elastic(law, given->distention, given->elastic_pressure);
   if (begin > given->elastic_distention * (1 + 1e-6))
-    return refuse(error, "distention", given->distention,
-                  "it is above elastic_distention, where the crush curve begins: lower it or raise that");
+    return refuse_pores(error, given,
+                        "it is above elastic_distention, where the crush curve begins: lower it or raise that");
   return followed(law) ? STATUS_OK : too_soft(law, error);
 }
 

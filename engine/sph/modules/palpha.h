@@ -31,6 +31,7 @@ struct sph_palpha_material {
   } curve;           /* none: no other member is used */
   double distention; /* alpha_0; 1: no pores, the solid itself */
   double fraction; /* porosity 1 - 1/alpha_0: another way to give it in a document, made to agree; not used elsewhere */
+  bool by_fraction;        /* the document gave the fraction: messages speak of it */
   double elastic_pressure; /* Pa, P_e: plastic crushing begins */
   double solid_pressure;   /* Pa, P_s: all pores are closed */
   double sound_speed;      /* m/s, c_e of the porous matter at alpha_0; NaN: no elastic change of alpha */
@@ -333,7 +334,8 @@ static status palpha_check_material(const struct sph_material *m, struct error *
 static void palpha_complete_material(struct sph_material *m, const bool *given) {
   const size_t distention = sph_materials_row(offsetof(struct sph_material, palpha.distention)),
                fraction = sph_materials_row(offsetof(struct sph_material, palpha.fraction));
-  if (given[fraction] && !given[distention])
+  m->palpha.by_fraction = given[fraction] && !given[distention];
+  if (m->palpha.by_fraction)
     m->palpha.distention = 1 / (1 - m->palpha.fraction);
   else if (!given[fraction])
     m->palpha.fraction = 1 - 1 / m->palpha.distention;
