@@ -12,7 +12,7 @@ export const DASHES = [[1, 0], [6, 3], [2, 2], [8, 3, 2, 3], [4, 4], [10, 4]];
 
 const CONFIG = {
   font: 'system-ui, "DejaVu Sans", sans-serif',
-  axis: {labelFontSize: 12, titleLimit: 330, titleFontSize: 13, titleFontWeight: 'normal', gridOpacity: 0.5, labelOverlap: true},
+  axis: {labelFontSize: 12, titleLimit: 330, titleFontSize: 13, titleFontWeight: 'normal', gridOpacity: 0.5, labelOverlap: true, labelSeparation: 10},
   legend: {labelFontSize: 12, titleFontSize: 13, titleFontWeight: 'normal', labelLimit: 260, titleLimit: 260},
   view: {stroke: '#c8c8c8'},
   range: {category: COLOURS},

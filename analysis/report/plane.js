@@ -7,7 +7,7 @@ import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
 import {interval} from './statistics.js';
 import {ask, has, newest} from './stores.js';
-import {inUnit, isShare, label, marked, number, plural, shellFile, withInterval} from './words.js';
+import {inUnit, isShare, label, marked, number, plural, raisedIn, shellFile, withInterval} from './words.js';
 
 const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
 
@@ -61,12 +61,16 @@ function placeOf(column, value) {
   return typeof value === 'number' ? Number(inUnit(state.stores, column, value).toPrecision(7)) : String(value);
 }
 
+// 2.5×10³³ for 2.5e+33.
+const SHORT = "format(datum.value, '.4~g')";
+const NUMBER = `!isNumber(datum.value) ? datum.value : !test(/e/, ${SHORT}) ? ${SHORT} : replace(replace(${SHORT}, /e.*/, '×10'), /^1×/, '') + ${raisedIn(`toNumber(replace(${SHORT}, /.*e/, ''))`)}`;
+
 function axisOf(column, rows, title) {
   const values = [...new Set(rows.map((row) => row[column]))];
   const numeric = values.every((value) => typeof value === 'number');
   if (numeric && values.length > MOST_CELLS) return {discrete: false, encoding: {field: column, type: 'quantitative', scale: scale(values), title}};
   const order = values.slice().sort((a, b) => (typeof a === 'number' && typeof b === 'number' ? a - b : String(a).localeCompare(String(b))));
-  return {discrete: true, encoding: {field: column, type: 'ordinal', sort: order, title, axis: {labelAngle: 0, labelExpr: "isNumber(datum.value) ? replace(replace(format(datum.value, '.4~g'), /e[+]?/, '×10^'), /^1×/, '') : datum.value"}}};
+  return {discrete: true, encoding: {field: column, type: 'ordinal', sort: order, title, axis: {labelAngle: 0, labelExpr: NUMBER}}};
 }
 
 // Where a row stands on an axis, as a number: the place of its value, or how far along the scale it is.

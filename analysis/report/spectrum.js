@@ -6,10 +6,10 @@ import {chosenPoints, state, store} from './state.js';
 import {cells, doubtSentence} from './plane.js';
 import {pool} from './statistics.js';
 import {ask, has, newest} from './stores.js';
-import {inUnit, marked, number, plural, shellFile, unitOf, withError} from './words.js';
+import {inUnit, marked, number, plural, raisedIn, shellFile, unitOf, withError} from './words.js';
 
-// 10^3 at a power of ten, and plain digits beside it.
-const POWERS = "abs(log(datum.value) / LN10 - round(log(datum.value) / LN10)) < 1e-9 ? '10^' + round(log(datum.value) / LN10) : format(datum.value, '.1~r')";
+// 10³ at a power of ten, and plain digits beside it.
+const POWERS = `abs(log(datum.value) / LN10 - round(log(datum.value) / LN10)) < 1e-9 ? '10' + ${raisedIn('round(log(datum.value) / LN10)')} : format(datum.value, '.1~r')`;
 
 export const inputsOf = (from, point) => from.axes.map((axis) => `${axis.path.split('.').pop()} ${number(inUnit(state.stores, axis.column_name, point[axis.column_name]))}${unitOf(state.stores, axis.column_name)}`).join(', ');
 

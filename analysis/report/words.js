@@ -1,7 +1,12 @@
 // Numbers, names and shell words for people.
 
-// "2.5×10^33" for "2.500e+33", "10^-5" for "1.000e-5".
-const powers = (text) => text.replace(/(\.\d*?)0*e\+?/, '$1e').replace('.e', 'e').replace(/^(-?)1e/, '$110^').replace('e', '×10^');
+// "2.5×10³³" for "2.500e+33", "10⁻⁵" for "1.000e-5".
+const RAISED = '⁰¹²³⁴⁵⁶⁷⁸⁹';
+const raised = (exponent) => exponent.replace('-', '⁻').replace(/\d/g, (digit) => RAISED[digit]);
+const powers = (text) => text.replace(/(\.\d*?)0*e/, '$1e').replace('.e', 'e').replace(/e\+?(-?\d+)/, (_, exponent) => `×10${raised(exponent)}`).replace(/^(-?)1×/, '$1');
+// The same exponent, of at most two digits, in an expression of a chart.
+const digitIn = (digit) => `substring('${RAISED}', ${digit}, ${digit} + 1)`;
+export const raisedIn = (exponent) => `(${exponent} < 0 ? '⁻' : '') + (abs(${exponent}) > 9 ? ${digitIn(`floor(abs(${exponent}) / 10)`)} : '') + ${digitIn(`abs(${exponent}) % 10`)}`;
 
 export function number(value, digits = 4) {
   if (value === null || value === undefined || Number.isNaN(value)) return '-';
