@@ -24,6 +24,14 @@ struct answer ask_campaign_progress(struct store *store, bool writing, bool earl
   return answer_to_user(store, progress_sql, 2, parameters, 0, error);
 }
 
+double ask_campaign_silence(struct store *store) {
+  double seconds = NAN;
+  (void)answer_number(store, &seconds, NULL,
+                      "SELECT unixepoch('now') - max(coalesce((SELECT max(finished_at) FROM run), 0), "
+                      "coalesce((SELECT max(unixepoch(started_at)) FROM session), 0))");
+  return seconds;
+}
+
 bool ask_campaign_shared(struct store *store) {
   double points = 0;
   return answer_number(

@@ -38,6 +38,8 @@ status ask_run_excluded_count(struct store *store, int64_t *count, struct error 
  * `writing`: a process is writing the store (store_is_being_written). `earlier`: also campaigns whose points a later
  * one of their name has. */
 struct answer ask_campaign_progress(struct store *store, bool writing, bool earlier, struct error *error);
+/* Seconds since the store had its last sign of life: a run was stored, or a session began. NaN: none is known. */
+double ask_campaign_silence(struct store *store);
 bool ask_campaign_shared(struct store *store); /* have several campaigns the same point? */
 
 /* Name and YAML text of a campaign (0: the last one); the caller frees both. Both NULL: the store has no campaign. */

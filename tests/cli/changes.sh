@@ -67,6 +67,17 @@ for clock in right "set back"; do
   sqlite3 slow.db "update session set started_at = '2099-01-01T00:00:00.000Z', ended_at = '2099-01-01T00:00:09.000Z', outcome = 'failed'"
 done
 
+# A process that hangs holds the store: the last sign of life is told.
+same "$(sqlite3 slow.db "update session set started_at = '2020-01-01T00:00:00.000Z'; update run set finished_at = unixepoch('now') - 720; select changes() > 0")" 1 "old runs"
+python - "$clast" <<'PY'
+import fcntl, struct, subprocess, sys
+F_OFD_SETLK, LOCK_BYTE = 37, 1 << 62 # db/store/store.c
+with open("slow.db", "r+b") as held:
+    fcntl.fcntl(held, F_OFD_SETLK, struct.pack("hhqqi4x", fcntl.F_WRLCK, 0, LOCK_BYTE, 1, 0))
+    open("err", "w").write(subprocess.run([sys.argv[1], "status", "slow.db"], capture_output=True, text=True).stderr)
+PY
+says "no sign of life for 12 min"
+
 # one name for each quantity, and only columns of the engine
 columns=$(sqlite3 tiny.db "select count(*) from pragma_table_info('runs')")
 [ "$columns" -lt 80 ] || fail "the view runs has $columns columns"
@@ -86,4 +97,4 @@ expect 65 "$clast" explain windw
 says "did you mean window"
 sed -i 's/seeds: .*/seeds: {until: {quantity: energy_kinetic, half_width: 1e9}}/' tiny.yaml
 expect 0 "$clast" plan tiny.yaml --no-trial
-done_after 32
+done_after 33
