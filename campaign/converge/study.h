@@ -52,6 +52,8 @@ struct study_rule {
 };
 
 struct study {
+  const struct design_axis *varied; /* by the studied campaign; borrowed */
+  size_t varied_count;
   struct campaign limits; /* name, store, first_seed, time and memory limits, attempts, failures; nothing is owned */
   const char *scene_reference;
   struct study_rule rule;

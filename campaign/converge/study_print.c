@@ -483,14 +483,22 @@ status study_print_picture(const struct study *study, bool of_errors, const char
   for (size_t i = 0; stepped == knobs && i < knobs && drawing->count < CURVES; i++)
     add_curve(drawing, drawing->found[i].limit.knob, i, 1, of_errors, false);
 
-  char title[800], quantity[CHARTS_LABEL], y[CHARTS_LABEL + 16], x[200] = "processor time of a run (s)";
+  char title[800], quantity[CHARTS_LABEL], y[CHARTS_LABEL + 16], x[200] = "processor time of a run (s)", unit[64] = "";
   charts_label(study->quantity[0].name, quantity);
   snprintf(y, sizeof y, "%s%s", of_errors ? "error of " : "", quantity);
   snprintf(title, sizeof title, "%s: %s%s", study->ladder[0].base->name, y,
            stepped < knobs ? " and its limit" : " over the cost of a run");
+  if (study->quantity[0].row)
+    TRY(charts_axis(store, study->quantity[0].column, quantity, error)); /* with its unit */
+  snprintf(y, sizeof y, "%s%s", of_errors ? "error of " : "", quantity);
   if (stepped < knobs) {
     const struct knob *knob = study->ladder[stepped].levels.knob;
-    snprintf(x, sizeof x, "step: %s to the power %.3g", knob->inputs[0].path, knob->step_power);
+    const char *input = knob->inputs[0].path;
+    const struct field *row = field_find(study->ladder[stepped].base->kind->inputs, input, NULL);
+    field_label_unit(row ? row->unit : NULL, unit, sizeof unit);
+    snprintf(x, sizeof x, knob->step_power == 1 ? "step: %s" : "step: %s to the power %.3g", input, knob->step_power);
+    if (*unit)
+      text_append(x, sizeof x, knob->step_power == 1 ? " (%s)" : " (%s to this power)", unit);
   }
   const struct picture_page page = charts_page(path, NULL);
   char caption[CHARTS_LABEL];

@@ -75,6 +75,8 @@ static status load(struct study_subject *subject, const char *path, const struct
   TRY(is_campaign(path) ? load_campaign(subject, path, set, error) : load_scene(subject, path, set, error));
   struct campaign *limits = &subject->study.limits;
   /* The study borrows these from the campaign, so they must not be freed twice. */
+  subject->study.varied = limits->axes;
+  subject->study.varied_count = limits->axis_count;
   limits->axes = NULL;
   limits->axis_count = 0;
   limits->scene = NULL;

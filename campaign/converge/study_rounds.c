@@ -235,6 +235,8 @@ static status next_round(void *context, const struct scheduler *scheduler, struc
   struct rounds *rounds = context;
   struct study *study = rounds->study;
   rounds->slots = scheduler->options.slots;
+  for (size_t i = 0; !rounds->begun && i < study->varied_count; i++) /* of the studied campaign, for --by */
+    TRY(store_add_axis(scheduler->store, study->varied[i].row, study->varied[i].unit, error));
   for (size_t i = 0; !rounds->begun && i < study->ladder_count; i++)
     TRY(study_read(study, &study->ladder[i], scheduler->store, error));
   if (!rounds->begun)

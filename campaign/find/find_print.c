@@ -233,6 +233,13 @@ status find_print(const struct find *find, enum table_format format, struct erro
 
 /* ---- the picture ---- */
 
+/* The unit of the sentence: per cent, degrees, else SI; and one of it in SI. */
+static double shown_unit(const struct field *row, const char **unit) {
+  const bool percent = row->flags & FIELD_PERCENT, angle = row->unit && strcmp(row->unit, "rad") == 0;
+  *unit = percent ? "%" : angle ? "deg" : row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
+  return percent ? 0.01 : angle ? M_PI / 180 : 1;
+}
+
 status find_print_picture(const struct find *find, const char *path, const struct chart_options *chart,
                           struct error *error) {
   struct bin bins[2 * BINS + 2];
@@ -243,13 +250,15 @@ status find_print_picture(const struct find *find, const char *path, const struc
   const bool is_share = !isnan(find->share);
   const double at = is_share ? find->share : find->level;
   double least = at, most = at;
+  const char *unit;
+  const double one_of_unit = shown_unit(find->input, &unit);
   STORE store = NULL;
   TRY(store_open_reader(find->limits.store, &store, error));
   TRY(make_bins(find, bins, &count, error));
   for (size_t i = 0; i < count; i++) {
     const double share = (double)bins[i].above / (double)bins[i].n;
     const struct sample_summary *mean = &bins[i].mean;
-    means[i] = (struct picture_mean){value_at(find, bins[i].x),
+    means[i] = (struct picture_mean){value_at(find, bins[i].x) / one_of_unit,
                                      is_share ? share : mean->mean,
                                      is_share ? (double)NAN : mean->low,
                                      is_share ? (double)NAN : mean->high,
@@ -258,9 +267,10 @@ status find_print_picture(const struct find *find, const char *path, const struc
     least = fmin(least, means[i].y);
     most = fmax(most, means[i].y);
   }
-  const double low = value_at(find, fmax(found->low, 0)), high = value_at(find, fmin(found->high, 1));
+  const double low = value_at(find, fmax(found->low, 0)) / one_of_unit,
+               high = value_at(find, fmin(found->high, 1)) / one_of_unit;
   for (int i = 0; i < 2; i++) {
-    level[i] = (struct picture_mean){i ? find->to : find->from, at, at, at, NAN, false};
+    level[i] = (struct picture_mean){(i ? find->to : find->from) / one_of_unit, at, at, at, NAN, false};
     interval[i] = (struct picture_mean){i ? high : low, at, least, most, NAN, false};
   }
   const struct picture_curve curves[] = {
@@ -268,11 +278,13 @@ status find_print_picture(const struct find *find, const char *path, const struc
        .count = count,
        .mean = means},
       {.label = "level", .count = 2, .mean = level, .band = true},
-      {.label = "95 % interval of the crossing", .count = 2, .mean = interval, .band = true},
+      {.label = "band: 95 % interval of the crossing", .count = 2, .mean = interval, .band = true},
   };
   const bool one = found->kind == CROSSING_FOUND || found->kind == CROSSING_PLATEAU;
   field_column_name(find->input->path, column, sizeof column);
-  TRY(charts_axis(store, column, x, error));
+  charts_label(column, x);
+  if (*unit)
+    text_append(x, sizeof x, " (%s)", unit);
   field_column_name(find->quantity.row->path, column, sizeof column);
   TRY(charts_axis(store, column, y, error));
   if (is_share)

@@ -332,6 +332,11 @@ static status split(struct run_cells *cells, struct scatter_part *parts, size_t 
   return scatter_split(&(struct scatter_table){cells->count, *runs, cells->axes, level, value}, parts, error);
 }
 
+/* A share: its estimate, or an end of its interval, may lie beyond 0 or 1. */
+static double inside(double share) {
+  return share < 0 ? 0 : share > 1 ? 1 : share;
+}
+
 static status print_parts(const struct run_cells *cells, const struct scatter_part *parts, enum table_format format,
                           struct error *error) {
   static const char *const names[SCATTER_PARTS] = {"all inputs together", "seeds", "seeds, in all points alike",
@@ -345,7 +350,7 @@ static status print_parts(const struct run_cells *cells, const struct scatter_pa
     table_real(table, parts[i].variance);
     table_rests_on(table, &cells->doubts);
     const double share = parts[i].share, half_width = parts[i].half_width;
-    table_reals(table, 3, (const double[]){share, share - half_width, share + half_width});
+    table_reals(table, 3, (const double[]){inside(share), inside(share - half_width), inside(share + half_width)});
     table_doubt_cells(table, &cells->doubts);
   }
   return table_end(table, error);

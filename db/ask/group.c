@@ -100,6 +100,32 @@ static status judge(const struct choice *choice, const char *what, const char *n
                      choice->known[0] ? choice->known : "none");
 }
 
+/* An input of the points that is no axis: says why. */
+static status judge_input(struct store *store, const char *name, const struct choice *choice, struct error *error) {
+  char path[NAME] = "", scenes[256] = "";
+  ANSWER found = answer_to(store, error,
+                           "SELECT path, (SELECT group_concat(DISTINCT scene_name) FROM point), count(DISTINCT value) "
+                           "FROM point_input WHERE path = %Q OR path LIKE '%%.' || %Q GROUP BY path LIMIT 1",
+                           name, name);
+  const bool is_input = answer_next(&found);
+  if (is_input) {
+    snprintf(path, sizeof path, "%s", answer_text(&found, 0));
+    snprintf(scenes, sizeof scenes, "%s", answer_text(&found, 1));
+  }
+  const bool differs = is_input && answer_integer(&found, 2) > 1;
+  TRY(answer_end(&found));
+  if (!is_input)
+    return STATUS_OK;
+  if (!differs)
+    return status_fail(error, STATUS_USAGE, "%s has one value in all points. Known are: %s.", path,
+                       choice->known[0] ? choice->known : "none");
+  return status_fail(error, STATUS_USAGE,
+                     "%s is no axis of this store: --by takes inputs that a campaign varies, and those that differ "
+                     "between campaigns of one scene name that were run into this store (names here: %s). --campaign "
+                     "chooses one campaign. Known are: %s.",
+                     path, scenes, choice->known[0] ? choice->known : "none");
+}
+
 static status resolve(struct store *store, const char *list, const char *what, const char *columns_sql,
                       struct names *out, struct error *error) {
   while (*list) {
@@ -109,6 +135,8 @@ static status resolve(struct store *store, const char *list, const char *what, c
     if (!*word)
       continue;
     TRY(look_for(store, columns_sql, word, &choice, error));
+    if (choice.matches == 0 && strcmp(what, "Axis") == 0)
+      TRY(judge_input(store, word, &choice, error));
     TRY(judge(&choice, what, word, error));
     if (out->count == LIMITS_NAMES)
       return status_fail(error, STATUS_USAGE, "More than %d of them: %s", LIMITS_NAMES, what);

@@ -113,6 +113,8 @@ says "1 found in the store"
 tiny tiny
 expect 0 "$clast" converge tiny.yaml --knob integrator --seeds 2 --within off -j 2
 same "$(number tiny.db "select count(distinct base_point_id) from convergence")" 4 "points studied"
+expect 0 "$clast" stats tiny.db
+says "pooled over fidelity.integrator, threshold.angle, threshold.strain"
 
 # Accuracy on demand: without a study the command is named; then the cheapest settings are taken, and their seeds run.
 cat >sharp.yaml <<'YAML'
@@ -178,6 +180,10 @@ sed -i 's/0.05/1e-9/' sharp.yaml
 expect 65 "$clast" run sharp.yaml
 says "smallest error"
 says "or ask for the least error in a time: \`clast plan sharp.yaml --within 10min\`"
+# A terminal gets it in lines of 100 columns, with its commands whole.
+script -qec "$clast run sharp.yaml" /dev/null </dev/null | tr -d '\r' >out || true
+[ "$(wc -l <out)" -gt 3 ] && [ "$(wc -L <out)" -le 100 ] || fail "lines on a terminal"
+prints "\`clast plan sharp.yaml --within 10min\`"
 # A share is one of the mean, as for --within of converge and find.
 sed 's/1e-9/20 %/' sharp.yaml >share.yaml
 expect 0 "$clast" plan share.yaml
@@ -229,4 +235,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 60
+done_after 61
