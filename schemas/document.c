@@ -18,10 +18,10 @@ static struct document *create(const char *name, const char *text, size_t size) 
   struct document *document = calloc(1, sizeof *document);
   if (!document)
     return NULL;
-  document->name = strdup(name);
+  document->name = memory_small_text(name);
   document->text = malloc(size + 1);
   document->size = size;
-  if (!document->name || !document->text) {
+  if (!document->text) {
     document_free(document);
     return NULL;
   }
@@ -290,14 +290,14 @@ bool document_is_put(const document_node *node) {
 status document_change_put(struct document *document, const char *const keys[2], const char *value, const char *origin,
                            struct error *error) {
   if (!document->origin)
-    document->origin = strdup(origin);
+    document->origin = memory_small_text(origin);
   document_node *into = keys[1] ? section_at(document, keys[0]) : document->root;
   if (into && into->kind != DOCUMENT_MAPPING)
     return status_fail(error, STATUS_CONTENT, "%s: `%s` is no mapping, so it cannot hold `%.100s` of %s",
                        document->name, keys[0], keys[1], origin);
   document_node *scalar = make_plain(document, DOCUMENT_SCALAR, value, NULL);
   const char *key = keys[1] ? keys[1] : keys[0];
-  if (!document->origin || !into || !scalar || !set(into, key, scalar))
+  if (!into || !scalar || !set(into, key, scalar))
     return status_fail(error, STATUS_MEMORY, "%s: no memory", document->name);
   document->changed = true;
   return STATUS_OK;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "schemas/document_tree.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 /* ---- bytes that must not reach libfyaml or a terminal ---- */
@@ -465,8 +466,8 @@ status document_build(struct document *document) {
   struct builder b = {.document = document};
   struct fy_diag *diag = create_diag();
   struct fy_parser *parser = NULL;
-  b.anchors = calloc(DOCUMENT_MOST_ANCHORS, sizeof *b.anchors);
-  if (diag && b.anchors)
+  b.anchors = memory_small(DOCUMENT_MOST_ANCHORS, sizeof *b.anchors);
+  if (diag)
     parser = fy_parser_create(
         &(struct fy_parse_cfg){.flags = FYPCF_QUIET | FYPCF_COLLECT_DIAG | FYPCF_JSON_NONE | FYPCF_DEFAULT_VERSION_1_2,
                                .diag = diag});

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "schemas/document_tree.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum { LIST_SIZE = 400, PATH_SIZE = 300 };
@@ -184,22 +185,16 @@ static char **siblings(const struct reading *r, const char *prefix) {
   size_t count = 0, extra = 0;
   while (r->also && r->also[extra])
     extra++;
-  char **words = calloc(r->table->count + extra + 1, sizeof *words);
-  if (!words)
-    return NULL;
+  char **words = memory_small(r->table->count + extra + 1, sizeof *words);
   for (size_t i = 0; i < r->table->count; i++) {
-    const char *path = r->table->rows[i].path;
-    if (strncmp(path, prefix, length) != 0)
-      continue;
-    char *word = strndup(path + length, strcspn(path + length, "."));
-    if (word && !text_is_one_of(word, (const char *const *)words))
-      words[count++] = word;
-    else
-      free(word);
+    char word[FIELD_TEXT_SIZE];
+    const size_t size = field_first_word(r->table, i, prefix, length);
+    snprintf(word, sizeof word, "%.*s", (int)size, r->table->rows[i].path + length * (size > 0));
+    if (size)
+      words[count++] = memory_small_text(word);
   }
   for (size_t i = 0; i < extra && length == 0; i++)
-    if ((words[count] = strdup(r->also[i])) != NULL)
-      count++;
+    words[count++] = memory_small_text(r->also[i]);
   return words;
 }
 
@@ -212,7 +207,7 @@ static void unknown(const struct reading *r, const document_node *mapping, docum
   char **words = siblings(r, prefix);
   report_unknown(key, document_value_path(mapping, path, sizeof path), (const char *const *)words,
                  field_nearest(r->table, key->text));
-  for (size_t i = 0; words && words[i]; i++)
+  for (size_t i = 0; words[i]; i++)
     free(words[i]);
   free(words);
 }
@@ -246,26 +241,6 @@ static void read_row(struct reading *r, const struct field *row, document_node *
     field_set_unchecked(row, r->object, &value);
 }
 
-/* "first, per_point, max": the keys of a section. */
-static void keys_below(const struct field_table *table, const char *section, char *text, size_t size) {
-  const size_t length = strlen(section);
-  const char *last = "";
-  size_t last_length = 0;
-  *text = '\0';
-  for (size_t i = 0; i < table->count; i++) {
-    const char *path = table->rows[i].path;
-    if (strncmp(path, section, length) != 0 || path[length] != '.')
-      continue;
-    const char *key = path + length + 1;
-    const size_t key_length = strcspn(key, ".");
-    if (key_length == last_length && strncmp(key, last, key_length) == 0)
-      continue;
-    text_append(text, size, "%s%.*s", *text ? ", " : "", (int)key_length, key);
-    last = key;
-    last_length = key_length;
-  }
-}
-
 static void walk(struct reading *r, document_node *mapping, const char *prefix) {
   for (size_t i = 0; i < mapping->count; i++) {
     document_node *key = mapping->pairs[i].key, *node = mapping->pairs[i].value;
@@ -284,7 +259,7 @@ static void walk(struct reading *r, document_node *mapping, const char *prefix) 
       walk(r, node, path);
     } else if (meaning.section) {
       char keys[200];
-      keys_below(r->table, path, keys, sizeof keys);
+      field_members(r->table, path, "", keys, sizeof keys);
       document_report(node, document_value_path(node, path, sizeof path),
                       "expected keys and values below it (%s), got %s", keys,
                       document_value_is_null(node) ? "nothing" : document_value_what(node));
@@ -323,17 +298,14 @@ bool document_read(document_node *node, const struct field_table *table, const c
   return document_read_given(node, table, also, object, NULL, NULL);
 }
 
-static bool complete_object(const struct reading *r, bool *given, document_complete complete) {
-  bool *mine = given ? given : calloc(r->table->count + 1, sizeof *mine);
-  if (!mine)
-    return false;
+static void complete_object(const struct reading *r, bool *given, document_complete complete) {
+  bool *mine = given ? given : memory_small(r->table->count + 1, sizeof *mine);
   for (size_t i = 0; i < r->table->count; i++)
     mine[i] = r->places[i].key != NULL;
   if (complete)
     complete(r->object, mine);
   if (!given)
     free(mine);
-  return true;
 }
 
 /* A required row that is active was not given. */
@@ -380,14 +352,9 @@ bool document_read_given(document_node *node, const struct field_table *table, c
   struct reading r = {.table = table,
                       .also = also,
                       .object = object,
-                      .places = calloc(table->count + 1, sizeof *r.places)};
-  if (!r.places) {
-    document_report_memory(node, NULL);
-    return false;
-  }
+                      .places = memory_small(table->count + 1, sizeof *r.places)};
   walk(&r, node, "");
-  if (!complete_object(&r, given, complete))
-    document_report_memory(node, NULL);
+  complete_object(&r, given, complete);
   judge_conditions(&r, node);
   free(r.places);
   return document->error_count + document->foreign_errors == before;

@@ -50,28 +50,31 @@ void field_column_name(const char *path, char *name, size_t size) {
     *at = '_';
 }
 
-/* The paths that end in a suffix, as "'a.x', 'b.x'". */
-static void list_paths(const struct field_table *table, const char *suffix, char *names, size_t size) {
-  *names = 0;
-  for (size_t i = 0; i < table->count; i++)
-    if (ends_with(table->rows[i].path, suffix))
-      text_append(names, size, "%s'%s'", *names ? ", " : "", table->rows[i].path);
+size_t field_first_word(const struct field_table *table, size_t i, const char *prefix, size_t length) {
+  const char *path = table->rows[i].path;
+  if (strncmp(path, prefix, length) != 0)
+    return 0;
+  const size_t word = strcspn(path + length, "."), whole = length + word;
+  for (size_t j = 0; j < i; j++)
+    if (strncmp(table->rows[j].path, path, whole) == 0 && strchr(".", table->rows[j].path[whole]))
+      return 0;
+  return word;
+}
+
+void field_members(const struct field_table *table, const char *section, const char *quote, char *text, size_t size) {
+  char prefix[FIELD_TEXT_SIZE + 2];
+  const size_t length = (size_t)snprintf(prefix, sizeof prefix, "%.*s.", FIELD_TEXT_SIZE, section);
+  *text = 0;
+  for (size_t i = 0; i < table->count; i++) {
+    const size_t word = field_first_word(table, i, prefix, length);
+    if (word)
+      text_append(text, size, "%s%s%.*s%s", *text ? ", " : "", quote, (int)word, table->rows[i].path + length, quote);
+  }
 }
 
 static void fail_unknown(const struct field_table *table, const char *path, struct error *error) {
-  const size_t length = strlen(path);
-  const char *last = "";
-  char members[512] = "";
-  for (size_t i = 0; i < table->count; i++) {
-    const char *known = table->rows[i].path;
-    if (strncmp(known, path, length) != 0 || known[length] != '.')
-      continue;
-    const char *member = known + length + 1;
-    const size_t size = strcspn(member, ".");
-    if (strncmp(member, last, size) != 0 || last[size] != '.') /* not another of a section within */
-      text_append(members, sizeof members, "%s'%.*s'", *members ? ", " : "", (int)size, member);
-    last = member;
-  }
+  char members[512];
+  field_members(table, path, "'", members, sizeof members);
   if (*members) {
     status_fail(error, STATUS_CONTENT, "'%.*s' is a section of the %s; name what is in it, behind a dot: %s", QUOTE,
                 path, table->name, members);
@@ -112,8 +115,9 @@ const struct field *field_find(const struct field_table *table, const char *path
     fail_unknown(table, path, error);
     return NULL;
   }
-  char names[600];
-  list_paths(table, path, names, sizeof names);
+  char names[600] = "";
+  for (const struct field *row = NULL; (row = field_ending(table, path, row));)
+    text_append(names, sizeof names, "%s'%s'", *names ? ", " : "", row->path);
   status_fail(error, STATUS_CONTENT, "'%.*s' is ambiguous in the %s: it may be %s", QUOTE, path, table->name, names);
   return NULL;
 }

@@ -134,6 +134,12 @@ void field_guess(const struct field_table *table, struct text_guess *guess);
 /* The nearest path of one table, or NULL when none is near. */
 const char *field_nearest(const struct field_table *table, const char *path);
 
+/* The length of the word behind the first `length` bytes of row i's path, where these are those of `prefix` and no
+ * earlier row has the same word there; else 0. */
+size_t field_first_word(const struct field_table *table, size_t i, const char *prefix, size_t length);
+/* The words that follow a section's path in the table, each once and between two of `quote`: "'a', 'b'". */
+void field_members(const struct field_table *table, const char *section, const char *quote, char *text, size_t size);
+
 /* A path as the name of a column: dots become underscores. */
 void field_column_name(const char *path, char *name, size_t size);
 

@@ -37,21 +37,14 @@ static const char *base_of(const char *path) {
   return slash ? slash + 1 : path;
 }
 
-static bool ends_in(const char *text, const char *ending) {
-  const size_t length = strlen(text), tail = strlen(ending);
-  return length > tail && strcmp(text + length - tail, ending) == 0;
-}
-
 static bool find_place(const char *path, struct place *place) {
   struct stat there;
   const char *base = base_of(path);
   if (stat(path, &there) == 0)
     base = "";
   else {
-    char *folder = base == path ? strdup(".") : strndup(path, (size_t)(base - path));
-    const bool found = folder && stat(folder, &there) == 0;
-    free(folder);
-    if (!found)
+    OWNED char *folder = base == path ? strdup(".") : strndup(path, (size_t)(base - path));
+    if (!folder || stat(folder, &there) != 0)
       return false;
   }
   *place = (struct place){there.st_dev, there.st_ino, base};
@@ -145,11 +138,8 @@ bool file_name_is_document(const char *word) {
 char *file_name_in(const char *folder, const char *name) {
   if (name[0] == '/' || !folder || !*folder)
     return strdup(name);
-  const size_t size = strlen(folder) + strlen(name) + 2;
-  char *whole = malloc(size);
-  if (whole)
-    snprintf(whole, size, "%s/%s", folder, name);
-  return whole;
+  char *whole = NULL;
+  return asprintf(&whole, "%s/%s", folder, name) < 0 ? NULL : whole;
 }
 
 /* ---- what an output may not replace ---- */
@@ -172,7 +162,7 @@ const char *const file_companions[] = {"-journal", "-wal", "-shm", NULL};
 
 static const char *companion_ending(const char *path) {
   const char *const *ending = file_companions;
-  while (*ending && !ends_in(path, *ending))
+  while (*ending && !text_ends_in(path, *ending))
     ending++;
   return *ending;
 }
@@ -186,34 +176,30 @@ static bool is_beside_store(const char *path) {
   const char *ending = companion_ending(path);
   if (!ending)
     return false;
-  char *store = strndup(path, strlen(path) - strlen(ending)), head[17];
+  OWNED char *store = strndup(path, strlen(path) - strlen(ending));
+  char head[17];
   struct stat file;
   /* A store that this process has opened is not opened here: closing it again would release SQLite's locks. */
-  const bool found = store && stat(store, &file) == 0 &&
-                     (is_input(&file) || (read_head(store, head) && is_database(head)));
-  free(store);
-  return found;
+  return store && stat(store, &file) == 0 && (is_input(&file) || (read_head(store, head) && is_database(head)));
 }
 
 /* Is it a file that a campaign keeps: STORE-fields/<identity>.h5 (campaign/scheduler/scheduler.c)? */
 static bool is_kept(const char *path) {
-  char *real = realpath(path, NULL);
+  OWNED char *real = realpath(path, NULL);
   const char *base = real ? base_of(real) : "";
-  const bool found = strspn(base, "0123456789abcdef") == 32 && strcmp(base + 32, ".h5") == 0 && base - real > 8 &&
-                     strncmp(base - 8, "-fields/", 8) == 0;
-  free(real);
-  return found;
+  return strspn(base, "0123456789abcdef") == 32 && strcmp(base + 32, ".h5") == 0 && base - real > 8 &&
+         strncmp(base - 8, "-fields/", 8) == 0;
 }
 
 /* Is it a document by its own name, or by the name that a link leads to? */
 static bool is_document(const char *path, const char *head) {
-  char *real = realpath(path, NULL);
+  OWNED char *real = realpath(path, NULL);
   const char *const names[] = {path, real ? real : path};
   const bool rows = strncmp(head, "{\"run_id\"", 9) == 0 || strncmp(head, "{\"point_id\"", 11) == 0;
   bool found = false;
   for (size_t i = 0; i < 2; i++)
-    found |= ends_in(names[i], ".yaml") || ends_in(names[i], ".yml") || (ends_in(names[i], ".json") && !rows);
-  free(real);
+    found |= text_ends_in(names[i], ".yaml") || text_ends_in(names[i], ".yml") ||
+             (text_ends_in(names[i], ".json") && !rows);
   return found;
 }
 
@@ -336,13 +322,12 @@ status file_begin(struct file_output *file, const char *path, const char *what, 
  * flush a folder; that is no error. */
 static void keep_name(const char *path) {
   const char *base = strrchr(path, '/');
-  char *name = base ? strndup(path, base == path ? 1 : (size_t)(base - path)) : strdup(".");
+  OWNED char *name = base ? strndup(path, base == path ? 1 : (size_t)(base - path)) : strdup(".");
   const int folder = name ? open(name, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
   if (folder >= 0) {
     (void)fsync(folder);
     close(folder);
   }
-  free(name);
 }
 
 /* Puts the whole file in place. */

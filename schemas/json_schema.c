@@ -220,23 +220,17 @@ static void properties(const struct field_table *table, const char *prefix, size
   bool first = true;
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
-    if (!same_start(row->path, prefix, length))
+    const size_t word = field_first_word(table, i, prefix, length);
+    if (!word)
       continue;
-    const size_t word = strcspn(row->path + length, "."), whole = length + word + 1;
     const bool section = row->path[length + word] == '.';
-    bool seen = false;
-    for (size_t j = 0; section && j < i && !seen; j++)
-      seen = same_start(table->rows[j].path, row->path, whole);
-    if (seen)
-      continue;
-
     if (!first)
       fputc(',', out);
     first = false;
     margin(indent, out);
     fprintf(out, "\"%.*s\": {", (int)word, row->path + length);
     if (section) {
-      write_section(table, row->path, whole, indent + 1, out);
+      write_section(table, row->path, length + word + 1, indent + 1, out);
       continue;
     }
     type(row, out);

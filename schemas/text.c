@@ -222,6 +222,11 @@ const char *text_next_item(const char *list, char *item, size_t size) {
   return list + length + (list[length] == ',');
 }
 
+bool text_ends_in(const char *text, const char *ending) {
+  const size_t length = strlen(text), tail = strlen(ending);
+  return length > tail && strcmp(text + length - tail, ending) == 0;
+}
+
 bool text_is_one_of(const char *text, const char *const *words) {
   for (; words && *words; words++)
     if (strcmp(text, *words) == 0)
@@ -257,19 +262,6 @@ void text_append_fixed(char *text, size_t size, double number, int decimals) {
     text_append(text, size, "%.*f", decimals, number);
 }
 
-/* Copies a number with an exponent from `at` on, its mantissa `mantissa` bytes before it. Returns the bytes after "e".
- */
-static size_t write_power(const char *at, size_t mantissa, char *made, size_t size) {
-  char *end = NULL;
-  const long exponent = strtol(at + 1, &end, 10);
-  if (mantissa == 1 && at[-1] == '1')
-    made[strlen(made) - 1] = '\0';
-  else
-    text_append(made, size, "\xc3\x97");
-  text_append(made, size, "10^%ld", exponent);
-  return (size_t)(end - at);
-}
-
 /* A whole number with a space before each three of its digits, from 10 000 on. */
 static void write_whole(double number, FILE *out) {
   char digits[32];
@@ -281,11 +273,8 @@ static void write_whole(double number, FILE *out) {
   }
 }
 
-char *text_people(const char *text) {
-  enum { DIGITS = 6 };
-  char *made = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&made, &size);
+/* Numbers with a positive exponent of up to `digits` become whole numbers. */
+static void write_powers(const char *text, long digits, FILE *out) {
   for (const char *at = text; *at;) {
     const size_t mantissa = strspn(at, "0123456789.");
     const char *power = at + mantissa;
@@ -293,7 +282,7 @@ char *text_people(const char *text) {
     const bool has = mantissa > 0 && *power == 'e' && (power[1] == '+' || power[1] == '-') && power[2] >= '0' &&
                      power[2] <= '9';
     const long exponent = has ? strtol(power + 1, &end, 10) : 0;
-    if (has && exponent > 0 && exponent <= DIGITS) {
+    if (has && exponent > 0 && exponent <= digits) {
       write_whole(strtod(at, NULL), out);
     } else if (has) {
       if (mantissa > 1 || *at != '1')
@@ -307,29 +296,25 @@ char *text_people(const char *text) {
     }
     at = end;
   }
+}
+
+char *text_people(const char *text) {
+  char *made = NULL;
+  size_t size = 0;
+  FILE *out = text_open(&made, &size);
+  write_powers(text, 6, out);
   return text_close(out, &made);
 }
 
 void text_powers(char *text, size_t size) {
-  char made[1024] = "";
-  size_t mantissa = 0; /* bytes of the number before *at */
-  for (const char *at = text; *at;) {
-    const bool power = *at == 'e' && mantissa > 0 && (at[1] == '+' || at[1] == '-') && at[2] >= '0' && at[2] <= '9';
-    if (power) {
-      at += write_power(at, mantissa, made, sizeof made);
-      mantissa = 0;
-      continue;
-    }
-    mantissa = (*at >= '0' && *at <= '9') || (*at == '.' && mantissa > 0) ? mantissa + 1 : 0;
-    const size_t used = strlen(made);
-    if (used + 1 < sizeof made) {
-      made[used] = *at;
-      made[used + 1] = '\0';
-    }
-    at++;
-  }
+  char *made = NULL;
+  size_t length = 0;
+  FILE *out = text_open(&made, &length);
+  write_powers(text, 0, out);
+  text_close_small(out, &made);
   text[0] = '\0';
   text_append(text, size, "%s", made);
+  free(made);
 }
 
 void text_unit(const char *unit, char *text, size_t size) {

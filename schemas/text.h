@@ -26,6 +26,9 @@ bool text_is_plain(const char *text);
  * become spaces. It does not grow. */
 void text_make_plain(char *text, const char *kept);
 
+/* Does `text` end in these bytes, and is it longer? */
+bool text_ends_in(const char *text, const char *ending);
+
 /* Is `text` one of the words of a NULL-terminated list? An absent list has no words. */
 bool text_is_one_of(const char *text, const char *const *words);
 

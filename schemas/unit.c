@@ -224,19 +224,12 @@ static bool is_digit(char byte) {
   return isdigit((unsigned char)byte);
 }
 
-/* Length of the sign of a power. */
-static size_t sign_length(const char *at) {
-  if (strncmp(at, "**", 2) == 0)
-    return 2;
-  return *at == '^' ? 1 : 0;
-}
-
 /* The power behind a name or parenthesis; 1 when there is none. */
 static status power(struct parser *p, int *value) {
   *value = 1;
   if (is_digit(p->at[*p->at == '-']))
     return status_fail(p->error, STATUS_CONTENT, "in unit '%.*s' write powers with '^', such as m^2", QUOTE, p->whole);
-  const size_t length = sign_length(p->at);
+  const size_t length = strncmp(p->at, "**", 2) == 0 ? 2 : *p->at == '^'; /* of the sign of a power */
   if (length == 0)
     return STATUS_OK;
 
@@ -255,9 +248,7 @@ static status parenthesis(struct parser *p, struct unit *unit) {
   if (++p->depth > DEEPEST)
     return status_fail(p->error, STATUS_CONTENT, "too many parentheses in a unit");
   p->at++;
-  const status code = product(p, unit);
-  if (code)
-    return code;
+  TRY(product(p, unit));
   if (*p->at != ')')
     return status_fail(p->error, STATUS_CONTENT, "unit '%.*s' lacks a ')'", QUOTE, p->whole);
   p->at++;
@@ -296,10 +287,9 @@ static void skip_spaces(struct parser *p) {
 static status term(struct parser *p, struct unit *unit, bool divide) {
   struct unit next;
   int exponent = 1;
-  status code = factor(p, &next);
-  if (!code)
-    code = power(p, &exponent);
-  return code ? code : multiply(p, unit, &next, divide ? -exponent : exponent);
+  TRY(factor(p, &next));
+  TRY(power(p, &exponent));
+  return multiply(p, unit, &next, divide ? -exponent : exponent);
 }
 
 static status product(struct parser *p, struct unit *unit) {
@@ -496,9 +486,7 @@ static status read_unit(const char *rest, const struct unit *want, const char *w
   const bool per = spaced && strncmp(rest, "1/", 2) == 0; /* "5 1/s" */
   if (!per && strchr("0123456789.+-", *rest))
     return status_fail(error, STATUS_CONTENT, "unexpected '%.*s' after the number", QUOTE, rest);
-  status code = unit_parse(rest, got, error);
-  if (code)
-    return code;
+  TRY(unit_parse(rest, got, error));
   return unit_same_dimension(want, got) ? STATUS_OK : wrong_dimension(want, want_text, got, rest, error);
 }
 
@@ -520,19 +508,14 @@ const char *unit_usual(const char *unit) {
 
 status unit_read(const char *text, const char *expected_unit, double *si, struct error *error) {
   struct unit want, got;
-  status code = unit_parse(expected_unit, &want, error);
-  if (code)
-    return code;
+  TRY(unit_parse(expected_unit, &want, error));
   text += strspn(text, " ");
 
   const struct decimal number = scan(text);
   if (number.length == 0)
     return no_number(text, expected_unit, error);
-  code = check_end(text, number.length, error);
-  if (!code)
-    code = read_unit(text + number.length, &want, expected_unit, &got, error);
-  if (code)
-    return code;
+  TRY(check_end(text, number.length, error));
+  TRY(read_unit(text + number.length, &want, expected_unit, &got, error));
 
   char shifted[512]; /* add the powers of ten of number and unit: only one rounding */
   if (number.mantissa > sizeof shifted - 32)

@@ -5,14 +5,12 @@
 #include <cairo-svg.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "analysis/pictures/picture.h"
 #include "schemas/memory.h"
-
-static bool ends_in(const char *path, const char *ending) {
-  size_t a = strlen(path), b = strlen(ending);
-  return a > b && strcmp(path + a - b, ending) == 0;
-}
+#include "schemas/text.h"
 
 static status from_cairo(cairo_status_t code, const char *path, struct error *error) {
   if (code == CAIRO_STATUS_SUCCESS)
@@ -24,7 +22,7 @@ static status from_cairo(cairo_status_t code, const char *path, struct error *er
 }
 
 status picture_canvas_named(const char *path, struct error *error) {
-  if (ends_in(path, ".png") || ends_in(path, ".svg") || ends_in(path, ".pdf"))
+  if (text_ends_in(path, ".png") || text_ends_in(path, ".svg") || text_ends_in(path, ".pdf"))
     return STATUS_OK;
   return status_fail(error, STATUS_USAGE, "%s: a picture's name ends in .png, .svg or .pdf", path);
 }
@@ -35,14 +33,14 @@ static cairo_status_t write_bytes(void *out, const unsigned char *bytes, unsigne
 
 status picture_canvas_open(struct picture_canvas *canvas, const char *path, double width, double height,
                            struct error *error) {
-  *canvas = (struct picture_canvas){.png = ends_in(path, ".png")};
+  *canvas = (struct picture_canvas){.png = text_ends_in(path, ".png")};
   TRY(picture_canvas_named(path, error));
   if (!(width >= 200 && width <= 8000 && height >= 50 && height <= 16000))
     return status_fail(error, STATUS_USAGE, "%s: a picture is 200 to 8000 wide, not %g x %g", path, width, height);
   TRY(file_begin(&canvas->file, path, "picture", error));
   if (canvas->png)
     canvas->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width), (int)ceil(height));
-  else if (ends_in(path, ".pdf"))
+  else if (text_ends_in(path, ".pdf"))
     canvas->surface = cairo_pdf_surface_create_for_stream(write_bytes, canvas->file.out, width, height);
   else
     canvas->surface = cairo_svg_surface_create_for_stream(write_bytes, canvas->file.out, width, height);
@@ -235,4 +233,49 @@ void picture_canvas_scale_bar(cairo_t *cairo, double x, double y, double points_
   cairo_rectangle(cairo, x, y - 0.28 * font, length, 0.28 * font);
   cairo_fill(cairo);
   picture_canvas_text(cairo, x + length / 2, y - 0.6 * font, 0.9 * font, PICTURE_CENTRE, false, text);
+}
+
+/* ---- pictures in rows on one page: as many columns as rows, or a few more ---- */
+
+status picture_sheet_open(const char *path, size_t count, const struct picture_frame *frame, struct picture_sheet **out,
+                          struct error *error) {
+  enum { ONE_ROW = 5, WIDE = 260 };
+  OWNED struct picture_sheet *sheet = memory_small(1, sizeof *sheet);
+  const double aspect = (frame->view[3] - frame->view[1]) / (frame->view[2] - frame->view[0]);
+  if (!isfinite(aspect))
+    return status_fail(error, STATUS_USAGE, "%s: the body has no extent to draw", path);
+  sheet->columns = count <= ONE_ROW ? count : (size_t)ceil(sqrt(1.6 * (double)count));
+  sheet->count = count;
+  sheet->font = 14;
+  sheet->gap = 16;
+  sheet->wide = count > 2 ? WIDE : 2 * WIDE;
+  sheet->tall = sheet->wide * fmin(fmax(aspect, 0.3), 1.6);
+  sheet->top = 3.6 * sheet->font;
+  memcpy(sheet->view, frame->view, sizeof sheet->view);
+  const size_t rows = (count + sheet->columns - 1) / sheet->columns;
+  sheet->right = sheet->gap + (sheet->wide + sheet->gap) * (double)sheet->columns;
+  sheet->below = sheet->top + (sheet->tall + 2.4 * sheet->font) * (double)rows;
+  TRY(picture_canvas_open(&sheet->canvas, path, sheet->right + 8 * sheet->font, sheet->below + 7 * sheet->font, error));
+  *out = sheet;
+  sheet = NULL;
+  return STATUS_OK;
+}
+
+double picture_sheet_next(struct picture_sheet *sheet, const char *title, const char *caption) {
+  cairo_t *cairo = sheet->canvas.cairo;
+  const size_t column = sheet->drawn % sheet->columns, row = sheet->drawn / sheet->columns;
+  const double left = sheet->gap + (sheet->wide + sheet->gap) * (double)column;
+  const double top = sheet->top + (sheet->tall + 2.4 * sheet->font) * (double)row;
+  if (sheet->drawn++ == 0)
+    picture_canvas_head(cairo, sheet->gap, sheet->right, sheet->font, title, 0, NULL);
+  cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
+  picture_canvas_text(cairo, left + sheet->wide / 2, top + sheet->tall + 1.4 * sheet->font, sheet->font, PICTURE_CENTRE,
+                      false, caption);
+  return picture_canvas_place(cairo, sheet->view, left, top, sheet->wide, sheet->tall);
+}
+
+status picture_sheet_close(struct picture_sheet *sheet, status code, struct error *error) {
+  code = picture_canvas_close(&sheet->canvas, code, error);
+  free(sheet);
+  return code;
 }

@@ -53,4 +53,14 @@ void picture_canvas_colour_bar(cairo_t *cairo, enum picture_ramp ramp, double x,
 void picture_canvas_scale_bar(cairo_t *cairo, double x, double y, double points_per_metre, double available,
                               double font);
 
+/* Pictures in rows on one page. */
+struct picture_sheet {
+  struct picture_canvas canvas;
+  size_t count, columns, drawn;
+  double view[4], gap, top, wide, tall, font; /* top: of the first row; wide, tall: of one picture */
+  double right, below;                        /* places of the legend, and of scale bar and note */
+};
+/* Begins the next picture: its caption, and the title before the first. Then as picture_canvas_place(). */
+double picture_sheet_next(struct picture_sheet *sheet, const char *title, const char *caption);
+
 #endif

@@ -2,7 +2,6 @@
  * every fragment, cracks inside them. */
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"
-#include "analysis/pictures/picture_sheet.h"
 #include "analysis/pictures/snapshot_read.h"
 
 #include <math.h>

@@ -2,7 +2,6 @@
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/picture_layout.h"
-#include "analysis/pictures/picture_sheet.h"
 
 #include <math.h>
 #include <stdlib.h>
