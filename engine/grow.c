@@ -26,6 +26,10 @@ bool grow_doubling(void *array, size_t *room, size_t need, size_t item) {
   return true;
 }
 
+status grow_or_fail(void *array, size_t *room, size_t need, size_t item, const char *what, struct error *error) {
+  return grow_room(array, room, need, item) ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for %s", what);
+}
+
 bool grow_aligned(void *array, size_t *room, size_t need, size_t item, size_t keep) {
   if (need <= *room)
     return true;

@@ -516,8 +516,7 @@ static status take_row(struct reading *r, struct error *error) {
     TRY(read_amount(r, amount->text, &row.amount, error));
   if (r->count == MOST_ROWS)
     return status_fail(error, STATUS_CONTENT, "%s: more than %d rows", r->path, MOST_ROWS);
-  if (!grow_room(&r->rows, &r->room, r->count + 1, sizeof *r->rows))
-    return status_fail(error, STATUS_MEMORY, "%s: no memory for its rows", r->path);
+  TRY(grow_or_fail(&r->rows, &r->room, r->count + 1, sizeof *r->rows, r->path, error));
   r->rows[r->count++] = row;
   return STATUS_OK;
 }

@@ -12,6 +12,7 @@
 #include "engine/outcome.h"
 #include "engine/scene.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 #include "schemas/unit.h"
 
@@ -58,12 +59,10 @@ status ask_campaign_document(struct store *store, int64_t campaign, char **name,
 }
 
 status ask_campaign_attempts(struct store *store, int64_t *attempts, struct error *error) {
-  double most = NAN;
-  const status code = answer_number(store, &most, error,
-                                    "SELECT max(n) FROM (SELECT count(*) AS n FROM attempt WHERE NOT EXISTS"
-                                    " (SELECT 1 FROM run WHERE run.identity = attempt.identity) GROUP BY identity)");
-  *attempts = isnan(most) ? 0 : (int64_t)most;
-  return code;
+  *attempts = 0;
+  return sql_integerf(store->db, attempts, error,
+                      "SELECT max(n) FROM (SELECT count(*) AS n FROM attempt WHERE NOT EXISTS (SELECT 1 FROM run WHERE "
+                      "run.identity = attempt.identity) GROUP BY identity)");
 }
 
 struct answer ask_campaign_sessions(struct store *store, struct error *error) {
@@ -252,8 +251,7 @@ status ask_columns_units(struct store *store, struct ask_column **columns, size_
                      "'result\\_%%' ESCAPE '\\' GROUP BY column_name HAVING count(DISTINCT unit) = 1");
   *columns = NULL;
   for (*count = 0; answer_next(&answer);) {
-    if (!grow_room(columns, &room, *count + 1, sizeof **columns))
-      return status_fail(error, STATUS_MEMORY, "no memory for the units of the columns");
+    TRY(grow_or_fail(columns, &room, *count + 1, sizeof **columns, "the units of the columns", error));
     read_column(&answer, &(*columns)[(*count)++]);
   }
   TRY(answer_end(&answer));
@@ -393,9 +391,8 @@ status ask_points_count(struct store *store, const struct ask_points_choice *cho
                         struct error *error) {
   sqlite3_str *where = sqlite3_str_new(NULL);
   write_choice(where, choice);
-  ANSWER answer = answer_to(store, error, "SELECT count(*) FROM point%z", sqlite3_str_finish(where));
-  *points = answer_next(&answer) ? answer_integer(&answer, 0) : 0;
-  return answer_end(&answer);
+  *points = 0;
+  return sql_integerf(store->db, points, error, "SELECT count(*) FROM point%z", sqlite3_str_finish(where));
 }
 
 status ask_points_known(struct store *store, int64_t point, struct error *error) {
@@ -528,8 +525,7 @@ status ask_points_without_estimates(struct store *store, int64_t campaign, struc
                 " ORDER BY point_id, results_version",
                 (long long)campaign, (long long)campaign);
   while (answer_next(&answer)) {
-    if (!grow_room(list, &room, *count + 1, sizeof **list))
-      return status_fail(error, STATUS_MEMORY, "no memory for the list of points");
+    TRY(grow_or_fail(list, &room, *count + 1, sizeof **list, "the list of points", error));
     (*list)[(*count)++] = (struct ask_points_version){answer_integer(&answer, 0), (int)answer_integer(&answer, 1)};
   }
   return answer_end(&answer);
@@ -595,10 +591,8 @@ struct answer ask_run_excluded(struct store *store, struct error *error) {
 }
 
 status ask_run_excluded_count(struct store *store, int64_t *count, struct error *error) {
-  double number = 0;
-  const status code = answer_number(store, &number, error, "SELECT count(*) FROM run WHERE counts = 0 AND surplus > 1");
-  *count = (int64_t)number;
-  return code;
+  *count = 0;
+  return sql_integerf(store->db, count, error, "SELECT count(*) FROM run WHERE counts = 0 AND surplus > 1");
 }
 
 status ask_run_masses(struct store *store, int64_t run_id, double **masses, size_t *count, struct error *error) {
@@ -608,9 +602,7 @@ status ask_run_masses(struct store *store, int64_t run_id, double **masses, size
   ANSWER answer = answer_to(store, error, "SELECT masses FROM fragment_mass WHERE run_id = %lld", (long long)run_id);
   if (!answer_next(&answer) || !answer_masses(&answer, 0, "this run", &stored, count))
     return answer_end(&answer);
-  *masses = malloc((*count + 1) * sizeof **masses);
-  if (!*masses)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
+  TRY(memory_array(masses, *count, sizeof **masses, "the masses", error));
   if (*count > 0)
     memcpy(*masses, stored, *count * sizeof **masses);
   return STATUS_OK;

@@ -426,6 +426,7 @@ status point_read(struct store *store, int64_t point_id, int64_t results_version
  * SQL. */
 status point_read_where(struct store *store, int64_t point_id, int64_t results_version, const char *where,
                         struct point_data *out, struct error *error);
+#define POINT_DATA __attribute__((cleanup(point_release))) struct point_data
 void point_release(struct point_data *point); /* a zeroed one is fine */
 
 /* Lower end of a standard window for this point, kg. */

@@ -116,7 +116,7 @@ const char *ask_chosen(const struct store *store) {
 }
 
 static status fit_point(struct store *store, const struct ask_points_version *which, struct error *error) {
-  __attribute__((cleanup(point_release))) struct point_data point = {0};
+  POINT_DATA point = {0};
   struct point_estimate fits[POINT_ESTIMATES];
   struct estimate rows[POINT_ESTIMATES];
   TRY(point_read(store, which->point_id, which->results_version, &point, error));

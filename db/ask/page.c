@@ -227,8 +227,8 @@ static status add_value(struct column *column, double value, struct error *error
   sample_add(&column->moments, value);
   if (column->values_count == JUDGED_RUNS)
     return STATUS_OK;
-  if (!grow_room(&column->values, &column->values_room, column->values_count + 1, sizeof *column->values))
-    return status_fail(error, STATUS_MEMORY, "no memory for the page");
+  TRY(grow_or_fail(&column->values, &column->values_room, column->values_count + 1, sizeof *column->values, "the page",
+                   error));
   column->values[column->values_count++] = value;
   return STATUS_OK;
 }
@@ -449,9 +449,7 @@ static status fill_runs(struct reading *reading, struct store *store, struct err
 
 /* Fills in `runs`, `means`, `modes` and the tables of doubts. */
 static status add_runs(struct ask_page *page, struct store *store, struct error *error) {
-  struct reading *reading = calloc(1, sizeof *reading);
-  if (!reading)
-    return status_fail(error, STATUS_MEMORY, "no memory for the page");
+  struct reading *reading = memory_small(1, sizeof *reading);
   reading->page = page;
   reading->modes.limit = NAN;
   const status code = fill_runs(reading, store, error);
@@ -585,9 +583,7 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
 }
 
 status ask_page_make(struct store *store, struct ask_page **out, struct error *error) {
-  struct ask_page *page = *out = calloc(1, sizeof *page);
-  if (!page)
-    return status_fail(error, STATUS_MEMORY, "no memory for the page");
+  struct ask_page *page = *out = memory_small(1, sizeof *page);
   status code = sqlite3_open(":memory:", &page->store.db) == SQLITE_OK
                     ? sql_execute(store->db, "BEGIN", doing,
                                   error) /* one consistent state of a store that another process writes */

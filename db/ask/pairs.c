@@ -11,6 +11,7 @@
 #include "engine/grow.h"
 #include "engine/outcome.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 
 struct group { /* the runs of one point */
   char *inputs;
@@ -31,10 +32,6 @@ struct ask_pairs {
   size_t at[2], found; /* the next group of each side; pairs so far */
 };
 
-static status no_memory(struct error *error) {
-  return status_fail(error, STATUS_MEMORY, "no memory for the runs");
-}
-
 /* The values of a column of the runs that count, of the newest results_version, ordered by inputs, point and seed. */
 static struct answer ask_values(struct store *store, const char *column, struct error *error) {
   return answer_to(
@@ -51,15 +48,13 @@ static struct answer ask_values(struct store *store, const char *column, struct 
 static status add_run(struct side *side, const struct answer *row, struct error *error) {
   const int64_t point = answer_integer(row, 1);
   if (side->group_count == 0 || side->groups[side->group_count - 1].point != point) {
+    TRY(grow_or_fail(&side->groups, &side->group_room, side->group_count + 1, sizeof *side->groups, "the runs", error));
     char *inputs = strdup(side->one_point ? "" : answer_text(row, 0));
-    if (!inputs || !grow_room(&side->groups, &side->group_room, side->group_count + 1, sizeof *side->groups)) {
-      free(inputs);
-      return no_memory(error);
-    }
+    if (!inputs)
+      return status_fail(error, STATUS_MEMORY, "no memory for the runs");
     side->groups[side->group_count++] = (struct group){.inputs = inputs, .point = point, .first = side->value_count};
   }
-  if (!grow_room(&side->values, &side->value_room, side->value_count + 1, sizeof *side->values))
-    return no_memory(error);
+  TRY(grow_or_fail(&side->values, &side->value_room, side->value_count + 1, sizeof *side->values, "the runs", error));
   side->values[side->value_count++] = (struct difference_value){answer_integer(row, 2), answer_real(row, 3)};
   side->groups[side->group_count - 1].count++;
   return STATUS_OK;
@@ -75,19 +70,17 @@ static int by_seed(const void *a, const void *b) {
 static status add_exponents(const struct point_data *point, enum exponent_method method, enum estimates_window window,
                             struct side *side, struct group *group, struct error *error) {
   const size_t runs = point->runs.count;
-  double *contribution = malloc((runs + 1) * sizeof *contribution);
-  if (!contribution || !grow_room(&side->values, &side->value_room, side->value_count + runs, sizeof *side->values)) {
-    free(contribution);
-    return no_memory(error);
-  }
-  const status code = point_exponent_of_runs(point, method, window, contribution, error);
+  OWNED double *contribution = NULL;
+  TRY(memory_array(&contribution, runs, sizeof *contribution, "the runs", error));
+  TRY(grow_or_fail(&side->values, &side->value_room, side->value_count + runs, sizeof *side->values, "the runs",
+                   error));
+  TRY(point_exponent_of_runs(point, method, window, contribution, error));
   group->first = side->value_count;
-  group->count = code == STATUS_OK && runs > 0 && isfinite(contribution[0]) ? runs : 0;
+  group->count = runs > 0 && isfinite(contribution[0]) ? runs : 0;
   for (size_t r = 0; r < group->count; r++)
     side->values[side->value_count++] = (struct difference_value){(int64_t)point->seed[r], contribution[r]};
   qsort(side->values + group->first, group->count, sizeof *side->values, by_seed);
-  free(contribution);
-  return code;
+  return STATUS_OK;
 }
 
 /* Puts the contributions of the runs to their point's exponent in place of their values. */
@@ -95,11 +88,9 @@ static status read_exponents(struct store *store, enum exponent_method method, e
                              struct side *side, struct error *error) {
   side->value_count = 0;
   for (size_t i = 0; i < side->group_count; i++) {
-    struct point_data point;
+    POINT_DATA point = {0};
     TRY(point_read(store, side->groups[i].point, 0, &point, error));
-    const status code = add_exponents(&point, method, window, side, &side->groups[i], error);
-    point_release(&point);
-    TRY(code);
+    TRY(add_exponents(&point, method, window, side, &side->groups[i], error));
   }
   return STATUS_OK;
 }
@@ -153,20 +144,14 @@ static status read_side(const char *operand, const char *quantity, struct ask_ch
 
 status ask_pairs_read(const char *first, const char *second, const char *quantity, const struct ask_choice *choice,
                       struct ask_pairs **out, struct error *error) {
-  struct ask_pairs *pairs = calloc(1, sizeof *pairs);
+  ASK_PAIRS pairs = memory_small(1, sizeof *pairs);
   *out = NULL;
-  if (!pairs)
-    return status_fail(error, STATUS_MEMORY, "no memory for a comparison");
-  status code = read_side(first, quantity, *choice, &pairs->side[0], error);
-  if (code == STATUS_OK)
-    code = read_side(second, quantity, *choice, &pairs->side[1], error);
-  if (code == STATUS_OK && pairs->side[0].one_point != pairs->side[1].one_point)
-    code = status_fail(error, STATUS_USAGE, "compare a point with a point (STORE:1), or all points with all points");
-  if (code) {
-    ask_pairs_free(pairs);
-    return code;
-  }
+  TRY(read_side(first, quantity, *choice, &pairs->side[0], error));
+  TRY(read_side(second, quantity, *choice, &pairs->side[1], error));
+  if (pairs->side[0].one_point != pairs->side[1].one_point)
+    return status_fail(error, STATUS_USAGE, "compare a point with a point (STORE:1), or all points with all points");
   *out = pairs;
+  pairs = NULL;
   return STATUS_OK;
 }
 

@@ -12,25 +12,18 @@
 
 struct growing {
   struct point_data *point;
-  size_t mass_capacity, run_capacity;
+  size_t masses, firsts, runs, seeds; /* room in its arrays */
 };
 
-static status make_room(struct growing *growing, size_t masses) {
+/* Room for so many masses, and one more run. */
+static status make_room(struct growing *growing, size_t masses, struct error *error) {
+  static const char what[] = "the runs of a point";
   struct point_data *point = growing->point;
-  if (masses > growing->mass_capacity) {
-    if (!grow_block(&point->masses, 2 * masses * sizeof *point->masses))
-      return STATUS_MEMORY;
-    growing->mass_capacity = 2 * masses;
-  }
-  if (point->runs.count + 2 <= growing->run_capacity)
-    return STATUS_OK;
-  const size_t capacity = growing->run_capacity ? 2 * growing->run_capacity : 32;
-  if (!grow_block(&point->first, capacity * sizeof *point->first) ||
-      !grow_block(&point->run_id, capacity * sizeof *point->run_id) ||
-      !grow_block(&point->seed, capacity * sizeof *point->seed))
-    return STATUS_MEMORY;
-  growing->run_capacity = capacity;
-  return STATUS_OK;
+  const size_t runs = point->runs.count + 2;
+  TRY(grow_or_fail(&point->masses, &growing->masses, masses, sizeof *point->masses, what, error));
+  TRY(grow_or_fail(&point->first, &growing->firsts, runs, sizeof *point->first, what, error));
+  TRY(grow_or_fail(&point->run_id, &growing->runs, runs, sizeof *point->run_id, what, error));
+  return grow_or_fail(&point->seed, &growing->seeds, runs, sizeof *point->seed, what, error);
 }
 
 /* The newest version with runs that count (0: none), unless one is given, and the dimensions of the engine. */
@@ -57,21 +50,17 @@ static status read_runs(struct store *store, const char *where, struct point_dat
                              : sql_format("");
   char of[64];
   snprintf(of, sizeof of, "a run of point %lld", point);
-  ANSWER answer =
-      make_room(&growing, 0)
-          ? answer_failed(status_fail(error, STATUS_MEMORY, "no memory for %s", of), error)
-          : answer_to(store, error,
-                      "SELECT masses, run_id, seed FROM run JOIN fragment_mass USING (run_id) WHERE point_id = "
-                      "%lld AND results_version = %lld AND counts = 1%s ORDER BY replicate, seed",
-                      point, version, condition);
-  if (answer_status(&answer) == STATUS_OK)
-    out->first[0] = 0;
+  TRY(make_room(&growing, 0, error));
+  out->first[0] = 0;
+  ANSWER answer = answer_to(store, error,
+                            "SELECT masses, run_id, seed FROM run JOIN fragment_mass USING (run_id) WHERE point_id = "
+                            "%lld AND results_version = %lld AND counts = 1%s ORDER BY replicate, seed",
+                            point, version, condition);
   const void *masses;
   size_t n;
   while (answer_next(&answer) && answer_masses(&answer, 0, of, &masses, &n)) {
     const size_t run = out->runs.count, have = out->first[run];
-    if (make_room(&growing, have + n))
-      return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", point);
+    TRY(make_room(&growing, have + n, error));
     if (n > 0)
       memcpy(out->masses + have, masses, n * sizeof(double));
     out->run_id[run] = answer_integer(&answer, 1);
@@ -162,11 +151,9 @@ void point_estimate_rows(const struct point_estimate fits[POINT_ESTIMATES], stru
 
 status point_exponent(struct store *store, int64_t point_id, int64_t results_version, enum exponent_method method,
                       enum estimates_window window, double level, struct pooled_exponent *out, struct error *error) {
-  struct point_data point;
+  POINT_DATA point = {0};
   TRY(point_read(store, point_id, results_version, &point, error));
-  const status code = estimate(&point, method, window, level, out, error);
-  point_release(&point);
-  return code;
+  return estimate(&point, method, window, level, out, error);
 }
 
 status point_estimates(const struct point_data *point, double level, struct point_estimate rows[POINT_ESTIMATES],

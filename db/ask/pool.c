@@ -11,6 +11,7 @@
 #include "engine/engine.h"
 #include "engine/grow.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 struct ask_pool_member { /* a point, in the order of the pools */
@@ -19,9 +20,7 @@ struct ask_pool_member { /* a point, in the order of the pools */
   char text[LIMITS_AXES_OF_POOL][ASK_POOL_TEXT];
 };
 
-static status no_memory(struct error *error) {
-  return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
-}
+static const char the_pools[] = "a question to the store"; /* there was no memory for it */
 
 static void write_axes(sqlite3_str *sql, const struct ask_pools *pools, bool first) {
   for (size_t a = 0; a < pools->axes; a++)
@@ -43,8 +42,7 @@ static status find_members(struct ask_pools *pools, struct error *error) {
   sqlite3_str_appendall(sql, pools->axes ? ", point_id" : "point_id");
   ANSWER answer = answer_to(pools->store, error, "%z", sqlite3_str_finish(sql));
   while (answer_next(&answer)) {
-    if (!grow_room(&pools->list, &pools->room, pools->count + 1, sizeof *pools->list))
-      return no_memory(error);
+    TRY(grow_or_fail(&pools->list, &pools->room, pools->count + 1, sizeof *pools->list, the_pools, error));
     struct ask_pool_member *member = &pools->list[pools->count++];
     *member = (struct ask_pool_member){.point = answer_integer(&answer, 0), .version = answer_integer(&answer, 1)};
     for (size_t a = 0; a < pools->axes; a++) {
@@ -85,7 +83,7 @@ struct values {
 
 static status read_values(const struct ask_pools *pools, struct point_data *point, struct values *values,
                           struct error *error) {
-  size_t room = 0;
+  size_t room[3] = {0};
   ANSWER
   answer = answer_to(pools->store, error,
                      "SELECT run_id, seed, meant(engine, warnings, %Q, \"%w\") FROM runs WHERE point_id = %lld AND "
@@ -94,13 +92,9 @@ static status read_values(const struct ask_pools *pools, struct point_data *poin
                      pools->quantity, pools->quantity, (long long)point->point_id, (long long)point->results_version);
   for (; answer_next(&answer); point->runs.count++) {
     const size_t run = point->runs.count;
-    if (run == room) {
-      room = room ? 2 * room : 32;
-      if (!grow_block(&point->run_id, room * sizeof *point->run_id) ||
-          !grow_block(&values->value, room * sizeof *values->value) ||
-          !grow_block(&values->seed, room * sizeof *values->seed))
-        return no_memory(error);
-    }
+    TRY(grow_or_fail(&point->run_id, &room[0], run + 1, sizeof *point->run_id, the_pools, error));
+    TRY(grow_or_fail(&values->value, &room[1], run + 1, sizeof *values->value, the_pools, error));
+    TRY(grow_or_fail(&values->seed, &room[2], run + 1, sizeof *values->seed, the_pools, error));
     point->run_id[run] = answer_integer(&answer, 0);
     values->seed[run] = answer_integer(&answer, 1);
     values->value[run] = answer_real(&answer, 2);
@@ -120,14 +114,16 @@ static void release(struct ask_pools *pools) {
   pools->seed = NULL;
 }
 
-/* Appends `count` elements to the array. False: no memory. */
-static bool append(void **array, size_t have, const void *more, size_t count, size_t size) {
+/* Appends `count` elements to the array, whose address is given. */
+static status append(void *array, size_t have, const void *more, size_t count, size_t size, struct error *error) {
+  size_t room = have; /* of the array, which has no spare room */
+  char *block;
   if (count == 0)
-    return true;
-  if (!grow_block(array, (have + count) * size))
-    return false;
-  memcpy((char *)*array + have * size, more, count * size);
-  return true;
+    return STATUS_OK;
+  TRY(grow_or_fail(array, &room, have + count, size, the_pools, error));
+  memcpy(&block, array, sizeof block); /* a pointer of any type */
+  memcpy(block + have * size, more, count * size);
+  return STATUS_OK;
 }
 
 /* Adds the runs of a point to the pool. `point` and `values` stay the caller's. */
@@ -135,17 +131,18 @@ static status add_point(struct ask_pools *pools, const struct point_data *point,
                         struct error *error) {
   struct point_data *all = &pools->pool.data;
   const size_t have = all->runs.count, more = point->runs.count;
-  if (!append((void **)&all->run_id, have, point->run_id, more, sizeof *all->run_id) ||
-      (values->value && (!append((void **)&pools->value, have, values->value, more, sizeof *values->value) ||
-                         !append((void **)&pools->seed, have, values->seed, more, sizeof *values->seed))))
-    return no_memory(error);
+  TRY(append(&all->run_id, have, point->run_id, more, sizeof *all->run_id, error));
+  if (values->value) {
+    TRY(append(&pools->value, have, values->value, more, sizeof *values->value, error));
+    TRY(append(&pools->seed, have, values->seed, more, sizeof *values->seed, error));
+  }
   if (point->first) {
     const size_t masses = all->first ? all->first[have] : 0;
     static const size_t zero = 0;
-    if ((!all->first && !append((void **)&all->first, 0, &zero, 1, sizeof zero)) ||
-        !append((void **)&all->first, have + 1, point->first + 1, more, sizeof *point->first) ||
-        !append((void **)&all->masses, masses, point->masses, point->first[more], sizeof *point->masses))
-      return no_memory(error);
+    if (!all->first)
+      TRY(append(&all->first, 0, &zero, 1, sizeof zero, error));
+    TRY(append(&all->first, have + 1, point->first + 1, more, sizeof *point->first, error));
+    TRY(append(&all->masses, masses, point->masses, point->first[more], sizeof *point->masses, error));
     for (size_t r = have + 1; r <= have + more; r++)
       all->first[r] += masses;
   }
@@ -160,10 +157,8 @@ static status add_point(struct ask_pools *pools, const struct point_data *point,
 
 /* Reads the members from .. end - 1 that have runs of the version. */
 static status read_pool(struct ask_pools *pools, size_t from, size_t end, int64_t version, struct error *error) {
-  pools->point = calloc(end - from, sizeof *pools->point);
-  pools->first_run = calloc(end - from + 1, sizeof *pools->first_run);
-  if (!pools->point || !pools->first_run)
-    return no_memory(error);
+  TRY(memory_array(&pools->point, end - from, sizeof *pools->point, the_pools, error));
+  TRY(memory_array(&pools->first_run, end - from + 1, sizeof *pools->first_run, the_pools, error));
   pools->pool.data = (struct point_data){.results_version = version, .element_mass = NAN, .complete_mass = NAN};
   status code = STATUS_OK;
   for (size_t i = from; i < end && code == STATUS_OK; i++) {

@@ -25,20 +25,6 @@ static double wall_clock(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* The column names for digest_run(), made once for a store and an engine. */
-static void name_columns(struct store *store, struct store_kind *kind) {
-  const struct schema_table results = schema_result_table(kind->kind);
-  store->name_of.identity = digest_name("run", "identity");
-  store->name_of.replicate = digest_name("run", "replicate");
-  store->name_of.seed = digest_name("run", "seed");
-  store->name_of.results_version = digest_name("run", "results_version");
-  store->name_of.fields_digest = digest_name("run", "fields_digest");
-  store->name_of.masses = digest_name("fragment_mass", "masses");
-  digest_names_make(&store->outcome_names, "run", &outcome_table);
-  digest_names_make(&store->estimate_names, "estimate", &estimates_table);
-  digest_names_make(&kind->names, results.name, kind->kind->results);
-}
-
 /* Results that a scene names itself: scenes that give one name to results of different units need different stores. */
 static status check_defined(struct store *store, const struct engine_kind *kind, const char *table,
                             struct error *error) {
@@ -77,7 +63,9 @@ static status open_kind(struct store *store, const struct engine_kind *kind, str
   TRY(sql_prepare_insert(store->db, &entry->insert, table.name, "run_id", kind->results, 1, adding_run, error));
   TRY(sql_integerf(store->db, &filled, error, "SELECT EXISTS (SELECT 1 FROM \"%w\")", table.name));
   entry->first = filled == 0;
-  name_columns(store, entry);
+  digest_names_make(&store->outcome_names, "run", &outcome_table);
+  digest_names_make(&store->estimate_names, "estimate", &estimates_table);
+  digest_names_make(&entry->names, table.name, kind->results);
   return STATUS_OK;
 }
 
@@ -322,9 +310,7 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "masses are stored as 
 
 /* Makes room in store->masses. */
 static status make_room(struct store *store, size_t count, struct error *error) {
-  return grow_room(&store->masses, &store->mass_capacity, count + 1, sizeof *store->masses)
-             ? STATUS_OK
-             : status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+  return grow_or_fail(&store->masses, &store->mass_capacity, count + 1, sizeof *store->masses, adding_run, error);
 }
 
 status store_take_masses(struct store *store, sqlite3_stmt *row, int column, size_t *count, struct error *error) {
@@ -359,8 +345,7 @@ status store_make_bins(struct store *store, size_t n, size_t *count, struct erro
   *count = spectrum_fill(n, store->masses, store->bins, store->bin_capacity);
   if (*count <= store->bin_capacity)
     return STATUS_OK;
-  if (!grow_room(&store->bins, &store->bin_capacity, *count, sizeof *store->bins))
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+  TRY(grow_or_fail(&store->bins, &store->bin_capacity, *count, sizeof *store->bins, adding_run, error));
   *count = spectrum_fill(n, store->masses, store->bins, store->bin_capacity);
   return STATUS_OK;
 }
@@ -421,18 +406,18 @@ status store_add_spectrum(struct store *store, int64_t run_id, const struct sums
 static void digest_run(const struct store *store, const struct store_kind *kind, const struct store_run *run,
                        uint8_t digest[16]) {
   struct digest sum = {0};
-  digest_add(&sum, store->name_of.identity, 0, sql_of_bytes(run->identity, sizeof run->identity));
-  digest_add(&sum, store->name_of.replicate, 0, sql_of_integer(run->replicate));
-  digest_add(&sum, store->name_of.seed, 0, sql_of_integer((int64_t)run->seed));
-  digest_add(&sum, store->name_of.results_version, 0, sql_of_integer(run->kind->results_version));
+  digest_add(&sum, digest_name("run", "identity"), 0, sql_of_bytes(run->identity, sizeof run->identity));
+  digest_add(&sum, digest_name("run", "replicate"), 0, sql_of_integer(run->replicate));
+  digest_add(&sum, digest_name("run", "seed"), 0, sql_of_integer((int64_t)run->seed));
+  digest_add(&sum, digest_name("run", "results_version"), 0, sql_of_integer(run->kind->results_version));
   if (run->fields_digest)
-    digest_add(&sum, store->name_of.fields_digest, 0, sql_of_text(run->fields_digest));
-  digest_add_fields(&sum, &store->outcome_names, &outcome_table, 0, run->outcome);
+    digest_add(&sum, digest_name("run", "fields_digest"), 0, sql_of_text(run->fields_digest));
+  digest_add_fields(&sum, store->outcome_names, &outcome_table, 0, run->outcome);
   if (run->result)
-    digest_add_fields(&sum, &kind->names, run->kind->results, 0, run->result);
-  digest_add(&sum, store->name_of.masses, 0, masses_of(store, run));
+    digest_add_fields(&sum, kind->names, run->kind->results, 0, run->result);
+  digest_add(&sum, digest_name("fragment_mass", "masses"), 0, masses_of(store, run));
   for (size_t i = 0; i < run->estimate_count; i++)
-    digest_add_fields(&sum, &store->estimate_names, &estimates_table, i, &run->estimates[i]);
+    digest_add_fields(&sum, store->estimate_names, &estimates_table, i, &run->estimates[i]);
   digest_write(sum, digest);
 }
 

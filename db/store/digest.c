@@ -64,27 +64,22 @@ void digest_add(struct digest *sum, struct digest name, uint64_t row, struct sql
   sum->b += state.b;
 }
 
-void digest_names_make(struct digest_names *names, const char *table, const struct field_table *fields) {
-  if (names->of)
+void digest_names_make(struct digest **names, const char *table, const struct field_table *fields) {
+  if (*names)
     return;
-  names->of = memory_small(fields->count + 1, sizeof *names->of);
+  *names = memory_small(fields->count + 1, sizeof **names);
   for (size_t i = 0; i < fields->count; i++) {
     char column[FIELD_TEXT_SIZE];
     field_column_name(fields->rows[i].path, column, sizeof column);
-    names->of[i] = digest_name(table, column);
+    (*names)[i] = digest_name(table, column);
   }
 }
 
-void digest_names_clear(struct digest_names *names) {
-  free(names->of);
-  names->of = NULL;
-}
-
-void digest_add_fields(struct digest *sum, const struct digest_names *names, const struct field_table *fields,
-                       uint64_t row, const void *object) {
+void digest_add_fields(struct digest *sum, const struct digest *names, const struct field_table *fields, uint64_t row,
+                       const void *object) {
   for (size_t i = 0; i < fields->count; i++)
     if (!fields->rows[i].when || field_is_active(fields, &fields->rows[i], object))
-      digest_add(sum, names->of[i], row, sql_of_field(&fields->rows[i], object, false));
+      digest_add(sum, names[i], row, sql_of_field(&fields->rows[i], object, false));
 }
 
 void digest_write(struct digest sum, uint8_t bytes[16]) {

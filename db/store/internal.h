@@ -25,20 +25,15 @@ struct digest { /* all zero: the digest of no values */
 
 /* The start of the chain for values of this column. */
 struct digest digest_name(const char *table, const char *column);
-/* The chains of the names of a field table's columns. All zero: not made yet. */
-struct digest_names {
-  struct digest *of;
-};
-/* Makes the names, unless they exist. */
-void digest_names_make(struct digest_names *names, const char *table, const struct field_table *fields);
-void digest_names_clear(struct digest_names *names);
+/* *names: the chains of the names of a field table's columns, which the caller frees. Made unless they exist. */
+void digest_names_make(struct digest **names, const char *table, const struct field_table *fields);
 
 /* Adds a value to a digest; NULL adds nothing. `name`: the digest of its column's name. `row`: number that
  * distinguishes several rows of one run. */
 void digest_add(struct digest *sum, struct digest name, uint64_t row, struct sql_value value);
 /* Adds what sql_bind_fields() stores of *object. */
-void digest_add_fields(struct digest *sum, const struct digest_names *names, const struct field_table *fields,
-                       uint64_t row, const void *object);
+void digest_add_fields(struct digest *sum, const struct digest *names, const struct field_table *fields, uint64_t row,
+                       const void *object);
 /* The row number for a row whose key is a text. */
 uint64_t digest_row(const char *text, size_t size);
 void digest_write(struct digest sum, uint8_t bytes[16]);
@@ -218,7 +213,7 @@ struct store_kind { /* fills result_<engine> */
   const struct engine_kind *kind;
   bool first; /* no run of this engine is stored yet: the views have no columns for its results */
   sqlite3_stmt *insert;
-  struct digest_names names;
+  struct digest *names; /* digest_names_make() */
 };
 
 struct store {
@@ -245,10 +240,7 @@ struct store {
   uint8_t batch_identities[STORE_BATCH_ROWS][16];
   size_t batch_identity_count;
 
-  struct digest_names outcome_names, estimate_names;
-  struct {
-    struct digest identity, replicate, seed, results_version, fields_digest, masses;
-  } name_of; /* columns of a run's digest */
+  struct digest *outcome_names, *estimate_names; /* digest_names_make() */
   sqlite3_stmt *run, *attempt, *estimate;
   size_t estimate_rows; /* that `estimate` inserts */
   sqlite3_stmt *mass_row, *spectrum, *spectrum_together;

@@ -404,10 +404,10 @@ static void release(struct store *store) {
     sqlite3_finalize(statements[i]);
   for (size_t i = 0; i < LIMITS_ENGINES; i++) {
     sqlite3_finalize(store->kinds[i].insert);
-    digest_names_clear(&store->kinds[i].names);
+    free(store->kinds[i].names);
   }
-  digest_names_clear(&store->outcome_names);
-  digest_names_clear(&store->estimate_names);
+  free(store->outcome_names);
+  free(store->estimate_names);
   sums_clear(&store->sums);
   identities_clear(&store->identities);
   assert(!store->db || !sqlite3_next_stmt(store->db, NULL)); /* every statement and answer was ended */
