@@ -144,8 +144,6 @@ struct chart *chart_new(const char *template, const struct picture_page *page, c
   chart->page = page;
   chart->variables = text_open(&chart->variables_text, &chart->variables_size);
   chart->data = text_open(&chart->data_text, &chart->data_size);
-  if (!chart->variables || !chart->data)
-    memory_refused();
   const double room = page->width - 40;
   chart_number(chart, "title_lines", folded_text(chart, "title_text", words->title, room / (1.2 * LETTER)));
   chart_number(chart, "caption_lines", folded_text(chart, "caption_text", words->caption, room / (0.88 * LETTER)));
@@ -194,8 +192,8 @@ static status read_template(const struct picture_page *page, const char *name, c
   if (!page->templates) {
     for (const struct chart_template *t = chart_templates; t->name; t++)
       if (strcmp(t->name, name) == 0)
-        *text = strdup(t->text);
-    return *text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the template %s", name);
+        *text = memory_small_text(t->text);
+    return STATUS_OK;
   }
   char path[LIMITS_PATH];
   enum { MOST = 1 << 20 };
@@ -210,11 +208,11 @@ static status read_template(const struct picture_page *page, const char *name, c
                        "%s: there is no such template. Copy all templates from share/clast/templates of the "
                        "installation, or from analysis/pictures/templates of the source, and change the copies",
                        path);
-  *text = calloc(MOST + 1, 1);
-  if (*text)
+  const status code = memory_array(text, MOST + 1, 1, path, error);
+  if (!code)
     (*text)[fread(*text, 1, MOST, in)] = '\0';
   fclose(in);
-  return *text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the template %s", path);
+  return code;
 }
 
 /* Writes variables, frame.gp and the template. */
@@ -236,12 +234,11 @@ static status write_script(struct chart *chart, double height, char **script, si
   fflush(chart->variables);
   fflush(chart->data);
   FILE *out = text_open(script, size);
-  if (out)
-    fprintf(out,
-            "# A chart of clast for gnuplot 5.4. Change what you like, then run gnuplot on this file in its folder.\n\n"
-            "# What this chart shows. The numbers are in the data file.\n%s\n%s\n%s",
-            chart->variables_text, frame, template);
-  if (!out || !text_close(out, script) || ferror(chart->data) || ferror(chart->variables))
+  fprintf(out,
+          "# A chart of clast for gnuplot 5.4. Change what you like, then run gnuplot on this file in its folder.\n\n"
+          "# What this chart shows. The numbers are in the data file.\n%s\n%s\n%s",
+          chart->variables_text, frame, template);
+  if (!text_close(out, script) || ferror(chart->data) || ferror(chart->variables))
     return status_fail(error, STATUS_MEMORY, "%s: no memory for the chart", page->path);
   return STATUS_OK;
 }

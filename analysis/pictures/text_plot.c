@@ -47,23 +47,6 @@ static void mark_error(const struct scale *scale, const struct pooled_bin *bin, 
   line[right] = ERROR_RIGHT;
 }
 
-static void mark_fit(const struct scale *scale, const struct pooled_form *form, const struct pooled_bin *bin,
-                     const struct picture_fit *fit, plot_line line) {
-  const double middle = form->cumulative ? bin->lower : sqrt(bin->lower * bin->upper);
-  const double fitted = log10(picture_spectrum_fit(fit, form, middle));
-  if (fitted >= scale->low && fitted <= scale->high)
-    line[place(scale, fitted)] = FIT;
-}
-
-/* Writes a line without trailing blanks. */
-static void write_line(FILE *out, int columns, const plot_line line, bool unicode) {
-  while (columns > 0 && line[columns - 1] == BLANK)
-    columns--;
-  for (int i = 0; i < columns; i++)
-    fputs(glyph((enum mark)line[i], unicode), out);
-  fputc('\n', out);
-}
-
 /* Later marks hide earlier ones. */
 static void row(FILE *out, const struct scale *scale, bool unicode, const struct pooled_form *form,
                 const struct pooled_bin *bin, const struct picture_series *series) {
@@ -72,8 +55,12 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
     line[place(scale, decade)] = GRID;
   if (bin->half_width > 0)
     mark_error(scale, bin, line);
-  if (series->fits)
-    mark_fit(scale, form, bin, &series->fit[0], line);
+  if (series->fits) {
+    const double middle = form->cumulative ? bin->lower : sqrt(bin->lower * bin->upper);
+    const double fitted = log10(picture_spectrum_fit(&series->fit[0], form, middle));
+    if (fitted >= scale->low && fitted <= scale->high)
+      line[place(scale, fitted)] = FIT;
+  }
   line[place(scale, log10(bin->value))] = bin->lower < complete_from(form, series) ? INCOMPLETE : POINT;
 
   fprintf(out, "%10.3g %8lld %10.3g", bin->lower, (long long)bin->count, bin->value);
@@ -83,7 +70,12 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
     fprintf(out, " %4s%%  ", percent);
   else
     fprintf(out, " %5s  ", "-");
-  write_line(out, scale->columns, line, unicode);
+  int columns = scale->columns;
+  while (columns > 0 && line[columns - 1] == BLANK) /* no trailing blanks */
+    columns--;
+  for (int i = 0; i < columns; i++)
+    fputs(glyph((enum mark)line[i], unicode), out);
+  fputc('\n', out);
 }
 
 /* Writes the decades above the grid lines, as many as fit. */

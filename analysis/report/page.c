@@ -69,16 +69,6 @@ static void write_base64(const unsigned char *bytes, size_t size, FILE *out) {
   }
 }
 
-static status write_data(const struct page_data *data, FILE *out, struct error *error) {
-  OWNED unsigned char *packed = NULL;
-  size_t size = 0;
-  TRY(compress_data(data, &packed, &size, error));
-  fputs("<script type=\"application/octet-stream\" class=\"store\">", out);
-  write_base64(packed, size, out);
-  fputs("</script>\n", out);
-  return STATUS_OK;
-}
-
 status page_write(const char *path, const unsigned char *html, size_t html_size, size_t count,
                   const struct page_data *data, size_t *written, struct error *error) {
   OWNED char *text = NULL;
@@ -86,12 +76,16 @@ status page_write(const char *path, const unsigned char *html, size_t html_size,
   if (!place)
     return status_fail(error, STATUS_CONTENT, "share/clast/report.html is damaged: build clast again");
   FILE *out = text_open(&text, written);
-  if (!out)
-    return status_fail(error, STATUS_MEMORY, "no memory for the page");
   fwrite(html, 1, (size_t)(place - html), out);
   status code = STATUS_OK;
-  for (size_t i = 0; code == STATUS_OK && i < count; i++)
-    code = write_data(&data[i], out, error);
+  for (size_t i = 0; code == STATUS_OK && i < count; i++) {
+    OWNED unsigned char *packed = NULL;
+    size_t size = 0;
+    code = compress_data(&data[i], &packed, &size, error);
+    fputs("<script type=\"application/octet-stream\" class=\"store\">", out);
+    write_base64(packed, code ? 0 : size, out);
+    fputs("</script>\n", out);
+  }
   const unsigned char *rest = place + sizeof mark - 1;
   fwrite(rest, 1, html_size - (size_t)(rest - html), out);
   if (!text_close(out, &text))

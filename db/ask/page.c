@@ -464,17 +464,6 @@ static status add_runs(struct ask_page *page, struct store *store, struct error 
 /* ---- quantiles of the first main result, the mass share of the largest fragment, at every point, as `clast scatter`
  * gives them; other results and further points are left out to keep the page small ---- */
 
-static status add_scatter(sqlite3_stmt *insert, int64_t point, const struct scatter *scatter, struct error *error) {
-  status code = STATUS_OK;
-  for (size_t i = 0; code == STATUS_OK && i < SCATTER_QUANTILES; i++) {
-    const struct scatter_quantile *quantile = &scatter->quantile[i];
-    SQL_BIND(insert, sql_of_integer(point), sql_of_text(OUTCOME_DEFAULT), sql_of_real(scatter_shares[i]),
-             sql_of_real(quantile->value), sql_of_real(quantile->low), sql_of_real(quantile->high));
-    code = sql_run(insert, doing, error);
-  }
-  return code;
-}
-
 static status add_quantiles(struct ask_page *page, struct store *store, struct error *error) {
   STATEMENT insert = NULL;
   double points = 0;
@@ -489,8 +478,12 @@ static status add_quantiles(struct ask_page *page, struct store *store, struct e
   while (code == STATUS_OK && (pool = ask_pools_next(&pools))) {
     struct scatter scatter = {0};
     code = scatter_make(pool->data.runs.count, pool->value, &scatter, error);
-    if (code == STATUS_OK && scatter.n > 1)
-      code = add_scatter(insert, pool->point[0], &scatter, error);
+    for (size_t i = 0; code == STATUS_OK && scatter.n > 1 && i < SCATTER_QUANTILES; i++) {
+      const struct scatter_quantile *quantile = &scatter.quantile[i];
+      SQL_BIND(insert, sql_of_integer(pool->point[0]), sql_of_text(OUTCOME_DEFAULT), sql_of_real(scatter_shares[i]),
+               sql_of_real(quantile->value), sql_of_real(quantile->low), sql_of_real(quantile->high));
+      code = sql_run(insert, doing, error);
+    }
     scatter_release(&scatter);
   }
   return code ? code : ask_pools_end(&pools);

@@ -322,23 +322,9 @@ status store_take_masses(struct store *store, sqlite3_stmt *row, int column, siz
   return STATUS_OK;
 }
 
-static status take_fragments(struct store *store, const struct store_run *run, struct error *error) {
-  TRY(make_room(store, run->fragment_count, error));
-  for (size_t i = 0; i < run->fragment_count; i++)
-    store->masses[i] = run->fragments[i].mass;
-  return STATUS_OK;
-}
-
 /* store->masses as the value of a row. */
 static struct sql_value masses_of(const struct store *store, const struct store_run *run) {
   return sql_of_bytes(store->masses, run->fragment_count * sizeof *store->masses);
-}
-
-static status add_masses(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
-  TRY(sql_prepare_once(store->db, &store->mass_row, "INSERT INTO fragment_mass (run_id, masses) VALUES (?1, ?2)",
-                       adding_run, error));
-  SQL_BIND(store->mass_row, sql_of_integer(run_id), masses_of(store, run));
-  return sql_run(store->mass_row, adding_run, error);
 }
 
 status store_make_bins(struct store *store, size_t n, size_t *count, struct error *error) {
@@ -444,20 +430,6 @@ static status add_row(struct store *store, const struct store_kind *kind, const 
   return result;
 }
 
-/* Adds the engine's results of the run; NULL: none. With the first run of an engine, the views get columns for its
- * results. */
-static status add_result(struct store *store, struct store_kind *kind, int64_t run_id, const void *values,
-                         struct error *error) {
-  if (!values)
-    return STATUS_OK;
-  sql_bind_fields(kind->insert, SQL_BIND(kind->insert, sql_of_integer(run_id)), kind->kind->results, values);
-  TRY(sql_run(kind->insert, adding_run, error));
-  if (!kind->first)
-    return STATUS_OK;
-  kind->first = false;
-  return views_regenerate(store->db, error);
-}
-
 static status add_run(struct store *store, const struct store_run *run, struct error *error) {
   bool grown = false;
   int64_t run_id = 0;
@@ -466,10 +438,21 @@ static status add_run(struct store *store, const struct store_run *run, struct e
   TRY(find_kind(store, run->kind, &kind, &grown, error));
   if (grown)
     TRY(views_regenerate(store->db, error));
-  TRY(take_fragments(store, run, error));
+  TRY(make_room(store, run->fragment_count, error));
+  for (size_t i = 0; i < run->fragment_count; i++)
+    store->masses[i] = run->fragments[i].mass;
   TRY(add_row(store, kind, run, &run_id, error));
-  TRY(add_result(store, kind, run_id, run->result, error));
-  TRY(add_masses(store, run_id, run, error));
+  if (run->result) {
+    sql_bind_fields(kind->insert, SQL_BIND(kind->insert, sql_of_integer(run_id)), run->kind->results, run->result);
+    TRY(sql_run(kind->insert, adding_run, error));
+    if (kind->first) /* with the first run of an engine, the views get columns for its results */
+      TRY(views_regenerate(store->db, error));
+    kind->first = false;
+  }
+  TRY(sql_prepare_once(store->db, &store->mass_row, "INSERT INTO fragment_mass (run_id, masses) VALUES (?1, ?2)",
+                       adding_run, error));
+  SQL_BIND(store->mass_row, sql_of_integer(run_id), masses_of(store, run));
+  TRY(sql_run(store->mass_row, adding_run, error));
   const struct sums_run sums = {run->point_id, run->kind->results_version, store_run_counts(run),
                                 run->outcome->state == OUTCOME_END_TIME, run->surplus};
   TRY(store_make_bins(store, run->fragment_count, &bins, error));

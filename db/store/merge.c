@@ -124,16 +124,6 @@ static status copy_runs(sqlite3 *db, struct error *error) {
       columns, columns);
 }
 
-/* Rows of a table that belong to the runs that were copied. */
-static status copy_of_runs(sqlite3 *db, const char *table, struct error *error) {
-  SQL_TEXT columns = NULL;
-  TRY(list_columns(db, table, "'run_id'", &columns, error));
-  return sql_executef(db, doing, error,
-                      "INSERT OR FAIL INTO main.\"%w\" (run_id%s) SELECT m.ours%s FROM merge_run m CROSS JOIN "
-                      "other.\"%w\" o ON o.run_id = m.theirs ORDER BY m.ours",
-                      table, columns, columns, table);
-}
-
 static const char copying_spectra[] = "copying spectra";
 
 /* Makes the spectrum of a run that was copied from its masses, and refuses the source if it has another one: digests
@@ -217,14 +207,22 @@ static status add_columns(sqlite3 *db, const char *table, struct error *error) {
   return sql_execute(db, columns, doing, error);
 }
 
+/* Rows of tables that belong to the runs that were copied. */
 static status copy_results(sqlite3 *db, struct error *error) {
   STATEMENT tables = NULL;
   status result = sql_prepare(db,
                               "SELECT 'fragment_mass' UNION ALL SELECT 'estimate' UNION ALL SELECT name FROM "
                               "other.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*'",
                               &tables, doing, error);
-  while (sql_next(tables, &result, doing, error))
-    result = copy_of_runs(db, sql_text(tables, 0), error);
+  while (sql_next(tables, &result, doing, error)) {
+    const char *table = sql_text(tables, 0);
+    SQL_TEXT columns = NULL;
+    TRY(list_columns(db, table, "'run_id'", &columns, error));
+    TRY(sql_executef(db, doing, error,
+                     "INSERT OR FAIL INTO main.\"%w\" (run_id%s) SELECT m.ours%s FROM merge_run m CROSS JOIN "
+                     "other.\"%w\" o ON o.run_id = m.theirs ORDER BY m.ours",
+                     table, columns, columns, table));
+  }
   return result;
 }
 

@@ -718,16 +718,17 @@ status store_end(struct store *store, status result, int rows, struct error *err
   return store->batch_rows >= STORE_BATCH_ROWS ? store_flush(store, error) : store_tick(store, error);
 }
 
+static status commit(struct store *store, struct error *error) {
+  TRY(check_place(store->db, store->path, error));
+  TRY(sums_write(&store->sums, store->db, error));
+  TRY(digest_tables_write(store->db, &store->tables, error));
+  return sql_execute(store->db, "COMMIT", "committing", error);
+}
+
 status store_flush(struct store *store, struct error *error) {
   if (!store->in_batch)
     return STATUS_OK;
-  status result = check_place(store->db, store->path, error);
-  if (result == STATUS_OK)
-    result = sums_write(&store->sums, store->db, error);
-  if (result == STATUS_OK)
-    result = digest_tables_write(store->db, &store->tables, error);
-  if (result == STATUS_OK)
-    result = sql_execute(store->db, "COMMIT", "committing", error);
+  const status result = commit(store, error);
   if (result != STATUS_OK) {
     roll_back(store);
     return result;
@@ -806,26 +807,26 @@ int store_attempts(struct store *store, const uint8_t identity[16], double time_
 
 /* ---- copies ---- */
 
-/* Fields files are not moved: the paths in the copy are made relative to the copy's folder. */
+/* Fields files are not moved: the paths in the copy `db` get the way to them as a prefix. */
+static status prefix_paths(sqlite3 *db, const char *way, struct error *error) {
+  struct digest_tables tables;
+  guard_connection(db);
+  TRY(digest_tables_follow(db, &tables, error));
+  TRY(sql_executef(db, "writing the hand-over file", error,
+                   "UPDATE run SET fields_path = %Q || fields_path WHERE fields_path NOT LIKE '/%%'", way));
+  return digest_tables_write(db, &tables, error);
+}
+
 static status keep_paths(const struct store *store, const char *copy, struct error *error) {
   sqlite3 *db = NULL;
-  struct digest_tables tables;
   OWNED char *way = paths_between(copy, store->path);
   if (!way)
     return status_fail(error, STATUS_IO, "%s: the path of its folder cannot be resolved", copy);
-  status result = STATUS_OK;
-  int code = *way ? sqlite3_open_v2(copy, &db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_EXRESCODE, NULL) : SQLITE_OK;
-  if (code != SQLITE_OK)
-    result = sql_fail(db, code, "writing the hand-over file", error);
-  else if (db) {
-    guard_connection(db);
-    result = digest_tables_follow(db, &tables, error);
-    if (result == STATUS_OK)
-      result = sql_executef(db, "writing the hand-over file", error,
-                            "UPDATE run SET fields_path = %Q || fields_path WHERE fields_path NOT LIKE '/%%'", way);
-    if (result == STATUS_OK)
-      result = digest_tables_write(db, &tables, error);
-  }
+  if (!*way)
+    return STATUS_OK;
+  const int code = sqlite3_open_v2(copy, &db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_EXRESCODE, NULL);
+  const status result = code == SQLITE_OK ? prefix_paths(db, way, error)
+                                          : sql_fail(db, code, "writing the hand-over file", error);
   sqlite3_close(db);
   return result;
 }

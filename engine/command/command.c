@@ -11,7 +11,6 @@
 
 #include "engine/command/child.h"
 #include "engine/command/definition.h"
-#include "engine/command/output.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
 
@@ -103,16 +102,6 @@ static char *filled(const struct run *run, const char *text, size_t *size) {
   return text_close_small(out, &out_text);
 }
 
-static status put_files(const struct run *run, const struct child *child, struct error *error) {
-  for (size_t i = 0; i < run->d->file_count; i++) {
-    const struct definition_file *file = &run->d->files[i];
-    size_t size = strlen(file->text);
-    OWNED char *text = file->is_template ? filled(run, file->text, &size) : NULL;
-    TRY(child_put(child, file->name, text ? text : file->text, size, error));
-  }
-  return STATUS_OK;
-}
-
 static status start(const struct run *run, struct child *child, struct child_end *end, struct error *error) {
   const struct definition *d = run->d;
   const struct child_limits limits = {d->settings.limits.time,
@@ -120,7 +109,11 @@ static status start(const struct run *run, struct child *child, struct child_end
                                       (size_t)d->settings.limits.output};
   char *words[DEFINITION_WORDS + 2] = {(char *)d->settings.program};
   size_t size;
-  TRY(put_files(run, child, error));
+  for (size_t i = 0; i < d->file_count; i++) {
+    const struct definition_file *file = &d->files[i];
+    OWNED char *text = file->is_template ? filled(run, file->text, &size) : NULL;
+    TRY(child_put(child, file->name, text ? text : file->text, text ? size : strlen(file->text), error));
+  }
   for (size_t i = 0; i < d->word_count; i++)
     words[i + 1] = filled(run, d->words[i], &size);
   const status code = child_run(child, run->program, words, &limits, end, error);
@@ -139,17 +132,6 @@ static status failed(const struct run *run, const struct child *child, enum erro
   if (error)
     error->cause = cause;
   return STATUS_FAILED_RUNS;
-}
-
-static status judge_signal(const struct run *run, const struct child *child, const struct child_end *end,
-                           struct error *error) {
-  char why[300];
-  if (end->signal == SIGXFSZ)
-    snprintf(why, sizeof why, "it wrote a file larger than its limit of %.3g B (limits: output)",
-             run->d->settings.limits.output);
-  else
-    snprintf(why, sizeof why, "it was killed by signal %d (%s)", end->signal, strsignal(end->signal));
-  return failed(run, child, end->signal == SIGXFSZ ? ERROR_PLAIN : ERROR_CRASH, why, error);
 }
 
 /* The state that the scene gives to an exit code; -1: none. */
@@ -172,8 +154,15 @@ static status judge(struct run *run, const struct child *child, const struct chi
     snprintf(why, sizeof why, "the system does not start %.500s: %s", run->program, strerror(end->refused));
     return failed(run, child, ERROR_PLAIN, why, error);
   }
-  if (end->signal)
-    return judge_signal(run, child, end, error);
+  if (end->signal == SIGXFSZ) {
+    snprintf(why, sizeof why, "it wrote a file larger than its limit of %.3g B (limits: output)",
+             run->d->settings.limits.output);
+    return failed(run, child, ERROR_PLAIN, why, error);
+  }
+  if (end->signal) {
+    snprintf(why, sizeof why, "it was killed by signal %d (%s)", end->signal, strsignal(end->signal));
+    return failed(run, child, ERROR_CRASH, why, error);
+  }
   run->state = state_of(run->d, end->exit_code);
   if (run->state < 0) {
     snprintf(why, sizeof why, "it ended with exit code %d (peak memory %.3g MB)", end->exit_code,

@@ -217,22 +217,17 @@ static void add_knob(struct definition *d, const struct field *row, int resoluti
   memcpy(knob->factors, resolution == LARGER ? larger : smaller, sizeof larger);
 }
 
-static bool is_taken(const char *name) {
+static bool check_name(struct reading *r, document_node *node, const char *what, const char *name) {
   static const char *const words[] = {"engine", "name",       "source", "settings", "command",
                                       "seed",   "small_seed", "run_id", "program",  NULL};
-  return text_is_one_of(name, words) || field_find(&outcome_table, name, NULL);
-}
-
-static bool check_name(struct reading *r, document_node *node, const char *what, const char *name) {
-  const bool form = name && is_name(name), taken = form && is_taken(name);
-  if (!form || taken) {
-    document_report(node, what,
-                    taken ? "'%.60s' is a word of clast: choose another name"
-                          : "'%.60s': a name has small letters, digits and underscores",
-                    name ? name : "");
-    r->good = false;
-  }
-  return form && !taken;
+  const bool form = name && is_name(name);
+  if (form && !text_is_one_of(name, words) && !field_find(&outcome_table, name, NULL))
+    return true;
+  document_report(node, what,
+                  form ? "'%.60s' is a word of clast: choose another name"
+                       : "'%.60s': a name has small letters, digits and underscores",
+                  name ? name : "");
+  return r->good = false;
 }
 
 static void read_inputs(struct reading *r, document_node *list) {

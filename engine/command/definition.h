@@ -4,6 +4,7 @@
 #define CLAST_ENGINE_COMMAND_DEFINITION_H
 
 #include "engine/engine.h"
+#include "engine/fragments.h"
 #include "schemas/document.h"
 
 enum { DEFINITION_ROWS = 48, DEFINITION_WORDS = 64, DEFINITION_FILES = 16, DEFINITION_CODES = 16 };
@@ -75,5 +76,17 @@ status definition_of(const void *inputs, const struct definition **out, struct e
 /* Writes `text` with the value of each {{name}} in its place. */
 void definition_fill(const struct definition *definition, const char *text, const void *inputs, uint64_t seed,
                      FILE *out);
+
+/* ---- what a program wrote (output.c) ---- */
+
+/* Reads results (into `values`, one for each result row) and masses from the files in `folder`. *fragments: by
+ * descending mass, malloc'd, owned by the caller, also after an error. *not_finite is the name of the first result or
+ * mass that is NaN or infinite; "": there is none. STATUS_CONTENT: what is wrong in which file and line;
+ * STATUS_MEMORY. */
+status output_read(const struct definition *definition, const char *folder, double *values, struct fragment **fragments,
+                   size_t *count, const char **not_finite, struct error *error);
+
+/* The last words of a text file, in one line; empty: none. */
+void output_last_words(const char *folder, const char *name, char *words, size_t size);
 
 #endif

@@ -1,6 +1,6 @@
 /* Reads results and masses as JSON, CSV and plain numbers. A program's files are not trusted: links, pipes and devices
  * are refused, sizes are bounded, and every number is checked. */
-#include "engine/command/output.h"
+#include "engine/command/definition.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -218,11 +218,6 @@ static status read_csv(struct reading *r, const char *file, const char *text, si
 
 /* ---- all of it ---- */
 
-static bool ends_in(const char *name, const char *ending) {
-  const size_t length = strlen(name), tail = strlen(ending);
-  return length >= tail && strcmp(name + length - tail, ending) == 0;
-}
-
 static status read_numbers(struct reading *r, const char *file, char *text) {
   long long line = 1;
   for (char *at = text; *at;) {
@@ -245,9 +240,9 @@ static status read_one(struct reading *r, const char *file, bool results, bool m
   OWNED char *text = NULL;
   size_t size = 0;
   TRY(read_file(r, file, &text, &size));
-  if (ends_in(file, ".csv"))
+  if (text_ends_in(file, ".csv"))
     return read_csv(r, file, text, size, results, masses);
-  if (!results && !ends_in(file, ".json") && strcmp(file, "stdout") != 0)
+  if (!results && !text_ends_in(file, ".json") && strcmp(file, "stdout") != 0)
     return read_numbers(r, file, text);
   return read_json(r, file, text, size, results, masses);
 }
@@ -255,14 +250,6 @@ static status read_one(struct reading *r, const char *file, bool results, bool m
 static int by_mass(const void *a, const void *b) {
   const struct fragment *x = a, *y = b;
   return x->mass != y->mass ? (x->mass < y->mass ? 1 : -1) : (x->first > y->first) - (x->first < y->first);
-}
-
-/* How many elements each fragment has. The list is by descending mass. */
-static void count_elements(struct masses *m, double element) {
-  if (field_is_off(element) && m->count)
-    element = m->list[m->count - 1].mass;
-  for (size_t i = 0; i < m->count; i++)
-    m->list[i].count = (uint32_t)fmin(fmax(round(m->list[i].mass / element), 1), UINT32_MAX);
 }
 
 status output_read(const struct definition *d, const char *folder, double *values, struct fragment **fragments,
@@ -276,11 +263,15 @@ status output_read(const struct definition *d, const char *folder, double *value
     code = read_one(&r, output, true, masses && together);
   if (code == STATUS_OK && masses && !together)
     code = read_one(&r, file, false, true);
-  if (r.masses.count)
-    qsort(r.masses.list, r.masses.count, sizeof *r.masses.list, by_mass);
-  count_elements(&r.masses, d->settings.fragments.element_mass);
   *fragments = r.masses.list;
   *count = r.masses.count;
+  double element = d->settings.fragments.element_mass;
+  if (*count > 0)
+    qsort(*fragments, *count, sizeof **fragments, by_mass);
+  if (*count > 0 && field_is_off(element))
+    element = (*fragments)[*count - 1].mass;
+  for (size_t i = 0; i < *count; i++)
+    (*fragments)[i].count = (uint32_t)fmin(fmax(round((*fragments)[i].mass / element), 1), UINT32_MAX);
   return code;
 }
 
