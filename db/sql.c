@@ -223,26 +223,15 @@ struct sql_value sql_of_text(const char *text) {
 }
 
 struct sql_value sql_of_field(const struct field *row, const void *object, bool off_as_text) {
-  const char *place = (const char *)object + row->offset;
+  const void *place = (const char *)object + row->offset;
   switch (row->kind) {
-  case FIELD_REAL: {
-    double value;
-    memcpy(&value, place, sizeof value);
-    if (isnan(value))
-      return off_as_text ? sql_of_text("off") : (struct sql_value){.type = SQLITE_NULL};
-    return (struct sql_value){.type = SQLITE_FLOAT, .real = value};
-  }
-  case FIELD_INTEGER: {
-    int64_t value;
-    memcpy(&value, place, sizeof value);
-    return sql_of_integer(value);
-  }
+  case FIELD_REAL:
+    if (!isnan(*(const double *)place))
+      return sql_of_real(*(const double *)place);
+    return off_as_text ? sql_of_text("off") : (struct sql_value){.type = SQLITE_NULL};
+  case FIELD_INTEGER: return sql_of_integer(*(const int64_t *)place);
   case FIELD_BOOLEAN: return sql_of_integer(*(const bool *)place);
-  case FIELD_CHOICE: {
-    int value;
-    memcpy(&value, place, sizeof value);
-    return sql_of_text(row->choices[value]);
-  }
+  case FIELD_CHOICE: return sql_of_text(row->choices[*(const int *)place]);
   case FIELD_TEXT: break;
   }
   return sql_of_text(place);

@@ -421,17 +421,6 @@ static void report_syntax(struct document *document, struct fy_diag *diag) {
   document_report_at(document, offset, 0, NULL, "no valid YAML: %s", plain_words(error->msg));
 }
 
-static struct fy_diag *create_diag(void) {
-  struct fy_diag_cfg quiet;
-  fy_diag_cfg_default(&quiet);
-  quiet.fp = NULL;
-  quiet.output_fn = silence;
-  struct fy_diag *diag = fy_diag_create(&quiet);
-  if (diag)
-    fy_diag_set_collect_errors(diag, true);
-  return diag;
-}
-
 static status take_all(struct builder *b, struct fy_parser *parser, struct fy_diag *diag) {
   for (bool more = true; more && !b->failed;) {
     struct fy_event *event = fy_parser_parse(parser);
@@ -464,8 +453,14 @@ status document_build(struct document *document) {
     return STATUS_CONTENT;
   status code = STATUS_MEMORY;
   struct builder b = {.document = document};
-  struct fy_diag *diag = create_diag();
+  struct fy_diag_cfg quiet;
   struct fy_parser *parser = NULL;
+  fy_diag_cfg_default(&quiet);
+  quiet.fp = NULL;
+  quiet.output_fn = silence;
+  struct fy_diag *diag = fy_diag_create(&quiet);
+  if (diag)
+    fy_diag_set_collect_errors(diag, true);
   b.anchors = memory_small(DOCUMENT_MOST_ANCHORS, sizeof *b.anchors);
   if (diag)
     parser = fy_parser_create(

@@ -53,18 +53,6 @@ const char *document_value_path(const document_node *node, char *path, size_t si
   return path;
 }
 
-/* field_parse's message begins with the row's path. The node's own path replaces it: both are equal, or the node's has
- * a prefix such as "vary.". */
-static void report(document_node *node, const struct field *row, const char *message) {
-  char path[PATH_SIZE] = "";
-  size_t length = strlen(row->path);
-  if (strncmp(message, row->path, length) == 0 && strncmp(message + length, ": ", 2) == 0)
-    message += length + 2;
-  if (node->document->error_count < DOCUMENT_MOST_ERRORS)
-    document_value_path(node, path, sizeof path);
-  document_report(node, *path ? path : row->path, "%s", message);
-}
-
 /* The row's own spelling: the core schema also accepts `True` and `FALSE` as booleans. */
 static const char *own_spelling(const struct field *row, const char *text) {
   static const char *const yes[] = {"True", "TRUE", NULL}, *const no[] = {"False", "FALSE", NULL};
@@ -94,6 +82,8 @@ static status read_value(const document_node *node, const struct field *row, str
 
 bool document_value(document_node *node, const struct field *row, struct field_value *value) {
   struct error error;
+  char path[PATH_SIZE] = "";
+  const size_t length = strlen(row->path);
   if (node->faulty)
     return false;
   if (read_value(node, row, value, &error) == STATUS_OK)
@@ -102,20 +92,16 @@ bool document_value(document_node *node, const struct field *row, struct field_v
   if (node->end > 0 && node->end + 1 < node->document->size && *end == ',' && isdigit((unsigned char)end[-1]) &&
       isdigit((unsigned char)end[1]))
     text_append(error.message, sizeof error.message, "; a decimal mark is a point, as a comma ends the value here");
-  report(node, row, error.message);
+  /* field_parse's message begins with the row's path. The node's own path replaces it: both are equal, or the node's
+   * has a prefix such as "vary.". */
+  const bool named = strncmp(error.message, row->path, length) == 0 && strncmp(error.message + length, ": ", 2) == 0;
+  if (node->document->error_count < DOCUMENT_MOST_ERRORS)
+    document_value_path(node, path, sizeof path);
+  document_report(node, *path ? path : row->path, "%s", error.message + (named ? length + 2 : 0));
   return false;
 }
 
 /* ---- keys that no table has ---- */
-
-/* "a, b, c"; a long list is cut and ends in "...". */
-static void write_list(const char *const *words, char list[LIST_SIZE]) {
-  *list = 0;
-  for (size_t i = 0; words && words[i]; i++)
-    text_append(list, LIST_SIZE, "%s%s", i ? ", " : "", words[i]);
-  if (strlen(list) == LIST_SIZE - 1)
-    memcpy(list + LIST_SIZE - 4, "...", 4);
-}
 
 static const char *nearest(const char *typed, const char *const *known) {
   struct text_guess guess = text_guess(typed);
@@ -135,11 +121,14 @@ static void report_unknown(document_node *key, const char *path, const char *con
     return;
   }
 
-  char whole[PATH_SIZE] = "", list[LIST_SIZE];
+  char whole[PATH_SIZE] = "", list[LIST_SIZE] = "";
   if (path && *path)
     text_append(whole, sizeof whole, "%s.", path);
   text_append(whole, sizeof whole, "%.100s", key->text);
-  write_list(known, list);
+  for (size_t i = 0; known && known[i]; i++)
+    text_append(list, sizeof list, "%s%s", i ? ", " : "", known[i]);
+  if (strlen(list) == LIST_SIZE - 1) /* cut */
+    memcpy(list + LIST_SIZE - 4, "...", 4);
   const char *near = nearest(key->text, known);
   const bool dotted = !near && elsewhere && strcmp(elsewhere, key->text) == 0;
   const char *const word = elsewhere ? strrchr(elsewhere, '.') : NULL;

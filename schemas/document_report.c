@@ -74,18 +74,6 @@ struct excerpt {
   bool readable; /* the line is UTF-8. Otherwise each byte beyond ASCII is shown as '?', in one column */
 };
 
-/* Shortens a long line to the shown part, between characters. */
-static void cut_line(const char *text, size_t start, struct excerpt *e) {
-  if (start - e->begin > BEFORE)
-    e->from = start - BEFORE;
-  if (e->to - e->from > SHOWN)
-    e->to = e->from + SHOWN;
-  while (e->from < start && continues(text[e->from]))
-    e->from++;
-  while (e->to > start && e->to < e->finish && continues(text[e->to]))
-    e->to--;
-}
-
 static struct excerpt excerpt_around(const struct document *document, size_t start) {
   const char *text = document->text;
   struct excerpt e = {.begin = start, .finish = start};
@@ -95,8 +83,16 @@ static struct excerpt excerpt_around(const struct document *document, size_t sta
     e.finish++;
   e.from = e.begin;
   e.to = e.finish;
-  if (e.finish - e.begin > SHOWN)
-    cut_line(text, start, &e);
+  if (e.finish - e.begin > SHOWN) { /* the shown part begins and ends between characters */
+    if (start - e.begin > BEFORE)
+      e.from = start - BEFORE;
+    if (e.to - e.from > SHOWN)
+      e.to = e.from + SHOWN;
+    while (e.from < start && continues(text[e.from]))
+      e.from++;
+    while (e.to > start && e.to < e.finish && continues(text[e.to]))
+      e.to--;
+  }
   e.readable = document_guard_text(text + e.from, e.to - e.from) == e.to - e.from;
   return e;
 }

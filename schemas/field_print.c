@@ -9,14 +9,6 @@
 
 enum { NUMBER = 32 }; /* bytes of a number as text; the longest has 25 */
 
-/* 5000, 12.5 */
-static void print_plain(char text[NUMBER], const char *mantissa, size_t count, long exponent) {
-  const int whole = (int)exponent + 1, missing = whole > (int)count ? whole - (int)count : 0;
-  text_append(text, NUMBER, "%.*s%.*s", whole, mantissa, missing, "000000000");
-  if ((int)count > whole)
-    text_append(text, NUMBER, ".%s", mantissa + whole);
-}
-
 /* The fewest digits that read back as the same double. */
 struct digits {
   char mantissa[24]; /* without sign and point */
@@ -54,9 +46,11 @@ static void print_shifted(double number, long ten, char text[NUMBER]) {
     d.exponent += ten;
   if (d.exponent >= -5 && d.exponent < 0)
     text_append(text, NUMBER, "0.%.*s%s", (int)(-d.exponent - 1), "00000", d.mantissa); /* 0.00012 */
-  else if (d.exponent >= 0 && d.exponent < (d.count > 4 ? 9 : 6)) /* 5000 and 1234567, but not 5e8 */
-    print_plain(text, d.mantissa, d.count, d.exponent);
-  else if (d.count == 1)
+  else if (d.exponent >= 0 && d.exponent < (d.count > 4 ? 9 : 6)) { /* 5000, 12.5 and 1234567, but not 5e8 */
+    const int whole = (int)d.exponent + 1, missing = whole > (int)d.count ? whole - (int)d.count : 0;
+    text_append(text, NUMBER, "%.*s%.*s%s%s", whole, d.mantissa, missing, "000000000", (int)d.count > whole ? "." : "",
+                (int)d.count > whole ? d.mantissa + whole : "");
+  } else if (d.count == 1)
     text_append(text, NUMBER, "%ce%ld", d.mantissa[0], d.exponent);
   else
     text_append(text, NUMBER, "%c.%se%ld", d.mantissa[0], d.mantissa + 1, d.exponent);

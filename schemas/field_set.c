@@ -181,13 +181,6 @@ static double fifteen_digits(double number) {
   return strtod(text, NULL);
 }
 
-static status percent_missing(const struct field *row, const char *text, int length, struct error *error) {
-  char percent[32];
-  field_print_number(fifteen_digits(100 * strtod(text, NULL)), percent);
-  return status_fail(error, STATUS_CONTENT, "%s: %.*s is a percentage or a fraction; write '%.*s %%' or '%s %%'",
-                     row->path, length, text, length, text, percent);
-}
-
 /* Without this check "threshold.angle=4" would be 229 degrees: a user who leaves out the unit may mean any. */
 static status check_unit(const struct field *row, const char *text, struct error *error) {
   if (!field_needs_unit(row) || !unit_is_bare(text) || strtod(text, NULL) == 0)
@@ -196,8 +189,12 @@ static status check_unit(const struct field *row, const char *text, struct error
   const char *unit = row->unit ? row->unit : "1", *usual = unit_usual(unit);
   text += strspn(text, " ");
   const int length = (int)strcspn(text, " ") < QUOTE ? (int)strcspn(text, " ") : QUOTE;
-  if (strcmp(unit, "1") == 0)
-    return percent_missing(row, text, length, error);
+  if (strcmp(unit, "1") == 0) {
+    char percent[32];
+    field_print_number(fifteen_digits(100 * strtod(text, NULL)), percent);
+    return status_fail(error, STATUS_CONTENT, "%s: %.*s is a percentage or a fraction; write '%.*s %%' or '%s %%'",
+                       row->path, length, text, length, text, percent);
+  }
   if (usual)
     return status_fail(error, STATUS_CONTENT, "%s: %.*s has no unit; write '%.*s %s' or '%.*s %s'", row->path, length,
                        text, length, text, usual, length, text, unit);

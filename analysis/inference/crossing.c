@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "analysis/statistics/statistics.h"
 #include "schemas/memory.h"
 
 /* The limit of the likelihood ratio is that of Student's t squared, times this factor: rounds that end when the
@@ -94,11 +95,6 @@ static double misfit(const struct response *response, size_t from, size_t to, do
 }
 
 /* ---- the runs ---- */
-
-static int by_x(const void *a, const void *b) {
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
 
 /* Gathers runs of equal x. pairs: sorted (x, result relative to the level). */
 static void gather(struct response *response, size_t n, double (*pairs)[2]) {
@@ -382,7 +378,7 @@ status crossing_find(const struct crossing_data *data, struct crossing *out, str
       pairs[out->n][0] = data->x[i];
       pairs[out->n++][1] = data->y[i] - data->level;
     }
-  qsort(pairs, out->n, sizeof *pairs, by_x);
+  qsort(pairs, out->n, sizeof *pairs, sample_ascending); /* by x */
   if (isnan(out->share))
     out->share = share_of_modes(out->n, pairs);
   struct response response = {.place = place, .block = block, .n = (double)out->n, .share = out->share};

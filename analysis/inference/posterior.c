@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "schemas/memory.h"
 
@@ -240,13 +241,8 @@ void posterior_clear(struct posterior *posterior) {
 /* ---- statistics of the nodes ---- */
 
 struct weighted {
-  double z, weight;
+  double z, weight; /* z comes first: sample_ascending() sorts by it */
 };
-
-static int by_z(const void *a, const void *b) {
-  const double x = ((const struct weighted *)a)->z, y = ((const struct weighted *)b)->z;
-  return (x > y) - (x < y);
-}
 
 double posterior_quantile(const struct posterior *posterior, size_t input, double p) {
   OWNED struct weighted *nodes = malloc(posterior->count * sizeof *nodes);
@@ -254,7 +250,7 @@ double posterior_quantile(const struct posterior *posterior, size_t input, doubl
     return NAN;
   for (size_t n = 0; n < posterior->count; n++)
     nodes[n] = (struct weighted){posterior->z[n * posterior->inputs + input], posterior->weight[n]};
-  qsort(nodes, posterior->count, sizeof *nodes, by_z);
+  qsort(nodes, posterior->count, sizeof *nodes, sample_ascending); /* by z */
 
   /* Nodes of the same z (a column of the grid) are merged; half of the weight counts as below z, half as above. */
   double before = -1, z_before = nodes[0].z, below = 0;

@@ -66,14 +66,9 @@ static const char *read_particles(struct snapshot_read *file, struct picture_clo
 
 /* A particle and its mass and density, sorted by mass. */
 struct weighed {
-  double mass, density;
+  double mass, density; /* the mass comes first: sample_ascending() sorts by it */
   size_t particle;
 };
-
-static int by_mass(const void *a, const void *b) {
-  const struct weighed *p = a, *q = b;
-  return (p->mass > q->mass) - (p->mass < q->mass);
-}
 
 static int by_density(const void *a, const void *b) {
   const struct weighed *p = a, *q = b;
@@ -89,7 +84,7 @@ static void limit_sizes(struct picture_cloud *cloud) {
     return; /* drawn as they are */
   for (size_t i = 0; i < cloud->n; i++)
     list[i] = (struct weighed){cloud->mass[i], cloud->mass[i] / pow(cloud->size[i], 3), i};
-  qsort(list, cloud->n, sizeof *list, by_mass);
+  qsort(list, cloud->n, sizeof *list, sample_ascending); /* by mass */
   for (size_t from = 0, end; from < cloud->n; from = end) {
     for (end = from + 1; end < cloud->n && list[end].mass <= ALIKE * list[end - 1].mass;)
       end++;
@@ -138,16 +133,6 @@ static status close_column(struct snapshot_read *file, const char *path, double 
   return snapshot_read_refuse(path, error);
 }
 
-static status refuse_column(struct snapshot_read *file, const char *path, const char *name, struct error *error) {
-  char at[96], known[256] = "";
-  for (size_t k = 0; k < sizeof offered / sizeof *offered; k++) {
-    snprintf(at, sizeof at, COLUMN "%s", offered[k]);
-    if (snapshot_read_has(file, at))
-      text_append(known, sizeof known, "%s%s", *known ? ", " : "", offered[k]);
-  }
-  return status_fail(error, STATUS_CONTENT, "%s has no '%s' for each particle; it has %s", path, name, known);
-}
-
 status picture_cloud_read_column(const char *path, const struct picture_cloud *cloud, const char *name, double **values,
                                  char unit[32], struct error *error) {
   *values = NULL;
@@ -162,8 +147,14 @@ status picture_cloud_read_column(const char *path, const struct picture_cloud *c
   if (read && rows == cloud->n && snapshot_read_text(file, at, "units", unit, 32)) {
     *values = read;
   } else {
+    char known[256] = "";
     free(read);
-    code = refuse_column(file, path, name, error);
+    for (size_t k = 0; k < sizeof offered / sizeof *offered; k++) {
+      snprintf(at, sizeof at, COLUMN "%s", offered[k]);
+      if (snapshot_read_has(file, at))
+        text_append(known, sizeof known, "%s%s", *known ? ", " : "", offered[k]);
+    }
+    code = status_fail(error, STATUS_CONTENT, "%s has no '%s' for each particle; it has %s", path, name, known);
   }
   return close_column(file, path, values, code, error);
 }

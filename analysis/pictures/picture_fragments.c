@@ -94,12 +94,11 @@ static void cover_most(const struct picture_body *body, double *centre, double v
 /* Shows all cells. If distant single cells would shrink the picture much, it shows all other fragments and 96 % of the
  * cells. */
 status picture_fragments_view(const struct picture_body *body, double view[4]) {
-  OWNED double *centre = malloc((body->cells + 1) * sizeof *centre);
+  OWNED double *centre = NULL;
   double all[4], bulk[4];
   GROUPING grouping = {0};
   TRY(group(body, &grouping));
-  if (!centre)
-    return STATUS_MEMORY;
+  TRY(memory_array(&centre, body->cells, sizeof *centre, "", NULL));
   cover_cells(body, &grouping, all, bulk);
   cover_most(body, centre, bulk);
   bool near = all[2] - all[0] <= 1.25 * (bulk[2] - bulk[0]) && all[3] - all[1] <= 1.25 * (bulk[3] - bulk[1]);
@@ -267,17 +266,6 @@ static status fail(const char *path, status code, struct error *error) {
                                            : "fragment numbers beyond the number of cells");
 }
 
-/* The part of the body that a panel shows. */
-static status frame_panel(const char *path, const struct picture_panel *panel, double view[4], struct error *error) {
-  if (panel->body.cells == 0)
-    return status_fail(error, STATUS_USAGE, "%s: there is no cell to draw", path);
-  memcpy(view, panel->view, 4 * sizeof *view);
-  if (view[2] > view[0])
-    return STATUS_OK;
-  status code = picture_fragments_view(&panel->body, view);
-  return code ? fail(path, code, error) : STATUS_OK;
-}
-
 status picture_fragments(const char *path, double width, const char *title, const char *subtitle, size_t panels,
                          const struct picture_panel *panel, struct error *error) {
   double view[3][4], tallest = 0, font = width / (panels > 1 ? 62 : 46);
@@ -285,7 +273,12 @@ status picture_fragments(const char *path, double width, const char *title, cons
     return status_fail(error, STATUS_USAGE, "%s: one to three panels, not %zu", path, panels);
   double gap = 0.03 * width, each = (width - gap * (double)(panels + 1)) / (double)panels;
   for (size_t p = 0; p < panels; p++) {
-    TRY(frame_panel(path, &panel[p], view[p], error));
+    if (panel[p].body.cells == 0)
+      return status_fail(error, STATUS_USAGE, "%s: there is no cell to draw", path);
+    memcpy(view[p], panel[p].view, sizeof view[p]); /* the part of the body that the panel shows */
+    const status framed = view[p][2] > view[p][0] ? STATUS_OK : picture_fragments_view(&panel[p].body, view[p]);
+    if (framed)
+      return fail(path, framed, error);
     double tall = each * (view[p][3] - view[p][1]) / (view[p][2] - view[p][0]);
     if (!isfinite(tall))
       return status_fail(error, STATUS_USAGE, "%s: positions of the cells are not finite", path);

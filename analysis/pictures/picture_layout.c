@@ -24,6 +24,13 @@ struct layout {
   double cell, x, y;    /* side of a cell; the middle of the grid, m */
 };
 
+#define LAYOUT __attribute__((cleanup(clear))) struct layout
+static void clear(struct layout *l) {
+  free(l->order);
+  free(l->piece);
+  free(l->taken);
+}
+
 /* Sorts the discs by fragment, by counting. */
 static status gather(const struct picture_cloud *cloud, size_t count, struct layout *l) {
   for (size_t k = 0; k < count; k++)
@@ -102,28 +109,25 @@ static void place(struct layout *l, size_t p) {
 }
 
 status picture_layout_apart(const struct picture_cloud *cloud, size_t count, struct picture_layout_disc *discs) {
-  struct layout l = {.discs = discs};
+  LAYOUT l = {.discs = discs};
   double extent = 0, radius = 0;
-  const status code = gather(cloud, count, &l);
-  if (code == STATUS_OK && count > 0) {
-    size_t heaviest = 0;
-    while (l.piece[heaviest].count == 0)
-      heaviest++;
-    l.x = l.piece[heaviest].x;
-    l.y = l.piece[heaviest].y;
-    for (size_t k = 0; k < count; k++) {
-      extent = fmax(extent, fmax(fabs(discs[k].x - l.x), fabs(discs[k].y - l.y)));
-      radius += discs[k].radius / (double)count;
-    }
-    l.cell = fmax(radius, 4 * extent / WIDE); /* the grid is twice as wide as the cloud */
-    for (size_t p = 0; p < l.pieces; p++)
-      if (l.piece[p].count)
-        place(&l, p);
+  size_t heaviest = 0;
+  TRY(gather(cloud, count, &l));
+  if (count == 0)
+    return STATUS_OK;
+  while (l.piece[heaviest].count == 0)
+    heaviest++;
+  l.x = l.piece[heaviest].x;
+  l.y = l.piece[heaviest].y;
+  for (size_t k = 0; k < count; k++) {
+    extent = fmax(extent, fmax(fabs(discs[k].x - l.x), fabs(discs[k].y - l.y)));
+    radius += discs[k].radius / (double)count;
   }
-  free(l.order);
-  free(l.piece);
-  free(l.taken);
-  return code;
+  l.cell = fmax(radius, 4 * extent / WIDE); /* the grid is twice as wide as the cloud */
+  for (size_t p = 0; p < l.pieces; p++)
+    if (l.piece[p].count)
+      place(&l, p);
+  return STATUS_OK;
 }
 
 /* A raster of the visible fragments: the fragment in front, and the cells that each fragment covers. */
@@ -148,30 +152,22 @@ static void paint(struct raster *raster, const struct picture_layout_disc *d, in
     }
 }
 
-static struct raster *new_raster(size_t count, const struct picture_layout_disc *discs) {
-  struct raster *raster = malloc(sizeof *raster);
+status picture_layout_visible(const struct picture_cloud *cloud, size_t count, const struct picture_layout_disc *discs,
+                              size_t fragments, double *visible) {
+  OWNED struct raster *raster = NULL;
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+  TRY(memory_array(&raster, 1, sizeof *raster, "", NULL));
   for (size_t k = 0; k < count; k++) {
     low[0] = fmin(low[0], discs[k].x - discs[k].radius);
     low[1] = fmin(low[1], discs[k].y - discs[k].radius);
     high[0] = fmax(high[0], discs[k].x + discs[k].radius);
     high[1] = fmax(high[1], discs[k].y + discs[k].radius);
   }
-  if (!raster)
-    return NULL;
   raster->x = low[0];
   raster->y = low[1];
   raster->cell = fmax(fmax(high[0] - low[0], high[1] - low[1]), 1e-300) / (SEEN - 1);
   for (size_t i = 0; i < SEEN * SEEN; i++)
     raster->front[i] = -1;
-  return raster;
-}
-
-status picture_layout_visible(const struct picture_cloud *cloud, size_t count, const struct picture_layout_disc *discs,
-                              size_t fragments, double *visible) {
-  OWNED struct raster *raster = new_raster(count, discs);
-  if (!raster)
-    return STATUS_MEMORY;
   for (size_t k = 0; k < count; k++)
     paint(raster, &discs[k], cloud->part[discs[k].id] >= PICTURE_DUST ? -1 : (int32_t)cloud->fragment[discs[k].id],
           true);

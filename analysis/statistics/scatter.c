@@ -10,17 +10,6 @@
 
 const double scatter_shares[SCATTER_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
-/* Third moment over the cube of the standard deviation; NaN: fewer than three values, or all are equal. */
-static double skewness_of(const struct sample_summary *mean, const double *values) {
-  double two = 0, three = 0;
-  for (size_t i = 0; i < mean->n; i++) {
-    const double d = values[i] - mean->mean;
-    two += d * d / (double)mean->n;
-    three += d * d * d / (double)mean->n;
-  }
-  return mean->n > 2 && isfinite(mean->half_width) ? three / pow(two, 1.5) : (double)NAN;
-}
-
 /* The interval is from the low-th to the high-th value, counted from 1. The probability that at most low - 1 values are
  * below the quantile is at most 0.025, and likewise above. */
 static struct scatter_quantile quantile(size_t n, const double *sorted, double share) {
@@ -97,7 +86,14 @@ status scatter_make(size_t n, const double *values, struct scatter *out, struct 
     if (isfinite(values[i]))
       out->sorted[out->n++] = values[i];
   out->mean = sample_summarise(out->n, out->sorted, 0.95);
-  out->skewness = skewness_of(&out->mean, out->sorted);
+  double two = 0, three = 0; /* moments */
+  for (size_t i = 0; i < out->n; i++) {
+    const double d = out->sorted[i] - out->mean.mean;
+    two += d * d / (double)out->n;
+    three += d * d * d / (double)out->n;
+  }
+  if (out->n > 2 && isfinite(out->mean.half_width)) /* else all values are equal */
+    out->skewness = three / pow(two, 1.5);
   qsort(out->sorted, out->n, sizeof *out->sorted, sample_ascending);
   for (int q = 0; q < SCATTER_QUANTILES; q++)
     out->quantile[q] = quantile(out->n, out->sorted, scatter_shares[q]);

@@ -293,17 +293,6 @@ static void lose_rank(struct manager *m, int rank) {
   peer->out = 0;
 }
 
-static status take_result(struct manager *m, int rank, const struct farm_frame *frame, const uint8_t *payload,
-                          struct error *error) {
-  struct farm_ended ended;
-  if (!farm_frame_result(frame, payload, &ended))
-    return status_fail(error, STATUS_INTERNAL, "rank %d sent a damaged result", rank);
-  struct farm_job *job = farm_job_table_find(&m->table, frame->handle);
-  if (job && job->rank == rank)
-    report(m, job, &ended);
-  return STATUS_OK;
-}
-
 /* Handles a stop signal that another rank received. If the whole group was signalled, this rank receives it as well. */
 static void take_signal(struct manager *m, int rank, int number) {
   if (m->draining)
@@ -324,7 +313,15 @@ static status take_message(void *context, int rank, const struct farm_frame *fra
   if (peer->lost)
     return STATUS_OK;
   switch (frame->kind) {
-  case FARM_FRAME_RESULT: return take_result(m, rank, frame, payload, error);
+  case FARM_FRAME_RESULT: {
+    struct farm_ended ended;
+    if (!farm_frame_result(frame, payload, &ended))
+      return status_fail(error, STATUS_INTERNAL, "rank %d sent a damaged result", rank);
+    struct farm_job *job = farm_job_table_find(&m->table, frame->handle);
+    if (job && job->rank == rank)
+      report(m, job, &ended);
+    return STATUS_OK;
+  }
   case FARM_FRAME_RETURNED: {
     struct farm_job *job = farm_job_table_find(&m->table, frame->handle);
     if (job && job->rank == rank)

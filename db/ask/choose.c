@@ -1,6 +1,5 @@
 /* Chooses the runs that all further questions to a store see. The tables that questions read get temporary views of the
  * same names, which SQLite finds first; so no question knows of the choice. */
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,4 @@
 /* Statistics grouped by any varied inputs, pooled over the others (`--by m,k`). */
-#include <stdlib.h>
 #include <string.h>
 
 #include "db/ask/ask.h"

@@ -204,19 +204,18 @@ static status correct_point(struct reading *reading, const struct column *column
 /* Writes the statistics of the current point: means of the results that the view points lacks, and modes of all
  * results. `newest`: the point has no newer version of results. */
 static status end_point(struct reading *reading, bool newest, struct error *error) {
-  status code = STATUS_OK;
-  for (size_t i = 0; code == STATUS_OK && reading->begun && i < reading->count; i++) {
+  for (size_t i = 0; reading->begun && i < reading->count; i++) {
     struct column *column = &reading->column[i];
     if (column->moments.n > 0 && !column->main)
-      code = add_mean(reading, column, error);
+      TRY(add_mean(reading, column, error));
     else if (column->main && column->moments.n < reading->runs)
-      code = correct_point(reading, column, error);
-    if (code == STATUS_OK && newest)
-      code = add_modes(&reading->modes, reading->point_id, column->name, column->values_count, column->values, error);
+      TRY(correct_point(reading, column, error));
+    if (newest)
+      TRY(add_modes(&reading->modes, reading->point_id, column->name, column->values_count, column->values, error));
     column->moments = (struct sample_moments){.n = 0};
     column->values_count = 0;
   }
-  return code;
+  return STATUS_OK;
 }
 
 static status add_value(struct column *column, double value, struct error *error) {

@@ -7,7 +7,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "db/sql.h"
 #include "engine/grow.h"
 #include "engine/outcome.h"
 #include "schemas/limits.h"
@@ -65,32 +64,26 @@ static int by_seed(const void *a, const void *b) {
   return (p->seed > q->seed) - (p->seed < q->seed);
 }
 
-/* Appends the contributions of a point's runs to its exponent, in the order of their seeds; none where the exponent has
- * no interval. */
-static status add_exponents(const struct point_data *point, enum exponent_method method, enum estimates_window window,
-                            struct side *side, struct group *group, struct error *error) {
-  const size_t runs = point->runs.count;
-  OWNED double *contribution = NULL;
-  TRY(memory_array(&contribution, runs, sizeof *contribution, "the runs", error));
-  TRY(grow_or_fail(&side->values, &side->value_room, side->value_count + runs, sizeof *side->values, "the runs",
-                   error));
-  TRY(point_exponent_of_runs(point, method, window, contribution, error));
-  group->first = side->value_count;
-  group->count = runs > 0 && isfinite(contribution[0]) ? runs : 0;
-  for (size_t r = 0; r < group->count; r++)
-    side->values[side->value_count++] = (struct difference_value){(int64_t)point->seed[r], contribution[r]};
-  qsort(side->values + group->first, group->count, sizeof *side->values, by_seed);
-  return STATUS_OK;
-}
-
-/* Puts the contributions of the runs to their point's exponent in place of their values. */
+/* Puts the contributions of the runs to their point's exponent in place of their values, in the order of their seeds;
+ * none where the exponent has no interval. */
 static status read_exponents(struct store *store, enum exponent_method method, enum estimates_window window,
                              struct side *side, struct error *error) {
   side->value_count = 0;
   for (size_t i = 0; i < side->group_count; i++) {
     POINT_DATA point = {0};
-    TRY(point_read(store, side->groups[i].point, 0, &point, error));
-    TRY(add_exponents(&point, method, window, side, &side->groups[i], error));
+    OWNED double *contribution = NULL;
+    struct group *group = &side->groups[i];
+    TRY(point_read(store, group->point, 0, &point, error));
+    const size_t runs = point.runs.count;
+    TRY(memory_array(&contribution, runs, sizeof *contribution, "the runs", error));
+    TRY(grow_or_fail(&side->values, &side->value_room, side->value_count + runs, sizeof *side->values, "the runs",
+                     error));
+    TRY(point_exponent_of_runs(&point, method, window, contribution, error));
+    group->first = side->value_count;
+    group->count = runs > 0 && isfinite(contribution[0]) ? runs : 0;
+    for (size_t r = 0; r < group->count; r++)
+      side->values[side->value_count++] = (struct difference_value){(int64_t)point.seed[r], contribution[r]};
+    qsort(side->values + group->first, group->count, sizeof *side->values, by_seed);
   }
   return STATUS_OK;
 }

@@ -1,6 +1,5 @@
 /* Adding rows: campaigns, points with their inputs and shape files, axes, runs with everything that follows from them,
  * and attempts. Statements are prepared once; adding a run needs no further SQL text or JSON. */
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -137,17 +136,6 @@ status store_point_find(struct store *store, const struct scene *scene, int64_t 
   return code == SQLITE_ROW || code == SQLITE_DONE ? STATUS_OK : sql_fail(store->db, code, doing, error);
 }
 
-static status load_shape(const char *hash, const void *bytes, size_t size, struct error *error) {
-  const struct mesh_file *file = NULL;
-  char name[128];
-  snprintf(name, sizeof name, "shape file %.12s of the store", hash);
-  TRY(mesh_files_add(name, bytes, size, &file, error));
-  return strcmp(file->hash, hash) == 0
-             ? STATUS_OK
-             : status_fail(error, STATUS_CONTENT, "%s: its bytes have changed since it was stored; restore a copy",
-                           name);
-}
-
 status store_point_shapes(struct store *store, int64_t run_id, struct error *error) {
   static const char doing[] = "reading shape files";
   STATEMENT files = NULL;
@@ -158,8 +146,14 @@ status store_point_shapes(struct store *store, int64_t run_id, struct error *err
   status result = STATUS_OK;
   sqlite3_bind_int64(files, 1, run_id);
   while (sql_next(files, &result, doing, error)) {
+    const char *hash = sql_text(files, 0);
     const void *bytes = sqlite3_column_blob(files, 1);
-    result = load_shape(sql_text(files, 0), bytes ? bytes : "", (size_t)sqlite3_column_bytes(files, 1), error);
+    const struct mesh_file *file = NULL;
+    char name[128];
+    snprintf(name, sizeof name, "shape file %.12s of the store", hash);
+    TRY(mesh_files_add(name, bytes ? bytes : "", (size_t)sqlite3_column_bytes(files, 1), &file, error));
+    if (strcmp(file->hash, hash) != 0)
+      return status_fail(error, STATUS_CONTENT, "%s: its bytes have changed since it was stored; restore a copy", name);
   }
   return result;
 }
@@ -210,9 +204,15 @@ static void digest_point(const struct scene *scene, const uint8_t hash[16], cons
   digest_write(sum, digest);
 }
 
-static status add_point_row(struct store *store, const struct scene *scene, const char *json, int64_t *point_id,
-                            struct error *error) {
+static status find_or_add_point(struct store *store, const struct scene *scene, int64_t *point_id,
+                                struct error *error) {
   uint8_t hash[16], digest[16];
+  TRY(store_point_find(store, scene, point_id, error));
+  if (*point_id != 0)
+    return STATUS_OK;
+  OWNED char *json = scene_json(scene);
+  if (!json)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_point);
   TRY(sql_prepare_once(store->db, &store->point,
                        "INSERT INTO point (hash, engine, scene_name, scene, digest) VALUES (?1, ?2, ?3, ?4, ?5)",
                        adding_point, error));
@@ -220,20 +220,8 @@ static status add_point_row(struct store *store, const struct scene *scene, cons
   digest_point(scene, hash, json, digest);
   SQL_BIND(store->point, sql_of_bytes(hash, sizeof hash), sql_of_text(scene->kind->name), sql_of_text(scene->name),
            sql_of_text(json), sql_of_bytes(digest, sizeof digest));
-  const status result = sql_run(store->point, adding_point, error);
+  TRY(sql_run(store->point, adding_point, error));
   *point_id = sqlite3_last_insert_rowid(store->db);
-  return result;
-}
-
-static status find_or_add_point(struct store *store, const struct scene *scene, int64_t *point_id,
-                                struct error *error) {
-  TRY(store_point_find(store, scene, point_id, error));
-  if (*point_id != 0)
-    return STATUS_OK;
-  OWNED char *json = scene_json(scene);
-  if (!json)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_point);
-  TRY(add_point_row(store, scene, json, point_id, error));
   TRY(add_inputs(store, *point_id, scene, error));
   return add_shapes(store, scene, error);
 }
@@ -275,22 +263,19 @@ status store_add_axis(struct store *store, const struct field *row, const char *
   return store_end(store, add_axis_with_unit(store, row, unit, error), 1, error);
 }
 
-static status add_to_campaign(struct store *store, int64_t campaign_id, int64_t point_id, struct error *error) {
-  TRY(sql_prepare_once(store->db, &store->campaign_point,
-                       "INSERT OR IGNORE INTO campaign_point (campaign_id, point_id) VALUES (?1, ?2)", adding_point,
-                       error));
-  SQL_BIND(store->campaign_point, sql_of_integer(campaign_id), sql_of_integer(point_id));
-  return sql_run(store->campaign_point, adding_point, error);
-}
-
 static status add_point(struct store *store, int64_t campaign_id, const struct scene *scene, size_t varied_count,
                         const char *const *varied_paths, int64_t *point_id, struct error *error) {
   bool grown = false;
   struct store_kind *kind = NULL;
   TRY(find_kind(store, scene->kind, &kind, &grown, error));
   TRY(find_or_add_point(store, scene, point_id, error));
-  if (campaign_id > 0)
-    TRY(add_to_campaign(store, campaign_id, *point_id, error));
+  if (campaign_id > 0) {
+    TRY(sql_prepare_once(store->db, &store->campaign_point,
+                         "INSERT OR IGNORE INTO campaign_point (campaign_id, point_id) VALUES (?1, ?2)", adding_point,
+                         error));
+    SQL_BIND(store->campaign_point, sql_of_integer(campaign_id), sql_of_integer(*point_id));
+    TRY(sql_run(store->campaign_point, adding_point, error));
+  }
   for (size_t i = 0; i < varied_count; i++) {
     const struct field *row = field_find(scene->kind->inputs, varied_paths[i], error);
     TRY(row ? add_axis(store, row, &grown, error) : STATUS_CONTENT);

@@ -89,12 +89,6 @@ void digest_write(struct digest sum, uint8_t bytes[16]) {
   }
 }
 
-static void write_text(struct digest sum, char text[STORE_DIGEST_SIZE]) {
-  uint8_t bytes[16];
-  digest_write(sum, bytes);
-  text_hex(bytes, sizeof bytes, text);
-}
-
 /* ---- fields files ---- */
 
 enum { CHUNK = 1 << 16 };
@@ -134,7 +128,9 @@ status store_digest_fields(const char *path, char digest[STORE_DIGEST_SIZE], str
   close(file);
   if (size < 0)
     return status_fail(error, STATUS_IO, "the fields file '%s' cannot be read", path);
-  write_text(state, digest);
+  uint8_t sum[16];
+  digest_write(state, sum);
+  text_hex(sum, sizeof sum, digest);
   return STATUS_OK;
 }
 

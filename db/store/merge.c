@@ -113,17 +113,6 @@ static status find_runs(sqlite3 *db, struct merged *merged, struct error *error)
   return STATUS_OK;
 }
 
-static status copy_runs(sqlite3 *db, struct error *error) {
-  SQL_TEXT columns = NULL;
-  TRY(list_columns(db, "run", "'run_id', 'point_id', 'session_id'", &columns, error));
-  return sql_executef(
-      db, doing, error,
-      "INSERT OR FAIL INTO main.run (run_id, point_id, session_id%s) SELECT m.ours, (SELECT ours FROM merge_point p "
-      "WHERE p.theirs = o.point_id), (SELECT ours FROM merge_session s WHERE s.theirs = o.session_id)%s FROM merge_run "
-      "m CROSS JOIN other.run o ON o.run_id = m.theirs ORDER BY m.ours",
-      columns, columns);
-}
-
 static const char copying_spectra[] = "copying spectra";
 
 /* Makes the spectrum of a run that was copied from its masses, and refuses the source if it has another one: digests
@@ -230,12 +219,18 @@ static status copy_results(sqlite3 *db, struct error *error) {
  * and go with the old sums. */
 static status copy_all(struct store *store, struct error *error) {
   sqlite3 *db = store->db;
+  SQL_TEXT columns = NULL;
   TRY(make_tables(db, error));
   for (size_t i = 0; i < engine_count(); i++)
     if (engine_at(i)->of_scene)
       TRY(add_columns(db, schema_result_table(engine_at(i)).name, error));
   TRY(sql_execute(db, merge_parents_sql, doing, error));
-  TRY(copy_runs(db, error));
+  TRY(list_columns(db, "run", "'run_id', 'point_id', 'session_id'", &columns, error));
+  TRY(sql_executef(db, doing, error,
+                   "INSERT OR FAIL INTO main.run (run_id, point_id, session_id%s) SELECT m.ours, (SELECT ours FROM "
+                   "merge_point p WHERE p.theirs = o.point_id), (SELECT ours FROM merge_session s WHERE s.theirs = "
+                   "o.session_id)%s FROM merge_run m CROSS JOIN other.run o ON o.run_id = m.theirs ORDER BY m.ours",
+                   columns, columns));
   TRY(copy_results(db, error));
   TRY(copy_spectra(store, error));
   TRY(sql_execute(db, merge_rest_sql, doing, error));

@@ -286,14 +286,6 @@ struct schema_table schema_table_at(size_t index) {
   return schema_result_table(engine_at(engine));
 }
 
-/* A store is also read without clast, so the meaning of a column names the choices. */
-static void write_meaning(const struct field *row, FILE *out) {
-  for (const char *c = row->doc ? row->doc : ""; *c; c++)
-    fputc(*c == '\n' ? ' ' : *c, out);
-  for (size_t i = 0; row->choices && row->choices[i]; i++)
-    fprintf(out, "%s%s", i ? ", " : " One of: ", row->choices[i]);
-}
-
 void schema_write_counts(const char *not_surplus, FILE *out) {
   const struct field *state = field_find(&outcome_table, "state", NULL), *row;
   const char *before = "";
@@ -350,11 +342,13 @@ static struct column column_at(const struct schema_table *table, size_t index) {
   return column;
 }
 
+/* A store is also read without clast, so the meaning of a column names the choices. */
 static void write_column_meaning(const struct column *column, FILE *out) {
-  if (column->row)
-    write_meaning(column->row, out);
-  else
-    fputs(column->meaning, out);
+  const struct field *row = column->row;
+  for (const char *c = !row ? column->meaning : row->doc ? row->doc : ""; *c; c++)
+    fputc(*c == '\n' ? ' ' : *c, out);
+  for (size_t i = 0; row && row->choices && row->choices[i]; i++)
+    fprintf(out, "%s%s", i ? ", " : " One of: ", row->choices[i]);
 }
 
 static void write_declaration(const struct column *column, FILE *out) {

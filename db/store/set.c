@@ -1,5 +1,4 @@
 /* Changes after runs are stored: estimates, the part in the statistics, fields files, studies of convergence. */
-#include <stdlib.h>
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
@@ -151,14 +150,6 @@ status store_set_fields(struct store *store, const uint8_t identity[16], const c
 
 static const char writing_study[] = "writing a study of convergence";
 
-static status insert_level(sqlite3_stmt *insert, const struct store_convergence *study, size_t level,
-                           struct error *error) {
-  const int behind = SQL_BIND(insert, sql_of_integer(study->base_point_id), sql_of_integer(study->results_version),
-                              sql_of_integer((int64_t)level), sql_of_integer(study->point_ids[level]));
-  sql_bind_fields(insert, behind, &convergence_table, &study->rows[level]);
-  return sql_run(insert, writing_study, error);
-}
-
 /* Replaces the rows of the knob and quantity of this scene. */
 static status replace_study(struct store *store, const struct store_convergence *study, struct error *error) {
   STATEMENT levels = NULL;
@@ -170,8 +161,12 @@ static status replace_study(struct store *store, const struct store_convergence 
                    "DELETE FROM convergence WHERE %s; DELETE FROM convergence_limit WHERE %s", where, where));
   TRY(sql_prepare_insert(store->db, &levels, "convergence", "base_point_id, results_version, level, point_id",
                          &convergence_table, 1, writing_study, error));
-  for (size_t i = 0; i < study->count; i++)
-    TRY(insert_level(levels, study, i, error));
+  for (size_t i = 0; i < study->count; i++) {
+    const int behind = SQL_BIND(levels, sql_of_integer(study->base_point_id), sql_of_integer(study->results_version),
+                                sql_of_integer((int64_t)i), sql_of_integer(study->point_ids[i]));
+    sql_bind_fields(levels, behind, &convergence_table, &study->rows[i]);
+    TRY(sql_run(levels, writing_study, error));
+  }
   TRY(sql_prepare_insert(store->db, &limit, "convergence_limit", "base_point_id, results_version",
                          &convergence_limit_table, 1, writing_study, error));
   const int behind = SQL_BIND(limit, sql_of_integer(study->base_point_id), sql_of_integer(study->results_version));

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "analysis/statistics/statistics.h"
-#include "db/store/schema.h"
 #include "engine/engine.h"
 #include "engine/outcome.h"
 #include "schemas/text.h"

@@ -2,7 +2,6 @@
 #include "engine/command/command.h"
 
 #include <errno.h>
-#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -9,7 +9,6 @@
 
 #include "engine/blake2s.h"
 #include "schemas/file.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/rows.h"
 #include "schemas/unit.h"
