@@ -201,28 +201,25 @@ status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error) {
                       point);
 }
 
+static const char all_totals[] = TOTALS(""), all_bins[] = BINS("");
+
 status sums_choose(sqlite3 *db, struct error *error) {
-  return sql_execute(db,
-                     "CREATE TEMP TABLE chosen_point_total AS " TOTALS(
-                         "") "; CREATE TEMP TABLE chosen_point_spectrum "
-                             "AS " BINS(
-                                 "") "; CREATE TEMP TABLE chosen_point_estimate AS SELECT * FROM main.point_estimate "
-                                     "WHERE false",
-                     "choosing runs", error);
+  return sql_executef(db, "choosing runs", error,
+                      "CREATE TEMP TABLE chosen_point_total AS %s; CREATE TEMP TABLE chosen_point_spectrum AS %s; "
+                      "CREATE TEMP TABLE chosen_point_estimate AS SELECT * FROM main.point_estimate WHERE false",
+                      all_totals, all_bins);
 }
 
 /* Integers must agree; a sum of masses in another order agrees to n units in the last place, with n runs below 1e6. */
 status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error) {
-  return sql_integerf(db, count, error,
-                      "SELECT (SELECT count(*) FROM (" TOTALS(
-                          "") ") a FULL JOIN point_total b USING (point_id, results_version) WHERE (a.runs, "
-                              "a.censored, a.failed, a.surplus, a.fragments) IS NOT (b.runs, b.censored, b.failed, "
-                              "b.surplus, b.fragments) OR "
-                              "abs(a.mass - b.mass) > 1e-10 * a.mass) + (SELECT count(*) FROM (" BINS(
-                                  "") ") a FULL JOIN point_spectrum b USING "
-                                      "(point_id, results_version, bin) WHERE (a.runs, a.count, a.count_squared) IS "
-                                      "NOT (b.runs, b.count, "
-                                      "b.count_squared) OR abs(a.mass - b.mass) > 1e-10 * a.mass)");
+  return sql_integerf(
+      db, count, error,
+      "SELECT (SELECT count(*) FROM (%s) a FULL JOIN point_total b USING (point_id, results_version) WHERE (a.runs, "
+      "a.censored, a.failed, a.surplus, a.fragments) IS NOT (b.runs, b.censored, b.failed, b.surplus, b.fragments) OR "
+      "abs(a.mass - b.mass) > 1e-10 * a.mass) + (SELECT count(*) FROM (%s) a FULL JOIN point_spectrum b USING "
+      "(point_id, results_version, bin) WHERE (a.runs, a.count, a.count_squared) IS NOT (b.runs, b.count, "
+      "b.count_squared) OR abs(a.mass - b.mass) > 1e-10 * a.mass)",
+      all_totals, all_bins);
 }
 
 status sums_cover_bins(sqlite3 *db, int64_t lowest, int64_t highest, struct error *error) {
