@@ -62,8 +62,9 @@ size_t field_first_word(const struct field_table *table, size_t i, const char *p
 }
 
 void field_members(const struct field_table *table, const char *section, const char *quote, char *text, size_t size) {
-  char prefix[FIELD_TEXT_SIZE + 2];
-  const size_t length = (size_t)snprintf(prefix, sizeof prefix, "%.*s.", FIELD_TEXT_SIZE, section);
+  char prefix[FIELD_TEXT_SIZE + 2] = "";
+  text_append(prefix, sizeof prefix, "%.*s.", FIELD_TEXT_SIZE, section);
+  const size_t length = strlen(prefix);
   *text = 0;
   for (size_t i = 0; i < table->count; i++) {
     const size_t word = field_first_word(table, i, prefix, length);

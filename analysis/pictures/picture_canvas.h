@@ -53,7 +53,7 @@ void picture_canvas_colour_bar(cairo_t *cairo, enum picture_ramp ramp, double x,
 void picture_canvas_scale_bar(cairo_t *cairo, double x, double y, double points_per_metre, double available,
                               double font);
 
-/* Pictures in rows on one page. */
+/* Pictures in rows on one page (picture_sheet.c). */
 struct picture_sheet {
   struct picture_canvas canvas;
   size_t count, columns, drawn;
