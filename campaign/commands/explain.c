@@ -406,11 +406,11 @@ static status explain_scene(const struct scene *scene, enum table_format format,
   OWNED char *doubts = NULL;
   size_t size;
   FILE *doubt = text_open(&doubts, &size);
-  if (doubt)
-    fputs("in doubt: ", doubt);
-  if (doubt && !condition_before(scene->kind->conditions, scene->inputs, doubt))
+  fputs("in doubt: ", doubt);
+  if (!condition_before(scene->kind->conditions, scene->inputs, doubt))
     fputs("nothing that the inputs alone tell\n", doubt);
-  if (!description || !doubt || !text_close(doubt, &doubts))
+  text_close_small(doubt, &doubts);
+  if (!description)
     return status_fail(error, STATUS_MEMORY, "out of memory");
   printf("%s, engine %s\n", scene->name, scene->kind->name);
   text_wrap_lines(description, WIDTH, stdout);

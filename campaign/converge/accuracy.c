@@ -436,8 +436,6 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
 static status alternatives_json(const struct accuracy *accuracy, char **json, struct error *error) {
   size_t size = 0;
   FILE *out = text_open(json, &size);
-  if (!out)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
   const status code = print_alternatives(accuracy, TABLE_JSON, out, error);
   if (code == STATUS_OK && !isnan(accuracy->point_s)) {
     static const struct {

@@ -229,12 +229,9 @@ status ladder_make(const struct knob *knob, const struct scene *base, const char
   *notes = NULL;
   size_t size = 0;
   struct making making = {.knob = knob, .base = base, .ladder = ladder, .notes = text_open(notes, &size)};
-  if (!making.notes)
-    return status_fail(error, STATUS_MEMORY, "no memory for a ladder");
   const bool named = knob->group == KNOB_SETTINGS;
   status code = (named ? add_all_named : add_all_levels)(&making, settings, error);
-  if (!text_close(making.notes, notes) && code == STATUS_OK)
-    code = status_fail(error, STATUS_MEMORY, "no memory for a ladder");
+  text_close_small(making.notes, notes);
   if (code != STATUS_OK)
     ladder_clear(ladder);
   return code;

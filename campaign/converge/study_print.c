@@ -42,10 +42,8 @@ static status doubts_of(const struct printing *printing, const char *in, const c
   char results[ASK_DOUBTS_RESULTS];
   size_t size;
   FILE *text = text_open(&where, &size);
-  if (text)
-    fprintf(text, "point_id IN (%s) AND seed BETWEEN %lld AND %lld", in, first, last);
-  if (!text || !text_close(text, &where))
-    return status_fail(error, STATUS_MEMORY, "out of memory");
+  fprintf(text, "point_id IN (%s) AND seed BETWEEN %lld AND %lld", in, first, last);
+  text_close_small(text, &where);
   *doubts = (struct ask_doubts){0};
   TRY(ask_doubts_results(printing->store, quantities, results, error));
   return ask_doubts(printing->store, &(struct ask_doubts_choice){.where = where}, results, doubts, error);
@@ -67,11 +65,10 @@ static status sum_doubts(const struct printing *printing, size_t ladders, size_t
   char names[ASK_DOUBTS_RESULTS] = "";
   size_t size;
   FILE *text = text_open(&points, &size);
-  for (size_t i = 0; text && i < ladders; i++)
+  for (size_t i = 0; i < ladders; i++)
     for (size_t l = 0; l < study->ladder[i].levels.count; l++)
       fprintf(text, "%s%lld", i || l ? "," : "", (long long)study->ladder[i].point[l]);
-  if (!text || !text_close(text, &points))
-    return status_fail(error, STATUS_MEMORY, "out of memory");
+  text_close_small(text, &points);
   for (size_t q = 0; q < quantities; q++)
     text_append(names, sizeof names, "%s%s", q ? "," : "", study->quantity[q].name);
   return doubts_of(printing, points, names, sum, error);
@@ -254,11 +251,8 @@ static status print_quantity(const struct printing *printing, size_t from, size_
   OWNED char *sentences = NULL;
   size_t size;
   FILE *out = text_open(&sentences, &size);
-  if (!out)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
   print_sentence(study, from, quantity, count, found, out);
-  if (!text_close(out, &sentences))
-    return status_fail(error, STATUS_MEMORY, "out of memory");
+  text_close_small(out, &sentences);
   text_wrap_lines(sentences, WIDTH, stdout);
   printf("%s, quantity %s%s%s%s\n", study->ladder[from].base->name, what->name, named ? " (" : "", named ? unit : "",
          named ? ")" : "");
@@ -286,13 +280,10 @@ static status print_quantity(const struct printing *printing, size_t from, size_
   free(sentences);
   sentences = NULL;
   out = text_open(&sentences, &size);
-  if (!out)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
   for (size_t i = 0; i < count; i++)
     print_limit(&study->ladder[from + i], &found[i], out);
   print_gain(count, found, out);
-  if (!text_close(out, &sentences))
-    return status_fail(error, STATUS_MEMORY, "out of memory");
+  text_close_small(out, &sentences);
   text_wrap_lines(sentences, WIDTH, stdout);
   return STATUS_OK;
 }

@@ -149,8 +149,6 @@ static char *text_for_store(const char *document, const struct campaign *campaig
   char *text = NULL;
   size_t size = 0;
   FILE *out = text_open(&text, &size);
-  if (!out)
-    return NULL;
   fputs(document, out);
   if (campaign->points_sha256[0])
     fprintf(out, "%s# design.file: %lld points, sha256 %s\n",

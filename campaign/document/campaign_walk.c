@@ -47,10 +47,8 @@ static void add(struct doubts *doubts, const struct scene *scene) {
   size_t size = 0;
   FILE *out = text_open(&text, &size);
   doubts->points++;
-  if (!out)
-    return;
   const uint64_t set = condition_before(scene->kind->conditions, scene->inputs, out);
-  const char *line = text_close(out, &text) ? text : "";
+  const char *line = text_close_small(out, &text);
   for (size_t k = 0; k < CONDITIONS; k++) {
     if (!(set >> k & 1))
       continue;
@@ -139,8 +137,6 @@ char *campaign_write_list(const struct campaign *campaign, const char *scene_ref
   char *text = NULL;
   size_t size = 0;
   FILE *out = text_open(&text, &size);
-  if (!out)
-    return NULL;
   fprintf(out, "# %s\nname: ", comment);
   text_json_string(campaign->name, out);
   fputs("\nscene: ", out);

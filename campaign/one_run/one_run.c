@@ -126,8 +126,6 @@ static status write_series(const struct snapshots *s, struct error *error) {
   char path[PATH];
   size_t size = 0;
   FILE *out = text_open(&text, &size);
-  if (!out)
-    return status_fail(error, STATUS_MEMORY, "no memory for the list of snapshots");
   const char *base = strrchr(s->name, '/');
   fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [", out);
   const char *between = "\n";

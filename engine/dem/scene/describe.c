@@ -143,8 +143,6 @@ char *dem_describe_scene(const void *inputs, bool all) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = text_open(&text, &size);
-  if (!out)
-    return NULL;
   protocol(in, out);
   model(in, out);
   double extension, compression;

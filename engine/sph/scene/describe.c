@@ -222,8 +222,6 @@ char *sph_describe_scene(const void *inputs, bool all) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = text_open(&text, &size);
-  if (!out)
-    return NULL;
   struct error error = {0};
   protocol(in, out);
   modules(in, all, out);
