@@ -74,6 +74,16 @@ static double alone(const void *inputs) {
 
 /* ---- what a result needs to have happened ---- */
 
+/* s, in which a wave crosses a free body. */
+static double crossing(const struct dem_inputs *in) {
+  double extension, compression;
+  dem_describe_sound_speeds(in, &extension, &compression);
+  const double longest = in->kind == DEM_BLOCK_IMPACT
+                             ? fmax((double)in->body.columns, (double)in->body.rows) * in->grain.spacing
+                             : in->body.diameter;
+  return longest / compression;
+}
+
 /* The time at which a wave has crossed the body once after the hit, over the simulated time; of a run in which nothing
  * broke. Circles round two discs stand three grains apart at the start. */
 static double unfinished(const struct condition_run *r) {
@@ -82,32 +92,45 @@ static double unfinished(const struct condition_run *r) {
   const struct dem_results *results = r->results;
   if (dem_inputs_loaded(in) || results->broken > 0)
     return NAN;
-  double extension, compression;
-  dem_describe_sound_speeds(in, &extension, &compression);
-  const double longest = in->kind == DEM_BLOCK_IMPACT
-                             ? fmax((double)in->body.columns, (double)in->body.rows) * in->grain.spacing
-                             : in->body.diameter;
   const double gap = in->kind == DEM_DISC_COLLISION ? 3 * in->grain.spacing / in->collision.speed : 0;
-  return (gap + longest / compression) / r->outcome->time;
+  return (gap + crossing(in)) / r->outcome->time;
 }
 
-/* Crossings of the block by a wave while the sides move at full speed. */
-static double crossings(const void *inputs) {
+static double quiet(const void *inputs) {
   const struct dem_inputs *in = inputs;
+  return dem_inputs_loaded(in) ? (double)NAN : fmax(in->stop.quiet_time, in->stop.least_time) / crossing(in);
+}
+
+/* Crossings of the block by a wave while the sides move at full speed, up to a strain. */
+static double crossings_to(const struct dem_inputs *in, double strain) {
   if (!dem_inputs_loaded(in))
     return NAN;
   double extension, compression;
   dem_describe_sound_speeds(in, &extension, &compression);
   const bool pulled = in->kind == DEM_UNIAXIAL && in->loading.direction == DEM_EXTENSION;
   const double height = (double)in->body.rows * in->grain.spacing;
-  const double duration = in->loading.strain_end / in->loading.rate - in->loading.ramp / 2;
-  return duration * (pulled ? extension : compression) / height;
+  const double duration = strain / in->loading.rate - in->loading.ramp / 2;
+  return fmax(0, duration) * (pulled ? extension : compression) / height;
+}
+
+static double crossings(const void *inputs) {
+  const struct dem_inputs *in = inputs;
+  return crossings_to(in, in->loading.strain_end);
+}
+
+/* Of a block that failed, up to its failure. */
+static double crossings_to_failure(const struct condition_run *r) {
+  const struct dem_inputs *in = r->inputs;
+  const double strain = ((const struct dem_results *)r->results)->failure_strain;
+  return in->kind == DEM_COMPRESSION && strain > 0 ? crossings_to(in, strain) : crossings(in);
 }
 
 /* The last stress over the largest one: near 1 the block still bears its load. */
 static double unbroken(const struct condition_run *r) {
   const struct dem_run *run = run_of(r);
   const size_t samples = run->state.frame.samples;
+  if (run->inputs.kind == DEM_UNIAXIAL && ((const struct dem_results *)r->results)->broken == 0)
+    return 1;
   if (run->inputs.kind != DEM_COMPRESSION || samples == 0)
     return NAN;
   return -run->sample[samples - 1].stress / run->state.stress_peak;
@@ -157,7 +180,12 @@ const struct condition dem_conditions[] = {
                         "off by 24 % at 0.7 and by any factor below",
               .remedy = "lower loading.rate, or raise loading.strain_end",
               .results = "young_modulus poisson_ratio strength failure_strain upright_share end_triangle_share",
-              .before = crossings),
+              .before = crossings, .after = crossings_to_failure),
+    CONDITION(
+        "quiet",
+        .number = "the longer of stop.quiet_time and stop.least_time over the time in which a wave crosses the body",
+        .bound = 1, .least = true, .doubt = "the run may end before waves have come to all beams",
+        .reason = "after that time all of the body has been loaded once", .remedy = "leave both out", .before = quiet),
     CONDITION("event", .number = "the last stress over the largest one", .bound = 0.9,
               .doubt = "the block has not failed: the largest stress so far is no strength", .reason = "our choice",
               .remedy = "raise loading.strain_end",

@@ -100,6 +100,25 @@ static double reach(const void *inputs) {
   return in->fragments.link_length * in->fidelity.smoothing / nearest;
 }
 
+/* Width of the cells over the edge of a cube of the target's volume. */
+static double cells(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  const struct sph_shape target = sph_derived_target(in);
+  return in->crack_cell.width > 0 && sph_derived_scene_cracks(in)
+             ? in->crack_cell.width / cbrt(sph_shape_volume(&target))
+             : (double)NAN;
+}
+
+static double uncorrected(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return in->kind == SPH_VIBRATION && !in->gradient_correction.on ? 1 : (double)NAN;
+}
+
+static double amplitude(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return in->kind == SPH_VIBRATION ? in->vibration.speed / sph_derived_wave_speed(&in->target) : (double)NAN;
+}
+
 static double reach_of_start(const struct condition_run *r) {
   return run_of(r)->has_gaps ? 0 : 2;
 }
@@ -224,7 +243,20 @@ static double approach(const void *inputs) {
   return in->contact.rule == SPH_CONTACT_WELDED ? sph_derived_approach(in) : (double)NAN;
 }
 
+/* The same, of a target that stays whole. */
+static double approach_of_whole(const struct condition_run *r) {
+  const struct sph_inputs *in = r->inputs;
+  return in->kind == SPH_IMPACT && results_of(r)->mean_damage < 0.1 ? approach(in) : (double)NAN;
+}
+
 /* ---- what a result needs to have happened ---- */
+
+/* stop.quiet_time over the time in which a wave crosses the target. */
+static double quiet(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return in->kind == SPH_IMPACT && sph_derived_cracks(&in->target) ? in->stop.quiet_time / sph_derived_crossing(in)
+                                                                   : (double)NAN;
+}
 
 /* Has the other body changed the target's momentum? Few particles overlap, and press, later than their surfaces meet.
  */
@@ -309,6 +341,59 @@ static double shallow(const struct condition_run *r) {
   return changed > 0 ? results->crater.depth / sph_derived_fine_spacing(r->inputs) : (double)NAN;
 }
 
+static bool is_damaged(const struct sph_run *run, size_t i) {
+  return sph_particles_damage(run->now, i) >= run->inputs.fragments.damage;
+}
+
+/* How far undamaged matter of the target has moved (root of the mean square), over the depth of the crater, which is
+ * measured from the surface at the start. */
+static double moved(const struct condition_run *r) {
+  const struct sph_run *run = run_of(r);
+  const struct sph_particles *start = run->start, *now = run->now;
+  const double depth = results_of(r)->crater.depth;
+  double sum = 0, mass = 0;
+  for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
+    if (is_damaged(run, i))
+      continue;
+    const double way[3] = {now->x[i] - start->x[i], now->y[i] - start->y[i], now->z[i] - start->z[i]};
+    sum += now->mass[i] * vector3_dot(way, way);
+    mass += now->mass[i];
+  }
+  const bool held = run->inputs.sides.far == SPH_FAR_DAMPED;
+  return depth > 0 && mass > 0 && !held ? sqrt(sum / mass) / depth : (double)NAN;
+}
+
+/* Momentum that the projectile carries back along the outward direction, over the one that it brought. */
+static double bounced(const struct condition_run *r) {
+  const struct sph_run *run = run_of(r);
+  const struct sph_inputs *in = r->inputs;
+  if (in->kind != SPH_IMPACT || !sph_derived_has_projectile(in) || !(in->impact.speed > 0))
+    return NAN;
+  double momentum[2] = {0, 0};
+  for (size_t i = run->range[1].first; i < run->range[1].first + run->range[1].n; i++) {
+    const double before[3] = {run->start->vx[i], run->start->vy[i], run->start->vz[i]};
+    const double after[3] = {run->now->vx[i], run->now->vy[i], run->now->vz[i]};
+    momentum[0] -= run->start->mass[i] * vector3_dot(before, run->impact_direction);
+    momentum[1] += run->now->mass[i] * vector3_dot(after, run->impact_direction);
+  }
+  return momentum[1] / momentum[0];
+}
+
+/* Depth of the crater over that of a box with damped sides, or its width over that of the box: the larger one. */
+static double wide(const struct condition_run *r) {
+  const struct sph_run *run = run_of(r);
+  const struct sph_results *results = results_of(r);
+  if (run->inputs.sides.far != SPH_FAR_DAMPED || !(results->crater.depth > 0))
+    return NAN;
+  double deep = 0, across = INFINITY; /* sides of the box along the impact, and the shorter one of the others */
+  for (int k = 0; k < 3; k++)
+    if (fabs(run->impact_direction[k]) > 0.9)
+      deep = run->shape[0].side[k];
+    else
+      across = fmin(across, run->shape[0].side[k]);
+  return fmax(results->crater.depth / deep, 2 * results->crater.radius / across);
+}
+
 /* Mean damage of a target without damped sides. */
 static double gone(const struct condition_run *r) {
   const struct sph_inputs *in = r->inputs;
@@ -330,10 +415,6 @@ static double share_of(const struct sph_run *run, bool (*is)(const struct sph_ru
 
 static bool is_damped(const struct sph_run *run, size_t i) {
   return run->start->damping && run->start->damping[i] > 0;
-}
-
-static bool is_damaged(const struct sph_run *run, size_t i) {
-  return sph_particles_damage(run->now, i) >= run->inputs.fragments.damage;
 }
 
 /* Undamaged by its number, but melted (where the material has a melt energy), partly vapour, or vapour that has cooled
@@ -500,6 +581,17 @@ const struct condition sph_conditions[] = {
               .reason = "geometry of the particles",
               .remedy = "give a larger fragments.link_length: 1.36 over fidelity.smoothing", .before = reach,
               .after = reach_of_start),
+    CONDITION("cells", .number = "fracture.cell over the cube root of the target's volume", .bound = 0.25,
+              .doubt = "cells crack as one: a body of few cells is as strong as one of them, and breaks into them",
+              .reason = "our choice: four cells across the body", .remedy = "give a smaller fracture.cell",
+              .before = cells),
+    CONDITION("soft", .number = "a vibration without method.gradient_correction", .bound = 0,
+              .doubt = "the sides of the bar are too soft", .reason = "elastic-bar rings 9 % too low without it",
+              .remedy = "set method.gradient_correction: true", .results = "frequency", .before = uncorrected),
+    CONDITION("amplitude", .number = "vibration.speed over the speed of waves", .bound = 0.01,
+              .doubt = "the strain is so large that the frequency is not that of small vibrations",
+              .reason = "elastic-bar rings as at 0.1 m/s up to 0.0065, and 4 % lower at 0.022",
+              .remedy = "lower vibration.speed", .results = "frequency", .before = amplitude),
     CONDITION("tail", .number = "the number of bytes in the shape file behind its last triangle", .bound = 0,
               .doubt = "they are not read", .reason = "the header of a binary STL file gives the number of triangles",
               .remedy = "if they are a second body, write each body into a file of its own", .before = tail),
@@ -545,6 +637,17 @@ const struct condition sph_conditions[] = {
         .reason = "two elastic spheres of basalt part with 0.62 of their speed at 0.02, and 0.016 of it at 0.002",
         .remedy = "set method.contact: overlap, with five spacings or more in the projectile's radius",
         .results = ALL_OF_AN_IMPACT, .before = approach),
+    CONDITION("stick", .number = "the speed of the impact, over that of waves, on a target that stays whole",
+              .bound = 0.2, .least = true,
+              .doubt = "bodies stick together with method.contact: welded as long as the target is whole",
+              .reason = "two elastic spheres of steel part with 0.4 of the impact's speed at 0.036, and with 0.81 at "
+                        "0.145; with method.contact: overlap it is 0.95",
+              .remedy = "set method.contact: overlap, with five spacings or more in the projectile's radius",
+              .results = ALL_OF_AN_IMPACT, .after = approach_of_whole),
+    CONDITION("quiet", .number = "stop.quiet_time over the time in which a wave crosses the target", .bound = 1,
+              .least = true, .doubt = "the run may end before waves have come to all flaws",
+              .reason = "after that time all of the body has been loaded once", .remedy = "leave out stop.quiet_time",
+              .before = quiet),
     CONDITION("early", .number = "the time that a wave needs to cross the body after the hit, over the simulated time,",
               .bound = 1, .doubt = "the run ended before anything could break",
               .reason = "a body can break from the hit until a wave has crossed it",
@@ -569,6 +672,22 @@ const struct condition sph_conditions[] = {
               .reason = "a hole of less than one spacing counts as none",
               .remedy = "take more particles, or fidelity.graded: true",
               .results = "crater.depth crater.radius crater.volume", .after = shallow),
+    CONDITION("moved", .number = "the way that undamaged matter of the target has moved, over the crater's depth,",
+              .bound = 0.2, .doubt = "the target has left the place from which the crater is measured",
+              .reason = "our choice: the crater begins at the surface at the start",
+              .remedy = "give an earlier stop.end_time",
+              .results = "crater.depth crater.radius crater.volume crater.compaction_share", .withheld = true,
+              .after = moved),
+    CONDITION("bounced", .number = "the momentum that the projectile carries back, over the one that it brought,",
+              .bound = 0.05,
+              .doubt = "the target gains more by that: matter of the projectile does not count as ejecta",
+              .reason = "our choice", .remedy = "add the momentum of the projectile",
+              .results = "ejecta.momentum_enhancement", .after = bounced),
+    CONDITION("wide", .number = "the larger of the crater's depth and width over those of the target", .bound = 0.5,
+              .doubt = "the crater is as large as the box that stands for a half-space", .reason = "our choice",
+              .remedy = "take a larger target",
+              .results = "crater.depth crater.radius crater.volume crater.compaction_share", .withheld = true,
+              .after = wide),
     CONDITION("gone", .number = "the mean damage of the target", .bound = 0.9,
               .doubt = "no body is left that could have a crater", .reason = "our choice",
               .remedy = "use the fragments",
@@ -609,12 +728,13 @@ const struct condition sph_conditions[] = {
     CONDITION("poisson", .number = "Poisson's ratio, by material.bulk_modulus and material.shear_modulus,", .bound = 0,
               .least = true, .doubt = "no rock widens when it is pulled", .reason = "K below 2/3 of the shear modulus",
               .remedy = "correct one of them", .before = poisson, .both = both_of_poisson, .unit = "Pa"),
-    CONDITION(
-        "crush",
-        .number = "the compliance of the pores on the elastic branch, over that on the crush curve where the two meet,",
-        .bound = 1, .doubt = "the elastic branch is the softer one, so that shocks follow it and not the crush curve",
-        .reason = "pores that close for good give way more",
-        .remedy = "raise porosity.sound_speed, or lower porosity.solid_pressure", .before = crush, .both = both_slopes,
-        .unit = "1/Pa"),
+    CONDITION("crush",
+              .number =
+                  "the compliance of the pores on the elastic branch, over that on the crush curve where the two meet,",
+              .bound = 1,
+              .doubt = "the elastic branch is the softer one, so that shocks follow it and not the crush curve",
+              .reason = "pores that close for good give way more",
+              .remedy = "raise porosity.sound_speed, or lower porosity.solid_pressure", .before = crush,
+              .both = both_slopes, .unit = "1/Pa"),
     {0},
 };
