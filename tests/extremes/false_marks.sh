@@ -12,7 +12,7 @@ campaign() { # campaign SCENE SET VARY [SEEDS]
 }
 count=0 store=${CLAST_STORE:-sound.db}
 campaign porous-plate "fidelity.points: 200" "piston.speed: [100 m/s, 1 km/s]" # 1 % from 200 points on
-campaign elastic-bar "fidelity.particles: 600" "method.gradient_correction: [false, true]"
+campaign elastic-bar "" "fidelity.particles: [600, 2000]" # 9 to 13 % too low without the corrected gradient
 campaign uniaxial "" "loading.direction: [extension, compression], grain.disorder: [0, 0.5]" 3
 campaign compression "body.columns: 12, body.rows: 20" "threshold.strain: [2 %, 3 %]" 3
 campaign disc-collision "body.diameter: 14 cm" "collision.speed: [50 m/s, 100 m/s, 200 m/s, 400 m/s]" 5

@@ -134,12 +134,6 @@ static const struct twin {
      {"body.columns=12", "body.rows=20"},
      {"loading.strain_end=2 %"},
      {"loading.strain_end=6 %"}},
-    /* no beam of the block can break: its largest stress is no strength */
-    {"event",
-     "uniaxial",
-     {"body.columns=6", "body.rows=6"},
-     {"threshold.breaking=false"},
-     {"threshold.breaking=true", "loading.strain_end=20 %"}},
     /* it fails before a wave has crossed it, however far its sides go */
     {"load",
      "compression",

@@ -129,8 +129,6 @@ static double crossings_to_failure(const struct condition_run *r) {
 static double unbroken(const struct condition_run *r) {
   const struct dem_run *run = run_of(r);
   const size_t samples = run->state.frame.samples;
-  if (run->inputs.kind == DEM_UNIAXIAL && ((const struct dem_results *)r->results)->broken == 0)
-    return 1;
   if (run->inputs.kind != DEM_COMPRESSION || samples == 0)
     return NAN;
   return -run->sample[samples - 1].stress / run->state.stress_peak;
