@@ -447,7 +447,7 @@ static double no_lattice(const void *inputs) {
   return in->kind == SPH_IMPACT && in->fidelity.graded && in->target.lattice == SPH_LATTICE_CUBIC;
 }
 
-static double no_say(const void *inputs) {
+static double overruled(const void *inputs) {
   const struct sph_inputs *in = inputs;
   const double spacings = in->fidelity.spacings_per_radius;
   return in->kind == SPH_IMPACT && in->fidelity.graded && sph_derived_has_projectile(in) && spacings > 0 &&
@@ -718,8 +718,9 @@ const struct condition sph_conditions[] = {
               .doubt = "it has no effect: a graded body has irregular points", .reason = "engine/sph/README.md",
               .remedy = "leave it out", .results = "", .before = no_lattice),
     CONDITION("effect", .number = "fidelity.spacings_per_radius beside another fidelity.fine_spacing", .bound = 0,
-              .doubt = "it has no effect: fidelity.fine_spacing decides", .reason = "engine/sph/README.md",
-              .remedy = "leave one of them out", .results = "", .before = no_say),
+              .doubt = "it has no effect: fidelity.fine_spacing decides",
+              .reason = "a value that is given wins over one that follows from others",
+              .remedy = "leave one of them out", .results = "", .before = overruled),
     CONDITION("moduli", .number = "the ratio of material.bulk_modulus and material.tillotson.A", .bound = 1.2,
               .doubt = "waves are as fast as tillotson.A makes them, cracks as bulk_modulus does",
               .reason = "at 1.2 the wave speeds of the two differ by 5 % in a rock of Poisson's ratio 0.25",
