@@ -30,6 +30,7 @@ struct finding {
   struct accuracy *accuracy;
   const struct knob *open[2]; /* knobs of resolution without a limit at the scene's setting; two tell all */
   bool studied;
+  int rank; /* of the level that gave the mean */
 };
 
 static const struct knob *knob_of(const struct campaign *campaign, const char *name) {
@@ -62,7 +63,10 @@ static status take_open(struct finding *finding, const struct convergence_row *r
   (void)error;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   finding->studied = true;
-  if (row->base && row->n > finding->accuracy->n) {
+  /* Levels that the user named need not include the scene's own settings: then it is the mean of the finest one. */
+  const int rank = row->base ? 2 : row->reference;
+  if (rank > finding->rank || (rank > 0 && rank == finding->rank && row->n > finding->accuracy->n)) {
+    finding->rank = rank;
     finding->accuracy->mean = row->mean;
     finding->accuracy->n = row->n;
     finding->accuracy->within = finding->campaign->accuracy_within *

@@ -208,6 +208,19 @@ assert float(re.search(r"its mean ([0-9.e-]+)\.", open("err").read())[1]) == flo
 PY
 ok "the mean of most seeds"
 
+# Levels without the scene's own grains: the mean and the seeds of the finest one.
+sed 's/sharp/without/' sharp.yaml >without.yaml
+expect 0 "$clast" converge without.yaml --knob grains=1.3cm,0.9cm --seeds 3 --within off --store without.db -j 2
+expect 65 "$clast" run without.yaml
+python - <<'PY'
+import re, sqlite3
+mean, = sqlite3.connect("without.db").execute("select mean from convergence where reference").fetchone()
+said = open("err").read()
+assert float(re.search(r"its mean ([0-9.e-]+)\.", said)[1]) == float("%.4g" % mean), (mean, said)
+assert "--max-seeds 0" not in said, said
+PY
+ok "the mean of the finest level"
+
 # Points of a file are scenes like those of axes.
 printf 'threshold.strain,threshold.angle\n2 %%,2 deg\n5 %%,6 deg\n' >points.csv
 cat >file.yaml <<'YAML'
@@ -235,4 +248,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 61
+done_after 64
