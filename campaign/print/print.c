@@ -147,6 +147,8 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
   field_get(field_find(&outcome_table, OUTCOME_NAME(state), NULL), o, &state);
   printf("%s, seed %lld: %s after %.4g s in %lld steps\n", scene->name, (long long)seed, state.text, o->time,
          (long long)o->steps);
+  if (o->state == OUTCOME_INVALID)
+    return;
   const char *headline = scene_headline(scene);
   const struct field *row = field_find(scene->kind->results, headline, NULL);
   if (row)
@@ -201,6 +203,10 @@ static status print_for_people(const struct scene *scene, const char *reference,
   struct ask_resolution resolution;
   char text[UNCERTAINTY_TEXT];
   print_answers(scene, seed, result);
+  if (result->outcome.state == OUTCOME_INVALID && format != TABLE_ALL) {
+    puts("no results: these inputs cannot be run together, and the message says why");
+    return table_flush(stdout, error);
+  }
   TRY(ask_resolution(NULL, 0, OUTCOME_DEFAULT, &resolution, error));
   snprintf(resolution.scene, sizeof resolution.scene, "%.127s", reference);
   uncertainty_resolution(&resolution, text);

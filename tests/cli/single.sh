@@ -112,4 +112,7 @@ expect 0 "$clast" explain vary
 prints "log_uniform"
 expect 65 "$clast" explain desing
 says "design"
-done_after $((34 + 3 * $(echo "$scenes" | wc -w)))
+# A run that could not begin has no numbers.
+expect 1 "$clast" simulate gabbro-crater --seed 1 --set fidelity.particles=3000
+prints "no results"; ! grep -q "M_1/M" out || fail "numbers of a run that did not begin"
+done_after $((35 + 3 * $(echo "$scenes" | wc -w)))
