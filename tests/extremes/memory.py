@@ -98,8 +98,10 @@ def wrong(code, out, err, left, usual):
 
 
 def wrong_store(folder, usual_bits):
-    """What is wrong with the store of a campaign, which may not exist, or None. Runs the campaign to its end."""
-    if os.path.exists(os.path.join(folder, 'tiny.db')):
+    """What is wrong with the store of a campaign, or None. Runs the campaign to its end. The store may not exist. It may
+    be an empty file: the program ended before its first transaction, and check rightly refuses such a file."""
+    store = os.path.join(folder, 'tiny.db')
+    if os.path.exists(store) and os.path.getsize(store) > 0:
         code, out, err, _ = start([clast, 'check', 'tiny.db'], folder)
         if code != 0:
             return f'clast check: {out} {err}'
