@@ -38,11 +38,14 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
     ('_weak', '1: too few runs of this kind for the interval of this share: '),
     ('_resolution', 'how far finer settings may move the mean (view resolution): '),
     ('_resolution_verdict', 'known, at least, diverges, or not studied: ')) s
-  WHERE d.table_name = 'run' AND EXISTS (SELECT 1 FROM pragma_table_info('points') c WHERE c.name = d.column_name || s.column1);
+  WHERE d.table_name = 'run' AND d.column_name || s.column1 IN (SELECT name FROM pragma_table_info('points'));
+-- CROSS JOIN: SQLite lists the columns of a view once, not once for each row of column_doc.
 INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
+  WITH d AS MATERIALIZED (
+    SELECT table_name, unit, meaning, column_name, table_name || '_' || column_name AS long_name FROM column_doc
+    WHERE table_name IN ('run', 'point', 'point_total', 'point_spectrum', 'bin', 'estimate') OR table_name GLOB 'result_*')
   SELECT v.column1, c.name, d.unit, d.meaning
-  FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, pragma_table_info(v.column1) c, column_doc d
-  WHERE (d.column_name = c.name OR d.table_name || '_' || d.column_name = c.name) AND
-    (d.table_name IN ('run', 'point', 'point_total', 'point_spectrum', 'bin', 'estimate') OR d.table_name GLOB 'result_*')
+  FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v CROSS JOIN pragma_table_info(v.column1) c
+    CROSS JOIN (SELECT column_name AS name, * FROM d UNION ALL SELECT long_name, * FROM d) d ON d.name = c.name
   ORDER BY CASE WHEN d.table_name IN ('estimate', 'point_total', 'point_spectrum', 'bin') THEN v.column1 IN ('runs')
-    ELSE v.column1 NOT IN ('runs') END;
+    ELSE v.column1 NOT IN ('runs') END, d.table_name GLOB 'result_*', d.table_name;
