@@ -110,8 +110,8 @@ static const char *nearest(const char *typed, const char *const *known) {
   return guess.nearest;
 }
 
-/* Reports a key that no table has. `known`: the names that are allowed at its level. `elsewhere` (may be NULL): a whole
- * path that may have been meant. */
+/* Reports a key that no table has. `known`: the names that are allowed at its level. `elsewhere` (may be NULL): whole
+ * paths that may have been meant. */
 static void report_unknown(document_node *key, const char *path, const char *const *known, const char *elsewhere) {
   if (key->faulty)
     return;
@@ -194,8 +194,9 @@ static void unknown(const struct reading *r, const document_node *mapping, docum
   }
   char path[PATH_SIZE];
   char **words = siblings(r, prefix);
+  char near[FIELD_NEAR_SIZE];
   report_unknown(key, document_value_path(mapping, path, sizeof path), (const char *const *)words,
-                 field_nearest(r->table, key->text));
+                 field_nearest(r->table, key->text, near) ? near : NULL);
   for (size_t i = 0; words[i]; i++)
     free(words[i]);
   free(words);

@@ -38,10 +38,17 @@ void field_guess(const struct field_table *table, struct text_guess *guess) {
   }
 }
 
-const char *field_nearest(const struct field_table *table, const char *path) {
+bool field_nearest(const struct field_table *table, const char *path, char near[FIELD_NEAR_SIZE]) {
   struct text_guess guess = text_guess(path);
+  const char *dot = strrchr(path, '.'), *word = dot ? dot + 1 : path;
   field_guess(table, &guess);
-  return guess.nearest;
+  *near = 0;
+  const bool sure = dot && guess.nearest && ends_with(guess.nearest, word);
+  for (const struct field *row = NULL; !sure && (row = field_ending(table, word, row));)
+    text_append(near, FIELD_NEAR_SIZE, "%s%s", *near ? "' or '" : "", row->path);
+  if (!*near && guess.nearest)
+    text_append(near, FIELD_NEAR_SIZE, "%s", guess.nearest);
+  return *near;
 }
 
 void field_column_name(const char *path, char *name, size_t size) {
@@ -81,8 +88,8 @@ static void fail_unknown(const struct field_table *table, const char *path, stru
                 path, table->name, members);
     return;
   }
-  const char *near = field_nearest(table, path);
-  if (near)
+  char near[FIELD_NEAR_SIZE];
+  if (field_nearest(table, path, near))
     status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; did you mean '%s'?", table->name, QUOTE, path, near);
   else
     status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; 'clast explain' lists what it has", table->name, QUOTE,

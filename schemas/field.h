@@ -131,8 +131,10 @@ const struct field *field_find(const struct field_table *table, const char *path
 /* Offers every path of the table, and every trailing part of it, to the guess: "young_modulos" finds
  * "grain.young_modulus". */
 void field_guess(const struct field_table *table, struct text_guess *guess);
-/* The nearest path of one table, or NULL when none is near. */
-const char *field_nearest(const struct field_table *table, const char *path);
+/* The nearest path of one table; false when none is near. A last word without a fault counts more than letters: a wrong
+ * section "impact.radius" gives all that end so, "target.radius' or 'projectile.radius". */
+enum { FIELD_NEAR_SIZE = 600 };
+bool field_nearest(const struct field_table *table, const char *path, char near[FIELD_NEAR_SIZE]);
 
 /* The length of the word behind the first `length` bytes of row i's path, where these are those of `prefix` and no
  * earlier row has the same word there; else 0. */

@@ -114,7 +114,7 @@ static bool find_inputs(struct reading *r, size_t *end) {
   r->before = (size_t)r->tabular + (r->tabular && csv->count > 1 && strcmp(csv->cells[1].text, "interface") == 0);
   *end = csv->count;
   while (r->tabular && *end > r->before && !input_of(r, csv->cells[*end - 1].text, &error) &&
-         !field_nearest(inputs, csv->cells[*end - 1].text))
+         !field_nearest(inputs, csv->cells[*end - 1].text, (char[FIELD_NEAR_SIZE]){0}))
     --*end;
   return *end > r->before ||
          wrong(r, "no column is an input: rename the variables to paths of inputs, such as %s", inputs->rows[0].path);

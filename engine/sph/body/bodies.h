@@ -137,6 +137,9 @@ status sph_lattice_allocate(struct sph_points *points, size_t n, struct error *e
  * the number of particles. */
 status sph_irregular_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, double wanted,
                           struct sph_points *points, struct error *error);
+/* STATUS_CONTENT: the grading cannot give so many particles. */
+status sph_irregular_check(struct sph_grading grading, const struct sph_shape *shape, double particles,
+                           struct error *error);
 
 /* h over spacing, where spacing = (V/n)^(1/3). It gives 56 neighbours within 2h on the hexagonal and cubic lattices at
  * rest (48 by volume). On a lattice the sum of (m_j/rho_j) x dW/dx, a factor of every strain and every force, depends

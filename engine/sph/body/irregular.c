@@ -322,17 +322,17 @@ static void cut_shells(const struct sph_grading *g, const struct sph_shape *shap
     away += (g->point[k] - shape->centre[k]) * (g->point[k] - shape->centre[k]);
   }
   const double furthest = sqrt(size) + sqrt(away), core = g->radius + 4 * g->fine;
+  double d[RAYS][3];
+  for (int i = 0; i < RAYS; i++)
+    ray((i + 0.5) / RAYS, fmod(0.6180339887498949 * i, 1), d[i]);
   for (int k = 0; k <= SHELLS; k++) /* fine shells in the core, geometric beyond */
     shells->r[k] = core * expm1(log1p(furthest / core) * k / SHELLS);
   for (int k = 0; k < SHELLS; k++) {
     const double r = 0.5 * (shells->r[k] + shells->r[k + 1]);
     int in = 0;
-    for (int i = 0; i < RAYS; i++) {
-      double d[3];
-      ray((i + 0.5) / RAYS, fmod(0.6180339887498949 * i, 1), d);
-      in += sph_shape_inside(shape,
-                             (double[3]){g->point[0] + r * d[0], g->point[1] + r * d[1], g->point[2] + r * d[2]});
-    }
+    for (int i = 0; i < RAYS; i++)
+      in += sph_shape_inside(shape, (double[3]){g->point[0] + r * d[i][0], g->point[1] + r * d[i][1],
+                                                g->point[2] + r * d[i][2]});
     shells->open[k] = (double)in / RAYS;
   }
 }
@@ -353,23 +353,36 @@ static double count(const struct sph_grading *g, struct shells *shells) {
 
 static const double steepest = 0.12; /* growth at which spacings of neighbours differ by a factor of less than 1.15 */
 
+/* STATUS_CONTENT: no growth gives so many particles. Leaves the most of them in the shells. */
+static status check_range(struct sph_grading *g, double particles, struct shells *shells, struct error *error) {
+  g->growth = steepest;
+  const double fewest = count(g, shells);
+  g->growth = 0;
+  const double most = count(g, shells);
+  if (!(particles >= fewest && particles <= most))
+    return status_fail(error, STATUS_CONTENT,
+                       "spacing from %g m at the point of impact gives %.0f to %.0f particles, not %.0f: change "
+                       "fidelity.particles, spacings_per_radius or fine_radius, or set fidelity.graded: false",
+                       g->fine, ceil(fewest), floor(most), particles);
+  return STATUS_OK;
+}
+
+status sph_irregular_check(struct sph_grading grading, const struct sph_shape *shape, double particles,
+                           struct error *error) {
+  OWNED struct shells *shells = memory_small(1, sizeof *shells);
+  cut_shells(&grading, shape, shells);
+  return check_range(&grading, particles, shells, error);
+}
+
 /* Decides the growth, if it is not given, and the number of particles. */
 static status decide(const struct sph_lattice *lattice, struct sph_grading *g, struct shells *shells, double *n,
                      struct error *error) {
   if (isnan(g->growth)) {
-    g->growth = steepest;
-    const double fewest = count(g, shells);
-    g->growth = 0;
-    const double most = count(g, shells), particles = lattice->particles;
-    if (!(particles >= fewest && particles <= most))
-      return status_fail(error, STATUS_CONTENT,
-                         "spacing from %g m at the point of impact gives %.0f to %.0f particles, not %.0f: change "
-                         "fidelity.particles, fine_spacing or fine_radius, or set fidelity.graded: false",
-                         g->fine, ceil(fewest), floor(most), particles);
+    TRY(check_range(g, lattice->particles, shells, error));
     double low = 0, high = steepest;
     for (int k = 0; k < 60; k++) {
       g->growth = 0.5 * (low + high);
-      *(count(g, shells) > particles ? &low : &high) = g->growth;
+      *(count(g, shells) > lattice->particles ? &low : &high) = g->growth;
     }
   } else if (!(g->growth >= 0 && g->growth <= steepest)) {
     return status_fail(error, STATUS_CONTENT,

@@ -333,6 +333,9 @@ bool sph_shape_inside(const struct sph_shape *s, const double point[3]) {
   switch (s->kind) {
   case SPH_SHAPE_MESH: to_file(s, point, p); return s->mesh && mesh_inside(s->mesh, p);
   case SPH_SHAPE_SPHERE: vector3_subtract(point, s->centre, p); return vector3_dot(p, p) < s->radius * s->radius;
+  case SPH_SHAPE_BOX:
+    vector3_subtract(point, s->centre, p);
+    return fabs(p[0]) < 0.5 * s->side[0] && fabs(p[1]) < 0.5 * s->side[1] && fabs(p[2]) < 0.5 * s->side[2];
   default: return sph_shape_distance(s, point, NULL) < 0;
   }
 }

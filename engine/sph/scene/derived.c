@@ -187,6 +187,13 @@ double sph_derived_fine_spacing(const struct sph_inputs *in) {
   return graded ? in->fidelity.fine_spacing : sph_derived_spacing(in);
 }
 
+struct sph_grading sph_derived_grading(const struct sph_inputs *in, const struct sph_shape *target) {
+  struct sph_grading grading = {.fine = in->fidelity.fine_spacing, .radius = in->fidelity.fine_radius, .growth = NAN};
+  double normal[3];
+  sph_shape_surface(target, (const double[]){0, 0, 1}, grading.point, normal);
+  return grading;
+}
+
 double sph_derived_smallest_spacing(const struct sph_inputs *in) {
   double fine = sph_derived_fine_spacing(in);
   return sph_derived_has_projectile(in) ? fmin(fine, fine * in->fidelity.projectile_spacing) : fine;

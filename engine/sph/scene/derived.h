@@ -31,6 +31,8 @@ double sph_derived_target_mass(const struct sph_inputs *inputs);     /* kg */
 double sph_derived_projectile_mass(const struct sph_inputs *inputs); /* kg; 0 without one */
 double sph_derived_spacing(const struct sph_inputs *inputs);         /* m, of the target: (V/n)^(1/3) */
 double sph_derived_fine_spacing(const struct sph_inputs *inputs);    /* m, of the target where the projectile hits */
+/* About the point of impact on a target that is graded. */
+struct sph_grading sph_derived_grading(const struct sph_inputs *inputs, const struct sph_shape *target);
 double sph_derived_particles(const struct sph_inputs *inputs);       /* of all bodies; an estimate for plans */
 /* s, until the bodies of an impact or collision meet; 0 for scenes without a gap. */
 double sph_derived_arrival(const struct sph_inputs *inputs);

@@ -214,6 +214,17 @@ static status check_flight(const struct sph_inputs *in, struct error *error) {
   return STATUS_OK;
 }
 
+static status check_graded(const struct sph_inputs *in, struct error *error) {
+  struct sph_shape shape[2];
+  double flight[3];
+  if (in->fidelity.fine_spacing > sph_derived_spacing(in))
+    REFUSE("fidelity.fine_spacing is %.4g m, above the uniform spacing %.4g m of so many particles: lower it, raise "
+           "fidelity.spacings_per_radius, or set fidelity.graded: false",
+           in->fidelity.fine_spacing, sph_derived_spacing(in));
+  TRY(sph_derived_aim(in, shape, flight, error));
+  return sph_irregular_check(sph_derived_grading(in, &shape[0]), &shape[0], (double)in->fidelity.particles, error);
+}
+
 static status check_impact(const struct sph_inputs *in, struct error *error) {
   if (in->target.spin != 0 && !in->gradient_correction.on)
     REFUSE("target.spin %.4g rad/s without method.gradient_correction: the uncorrected velocity gradient strains a "
@@ -226,11 +237,7 @@ static status check_impact(const struct sph_inputs *in, struct error *error) {
     REFUSE("the projectile would be %.2g particles: lower fidelity.projectile_spacing (now %.4g), raise "
            "fidelity.particles, or take a larger projectile",
            pieces, in->fidelity.projectile_spacing);
-  if (in->fidelity.graded && in->fidelity.fine_spacing > sph_derived_spacing(in))
-    REFUSE("fidelity.fine_spacing is %.4g m, above the uniform spacing %.4g m of so many particles: lower it, raise "
-           "fidelity.spacings_per_radius, or set fidelity.graded: false",
-           in->fidelity.fine_spacing, sph_derived_spacing(in));
-  return STATUS_OK;
+  return in->fidelity.graded ? check_graded(in, error) : STATUS_OK;
 }
 
 /* ---- other protocols ---- */

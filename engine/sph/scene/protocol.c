@@ -92,14 +92,8 @@ static status make_bodies(struct sph_run *run, struct error *error) {
     if (sph_derived_has_projectile(in)) {
       body[1] = body_of(run, &in->projectile, &run->shape[1], 1,
                         sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing);
-      if (in->fidelity.graded) {
-        struct sph_grading *grading = &body[0].lattice.grading;
-        *grading = (struct sph_grading){.fine = in->fidelity.fine_spacing,
-                                        .radius = in->fidelity.fine_radius,
-                                        .growth = NAN};
-        double normal[3];
-        sph_shape_surface(&run->shape[0], run->impact_direction, grading->point, normal);
-      }
+      if (in->fidelity.graded)
+        body[0].lattice.grading = sph_derived_grading(in, &run->shape[0]);
     }
   }
   return sph_bodies_make(body, (size_t)run->body_count, arrays_of(in), &run->start, run->range, error);
