@@ -28,7 +28,7 @@ static const struct field shot_rows[] = {
 static const struct field_table shot_table = FIELD_TABLE(shot_rows, struct observed_shot, "shot",
                                                          "One experiment, or the mean of several equal ones.");
 
-/* value, error and resolution have the quantity's unit, and value its range; read_datum() fills them in. */
+/* value, error and resolution have the quantity's unit; read_datum() fills it in. */
 static const struct field datum_rows[] = {
     ROW_OF(observed_datum, quantity, quantity, FIELD_TEXT, NULL, .flags = FIELD_REQUIRED,
            .doc = "The measured result of a run."),
@@ -112,13 +112,14 @@ static void read_datum(struct reading *r, document_node *node) {
   const struct field *row = datum->ask.row;
   for (int k = VALUE; row && row->unit && k <= RESOLUTION; k++)
     rows[k].unit = row->unit;
-  if (row || above)
-    rows[VALUE].minimum = row ? row->minimum : 0;
-  if (row || datum->ask.kind == ASK_SPECIMENS_SHARE)
-    rows[VALUE].maximum = row ? row->maximum : 1;
   const struct field_table table = FIELD_TABLE(rows, struct observed_datum, "measured", "One number of one shot.");
   document_read(node, &table, NULL, datum);
   datum->ask.share = datum->share;
+  const double low = row ? row->minimum : above ? 0 : -HUGE_VAL;
+  const double high = row ? row->maximum : datum->ask.kind == ASK_SPECIMENS_SHARE ? 1 : HUGE_VAL;
+  if (name && !(datum->value >= low && datum->value <= high))
+    document_report(document_key(node, "value"), "value", "%s lies between %g and %g, not at %.6g", name, low, high,
+                    datum->value);
   if (name && above && !share)
     document_report(node, "measured", "%s needs 'share': fragments heavier than this share of the body",
                     datum->quantity);

@@ -38,6 +38,7 @@ struct fit {
   size_t inputs, axis[INFERENCE_INPUTS]; /* axis of the campaign of each unknown input */
   bool bounded[INFERENCE_INPUTS];
   struct ask_doubts doubts[OBSERVED_DATA];         /* of the runs that were read for each datum */
+  struct ask_doubts all_doubts;                    /* of the runs of all data, each once */
   struct posterior_datum data[OBSERVED_DATA];      /* a count N is compared as ln(1 + N) */
   struct ask_resolution resolution[OBSERVED_DATA]; /* from a study in the store, for data without `resolution` */
 

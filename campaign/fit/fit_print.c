@@ -16,24 +16,40 @@ static const struct field *row_of(const struct fit *fit, size_t input) {
   return fit->campaign->axes[fit->axis[input]].row;
 }
 
-/* An input rests on the runs of all data. */
-static struct ask_doubts all_doubts(const struct fit *fit) {
-  struct ask_doubts all = {0};
+/* Share of predicted experiments beyond this datum, on the side where fewer are. */
+static double beyond(const struct fit *fit, size_t k) {
+  const double below = posterior_below(&fit->surfaces.model, &fit->posterior, k);
+  return fmin(below, 1 - below);
+}
+
+/* Does a measured value lie where no inputs within the priors lead? Then the posterior is where the priors end. Of many
+ * data some are far off by chance. */
+static bool is_outside(const struct fit *fit) {
   for (size_t k = 0; k < fit->observed->datum_count; k++)
-    ask_doubts_add(&all, &fit->doubts[k]);
-  return all;
+    if (beyond(fit, k) < 0.025 / (double)fit->observed->datum_count)
+      return true;
+  return false;
 }
 
 /* ---- inputs ---- */
 
-static void input_cells(const struct fit *fit, size_t i, const struct ask_doubts *doubts, struct table *table) {
+static void skip(struct table *table, int cells) {
+  for (int i = 0; i < cells; i++)
+    table_missing(table);
+}
+
+static void input_cells(const struct fit *fit, size_t i, struct table *table) {
   const double z05 = posterior_coordinate(0.05), z95 = posterior_coordinate(0.95);
   double z[3];
   for (int q = 0; q < 3; q++)
     z[q] = posterior_quantile(&fit->posterior, i, levels[2 * q]);
   table_reals(table, 2, (const double[]){fit_number(fit, i, z05), fit_number(fit, i, z95)});
+  if (is_outside(fit)) {
+    skip(table, 4);
+    return;
+  }
   for (int q = 0; q < 3; q++) {
-    table_rests_on(table, doubts);
+    table_rests_on(table, &fit->all_doubts);
     table_real(table, fit_number(fit, i, z[q]));
   }
   table_real(table, (posterior_share(z[2]) - posterior_share(z[0])) / 0.9);
@@ -47,13 +63,12 @@ static status print_inputs(const struct fit *fit, enum table_format format, stru
   table_column(table, "prior_95", NULL);
   table_rare(table);
   table_columns(table, (const char *const[]){"q05", "median", "q95", "kept", NULL});
-  const struct ask_doubts doubts = all_doubts(fit);
   for (size_t i = 0; i < fit->inputs; i++) {
     table_text(table, row_of(fit, i)->path);
     char unit[64];
     text_unit(row_of(fit, i)->unit, unit, sizeof unit);
     table_text(table, unit);
-    input_cells(fit, i, &doubts, table);
+    input_cells(fit, i, table);
   }
   return table_end(table, error);
 }
@@ -112,25 +127,19 @@ static status print_data(const struct fit *fit, enum table_format format, struct
 
 /* ---- for programs ---- */
 
-static void skip(struct table *table, int cells) {
-  for (int i = 0; i < cells; i++)
-    table_missing(table);
-}
-
 static status print_rows(const struct fit *fit, enum table_format format, struct error *error) {
   TABLE table = table_new(format, stdout);
   char label[LABEL];
   table_columns(table, (const char *const[]){"kind", "name", "unit", "prior_05", "prior_95", "q05", "median", "q95",
                                              "kept", "value", "error", "sd_seeds", "sd_resolution", "below", NULL});
   table_doubt_columns(table);
-  const struct ask_doubts doubts = all_doubts(fit);
   for (size_t i = 0; i < fit->inputs; i++) {
     table_text(table, "input");
     table_text(table, row_of(fit, i)->path);
     table_text(table, row_of(fit, i)->unit);
-    input_cells(fit, i, &doubts, table);
+    input_cells(fit, i, table);
     skip(table, 5);
-    table_doubt_cells(table, &doubts);
+    table_doubt_cells(table, &fit->all_doubts);
   }
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct field *row = fit->observed->data[k].ask.row;
@@ -219,24 +228,15 @@ static void tell_together(const struct fit *fit, size_t direction, FILE *out) {
                 list_mixed(fit, direction, names), list_ends(fit, direction, ends));
 }
 
-/* Share of predicted experiments beyond this datum, on the side where fewer are. */
-static double beyond(const struct fit *fit, size_t k) {
-  const double below = posterior_below(&fit->surfaces.model, &fit->posterior, k);
-  return fmin(below, 1 - below);
-}
-
 static void tell_determined(const struct fit *fit, FILE *out) {
   const size_t known = fit->found.determined, p = fit->inputs;
-  bool missed = false, as_wide = false;
-  for (size_t k = 0; k < fit->observed->datum_count; k++) /* of many data some are far off by chance */
-    missed = missed || beyond(fit, k) < 0.025 / (double)fit->observed->datum_count;
+  bool as_wide = false;
   for (size_t i = 0; i < p; i++)
     as_wide = as_wide || fit->found.kept[i] >= AS_WIDE;
-  if (missed) {
-    words_print(
-        out, "",
-        "OUTSIDE: the measured values lie outside of what the priors can make (MISFIT). The intervals of the inputs "
-        "lean on the ends of the priors and are no estimates: widen the priors, or ask what the model lacks.");
+  if (is_outside(fit)) {
+    words_print(out, "",
+                "OUTSIDE: the measured values lie outside of what the priors can make (MISFIT). The inputs have "
+                "no interval (-): widen the priors, or ask what the model lacks.");
     return;
   }
   if (known == p && as_wide)
@@ -308,16 +308,22 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
     observed_label(fit->observed, k, label, sizeof label);
     /* For a normal law, skewness and excess have standard errors sqrt(6/n) and sqrt(24/n). */
     const double n = (double)scatter->freedom;
-    if (fabs(scatter->skewness) > 4 * sqrt(6 / n) || fabs(scatter->excess) > 4 * sqrt(24 / n))
+    char found[96] = "";
+    if (fabs(scatter->skewness) > 4 * sqrt(6 / n))
+      text_append(found, sizeof found, "skewness %.2g", scatter->skewness);
+    if (fabs(scatter->excess) > 4 * sqrt(24 / n))
+      text_append(found, sizeof found, "%sexcess kurtosis %.2g%s", *found ? ", " : "", scatter->excess,
+                  scatter->excess < -1 ? ": two heaps" : "");
+    if (*found)
+      words_print(out, "",
+                  "SCATTER: %s is not normal over seeds (%s), as the likelihood takes it to be. A sampler without a "
+                  "formula (pyabc, on `clast serve`) fits without that.",
+                  label, found);
+    if (beyond(fit, k) < 0.025)
       words_print(
           out, "",
-          "SCATTER: %s is not normal over seeds (skewness %.2g, excess kurtosis %.2g%s), as the likelihood takes it "
-          "to be. A sampler without a formula (pyabc, on `clast serve`) fits without that.",
-          label, scatter->skewness, scatter->excess, scatter->excess < -1 ? ": two heaps" : "");
-    if (beyond(fit, k) < 0.025)
-      words_print(out, "",
-                  "MISFIT: no inputs within the priors predict %s well: only %.2g of predicted experiments lie %s it.",
-                  label, below < 0.5 ? below : 1 - below, below < 0.5 ? "below" : "above");
+          "MISFIT: no inputs within the priors predict %s well: at most %.2g of predicted experiments lie %s it.",
+          label, fmax(beyond(fit, k), 1e-4), below < 0.5 ? "below" : "above");
     if (fit->surfaces.left_out[k] > 1.5)
       words_print(
           out, "",
@@ -349,8 +355,7 @@ status fit_print(const struct fit *fit, enum table_format format, struct error *
   TRY(print_data(fit, format, error));
   putchar('\n');
   tell(fit, stdout);
-  const struct ask_doubts doubts = all_doubts(fit);
-  uncertainty_doubts(&doubts, stderr);
+  uncertainty_doubts(&fit->all_doubts, stderr);
   return STATUS_OK;
 }
 
@@ -385,8 +390,7 @@ status fit_print_picture(const struct fit *fit, const char *path, const struct c
   const struct picture_page page = charts_page(path, chart);
   char caption[CHARTS_LABEL] =
       "Over the posterior; with the scatter of specimens, the errors of measurement and of the resolution";
-  const struct ask_doubts doubts = all_doubts(fit);
-  charts_doubts(&doubts, caption, sizeof caption);
+  charts_doubts(&fit->all_doubts, caption, sizeof caption);
   const struct picture_words words = {title, caption, "predicted over measured", NULL};
   return picture_predicted(&page, &words, fit->observed->datum_count, rows, error);
 }

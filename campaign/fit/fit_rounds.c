@@ -7,6 +7,7 @@
 #include "campaign/fit/fit.h"
 #include "engine/random.h"
 #include "schemas/memory.h"
+#include "schemas/text.h"
 
 /* ---- a round as campaigns ---- */
 
@@ -78,6 +79,7 @@ static struct scene *scene_of(const struct fit *fit, const double *z, struct err
 static status read_data(struct fit *fit, struct store *store, const struct scene *scene, int64_t point,
                         const uint64_t *seeds, double *values, struct error *error) {
   const size_t count = fit->replicates;
+  char results[ASK_DOUBTS_RESULTS] = "";
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct observed_datum *datum = &fit->observed->data[k];
     if (datum->shot != fit->shot)
@@ -88,6 +90,7 @@ static status read_data(struct fit *fit, struct store *store, const struct scene
       of_datum[r] = NAN;
     if (!point)
       continue;
+    text_append(results, sizeof results, "%s ", ask_specimens_result(&datum->ask));
     ANSWER runs = ask_specimens(store, point, scene->kind, &datum->ask, error);
     while (ask_specimens_next(&runs, &datum->ask, &seed, &value, &fit->doubts[k]))
       for (size_t r = 0; r < count; r++)
@@ -95,7 +98,8 @@ static status read_data(struct fit *fit, struct store *store, const struct scene
           of_datum[r] = fit_transform(datum, value);
     TRY(answer_end(&runs));
   }
-  return STATUS_OK;
+  return point ? ask_doubts(store, &(struct ask_doubts_choice){.point = point}, results, &fit->all_doubts, error)
+               : STATUS_OK;
 }
 
 /* Reads the replicates of the shot's data at z. A point that cannot be run has no values. */

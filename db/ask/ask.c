@@ -722,6 +722,12 @@ struct answer ask_specimens(struct store *store, int64_t point_id, const struct 
       kind->name, (long long)point_id, kind->results_version);
 }
 
+const char *ask_specimens_result(const struct ask_specimens_quantity *quantity) {
+  if (quantity->kind == ASK_SPECIMENS_RESULT)
+    return quantity->row->path;
+  return quantity->kind == ASK_SPECIMENS_SHARE ? OUTCOME_DEFAULT : OUTCOME_NAME(mean_fragment_mass);
+}
+
 bool ask_specimens_next(struct answer *answer, const struct ask_specimens_quantity *quantity, uint64_t *seed,
                         double *value, struct ask_doubts *doubts) {
   const void *masses;
@@ -733,7 +739,7 @@ bool ask_specimens_next(struct answer *answer, const struct ask_specimens_quanti
       *value = run.withheld ? (double)NAN : run.value;
       if (run.surplus || run.excluded || !outcome_is_usable(run.state))
         continue;
-      (void)ask_doubts_run(doubts, answer_text(answer, 12), run.warnings, quantity->row->path, 1);
+      (void)ask_doubts_run(doubts, answer_text(answer, 12), run.warnings, ask_specimens_result(quantity), 1);
       return true;
     }
     return false;
@@ -741,8 +747,8 @@ bool ask_specimens_next(struct answer *answer, const struct ask_specimens_quanti
   if (!answer_next(answer))
     return false;
   *seed = (uint64_t)answer_integer(answer, 0);
-  const char *results = quantity->kind == ASK_SPECIMENS_SHARE ? OUTCOME_DEFAULT : OUTCOME_NAME(mean_fragment_mass);
-  const enum condition_mark mark = ask_doubts_run(doubts, answer_text(answer, 3), answer_text(answer, 2), results, 1);
+  const enum condition_mark mark = ask_doubts_run(doubts, answer_text(answer, 3), answer_text(answer, 2),
+                                                  ask_specimens_result(quantity), 1);
   if (quantity->kind == ASK_SPECIMENS_EXPONENT)
     *value = answer_real(answer, 1);
   else if (!answer_masses(answer, 1, "a run", &masses, &count))

@@ -330,6 +330,8 @@ struct ask_specimens_quantity {
   double share; /* threshold: share of the mass of all fragments together */
 };
 
+/* The result that the number rests on. */
+const char *ask_specimens_result(const struct ask_specimens_quantity *quantity);
 /* A row per run that counts, of the results_version of this program's engine. */
 struct answer ask_specimens(struct store *store, int64_t point_id, const struct engine_kind *kind,
                             const struct ask_specimens_quantity *quantity, struct error *error);

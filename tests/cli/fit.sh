@@ -69,6 +69,7 @@ ok "the interval holds the input that was taken, the prediction what was measure
 sed 's/value: [^,]*/value: 0.99/' one.yaml >whole.yaml
 expect 0 "$clast" fit whole.yaml disc.yaml --rounds 3 -j 2 --store whole.db
 prints "OUTSIDE: the measured values lie outside of what the priors can make"
+grep -qE '^threshold.strain .*- +- +- +-$' out || fail "an interval that the ends of the priors make"
 prints "MISFIT: no inputs within the priors predict largest_fraction well"
 grep -qE 'The data determine|NOT DETERMINED|RIDGE' out && fail "a contradiction in the report"
 

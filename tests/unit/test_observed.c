@@ -135,10 +135,10 @@ static void errors_have_a_place(void **state) {
   bad(SHOT "measured: {quantity: time}\n", "expected a list");
   /* 31 was meant as 31 % */
   bad(SHOT "measured: [{quantity: largest_fraction, value: 31}]\n",
-      "m.yaml:4|value: expected at least 0 and at most 1");
-  bad(SHOT "measured: [{quantity: time, value: -1 ms}]\n", "value: expected at least 0");
-  bad(SHOT "measured: [{quantity: count_above, share: 0.1, value: -1}]\n", "value: expected at least 0");
-  bad(SHOT "measured: [{quantity: share_above, share: 0.1, value: 1.1}]\n", "value: expected at least 0 and at most 1");
+      "m.yaml:4|largest_fraction lies between 0 and 1, not at 31");
+  bad(SHOT "measured: [{quantity: time, value: -1 ms}]\n", "time lies between 0 and inf, not at -0.001");
+  bad(SHOT "measured: [{quantity: count_above, share: 0.1, value: -1}]\n", "count_above lies between 0 and");
+  bad(SHOT "measured: [{quantity: share_above, share: 0.1, value: 1.1}]\n", "share_above lies between 0 and 1");
   bad(SHOT "set: {body.diameter: 8 cm, diameter: 9 cm}\n    measured: [{quantity: time, value: 1}]\n",
       "the same input");
   bad(SHOT "set: {strain: 3 %}\n    measured: [{quantity: time, value: 1}]\n", "unknown in the campaign");
