@@ -276,7 +276,8 @@ void design_sobol_free(struct design_sobol *sobol) {
 enum design_verdict design_stopping_judge(const struct design_stopping *rule, const double *values, int64_t *prefix) {
   if (rule->fixed)
     return DESIGN_FIXED;
-  if (sample_may_stop((size_t)*prefix, values, rule->half_width, rule->level, (size_t)rule->minimum))
+  const double one = rule->of_mean ? fabs(sample_summarise((size_t)*prefix, values, rule->level).mean) : 1;
+  if (sample_may_stop((size_t)*prefix, values, one * rule->half_width, rule->level, (size_t)rule->minimum))
     return DESIGN_INTERVAL_MET;
   if (*prefix >= rule->maximum)
     return DESIGN_CAP_REACHED;

@@ -117,7 +117,8 @@ void design_sensitivity_row(const struct design_sensitivity *design, size_t row,
 struct design_stopping {
   bool fixed; /* `minimum` replicates, the rule is not applied */
   int64_t minimum, batch, maximum;
-  double half_width, level; /* half width of the mean's confidence interval, in the quantity's SI unit */
+  bool of_mean;             /* half_width is a share of the mean, else in the quantity's SI unit */
+  double half_width, level; /* of the mean's confidence interval */
 };
 
 enum design_verdict { DESIGN_GROW, DESIGN_INTERVAL_MET, DESIGN_CAP_REACHED, DESIGN_FIXED };

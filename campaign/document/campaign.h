@@ -50,6 +50,7 @@ struct campaign {
   int64_t maximum;   /* most replicates of a point when `until` decides */
   char until_quantity[FIELD_TEXT_SIZE];
   double until_half_width; /* half width of the mean's confidence interval, in the quantity's SI unit */
+  bool until_of_value;     /* until_half_width is a share of the mean: given in per cent */
   double until_level;      /* 0.95 */
   int64_t until_minimum, until_batch;
   char accuracy_quantity[FIELD_TEXT_SIZE];

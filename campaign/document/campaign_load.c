@@ -40,9 +40,9 @@ static const struct field rows[] = {
          .doc = "The quantity whose mean must be known well enough. Default: the main quantity."),
     ROW("seeds.until.half_width", until_half_width, FIELD_REAL, "1", .number = 0.01, .minimum = 0, .maximum = HUGE_VAL,
         .flags = FIELD_ABOVE_MINIMUM,
-        .doc = "A point is finished when the confidence interval of the mean is narrower than plus or minus this, in "
-               "the SI "
-               "unit of the quantity. Judged on fixed prefixes of replicate numbers.",
+        .doc = "A point is finished when the confidence interval of the mean is narrower than plus or minus this: a "
+               "number in the SI unit of the quantity, or a share of its mean (5 %). Judged on fixed prefixes of "
+               "replicate numbers.",
         .source = "Chow & Robbins 1965"),
     ROW("seeds.until.level", until_level, FIELD_REAL, "1", .number = 0.95, .minimum = 0.5, .maximum = 1,
         .flags = FIELD_BELOW_MAXIMUM, .doc = "Confidence level of that interval."),

@@ -162,6 +162,13 @@ static void read_design(document_node *design, struct campaign *campaign) {
     campaign->design.kind = (int)value.number;
 }
 
+/* A width in per cent is a share of the mean. */
+static bool is_of_value(document_node *mapping, const char *key) {
+  document_node *width = key_of(mapping, key);
+  const char *text = width ? document_scalar(width) : NULL;
+  return text && strchr(text, '%');
+}
+
 /* Checks `seeds`: a fixed number, or a rule with a maximum. */
 static void check_seeds(document_node *root, struct campaign *campaign) {
   document_node *seeds = key_of(root, "seeds");
@@ -174,6 +181,7 @@ static void check_seeds(document_node *root, struct campaign *campaign) {
   if (!until)
     return;
   campaign->per_point = 0;
+  campaign->until_of_value = is_of_value(until, "half_width");
   if (!key_of(until, "half_width"))
     document_report(until, "seeds.until", "'half_width' is missing: give the half width that ends a point");
   if (campaign->until_minimum > campaign->maximum)
@@ -192,8 +200,7 @@ static void check_accuracy(document_node *root, struct campaign *campaign) {
     document_report(accuracy, "accuracy",
                     "give one of 'within', the largest error of the result, and 'processor_time', which the campaign "
                     "may cost");
-  const char *within = key_of(accuracy, "within") ? document_scalar(key_of(accuracy, "within")) : NULL;
-  campaign->accuracy_of_value = within && strchr(within, '%');
+  campaign->accuracy_of_value = is_of_value(accuracy, "within");
   if (seeds || key_of(document_key(root, "seeds"), "until"))
     document_report(accuracy, "accuracy",
                     "accuracy finds the number of seeds; leave seeds.per_point and seeds.until "

@@ -465,8 +465,9 @@ void plan_print(const struct campaign *campaign, const struct plan *plan, int sl
 
   fprintf(out, "runs      %llu", (unsigned long long)plan->runs_least);
   if (plan->runs_most != plan->runs_least)
-    fprintf(out, " to %llu (%s to ±%g)", (unsigned long long)plan->runs_most, campaign->until_quantity,
-            campaign->until_half_width);
+    fprintf(out, " to %llu (%s to ±%g%s)", (unsigned long long)plan->runs_most, campaign->until_quantity,
+            campaign->until_half_width * (campaign->until_of_value ? 100 : 1),
+            campaign->until_of_value ? " % of its mean" : "");
   fprintf(out, ", %llu of them in the store%s\n", (unsigned long long)plan->runs_there,
           plan->store_exists ? "" : " (there is none yet)");
   print_times(plan, slots, out);

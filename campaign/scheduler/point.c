@@ -14,6 +14,7 @@ struct point *point_create(const struct campaign *campaign, struct scene *scene)
   point->rule = (struct design_stopping){.minimum = campaign->per_point ? campaign->per_point : campaign->until_minimum,
                                          .maximum = campaign_replicates_most(campaign),
                                          .batch = campaign->until_batch,
+                                         .of_mean = campaign->until_of_value,
                                          .half_width = campaign->until_half_width,
                                          .level = campaign->until_level};
   point->rule.fixed = campaign->per_point > 0;

@@ -86,7 +86,7 @@ static void defaults_and_units(void **state) {
   campaign = good(HEAD "seeds: {until: {half_width: 1 %}, max: 90}\nlimits: {time: off}\nkeep: {fields: first 3}\n");
   assert_int_equal(campaign->per_point, 0);
   assert_string_equal(campaign->until_quantity, "largest_fraction");
-  assert_true(campaign->until_half_width == 0.01 && isnan(campaign->time_limit));
+  assert_true(campaign->until_half_width == 0.01 && campaign->until_of_value && isnan(campaign->time_limit));
   assert_int_equal(campaign->until_minimum, 30);
   assert_int_equal(campaign_replicates_least(campaign), 50); /* at 30 and 40 no values are enough to stop */
   assert_int_equal(campaign_replicates_most(campaign), 90);

@@ -37,6 +37,13 @@ static void judges_prefixes(void **state) {
   prefix = 60; /* the guard against runs that are equal by chance prevents any stop before 50 */
   assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_INTERVAL_MET);
   assert_int_equal(prefix, 60);
+  rule.of_mean = true; /* 0.001 and 0.05 of a mean of 100 */
+  for (int r = 0; r < 200; r++)
+    values[r] += 100;
+  rule.half_width = 0.001;
+  assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_GROW);
+  rule.half_width = 0.05;
+  assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_INTERVAL_MET);
   for (int r = 0; r < 40; r++) /* failed runs give no confidence */
     values[r] = NAN;
   assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_GROW);
