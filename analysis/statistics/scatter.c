@@ -98,7 +98,8 @@ status scatter_make(size_t n, const double *values, struct scatter *out, struct 
   for (int q = 0; q < SCATTER_QUANTILES; q++)
     out->quantile[q] = quantile(out->n, out->sorted, scatter_shares[q]);
   out->dip = scatter_dip(out->n, out->sorted);
-  out->dip_share = scatter_in_steps(out->n, out->sorted) ? (double)NAN : scatter_dip_share(out->n, out->dip);
+  const bool known = out->n >= SCATTER_MODES_RUNS && !scatter_in_steps(out->n, out->sorted);
+  out->dip_share = known ? scatter_dip_share(out->n, out->dip) : (double)NAN;
   if (out->dip_share < 0.05)
     scatter_find_modes(out);
   return STATUS_OK;

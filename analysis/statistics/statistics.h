@@ -493,13 +493,16 @@ status measured_bins(const struct measured *measured, const struct pooled_form *
 /* Agreement of runs with measured data, for fragments of at least `complete` only. Shapes are compared, each normalised
  * by its own number of fragments; the numbers are given separately. Sieve tables: shares of the mass are compared
  * instead of numbers. */
+enum { MATCH_RUNS = 20 };
 struct measured_match {
   double from;      /* kg: lower limit of the fragments used; with thresholds, the first threshold from `complete` on */
   double fragments; /* number of measured fragments; NaN for a sieve table */
   struct sample_summary simulated; /* fragments per run */
-  double distance;                 /* Kolmogorov's: greatest difference between both shares of fragments above a mass */
+  double distance; /* Kolmogorov's: greatest difference between both shares of fragments above a mass. NaN: fewer than two
+                      measured fragments, which have no shape */
   double share; /* of runs that are at least as far from the pool of the other runs: one experiment is one specimen, so
-                   a share below 0.05 is evidence against the pool. NaN for fewer than three runs with fragments */
+                   a share below 0.05 is evidence against the pool. NaN for fewer than MATCH_RUNS runs with two or more
+                   fragments: so few can be all nearer by chance */
   double log_likelihood; /* of the measured fragments in classes of mass (the store's bins, or the thresholds), if each
                             is drawn from the pool; half a fragment is added to each class. Compare it between pools
                             with the same `complete`. NaN for a sieve table */
@@ -513,7 +516,7 @@ status measured_compare(const struct measured *measured, const struct pooled_run
  * intervals. Standard deviation and skewness have none: those of the jackknife held the true value of lognormal samples
  * in 0.53 to 0.75 and in 0.00 to 0.28 of the cases, and a sample cannot tell that its law is of this kind. */
 
-enum { SCATTER_QUANTILES = 5 };
+enum { SCATTER_QUANTILES = 5, SCATTER_MODES_RUNS = 20 };
 extern const double scatter_shares[SCATTER_QUANTILES]; /* 0.05, 0.25, 0.5, 0.75, 0.95 */
 
 struct scatter_quantile {
@@ -526,7 +529,8 @@ struct scatter {
   struct sample_summary mean; /* with the standard deviation and the 95 % interval of the mean */
   double skewness;            /* NaN: all values are equal */
   struct scatter_quantile quantile[SCATTER_QUANTILES];
-  double dip, dip_share; /* scatter_dip(). Below 0.05 the values have at least two modes. NaN: not known */
+  double dip, dip_share; /* scatter_dip(). Below 0.05 the values have at least two modes. NaN: not known, or fewer than
+                            SCATTER_MODES_RUNS values: of these, the test finds chance more often than modes */
   /* The two classes with the least scatter within them (Fisher 1958), set only if dip_share is below 0.05: their means,
    * the value between them, and the share of the upper one with its 95 % interval (Wilson 1927). Else NaN. */
   double lower_mode, upper_mode, between;

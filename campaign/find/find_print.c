@@ -164,7 +164,8 @@ static status print_bins(const struct find *find, struct error *error) {
     table_text(table, find_show_within(find, bins[i].low, 0, 0.1, text));
     table_text(table, find_show_within(find, bins[i].high, 0, 0.1, text));
     table_integer(table, (int64_t)bins[i].n);
-    uncertainty_cell(bins[i].mean.mean, bins[i].mean.half_width, mean);
+    const bool share = field_is_share(find->quantity.row);
+    (share ? uncertainty_share_cell : uncertainty_cell)(bins[i].mean.mean, bins[i].mean.half_width, mean);
     uncertainty_mark(&bins[i].doubts, mean + strlen(mean));
     table_text(table, mean);
     table_fixed(table, (double)bins[i].above / (double)bins[i].n, 2);

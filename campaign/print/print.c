@@ -355,7 +355,8 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
     fprintf(stderr,
             "clast: fragments from %.3g %s on, where the measured and all simulated spectra are complete.\n"
             "distance: Kolmogorov's, of %s. runs_as_far: share of the runs that are as far from the others\n"
-            "as the measured one (one experiment is one specimen; below 0.05 speaks against the point)\n",
+            "as the measured one (one experiment is one specimen; below 0.05 speaks against the point; -: fewer\n"
+            "than 20 runs of two fragments, or one measured fragment, which has no shape)\n",
             complete, kg, measured->weighed ? "the shares of mass" : "the shapes");
     if (nothing)
       fprintf(stderr,

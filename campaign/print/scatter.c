@@ -84,8 +84,7 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
   if (table_for_people(format)) {
     uncertainty_doubts(&doubts, stderr);
     fputs("clast: low and high: 95 % intervals over runs; of a mode, the values that belong to it. Modes are peaks; p "
-          "of one "
-          "mode below 0.05: the runs have two\n",
+          "of one mode below 0.05: the runs have two; of fewer than 20 runs it is not told (-)\n",
           stderr);
   }
   if (several)

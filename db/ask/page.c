@@ -114,7 +114,7 @@ struct modes {
 static status add_modes(struct modes *modes, int64_t point, const char *quantity, size_t n, double *values,
                         struct error *error) {
   struct scatter s = {.n = n, .sorted = values};
-  if (n < 4)
+  if (n < SCATTER_MODES_RUNS)
     return STATUS_OK;
   qsort(values, n, sizeof *values, sample_ascending);
   if (!(values[n - 1] > values[0]) || scatter_in_steps(n, values))

@@ -186,11 +186,14 @@ static void forms_of_laboratories(void **state) {
  * 0.9, 0.7, 0.4. */
 static void sieves(void **state) {
   (void)state;
-  const size_t first[5] = {0, 4, 8, 12, 16};
-  double masses[16];
-  for (int i = 0; i < 16; i++)
+  enum { RUNS = MATCH_RUNS };
+  size_t first[RUNS + 1];
+  double masses[4 * RUNS];
+  for (size_t r = 0; r <= RUNS; r++)
+    first[r] = 4 * r;
+  for (int i = 0; i < 4 * RUNS; i++)
     masses[i] = 4 - i % 4;
-  const struct pooled_runs runs = {4, first, masses};
+  const struct pooled_runs runs = {RUNS, first, masses};
   struct measured m;
   struct measured_match match;
   assert_int_equal(read_text("mass (kg),retained (%)\n1,10\n2,20\n3,50\n4,20\n", &no_size, &m), STATUS_OK);
@@ -218,17 +221,20 @@ static void sieves(void **state) {
   measured_release(&m);
 }
 
-/* Four runs of masses 1, 2, 3, 4; measured 2.5 and 4, or the same numbers at thresholds. */
+/* Runs of masses 1, 2, 3, 4; measured 2.5 and 4, or the same numbers at thresholds. */
 static void distances(void **state) {
   (void)state;
-  const size_t first[5] = {0, 4, 8, 12, 16};
-  double masses[16];
-  for (int i = 0; i < 16; i++)
+  enum { RUNS = MATCH_RUNS };
+  size_t first[RUNS + 1];
+  double masses[4 * RUNS];
+  for (size_t r = 0; r <= RUNS; r++)
+    first[r] = 4 * r;
+  for (int i = 0; i < 4 * RUNS; i++)
     masses[i] = 4 - i % 4;
-  const struct pooled_runs runs = {4, first, masses};
+  const struct pooled_runs runs = {RUNS, first, masses};
   struct measured_match match;
-  double mass[3] = {2.5, 4, 9}, above[3] = {2, 1, 1};
-  struct measured m = {.single = true, .n = 2, .mass = mass, .above = above};
+  double mass[3] = {2.5, 4, 9}, above[3] = {3, 2, 2};
+  struct measured m = {.single = true, .n = 2, .mass = mass, .above = (double[]){2, 1}};
 
   /* From 2.5 kg, which is the first one, on: pooled 3 and 4. Share above 2.5: 1 and 1/2. */
   assert_int_equal(measured_compare(&m, &runs, NAN, &match, &error), STATUS_OK);
@@ -236,10 +242,10 @@ static void distances(void **state) {
   near(match.distance, 0.5);
   near(match.fragments, 2);
   near(match.simulated.mean, 2);
-  near(match.share + 1, 1);         /* no run differs from the others at all */
-  for (size_t n = 1; n <= 4; n++) { /* a share of one or two runs says nothing */
+  near(match.share + 1, 1);            /* no run differs from the others at all */
+  for (size_t n = 1; n <= RUNS; n++) { /* a share of few runs says nothing */
     assert_int_equal(measured_compare(&m, &(struct pooled_runs){n, first, masses}, NAN, &match, &error), STATUS_OK);
-    assert_true(n < 3 ? isnan(match.share) : match.share == 0);
+    assert_true(n < RUNS ? isnan(match.share) : match.share == 0);
   }
 
   /* From 1 kg: shares of 1, 3/4, 1/2, 1/4 at 1, 2, 3, 4; measured 1, 1, 1/2, 1/2. Greatest just below 2.5 */
@@ -247,21 +253,20 @@ static void distances(void **state) {
   near(match.from, 1);
   near(match.distance, 0.5);
   near(match.simulated.mean, 4);
-  assert_int_equal(measured_compare(&m, &runs, 3.5, &match, &error), STATUS_OK); /* a 4 each */
-  near(match.distance + 1, 1);
-  near(match.share, 1);
+  assert_int_equal(measured_compare(&m, &runs, 3.5, &match, &error), STATUS_OK); /* a 4 each, which has no shape */
+  assert_true(isnan(match.distance) && isnan(match.share));
   near(match.fragments, 1);
 
   /* Thresholds 2.5, 4 and 9 from 3 on: the first that counts is 4. */
   m = (struct measured){.n = 3, .mass = mass, .above = above};
   assert_int_equal(measured_compare(&m, &runs, 3, &match, &error), STATUS_OK);
   near(match.from, 4);
-  near(match.distance, 1); /* measured: one above 9, simulated none */
-  /* Two classes, 4..9 and from 9, half a fragment added to each: one fragment in the last, of 4 simulated. */
-  near(match.log_likelihood, log(0.5 / 5));
+  near(match.distance, 1); /* measured: two above 9, simulated none */
+  /* Two classes, 4..9 and from 9, half a fragment added to each: two fragments in the last, of one of each run. */
+  near(match.log_likelihood, 2 * log(0.5 / (RUNS + 1)));
   assert_int_equal(measured_compare(&m, &runs, 2, &match, &error), STATUS_OK);
   near(match.from, 2.5);
-  near(match.log_likelihood, log(4.5 / 9.5) + log(0.5 / 9.5));
+  near(match.log_likelihood, log((RUNS + 0.5) / (2 * RUNS + 1.5)) + 2 * log(0.5 / (2 * RUNS + 1.5)));
   assert_int_equal(measured_compare(&m, &runs, 10, &match, &error), STATUS_OK);
   assert_true(isnan(match.distance) && match.fragments == 0);
 }

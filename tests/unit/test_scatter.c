@@ -65,6 +65,9 @@ static void two_modes(void **state) {
   assert_true(s.between > 0.4 && s.between < 0.75 && s.upper_share == 0.25);
   assert_true(fabs(s.upper_low - 0.1578) < 1e-4 && fabs(s.upper_high - 0.3723) < 1e-4); /* Wilson, 15 of 60 */
   scatter_release(&s);
+  assert_int_equal(scatter_make(8, x, &s, NULL), STATUS_OK); /* few runs tell no modes */
+  assert_true(isnan(s.dip_share) && isnan(s.between));
+  scatter_release(&s);
 }
 
 /* Counts around 7 +- 2 look like a comb: no modes are reported. Counts of thousands may have two. */
