@@ -188,6 +188,7 @@ struct run_cells_run {
   double value;
 };
 struct run_cell {
+  int64_t run_id; /* of one of the runs */
   size_t runs;
   struct run_cells_run *run;        /* by seed */
   char *input[LIMITS_AXES_OF_POOL]; /* as text: a number with 17 digits, a choice, "off" */
@@ -214,7 +215,7 @@ static status add_cell(struct run_cells *cells, const struct ask_pool *pool, str
   if (!grow_room(&cells->cell, &cells->room, cells->count + 1, sizeof *cells->cell))
     return status_fail(error, STATUS_MEMORY, "no memory for the runs of the points");
   struct run_cell *cell = &cells->cell[cells->count++];
-  *cell = (struct run_cell){0};
+  *cell = (struct run_cell){.run_id = pool->data.run_id[0]};
   TRY(memory_array(&cell->run, pool->data.runs.count, sizeof *cell->run, "the runs of the points", error));
   cells->axes = pool->axes;
   ask_doubts_add(&cells->doubts, &pool->doubts);
@@ -412,6 +413,52 @@ static void release_points(struct from_points *p) {
   free(p->runs);
 }
 
+/* Does a condition `effect` of the scene name the input? Its doubt names what acts instead. */
+static bool has_no_effect(const struct scene *scene, const char *column) {
+  const struct condition *list = scene->kind->conditions;
+  const uint64_t broken = condition_before(list, scene->inputs, NULL);
+  const struct field *row = NULL;
+  for (size_t i = 0; i < scene->kind->inputs->count && !row; i++) {
+    char name[FIELD_TEXT_SIZE];
+    field_column_name(scene->kind->inputs->rows[i].path, name, sizeof name);
+    row = strcmp(name, column) == 0 ? &scene->kind->inputs->rows[i] : NULL;
+  }
+  for (size_t k = 0; row && list && list[k].word; k++)
+    if (broken >> k & 1 && strcmp(list[k].word, "effect") == 0 && strstr(list[k].number, row->path) &&
+        !strstr(list[k].doubt, row->path))
+      return true;
+  return false;
+}
+
+/* Leaves out the inputs that have no effect at any point, and names them. */
+static status leave_idle_out(struct store *store, struct run_cells *cells, char *names, size_t size,
+                             struct error *error) {
+  size_t idle[LIMITS_AXES_OF_POOL] = {0};
+  for (size_t c = 0, left = 1; c < cells->count && left; c++) {
+    SCENE scene = NULL;
+    struct ask_run run = {0};
+    TRY(ask_run_read(store, cells->cell[c].run_id, &run, error));
+    const status code = scene_parse_json("scene of a run", run.scene, &scene, error);
+    ask_run_release(&run);
+    TRY(code);
+    left = 0;
+    for (size_t a = 0; a < cells->axes; a++)
+      left += (idle[a] += idle[a] == c && has_no_effect(scene, cells->column[a])) == c + 1;
+  }
+  for (size_t a = cells->axes; a-- > 0;) {
+    if (idle[a] < cells->count)
+      continue;
+    text_append(names, size, "%s%s", *names ? ", " : "", cells->column[a]);
+    cells->axes--;
+    memmove(cells->column[a], cells->column[a + 1], (cells->axes - a) * sizeof cells->column[a]);
+    for (size_t c = 0; c < cells->count; c++) {
+      free(cells->cell[c].input[a]);
+      memmove(&cells->cell[c].input[a], &cells->cell[c].input[a + 1], (cells->axes - a) * sizeof(char *));
+    }
+  }
+  return STATUS_OK;
+}
+
 /* Values that are no numbers, such as names of materials and "off", have no order. */
 static status fill_inputs(struct from_points *p, struct error *error) {
   const struct run_cells *cells = &p->cells;
@@ -527,7 +574,7 @@ static void write_answer(const struct from_points *p) {
     if (!certain)
       text_append(text, sizeof text, "No input can be told from one that does nothing: ");
     append_input(p, first, text, sizeof text);
-    text_append(text, sizeof text, certain ? " matters most" : " comes first");
+    text_append(text, sizeof text, certain && p->index[first].last_rank == 1 ? " matters most" : " comes first");
     text_append(text, sizeof text, ": alone it explains %.0f %% (%.0f to %.0f %%) of the variance of %s %s",
                 100 * fmax(share->estimate, 0), 100 * share->low, 100 * share->high, p->column,
                 share == &p->index[first].of_means ? "between points" : "of single runs");
@@ -605,6 +652,10 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
   __attribute__((cleanup(release_points))) struct from_points p = {0};
   TRY(ask_group_quantity(store, choice->quantity, p.column, error));
   TRY(read_points(store, choice, &p.cells, error));
+  char idle[1024] = "";
+  TRY(leave_idle_out(store, &p.cells, idle, sizeof idle, error));
+  if (*idle)
+    fprintf(stderr, "clast: no effect at any of these points, and left out: %s (clast explain effect)\n", idle);
   if (p.cells.axes == 0 || p.cells.count == 0)
     return status_fail(error, STATUS_USAGE,
                        p.cells.count ? "no input varies between the points" : "no finished run has a value of %s",

@@ -67,6 +67,21 @@ assert [r['input'] for r in rows] == ['threshold.strain', 'threshold.angle']
 assert all(r['mean_absolute'] >= abs(r['mean']) >= 0 and r['noise'] > 0 for r in rows), rows"
 ok "elementary effects"
 
+# ---- an input without effect is left out: it cannot come first, by chance
+cat >idle.yaml <<'YAML'
+name: idle
+scene: disc-explosion
+set: {body.diameter: 6 cm, stop.end_time: 0.1 ms}
+vary: {threshold.strain: {uniform: [1 %, 6 %]}, contact.friction: {uniform: [0.1, 0.8]}}
+design: {kind: latin_hypercube, points: 12}
+seeds: 2
+YAML
+expect 0 "$clast" run idle.yaml -j 2 --quiet
+expect 0 "$clast" sensitivity idle.db --csv
+says "no effect at any of these points, and left out: contact_friction"
+grep -q friction out && fail "an input without effect has a rank"
+ok "friction without tangential damping"
+
 # ---- any points: a Latin hypercube with a linked axis, and what cannot be told
 cat >latin.yaml <<'YAML'
 name: latin
@@ -83,7 +98,8 @@ seeds: {per_point: 2}
 YAML
 expect 0 "$clast" run latin.yaml -j 2 --quiet
 expect 0 "$clast" sensitivity latin.db
-prints "matters most: alone it explains"
+prints "threshold_strain comes first: alone it explains"
+prints "charge_energy may matter as much"
 prints "between points"
 [ "$(wc -L <out)" -le 100 ] || fail "a line of more than 100 columns"
 expect 0 "$clast" sensitivity latin.db -Q fragment_count --csv
