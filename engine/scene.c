@@ -118,21 +118,31 @@ static void own_name(const char *file, struct document *document, const struct e
   snprintf(name, FIELD_TEXT_SIZE, "%s%s%s", plain ? rock : "", plain ? " - " : "", base);
 }
 
+/* Opens a material's file. On failure *out is NULL. */
+static status open_material(const char *path, const struct engine_materials *materials, struct document **out,
+                            struct error *error) {
+  struct error why;
+  TRY(document_open(path, out, error));
+  const status code = scene_material_complete(document_root(*out), materials, &why);
+  if (code == STATUS_OK)
+    return STATUS_OK;
+  document_free(*out);
+  *out = NULL;
+  return status_fail(error, code, "%.300s: %.3000s", path, why.message);
+}
+
 /* `place`: where errors about the file are reported. */
 static void include_material(document_node *section, document_node *place, const char *path, const char *file,
                              const struct engine_kind *kind, const char *folder) {
   struct document *other = NULL;
   struct error error;
   OWNED char *whole = file_name_in(folder, file);
-  status code = whole ? document_open(whole, &other, &error)
+  status code = whole ? open_material(whole, kind->materials, &other, &error)
                       : status_fail(&error, STATUS_MEMORY, "no memory for a path");
   char name[FIELD_TEXT_SIZE];
-  own_name(file, code ? NULL : other, kind->materials, name);
-  if (code == STATUS_OK) {
-    code = scene_material_complete(document_root(other), kind->materials, &error);
-    if (!document_graft(section, other, material_words))
-      code = status_fail(&error, STATUS_MEMORY, "no memory for a material");
-  }
+  own_name(file, other, kind->materials, name);
+  if (code == STATUS_OK && !document_graft(section, other, material_words))
+    code = status_fail(&error, STATUS_MEMORY, "no memory for a material");
   document_graft_drop(section, "name");
   if (code != STATUS_OK)
     document_report_error(place, path, &error);
@@ -542,7 +552,7 @@ static status take_own(struct scene *scene, const struct field *row, const char 
   SCENE own = NULL;
   struct document *document = NULL;
   const char *report = NULL;
-  TRY(document_open(file, &document, error)); /* a message about the file alone */
+  TRY(open_material(file, scene->kind->materials, &document, error)); /* a message about the file alone */
   document_free(document);
   if (!text)
     return status_fail(error, STATUS_MEMORY, "no memory for a material");

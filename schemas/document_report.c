@@ -49,7 +49,8 @@ void document_report(document_node *node, const char *path, const char *format, 
 void document_report_error(document_node *node, const char *path, const struct error *error) {
   if (error->status == STATUS_MEMORY)
     node->document->no_memory = true;
-  document_report(node, path, "%s", error->message);
+  /* Of the report on another document only its first line: excerpts have no place within a line. */
+  document_report(node, path, "%.*s", (int)strcspn(error->message, "\n"), error->message);
 }
 
 void document_report_memory(document_node *node, const char *path) {

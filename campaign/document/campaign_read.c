@@ -261,7 +261,7 @@ static void check_points(document_node *root, struct campaign *campaign) {
       document_report(design, "design.file", "%s:%lld: %s", campaign->design.file, (long long)campaign->point_lines[i],
                       error.message);
     else
-      document_report(vary ? vary : root, vary ? "vary" : "scene", "%s", error.message);
+      document_report_error(vary ? vary : root, vary ? "vary" : "scene", &error);
   }
 }
 

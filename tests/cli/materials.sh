@@ -49,10 +49,10 @@ same "$(sqlite3 own.db "select value from point_input where path = 'target.mater
 sed '/^yield_stress/d' basalt.yaml >short.yaml
 scene short.yaml >s.yaml
 expect 65 "$clast" simulate s.yaml
-says "target.material.yield_stress is not given by the material 'short.yaml'"; says "off"
+says "target.material 'short.yaml' lacks yield_stress (or off): give"
 sed '/^yield_stress/d; /^melt_energy/d' basalt.yaml >short.yaml # all that is missing at once
 expect 65 "$clast" simulate s.yaml
-says "also missing: target.material."
+says "lacks melt_energy (or off), yield_stress (or off): give"
 sed 's/^density: .*/density: -3 kg/' basalt.yaml >wrong.yaml
 scene wrong.yaml >s.yaml
 expect 65 "$clast" explain ./s.yaml
@@ -120,6 +120,13 @@ says "give bulk_modulus: E / (3 (1 - 2 nu)) and shear_modulus"; one_error
 expect 65 "$clast" materials ./stiff.yaml
 says "give bulk_modulus: E / (3 (1 - 2 nu)) and shear_modulus"; one_error
 
+# A fault in a file within a document: its first line only, without an excerpt that has no place in a line.
+printf 'material: bare\nlike: basalt\ndensity: 3\n' >bare.yaml
+sed 's/stiff.yaml/bare.yaml/' set.yaml >bare-set.yaml
+expect 65 "$clast" plan bare-set.yaml
+says "bare.yaml:3:10: error: target.material.density: 3 has no unit; write '3 g/cm^3' or '3 kg/m^3'"
+grep -q '   density: 3   ' err && fail "an excerpt within a line"
+
 # The identity of a run is its values: the name of the file is no part of it.
 printf 'name: a\nscene: s.yaml\nseeds: 1\nstore: same.db\n' >a.yaml
 expect 0 "$clast" run a.yaml --quiet
@@ -136,4 +143,4 @@ printf 'name: two\nscene: %s\ndesign: {file: points/two.csv}\nseeds: 1\nstore: t
 scene basalt >s.yaml
 expect 0 "$clast" run far/two.yaml --store two.db --quiet
 same "$(sqlite3 two.db "select count(*) from run")" 2 "runs of a file of points with a material's file"
-done_after 53
+done_after 54

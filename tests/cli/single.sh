@@ -112,7 +112,10 @@ expect 0 "$clast" explain vary
 prints "log_uniform"
 expect 65 "$clast" explain desing
 says "design"
-# A run that could not begin has no numbers.
-expect 1 "$clast" simulate gabbro-crater --seed 1 --set fidelity.particles=3000
+# What the inputs alone forbid is refused before a run; a run that could not begin has no numbers.
+expect 1 "$clast" simulate gabbro-crater --seed 1 --set fidelity.graded=false --set fidelity.particles=3000 \
+  --set fidelity.projectile_spacing=0.1 --set sides.far=damped --set sides.depth='0.1 mm'
 prints "no results"; ! grep -q "M_1/M" out || fail "numbers of a run that did not begin"
-done_after $((35 + 3 * $(echo "$scenes" | wc -w)))
+expect 65 "$clast" explain gabbro-crater --set fidelity.particles=3000
+says "particles, not 3000"
+done_after $((36 + 3 * $(echo "$scenes" | wc -w)))

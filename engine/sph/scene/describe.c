@@ -205,12 +205,10 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
             sph_material_crack_speed(&target->material));
   }
   if (sph_derived_has_projectile(in)) {
-    struct sph_shape projectile = sph_derived_projectile(in);
     double mass = sph_derived_projectile_mass(in), energy = 0.5 * mass * in->impact.speed * in->impact.speed;
-    double spacing = sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing;
-    fprintf(out,
-            "  impact energy %.4g J of %.4g kg: Q = %.4g J/kg of the target; %.3g particles across the projectile\n",
-            energy, mass, sph_derived_specific_energy(in), cbrt(sph_shape_volume(&projectile) * 6 / M_PI) / spacing);
+    double spacing = sph_derived_fine_spacing(in) * fmax(1, in->fidelity.projectile_spacing);
+    fprintf(out, "  impact energy %.4g J of %.4g kg: Q = %.4g J/kg of the target; %.3g spacings in its radius\n",
+            energy, mass, sph_derived_specific_energy(in), sph_derived_projectile_radius(in) / spacing);
   }
   if (in->kind == SPH_VIBRATION && target->strength)
     fprintf(out, "  a thin bar of that length rings at %.5g Hz\n",

@@ -119,23 +119,20 @@ status sph_inputs_check_given(const void *scene, const bool *given, struct error
   for (int b = 0; b < 2; b++) {
     const char *body = b ? "projectile" : "target";
     const struct sph_body_inputs *inputs = b ? &in->projectile : &in->target;
-    const struct field *first = NULL;
-    char others[1024] = "";
+    char missing[1024] = "";
     for (size_t k = 0; k < sph_inputs.count && !sph_materials_text(inputs->material_name); k++) {
       const struct field *row = &sph_inputs.rows[k];
       const bool must = must_be_given(row, body) && !given[k] && field_is_active(&sph_inputs, row, in);
       if (!must && !is_missing(in, inputs, row))
         continue;
-      if (first)
-        text_append(others, sizeof others, "%s%s", *others ? ", " : "; also missing: ", row->path);
-      first = first ? first : row;
+      text_append(missing, sizeof missing, "%s%s%s", *missing ? ", " : "",
+                  row->path + strlen(body) + strlen(".material."), row->flags & FIELD_MAY_BE_OFF ? " (or off)" : "");
     }
-    char what[320] = "needed";
-    if (strcmp(inputs->material_name, "custom") != 0)
-      snprintf(what, sizeof what, "not given by the material '%s'", inputs->material_name);
-    if (first)
-      REFUSE("%s is %s: give it%s (%s)%s", first->path, what, first->flags & FIELD_MAY_BE_OFF ? ", or `off`" : "",
-             first->doc, others);
+    if (*missing)
+      REFUSE(
+          "%s.material '%s' lacks %s: give what is missing (`clast explain %s.material`), or begin with the values of "
+          "another one (`like: granite` in a file)",
+          body, inputs->material_name, missing, body);
   }
   return STATUS_OK;
 }
