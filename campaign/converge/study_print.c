@@ -244,7 +244,10 @@ static status print_quantity(const struct printing *printing, size_t from, size_
                              const struct study_found *found, struct error *error) {
   const struct study *study = printing->study;
   const struct study_quantity *what = &study->quantity[quantity];
+  const struct scene *base = study->ladder[from].base;
   const char *unit = what->row ? what->row->unit : NULL;
+  if (unit && strcmp(unit, "kg") == 0)
+    unit = ask_pool_mass_unit(base->kind->dimensions);
   const bool named = unit && strcmp(unit, "1") != 0;
   if (from || quantity)
     putchar('\n');
@@ -254,8 +257,7 @@ static status print_quantity(const struct printing *printing, size_t from, size_
   print_sentence(study, from, quantity, count, found, out);
   text_close_small(out, &sentences);
   text_wrap_lines(sentences, WIDTH, stdout);
-  printf("%s, quantity %s%s%s%s\n", study->ladder[from].base->name, what->name, named ? " (" : "", named ? unit : "",
-         named ? ")" : "");
+  printf("%s, quantity %s%s%s%s\n", base->name, what->name, named ? " (" : "", named ? unit : "", named ? ")" : "");
   TABLE table = table_new(printing->format, stdout);
   table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skewness", NULL});
   table_rare(table);

@@ -50,29 +50,32 @@ static void value_cell(struct table *table, const struct field *row, const void 
   }
 }
 
-static void print_row(struct table *table, const struct field *row, const void *object, enum condition_mark mark) {
+/* `dimensions`: of the engine; 2: masses are per metre of thickness. */
+static void print_row(struct table *table, const struct field *row, const void *object, enum condition_mark mark,
+                      int dimensions) {
   char meaning[FIELD_TEXT_SIZE];
+  const char *unit = row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
   text_sentence(row->doc, meaning, sizeof meaning);
   table_text(table, row->path);
   value_cell(table, row, object, mark);
-  table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "");
+  table_text(table, strcmp(unit, "kg") == 0 ? ask_pool_mass_unit(dimensions) : unit);
   table_text(table, meaning);
 }
 
 void print_results_row(struct table *table, const struct field *row, const void *object) {
-  print_row(table, row, object, CONDITION_SOUND);
+  print_row(table, row, object, CONDITION_SOUND, 3);
 }
 
 /* Lists the values of an object; left out is what does not apply to this scene, and the message, which goes to stderr.
  */
 static void list(struct table *table, const struct field_table *fields, const void *object,
-                 const struct condition *conditions, const char *words) {
+                 const struct engine_kind *kind, const char *words) {
   for (size_t i = 0; i < fields->count; i++) {
     const struct field *row = &fields->rows[i];
     struct field_value value;
     field_get(row, object, &value);
     if (row->kind != FIELD_TEXT && !(row->kind == FIELD_REAL && isnan(value.number)))
-      print_row(table, row, object, condition_mark(conditions, words, row->path));
+      print_row(table, row, object, condition_mark(kind->conditions, words, row->path), kind->dimensions);
   }
 }
 
@@ -108,8 +111,11 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
 
 static void answer(const char *name, double value, enum condition_mark mark, const char *says) {
   char text[64];
-  snprintf(text, sizeof text, isnan(value) || mark == CONDITION_WITHHELD ? "-" : "%.4g%s", value,
-           mark == CONDITION_MARKED ? UNCERTAINTY_MARK : "");
+  snprintf(text, sizeof text,
+           mark == CONDITION_WITHHELD ? "withheld"
+           : isnan(value)             ? "-"
+                                      : "%.4g%s",
+           value, mark == CONDITION_MARKED ? UNCERTAINTY_MARK : "");
   printf("%-14s %-10s %s\n", name, text, says);
 }
 
@@ -182,8 +188,8 @@ static status print_long(const struct engine_kind *kind, const struct run_result
                                                     OUTCOME_NAME(mean_fragment_mass));
   TABLE results = table_new(format, stdout);
   table_columns(results, (const char *const[]){"result", "value", "unit", "meaning", NULL});
-  list(results, &outcome_table, &result->outcome, kind->conditions, result->outcome.warnings);
-  list(results, kind->results, result->result, kind->conditions, result->outcome.warnings);
+  list(results, &outcome_table, &result->outcome, kind, result->outcome.warnings);
+  list(results, kind->results, result->result, kind, result->outcome.warnings);
   TRY(table_end(results, error));
   fputs("\nexponent beta of F(m) ~ m^-beta, of this run alone:\n", stdout);
   TABLE table = table_new(format, stdout);

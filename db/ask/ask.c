@@ -174,10 +174,11 @@ static bool is_ambiguous(const struct ask_column *axes, size_t count, size_t axi
   return false;
 }
 
-/* The shortest end of an axis' path (in `word`) that no other has. "name" alone says too little. */
+/* The shortest end of an axis' path (in `word`) that no other has. "name" or "fraction" alone says too little. */
 static const char *short_word(const struct ask_column *axes, size_t count, size_t axis) {
   const char *const path = axes[axis].word, *word = path + strlen(path);
-  while (word > path && (word[-1] != '.' || strcmp(word, "name") == 0 || is_ambiguous(axes, count, axis, word)))
+  while (word > path && (word[-1] != '.' || strcmp(word, "name") == 0 || strcmp(word, "fraction") == 0 ||
+                         is_ambiguous(axes, count, axis, word)))
     word--;
   return word;
 }

@@ -36,7 +36,7 @@ status ask_run_excluded_count(struct store *store, int64_t *count, struct error 
 /* One row per campaign: campaign, name, state, points, runs, counted, censored, failed, surplus, excluded,
  * failed_attempts, without_result, cpu_time (s), start and end of its last session, and warned runs that count.
  * `writing`: a process is writing the store (store_is_being_written). `earlier`: also campaigns whose points a later
- * one of their name has. */
+ * one of their name has; without it, the rounds of one search or study are one row, "1 .. 29". */
 struct answer ask_campaign_progress(struct store *store, bool writing, bool earlier, struct error *error);
 /* Seconds since the store had its last sign of life: a run was stored, or a session began. NaN: none is known. */
 double ask_campaign_silence(struct store *store);

@@ -1,6 +1,6 @@
 -- The progress of campaigns. :earlier is 0 for those without an earlier form of a campaign, one whose points a later
 -- campaign of its name has. :writing is 1 while a process writes the store. The last session has the largest number:
--- clocks are set back at times.
+-- clocks are set back at times. Without earlier forms, the rounds of one search or study are one row.
 WITH done AS (SELECT campaign_id, count(*) AS runs, sum(counts) AS counted,
   sum(counts AND state = 'end-time') AS censored, sum(counts AND warnings <> '') AS warned,
   sum(state NOT IN ('completed', 'end-time') AND surplus < 2) AS failed, sum(surplus = 1) AS surplus,
@@ -17,8 +17,8 @@ planned AS (SELECT campaign_id, plan ->> '$.points' AS points, plan ->> '$.repli
   plan ->> '$.replicates_most' AS most FROM campaign WHERE json_valid(plan)),
 filled AS (SELECT campaign_id, count(*) AS points FROM (SELECT campaign_id, point_id, count(DISTINCT seed) AS n
   FROM campaign_point JOIN run USING (point_id) GROUP BY campaign_id, point_id) JOIN planned
-  USING (campaign_id) WHERE n >= least AND least = most GROUP BY campaign_id)
-SELECT campaign_id AS campaign, name,
+  USING (campaign_id) WHERE n >= least AND least = most GROUP BY campaign_id),
+each AS (SELECT campaign_id AS campaign, name, document LIKE '# Written by clast %' AS is_round,
   CASE WHEN :writing AND last.ended_at IS NULL AND last.session_id = (SELECT max(session_id) FROM session)
       THEN 'running'
     WHEN last.outcome = 'finished' OR filled.points = planned.points THEN 'finished'
@@ -36,5 +36,10 @@ FROM campaign LEFT JOIN done USING (campaign_id) LEFT JOIN tried USING (campaign
   LEFT JOIN planned USING (campaign_id) LEFT JOIN filled USING (campaign_id)
 WHERE :earlier OR NOT EXISTS (SELECT 1 FROM campaign AS later WHERE later.name = campaign.name AND later.campaign_id > campaign.campaign_id
     AND NOT EXISTS (SELECT 1 FROM campaign_point AS p WHERE p.campaign_id = campaign.campaign_id
-      AND p.point_id NOT IN (SELECT point_id FROM campaign_point AS q WHERE q.campaign_id = later.campaign_id)))
-ORDER BY campaign_id
+      AND p.point_id NOT IN (SELECT point_id FROM campaign_point AS q WHERE q.campaign_id = later.campaign_id))))
+SELECT iif(count(*) = 1, campaign, min(campaign) || ' .. ' || max(campaign)) AS campaign, name, state,
+  sum(points) AS points, sum(runs) AS runs, sum(counted) AS counted, sum(censored) AS censored, sum(failed) AS failed,
+  sum(surplus) AS surplus, sum(excluded) AS excluded, sum(failed_attempts) AS failed_attempts,
+  sum(without_result) AS without_result, sum(cpu_time) AS cpu_time, min(last_started) AS last_started,
+  max(last_ended) AS last_ended, sum(warned) AS warned
+FROM each GROUP BY iif(is_round AND NOT :earlier, name || ' ' || state, campaign) ORDER BY min(each.campaign)

@@ -55,7 +55,9 @@ static const struct field rows[] = {
          .doc = "Impact: angle between the directions from the centre of mass to the point of impact and to the second "
                 "largest fragment. pi is the antipode. Off when that has fewer than 100 particles.",
          .source = "BA95 section 5.2"),
-    SHARE(ejecta.mass_fraction, .doc = "Impact: mass share of the target leaving faster than crater.ejection_speed.",
+    SHARE(ejecta.mass_fraction,
+          .doc = "Impact: mass share of the target leaving faster than crater.ejection_speed. Times "
+                 "target_mass: their mass.",
           .source = "Jutzi & Benz, section 3"),
     REAL(ejecta.momentum, "kg m/s", 0, .doc = "Impact: momentum of the ejecta along the outward normal."),
     REAL(ejecta.momentum_enhancement, "1", 1,
