@@ -53,6 +53,7 @@ static const struct {
     {"warned", ZERO},
     {"last_started", RARE},
     {"last_ended", RARE},
+    {"command", RARE},
     {"_sd", RARE},
     {"_se", RARE},
     {"_low95", RARE},
