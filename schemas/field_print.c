@@ -242,16 +242,21 @@ static void explain_row(const struct field *row, FILE *out) {
 }
 
 size_t field_explain(const struct field_table *table, const char *prefix, FILE *out) {
-  size_t length = strlen(prefix), count = 0;
+  size_t length = strlen(prefix), count = 0, size;
+  char *text = NULL;
+  FILE *rows = text_open(&text, &size);
   while (length && prefix[length - 1] == '.')
     length--;
   for (size_t i = 0; i < table->count; i++) {
     const char *path = table->rows[i].path;
     if (strncmp(path, prefix, length) != 0 || (length && path[length] != 0 && path[length] != '.'))
       continue;
-    explain_row(&table->rows[i], out);
+    explain_row(&table->rows[i], rows);
     count++;
   }
+  text_close_small(rows, &text);
+  text_wrap_lines(text, WIDTH, out);
+  free(text);
   return count;
 }
 

@@ -337,14 +337,14 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   mean_damage REAL, -- [1] Mean damage D of the target at the end, weighted by mass.
   undamaged_fraction REAL, -- [1] Mass share of the target's particles with damage below fragments.damage. Particles that only the static strength breaks count as undamaged.
   largest_bare_fraction REAL, -- [1] M_1/M of the core: mass of the largest fragment without its damaged layer over the target's mass, with the static strength.
-  largest_veneer_fraction REAL, -- [1] M_1/M: mass of the largest fragment with its damaged layer over the target's mass, with the static strength.
+  largest_veneer_fraction REAL, -- [1] M_1/M: mass of the largest fragment with its damaged layer (veneer) over the target's mass, with the static strength.
   largest_dynamic_fraction REAL, -- [1] M_1/M with the damaged layer and without the static strength.
   largest_axis_middle REAL, -- [1] Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment. Off when that has fewer than 100 particles.
   largest_axis_short REAL, -- [1] Shortest over longest axis of the same ellipsoid. 1 is a sphere.
   largest_speed REAL, -- [m/s] Speed of the largest fragment's centre of mass. Off when that has fewer than 100 particles.
   second_mass REAL, -- [kg] Mass of the second largest fragment; off when there is only one.
   second_angle REAL, -- [rad] Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.
-  ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target leaving faster than crater.ejection_speed.
+  ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target leaving faster than crater.ejection_speed. Times target_mass: their mass.
   ejecta_momentum REAL, -- [kg m/s] Impact: momentum of the ejecta along the outward normal.
   ejecta_momentum_enhancement REAL, -- [1] Impact: 1 plus the momentum of the ejecta over that of the projectile, both along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.
   crater_depth REAL, -- [m] Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.
@@ -1213,7 +1213,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'crater_volume', 'm^3', 'Impact: vo
 
 INSERT INTO column_doc VALUES ('result_sph', 'density_held_share', '1', 'Share of all particle steps that held the density at its lower limit. Such a step adds no energy.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target leaving faster than crater.ejection_speed.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target leaving faster than crater.ejection_speed. Times target_mass: their mass.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of the ejecta along the outward normal.', 1);
 
@@ -1251,7 +1251,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'largest_dynamic_fraction', '1', 'M
 
 INSERT INTO column_doc VALUES ('result_sph', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass. Off when that has fewer than 100 particles.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_veneer_fraction', '1', 'M_1/M: mass of the largest fragment with its damaged layer over the target''s mass, with the static strength.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_veneer_fraction', '1', 'M_1/M: mass of the largest fragment with its damaged layer (veneer) over the target''s mass, with the static strength.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'limited_courant', '1', 'Share of the steps limited by the speed of sound and viscosity, or by a damped side.', 1);
 
@@ -1449,7 +1449,7 @@ INSERT INTO column_doc VALUES ('runs', 'density_held_share', '1', 'Share of all 
 
 INSERT INTO column_doc VALUES ('runs', 'dust_fraction', '1', 'Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target leaving faster than crater.ejection_speed.', 0);
+INSERT INTO column_doc VALUES ('runs', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target leaving faster than crater.ejection_speed. Times target_mass: their mass.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of the ejecta along the outward normal.', 0);
 
@@ -1527,7 +1527,7 @@ INSERT INTO column_doc VALUES ('runs', 'largest_loss', '1', 'Loss of M_1/M of th
 
 INSERT INTO column_doc VALUES ('runs', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass. Off when that has fewer than 100 particles.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_veneer_fraction', '1', 'M_1/M: mass of the largest fragment with its damaged layer over the target''s mass, with the static strength.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_veneer_fraction', '1', 'M_1/M: mass of the largest fragment with its damaged layer (veneer) over the target''s mass, with the static strength.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'last_break', 's', 'Time of the last break; off when none broke.', 0);
 

@@ -83,19 +83,17 @@ static bool explain_conditions(const char *word) {
 /* Prints the words of the conditions on which a result of an engine rests, besides those on which all rest; a withheld
  * one in parentheses. Nothing when there are none. `path` NULL: the words on which all rest. */
 static void explain_rests_on(const struct engine_kind *kind, const char *path) {
-  const char *before = "", *last = "";
+  const char *last = "";
+  char words[1024] = "";
   for (const struct condition *c = kind->conditions; c && c->word; c++) {
     if (strcmp(last, c->word) == 0 || !c->results != !path ||
         (path && condition_mark(c, c->word, path) == CONDITION_SOUND))
       continue;
-    if (!*before)
-      printf("- %s (%s): ", path ? path : "every result", kind->name);
-    printf(c->withheld ? "%s(%s)" : "%s%s", before, c->word);
-    before = ", ";
+    text_append(words, sizeof words, c->withheld ? "%s(%s)" : "%s%s", *words ? ", " : "", c->word);
     last = c->word;
   }
-  if (*before)
-    putchar('\n');
+  if (*words)
+    words_print(stdout, "- ", "%s (%s): %s", path ? path : "every result", kind->name, words);
 }
 
 /* Prints the meaning of a word of the glossary. */
@@ -204,7 +202,8 @@ static size_t explain_rows(const char *path, struct text_guess *guess) {
       field_guess(list[i], guess);
       continue;
     }
-    printf("%s%s: %s\n", found++ ? "\n" : "", list[i]->name, list[i]->doc);
+    fputs(found++ ? "\n" : "", stdout);
+    words_print(stdout, "", "%s: %s", list[i]->name, list[i]->doc);
     if (row || first)
       field_explain(list[i], row ? row->path : first->path, stdout);
     if (section)
@@ -216,7 +215,8 @@ static size_t explain_rows(const char *path, struct text_guess *guess) {
 }
 
 static void explain_table(const struct field_table *table, const char *before) {
-  printf("%s%s: %s\n", before, table->name, table->doc);
+  fputs(before, stdout);
+  words_print(stdout, "", "%s: %s", table->name, table->doc);
   field_explain(table, "", stdout);
 }
 
@@ -228,17 +228,17 @@ static bool explain_whole(const char *word) {
     for (size_t i = 0; i < campaign_keys_count; i++)
       printf("\n%s: %s\n%s", campaign_keys[i].name, campaign_keys[i].doc, campaign_keys[i].forms);
   } else if (strcmp(word, "results") == 0) {
-    puts("results: what a run reports. In a store they are columns of the view `runs`, with underscores for dots.\n");
+    puts("results: what a run reports. In a store: columns of the view `runs`, with underscores for dots.\n");
     explain_table(&outcome_table, "");
     for (size_t i = 0; i < engine_count(); i++)
       explain_table(engine_at(i)->results, "\n");
   } else if (strcmp(word, "conditions") == 0) {
-    puts("# What a number rests on\n\nEach condition compares a number with a bound, before the run or at its end. A "
-         "run "
-         "beyond a bound has the\ncondition's word in its result `warnings`, and stays in every mean. The program made "
-         "this "
-         "text from the rows\nin engine/*/scene/conditions.c (`clast explain conditions`).\n\n## Results and their "
-         "conditions\n\nIn parentheses: beyond the bound the result is withheld.\n");
+    puts("# What a number rests on\n");
+    words_print(stdout, "",
+                "Each condition compares a number with a bound, before the run or at its end. A run beyond a bound has "
+                "the condition's word in its result `warnings`, and stays in every mean. The program made this text "
+                "from the rows in engine/*/scene/conditions.c (`clast explain conditions`).");
+    puts("\n## Results and their conditions\n\nIn parentheses: beyond the bound the result is withheld.\n");
     for (size_t i = 0; i < engine_count(); i++) {
       const struct field_table *tables[] = {&outcome_table, engine_at(i)->results};
       explain_rests_on(engine_at(i), NULL);

@@ -30,6 +30,25 @@ static void print_lines(const char *line, int length, FILE *out) {
   }
 }
 
+/* Prints paragraphs in lines of WIDTH; indented lines and empty ones stay as they are. */
+static void print_paragraphs(const char *text, int length, FILE *out) {
+  char paragraph[4096] = "";
+  for (const char *end = text + length; text < end;) {
+    const char *next = memchr(text, '\n', (size_t)(end - text));
+    const int line = (int)((next ? next : end) - text);
+    const bool plain = line > 0 && *text != ' ';
+    if (plain)
+      text_append(paragraph, sizeof paragraph, "%.*s\n", line, text);
+    else
+      fprintf(out, "%.*s\n", line, text);
+    text += line + 1;
+    if (!plain || (text < end && *text != '\n' && *text != ' '))
+      continue;
+    text_wrap(paragraph, 0, 0, WIDTH, out);
+    *paragraph = 0;
+  }
+}
+
 static void print_row(char letter, const char *name, const char *argument, const char *doc, const char *initial,
                       FILE *out) {
   const bool has_default = initial && *initial;
@@ -52,8 +71,10 @@ void help_one(const struct command *command, FILE *out) {
   int length;
   const struct option_row *row;
   const char *options = option_row(command, 0) ? "[OPTIONS]" : "", *doc = option_part(command, OPTION_ABOUT, &length);
-  fprintf(out, "usage: clast %s %s%s%s\n\n%.*s\n\noptions:\n", command->name, options,
-          *options && *command->arguments ? " " : "", command->arguments, length, doc);
+  fprintf(out, "usage: clast %s %s%s%s\n\n", command->name, options, *options && *command->arguments ? " " : "",
+          command->arguments);
+  print_paragraphs(doc, length, out);
+  fputs("\noptions:\n", out);
   for (size_t i = 0; (row = option_row(command, i)); i++) {
     char meaning[OPTION_DOC];
     option_doc(command, row, meaning);

@@ -229,11 +229,13 @@ static void print_gain(size_t count, const struct study_found *found, FILE *out)
       }
     }
   if (!best)
-    fputs(
-        "control variates: no level that differs from its reference has a known correlation with the next finer one\n",
-        out);
+    fputs("control variates (many coarse runs correct few fine ones): no level that differs from its reference has a "
+          "known correlation with the next finer one\n",
+          out);
   else
-    fprintf(out, "control variates: %s; the best is %s = %s, gain %.2g with its next finer level (at least %.2g)\n",
+    fprintf(out,
+            "control variates (many coarse runs correct few fine ones): %s; the best is %s = %s, gain %.2g with its "
+            "next finer level (at least %.2g)\n",
             most >= worth_it ? "a pair of levels would save time"
                              : "no pair of levels is sure to gain 1.5, so that plain "
                                "runs are the better use of time",
@@ -284,7 +286,8 @@ static status print_quantity(const struct printing *printing, size_t from, size_
   out = text_open(&sentences, &size);
   for (size_t i = 0; i < count; i++)
     print_limit(&study->ladder[from + i], &found[i], out);
-  print_gain(count, found, out);
+  if (printing->format == TABLE_ALL)
+    print_gain(count, found, out);
   text_close_small(out, &sentences);
   text_wrap_lines(sentences, WIDTH, stdout);
   return STATUS_OK;

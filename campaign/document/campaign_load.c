@@ -361,8 +361,8 @@ const struct campaign_key campaign_keys[] = {
               "    {uniform: [1 %, 6 %]}                              a law: uniform between two values\n"
               "    {log_uniform: [1 %, 6 %]}                          uniform in the logarithm\n"
               "    {normal: {mean: 4 deg, sd: 1 deg}}                 may be cut: truncated: [1 deg, 7 deg]\n"
-              "    {lognormal: {median: 1 GPa, sigma: 0.05}}          sigma of the natural logarithm; truncated, too\n"
-              "    {linked: threshold.strain, factor: 2}               factor (default 1) times another varied input,\n"
+              "    {lognormal: {median: 1 GPa, sigma: 0.05}}          sigma of the logarithm; truncated, too\n"
+              "    {linked: threshold.strain, factor: 2}               factor (default 1) times another input,\n"
               "                                                       plus offset (SI, default 0)\n"
               "    {linked: threshold.strain, values: [2 deg, 6 deg]} i-th value with the i-th one of that input\n"
               "    Laws need a sampling design: clast explain design\n"},
@@ -376,9 +376,9 @@ const struct campaign_key campaign_keys[] = {
      .forms =
          "    grid, or list                                      of values that are given\n"
          "    {kind: sobol, points: 64, seed: 1}                 of laws; or kind random, latin_hypercube\n"
-         "    {file: points.csv}                                 from another program: a header of input paths, a\n"
-         "                                                       line for each point. A column \"threshold.angle\n"
-         "                                                       [deg]\" is in degrees, \"[1]\" in fractions\n",
+         "    {file: points.csv}                                 from another program: a header of paths, a\n"
+         "                                                       line for each point. A column\n"
+         "                                                       \"threshold.angle [deg]\" is in degrees\n",
      .table = &campaign_design_table},
     {.name = "keep",
      .words = "fields none all extremes first",

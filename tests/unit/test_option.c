@@ -162,7 +162,7 @@ static void test_help_is_whole(void **state) {
     assert_true(each->options_size <= OPTION_STRUCT_MAXIMUM);
     size_t lines = 0;
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"), lines++)
-      if (strlen(line) > 120)
+      if (strlen(line) > 100)
         fail_msg("%s: help line is %zu wide: %s", each->name, strlen(line), line);
     assert_true(lines > 8);
     free(text);

@@ -41,7 +41,8 @@ static const struct field rows[] = {
                  "with the static strength.",
           .source = "BA95 section 4.4"),
     SHARE(largest.veneer_fraction,
-          .doc = "M_1/M: mass of the largest fragment with its damaged layer over the target's mass, with the static "
+          .doc = "M_1/M: mass of the largest fragment with its damaged layer (veneer) over the target's mass, with the "
+                 "static "
                  "strength.",
           .source = "BA95 section 4.4"),
     SHARE(largest.dynamic_fraction, .doc = "M_1/M with the damaged layer and without the static strength."),
