@@ -47,6 +47,24 @@ export function nothing(figure, text) {
   fill(figure, element('p', {class: 'note'}, text));
 }
 
+// Ticks of a logarithmic axis: powers of ten; within two decades also their double and fivefold.
+export function ticks(values) {
+  const low = Math.min(...values), high = Math.max(...values), decades = Math.log10(high / low);
+  const step = Math.max(1, Math.ceil(decades / 7)), found = [];
+  for (let k = Math.floor(Math.log10(low)); k <= Math.log10(high); k += step)
+    for (const digit of decades < 2 ? [1, 2, 5] : [1]) found.push(Number(`${digit}e${k}`));
+  return found.filter((tick) => tick >= low && tick <= high);
+}
+
+// A title in lines that fit into a figure.
+export function wrapped(title, figure) {
+  const most = Math.max(20, (figure.clientWidth - 60) / 7); // letters
+  return title.split(' ').reduce((lines, word) => {
+    const last = lines[lines.length - 1];
+    return last.length + word.length < most ? [...lines.slice(0, -1), `${last} ${word}`.trim()] : [...lines, word];
+  }, ['']);
+}
+
 // A scale of positive numbers that span a factor of 20 is logarithmic.
 export function scale(values) {
   const numbers = values.filter((value) => typeof value === 'number');

@@ -1,7 +1,7 @@
 // The plane of two inputs, coloured by a quantity; or a line over one input. Cells are chosen by a click, a brush or keys,
 // or in the table of points.
 import {body, element, fill, select, table} from './elements.js';
-import {COLOURS, draw, nothing, scale} from './chart.js';
+import {COLOURS, draw, nothing, scale, ticks, wrapped} from './chart.js';
 import {listenToKeys, placesOf} from './keys.js';
 import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
@@ -66,10 +66,13 @@ function placeOf(column, value) {
 const SHORT = "format(datum.value, '.4~g')";
 const NUMBER = `!isNumber(datum.value) ? datum.value : !test(/e/, ${SHORT}) ? ${SHORT} : replace(replace(${SHORT}, /e.*/, '×10'), /^1×/, '') + ${raisedIn(`toNumber(replace(${SHORT}, /.*e/, ''))`)}`;
 
+const numbers = (values) => ({labelExpr: NUMBER, ...(scale(values).type === 'log' ? {values: ticks(values)} : {})});
+
 function axisOf(column, rows, title) {
   const values = [...new Set(rows.map((row) => row[column]))];
   const numeric = values.every((value) => typeof value === 'number');
-  if (numeric && values.length > MOST_CELLS) return {discrete: false, encoding: {field: column, type: 'quantitative', scale: scale(values), title}};
+  const sampled = values.length > 12 && values.length === rows.length; // each point has a value of its own: no grid
+  if (numeric && (sampled || values.length > MOST_CELLS)) return {discrete: false, encoding: {field: column, type: 'quantitative', scale: scale(values), title, axis: numbers(values)}};
   const order = values.slice().sort((a, b) => (typeof a === 'number' && typeof b === 'number' ? a - b : String(a).localeCompare(String(b))));
   return {discrete: true, encoding: {field: column, type: 'ordinal', sort: order, title, axis: {labelAngle: 0, labelExpr: NUMBER}}};
 }
@@ -151,7 +154,7 @@ function planeSpec(rows, title) {
     params: [{name: 'brush', select: {type: 'interval', encodings: ['x', 'y']}}],
     mark: grid ? {type: 'rect', cursor: 'pointer'} : {type: 'point', filled: true, size: 120, cursor: 'pointer'},
     encoding: {...place,
-      color: {field: 'mean', type: 'quantitative', title, scale: {scheme: 'cividis', zero: false}, legend: {orient: 'top', gradientLength: 220, titleLimit: 0}},
+      color: {field: 'mean', type: 'quantitative', title: wrapped(title, document.getElementById('plane-chart')), scale: {scheme: 'cividis', zero: false}, legend: {orient: 'top', gradientLength: 220, titleLimit: 0}},
       ...(grid ? {stroke: {value: 'white'}} : {stroke: {condition: {test: isChosen, value: '#D40000'}, value: 'white'}, strokeWidth: {condition: {test: isChosen, value: 4}, value: 1}}),
       tooltip: tooltip([[state.x, label(state.stores, state.x)], [state.y, label(state.stores, state.y)]], title)},
   }];
@@ -173,7 +176,8 @@ function planeSpec(rows, title) {
 function lineSpec(rows, title) {
   const x = axisOf(state.x, rows, label(state.stores, state.x));
   const numeric = rows.every((row) => typeof row[state.x] === 'number');
-  const place = numeric ? {field: state.x, type: 'quantitative', title: x.encoding.title, scale: scale(rows.map((row) => row[state.x]))} : x.encoding;
+  const values = rows.map((row) => row[state.x]);
+  const place = numeric ? {field: state.x, type: 'quantitative', title: x.encoding.title, scale: scale(values), axis: numbers(values)} : x.encoding;
   const y = {field: 'mean', type: 'quantitative', title, scale: {zero: false}};
   return {params: PARAMETERS, data: {values: rows}, height: 340, layer: [
     {mark: {type: 'rule', strokeWidth: 1.5}, encoding: {x: place, y: {...y, field: 'low'}, y2: {field: 'high'}}},

@@ -77,7 +77,7 @@ export function showQuery() {
     askQuestion();
   }}, query.name));
   const seen = has(store(), 'fact') ? 'the part of the store that is on this page' : 'the whole store';
-  fill(body('query'), element('p', {}, `SQLite over ${seen} (${store().name}). Read runs, points, spectra, estimates; column_doc says what the columns hold. A question that takes long holds this page up.`),
+  fill(body('query'), element('p', {}, `SQLite over ${seen} (${store().name}). Read runs, points, spectra, estimates; column_doc says what the columns hold. The page waits until a long question is answered.`),
     element('div', {class: 'tools', role: 'group', 'aria-label': 'Ready questions'}, ...ready),
     element('label', {for: 'sql'}, 'Question'), parts.text,
     element('div', {class: 'tools'}, element('button', {type: 'button', id: 'ask', click: askQuestion}, 'Ask (Ctrl-Enter)')), parts.result);

@@ -69,8 +69,8 @@ export async function showSeeds() {
     const all = known[i]?.get(share);
     return all ? `${number(all.value)}${all.low !== null && all.high !== null ? ` (${number(all.low, 3)} to ${number(all.high, 3)})` : ''}` : number(row[key]);
   };
-  const lines = [['mean', mean], ['median', quantileOf(0.5, 'median')], ['quarter', quantileOf(0.25, 'quarter')], ['three quarters', quantileOf(0.75, 'threeQuarters')],
-    ['standard deviation of the runs here', (row) => number(row.sd)], ['least here', (row) => number(row.least)], ['largest here', (row) => number(row.largest)], ['runs here', (row) => row.n]];
+  const lines = [['mean', mean], ['median', quantileOf(0.5, 'median')], ['lower quartile', quantileOf(0.25, 'quarter')], ['upper quartile', quantileOf(0.75, 'threeQuarters')],
+    ['standard deviation of the runs here', (row) => number(row.sd)], ['smallest here', (row) => number(row.least)], ['largest here', (row) => number(row.largest)], ['runs here', (row) => row.n]];
   if (means.some((row) => row.all?.modes)) lines.splice(1, 0, ['modes', (row) => (row.all ? modesText(row.all) : '-')]);
   fill(below, table(`${title}: mean and quantiles with their 95 % intervals over seeds`,
     ['', ...names], lines.map(([word, value]) => [word, ...means.map(value)])));

@@ -1,6 +1,6 @@
 // The fragment mass spectrum of the chosen points with its band and the fitted power law: each point for itself, or all
 // of them together when they are too many to be told apart.
-import {COLOURS, DASHES, SHAPES, draw, nothing} from './chart.js';
+import {COLOURS, DASHES, SHAPES, draw, nothing, ticks} from './chart.js';
 import * as questions from './questions.js';
 import {chosenPoints, state, store} from './state.js';
 import {cells, doubtSentence} from './plane.js';
@@ -90,7 +90,7 @@ export async function showSpectrum() {
     return nothing(figure, chosenPoints().length ? 'No spectrum of the chosen points is on this page (see "left out here").' : 'Choose a point.');
   const rows = drawn.flatMap(bandOf), fits = drawn.map(fitOf), complete = completeMass(drawn[0].from, drawn[0].points);
   const names = drawn.map((curve) => curve.name), kg = drawn[0].from.facts.mass_unit ?? 'kg';
-  const x = {field: 'mass', type: 'quantitative', scale: {type: 'log', nice: false}, title: `fragment mass m (${kg})`, axis: {labelExpr: POWERS, tickCount: 6}};
+  const x = {field: 'mass', type: 'quantitative', scale: {type: 'log', nice: false}, title: `fragment mass m (${kg})`, axis: {labelExpr: POWERS, values: ticks(rows.map((row) => row.mass))}};
   const y = (field) => ({field, type: 'quantitative', scale: {type: 'log'}, title: `F(m), fragments per run and ${kg}`, axis: {labelExpr: POWERS, tickCount: 6}});
   const legend = drawn.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null;
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend};
