@@ -498,8 +498,8 @@ struct measured_match {
   double from;      /* kg: lower limit of the fragments used; with thresholds, the first threshold from `complete` on */
   double fragments; /* number of measured fragments; NaN for a sieve table */
   struct sample_summary simulated; /* fragments per run */
-  double distance; /* Kolmogorov's: greatest difference between both shares of fragments above a mass. NaN: fewer than two
-                      measured fragments, which have no shape */
+  double distance; /* Kolmogorov's: greatest difference between both shares of fragments above a mass. NaN: fewer than
+                      two measured fragments, which have no shape */
   double share; /* of runs that are at least as far from the pool of the other runs: one experiment is one specimen, so
                    a share below 0.05 is evidence against the pool. NaN for fewer than MATCH_RUNS runs with two or more
                    fragments: so few can be all nearer by chance */

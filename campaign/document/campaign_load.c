@@ -373,12 +373,11 @@ const struct campaign_key campaign_keys[] = {
     {.name = "design",
      .words = "grid list random latin_hypercube sobol kind points seed file",
      .doc = "How points are made from the varied inputs. Default: grid.",
-     .forms =
-         "    grid, or list                                      of values that are given\n"
-         "    {kind: sobol, points: 64, seed: 1}                 of laws; or kind random, latin_hypercube\n"
-         "    {file: points.csv}                                 from another program: a header of paths, a\n"
-         "                                                       line for each point. A column\n"
-         "                                                       \"threshold.angle [deg]\" is in degrees\n",
+     .forms = "    grid, or list                                      of values that are given\n"
+              "    {kind: sobol, points: 64, seed: 1}                 of laws; or kind random, latin_hypercube\n"
+              "    {file: points.csv}                                 from another program: a header of paths, a\n"
+              "                                                       line for each point. A column\n"
+              "                                                       \"threshold.angle [deg]\" is in degrees\n",
      .table = &campaign_design_table},
     {.name = "keep",
      .words = "fields none all extremes first",

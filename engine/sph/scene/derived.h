@@ -33,7 +33,7 @@ double sph_derived_spacing(const struct sph_inputs *inputs);         /* m, of th
 double sph_derived_fine_spacing(const struct sph_inputs *inputs);    /* m, of the target where the projectile hits */
 /* About the point of impact on a target that is graded. */
 struct sph_grading sph_derived_grading(const struct sph_inputs *inputs, const struct sph_shape *target);
-double sph_derived_particles(const struct sph_inputs *inputs);       /* of all bodies; an estimate for plans */
+double sph_derived_particles(const struct sph_inputs *inputs); /* of all bodies; an estimate for plans */
 /* s, until the bodies of an impact or collision meet; 0 for scenes without a gap. */
 double sph_derived_arrival(const struct sph_inputs *inputs);
 /* Speed at which two bodies meet over that of waves in the softer one; NaN unless both have strength. Below
