@@ -1,5 +1,6 @@
 /* `clast exponents STORE`: the exponent of every point under its four names, and a test of the power law. */
 #include "campaign/commands/commands.h"
+#include "campaign/terminal/words.h"
 
 struct options {
   int64_t draws;
@@ -41,10 +42,12 @@ static status print_pool(struct table *table, size_t draws, const struct ask_poo
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
+  int dimensions;
+  TRY(ask_pool_dimensions(store, &dimensions, error));
   TABLE table = table_new(line->format, stdout);
   table_column(table, "point_id", NULL);
-  table_column(table, "from", "kg");
-  table_column(table, OUTCOME_NAME(complete_mass), "kg");
+  table_column(table, "from", ask_pool_mass_unit(dimensions));
+  table_column(table, OUTCOME_NAME(complete_mass), ask_pool_mass_unit(dimensions));
   table_rare(table);
   table_columns(table, (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "N(>m)", "F(L)", "N(>L)",
                                              "N(>L)_hw95", "distance", NULL});
@@ -63,9 +66,9 @@ static status ask(struct store *store, const struct command_line *line, struct e
   TRY(table_end(table, error));
   if (table_for_people(line->format)) {
     uncertainty_doubts(&doubts, stderr);
-    fputs("clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete mass. "
-          "p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better\n",
-          stderr);
+    words_print(stderr, "",
+                "clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete "
+                "mass. p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better");
   }
   return STATUS_OK;
 }

@@ -7,6 +7,7 @@
 #include "analysis/statistics/statistics.h"
 #include "campaign/document/campaign.h"
 #include "campaign/print/print.h"
+#include "campaign/terminal/words.h"
 #include "engine/grow.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
@@ -43,15 +44,19 @@ static void print_scatter(const struct printing *printing, struct scatter *s) {
   if (printing->pools->share)
     sample_of_share(&s->mean, 0.95);
   row(printing, "runs", (double)s->n, NAN, NAN);
-  row(printing, "mean", s->mean.mean, s->mean.low, s->mean.high);
-  if (s->mean.weak)
+  row(printing, printing->people && s->mean.weak ? "mean (weak: few runs)" : "mean", s->mean.mean, s->mean.low,
+      s->mean.high);
+  if (s->mean.weak && !printing->people)
     row(printing, "mean is weak", 1, NAN, NAN);
   row(printing, "standard deviation", deviation, NAN, NAN);
   row(printing, "skewness", s->skewness, NAN, NAN);
   for (int q = 0; q < SCATTER_QUANTILES; q++)
     row(printing, names[q], s->quantile[q].value, s->quantile[q].low, s->quantile[q].high);
-  row(printing, printing->people ? "Hartigan's dip" : "dip", s->dip, NAN, NAN);
-  row(printing, printing->people ? "p of one mode (dip test)" : "dip p", s->dip_share, NAN, NAN);
+  const bool judged = !printing->people || isfinite(s->dip_share);
+  if (judged)
+    row(printing, printing->people ? "Hartigan's dip" : "dip", s->dip, NAN, NAN);
+  if (judged)
+    row(printing, printing->people ? "p of one mode (dip test)" : "dip p", s->dip_share, NAN, NAN);
   if (isfinite(s->between)) {
     row(printing, "lower mode", s->lower_mode, s->sorted[0], s->between);
     row(printing, "upper mode", s->upper_mode, s->between, s->sorted[s->n - 1]);
@@ -83,9 +88,10 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
   TRY(table_end(table, error));
   if (table_for_people(format)) {
     uncertainty_doubts(&doubts, stderr);
-    fputs("clast: low and high: 95 % intervals over runs; of a mode, the values that belong to it. Modes are peaks; p "
-          "of one mode below 0.05: the runs have two; of fewer than 20 runs it is not told (-)\n",
-          stderr);
+    words_print(
+        stderr, "",
+        "clast: low and high: 95 %% intervals over runs; of a mode, the values that belong to it. Modes are peaks; "
+        "p of one mode below 0.05: the runs have two; fewer than 20 runs cannot tell");
   }
   if (several)
     fputs("clast: pooled over points: the scatter holds that of the inputs; the intervals take the runs as "
@@ -381,14 +387,15 @@ status print_variance(struct store *store, const struct scatter_choice *choice, 
   TRY(print_parts(&cells, parts, format, error));
   if (table_for_people(format)) {
     uncertainty_doubts(&cells.doubts, stderr);
-    fprintf(stderr,
-            "clast: %zu points with %zu seeds each, which count alike. An input: variance of its means over the other "
-            "inputs%s what the inputs together have beyond their sum is their interaction. Low, high: 95 %% interval "
-            "over seeds\n",
-            cells.count, runs,
-            isnan(parts[0].share) ? ", which only a full grid tells: `clast sensitivity STORE.db` ranks those of other "
-                                    "designs;"
-                                  : ";");
+    words_print(
+        stderr, "",
+        "clast: %zu points with %zu seeds each, which count alike. An input: variance of its means over the other "
+        "inputs%s what the inputs together have beyond their sum is their interaction. Low, high: 95 %% interval "
+        "over seeds",
+        cells.count, runs,
+        isnan(parts[0].share) ? ", which only a full grid tells: `clast sensitivity STORE.db` ranks those of other "
+                                "designs;"
+                              : ";");
   }
   return STATUS_OK;
 }
@@ -671,15 +678,16 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
   TRY(print_indices(&p, format, error));
   if (!table_for_people(format))
     return STATUS_OK;
-  fprintf(stderr,
-          "clast: shares of the variance that an input explains alone, with 95 %% intervals, of %zu points%s; what the "
-          "shares leave is of inputs together%s. rank: inputs with overlapping intervals share it. Four times the "
-          "points halve the intervals\n",
-          p.data.points,
-          p.data.most > 1 ? ". of_means: variance of the means over seeds; of_runs: of single runs, with their scatter "
-                            "over seeds"
-                          : " with one seed each",
-          p.data.most > 1 ? "" : " and of the scatter over seeds");
+  words_print(
+      stderr, "",
+      "clast: shares of the variance that an input explains alone, with 95 %% intervals, of %zu points%s; what the "
+      "shares leave is of inputs together%s. rank: inputs with overlapping intervals share it. Four times the "
+      "points halve the intervals",
+      p.data.points,
+      p.data.most > 1 ? ". of_means: variance of the means over seeds; of_runs: of single runs, with their scatter "
+                        "over seeds"
+                      : " with one seed each",
+      p.data.most > 1 ? "" : " and of the scatter over seeds");
   uncertainty_doubts(&p.cells.doubts, stderr);
   return STATUS_OK;
 }
@@ -835,10 +843,10 @@ static status print_sobol(const struct reading *r, enum table_format format, str
                               : "seeds, different ones at each point");
   enum { ENOUGH = 64 }; /* measured: unit/test_sensitivity.c, coverage */
   if (r->whole < ENOUGH)
-    fprintf(stderr,
-            "clast: %zu blocks are few: 95 %% intervals held 0.80 to 0.96 of the true indices with 16 blocks, "
-            "0.88 to 0.96 with 32, 0.91 to 0.96 with %d\n",
-            r->whole, ENOUGH);
+    words_print(stderr, "",
+                "clast: %zu blocks are few: 95 %% intervals held 0.80 to 0.96 of the true indices with 16 blocks, "
+                "0.88 to 0.96 with 32, 0.91 to 0.96 with %d",
+                r->whole, ENOUGH);
   return table_end(table, error);
 }
 
@@ -867,10 +875,11 @@ static status print_morris(const struct reading *r, enum table_format format, st
     table_doubt_cells(table, &r->cells.doubts);
   }
   if (table_for_people(format))
-    fprintf(stderr,
-            "clast: elementary effects of %zu trajectories, for the whole range of an input. deviation: large beside "
-            "mean_absolute if the input is curved or acts with others; noise: what seeds alone would make\n",
-            r->whole);
+    words_print(
+        stderr, "",
+        "clast: elementary effects of %zu trajectories, for the whole range of an input. deviation: large beside "
+        "mean_absolute if the input is curved or acts with others; noise: what seeds alone would make",
+        r->whole);
   return table_end(table, error);
 }
 

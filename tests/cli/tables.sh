@@ -31,7 +31,7 @@ for command in "stats toy.db --by strain,angle" "stats toy.db --by strain,angle 
   table "$toy" $command
 done
 for command in scenes materials explain "query --list" "cite basalt-sphere" "explain basalt-sphere" "explain disc-explosion" \
-  "converge --list"; do
+  "converge --list" "explain conditions" "explain results" "explain campaign" "explain sph"; do
   table "$clast" $command
 done
 for view in runs points spectra estimates; do
@@ -53,4 +53,7 @@ expect 0 env COLUMNS=60 "$toy" stats toy.db --by strain,angle -Q main
 prints strain; prints angle
 expect 0 "$toy" stats toy.db --by strain,angle --csv
 prints "stick_strain,stick_angle,engine,results_version,points,n,failed,censored,excluded,largest_fraction_mean,largest_fraction_sd"
-done_after 83
+# masses of a scene in the plane are per metre of thickness
+expect 0 "$clast" simulate disc-explosion --set body.diameter='6 cm' --set stop.end_time='0.1 ms' --all
+grep -qE '^mean_fragment_mass .* kg/m ' out || fail "a mass of a scene in the plane in kg"
+done_after 92
