@@ -20,6 +20,7 @@ expect 0 "$clast" find "${search[@]}" -j 1 --picture disc.png
 head -2 out | paste -sd ' ' | grep -qE '^The share of runs with largest_fraction above 0.5 rises through 0.5 at threshold.strain = [0-9.]+ %( !)? \(95 % interval [0-9.]+ % to [0-9.]+ %\)\.( |$)' ||
   fail "the first line is not the answer"
 ok "the first line answers"
+grep -oE '[0-9.]+ ± [0-9.]+' out | awk '$1 - $3 < 0 || $1 + $3 > 1 { exit 1 }' || fail "an interval of a share beyond 0 or 1"
 says "at most 400 runs"
 runs=$(number disc.db "select count(*) from run")
 expect 0 "$clast" find "${search[@]}" -j 2 --json
