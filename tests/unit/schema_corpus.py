@@ -1,7 +1,9 @@
 """The independent side of schema_corpus.sh: ruamel.yaml (YAML 1.2) and jsonschema (draft 7) judge what our reader judged."""
+import functools
 import glob
 import json
 import multiprocessing
+import re
 import subprocess
 import sys
 
@@ -24,10 +26,31 @@ kinds = ("scene-dem", "scene-sph", "campaign")
 validators = {kind: Draft7Validator(json.load(open(f"{source}/schemas/{kind}.schema.json"))) for kind in kinds}
 
 
+@functools.cache
+def value_of(text):
+    return YAML(typ="safe", pure=True).load("x:" + text)["x"]
+
+
+def read(text):
+    """The document. Generated ones have few different values: each is read once, as the slow reader takes most of the time."""
+    levels = [(-1, {})]
+    lines = [re.fullmatch(r"( *)(\w+):(| .*)", line) for line in text.splitlines()] if isinstance(text, str) else [None]
+    for line, after in zip(lines, [*lines[1:], None]):
+        while line and len(line[1]) <= levels[-1][0]:
+            levels.pop()
+        if not line or line[2] in levels[-1][1]:  # of another form, or wrong
+            return YAML(typ="safe", pure=True).load(text)
+        nests = not line[3] and after and len(after[1]) > len(line[1])
+        levels[-1][1][line[2]] = {} if nests else value_of(line[3])
+        if nests:
+            levels.append((len(line[1]), levels[-1][1][line[2]]))
+    return levels[0][1]
+
+
 def verdict(kind, text):
     """good or bad, and why bad."""
     try:
-        document = YAML(typ="safe", pure=True).load(text)
+        document = read(text)
     except Exception as error:  # whatever the parser raises, it refuses
         return "bad", repr(error)[:200]
     for error in validators[kind].iter_errors(document):  # one is enough, and to find them all takes four times as long

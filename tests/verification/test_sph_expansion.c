@@ -122,11 +122,7 @@ static void motion_of_a_hot_ball(void **state) {
   static const struct {
     double energy, hot, most[2]; /* J/kg, of the radius, without and with the correction */
   } balls[] = {{2e7, 1, {0.01, 0.005}}, {1e8, 1, {0.1, 0.01}}, {2e7, 0.5, {0.1, 0.08}}};
-#ifdef __SANITIZE_ADDRESS__ /* a run costs twenty times as much */
-  const double finest = 1000;
-#else
   const double finest = getenv("CLAST_FULL") ? 64000 : 8000;
-#endif
   for (size_t b = 0; b < sizeof balls / sizeof *balls; b++) {
     const double unit = radius / sqrt(0.5 * balls[b].energy), times[TIMES] = {0.25 * unit, 0.5 * unit, unit};
     double exact[2][TIMES];
