@@ -55,7 +55,9 @@ uint64_t condition_before(const struct condition *list, const void *inputs, FILE
     set |= UINT64_C(1) << k;
     if (!out)
       continue;
-    fprintf(out, "%s: %s is %.3g, %s %g", c->word, c->number, number, c->least ? "below" : "above", c->bound);
+    fprintf(out, "%s: %s", c->word, c->fact ? c->fact : c->number);
+    if (!c->fact)
+      fprintf(out, " is %.3g, %s %g", number, c->least ? "below" : "above", c->bound);
     if (c->both) {
       double both[2];
       c->both(inputs, both);
@@ -115,7 +117,10 @@ enum condition_mark condition_mark(const struct condition *list, const char *wor
 }
 
 void condition_sentence(const struct condition *c, FILE *out) {
-  fprintf(out, "%s is %s %g (clast explain %s)\n", c->number, c->least ? "below" : "above", c->bound, c->word);
+  if (c->fact)
+    fprintf(out, "%s (clast explain %s)\n", c->fact, c->word);
+  else
+    fprintf(out, "%s is %s %g (clast explain %s)\n", c->number, c->least ? "below" : "above", c->bound, c->word);
 }
 
 void condition_tell(const struct condition *list, const char *words, uint64_t told, const char *before, FILE *out) {

@@ -23,7 +23,8 @@ struct condition_run {
 
 struct condition {
   const char *word;   /* in the result `warnings`; rows of one word stand together */
-  const char *number; /* what is compared with the bound: "fidelity.cfl" */
+  const char *number; /* what is compared with the bound: "fidelity.cfl". Or: */
+  const char *fact;   /* a sentence that is true where the number is above 0: "the target has no strength" */
   double bound;       /* doubtful above it */
   bool least;         /* doubtful below it instead */
   const char *doubt;  /* what is wrong beyond the bound; begins in lower case, without a full stop */
@@ -73,7 +74,7 @@ void condition_tell(const struct condition *list, const char *words, uint64_t to
 /* Is a word one of some words? */
 bool condition_has(const char *words, const char *word);
 
-/* Prints "number is above bound (clast explain WORD)". */
+/* Prints "number is above bound (clast explain WORD)", or the fact in its place. */
 void condition_sentence(const struct condition *condition, FILE *out);
 
 /* The first row of a word in a list; NULL when there is none. */

@@ -11,6 +11,7 @@ static FIELD_WORDS(
 
 #define RESULTS            dem_results
 #define REAL(path_, ...)   RESULT_REAL(path_, path_, __VA_ARGS__)
+#define SHARE(path_, ...)  RESULT_SHARE(path_, path_, __VA_ARGS__)
 #define COUNT(path_, doc_) RESULT_COUNT(path_, path_, .doc = doc_)
 
 static const struct field rows[] = {
@@ -27,7 +28,7 @@ static const struct field rows[] = {
     COUNT(broken, "Beams broken."),
     COUNT(broken_stretch, "Broken beams for which the stretching term of the breaking rule was the larger one."),
     COUNT(broken_bend, "Broken beams for which the bending term was the larger one."),
-    REAL(broken_share, "1", 0, .doc = "Broken beams over all beams."),
+    SHARE(broken_share, .doc = "Broken beams over all beams."),
     REAL(first_break, "s", 0, .doc = "Time of the first break; off when none broke."),
     REAL(last_break, "s", 0, .doc = "Time of the last break; off when none broke."),
     REAL(energy_input, "J/m", 0,
@@ -52,9 +53,10 @@ static const struct field rows[] = {
              "Change of the angular momentum about the origin, over the larger of its value at the start and the sum "
              "of the momenta times half of the body's size. Off for bodies between moving sides."),
     COUNT(late_breaks, "Beams broken in the second half of the run's time."),
-    REAL(largest_loss, "1", 0,
-         .doc = "Loss of M_1/M of the largest fragment in the second half of the run's time; 0 for a final run. Expect "
-                "about as much in the next doubling of the time."),
+    SHARE(largest_loss,
+          .doc =
+              "Loss of M_1/M of the largest fragment in the second half of the run's time; 0 for a final run. Expect "
+              "about as much in the next doubling of the time."),
     REAL(energy.kinetic, "J/m", 0, .doc = "Kinetic energy at the end."),
     REAL(energy.vibration, "J/m", 0,
          .doc = "Part of the kinetic energy that is motion inside fragments: neither their translation nor their "
@@ -76,10 +78,10 @@ static const struct field rows[] = {
     REAL(strength, "Pa", 0, .doc = "Largest stress under load.", .source = "K99 section 3.2"),
     REAL(failure_strain, "1", 0, .doc = "Strain at the largest stress.", .source = "K99 section 3.2"),
     REAL(final_strain, "1", 0, .doc = "Strain at the end of the loading."),
-    REAL(upright_share, "1", 0,
-         .doc =
-             "Compression: broken beams whose crack (the common side) lies within 30 degrees of the load's direction, "
-             "over all broken beams, up to the largest stress. Of isotropic sides it would be 1/3."),
+    SHARE(upright_share,
+          .doc =
+              "Compression: broken beams whose crack (the common side) lies within 30 degrees of the load's direction, "
+              "over all broken beams, up to the largest stress. Of isotropic sides it would be 1/3."),
     REAL(end_triangle_share, "1", 0,
          .doc = "Compression: share of beams broken inside the two 45-degree triangles on the confined ends, over the "
                 "same share outside them, up to the largest stress. 0 is intact triangles, 1 no pattern.",

@@ -91,6 +91,15 @@ static double dust(const void *inputs) {
   return in->fragments.dust_mass / (sph_derived_density(&in->target) * spacing * spacing * spacing);
 }
 
+/* Of a whole body 0 is right. */
+static double dust_of_pieces(const struct condition_run *r) {
+  return r->outcome->fragment_count > 1 ? dust(r->inputs) : (double)NAN;
+}
+
+static double largest(const struct condition_run *r) {
+  return r->outcome->largest_fraction * r->outcome->total_mass / r->outcome->complete_mass;
+}
+
 /* Distance over the spacing up to which particles at rest belong together, over the distance of nearest neighbours: of
  * irregular bodies, the distance from which all particles hang together (1.07 spacings with 300 particles, 1.11 with
  * 10 000). */
@@ -109,6 +118,29 @@ static double cells(const void *inputs) {
              : (double)NAN;
 }
 
+/* Width of the cells over the coarsest spacing of the target. */
+static double narrow(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return in->crack_cell.width > 0 && sph_derived_scene_cracks(in) ? in->crack_cell.width / sph_derived_spacing(in)
+                                                                  : (double)NAN;
+}
+
+/* The larger of both viscosities, each over the largest usual one. */
+static double viscous(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return fmax(in->viscosity.alpha / 2, in->viscosity.beta / 6);
+}
+
+static double liquid(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return in->kind == SPH_IMPACT && !in->target.strength;
+}
+
+static double rough(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return in->kind == SPH_VIBRATION && in->target.turned;
+}
+
 static double uncorrected(const void *inputs) {
   const struct sph_inputs *in = inputs;
   return in->kind == SPH_VIBRATION && !in->gradient_correction.on ? 1 : (double)NAN;
@@ -117,6 +149,11 @@ static double uncorrected(const void *inputs) {
 static double amplitude(const void *inputs) {
   const struct sph_inputs *in = inputs;
   return in->kind == SPH_VIBRATION ? in->vibration.speed / sph_derived_wave_speed(&in->target) : (double)NAN;
+}
+
+/* The same distance, over that of the second neighbours. */
+static double reach_too_far(const void *inputs) {
+  return reach(inputs) / sqrt(2);
 }
 
 static double reach_of_start(const struct condition_run *r) {
@@ -256,6 +293,20 @@ static double quiet(const void *inputs) {
   const struct sph_inputs *in = inputs;
   return in->kind == SPH_IMPACT && sph_derived_cracks(&in->target) ? in->stop.quiet_time / sph_derived_crossing(in)
                                                                    : (double)NAN;
+}
+
+static double growth(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return sph_derived_cracks(&in->target) ? in->stop.quiet_growth : (double)NAN;
+}
+
+static double cut(const struct condition_run *r) {
+  return r->outcome->state == OUTCOME_END_TIME;
+}
+
+/* Ejecta of a body that is whole. */
+static double attached(const struct condition_run *r) {
+  return r->outcome->fragment_count == 1 ? results_of(r)->ejecta.mass_fraction : (double)NAN;
 }
 
 /* Has the other body changed the target's momentum? Few particles overlap, and press, later than their surfaces meet.
@@ -432,7 +483,7 @@ static double box(const struct condition_run *r) {
 }
 
 static double hot(const struct condition_run *r) {
-  return share_of(run_of(r), is_hot_and_whole, NULL);
+  return run_of(r)->inputs.target.strength ? share_of(run_of(r), is_hot_and_whole, NULL) : (double)NAN;
 }
 
 /* ---- inputs without effect ---- */
@@ -440,6 +491,21 @@ static double hot(const struct condition_run *r) {
 static double no_flaws(const void *inputs) {
   const struct sph_inputs *in = inputs;
   return !sph_derived_scene_cracks(in) && (in->crack_cell.width > 0 || in->crack_front.front != SPH_CRACK_FRONT_NONE);
+}
+
+/* Is an input not the default of its row? */
+static bool is_given(const char *path, double value) {
+  const double usual = field_find(&sph_inputs, path, NULL)->number;
+  return value < usual || value > usual;
+}
+
+/* An input of fracture of a scene that cannot crack. */
+static double no_fracture(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return !sph_derived_scene_cracks(in) && in->target.strength &&
+         (is_given("stop.quiet_growth", in->stop.quiet_growth) ||
+          is_given("fidelity.damage_step", in->fracture.damage_step) ||
+          (in->crack_surfaces.on && !is_porous(&in->target)));
 }
 
 static double no_lattice(const void *inputs) {
@@ -489,10 +555,25 @@ static double poisson(const void *inputs) {
   return body_poisson(worse(inputs, body_poisson, -1));
 }
 
+static double body_rubbery(const struct sph_body_inputs *body) {
+  return sph_derived_cracks(body) ? body_poisson(body) : (double)NAN;
+}
+
+static double rubbery(const void *inputs) {
+  return body_rubbery(worse(inputs, body_rubbery, 1));
+}
+
+static void moduli_of(const struct sph_body_inputs *body, double both[2]) {
+  both[0] = sph_material_bulk_modulus(&body->material);
+  both[1] = body->material.elastic.shear_modulus;
+}
+
 static void both_of_poisson(const void *inputs, double both[2]) {
-  const struct sph_material *material = &worse(inputs, body_poisson, -1)->material;
-  both[0] = sph_material_bulk_modulus(material);
-  both[1] = material->elastic.shear_modulus;
+  moduli_of(worse(inputs, body_poisson, -1), both);
+}
+
+static void both_of_rubbery(const void *inputs, double both[2]) {
+  moduli_of(worse(inputs, body_rubbery, 1), both);
 }
 
 /* Compliance of the pores along the elastic branch over that along the crush curve, where the two meet. */
@@ -533,6 +614,10 @@ static void both_slopes(const void *inputs, double both[2]) {
   "largest_fraction second_fraction dust_fraction undamaged_fraction mean_damage largest.bare_fraction "               \
   "largest.veneer_fraction largest.dynamic_fraction"
 
+#define OF_THE_LARGEST                                                                                                 \
+  "largest_fraction second_fraction mean_fragment_mass mean_fragment_mass_rest largest.veneer_fraction "               \
+  "largest.dynamic_fraction largest.axis_middle largest.axis_short largest.speed"
+
 const struct condition sph_conditions[] = {
     CONDITION("drift", .number = "the error of the energy ledger, over the energy put in,",
               .bound = CONDITION_LARGEST_DRIFT, .doubt = "numerical errors made or lost more than 1 % of the energy",
@@ -570,24 +655,47 @@ const struct condition sph_conditions[] = {
               .doubt = "the wall is not resolved, and the speed of the rebound moves with the particles",
               .reason = "rings of 4 come back as fast as those of 5 within 2 % (tests/verification/sph_rings.md)",
               .remedy = "take more particles", .results = ALL_OF_AN_IMPACT, .before = layers),
+    CONDITION("single", .number = "the mass of the largest fragment over complete_mass, that of 9.5 particles,",
+              .bound = 1, .least = true, .doubt = "no fragment is left that the particles resolve",
+              .reason = "ten particles are the least that are more than their surface", .remedy = "take more particles",
+              .results = OF_THE_LARGEST, .after = largest),
+    CONDITION("viscous", .number = "the larger of viscosity.alpha over 2 and viscosity.beta over 6", .bound = 1,
+              .doubt = "artificial viscosity takes energy from waves that are no shocks",
+              .reason = "disruption with 2500 particles: M_1/M 0.64, 0.71, 0.73 and undamaged 0.39, 0.49, 0.58 with an "
+                        "alpha of 1.5, 3 and 15; undamaged 0.40 and 0.42 with a beta of 6 and 12",
+              .remedy = "leave both out", .before = viscous),
+    CONDITION("liquid", .fact = "the target is a liquid (target.strength: false)",
+              .doubt = "a liquid is never damaged, so its matter counts as whole", .reason = "damage means cracks",
+              .remedy = "use masses of the crater and the ejecta", .results = ALL_OF_A_BODY, .withheld = true,
+              .before = liquid),
     CONDITION("dust", .number = "fragments.dust_mass in particles", .bound = 2, .least = true,
               .doubt = "dust is then no fragment at all, or single particles",
               .reason = "a fragment of one particle has no strength of its own",
               .remedy = "take more particles, or give a larger fragments.dust_mass", .results = "dust_fraction",
-              .withheld = true, .before = dust),
+              .withheld = true, .before = dust, .after = dust_of_pieces),
     CONDITION("links",
               .number = "the distance up to which particles belong together, over that of neighbours at the start,",
               .bound = 1, .least = true, .doubt = "a whole body counts as many fragments",
               .reason = "geometry of the particles",
               .remedy = "give a larger fragments.link_length: 1.36 over fidelity.smoothing", .before = reach,
               .after = reach_of_start),
+    CONDITION("links", .number = "the distance up to which particles belong together, over that of second neighbours,",
+              .bound = 1, .doubt = "fragments that lie apart count as one", .reason = "geometry of the particles",
+              .remedy = "leave out fragments.link_length", .before = reach_too_far),
+    CONDITION("cells", .number = "fracture.cell over the particle spacing", .bound = 1, .least = true,
+              .doubt = "a cell holds one particle or none: each particle cracks by itself, as without cells",
+              .reason = "geometry", .remedy = "take more particles, or a larger fracture.cell", .before = narrow),
     CONDITION("cells", .number = "fracture.cell over the cube root of the target's volume", .bound = 0.25,
               .doubt = "cells crack as one: a body of few cells is as strong as one of them, and breaks into them",
               .reason = "our choice: four cells across the body", .remedy = "give a smaller fracture.cell",
               .before = cells),
-    CONDITION("soft", .number = "a vibration without method.gradient_correction", .bound = 0,
+    CONDITION("soft", .fact = "the bar vibrates without method.gradient_correction",
               .doubt = "the sides of the bar are too soft", .reason = "elastic-bar rings 9 % too low without it",
               .remedy = "set method.gradient_correction: true", .results = "frequency", .before = uncorrected),
+    CONDITION("soft", .fact = "the bar vibrates with target.turned",
+              .doubt = "a lattice across the bar makes rough, soft sides",
+              .reason = "elastic-bar rings 6, 2 and 2 % lower with 300, 2000 and 8000 particles",
+              .remedy = "set target.turned: false", .results = "frequency", .before = rough),
     CONDITION("amplitude", .number = "vibration.speed over the speed of waves", .bound = 0.01,
               .doubt = "the strain is so large that the frequency is not that of small vibrations",
               .reason = "elastic-bar rings as at 0.1 m/s up to 0.0065, and 4 % lower at 0.022",
@@ -648,6 +756,11 @@ const struct condition sph_conditions[] = {
               .least = true, .doubt = "the run may end before waves have come to all flaws",
               .reason = "after that time all of the body has been loaded once", .remedy = "leave out stop.quiet_time",
               .before = quiet),
+    CONDITION("quiet", .number = "stop.quiet_growth", .bound = 0.01,
+              .doubt = "the run ends while the body goes on breaking", .reason = "our choice; usual is 0.001",
+              .remedy = "leave out stop.quiet_growth", .before = growth),
+    CONDITION("cut", .fact = "stop.end_time ended the run while damage grew", .doubt = "more may break after that",
+              .reason = "the run's state is end-time", .remedy = "raise stop.end_time", .after = cut),
     CONDITION("early", .number = "the time that a wave needs to cross the body after the hit, over the simulated time,",
               .bound = 1, .doubt = "the run ended before anything could break",
               .reason = "a body can break from the hit until a wave has crossed it",
@@ -660,6 +773,12 @@ const struct condition sph_conditions[] = {
     CONDITION("event", .number = "the last stress over the largest one", .bound = 0.9,
               .doubt = "the rod has not failed: the largest stress so far is no strength", .reason = "our choice",
               .remedy = "give a longer stop.end_time", .results = "peak.stress peak.strain peak.time", .withheld = true,
+              .after = unbroken),
+    CONDITION("event", .number = "the last stress over the largest one", .bound = 0.9,
+              .doubt = "the rod has not failed: it is still one piece, or its cracks are not through",
+              .reason = "our choice", .remedy = "give a longer stop.end_time",
+              .results = "cracks largest_fraction second_fraction dust_fraction mean_fragment_mass "
+                         "mean_fragment_mass_rest undamaged_fraction mean_damage",
               .after = unbroken),
     CONDITION(
         "apart",
@@ -683,6 +802,10 @@ const struct condition sph_conditions[] = {
               .doubt = "the target gains more by that: matter of the projectile does not count as ejecta",
               .reason = "our choice", .remedy = "add the momentum of the projectile",
               .results = "ejecta.momentum_enhancement", .after = bounced),
+    CONDITION("attached", .fact = "matter moves out of the target, which is in one piece",
+              .doubt = "nothing has come off: a part of the body moves outwards", .reason = "a fragment that is one",
+              .remedy = "raise crater.ejection_speed, or give a longer stop.end_time",
+              .results = "ejecta.mass_fraction ejecta.momentum ejecta.momentum_enhancement", .after = attached),
     CONDITION("wide", .number = "the larger of the crater's depth and width over those of the target", .bound = 0.5,
               .doubt = "the crater is as large as the box that stands for a half-space", .reason = "our choice",
               .remedy = "take a larger target",
@@ -710,14 +833,19 @@ const struct condition sph_conditions[] = {
         .bound = 0.01, .doubt = "hot matter that never was in tension has no damage, and counts as whole",
         .reason = "our choice", .remedy = "count energies, not damage", .results = ALL_OF_A_BODY, .withheld = true,
         .after = hot),
-    CONDITION("effect", .number = "fracture.cell or fracture.front where no body has flaws", .bound = 0,
+    CONDITION("effect", .fact = "fracture.cell or fracture.front is given, and no body has flaws",
               .doubt = "it has no effect: nothing cracks", .reason = "modules crack_cell and crack_front need flaws",
               .remedy = "give the material weibull.m and weibull.k, or leave it out", .results = "",
               .before = no_flaws),
-    CONDITION("effect", .number = "target.lattice: cubic with fidelity.graded", .bound = 0,
+    CONDITION(
+        "effect",
+        .fact = "stop.quiet_growth, fidelity.damage_step or method.crack_surfaces is given, and no body has flaws",
+        .doubt = "it has no effect: nothing cracks", .reason = "they act on damage",
+        .remedy = "give the material weibull.m and weibull.k, or leave it out", .results = "", .before = no_fracture),
+    CONDITION("effect", .fact = "target.lattice is cubic with fidelity.graded",
               .doubt = "it has no effect: a graded body has irregular points", .reason = "engine/sph/README.md",
               .remedy = "leave it out", .results = "", .before = no_lattice),
-    CONDITION("effect", .number = "fidelity.spacings_per_radius beside another fidelity.fine_spacing", .bound = 0,
+    CONDITION("effect", .fact = "fidelity.spacings_per_radius is given beside another fidelity.fine_spacing",
               .doubt = "it has no effect: fidelity.fine_spacing decides",
               .reason = "a value that is given wins over one that follows from others",
               .remedy = "leave one of them out", .results = "", .before = overruled),
@@ -729,6 +857,9 @@ const struct condition sph_conditions[] = {
     CONDITION("poisson", .number = "Poisson's ratio, by material.bulk_modulus and material.shear_modulus,", .bound = 0,
               .least = true, .doubt = "no rock widens when it is pulled", .reason = "K below 2/3 of the shear modulus",
               .remedy = "correct one of them", .before = poisson, .both = both_of_poisson, .unit = "Pa"),
+    CONDITION("poisson", .number = "Poisson's ratio of a body that cracks", .bound = 0.45,
+              .doubt = "no rock is so near to a liquid", .reason = "rocks have 0.05 to 0.4",
+              .remedy = "correct one of them", .before = rubbery, .both = both_of_rubbery, .unit = "Pa"),
     CONDITION("crush",
               .number =
                   "the compliance of the pores on the elastic branch, over that on the crush curve where the two meet,",
