@@ -23,9 +23,9 @@ ok "the series lists four snapshots and their times"
 # All snapshots in one picture, a row of four; and a movie with as many frames as there are snapshots, each in the colours of
 # the picture: the lightest of the damage is in a table of colours.
 expect 0 "$clast" picture basalt-sphere.hdf.series all.png
-same "$(grep -c 'marked (!)' err)" 1 "one line on doubts, of the last snapshot"
+same "$(grep -c 'marked (!).*coarse' err)" 1 "one line on doubts, of the last snapshot"
 expect 0 "$clast" picture basalt-sphere.hdf.series movie.gif
-same "$(grep -c 'marked (!)' err)" 1 "one line on doubts, of the last frame"
+same "$(grep -c 'marked (!).*coarse' err)" 1 "one line on doubts, of the last frame"
 python - <<'PY'
 import struct
 wide, tall = struct.unpack(">II", open("all.png", "rb").read()[16:24])

@@ -34,7 +34,7 @@ client() { # client WHAT...: prints the server's messages together with the clie
 cat >disc.yaml <<'YAML'
 name: disc
 scene: disc-explosion
-set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.end_time: 1 ms}
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.least_time: 1 ms}
 vary:
   threshold.strain: [2 %, 5 %]
   threshold.angle: [2 deg, 6 deg]

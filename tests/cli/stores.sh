@@ -88,7 +88,8 @@ one changed
 expect 0 "$clast" run changed.yaml -j 1 --quiet
 one changed '' '' 2
 expect 0 "$clast" run changed.yaml -j 1 --quiet
-silent err
+grep -v 'marked (!)' err >told || true # so short a run is cut off
+silent told
 sed -i 's/set: {/set: {contact.friction: 0.3, /' changed.yaml
 expect 0 "$clast" run changed.yaml -j 1 --quiet
 says "contact.friction ("
