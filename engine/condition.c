@@ -116,11 +116,17 @@ enum condition_mark condition_mark(const struct condition *list, const char *wor
   return worst;
 }
 
-void condition_sentence(const struct condition *c, FILE *out) {
+char *condition_says(const struct condition *c, char text[CONDITION_SAYS]) {
   if (c->fact)
-    fprintf(out, "%s (clast explain %s)\n", c->fact, c->word);
+    snprintf(text, CONDITION_SAYS, "%s", c->fact);
   else
-    fprintf(out, "%s is %s %g (clast explain %s)\n", c->number, c->least ? "below" : "above", c->bound, c->word);
+    snprintf(text, CONDITION_SAYS, "%s is %s %g", c->number, c->least ? "below" : "above", c->bound);
+  return text;
+}
+
+void condition_sentence(const struct condition *c, FILE *out) {
+  char says[CONDITION_SAYS];
+  fprintf(out, "%s (clast explain %s)\n", condition_says(c, says), c->word);
 }
 
 void condition_tell(const struct condition *list, const char *words, uint64_t told, const char *before, FILE *out) {

@@ -74,7 +74,11 @@ void condition_tell(const struct condition *list, const char *words, uint64_t to
 /* Is a word one of some words? */
 bool condition_has(const char *words, const char *word);
 
-/* Prints "number is above bound (clast explain WORD)", or the fact in its place. */
+/* Writes "number is above bound", or the fact. Returns `text`. */
+enum { CONDITION_SAYS = 256 };
+char *condition_says(const struct condition *condition, char text[CONDITION_SAYS]);
+
+/* Prints that and " (clast explain WORD)". */
 void condition_sentence(const struct condition *condition, FILE *out);
 
 /* The first row of a word in a list; NULL when there is none. */

@@ -67,11 +67,9 @@ static bool explain_conditions(const char *word) {
       if (word && strcmp(word, c->word) != 0)
         continue;
       found = true;
-      if (c->fact)
-        words_print(stdout, "- ", "**%s** (%s): a run has this word when %s.", c->word, engine_at(i)->name, c->fact);
-      else
-        words_print(stdout, "- ", "**%s** (%s): a run has this word when %s is %s %g.", c->word, engine_at(i)->name,
-                    c->number, c->least ? "below" : "above", c->bound);
+      char says[CONDITION_SAYS];
+      words_print(stdout, "- ", "**%s** (%s): a run has this word when %s.", c->word, engine_at(i)->name,
+                  condition_says(c, says));
       words_print(stdout, "  ", "Then: %s.", c->doubt);
       words_print(stdout, "  ", "%s: %s.", c->fact ? "The reason" : "The bound", c->reason);
       words_print(stdout, "  ", "What to do: %s.", c->remedy);

@@ -431,8 +431,8 @@ static bool has_no_effect(const struct scene *scene, const char *column) {
     row = strcmp(name, column) == 0 ? &scene->kind->inputs->rows[i] : NULL;
   }
   for (size_t k = 0; row && list && list[k].word; k++)
-    if (broken >> k & 1 && strcmp(list[k].word, "effect") == 0 && strstr(list[k].number, row->path) &&
-        !strstr(list[k].doubt, row->path))
+    if (broken >> k & 1 && strcmp(list[k].word, "effect") == 0 &&
+        strstr(list[k].fact ? list[k].fact : list[k].number, row->path) && !strstr(list[k].doubt, row->path))
       return true;
   return false;
 }

@@ -387,9 +387,9 @@ static status add_sentences(struct reading *reading, struct error *error) {
   TRY(sql_prepare(reading->page->store.db, "INSERT INTO doubt_word VALUES (?1, ?2, ?3)", &insert, doing, error));
   for (size_t e = 0; e < engine_count(); e++)
     for (const struct condition *c = engine_at(e)->conditions; c && c->word; c++) {
+      char says[CONDITION_SAYS];
       OWNED char *text = NULL;
-      if (asprintf(&text, "%s is %s %g: %s; %s", c->number, c->least ? "below" : "above", c->bound, c->doubt,
-                   c->remedy) < 0)
+      if (asprintf(&text, "%s: %s; %s", condition_says(c, says), c->doubt, c->remedy) < 0)
         memory_refused();
       SQL_BIND(insert, sql_of_text(engine_at(e)->name), sql_of_text(c->word), sql_of_text(text));
       TRY(sql_run(insert, doing, error));
