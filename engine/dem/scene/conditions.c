@@ -198,7 +198,7 @@ const struct condition dem_conditions[] = {
               .doubt = "it has no effect: there is no damping", .reason = "K99 eqs. 3 and 4",
               .remedy = "give contact.normal_damping, or contact.tangential_damping and contact.friction",
               .results = "", .before = undamped),
-    CONDITION("grains", .number = "the number of grains", .bound = 30, .least = true,
+    CONDITION("grains", .number = "the number of grains", .bound = 20, .least = true,
               .doubt = "shares of the mass go by steps of a grain, and most grains lie at the surface",
               .reason = "our choice", .remedy = "take a larger body, or a smaller grain.spacing", .before = grains),
     CONDITION("single", .number = "the number of fragments of two grains or more", .bound = 1, .least = true,
