@@ -98,8 +98,10 @@ static status read_data(struct fit *fit, struct store *store, const struct scene
           of_datum[r] = fit_transform(datum, value);
     TRY(answer_end(&runs));
   }
-  return point ? ask_doubts(store, &(struct ask_doubts_choice){.point = point}, results, &fit->all_doubts, error)
-               : STATUS_OK;
+  if (point)
+    TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = point}, results, &fit->all_doubts, error));
+  fit->all_doubts.chosen = NULL; /* it is the store's, which is closed when the answer is drawn */
+  return STATUS_OK;
 }
 
 /* Reads the replicates of the shot's data at z. A point that cannot be run has no values. */
