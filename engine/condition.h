@@ -33,6 +33,7 @@ struct condition {
   const char
       *results;  /* the results that rest on it: paths, separated by spaces. NULL: all; "": none, it is only told */
   bool withheld; /* beyond the bound these results have no meaning */
+  const char *inputs; /* of the word "effect": the inputs that then have none; paths, separated by spaces */
   /* The number; NaN where the condition does not apply. At least one of the two. A condition with both is judged at the
    * end by `after` alone. */
   double (*before)(const void *inputs);

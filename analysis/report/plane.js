@@ -49,7 +49,7 @@ export function cells(from, quantity) {
   const modes = has(from, 'modes') ? new Map(ask(from, questions.modes, {quantity}).map((row) => [row.point_id, row])) : new Map();
   const doubts = new Map(doubtsOf(from, quantity).map((row) => [row.point_id, row]));
   const judged = has(from, 'modes') && quantity !== 'beta'; // not on whole stores, and an exponent belongs to all runs
-  const enough = 20; // runs: of fewer, the test finds chance more often than modes (SCATTER_MODES_RUNS)
+  const enough = Number(from.facts.modes_runs); // of fewer, the test finds chance more often than modes
   return from.points.map((point) => {
     const {mean = null, hw95 = null, low95 = null, high95 = null, weak = null} = known.get(point.point_id) ?? {};
     const {half_width: resolution = null, verdict = null} = studied.get(point.point_id) ?? {};

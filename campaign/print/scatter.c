@@ -420,7 +420,7 @@ static void release_points(struct from_points *p) {
   free(p->runs);
 }
 
-/* Does a condition `effect` of the scene name the input? Its doubt names what acts instead. */
+/* Does a condition `effect` of the scene say so of the input? */
 static bool has_no_effect(const struct scene *scene, const char *column) {
   const struct condition *list = scene->kind->conditions;
   const uint64_t broken = condition_before(list, scene->inputs, NULL);
@@ -431,8 +431,7 @@ static bool has_no_effect(const struct scene *scene, const char *column) {
     row = strcmp(name, column) == 0 ? &scene->kind->inputs->rows[i] : NULL;
   }
   for (size_t k = 0; row && list && list[k].word; k++)
-    if (broken >> k & 1 && strcmp(list[k].word, "effect") == 0 &&
-        strstr(list[k].fact ? list[k].fact : list[k].number, row->path) && !strstr(list[k].doubt, row->path))
+    if (broken >> k & 1 && list[k].inputs && condition_has(list[k].inputs, row->path))
       return true;
   return false;
 }

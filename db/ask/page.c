@@ -366,6 +366,7 @@ static status copy_runs(struct reading *reading, struct store *store, struct err
                 sqlite3_str_finish(columns), every, every > 1 ? 1 : 0, replicates),
       "runs", 15 + axis_count));
   TRY(set_fact(reading->page, "results_left_out", left_out, error));
+  TRY(set_fact(reading->page, "modes_runs", SCATTER_MODES_RUNS, error));
   TRY(set_fact(reading->page, "replicates_kept", (size_t)replicates, error));
   return set_fact(reading->page, "runs_of_every_nth_point", (size_t)every, error);
 }

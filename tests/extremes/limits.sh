@@ -34,7 +34,7 @@ expect 0 "$clast" plan doubt.yaml --no-trial
 prints "warning   1 of 2 points: step: fidelity.time_step over the longest stable step is"
 expect 0 "$clast" run doubt.yaml -j 2
 says "warning: 1 of 2 points: step:"
-same "$(number doubt.db "select group_concat((time_step * 1e6) || ':' || replace(warnings, ', ', '+'), ' ') from (select distinct time_step, warnings from run order by 1)")" "1.0: 5.0:drift+step 5.0:step" "words in the store"
+same "$(number doubt.db "select group_concat((time_step * 1e6) || ':' || replace(warnings, ', ', '+'), ' ') from (select distinct time_step, warnings from run order by 1, 2)")" "1.0: 5.0:drift+step 5.0:step" "words in the store"
 expect 0 "$clast" extremes doubt.db --json
 prints '"warned": 3'
 expect 0 "$clast" extremes doubt.db

@@ -37,7 +37,12 @@ static void rows_are_well_formed(void **state) {
       sentence_of(c->remedy);
       assert_true(c->before || c->after);
       assert_true(isfinite(c->bound));
+      assert_true((strcmp(c->word, "effect") == 0) == (c->inputs != NULL));
       char paths[1000], *rest = NULL;
+      snprintf(paths, sizeof paths, "%s", c->inputs ? c->inputs : "");
+      for (char *path = strtok_r(paths, " ", &rest); path; path = strtok_r(NULL, " ", &rest))
+        if (!field_find(kind->inputs, path, NULL))
+          fail_msg("%s, %s: %s is no input", kind->name, c->word, path);
       snprintf(paths, sizeof paths, "%s", c->results ? c->results : "");
       for (char *path = strtok_r(paths, " ", &rest); path; path = strtok_r(NULL, " ", &rest))
         if (!field_find(&outcome_table, path, NULL) && !field_find(kind->results, path, NULL))
@@ -131,12 +136,12 @@ static const struct twin {
   const char *word, *scene;
   const char *common[9], *beyond[6], *sound[6];
 } twins[] = {
-    /* after a smooth ramp half of the way at full speed is enough */
+    /* after a smooth ramp two thirds of the way at full speed are enough */
     {"load",
      "uniaxial",
      {"grain.disorder=0", "loading.ramp=10 ms"},
      {"loading.rate=0.6 1/s"},
-     {"loading.rate=0.56 1/s"}},
+     {"loading.rate=0.5 1/s"}},
     {"amplitude",
      "uniaxial",
      {"grain.disorder=0", "body.columns=6", "body.rows=8"},

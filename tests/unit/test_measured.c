@@ -182,6 +182,14 @@ static void forms_of_laboratories(void **state) {
   }
 }
 
+/* Runs of masses 4, 3, 2, 1. */
+static void one_to_four(size_t runs, size_t *first, double *masses) {
+  for (size_t i = 0; i < 4 * runs; i++)
+    masses[i] = (double)(4 - i % 4);
+  for (size_t r = 0; r <= runs; r++)
+    first[r] = 4 * r;
+}
+
 /* A sieve table compares shares of mass. Runs of masses 1, 2, 3, 4: shares of the mass from 1, 2, 3, 4 kg on are 1,
  * 0.9, 0.7, 0.4. */
 static void sieves(void **state) {
@@ -189,10 +197,7 @@ static void sieves(void **state) {
   enum { RUNS = MATCH_RUNS };
   size_t first[RUNS + 1];
   double masses[4 * RUNS];
-  for (size_t r = 0; r <= RUNS; r++)
-    first[r] = 4 * r;
-  for (int i = 0; i < 4 * RUNS; i++)
-    masses[i] = 4 - i % 4;
+  one_to_four(RUNS, first, masses);
   const struct pooled_runs runs = {RUNS, first, masses};
   struct measured m;
   struct measured_match match;
@@ -227,10 +232,7 @@ static void distances(void **state) {
   enum { RUNS = MATCH_RUNS };
   size_t first[RUNS + 1];
   double masses[4 * RUNS];
-  for (size_t r = 0; r <= RUNS; r++)
-    first[r] = 4 * r;
-  for (int i = 0; i < 4 * RUNS; i++)
-    masses[i] = 4 - i % 4;
+  one_to_four(RUNS, first, masses);
   const struct pooled_runs runs = {RUNS, first, masses};
   struct measured_match match;
   double mass[3] = {2.5, 4, 9}, above[3] = {3, 2, 2};
