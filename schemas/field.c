@@ -44,8 +44,12 @@ bool field_nearest(const struct field_table *table, const char *path, char near[
   field_guess(table, &guess);
   *near = 0;
   const bool sure = dot && guess.nearest && ends_with(guess.nearest, word);
-  for (const struct field *row = NULL; !sure && (row = field_ending(table, word, row));)
-    text_append(near, FIELD_NEAR_SIZE, "%s%s", *near ? "' or '" : "", row->path);
+  const struct field *row = sure ? NULL : field_ending(table, word, NULL);
+  while (row) {
+    const struct field *const next = field_ending(table, word, row);
+    text_append(near, FIELD_NEAR_SIZE, "%s%s", !*near ? "" : next ? "', '" : "' or '", row->path);
+    row = next;
+  }
   if (!*near && guess.nearest)
     text_append(near, FIELD_NEAR_SIZE, "%s", guess.nearest);
   return *near;

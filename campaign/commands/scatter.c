@@ -9,22 +9,25 @@ struct options {
   struct chart_options chart;
 };
 
-/* `half_width` as the user wrote it; NULL: NaN. */
-static status read_half_width(const char *text, double *half_width, struct error *error) {
-  *half_width = NAN;
+/* The half width as the user wrote it; NULL: NaN. In per cent it is a share of the mean, as in `seeds.until`. */
+static status read_half_width(const char *text, struct scatter_choice *choice, struct error *error) {
   if (!text)
     return STATUS_OK;
   char *end;
-  *half_width = strtod(text, &end);
-  if (*end || !(*half_width > 0) || isinf(*half_width))
-    return status_fail(error, STATUS_USAGE, "--half-width is a number above 0 in SI units, not '%s'", text);
+  choice->half_width = strtod(text, &end);
+  choice->relative = strcmp(end + strspn(end, " "), "%") == 0;
+  if ((*end && !choice->relative) || !(choice->half_width > 0) || isinf(choice->half_width))
+    return status_fail(
+        error, STATUS_USAGE,
+        "--half-width is a number above 0 in SI units, or a share of the mean such as \"5 %%\", not '%s'", text);
+  choice->half_width /= choice->relative ? 100 : 1;
   return STATUS_OK;
 }
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  struct scatter_choice choice = {{.by = options->by}, options->quantity, NAN};
-  TRY(read_half_width(options->half_width, &choice.half_width, error));
+  struct scatter_choice choice = {{.by = options->by}, options->quantity, NAN, false};
+  TRY(read_half_width(options->half_width, &choice, error));
   if (options->split)
     return print_variance(store, &choice, line->format, error);
   TRY(options->plot ? print_scatter_plots(store, &choice, options->ascii, error)

@@ -44,7 +44,8 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
 struct scatter_choice {
   struct ask_pool_choice pool;
   const char *quantity;
-  double half_width; /* wanted half width of the mean's interval, in the quantity's unit; NaN: none */
+  double half_width; /* wanted for the interval of the mean, in the quantity's unit; NaN: none */
+  bool relative;     /* half_width is a share of the mean */
 };
 
 /* Prints a row per statistic of each pool. */

@@ -63,7 +63,8 @@ static void print_scatter(const struct printing *printing, struct scatter *s) {
     row(printing, "share of upper mode", s->upper_share, s->upper_low, s->upper_high);
   }
   if (isfinite(wanted))
-    row(printing, "runs needed", needed(deviation, wanted), NAN, NAN);
+    row(printing, "runs needed", needed(deviation, printing->choice->relative ? wanted * fabs(s->mean.mean) : wanted),
+        NAN, NAN);
 }
 
 status print_scatter_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,

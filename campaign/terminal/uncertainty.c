@@ -10,15 +10,19 @@
 enum { MOST_DECIMALS = 15 };
 static const double MOST_DIGITS = 1e15; /* a double has no more digits than that */
 
+/* Decade of the last digit that an error allows: one digit of the error, two after a leading 1. Rounding moves it by at
+ * most a quarter. */
+static double last_decade(double half_width) {
+  const double leading = floor(log10(half_width));
+  return half_width < 2 * pow(10, leading) ? leading - 1 : leading;
+}
+
 void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_TEXT]) {
   if (!(half_width > 0)) {
     snprintf(text, UNCERTAINTY_TEXT, "%.4g", value);
     return;
   }
-  /* One digit of the error, two after a leading 1: rounding moves it by at most a quarter. */
-  double leading = floor(log10(half_width));
-  if (half_width < 2 * pow(10, leading))
-    leading--;
+  double leading = last_decade(half_width);
   if (value != 0 && fabs(value) < 0.5 * pow(10, leading)) /* 0.3 +- 2.7, not 0 +- 3 */
     leading--;
   if (leading < -MOST_DECIMALS || leading > MOST_DECIMALS || fabs(value) >= MOST_DIGITS) {
@@ -37,16 +41,19 @@ void uncertainty_cell(double value, double half_width, char text[UNCERTAINTY_TEX
 }
 
 void uncertainty_share_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]) {
-  uncertainty_cell(value, half_width, text);
-  const char *sign = strstr(text, " \xc2\xb1"), *point = strchr(text, '.');
-  if (!sign || (value - half_width >= 0 && value + half_width <= 1))
+  const double low = fmax(value - half_width, 0), high = fmin(value + half_width, 1);
+  if (!(half_width > 0) || (value - half_width >= 0 && value + half_width <= 1) || !(value >= 0 && value <= 1)) {
+    uncertainty_cell(value, half_width, text);
     return;
-  const int decimals = point && point < sign ? (int)(sign - point) - 1 : 0;
+  }
+  double last = last_decade(fmax(high - value, value - low));
+  if (value < 2 * pow(10, last)) /* 0.14 (0 to 1), not 0.1 */
+    last--;
+  const int decimals = (int)fmin(-last, MOST_DECIMALS);
   char ends[2][32];
-  snprintf(ends[0], sizeof ends[0], "%.*f", decimals, value - half_width);
-  snprintf(ends[1], sizeof ends[1], "%.*f", decimals, value + half_width);
-  snprintf(text, UNCERTAINTY_TEXT, "%.*f (%s to %s)", decimals, value, value - half_width <= 0 ? "0" : ends[0],
-           value + half_width >= 1 ? "1" : ends[1]);
+  snprintf(ends[0], sizeof ends[0], low > 0 ? "%.*f" : "0", decimals, low);
+  snprintf(ends[1], sizeof ends[1], high < 1 ? "%.*f" : "1", decimals, high);
+  snprintf(text, UNCERTAINTY_TEXT, "%.*f (%s to %s)", decimals, value, ends[0], ends[1]);
 }
 
 void uncertainty_excluded(int64_t count, const char *store) {

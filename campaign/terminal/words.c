@@ -25,6 +25,7 @@ struct line {
   size_t column;
   bool quoted; /* in a command */
   bool blank;  /* a blank at the end of the last piece waits for the next word */
+  bool whole;  /* an error that a program may read, and the indented lines below it */
 };
 
 static size_t columns_of_stderr(void) {
@@ -36,14 +37,18 @@ static size_t columns_of_stderr(void) {
 /* Makes line ends of blanks. */
 static void wrap_piece(struct line *line, char *text, size_t size) {
   const size_t room = columns_of_stderr();
+  const bool terminal = isatty(STDERR_FILENO);
   char *blank = NULL;
   size_t after = 0; /* column behind it */
   for (char *at = text; at < text + size; at++) {
     if (*at == '\n' || *at == '\r') {
-      *line = (struct line){0};
+      *line = (struct line){.whole = line->whole};
       blank = NULL;
       continue;
     }
+    if (line->column == 0)
+      line->whole &= *at == ' ';
+    line->whole |= !terminal && strncmp(at, ": error: ", strlen(": error: ")) == 0;
     if (*at == '\033') { /* a colour */
       while (at + 1 < text + size && *at != 'm' && *at != 'K')
         at++;
@@ -55,7 +60,7 @@ static void wrap_piece(struct line *line, char *text, size_t size) {
     if (*at == ' ' && !line->quoted && line->column <= room + 1) {
       blank = at;
       after = line->column;
-    } else if (line->column > room && blank) {
+    } else if (line->column > room && blank && !line->whole) {
       *blank = '\n';
       blank = NULL;
       line->column -= after;
@@ -65,7 +70,7 @@ static void wrap_piece(struct line *line, char *text, size_t size) {
 
 static ssize_t write_wrapped(void *of, const char *text, size_t size) {
   struct line *line = of;
-  char piece[PIECE + 1];
+  char piece[PIECE + 2];
   for (size_t done = 0; done < size;) {
     const size_t taken = size - done < PIECE ? size - done : PIECE;
     size_t length = 0;
@@ -74,6 +79,7 @@ static ssize_t write_wrapped(void *of, const char *text, size_t size) {
     memcpy(piece + length, text + done, taken);
     length += taken;
     done += taken;
+    piece[length] = '\0';
     line->blank = piece[length - 1] == ' ';
     length -= line->blank;
     wrap_piece(line, piece, length);
@@ -89,8 +95,6 @@ static ssize_t write_wrapped(void *of, const char *text, size_t size) {
 
 void words_wrap_stderr(void) {
   static struct line line;
-  if (!isatty(STDERR_FILENO))
-    return;
   FILE *wrapped = fopencookie(&line, "w", (cookie_io_functions_t){.write = write_wrapped});
   if (wrapped && setvbuf(wrapped, NULL, _IONBF, 0) == 0)
     stderr = wrapped;

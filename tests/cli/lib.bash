@@ -42,7 +42,7 @@ expect() {
   [ "$got" -eq "$want" ] || fail "exit $got, expected $want: $*"
   ok "exit $want: $(echo "$*" | sed "s|$build/||; s|$work/||g" | cut -c1-100)"
 }
-says() { grep -qF -- "$1" err || fail "stderr does not say: $1"; }       # on stderr
+says() { tr '\n' ' ' <err | grep -qF -- "$1" || fail "stderr does not say: $1"; } # on stderr, whose lines end at column 100
 prints() { grep -qF -- "$1" out || fail "stdout does not have: $1"; }    # on stdout
 silent() { [ ! -s "$1" ] || fail "$1 should be empty"; }
 # Exactly one error line in our form.
