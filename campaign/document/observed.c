@@ -43,7 +43,7 @@ static const struct field datum_rows[] = {
 enum { QUANTITY, VALUE, ERROR, RESOLUTION, SHARE, DATUM_ROWS };
 
 struct fragments {
-  double total, complete; /* kg */
+  double total, complete; /* kg, or kg/m: only their ratios count */
 };
 
 static const struct field fragments_rows[] = {
@@ -96,6 +96,11 @@ static bool find_quantity(struct reading *r, document_node *node, struct observe
 static void read_datum(struct reading *r, document_node *node) {
   if (document_kind(node) != DOCUMENT_MAPPING) {
     document_report(node, "measured", "expected {quantity: NAME, value: NUMBER, error: NUMBER}");
+    return;
+  }
+  if (document_key(node, "fragments")) {
+    document_report(document_key(node, "fragments"), "fragments",
+                    "a list of masses is a key of the shot, as `measured` is");
     return;
   }
   struct observed_datum *datum = add_datum(r, node);
@@ -162,11 +167,13 @@ static void take_masses(struct reading *r, document_node *node, size_t count, do
 
 static void read_fragments(struct reading *r, document_node *node) {
   static const char *const also[] = {"masses", NULL};
-  static const struct field row = {.path = "masses",
-                                   .kind = FIELD_REAL,
-                                   .unit = "kg",
-                                   .maximum = HUGE_VAL,
-                                   .flags = FIELD_ABOVE_MINIMUM};
+  struct field row = {.path = "masses",
+                      .kind = FIELD_REAL,
+                      .unit = "kg",
+                      .maximum = HUGE_VAL,
+                      .flags = FIELD_ABOVE_MINIMUM};
+  struct field rows[] = {fragments_rows[0], fragments_rows[1]};
+  struct field_table table = fragments_table;
   struct fragments from = {0};
   document_node *list = document_kind(node) == DOCUMENT_MAPPING ? document_key(node, "masses") : NULL;
   if (!list || document_kind(list) != DOCUMENT_SEQUENCE || document_count(list) == 0) {
@@ -178,7 +185,11 @@ static void read_fragments(struct reading *r, document_node *node) {
   const size_t count = document_count(list);
   OWNED double *masses = calloc(count, sizeof *masses);
   double sum = 0;
-  bool good = document_read(node, &fragments_table, also, &from);
+  const char *total = document_key(node, "total") ? document_scalar(document_key(node, "total")) : NULL;
+  if (r->campaign->scene->kind->dimensions == 2 && total && strchr(total, '/'))
+    row.unit = rows[0].unit = rows[1].unit = "kg/m";
+  table.rows = rows;
+  bool good = document_read(node, &table, also, &from);
   if (!masses)
     document_report_memory(node, "fragments");
   for (size_t i = 0; masses && i < count; i++) {

@@ -80,11 +80,15 @@ static status find_inputs(struct fit *fit, struct error *error) {
                                    "the campaign varies nothing: give the unknown inputs in `vary`, with their priors");
 }
 
+/* For a count N, ln(1 + N) has the error dN / (1 + N). */
+static double slope_of(const struct observed_datum *datum) {
+  return datum->ask.kind == ASK_SPECIMENS_COUNT ? 1 / (1 + datum->value) : 1;
+}
+
 static void find_data(struct fit *fit) {
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct observed_datum *from = &fit->observed->data[k];
-    /* For a count N, ln(1 + N) has the error dN / (1 + N). */
-    const double slope = from->ask.kind == ASK_SPECIMENS_COUNT ? 1 / (1 + from->value) : 1;
+    const double slope = slope_of(from);
     fit->data[k] = (struct posterior_datum){.value = fit_transform(from, from->value),
                                             .error = from->error * slope,
                                             .resolution = isnan(from->resolution) ? 0 : from->resolution * slope,
@@ -166,6 +170,37 @@ struct surfaces_runs fit_runs(const struct fit *fit, double *packed) {
                                 .shared_seeds = !fit->campaign->independent};
 }
 
+static bool seeds_differ(const struct fit *fit, size_t datum) {
+  const size_t d = fit->observed->datum_count, r = fit->replicates;
+  for (size_t i = 0; i < fit->points; i++) {
+    const double *of_point = fit->values + (i * d + datum) * r;
+    for (size_t j = 1; j < r; j++)
+      if (of_point[j] != of_point[0] && isfinite(of_point[j]) && isfinite(of_point[0]))
+        return true;
+  }
+  return false;
+}
+
+status fit_errors(struct fit *fit, struct error *error) {
+  char label[2 * FIELD_TEXT_SIZE];
+  for (size_t k = 0; k < fit->observed->datum_count; k++) {
+    const struct observed_datum *from = &fit->observed->data[k];
+    const double slope = slope_of(from);
+    fit->data[k].error = from->error * slope;
+    fit->exact[k] = !(from->error > 0) && !(fit->data[k].resolution > 0) && !seeds_differ(fit, k);
+    if (!fit->exact[k])
+      continue;
+    observed_label(fit->observed, k, label, sizeof label);
+    if (from->ask.kind != ASK_SPECIMENS_COUNT)
+      return status_fail(error, STATUS_CONTENT,
+                         "%s: it has no error, and no seed changes it, so one run would decide all: give it an `error` "
+                         "above 0 (in `measured`)",
+                         label);
+    fit->data[k].error = slope;
+  }
+  return STATUS_OK;
+}
+
 status fit_solve(struct fit *fit, struct error *error) {
   OWNED double *packed = NULL;
   TRY(memory_array(&packed, fit->points * fit->observed->datum_count * fit->replicates, sizeof *packed, "a fit",
@@ -173,6 +208,7 @@ status fit_solve(struct fit *fit, struct error *error) {
   const struct surfaces_runs runs = fit_runs(fit, packed);
   surfaces_clear(&fit->surfaces);
   posterior_clear(&fit->posterior);
+  TRY(fit_errors(fit, error));
   TRY(surfaces_fit(&runs, fit->data, fit->bounded, &fit->surfaces, error));
   return posterior_make(&fit->surfaces.model, fit->rule.seed, &fit->posterior, error);
 }

@@ -41,6 +41,7 @@ struct fit {
   struct ask_doubts all_doubts;                    /* of the runs of all data, each once */
   struct posterior_datum data[OBSERVED_DATA];      /* a count N is compared as ln(1 + N) */
   struct ask_resolution resolution[OBSERVED_DATA]; /* from a study in the store, for data without `resolution` */
+  bool exact[OBSERVED_DATA];                       /* a count without an error that no seed changes: see fit_errors() */
 
   /* All points so far, and the values of their runs: point x datum x replicate. Owned. */
   size_t points, capacity, members, replicates;
@@ -75,6 +76,9 @@ double fit_back(const struct observed_datum *datum, double transformed);
 
 /* The runs in the order that the algebra takes them; `packed` has room for all values. */
 struct surfaces_runs fit_runs(const struct fit *fit, double *packed);
+/* Errors of the data for the points so far. A count without an error that no seed changes gets an error of 1; another
+ * such number: STATUS_CONTENT. Without an error one run would decide all. */
+status fit_errors(struct fit *fit, struct error *error);
 /* Surfaces and posterior from all points so far. */
 status fit_solve(struct fit *fit, struct error *error);
 /* The same, and the information that the data give about the inputs. */

@@ -306,6 +306,9 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
     const struct seed_scatter *scatter = &fit->surfaces.scatter[k];
     const double below = posterior_below(&fit->surfaces.model, &fit->posterior, k);
     observed_label(fit->observed, k, label, sizeof label);
+    if (fit->exact[k])
+      words_print(out, "", "NO SCATTER: no seed changes %s, and it has no error: an error of one fragment is assumed.",
+                  label);
     /* For a normal law, skewness and excess have standard errors sqrt(6/n) and sqrt(24/n). */
     const double n = (double)scatter->freedom;
     char found[96] = "";

@@ -132,6 +132,7 @@ static status move_ensemble(struct fit *fit, struct error *error) {
   for (size_t j = 0; j < fit->members; j++)
     for (size_t k = 0; k < d; k++)
       g[j * d + k] = surfaces_mean(&runs, k, from + j);
+  TRY(fit_errors(fit, error));
   TRY(surfaces_errors(&runs, fit->data, fit->bounded, fit->members, fit->gamma, error));
   double y[OBSERVED_DATA];
   for (size_t k = 0; k < d; k++)

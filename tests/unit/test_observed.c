@@ -148,6 +148,9 @@ static void errors_have_a_place(void **state) {
       "weigh 102.1 % of the total"); /* 2 % are of the balance */
   observed_free(good(SHOT "fragments: {total: 10 g, complete: 1 g, masses: [9 g, 1.19 g]}\n"));
   bad(SHOT "fragments: {total: 10 g, masses: [9 g]}\n", "complete");
+  bad(SHOT "measured: [{fragments: {total: 10 g, complete: 1 g, masses: [9 g]}}]\n", "a key of the shot");
+  observed_free(good(SHOT "fragments: {total: 10 kg/m, complete: 1 kg/m, masses: [9 kg/m]}\n")); /* discs are flat */
+  bad(SHOT "fragments: {total: 10 kg/m, complete: 1 kg, masses: [9 kg/m]}\n", "complete");
 }
 
 /* The documents of the pages fit_*.md. */
