@@ -74,8 +74,12 @@ static status sum_doubts(const struct printing *printing, size_t ladders, size_t
   return doubts_of(printing, points, names, sum, error);
 }
 
-static void print_level(struct table *table, const struct convergence_row *row, const struct ask_doubts *doubts) {
+static void print_level(const struct printing *printing, struct table *table, const struct convergence_row *row,
+                        const struct ask_doubts *doubts) {
   char setting[80];
+  /* Of runs that differ in their last bits only. */
+  const bool rounding = table_for_people(printing->format) && fabs(row->bias) < 1e-12 * fabs(row->mean) &&
+                        row->bias_half_width < 1e-12 * fabs(row->mean);
   if (row->n == 0)
     return; /* left out by the budget, or every run failed: print_limit names it */
   snprintf(setting, sizeof setting, "%.64s%s%s", row->setting, row->base ? " *" : "", row->reference ? " ref" : "");
@@ -86,7 +90,7 @@ static void print_level(struct table *table, const struct convergence_row *row, 
   table_reals(table, 6,
               (const double[]){row->mean, row->half_width, row->deviation, row->skew, row->upper_mode, row->cpu});
   table_rests_on(table, doubts);
-  table_reals(table, 2, (const double[]){row->bias, row->bias_half_width});
+  table_reals(table, 2, (const double[]){rounding ? 0 : row->bias, rounding ? 0 : row->bias_half_width});
   table_reals(table, 3, (const double[]){row->correlation, row->correlation_low, row->correlation_high});
   table_reals(table, 2, (const double[]){row->break_even, row->error});
   table_text(table, row->frontier ? "yes" : "");
@@ -278,7 +282,7 @@ static status print_quantity(const struct printing *printing, size_t from, size_
     for (size_t l = 0; l < found[i].count; l++) {
       struct ask_doubts doubts;
       TRY(read_doubts(printing, &study->ladder[from + i], l, quantity, &doubts, error));
-      print_level(table, &found[i].rows[l], &doubts);
+      print_level(printing, table, &found[i].rows[l], &doubts);
     }
   TRY(table_end(table, error));
   free(sentences);

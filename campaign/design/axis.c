@@ -159,15 +159,18 @@ void design_axis_follow(const struct design_axis *axis, const struct field_value
 
 enum { SHOWN = 12, VALUE_SIZE = FIELD_TEXT_SIZE + 64 };
 
-/* In the campaign's unit. */
-static const char *value_text(const struct design_axis *axis, const struct field_value *value, char text[VALUE_SIZE]) {
+const char *design_axis_show(const struct design_axis *axis, const struct field_value *value, char *text, size_t size) {
   struct unit unit;
   if (value->kind == FIELD_REAL && isfinite(value->number) && *axis->unit &&
       unit_parse(axis->unit, &unit, NULL) == STATUS_OK)
-    snprintf(text, VALUE_SIZE, "%.6g %s", value->number / unit.factor, axis->unit);
+    snprintf(text, size, "%.6g %s", value->number / unit.factor, axis->unit);
   else
-    field_show(axis->row, value, text, VALUE_SIZE);
+    field_show(axis->row, value, text, size);
   return text;
+}
+
+static const char *value_text(const struct design_axis *axis, const struct field_value *value, char text[VALUE_SIZE]) {
+  return design_axis_show(axis, value, text, VALUE_SIZE);
 }
 
 /* The mean of an integer's law need not be an integer. */

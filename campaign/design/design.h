@@ -47,6 +47,8 @@ double design_axis_deviations(const struct design_axis *axis, double value);
 /* Value of a linked axis when the axis it follows has `value` at `level` (its level for LEVELS, else 0). */
 void design_axis_follow(const struct design_axis *axis, const struct field_value *followed, size_t level,
                         struct field_value *value);
+/* A value in the campaign's unit ("1e+28 cm^-3"), else as field_show() has it. Returns `text`. */
+const char *design_axis_show(const struct design_axis *axis, const struct field_value *value, char *text, size_t size);
 /* axes[index] for people, every number with its unit: "1 %, 3 %", "uniform from 1 GPa to 2 GPa". */
 void design_axis_describe(const struct design_axis *axes, size_t index, FILE *out);
 /* Level of a LEVELS axis at quantile u. */

@@ -197,6 +197,9 @@ static status read_request(const struct find_request *request, const char *path,
   driver_list_reference(campaign, path, find->reference, sizeof find->reference);
   find->most = (size_t)request->most_runs;
   find->axis = (struct design_axis){.row = find->input};
+  const struct design_axis *axis = campaign_axis(campaign, find->input);
+  if (axis)
+    memcpy(find->axis.unit, axis->unit, sizeof axis->unit);
   find->limits = *campaign;
   find->limits.axes = &find->axis;
   find->limits.axis_count = 1;
@@ -239,6 +242,7 @@ static status make_campaign(const struct find *find, struct campaign **out, stru
   TRY(driver_list_begin(&find->limits, find->base, 1, find->places, out, error));
   struct campaign *campaign = *out;
   campaign->axes[0].row = find->input;
+  memcpy(campaign->axes[0].unit, find->axis.unit, sizeof find->axis.unit);
   memcpy(campaign->axes[0].levels, find->place, find->places * sizeof *find->place);
   campaign->per_point = (int64_t)find->each;
   campaign->first_seed += (int64_t)find->runs; /* a place that comes again has new seeds */
@@ -289,9 +293,11 @@ static status read_place(struct find *find, struct store *store, const struct fi
 
 static void tell(const struct find *find) {
   char low[FIND_TEXT], high[FIND_TEXT], text[3 * FIND_TEXT];
-  snprintf(text, sizeof text, "%zu runs: between %s and %s", find->runs,
-           find_show_within(find, find->found.low, find->found.low, find->found.high, low),
-           find_show_within(find, find->found.high, find->found.low, find->found.high, high));
+  snprintf(text, sizeof text, "%zu runs", find->runs);
+  if (find->found.low < find->found.high)
+    snprintf(text, sizeof text, "%zu runs: between %s and %s", find->runs,
+             find_show_within(find, find->found.low, find->found.low, find->found.high, low),
+             find_show_within(find, find->found.high, find->found.low, find->found.high, high));
   find->note(find->note_context, text);
 }
 

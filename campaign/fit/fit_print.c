@@ -82,6 +82,8 @@ static double seeds_of(const struct fit *fit, size_t k) {
   double x[INFERENCE_INPUTS];
   posterior_place(&fit->surfaces.model, fit->found.centre, x);
   const double variance = seed_scatter_variance(&fit->surfaces.scatter[k], x) / (double)fit->data[k].specimens;
+  if (variance < 1e-300) /* no seed changes it */
+    return 0;
   return sqrt(variance) * (datum->ask.kind == ASK_SPECIMENS_COUNT ? 1 + datum->value : 1);
 }
 

@@ -16,8 +16,10 @@ static status make_campaign(const struct fit *fit, struct campaign **out, struct
   const struct campaign *from = fit->campaign;
   TRY(driver_list_begin(from, shot->scene, from->axis_count, fit->members, out, error));
   struct campaign *campaign = *out;
-  for (size_t i = 0; i < from->axis_count; i++)
+  for (size_t i = 0; i < from->axis_count; i++) {
     campaign->axes[i].row = from->axes[i].row;
+    memcpy(campaign->axes[i].unit, from->axes[i].unit, sizeof from->axes[i].unit);
+  }
   for (size_t j = 0; j < fit->members; j++) {
     for (size_t i = 0; i < fit->inputs; i++)
       fit_value(fit, i, fit->place[j * fit->inputs + i], &campaign->axes[fit->axis[i]].levels[j]);

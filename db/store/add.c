@@ -253,8 +253,8 @@ static status add_axis(struct store *store, const struct field *row, bool *grown
 static status add_axis_with_unit(struct store *store, const struct field *row, const char *unit, struct error *error) {
   bool grown = false;
   TRY(add_axis(store, row, &grown, error));
-  TRY(sql_executef(store->db, adding_point, error, "UPDATE axis SET written_unit = nullif(%Q, '') WHERE path = %Q",
-                   unit, row->path));
+  TRY(sql_executef(store->db, adding_point, error, "UPDATE axis SET written_unit = %Q WHERE path = %Q AND %Q <> ''",
+                   unit, row->path, unit)); /* rounds of a study are written in SI: the campaign's unit stays */
   return grown ? views_regenerate(store->db, error) : STATUS_OK;
 }
 
