@@ -5,13 +5,16 @@ struct options {
   const char *quantity;
 };
 
-static void print(struct table *table, const struct ask_pairs_row *row, struct ask_doubts *sum) {
+static void print(struct table *table, bool people, const struct ask_pairs_row *row, struct ask_doubts *sum) {
+  char inputs[2 * ASK_POOL_LABEL + 8];
+  const bool same = strcmp(row->label[0], row->label[1]) == 0;
+  snprintf(inputs, sizeof inputs, "%s%s%s", row->label[0], same ? "" : "; b: ", same ? "" : row->label[1]);
   struct ask_doubts both = *row->doubts[0];
   ask_doubts_add(&both, row->doubts[1]);
   ask_doubts_add(sum, &both);
   table_integer(table, row->point[0]);
   table_integer(table, row->point[1]);
-  table_text(table, row->inputs);
+  table_text(table, people ? inputs : row->inputs);
   for (int k = 0; k < 2; k++)
     table_integer(table, (int64_t)row->difference.n[k]);
   table_integer(table, (int64_t)row->difference.pairs);
@@ -34,7 +37,7 @@ static status run(const struct command_line *line, struct error *error) {
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
   for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
-    print(table, &row, &doubts);
+    print(table, table_for_people(line->format), &row, &doubts);
   TRY(ask_pairs_end(pairs, error));
   TRY(table_end(table, error));
   for (int side = 0; side < 2; side++) {

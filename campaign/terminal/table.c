@@ -357,12 +357,16 @@ static void lay_out(struct table *table) {
       table->columns[c].left_out |= table->columns[c].role != KEY;
 }
 
-/* Prints one line after the other of cells, whose texts go on at rest[]. row NULL: the headings. */
+/* Prints one line after the other of cells, whose texts go on at rest[]. row NULL: the headings. A row whose texts are
+ * all in columns that are left out has no line. */
 static void print_lines(struct table *table, size_t count, const size_t *list, const struct kept *row) {
   FILE *const out = table->out;
-  for (size_t i = 0; i < count; i++)
+  bool more = !row;
+  for (size_t i = 0; i < count; i++) {
     table->columns[list[i]].rest = row ? row[list[i]].text : table->columns[list[i]].head;
-  for (bool more = true; more;) {
+    more |= *table->columns[list[i]].rest != 0;
+  }
+  while (more) {
     size_t blanks = 0; /* before the next text: none at the end of a line */
     more = false;
     for (size_t i = 0; i < count; i++) {

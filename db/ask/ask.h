@@ -384,8 +384,9 @@ status ask_group_twins(struct store *store, struct ask_group_twins *twins, struc
 struct ask_pairs; /* opaque */
 
 struct ask_pairs_row {
-  int64_t point[2];   /* number of each point in its store */
-  const char *inputs; /* varied inputs that both have; "" when two points were named */
+  int64_t point[2];     /* number of each point in its store */
+  const char *inputs;   /* varied inputs that both have; "" when two points were named */
+  const char *label[2]; /* varied inputs of each for people: "strain 3 %, angle 4 deg" */
   struct difference difference;
   const struct ask_doubts *doubts[2];
 };
@@ -395,7 +396,7 @@ struct ask_pairs_row {
  * such store. */
 status ask_pairs_read(const char *first, const char *second, const char *quantity, const struct ask_choice *choice,
                       struct ask_pairs **out, struct error *error);
-/* The next pair; its texts are borrowed from `pairs`. False at the end. */
+/* The next pair, in the order of the points of A; its texts are borrowed from `pairs`. False at the end. */
 bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row);
 /* The runs of a side (0, 1) that a person excluded, and the path of its store, borrowed. */
 int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, const char **path);
@@ -468,7 +469,7 @@ struct ask_pool_choice {
 enum { ASK_POOL_TEXT = 64, ASK_POOL_LABEL = 256 };
 /* Holds only runs that count, of the newest results_version among the points of the pool. */
 struct ask_pool {
-  char label[ASK_POOL_LABEL]; /* "strain 0.03, angle 0.0698 rad", or "point 7" */
+  char label[ASK_POOL_LABEL]; /* "strain 3 %, angle 4 deg", or "point 7" */
   size_t points;
   const int64_t *point;    /* numbers of the points */
   const size_t *first_run; /* points + 1: the runs of point p are first_run[p] .. first_run[p + 1] - 1 */

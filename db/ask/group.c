@@ -25,8 +25,18 @@ static bool ends_in(const char *column, const char *wanted) {
   return strcmp(end, wanted) == 0 && (end == column || end[-1] == '_' || end[-1] == '.');
 }
 
+/* Is it a section of the path: "porosity" of target.material.porosity.fraction? */
+static bool is_section(const char *path, const char *wanted) {
+  const size_t length = strlen(wanted);
+  for (const char *at = path; length && (at = strstr(at, wanted)); at++)
+    if ((at == path || at[-1] == '.') && at[length] == '.')
+      return true;
+  return false;
+}
+
 struct choice { /* possible meanings of a word */
   const char *wanted;
+  bool sections;           /* a word is a section of a path, too */
   struct text_guess guess; /* guess.nearest points to `near` */
   char found[NAME];
   size_t matches;
@@ -47,7 +57,8 @@ static void consider(struct choice *choice, const char *column, const char *path
   }
   append(choice->known, sizeof choice->known, name);
   bool exact = strcmp(column, choice->wanted) == 0 || (path && strcmp(path, choice->wanted) == 0);
-  if (choice->exact || !(exact || ends_in(column, choice->wanted) || (path && ends_in(path, choice->wanted))))
+  if (choice->exact || !(exact || ends_in(column, choice->wanted) || (path && ends_in(path, choice->wanted)) ||
+                         (path && choice->sections && is_section(path, choice->wanted))))
     return;
   choice->matches = exact ? 1 : choice->matches + 1;
   choice->exact = exact;
@@ -66,19 +77,20 @@ static const char *without_engine(const char *column) {
   return column;
 }
 
-/* Looks for the name as written, as a column name, and as a column name without its engine's prefix or its
- * last word "name". */
+/* Looks for the name as written, as a column name, as a column name without its engine's prefix or its last word
+ * "name", and as a section of a path. */
 static status look_for(struct store *store, const char *columns_sql, const char *name, struct choice *choice,
                        struct error *error) {
   char column[NAME], named[NAME]; /* named: "material" of "target_material_name" */
   field_column_name(name, column, sizeof column);
   snprintf(named, sizeof named, "%.*s_name", NAME - 6, column);
-  const char *const forms[] = {name, column, without_engine(column), named};
+  const char *const forms[] = {name, column, without_engine(column), named, name};
   *choice = (struct choice){.guess = text_guess(name)};
   if (strcmp(name, "M_1/M") == 0)
     snprintf(choice->near, sizeof choice->near, OUTCOME_DEFAULT);
   for (size_t i = 0; choice->matches == 0 && i < sizeof forms / sizeof forms[0]; i++) {
     choice->wanted = forms[i];
+    choice->sections = i + 1 == sizeof forms / sizeof forms[0];
     choice->known[0] = '\0';
     ANSWER answer = answer_to(store, error, "%s", columns_sql);
     while (answer_next(&answer))
@@ -92,7 +104,7 @@ static status judge(const struct choice *choice, const char *what, const char *n
   if (choice->matches == 1)
     return STATUS_OK;
   if (choice->matches > 1)
-    return status_fail(error, STATUS_USAGE, "%s '%s' is ambiguous: %s end like that.", what, name, choice->matching);
+    return status_fail(error, STATUS_USAGE, "%s '%s' is ambiguous: it may be %s.", what, name, choice->matching);
   if (choice->near[0])
     return status_fail(error, STATUS_USAGE, "%s '%s' is unknown; did you mean '%s'?", what, name, choice->near);
   return status_fail(error, STATUS_USAGE, "%s '%s' is unknown. Known are: %s.", what, name,

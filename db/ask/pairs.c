@@ -13,8 +13,9 @@
 #include "schemas/memory.h"
 
 struct group { /* the runs of one point */
-  char *inputs;
+  char *inputs, label[ASK_POOL_LABEL];
   int64_t point;
+  bool paired;
   size_t first, count; /* in `values` */
   struct ask_doubts doubts;
 };
@@ -28,7 +29,7 @@ struct side {
 };
 struct ask_pairs {
   struct side side[2];
-  size_t at[2], found; /* the next group of each side; pairs so far */
+  size_t at, found; /* the next group of side 0; pairs so far */
 };
 
 /* The values of a column of the runs that count, of the newest results_version, ordered by inputs, point and seed. */
@@ -57,6 +58,11 @@ static status add_run(struct side *side, const struct answer *row, struct error 
   side->values[side->value_count++] = (struct difference_value){answer_integer(row, 2), answer_real(row, 3)};
   side->groups[side->group_count - 1].count++;
   return STATUS_OK;
+}
+
+static int by_point(const void *a, const void *b) {
+  const struct group *p = a, *q = b;
+  return (p->point > q->point) - (p->point < q->point);
 }
 
 static int by_seed(const void *a, const void *b) {
@@ -104,9 +110,12 @@ static status read_values(struct store *store, const char *quantity, struct side
       TRY(add_run(side, &answer, error));
   TRY(answer_end(&answer));
   TRY(ask_run_excluded_count(store, &side->excluded, error));
-  for (size_t i = 0; i < side->group_count; i++)
-    TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = side->groups[i].point},
-                   exponent ? OUTCOME_NAME(mean_fragment_mass) : column, &side->groups[i].doubts, error));
+  for (size_t i = 0; i < side->group_count; i++) {
+    struct group *group = &side->groups[i];
+    TRY(ask_points_label(store, group->point, group->label, sizeof group->label, error));
+    TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = group->point},
+                   exponent ? OUTCOME_NAME(mean_fragment_mass) : column, &group->doubts, error));
+  }
   return exponent ? read_exponents(store, method, window, side, error) : STATUS_OK;
 }
 
@@ -143,6 +152,7 @@ status ask_pairs_read(const char *first, const char *second, const char *quantit
   TRY(read_side(second, quantity, *choice, &pairs->side[1], error));
   if (pairs->side[0].one_point != pairs->side[1].one_point)
     return status_fail(error, STATUS_USAGE, "compare a point with a point (STORE:1), or all points with all points");
+  qsort(pairs->side[0].groups, pairs->side[0].group_count, sizeof *pairs->side[0].groups, by_point);
   *out = pairs;
   pairs = NULL;
   return STATUS_OK;
@@ -162,18 +172,34 @@ void ask_pairs_drop(struct ask_pairs **pairs) {
   ask_pairs_free(*pairs);
 }
 
-/* Both sides are in the order of their inputs. */
+/* The first group of the same inputs that has no partner yet; NULL: none. Groups are in the order of their inputs. */
+static struct group *partner_of(const struct group *group, struct side *side) {
+  size_t low = 0, high = side->group_count;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if (strcmp(side->groups[middle].inputs, group->inputs) < 0)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  for (; low < side->group_count && strcmp(side->groups[low].inputs, group->inputs) == 0; low++)
+    if (!side->groups[low].paired)
+      return &side->groups[low];
+  return NULL;
+}
+
 bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
-  const struct side *a = &pairs->side[0], *b = &pairs->side[1];
-  while (pairs->at[0] < a->group_count && pairs->at[1] < b->group_count) {
-    const struct group *first = &a->groups[pairs->at[0]], *second = &b->groups[pairs->at[1]];
-    const int order = strcmp(first->inputs, second->inputs);
-    pairs->at[0] += order <= 0;
-    pairs->at[1] += order >= 0;
-    if (order)
+  const struct side *a = &pairs->side[0];
+  struct side *b = &pairs->side[1];
+  while (pairs->at < a->group_count) {
+    const struct group *first = &a->groups[pairs->at++];
+    struct group *second = partner_of(first, b);
+    if (!second)
       continue;
+    second->paired = true;
     *row = (struct ask_pairs_row){{first->point, second->point},
                                   first->inputs,
+                                  {first->label, second->label},
                                   sample_difference(first->count, a->values + first->first, second->count,
                                                     b->values + second->first, 0.95),
                                   {&first->doubts, &second->doubts}};

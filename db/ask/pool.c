@@ -182,20 +182,21 @@ static status read_pool(struct ask_pools *pools, size_t from, size_t end, int64_
   return code;
 }
 
-/* The pool's label: "strain 0.03, angle 0.0698 rad" from the inputs of `by`; for a single point its varied inputs. */
+/* The pool's label: "strain 3 %, angle 4 deg" from the inputs of `by`; for a single point its varied inputs. */
 static status write_label(struct store *store, struct ask_pool *pool, struct error *error) {
   if (pool->points == 1)
     return ask_points_label(store, pool->point[0], pool->label, sizeof pool->label, error);
   snprintf(pool->label, sizeof pool->label, "%s", pool->axes ? "" : "all points");
   for (size_t a = 0; a < pool->axes; a++) {
-    char si[64] = "", unit[72] = "", value[ASK_POOL_TEXT] = "off";
+    char unit[72] = "", value[ASK_POOL_TEXT] = "off";
+    struct ask_column written;
     const struct query_value *input = &pool->input[a];
-    TRY(ask_columns_unit(store, pool->column[a], si, sizeof si, error));
-    text_unit(si, unit, sizeof unit);
+    TRY(ask_columns_written(store, pool->column[a], &written, error));
+    text_unit(written.unit, unit, sizeof unit);
     if (input->kind == QUERY_TEXT)
       snprintf(value, sizeof value, "%s", input->text);
     else if (input->kind != QUERY_NULL)
-      snprintf(value, sizeof value, "%.3g", input->real);
+      snprintf(value, sizeof value, "%.3g", input->real / written.factor);
     text_powers(value, sizeof value);
     char column[sizeof pool->column[a]];
     snprintf(column, sizeof column, "%s", pool->column[a]);
