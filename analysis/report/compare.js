@@ -36,7 +36,7 @@ export function showCompare() {
       ['inputs', first.name, ...others.flatMap((other) => [other.name, 'difference'])],
       rows.slice(0, SHOWN).map(([cell, ...rest]) => [inputsOf(first, cell) || 'the only point', shown(cell), ...rest.flatMap((other, i) => [shown(other), less(cell, other, i)])]))
       : element('p', {}, 'These stores have no point in common: their varied inputs differ.'),
-    ...state.stores.map((one, i) => element('p', {}, doubtSentence(one, rows.map((row) => row[i]).filter(Boolean)))),
+    ...[...new Set(state.stores.map((one, i) => doubtSentence(one, rows.map((row) => row[i]).filter(Boolean))))].map((text) => element('p', {}, text)),
     element('p', {}, 'Runs with one seed on both sides count as pairs: then the difference is known better than each mean. The same from a shell:'),
     ...(state.quantity === 'beta' ? [] : others.map((other) => element('p', {}, command(`clast compare ${shellFile(first.name)} ${shellFile(other.name)} --quantity ${state.quantity}`)))));
 }

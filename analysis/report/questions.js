@@ -58,6 +58,7 @@ export const quantiles = 'SELECT share, value, low, high FROM quantile WHERE qua
 
 export const spectrum = `SELECT results_version, n, lower, upper, count, count_mean, count_sd, count_hw95 FROM spectra
   WHERE point_id = :point ORDER BY results_version, lower`;
+export const widestSpectrum = 'SELECT point_id FROM spectra GROUP BY point_id ORDER BY count(*) DESC, point_id LIMIT 1';
 export const completeMass = `SELECT mean FROM means WHERE quantity = 'complete_mass' AND point_id = :point ORDER BY results_version DESC LIMIT 1`;
 export const completeMassOfRuns = 'SELECT avg(complete_mass) AS mean FROM runs WHERE counts AND point_id = :point';
 

@@ -46,7 +46,9 @@ export async function showSeeds() {
   const drawn = apart ? samples : [{name: 'all chosen points', values: samples.flatMap((sample) => sample.values)}];
   const all = drawn.flatMap((sample) => sample.values), title = label(state.stores, quantity), step = stepOf(drawn);
   const names = drawn.map((sample) => sample.name);
-  const x = {field: 'low', type: 'quantitative', title, scale: {zero: false, nice: false}, axis: {tickCount: 6, labelOverlap: true, format: '.3~g'}};
+  const range = Math.max(...all) - Math.min(...all) || 1; // neighbouring ticks have different numbers
+  const digits = Math.max(3, Math.ceil(Math.log10(Math.max(...all.map(Math.abs), range) / range)) + 2);
+  const x = {field: 'low', type: 'quantitative', title, scale: {zero: false, nice: false}, axis: {tickCount: 6, labelOverlap: true, format: `.${digits}~g`}};
   const y = {field: 'runs', type: 'quantitative', title: 'runs', axis: {tickMinStep: 1, format: 'd'}};
   const whole = new Map(cells(from, quantity).map((cell) => [cell.point_id, cell]));
   const means = drawn.map((sample) => ({name: sample.name, ...summary(sample.values, isShare(state.stores, quantity)), all: apart ? whole.get(sample.point.point_id) : null}));

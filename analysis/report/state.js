@@ -1,5 +1,7 @@
 // What the reader has chosen. It is kept in the address, so that a link shows the same and a page that loads itself
 // again stays as it was. An address is data: unknown words in it are dropped.
+import {widestSpectrum} from './questions.js';
+import {ask} from './stores.js';
 
 export const state = {stores: [], active: 0, quantity: null, x: null, y: null, chosen: new Set(), sql: null};
 
@@ -41,7 +43,8 @@ export function complete() {
   if ((state.y && !columns.includes(state.y)) || state.y === state.x || state.y === null)
     state.y = state.y === '' ? '' : columns.find((column) => column !== state.x) ?? null;
   if (state.chosen.size === 0 && points.length > 0) {
-    const first = points.find((point) => point.n > 0) ?? points[0];
+    const widest = ask(store(), widestSpectrum)[0]?.point_id; // a spectrum of dust alone shows nothing
+    const first = points.find((point) => point.point_id === widest) ?? points.find((point) => point.n > 0) ?? points[0];
     state.chosen.add(first.point_id);
   }
 }
