@@ -16,7 +16,12 @@
 #include "engine/scene.h"
 #include "schemas/text.h"
 
-enum { FEWEST_SEEDS = 3, MOST_SEEDS = 10000, LOOKED_AT = 1000 };
+enum {
+  FEWEST_SEEDS = 3,
+  MOST_SEEDS = 10000,
+  STUDY_SEEDS = 1000, /* a study with more is no advice */
+  LOOKED_AT = 1000
+};
 
 int64_t accuracy_seeds(double deviation, double margin) {
   const int64_t seeds = (int64_t)scatter_runs_needed(deviation, margin);
@@ -74,6 +79,8 @@ static status take_open(struct finding *finding, const struct convergence_row *r
   }
   if (knob && knob->group == KNOB_RESOLUTION && row->base && row->open && finding->open[0] != knob)
     finding->open[finding->open[0] != NULL] = knob;
+  if (knob && knob->group == KNOB_RESOLUTION && row->n == 0 && !*finding->accuracy->left_out)
+    snprintf(finding->accuracy->left_out, sizeof finding->accuracy->left_out, "%.64s = %.64s", row->knob, row->setting);
   return STATUS_OK;
 }
 
@@ -345,24 +352,30 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double seeds = ceil((double)accuracy->n * pow(best->error / accuracy->within, 2));
-  char next[600] = "", share[32] = "";
+  char next[600] = "", share[32] = "", more[64] = "";
   if (campaign->accuracy_of_value)
     snprintf(share, sizeof share, "%.3g %% (", 100 * campaign->accuracy_within);
-  if (finest)
+  if (*accuracy->left_out)
+    text_append(next, sizeof next,
+                "The study had no time for %s: `clast converge %s --quantity %s` goes on with it and takes its time",
+                accuracy->left_out, path, quantity);
+  else if (finest)
     advise_levels(accuracy, campaign, finest, next, sizeof next);
-  else if (seeds <= MOST_SEEDS)
+  else if (seeds <= STUDY_SEEDS)
     advise_seeds(accuracy, seeds, next, sizeof next);
   else
     text_append(next, sizeof next,
-                "More than %d seeds of the study would be needed, so no setting is known to reach it", MOST_SEEDS);
+                "More than %d seeds of the study would be needed, so no setting is known to reach it", STUDY_SEEDS);
+  if (1.3 * best->error < fabs(accuracy->mean))
+    text_append(more, sizeof more, "allow more, such as %.2g; or ", 1.3 * best->error);
   return status_fail(
       error, STATUS_CONTENT,
       "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g. The smallest error is %.2g%s, with %s "
-      "= %s. %s. Or allow more, such as %.2g; or ask for the least error in a time: `clast plan %s --within "
+      "= %s. %s. Or %sask for the least error in a time: `clast plan %s --within "
       "10min`; or take another result: `clast converge %s --quantity fragment_count,kinetic_energy_share` "
       "tells how near these are",
       quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, best->error, best->open ? " or more" : "",
-      best->knob, best->setting, next, 1.3 * best->error, path, path);
+      best->knob, best->setting, next, more, path, path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {

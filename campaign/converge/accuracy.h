@@ -32,6 +32,7 @@ struct accuracy {
   double mean;    /* with the scene's own settings */
   int64_t n;      /* seeds of the study there */
   const struct knob *open; /* of resolution, without a limit; NULL: none */
+  char left_out[160];      /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
   const char *path;        /* the campaign's file; borrowed */
   size_t reference;        /* the option with the smallest error; costs are relative to it */
 };

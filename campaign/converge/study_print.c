@@ -74,15 +74,31 @@ static status sum_doubts(const struct printing *printing, size_t ladders, size_t
   return doubts_of(printing, points, names, sum, error);
 }
 
-static void print_level(const struct printing *printing, struct table *table, const struct convergence_row *row,
-                        const struct ask_doubts *doubts) {
-  char setting[80];
+/* A number with the digits and the unit that people need. */
+static void show_setting(const struct study_ladder *ladder, const char *setting, char *text, size_t size) {
+  char *end, unit[64];
+  struct error ignored;
+  const double number = strtod(setting, &end);
+  const char *path = ladder->levels.knob->inputs[0].path;
+  const struct field *row = path ? field_find(ladder->base->kind->inputs, path, &ignored) : NULL;
+  if (*end || end == setting || !row) {
+    snprintf(text, size, "%.64s", setting);
+    return;
+  }
+  field_label_unit(row->unit, unit, sizeof unit);
+  snprintf(text, size, number >= 1e6 ? "%.0f%s%s" : "%.6g%s%s", number, *unit ? " " : "", unit);
+}
+
+static void print_level(const struct printing *printing, struct table *table, const struct study_ladder *ladder,
+                        const struct convergence_row *row, const struct ask_doubts *doubts) {
+  char setting[160];
   /* Of runs that differ in their last bits only. */
   const bool rounding = table_for_people(printing->format) && fabs(row->bias) < 1e-12 * fabs(row->mean) &&
                         row->bias_half_width < 1e-12 * fabs(row->mean);
   if (row->n == 0)
     return; /* left out by the budget, or every run failed: print_limit names it */
-  snprintf(setting, sizeof setting, "%.64s%s%s", row->setting, row->base ? " *" : "", row->reference ? " ref" : "");
+  show_setting(ladder, row->setting, setting, sizeof setting);
+  text_append(setting, sizeof setting, "%s%s", row->base ? " *" : "", row->reference ? " ref" : "");
   table_text(table, row->knob);
   table_text(table, setting);
   table_integer(table, row->n);
@@ -146,8 +162,8 @@ static void print_distance(const struct knob *knob, const struct study_found *fo
     else
       fprintf(out, "all runs are equal, so that the mean may be off by up to %.2g", row->resolution);
     break;
-  case LIMIT_TOO_FEW:
-  case LIMIT_VERDICTS: fprintf(out, "no limit inferred, which needs three levels and three seeds"); break;
+  case LIMIT_TOO_FEW: /* told together */
+  case LIMIT_VERDICTS: return;
   }
   fprintf(out, " (%s)", knob->name);
 }
@@ -161,7 +177,7 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
     return;
   const struct study_ladder *ladder = &study->ladder[from + knob];
   const struct convergence_row *told = &found[knob].rows[level];
-  char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT];
+  char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT], few[256] = "";
   charts_label(study->quantity[quantity].name, label);
   struct sample_summary mean = sample_summarise((size_t)ladder->seeds, ladder->values[quantity][level], 0.95);
   if (field && field_is_share(field))
@@ -177,9 +193,16 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
         row = &found[i].rows[l];
     if (!found[i].adds || !row || row->n == 0)
       continue;
+    const char *const name = study->ladder[from + i].levels.knob->name;
+    if (found[i].limit.verdict == LIMIT_TOO_FEW) {
+      text_append(few, sizeof few, "%s%s", *few ? ", " : "", name);
+      continue;
+    }
     fprintf(out, ", ");
     print_distance(study->ladder[from + i].levels.knob, &found[i], row, out);
   }
+  if (*few)
+    fprintf(out, ", no limit inferred, which needs three levels and three seeds (%s)", few);
   fputc('\n', out);
 }
 
@@ -282,7 +305,7 @@ static status print_quantity(const struct printing *printing, size_t from, size_
     for (size_t l = 0; l < found[i].count; l++) {
       struct ask_doubts doubts;
       TRY(read_doubts(printing, &study->ladder[from + i], l, quantity, &doubts, error));
-      print_level(printing, table, &found[i].rows[l], &doubts);
+      print_level(printing, table, &study->ladder[from + i], &found[i].rows[l], &doubts);
     }
   TRY(table_end(table, error));
   free(sentences);
