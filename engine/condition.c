@@ -105,6 +105,17 @@ enum condition_mark condition_next(const struct condition *list, const char **wo
   return mark;
 }
 
+bool condition_doubted(const struct condition *list, const char *words) {
+  char word[CONDITION_WORD];
+  for (size_t length; (length = next_word(&words)) > 0; words += length) {
+    snprintf(word, sizeof word, "%.*s", (int)length, words);
+    const struct condition *row = condition_find(list, word);
+    if (!row || !row->absent)
+      return true;
+  }
+  return false;
+}
+
 enum condition_mark condition_mark(const struct condition *list, const char *words, const char *names) {
   enum condition_mark worst = CONDITION_SOUND;
   const struct condition *row;
@@ -138,7 +149,7 @@ void condition_tell(const struct condition *list, const char *words, uint64_t to
     bool known = false;
     for (size_t j = 0; list[j].word; j++)
       known = known || (said[j] && strcmp(list[j].word, c->word) == 0);
-    if (known || !condition_has(words, c->word))
+    if (known || c->absent || !condition_has(words, c->word))
       continue;
     fprintf(out, "%s%s: ", before, c->word);
     condition_sentence(c, out);

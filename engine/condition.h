@@ -33,6 +33,7 @@ struct condition {
   const char
       *results;  /* the results that rest on it: paths, separated by spaces. NULL: all; "": none, it is only told */
   bool withheld; /* beyond the bound these results have no meaning */
+  bool absent;   /* and nothing is wrong: the scene does not ask for them. The run does not count as one in doubt */
   const char *inputs; /* of the word "effect": the inputs that then have none; paths, separated by spaces */
   /* The number; NaN where the condition does not apply. At least one of the two. A condition with both is judged at the
    * end by `after` alone. */
@@ -62,6 +63,9 @@ void condition_after(const struct condition *list, const struct condition_run *r
  * worst of them. A word without a row comes from another version, and marks every result. */
 enum condition_mark { CONDITION_SOUND, CONDITION_MARKED, CONDITION_WITHHELD };
 enum condition_mark condition_mark(const struct condition *list, const char *words, const char *names);
+
+/* Do the words of a run put it in doubt? Not when they only say that results are absent. */
+bool condition_doubted(const struct condition *list, const char *words);
 
 /* One word of a text of words. Returns what it says of the results, as condition_mark(), and moves *words on. `word`
  * gets it; *row is the row that it comes from, NULL: none. */

@@ -47,7 +47,7 @@ export const resolution = `SELECT point_id, half_width, verdict FROM resolution
 export const doubts = `SELECT point_id, sum(runs) AS doubtful, sum(runs * withheld) AS withheld, group_concat(DISTINCT marks) AS words
   FROM doubt JOIN doubt_mark USING (engine, words) WHERE quantity = :quantity GROUP BY point_id`;
 export const doubtsOfRuns = `SELECT point_id, count(*) AS doubtful, 0 AS withheld, group_concat(DISTINCT warnings) AS words
-  FROM runs WHERE counts AND warnings <> '' GROUP BY point_id`;
+  FROM runs WHERE counts AND warnings NOT IN ('', 'elastic') GROUP BY point_id`;
 export const sentences = `SELECT word, min(sentence) AS sentence FROM doubt_word JOIN (SELECT DISTINCT engine FROM doubt) USING (engine) GROUP BY word`;
 export const marks = 'SELECT engine, words FROM doubt_mark WHERE quantity = :quantity';
 

@@ -1,11 +1,14 @@
 /* `clast compare A B`: the difference of a quantity between points, campaigns or stores. */
+#include <math.h>
+
 #include "campaign/commands/commands.h"
 
 struct options {
   const char *quantity;
 };
 
-static void print(struct table *table, bool people, const struct ask_pairs_row *row, struct ask_doubts *sum) {
+/* Prints a row. Returns whether it has no interval although both sides have several runs. */
+static bool print(struct table *table, bool people, const struct ask_pairs_row *row, struct ask_doubts *sum) {
   char inputs[2 * ASK_POOL_LABEL + 8];
   const bool same = strcmp(row->label[0], row->label[1]) == 0;
   snprintf(inputs, sizeof inputs, "%s%s%s", row->label[0], same ? "" : "; b: ", same ? "" : row->label[1]);
@@ -25,6 +28,7 @@ static void print(struct table *table, bool people, const struct ask_pairs_row *
   table_rests_on(table, &both);
   table_reals(table, 2, (const double[]){row->difference.difference, row->difference.half_width});
   table_doubt_cells(table, &both);
+  return isnan(row->difference.half_width) && row->difference.n[0] > 1 && row->difference.n[1] > 1;
 }
 
 static status run(const struct command_line *line, struct error *error) {
@@ -36,8 +40,9 @@ static status run(const struct command_line *line, struct error *error) {
                                              "difference", "hw95", NULL});
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
+  bool equal = false;
   for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
-    print(table, table_for_people(line->format), &row, &doubts);
+    equal = print(table, table_for_people(line->format), &row, &doubts) || equal;
   TRY(ask_pairs_end(pairs, error));
   TRY(table_end(table, error));
   for (int side = 0; side < 2; side++) {
@@ -51,6 +56,8 @@ static status run(const struct command_line *line, struct error *error) {
             "clast: %s: b minus a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "
             "runs. It does not hold the error of the resolution\n",
             options->quantity);
+    if (equal)
+      fputs("clast: no interval where all runs, or all differences, are equal: other seeds may differ\n", stderr);
   }
   return STATUS_OK;
 }

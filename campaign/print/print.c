@@ -178,7 +178,7 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
   answer("exponent", digit > 0 && digit < 1 ? digit * round(beta / digit) : beta,
          condition_mark(conditions, o->warnings, OUTCOME_NAME(mean_fragment_mass)), says);
   answer("energy error", o->energy_error, CONDITION_SOUND, "of the energy put in, by numerical errors");
-  printf("in doubt (!)   %s\n", *o->warnings ? o->warnings : "nothing");
+  printf("in doubt (!)   %s\n", condition_doubted(conditions, o->warnings) ? o->warnings : "nothing");
   answer_also(scene->kind, result);
 }
 

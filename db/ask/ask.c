@@ -97,7 +97,7 @@ static struct answer ask_judged(struct store *store, const char *question, struc
       store, error,
       "WITH judged AS (SELECT campaign_id, point_id, identity, state, message, %s AS drift, %g AS "
       "drift_allowed, coalesce(warnings, '') AS warnings, CASE WHEN state NOT IN ('completed', 'end-time') "
-      "THEN 'refused' WHEN coalesce(warnings, '') <> '' THEN 'warned' ELSE 'safe' END AS class FROM "
+      "THEN 'refused' WHEN coalesce(warnings, '') NOT IN " VIEWS_SOUND " THEN 'warned' ELSE 'safe' END AS class FROM "
       "campaign_point JOIN run USING (point_id) WHERE surplus < 2) %s",
       OUTCOME_NAME(energy_error), CONDITION_LARGEST_DRIFT, question);
 }

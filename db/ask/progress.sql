@@ -2,7 +2,7 @@
 -- campaign of its name has. :writing is 1 while a process writes the store. The last session has the largest number:
 -- clocks are set back at times. Without earlier forms, the rounds of one search or study are one row.
 WITH done AS (SELECT campaign_id, count(*) AS runs, sum(counts) AS counted,
-  sum(counts AND state = 'end-time') AS censored, sum(counts AND warnings <> '') AS warned,
+  sum(counts AND state = 'end-time') AS censored, sum(counts AND warnings NOT IN ('', 'elastic')) AS warned,
   sum(state NOT IN ('completed', 'end-time') AND surplus < 2) AS failed, sum(surplus = 1) AS surplus,
   sum(surplus > 1) AS excluded, sum(cpu_time) AS cpu_time
   FROM campaign_point JOIN run USING (point_id) GROUP BY campaign_id),

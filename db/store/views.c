@@ -258,9 +258,10 @@ static void write_points(struct view *view) {
         "attempt a WHERE a.point_id = p.point_id) AS "
         "failed_attempts,\n"
         "  (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND "
-        "r.counts AND r.warnings <> '') AS doubtful,\n"
+        "r.counts AND r.warnings NOT IN " VIEWS_SOUND ") AS doubtful,\n"
         "  ifnull((SELECT group_concat(words, '; ') FROM (SELECT DISTINCT r.warnings AS words FROM run r WHERE "
-        "r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings <> '' ORDER BY "
+        "r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings NOT "
+        "IN " VIEWS_SOUND " ORDER BY "
         "words)), '') AS doubts",
         out);
   for (size_t i = 0; i < count; i++)

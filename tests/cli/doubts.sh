@@ -188,6 +188,21 @@ expect 64 "$clast" compare withheld.db:1 withheld.db:2 -Q strength
 says "no run that counts has a value of strength that is not withheld"
 ok "withheld values"
 
+# A block whose beams cannot break has moduli, and no strength. Runs that are all equal have no interval, and nothing is
+# concluded from that.
+printf 'name: even\nscene: uniaxial\nset: {body.columns: 6, body.rows: 8, grain.disorder: 0}\nvary: {loading.direction: [%s]}\nseeds: {per_point: 2}\nstore: even.db\n' \
+  "extension, compression" >even.yaml
+expect 0 "$clast" run even.yaml -j 2 --quiet
+expect 0 "$clast" stats even.db -Q strength
+says "withheld, 4 of 4 runs: elastic: no beam of the block can break"
+same "$(number even.db "select sum(doubtful) || ' of ' || (select count(*) from runs where warnings = 'elastic') from points")" "0 of 4" "sound runs"
+expect 0 "$clast" stats even.db -Q young_modulus --by loading.direction
+! grep -q '!\|±' out || fail "a mark or an interval"
+says "intervals are over seeds (95 %; none where all are equal)"
+expect 0 "$clast" compare even.db:1 even.db:2 -Q young_modulus
+says "no interval where all runs, or all differences, are equal"
+ok "equal runs"
+
 # A word without a row comes from another version of clast, and marks every result.
 expect 0 "$clast" export marked.db old.db
 python -c "
@@ -197,4 +212,4 @@ db.execute(\"UPDATE run SET warnings = 'soot' WHERE point_id = 1\")
 db.commit()"
 expect 0 "$clast" stats old.db --by time_step
 says "marked (!), 3 of 12 runs: soot: a word of another version of clast"
-done_after 87
+done_after 93

@@ -23,7 +23,7 @@ if [ "${CLAST_FULL:-0}" = 1 ]; then # as they ship
     campaign "$scene" "" ""
   done
 fi
-"$clast" query "$store" "select scene, warnings, count(*) as runs from runs where counts group by scene, warnings" --json >words.json
+"$clast" query "$store" "select scene, iif(warnings = 'elastic', '', warnings) as warnings, count(*) as runs from runs where counts group by scene, warnings" --json >words.json
 same "$(number "$store" 'select count(*) from runs where not counts')" 0 "runs without a result"
 python - <<'PY'
 import json

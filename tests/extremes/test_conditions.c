@@ -2,6 +2,7 @@
  * twin of it, with an answer that means what its name says, has it not. */
 #include <ctype.h>
 
+#include "db/store/views.h"
 #include "engine/condition.h"
 #include "engine/engine.h"
 #include "tests/support/run_case.h"
@@ -48,6 +49,7 @@ static void rows_are_well_formed(void **state) {
         if (!field_find(&outcome_table, path, NULL) && !field_find(kind->results, path, NULL))
           fail_msg("%s, %s: %s is no result", kind->name, c->word, path);
       assert_true(!c->withheld || c->results); /* a run without any result would be no run */
+      assert_true(!c->absent || (c->withheld && !c->before && strstr(VIEWS_SOUND, c->word)));
       for (const struct condition *other = c + 1; other->word; other++)
         if (strcmp(other->word, c->word) == 0 && strcmp(other[-1].word, c->word) != 0)
           fail_msg("rows of %s do not stand together", c->word);
@@ -119,6 +121,12 @@ static void bounds_are_exclusive_and_the_end_decides(void **state) {
   assert_int_equal(condition_mark(sph_engine.conditions, "gone", "crater_depth"), CONDITION_WITHHELD);
   assert_int_equal(condition_mark(sph_engine.conditions, "gone", "result_sph_crater_depth"), CONDITION_WITHHELD);
   assert_int_equal(condition_mark(sph_engine.conditions, "gone", "largest_crater_depth"), CONDITION_SOUND);
+  /* a strength that no run can have leaves the moduli of this run sound */
+  assert_int_equal(condition_mark(dem_engine.conditions, "elastic", "strength"), CONDITION_WITHHELD);
+  assert_int_equal(condition_mark(dem_engine.conditions, "elastic", "young_modulus"), CONDITION_SOUND);
+  assert_false(condition_doubted(dem_engine.conditions, "elastic"));
+  assert_true(condition_doubted(dem_engine.conditions, "elastic, load"));
+  assert_true(condition_doubted(dem_engine.conditions, "soot"));
   /* rows of one word: a rod that holds has no strength, and fragments that may not be final */
   assert_int_equal(condition_mark(sph_engine.conditions, "event", "peak.stress"), CONDITION_WITHHELD);
   assert_int_equal(condition_mark(sph_engine.conditions, "event", "largest_fraction"), CONDITION_MARKED);
@@ -152,6 +160,7 @@ static const struct twin {
      {"body.columns=6", "body.rows=8", "threshold.breaking=true", "threshold.strain=1 %"},
      {"loading.strain_end=0.4 %"},
      {"loading.strain_end=8 %"}},
+    {"elastic", "uniaxial", {"body.columns=6", "body.rows=8"}, {NULL}, {"threshold.breaking=true"}},
     {"grains", "disc-explosion", {"body.diameter=8 cm", "stop.end_time=0.5 ms"}, {"grain.spacing=2 cm"}, {NULL}},
     {"single", "disc-collision", {"body.diameter=8 cm"}, {"collision.speed=2 km/s"}, {"collision.speed=50 m/s"}},
     {"cut",
@@ -305,6 +314,16 @@ static const struct twin {
      "porous-target",
      {"fidelity.particles=200", "impact.gap=0.1 mm", "stop.end_time=1 us"},
      {"fracture.cell=3 mm"},
+     {NULL}},
+    {"effect",
+     "porous-target",
+     {"fidelity.particles=200", "impact.gap=0.1 mm", "stop.end_time=1 us"},
+     {"fracture.draw=ranked"},
+     {"fracture.draw=poisson"}},
+    {"effect",
+     "porous-target",
+     {"fidelity.particles=200", "impact.gap=0.1 mm", "stop.end_time=1 us"},
+     {"fracture.cap=none"},
      {NULL}},
     {"effect",
      "gabbro-crater",

@@ -160,6 +160,11 @@ static double unbroken(const struct condition_run *r) {
   return fabs(run->sample[samples - 1].stress) / run->state.stress_peak;
 }
 
+static double unbreakable(const struct condition_run *r) {
+  const struct dem_inputs *in = r->inputs;
+  return dem_inputs_loaded(in) && !in->threshold.breaking;
+}
+
 #define OF_THE_LARGEST "largest_fraction second_fraction mean_fragment_mass mean_fragment_mass_rest"
 
 const struct condition dem_conditions[] = {
@@ -240,5 +245,9 @@ const struct condition dem_conditions[] = {
               .remedy = "raise loading.strain_end",
               .results = "strength failure_strain upright_share end_triangle_share", .withheld = true,
               .after = unbroken),
+    CONDITION("elastic", .fact = "no beam of the block can break (threshold.breaking: false)",
+              .doubt = "the largest stress is that of the last strain, and no strength",
+              .reason = "a strength is a failure", .remedy = "set threshold.breaking: true",
+              .results = "strength failure_strain", .withheld = true, .absent = true, .after = unbreakable),
     {0},
 };

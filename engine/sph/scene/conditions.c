@@ -488,11 +488,6 @@ static double hot(const struct condition_run *r) {
 
 /* ---- inputs without effect ---- */
 
-static double no_flaws(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return !sph_derived_scene_cracks(in) && (in->crack_cell.width > 0 || in->crack_front.front != SPH_CRACK_FRONT_NONE);
-}
-
 /* Is an input not the default of its row? */
 static bool is_given(const char *path, double value) {
   const double usual = field_find(&sph_inputs, path, NULL)->number;
@@ -503,7 +498,10 @@ static bool is_given(const char *path, double value) {
 static double no_fracture(const void *inputs) {
   const struct sph_inputs *in = inputs;
   return !sph_derived_scene_cracks(in) && in->target.strength &&
-         (is_given("stop.quiet_growth", in->stop.quiet_growth) ||
+         (in->crack_cell.width > 0 || in->crack_front.front != SPH_CRACK_FRONT_NONE ||
+          is_given("fracture.growth", in->fracture.growth) || is_given("fracture.cap", in->fracture.cap) ||
+          is_given("fracture.crack_radius", in->fracture.crack_radius) || is_given("fracture.draw", in->weibull.draw) ||
+          is_given("fidelity.flaws", in->weibull.flaws) || is_given("stop.quiet_growth", in->stop.quiet_growth) ||
           is_given("fidelity.damage_step", in->fracture.damage_step) ||
           (in->crack_surfaces.on && !is_porous(&in->target)));
 }
@@ -835,16 +833,12 @@ const struct condition sph_conditions[] = {
         .bound = 0.01, .doubt = "hot matter that never was in tension has no damage, and counts as whole",
         .reason = "our choice", .remedy = "count energies, not damage", .results = ALL_OF_A_BODY, .withheld = true,
         .after = hot),
-    CONDITION("effect", .fact = "fracture.cell or fracture.front is given, and no body has flaws",
-              .doubt = "it has no effect: nothing cracks", .reason = "modules crack_cell and crack_front need flaws",
+    CONDITION("effect", .fact = "an input of fracture is given, and no body has flaws",
+              .doubt = "it has no effect: nothing cracks", .reason = "they act on flaws, and on the damage of cracks",
               .remedy = "give the material weibull.m and weibull.k, or leave it out",
-              .inputs = "fracture.cell fracture.front", .results = "", .before = no_flaws),
-    CONDITION(
-        "effect",
-        .fact = "stop.quiet_growth, fidelity.damage_step or method.crack_surfaces is given, and no body has flaws",
-        .doubt = "it has no effect: nothing cracks", .reason = "they act on damage",
-        .remedy = "give the material weibull.m and weibull.k, or leave it out",
-        .inputs = "stop.quiet_growth fidelity.damage_step method.crack_surfaces", .results = "", .before = no_fracture),
+              .inputs = "fracture.cell fracture.front fracture.growth fracture.cap fracture.crack_radius "
+                        "fracture.draw fidelity.flaws fidelity.damage_step stop.quiet_growth method.crack_surfaces",
+              .results = "", .before = no_fracture),
     CONDITION("effect", .fact = "target.lattice is cubic with fidelity.graded",
               .doubt = "it has no effect: a graded body has irregular points", .reason = "engine/sph/README.md",
               .remedy = "leave it out", .inputs = "target.lattice", .results = "", .before = no_lattice),
