@@ -53,6 +53,12 @@ static double passing_before(const void *inputs) {
   return passing > 0 ? closing_speed(inputs) / passing : (double)NAN;
 }
 
+/* Two bodies without contacts. */
+static double untouchable(const void *inputs) {
+  const struct dem_inputs *in = inputs;
+  return in->kind == DEM_DISC_COLLISION && in->contact.law == DEM_CONTACT_OFF;
+}
+
 static double passing_after(const struct condition_run *r) {
   const struct dem_run *run = run_of(r);
   return run->passing_speed > 0 ? dem_system_fastest_approach(run->system) / run->passing_speed : (double)NAN;
@@ -179,6 +185,10 @@ const struct condition dem_conditions[] = {
         .bound = 1, .doubt = "no overlap stores that much energy, so the model has no answer",
         .reason = "energy of the largest overlap (engine/dem/README.md)",
         .remedy = "lower the speed, or raise grain.young_modulus", .before = passing_before, .after = passing_after),
+    CONDITION("passing", .fact = "two discs collide with contact.law: off",
+              .doubt = "they pass through each other, and nothing happens",
+              .reason = "bodies act on each other by contacts", .remedy = "set contact.law: conservative",
+              .before = untouchable),
     CONDITION("step", .number = "fidelity.time_step over the longest stable step", .bound = 0.25,
               .doubt = "energy may drift",
               .reason = "Verlet's energy drifts by 1 % in some runs from 0.28 on (tests/extremes/map.md)",

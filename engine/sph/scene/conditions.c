@@ -392,6 +392,25 @@ static double shallow(const struct condition_run *r) {
   return changed > 0 ? results->crater.depth / sph_derived_fine_spacing(r->inputs) : (double)NAN;
 }
 
+/* The way that the floor of a crater, or a surface that closes its pores, would move in the simulated time once more,
+ * as fast as now against the rest of the target; over the depth of the crater, one spacing at least. */
+static double growing(const struct condition_run *r) {
+  const struct sph_run *run = run_of(r);
+  const struct sph_results *results = results_of(r);
+  if (run->inputs.kind != SPH_IMPACT || !(fmax(results->crater.depth, results->palpha.compaction.volume) > 0))
+    return NAN;
+  enum { LAYERS = 3 };
+  const struct sph_crater_options options = sph_report_crater_options(run);
+  struct sph_crater_layer layer[LAYERS];
+  const size_t n = sph_crater_profile(run->start, run->now, &options, layer, LAYERS);
+  double floor = 0, rest = 0;
+  for (size_t k = 0; k < n; k++)
+    floor += layer[k].velocity / (double)n;
+  for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++)
+    rest += run->now->mass[i] * run->now->vz[i] / run->range[0].mass;
+  return n > 0 ? fabs(floor - rest) * r->outcome->time / fmax(results->crater.depth, options.spacing) : (double)NAN;
+}
+
 static bool is_damaged(const struct sph_run *run, size_t i) {
   return sph_particles_damage(run->now, i) >= run->inputs.fragments.damage;
 }
@@ -791,6 +810,16 @@ const struct condition sph_conditions[] = {
               .reason = "a hole of less than one spacing counts as none",
               .remedy = "take more particles, or fidelity.graded: true",
               .results = "crater.depth crater.radius crater.volume", .after = shallow),
+    CONDITION("growing",
+              .number =
+                  "the way that the floor of the crater would move in the simulated time once more, over its depth,",
+              .bound = 0.1, .doubt = "the crater still grows, and pores still close",
+              .reason = "porous-target with 4000 particles: the depth is 18, 4 and 0 % below its final value at 0.16, "
+                        "0.10 and 0.001, the volume of closed pores 21, 5 and 0 %",
+              .remedy = "give a longer stop.end_time, and stop.quiet_time",
+              .results = "crater.depth crater.radius crater.volume crater.compaction_share compaction.mass_fraction "
+                         "compaction.volume compaction.depth compaction.reach",
+              .after = growing),
     CONDITION("moved", .number = "the way that undamaged matter of the target has moved, over the crater's depth,",
               .bound = 0.2, .doubt = "the target has left the place from which the crater is measured",
               .reason = "our choice: the crater begins at the surface at the start",
