@@ -363,7 +363,7 @@ static double pressing(const struct condition_run *r) {
 static double pieces(const struct condition_run *r) {
   const struct sph_inputs *in = r->inputs;
   const bool fluid = !in->target.strength || (in->kind == SPH_COLLISION && !in->projectile.strength);
-  if (sph_derived_scene_cracks(in) || fluid || in->kind == SPH_PISTON)
+  if (sph_derived_scene_cracks(in) || fluid || in->kind == SPH_PISTON || run_of(r)->has_gaps)
     return NAN;
   return (double)r->outcome->fragment_count / (in->kind == SPH_COLLISION ? 2 : 1);
 }
