@@ -712,7 +712,7 @@ const struct condition sph_conditions[] = {
               .doubt = "the wall is not resolved, and the speed of the rebound moves with the particles",
               .reason = "rings of 4 come back as fast as those of 5 within 2 % (tests/verification/sph_rings.md)",
               .remedy = "take more particles", .results = ALL_OF_AN_IMPACT, .before = layers),
-    CONDITION("thin", .number = "the number of particle spacings through the target's thinnest side", .bound = 4,
+    CONDITION("thin", .number = "the number of particle spacings through the target's thinnest side", .bound = 3.5,
               .least = true, .doubt = "most particles lie at a surface, and bending and cracks are not resolved",
               .reason = "a plate of 8 mm that breaks keeps 0.17, 0.28, 0.35 and 0.44 undamaged with 1.2, 2, 3 and 4; "
                         "tensile-rod has 25 cracks with 3.4, and 2 from 4.2 on",
