@@ -3,10 +3,12 @@
 #include "campaign/fit/fit.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "campaign/terminal/table.h"
 #include "campaign/terminal/words.h"
 #include "schemas/text.h"
+#include "schemas/unit.h"
 
 enum { WIDTH = 110, LABEL = 2 * FIELD_TEXT_SIZE, PARAGRAPH = (OBSERVED_DATA + 4) * LABEL };
 
@@ -38,19 +40,28 @@ static void skip(struct table *table, int cells) {
     table_missing(table);
 }
 
-static void input_cells(const struct fit *fit, size_t i, struct table *table) {
+/* The campaign's unit of an input, else the SI unit; and the SI value of one of it. */
+static double shown_unit(const struct fit *fit, size_t i, char text[64]) {
+  struct unit unit;
+  const char *written = fit->campaign->axes[fit->axis[i]].unit;
+  const bool good = *written && unit_parse(written, &unit, NULL) == STATUS_OK;
+  text_unit(good ? written : row_of(fit, i)->unit, text, 64);
+  return good ? unit.factor : 1;
+}
+
+static void input_cells(const struct fit *fit, size_t i, double unit, struct table *table) {
   const double z05 = posterior_coordinate(0.05), z95 = posterior_coordinate(0.95);
   double z[3];
   for (int q = 0; q < 3; q++)
     z[q] = posterior_quantile(&fit->posterior, i, levels[2 * q]);
-  table_reals(table, 2, (const double[]){fit_number(fit, i, z05), fit_number(fit, i, z95)});
+  table_reals(table, 2, (const double[]){fit_number(fit, i, z05) / unit, fit_number(fit, i, z95) / unit});
   if (is_outside(fit)) {
     skip(table, 4);
     return;
   }
   for (int q = 0; q < 3; q++) {
     table_rests_on(table, &fit->all_doubts);
-    table_real(table, fit_number(fit, i, z[q]));
+    table_real(table, fit_number(fit, i, z[q]) / unit);
   }
   table_real(table, (posterior_share(z[2]) - posterior_share(z[0])) / 0.9);
 }
@@ -66,9 +77,9 @@ static status print_inputs(const struct fit *fit, enum table_format format, stru
   for (size_t i = 0; i < fit->inputs; i++) {
     table_text(table, row_of(fit, i)->path);
     char unit[64];
-    text_unit(row_of(fit, i)->unit, unit, sizeof unit);
+    const double one = shown_unit(fit, i, unit);
     table_text(table, unit);
-    input_cells(fit, i, table);
+    input_cells(fit, i, one, table);
   }
   return table_end(table, error);
 }
@@ -139,7 +150,7 @@ static status print_rows(const struct fit *fit, enum table_format format, struct
     table_text(table, "input");
     table_text(table, row_of(fit, i)->path);
     table_text(table, row_of(fit, i)->unit);
-    input_cells(fit, i, table);
+    input_cells(fit, i, 1, table);
     skip(table, 5);
     table_doubt_cells(table, &fit->all_doubts);
   }
@@ -192,8 +203,11 @@ static const char *list_ends(const struct fit *fit, size_t direction, char text[
     if (!identify_mixed(&fit->found, direction, i))
       continue;
     const double z = fit->found.centre[i], step = d->deviation * d->along[i];
-    text_append(text, PARAGRAPH, "%s%s from %.3g to %.3g", *text ? ", " : "", row_of(fit, i)->path,
-                fit_number(fit, i, z - step), fit_number(fit, i, z + step));
+    char unit[64];
+    const double one = shown_unit(fit, i, unit);
+    text_append(text, PARAGRAPH, "%s%s from %.3g to %.3g%s%s", *text ? ", " : "", row_of(fit, i)->path,
+                fit_number(fit, i, z - step) / one, fit_number(fit, i, z + step) / one,
+                strcmp(unit, "1") == 0 || !*unit ? "" : " ", strcmp(unit, "1") == 0 ? "" : unit);
   }
   return text;
 }
