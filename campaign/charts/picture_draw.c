@@ -352,6 +352,9 @@ static status draw_movie(const char *series, const char *picture, const struct p
   const bool gif = ending && strcmp(ending, ".gif") == 0;
   if (options->view && strcmp(options->view, "profile") == 0)
     return status_fail(error, STATUS_USAGE, "--view profile is for one snapshot");
+  if (!gif && (!ending || (strcmp(ending, ".png") && strcmp(ending, ".svg") && strcmp(ending, ".pdf"))))
+    return status_fail(error, STATUS_USAGE,
+                       "%s: a movie's name ends in .gif; one picture of all snapshots is .png, .svg or .pdf", picture);
   if (gif) {
     snprintf(movie.folder, sizeof movie.folder, "%s.XXXXXX", picture);
     if (!mkdtemp(movie.folder)) {

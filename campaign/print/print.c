@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/statistics/statistics.h"
+#include "campaign/terminal/words.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
@@ -110,13 +111,16 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
 }
 
 static void answer(const char *name, double value, enum condition_mark mark, const char *says) {
-  char text[64];
+  char text[64], head[96];
+  const bool whole = value == floor(value) && fabs(value) < 1e9;
   snprintf(text, sizeof text,
            mark == CONDITION_WITHHELD ? "withheld"
            : isnan(value)             ? "-"
+           : whole                    ? "%.0f%s"
                                       : "%.4g%s",
            value, mark == CONDITION_MARKED ? UNCERTAINTY_MARK : "");
-  printf("%-14s %-10s %s\n", name, text, says);
+  snprintf(head, sizeof head, strchr(name, '.') ? "%-20s %-11s" : "%-14s %-11s", name, text); /* a path: an engine's */
+  words_print(stdout, head, "%s", says);
 }
 
 /* A result of the engine, with the mark of this run. */
