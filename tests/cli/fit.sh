@@ -45,13 +45,16 @@ expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --json
 says "0 found in the store"
 cmp -s out killed.json || fail "a fit that was killed reports something else"
 ok "killed and not killed: the same report"
-expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --picture predicted.svg
+expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --picture predicted.svg --keep-script
 says "0 runs computed"
 prints "RIDGE: these data cannot tell threshold.strain and threshold.angle apart"
 prints "TOGETHER: the data determine threshold.strain and threshold.angle together"
 prints "One experiment is one specimen"
 prints "RESOLUTION: what a finer resolution would change is not known"
 grep -q 'M₁/M' predicted.svg || fail "the picture has no readable label"
+sed -i 's/^left_margin = .*/left_margin = 300/' predicted.gp # a quotient of whole numbers is whole: 300 / 900 was 0
+gnuplot predicted.gp
+grep -q 'M₁/M' predicted.svg || fail "no label beside a margin of whole pixels"
 python - <<'PY'
 import json
 rows = json.load(open('killed.json'))

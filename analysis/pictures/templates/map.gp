@@ -18,7 +18,7 @@ wide = page_width * 0.7 / columns
 fits = wide > 34 && page_height * 0.7 / rows > 16
 small = wide > 60 ? 1.0 : 0.75
 number_font = letters.sprintf(',%g', (ending eq 'svg' ? 14 : 10.5) * small)
-middle = (low + high) / 2
+middle = (low + high) / 2.
 # 5*10^33 as people write it
 power(x) = floor(log10(abs(x)) + 1e-9)
 rest(x) = sprintf('%.4g', x / 10.**power(x))

@@ -1,6 +1,6 @@
 # What was measured beside what a fit predicts for one more experiment, a row for each number, measured = 1.
 # The data: row, measured, its error, and the 5, 25, 50, 75 and 95 % quantiles of the prediction.
-set lmargin at screen left_margin / page_width
+set lmargin at screen 1.0 * left_margin / page_width # whole numbers have a whole quotient
 set xrange [x_low:x_high]
 set yrange [-0.6:rows - 0.4]
 unset ytics
