@@ -182,6 +182,11 @@ assert row['pairs'] == '3' and abs(float(row['difference']) - mean) < 1e-12, (ro
 PY
 expect 0 "$clast" compare small.db small.db:small --csv
 [ "$(grep -c . out)" -eq 5 ] || fail "four points beside themselves are four rows"
+[ "$(cut -d, -f1 out | tr -d '\r\n')" = point_a1234 ] || fail "the pairs are not in the order of their points"
+expect 0 "$clast" compare small.db:1 small.db:4
+prints "b: strain" # what differs, in the campaign's units
+expect 64 "$clast" stats small.db --by threshold # a section with both inputs
+says "it may be threshold.angle, threshold.strain"
 expect 64 "$clast" compare small.db:1 small.db
 expect 64 "$clast" compare small.db:none small.db
 says "no campaign 'none'"
@@ -212,6 +217,13 @@ prints "from     runs"
 expect 0 "$clast" scatter small.db --picture scatter.svg -Q fragment_count
 is_svg scatter.svg
 expect 64 "$clast" scatter small.db --half-width none
+expect 0 "$clast" scatter small.db --point 2 --half-width '5 %' --csv
+python - <<'PY'
+import csv, math
+rows = {r["statistic"]: r for r in csv.DictReader(open("out"))}
+wanted = 0.05 * float(rows["mean"]["value"]) # Student's t is at least 1.96
+assert float(rows["runs needed"]["value"]) >= (1.96 * float(rows["standard deviation"]["value"]) / wanted) ** 2, rows
+PY
 expect 64 "$clast" scatter small.db --split --point 1
 says "at least two points"
 expect 64 "$clast" scatter small.db -Q nothing
@@ -237,4 +249,4 @@ says "no line joins the points"
 same "$(sed '/^$/,$d' sampled.dat | grep -c '^NaN')" 8 "gaps between the points of a sample"
 expect 0 "$clast" plot small.db grid.png -x strain --by angle --keep-script
 same "$(sed '/^$/,$d' grid.dat | grep -c '^NaN' || true)" 0 "gaps between the points of a grid"
-done_after 90
+done_after 93
