@@ -48,6 +48,12 @@ static status ask(struct store *store, const struct command_line *line, struct e
   TRY(table_answer(ask_group(store, options->by, quantity, pooled, error), true, line->format, stdout));
   if (*pooled)
     fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
+  const int64_t levels = *pooled ? ask_campaign_levels(store) : 0;
+  if (levels > 0)
+    fprintf(stderr,
+            "clast: %" PRId64 " of these points are of studies and searches (`clast status` lists them): `clast "
+            "estimates` tells each point; --campaign NAME takes those of one campaign\n",
+            levels);
   if (table_for_people(line->format)) {
     TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, options->quantity, error));
     quantity_tell_resolutions(store, options->quantity, pooled);

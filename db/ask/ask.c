@@ -42,6 +42,16 @@ bool ask_campaign_shared(struct store *store) {
          points > 0;
 }
 
+int64_t ask_campaign_levels(struct store *store) {
+  double points = 0;
+  const status code = answer_number(
+      store, &points, NULL,
+      "SELECT count(*) FROM points WHERE point_id IN (SELECT point_id FROM campaign_point) AND point_id NOT IN (SELECT "
+      "point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE document NOT LIKE '# Written by clast "
+      "%%')");
+  return code == STATUS_OK ? (int64_t)points : 0;
+}
+
 status ask_campaign_document(struct store *store, int64_t campaign, char **name, char **document, struct error *error) {
   ANSWER
   answer = answer_to(store, error,

@@ -42,6 +42,8 @@ struct answer ask_campaign_progress(struct store *store, bool writing, bool earl
 /* Seconds since the store had its last sign of life: a run was stored, or a session began. NaN: none is known. */
 double ask_campaign_silence(struct store *store);
 bool ask_campaign_shared(struct store *store); /* have several campaigns the same point? */
+/* Number of chosen points that only a study (clast converge) or a search (find, fit) has. */
+int64_t ask_campaign_levels(struct store *store);
 
 /* Name and YAML text of a campaign (0: the last one); the caller frees both. Both NULL: the store has no campaign. */
 status ask_campaign_document(struct store *store, int64_t campaign, char **name, char **document, struct error *error);

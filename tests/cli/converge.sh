@@ -115,6 +115,7 @@ expect 0 "$clast" converge tiny.yaml --knob integrator --seeds 2 --within off -j
 same "$(number tiny.db "select count(distinct base_point_id) from convergence")" 4 "points studied"
 expect 0 "$clast" stats tiny.db
 says "pooled over fidelity.integrator, threshold.angle, threshold.strain"
+says "of these points are of studies and searches"
 
 # Accuracy on demand: without a study the command is named; then the cheapest settings are taken, and their seeds run.
 cat >sharp.yaml <<'YAML'
