@@ -53,9 +53,10 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct options *options = line->options;
   const char *target = line->count > 1 ? line->arguments[1] : NULL;
   const struct export_crate_options crate = {target, options->license, options->author};
-  if (options->dakota)
+  if (options->dakota) { /* its files have no place for marks */
     TRY(export_files_tabular(store, target, strcmp(options->per, "run") == 0 ? "runs" : "points", error));
-  else if (options->per)
+    TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, "main", error));
+  } else if (options->per)
     TRY(export_files_write(store, target, strcmp(options->per, "run") == 0 ? "runs" : "points",
                            options->lines ? TABLE_JSON_LINES : TABLE_CSV, error));
   else if (options->csv)

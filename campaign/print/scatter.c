@@ -453,7 +453,7 @@ static status leave_idle_out(struct store *store, struct run_cells *cells, char 
       left += (idle[a] += idle[a] == c && has_no_effect(scene, cells->column[a])) == c + 1;
   }
   for (size_t a = cells->axes; a-- > 0;) {
-    if (idle[a] < cells->count)
+    if (idle[a] < cells->count || cells->count == 0) /* without runs nothing is known */
       continue;
     text_append(names, size, "%s%s", *names ? ", " : "", cells->column[a]);
     cells->axes--;

@@ -133,7 +133,8 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
 import csv
 assert [(r["doubtful"], r["doubts"]) for r in csv.DictReader(open("out", newline=""))] == [("0", "")] * 2 + [("3", "step")] * 2
 PY
-    ;;
+    expect 0 "$clast" export marked.db --per run --dakota # a file without a place for marks
+    says "marked (!), 6 of 12 runs: step" ;;
   picture) expect 0 "$clast" simulate disc-explosion --set fidelity.time_step='4 us' --set stop.end_time='20 us' --fields body.hdf
     expect 0 "$clast" picture body.hdf body.png
     says "marked (!), 1 of 1 runs: step: fidelity.time_step over the longest stable step is above 0.25" ;;
@@ -201,7 +202,22 @@ expect 0 "$clast" stats even.db -Q young_modulus --by loading.direction
 says "intervals are over seeds (95 %; none where all are equal)"
 expect 0 "$clast" compare even.db:1 even.db:2 -Q young_modulus
 says "no interval where all runs, or all differences, are equal"
+expect 64 "$clast" sensitivity even.db -Q strength
+! grep -q 'no effect' err || fail "an input that acts"
 ok "equal runs"
+
+# A file for Dakota has nan where a result is withheld: a disc whose dust is less than two particles.
+cat >dust.yaml <<'YAML'
+name: dust
+scene: disruption
+set: {fidelity.particles: 300, stop.end_time: 20 us}
+vary: {impact.angle: [0 deg, 30 deg]}
+seeds: {per_point: 1}
+store: dust.db
+YAML
+expect 0 "$clast" run dust.yaml -j 2 --quiet
+expect 0 "$clast" export dust.db --per run --dakota
+same "$(awk '{print $5}' out | tr '\n' ' ')" "dust_fraction nan nan " "withheld for Dakota"
 
 # A word without a row comes from another version of clast, and marks every result.
 expect 0 "$clast" export marked.db old.db
@@ -212,4 +228,4 @@ db.execute(\"UPDATE run SET warnings = 'soot' WHERE point_id = 1\")
 db.commit()"
 expect 0 "$clast" stats old.db --by time_step
 says "marked (!), 3 of 12 runs: soot: a word of another version of clast"
-done_after 93
+done_after 98
