@@ -177,13 +177,13 @@ sed -i 's/per_point: .*}/per_point: 60}/' held.yaml
 lock 60
 rm err
 "$toy" run held.yaml -j 2 >out 2>err </dev/null &
-until grep -qs "clast waits until it lets go" err; do sleep 0.1; done
+until cat err 2>/dev/null | tr '\n' ' ' | grep -q "clast waits until it lets go"; do sleep 0.1; done
 kill -TERM $!
 wait $! && code=0 || code=$?
 same "$code" 75 "exit of a run that waits for the store"
 rm err
 "$toy" merge held.db tiny.db >out 2>err </dev/null &
-until grep -qs "clast waits until it lets go" err; do sleep 0.1; done
+until cat err 2>/dev/null | tr '\n' ' ' | grep -q "clast waits until it lets go"; do sleep 0.1; done
 kill -TERM $!
 wait $! && code=0 || code=$?
 same "$code" 75 "exit of a merge that waits for the store"
