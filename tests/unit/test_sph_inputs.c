@@ -266,6 +266,7 @@ static void what_cannot_be_run_is_refused(void **state) {
   refused("fidelity: {graded: true, fine_spacing: 1 cm}", "fine_spacing");
   refused("fidelity: {graded: true, spacings_per_radius: 0.9}", "spacings_per_radius");
   refused("fidelity: {graded: true, spacings_per_radius: 6, particles: 300}", "particles, not 300");
+  accepted("fidelity: {graded: true, spacings_per_radius: 6, coarsest: 2.5, particles: 300}");
   accepted("impact: {speed: 0}");
   accepted("impact: {speed: 70 km/s}");
   accepted("target: {radius: 1e-6 m}\nprojectile: {radius: 1e-7 m}");

@@ -324,6 +324,51 @@ static void irregular_points_are_even(void **state) {
   sph_lattice_empty(&p);
 }
 
+/* Largest spacing of a graded body over the uniform one; infinite where so many particles are refused. */
+static double coarsest_of(const struct sph_shape *shape, struct sph_grading grading, double particles) {
+  struct sph_points p;
+  struct error error;
+  const struct sph_lattice lattice = {.particles = particles, .seed = 3, .grading = grading};
+  if (sph_lattice_fill(&lattice, shape, &p, &error))
+    return INFINITY;
+  double most = 0;
+  for (size_t i = 0; i < p.n; i++)
+    most = fmax(most, p.share[i]);
+  sph_lattice_empty(&p);
+  return cbrt(most);
+}
+
+/* The finest zone keeps the bound on the coarsest spacing. It meets that bound, or a finer zone cannot be made. */
+static void finest_zone_keeps_the_coarsest_spacing(void **state) {
+  (void)state;
+  const struct sph_shape shapes[] = {{.kind = SPH_SHAPE_SPHERE, .radius = 0.03},
+                                     {.kind = SPH_SHAPE_BOX, .side = {0.06, 0.06, 0.06}}};
+  const double numbers[] = {400, 3000, 20000}, bounds[] = {1.3, 2, 2.5};
+  int bounded = 0;
+  for (size_t k = 0; k < 18; k++) {
+    const struct sph_shape *shape = &shapes[k % 2];
+    const double n = numbers[k / 2 % 3], bound = bounds[k / 6], asked = 6e-4;
+    struct sph_grading grading = {.fine = asked, .point = {0, 0, 0.03}, .radius = 4 * asked, .growth = NAN};
+    grading.fine = sph_irregular_finest(grading, shape, n, bound);
+    assert_true(grading.fine >= asked && grading.fine <= cbrt(sph_shape_volume(shape) / n));
+    const double coarsest = coarsest_of(shape, grading, n);
+    if (!(coarsest < 1.02 * bound)) /* shells and points find the far side within 1 % */
+      fail_msg("%g particles, bound %g: %g", n, bound, coarsest);
+    if (grading.fine > 1.1 * asked) {
+      grading.fine *= 0.92;
+      /* the last particle lies a spacing before the far side, and spacings grow by at most 0.12 of the distance */
+      if (!(coarsest > bound / 1.12 || isinf(coarsest_of(shape, grading, n))))
+        fail_msg("%g particles, bound %g: %g", n, bound, coarsest);
+      bounded++;
+    }
+  }
+  assert_true(bounded >= 8 && bounded < 18);
+  /* a body that is finer than asked everywhere becomes nearly uniform */
+  struct sph_grading grading = {.fine = 0.02, .point = {0, 0, 0.03}, .radius = 0.08, .growth = NAN};
+  grading.fine = sph_irregular_finest(grading, &shapes[0], 3000, 2);
+  assert_true(coarsest_of(&shapes[0], grading, 3000) < 1.03);
+}
+
 /* 0.5 mm at the impact, growing outwards: the requested number, volumes that add up, the requested spacing, and a
  * density sum that is right in every shell. */
 static void graded_points_keep_their_grading(void **state) {
@@ -469,6 +514,7 @@ int main(void) {
       cmocka_unit_test(periodic_bodies_have_no_seam),
       cmocka_unit_test(irregular_points_are_even),
       cmocka_unit_test(graded_points_keep_their_grading),
+      cmocka_unit_test(finest_zone_keeps_the_coarsest_spacing),
       cmocka_unit_test(absurd_lattices_are_refused),
       cmocka_unit_test(thin_bodies_are_filled_or_refused),
   };

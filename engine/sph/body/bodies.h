@@ -137,6 +137,10 @@ status sph_lattice_allocate(struct sph_points *points, size_t n, struct error *e
  * the number of particles. */
 status sph_irregular_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, double wanted,
                           struct sph_points *points, struct error *error);
+/* The least spacing (m) near the point, at least grading.fine, with which no spacing of the body is above `coarsest`
+ * times the uniform one of so many particles. Needs the volume of the shape; grading.growth is not used. */
+double sph_irregular_finest(struct sph_grading grading, const struct sph_shape *shape, double particles,
+                            double coarsest);
 /* STATUS_CONTENT: the grading cannot give so many particles. */
 status sph_irregular_check(struct sph_grading grading, const struct sph_shape *shape, double particles,
                            struct error *error);

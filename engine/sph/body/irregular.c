@@ -353,18 +353,39 @@ static double count(const struct sph_grading *g, struct shells *shells) {
 
 static const double steepest = 0.12; /* growth at which spacings of neighbours differ by a factor of less than 1.15 */
 
+static const double within = 0.01; /* what shells and rays know of a number of particles */
+
 /* STATUS_CONTENT: no growth gives so many particles. Leaves the most of them in the shells. */
 static status check_range(struct sph_grading *g, double particles, struct shells *shells, struct error *error) {
   g->growth = steepest;
   const double fewest = count(g, shells);
   g->growth = 0;
   const double most = count(g, shells);
-  if (!(particles >= fewest && particles <= most))
+  if (!(particles >= (1 - within) * fewest && particles <= (1 + within) * most))
     return status_fail(error, STATUS_CONTENT,
                        "spacing from %g m at the point of impact gives %.0f to %.0f particles, not %.0f: change "
                        "fidelity.particles, spacings_per_radius or fine_radius, or set fidelity.graded: false",
                        g->fine, ceil(fewest), floor(most), particles);
   return STATUS_OK;
+}
+
+double sph_irregular_finest(struct sph_grading grading, const struct sph_shape *shape, double particles,
+                            double coarsest) {
+  OWNED struct shells *shells = memory_small(1, sizeof *shells);
+  cut_shells(&grading, shape, shells);
+  int last = SHELLS - 1;
+  while (last > 0 && shells->open[last] == 0)
+    last--;
+  const double uniform = cbrt(sph_shape_volume(shape) / particles);
+  const double far = fmax(0, shells->r[last + 1] - grading.radius);
+  double low = fmin(grading.fine, uniform), high = uniform;
+  for (int k = 0; k < 50 && low < high; k++) {
+    grading.fine = k == 0 ? low : 0.5 * (low + high);
+    const double growth = (coarsest * uniform - grading.fine) * (far + 4 * grading.fine) / (far * far);
+    grading.growth = fmin(steepest, growth);
+    *(count(&grading, shells) > particles ? &low : &high) = grading.fine;
+  }
+  return high;
 }
 
 status sph_irregular_check(struct sph_grading grading, const struct sph_shape *shape, double particles,

@@ -572,9 +572,16 @@ static double no_lattice(const void *inputs) {
 
 static double overruled(const void *inputs) {
   const struct sph_inputs *in = inputs;
-  const double spacings = in->fidelity.spacings_per_radius;
-  return in->kind == SPH_IMPACT && in->fidelity.graded && sph_derived_has_projectile(in) && spacings > 0 &&
-         fabs(in->fidelity.fine_spacing * spacings / sph_derived_projectile_radius(in) - 1) > 1e-9;
+  return in->kind == SPH_IMPACT && in->fidelity.graded && sph_derived_has_projectile(in) &&
+         in->fidelity.spacings_per_radius > 0 &&
+         fabs(in->fidelity.fine_spacing / sph_derived_asked_spacing(in) - 1) > 1e-9;
+}
+
+/* fidelity.coarsest bounds what fidelity.spacings_per_radius asks for. */
+static double bounds_nothing(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  return in->kind == SPH_IMPACT && in->fidelity.graded && in->fidelity.coarsest > 0 &&
+         !(sph_derived_has_projectile(in) && in->fidelity.spacings_per_radius > 0);
 }
 
 /* ---- materials ---- */
@@ -936,6 +943,9 @@ const struct condition sph_conditions[] = {
               .reason = "a value that is given wins over one that follows from others",
               .remedy = "leave one of them out", .inputs = "fidelity.spacings_per_radius", .results = "",
               .before = overruled),
+    CONDITION("effect", .fact = "fidelity.coarsest is given without fidelity.spacings_per_radius",
+              .doubt = "it has no effect: it bounds what that input asks for", .reason = "engine/sph/README.md",
+              .remedy = "give both", .inputs = "fidelity.coarsest", .results = "", .before = bounds_nothing),
     CONDITION("moduli", .number = "the ratio of material.bulk_modulus and material.tillotson.A", .bound = 1.2,
               .doubt = "waves are as fast as tillotson.A makes them, cracks as bulk_modulus does",
               .reason = "at 1.2 the wave speeds of the two differ by 5 % in a rock of Poisson's ratio 0.25",

@@ -194,6 +194,16 @@ struct sph_grading sph_derived_grading(const struct sph_inputs *in, const struct
   return grading;
 }
 
+double sph_derived_asked_spacing(const struct sph_inputs *in) {
+  const double asked = sph_derived_projectile_radius(in) / in->fidelity.spacings_per_radius;
+  const struct sph_shape target = sph_derived_target(in);
+  if (field_is_off(in->fidelity.coarsest) || !(sph_shape_volume(&target) > 0 && asked > 0))
+    return asked;
+  struct sph_grading grading = sph_derived_grading(in, &target);
+  grading.fine = asked;
+  return sph_irregular_finest(grading, &target, (double)in->fidelity.particles, in->fidelity.coarsest);
+}
+
 double sph_derived_smallest_spacing(const struct sph_inputs *in) {
   double fine = sph_derived_fine_spacing(in);
   return sph_derived_has_projectile(in) ? fmin(fine, fine * in->fidelity.projectile_spacing) : fine;

@@ -31,6 +31,8 @@ double sph_derived_target_mass(const struct sph_inputs *inputs);     /* kg */
 double sph_derived_projectile_mass(const struct sph_inputs *inputs); /* kg; 0 without one */
 double sph_derived_spacing(const struct sph_inputs *inputs);         /* m, of the target: (V/n)^(1/3) */
 double sph_derived_fine_spacing(const struct sph_inputs *inputs);    /* m, of the target where the projectile hits */
+/* m, the fine spacing of fidelity.spacings_per_radius, or what fidelity.coarsest leaves of it */
+double sph_derived_asked_spacing(const struct sph_inputs *inputs);
 /* About the point of impact on a target that is graded. */
 struct sph_grading sph_derived_grading(const struct sph_inputs *inputs, const struct sph_shape *target);
 double sph_derived_particles(const struct sph_inputs *inputs); /* of all bodies; an estimate for plans */

@@ -251,6 +251,11 @@ static const struct field rows[] = {
          .when = "fidelity.graded=true",
          .doc = "Particle spacings in the projectile's radius (of a sphere of its volume), near the point of impact. "
                 "Decides fidelity.fine_spacing; off: that input decides itself."),
+    REAL(fidelity.coarsest, "1", NAN, 1.1, 10, .absent = "off", .flags = FIELD_MAY_BE_OFF,
+         .when = "fidelity.graded=true",
+         .doc = "Largest particle spacing over the uniform one of as many particles. With fewer particles than "
+                "fidelity.spacings_per_radius needs, the zone of the impact gets coarser; off: the far side does, and "
+                "too few particles are refused."),
     REAL(fidelity.fine_spacing, "m", NAN, 1e-12, 1e9, .flags = FIELD_DERIVED, .when = "fidelity.graded=true",
          .doc = "Particle spacing near the point of impact. Unless given: by fidelity.spacings_per_radius, or half of "
                 "the uniform one."),

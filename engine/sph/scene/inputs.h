@@ -78,6 +78,7 @@ struct sph_fidelity {
   double projectile_spacing; /* 1, over the target's */
   bool graded;
   double spacings_per_radius;       /* 1, of the projectile where it hits; NaN: fine_spacing decides */
+  double coarsest;                  /* 1, largest spacing over the uniform one */
   double fine_spacing, fine_radius; /* m */
   double smoothing, cfl;            /* 1 */
   double skin;                      /* 1, over h */
