@@ -346,7 +346,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   second_angle REAL, -- [rad] Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.
   ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target leaving faster than crater.ejection_speed. Times target_mass: their mass.
   ejecta_momentum REAL, -- [kg m/s] Impact: momentum of the ejecta along the outward normal.
-  ejecta_momentum_enhancement REAL, -- [1] Impact: 1 plus the momentum of the ejecta over that of the projectile, both along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.
+  ejecta_momentum_enhancement REAL, -- [1] Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.
   crater_depth REAL, -- [m] Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.
   crater_radius REAL, -- [m] Impact: radius of a circle whose area is that of the crater at the surface.
   crater_volume REAL, -- [m^3] Impact: volume of the crater, between the surface at the start and the surface of the retained matter.
@@ -1217,7 +1217,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'ejecta_mass_fraction', '1', 'Impac
 
 INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of the ejecta along the outward normal.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum_enhancement', '1', 'Impact: 1 plus the momentum of the ejecta over that of the projectile, both along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum_enhancement', '1', 'Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_clamped', 'J', 'Energy added where internal energy would have become negative.', 1);
 
@@ -1453,7 +1453,7 @@ INSERT INTO column_doc VALUES ('runs', 'ejecta_mass_fraction', '1', 'Impact: mas
 
 INSERT INTO column_doc VALUES ('runs', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of the ejecta along the outward normal.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'ejecta_momentum_enhancement', '1', 'Impact: 1 plus the momentum of the ejecta over that of the projectile, both along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.', 0);
+INSERT INTO column_doc VALUES ('runs', 'ejecta_momentum_enhancement', '1', 'Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'end_triangle_share', '1', 'Compression: share of beams broken inside the two 45-degree triangles on the confined ends, over the same share outside them, up to the largest stress. 0 is intact triangles, 1 no pattern.', 0);
 

@@ -87,6 +87,35 @@ static void thrown_out(void **state) {
   sph_particles_free(now);
 }
 
+/* The same bowl where the particles are 2.5 times as coarse as at the point of impact, and all that is left has moved
+ * by half a spacing: a narrow column that lost its particle so is no hole. */
+static void thrown_out_of_coarse_matter(void **state) {
+  (void)state;
+  struct sph_particles *start = slab(), *now = slab();
+  struct sph_crater_options graded = options;
+  graded.spacing = 0.4e-3;
+  graded.graded = true;
+  size_t count = 0;
+  for (size_t i = 0; i < now->n; i++) {
+    const bool out = hypot(hypot(now->x[i], now->y[i]), HIGH * dx - now->z[i]) < 12e-3;
+    count += out;
+    now->vz[i] = out ? 20 : 0;
+    now->x[i] += out ? 0 : 0.5 * dx;
+    now->y[i] -= out ? 0 : 0.5 * dx;
+  }
+  struct sph_results c = {0};
+  measure(start, now, &graded, 2, &c);
+  near(c.crater.volume, (double)count * 1e-9, 0.2, "volume"); /* the edge is blurred by two spacings of 12 */
+  near(c.crater.depth, 12e-3, 0.1, "depth");
+  near(c.crater.radius, 12e-3, 0.1, "radius");
+  struct sph_crater_layer layers[100];
+  const size_t found = sph_crater_profile(start, now, &graded, layers, 100);
+  assert_true(found >= (size_t)HIGH - 13 &&
+              layers[found - 1].depth > 0.9 * HIGH * dx); /* below the bowl, to the bottom */
+  sph_particles_free(start);
+  sph_particles_free(now);
+}
+
 /* A cylinder of radius 10 mm, 20 mm deep, whose pores close: it shrinks to half its height and no matter leaves. */
 static void compacted(void **state) {
   (void)state;
@@ -161,8 +190,11 @@ static void hardly_porous(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(untouched), cmocka_unit_test(thrown_out),
-                                     cmocka_unit_test(nothing_left), cmocka_unit_test(hardly_porous),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(untouched),
+                                     cmocka_unit_test(thrown_out),
+                                     cmocka_unit_test(thrown_out_of_coarse_matter),
+                                     cmocka_unit_test(nothing_left),
+                                     cmocka_unit_test(hardly_porous),
                                      cmocka_unit_test(compacted)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

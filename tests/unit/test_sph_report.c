@@ -125,7 +125,7 @@ static void figures_by_hand(void **state) {
     assert_true(fabs(ran.outcome.energy_error - drift / input) < 1e-12 && ran.outcome.energy_error > 1e-7);
     assert_true(fabs(ran.outcome.kinetic_energy_share - translation / input) < 1e-12 &&
                 (c == 2 || translation > 0.01 * input));
-    if (c == 0) /* all momentum of the start is the projectile's */
+    if (c == 0) /* all momentum of the start is the projectile's, and none of it flies back */
       assert_true(r->ejecta.momentum > 0 &&
                   fabs(r->ejecta.momentum_enhancement - (1 + r->ejecta.momentum / -momentum[0][2])) < 1e-9);
     else
@@ -193,12 +193,39 @@ static void no_angle_of_nowhere(void **state) {
   sph_run_free(run);
 }
 
+/* A body that rebounds carries momentum back, and the target gains as much more: of both bodies none is lost. */
+static void rebound_counts_in_the_enhancement(void **state) {
+  (void)state;
+  const struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.particles=300", "fidelity.projectile_spacing=1",
+                                            "impact.projectile=mass", "impact.mass=60 g", "impact.gap=0.1 mm",
+                                            "target.fracture=off", "impact.speed=40 m/s", "impact.angle=0 deg",
+                                            "target.material.yield_stress=off", "stop.end_time=0.3 ms");
+  struct sph_run *run;
+  struct ran ran = {0};
+  struct error error = {0};
+  assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
+  frame_advance(&run->frame, UINT64_MAX);
+  const struct sph_particles *now = sph_run_read(run);
+  double momentum[2] = {0, 0};
+  for (int b = 0; b < 2; b++)
+    for (size_t i = run->range[b].first; i < run->range[b].first + run->range[b].n; i++)
+      momentum[b] += now->mass[i] * now->vz[i];
+  if (sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, &error))
+    fail_msg("%s", error.message);
+  const double brought = run->range[1].mass * 40;
+  assert_true(momentum[1] > 0.1 * brought && ran.results.sph.ejecta.momentum == 0);
+  assert_true(fabs(ran.results.sph.ejecta.momentum_enhancement - -momentum[0] / brought) < 0.02);
+  free(ran.fragments);
+  sph_run_free(run);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sound_matter_stays_whole),
       cmocka_unit_test(few_pores_change_nothing),
       cmocka_unit_test(small_fragments),
       cmocka_unit_test(figures_by_hand),
+      cmocka_unit_test(rebound_counts_in_the_enhancement),
       cmocka_unit_test(a_share_above_one_is_shown),
       cmocka_unit_test(no_angle_of_nowhere),
   };

@@ -14,26 +14,34 @@ static bool is_ejected(const struct sph_particles *now, size_t i, const struct s
   return now->vz[i] > o->ejection_speed || !isfinite(now->x[i] + now->y[i] + now->z[i]);
 }
 
+/* m, of particle i at the start. */
+static double spacing_of(const struct sph_particles *start, size_t i, const struct sph_crater_options *o) {
+  return o->graded ? fmax(o->spacing, cbrt(start->mass[i] / start->density[i])) : o->spacing;
+}
+
 /* m, of particle i from the axis. */
 static double off_axis(const struct sph_particles *p, size_t i, const struct sph_crater_options *o) {
   return hypot(p->x[i] - o->axis[0], p->y[i] - o->axis[1]);
 }
 
-/* m, the highest particle less than `spacings` spacings from the axis. */
+/* m, the highest particle less than `spacings` of its spacings from the axis. */
 static double top_of(const struct sph_particles *start, const struct sph_crater_options *o, double spacings) {
   double top = -HUGE_VAL;
   for (size_t i = o->first; i < o->first + o->count; i++)
-    if (off_axis(start, i, o) < spacings * o->spacing)
+    if (off_axis(start, i, o) < spacings * spacing_of(start, i, o))
       top = fmax(top, start->z[i]);
   return top;
 }
 
-/* A map of columns over the target's outline at the start. */
+/* A map of columns over the target's outline at the start. A column is two of the finest spacings wide. A coarser
+ * particle belongs to all columns that a square of two of its own spacings touches, so that no column is without
+ * particles at the start. */
 struct map {
   size_t nx, ny;
   double x, y, size;      /* m: corner, and side of a column */
   double *before, *after; /* m, highest particle at the start and now, -inf where there is none */
   double *bottom;         /* m, lowest particle at the start */
+  double *least;          /* m, spacing of the highest particle at the start: a hole is at least as deep */
 };
 
 static bool column_of(const struct map *m, double x, double y, size_t *at) {
@@ -42,6 +50,12 @@ static bool column_of(const struct map *m, double x, double y, size_t *at) {
     return false;
   *at = (size_t)j * m->nx + (size_t)i;
   return true;
+}
+
+/* Columns from `first` to `last` along one side that [low, high] touches; none: last < first. */
+static void columns_between(double low, double high, size_t n, long *first, long *last) {
+  *first = (long)fmin((double)n, fmax(0, floor(low)));
+  *last = (long)fmax(-1, fmin((double)n - 1, floor(high)));
 }
 
 static status make_map(const struct sph_particles *start, const struct sph_crater_options *o, struct map *m,
@@ -59,30 +73,46 @@ static status make_map(const struct sph_particles *start, const struct sph_crate
   m->ny = (size_t)((high[1] - low[1]) / m->size) + 1;
 
   size_t columns = m->nx * m->ny;
-  m->before = malloc(3 * columns * sizeof(double));
+  m->before = malloc(4 * columns * sizeof(double));
   if (!m->before)
     return status_fail(error, STATUS_MEMORY, "no memory for a map of the crater");
   m->after = m->before + columns;
   m->bottom = m->after + columns;
+  m->least = m->bottom + columns;
   for (size_t k = 0; k < columns; k++) {
     m->before[k] = -HUGE_VAL;
     m->after[k] = -HUGE_VAL;
     m->bottom[k] = HUGE_VAL;
+    m->least[k] = o->spacing;
   }
   return STATUS_OK;
 }
 
 static void fill_map(const struct sph_particles *start, const struct sph_particles *now,
                      const struct sph_crater_options *o, struct map *m) {
-  for (size_t i = o->first; i < o->first + o->count; i++) {
-    size_t at;
-    if (column_of(m, start->x[i], start->y[i], &at)) {
-      m->before[at] = fmax(m->before[at], start->z[i]);
-      m->bottom[at] = fmin(m->bottom[at], start->z[i]);
+  for (size_t i = o->first; i < o->first + o->count; i++)
+    for (int later = 0; later < 2; later++) {
+      const struct sph_particles *p = later ? now : start;
+      const double spacing = spacing_of(start, i, o), wide = (spacing - o->spacing) / m->size;
+      const double x = (p->x[i] - m->x) / m->size, y = (p->y[i] - m->y) / m->size;
+      long left, right, front, back;
+      if (later && is_ejected(now, i, o))
+        continue;
+      columns_between(x - wide, x + wide, m->nx, &left, &right);
+      columns_between(y - wide, y + wide, m->ny, &front, &back);
+      for (long r = front; r <= back; r++)
+        for (long c = left; c <= right; c++) {
+          const size_t at = (size_t)r * m->nx + (size_t)c;
+          if (later) {
+            m->after[at] = fmax(m->after[at], p->z[i]);
+            continue;
+          }
+          if (p->z[i] > m->before[at])
+            m->least[at] = spacing;
+          m->before[at] = fmax(m->before[at], p->z[i]);
+          m->bottom[at] = fmin(m->bottom[at], p->z[i]);
+        }
     }
-    if (!is_ejected(now, i, o) && column_of(m, now->x[i], now->y[i], &at))
-      m->after[at] = fmax(m->after[at], now->z[i]);
-  }
 }
 
 /* Columns to visit; each is added once. */
@@ -123,8 +153,8 @@ static void enter_neighbours(const struct map *m, size_t at, struct queue *q) {
     enter(q, at + m->nx);
 }
 
-/* The connected region round the axis, at least one spacing deep. A column that has lost all its particles is as deep
- * as the target was there. */
+/* The connected region round the axis, at least one spacing of its place deep. A column that has lost all its particles
+ * is as deep as the target was there. */
 static status measure_hole(const struct map *m, const struct sph_crater_options *o, struct sph_results *results,
                            struct error *error) {
   size_t columns = m->nx * m->ny;
@@ -141,7 +171,7 @@ static status measure_hole(const struct map *m, const struct sph_crater_options 
     if (m->before[at] == -HUGE_VAL)
       continue;
     double deep = m->before[at] - fmax(m->after[at], m->bottom[at]);
-    if (!(deep >= o->spacing))
+    if (!(deep >= m->least[at]))
       continue;
     dug += area;
     volume += deep * area;
@@ -204,7 +234,7 @@ void sph_crater_compaction(const struct sph_particles *start, const struct sph_p
       continue;
     }
     closed_volume += fmax(closed, 0) * volume; /* the volume of the solid does not change */
-    if (crushed && off_axis(start, i, o) < 2 * o->spacing)
+    if (crushed && off_axis(start, i, o) < 2 * spacing_of(start, i, o))
       depth = fmax(depth, top - start->z[i]);
     if (closed > 0 && alpha_start - alpha > 0.01 * (initial - 1))
       reach = fmax(reach, hypot(off_axis(start, i, o), top - start->z[i]));
@@ -221,7 +251,7 @@ size_t sph_crater_profile(const struct sph_particles *start, const struct sph_pa
   double top = top_of(start, o, 1.5);
   memset(layers, 0, most * sizeof *layers);
   for (size_t i = o->first; i < o->first + o->count; i++) {
-    if (!(off_axis(start, i, o) < 1.5 * o->spacing) || is_ejected(now, i, o))
+    if (!(off_axis(start, i, o) < 1.5 * spacing_of(start, i, o)) || is_ejected(now, i, o))
       continue;
     double layer = floor((top - start->z[i]) / o->spacing + 0.5);
     if (!(layer >= 0 && layer < (double)most))

@@ -21,6 +21,7 @@ struct sph_crater_options {
   double mass;           /* kg, of the target */
   double axis[2];        /* m, x and y of the point of impact */
   double spacing;        /* m, of the particles at the point of impact */
+  bool graded;           /* particles elsewhere are coarser */
   double ejection_speed; /* m/s */
 };
 
@@ -33,8 +34,8 @@ status sph_crater_measure(const struct sph_particles *start, const struct sph_pa
 void sph_crater_compaction(const struct sph_particles *start, const struct sph_particles *now,
                            const struct sph_crater_options *options, double initial, struct sph_results *results);
 
-/* One layer of the profile along the axis: means over the retained target particles within 1.5 spacings of the axis. A
- * layer is one spacing thick, by the particles' depth at the start. */
+/* One layer of the profile along the axis: means over the retained target particles within 1.5 of their spacings of the
+ * axis. A layer is one spacing thick, by the particles' depth at the start. */
 struct sph_crater_layer {
   double depth;  /* m, of the layer's middle, at the start */
   double damage; /* D */

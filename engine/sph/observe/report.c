@@ -160,7 +160,17 @@ struct sph_crater_options sph_report_crater_options(const struct sph_run *run) {
                                      .count = run->range[0].n,
                                      .mass = run->range[0].mass,
                                      .spacing = sph_derived_fine_spacing(in),
+                                     .graded = in->fidelity.graded,
                                      .ejection_speed = in->crater.ejection_speed};
+}
+
+/* kg m/s, along the outward normal, of the projectile's matter that moves outwards, however slowly: a body that
+ * rebounds may be slower than ejecta. */
+static double carried_back(const struct sph_run *run) {
+  double sum = 0;
+  for (size_t i = run->range[1].first; i < run->range[1].first + run->range[1].n; i++)
+    sum += run->now->vz[i] > 0 ? run->now->mass[i] * run->now->vz[i] : 0;
+  return sum;
 }
 
 /* The results that only one protocol has. */
@@ -173,7 +183,8 @@ static status report_protocol(const struct sph_run *run, struct sph_results *res
     options = sph_report_crater_options(run);
     TRY(sph_crater_measure(run->start, run->now, &options, results, error));
     results->ejecta.momentum_enhancement = sph_results_finite(
-        1 + results->ejecta.momentum / (run->range[1].mass * in->impact.speed * cos(in->impact.angle)));
+        1 + (results->ejecta.momentum + carried_back(run)) /
+                (run->range[1].mass * in->impact.speed * cos(in->impact.angle)));
     return STATUS_OK;
   case SPH_COLLISION: results->rebound = rebound(run); return STATUS_OK;
   case SPH_PISTON: sph_plate_report(run, results); return STATUS_OK;

@@ -61,11 +61,13 @@ static const struct field rows[] = {
                  "target_mass: their mass.",
           .source = "Jutzi & Benz, section 3"),
     REAL(ejecta.momentum, "kg m/s", 0, .doc = "Impact: momentum of the ejecta along the outward normal."),
-    REAL(ejecta.momentum_enhancement, "1", 1,
-         .doc =
-             "Impact: 1 plus the momentum of the ejecta over that of the projectile, both along the normal: what the "
-             "rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.",
-         .source = "Cheng and others 2023"),
+    REAL(
+        ejecta.momentum_enhancement, "1", 1,
+        .doc =
+            "Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that "
+            "of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. "
+            "Ejecta are faster than crater.ejection_speed.",
+        .source = "Cheng and others 2023"),
     REAL(crater.depth, "m", 0,
          .doc = "Impact: largest depth of the crater below the surface at the start. 0 when it is less than the "
                 "spacing of the particles."),

@@ -473,22 +473,6 @@ static double moved(const struct condition_run *r) {
   return depth > 0 && mass > 0 && !held ? sqrt(sum / mass) / depth : (double)NAN;
 }
 
-/* Momentum that the projectile carries back along the outward direction, over the one that it brought. */
-static double bounced(const struct condition_run *r) {
-  const struct sph_run *run = run_of(r);
-  const struct sph_inputs *in = r->inputs;
-  if (in->kind != SPH_IMPACT || !sph_derived_has_projectile(in) || !(in->impact.speed > 0))
-    return NAN;
-  double momentum[2] = {0, 0};
-  for (size_t i = run->range[1].first; i < run->range[1].first + run->range[1].n; i++) {
-    const double before[3] = {run->start->vx[i], run->start->vy[i], run->start->vz[i]};
-    const double after[3] = {run->now->vx[i], run->now->vy[i], run->now->vz[i]};
-    momentum[0] -= run->start->mass[i] * vector3_dot(before, run->impact_direction);
-    momentum[1] += run->now->mass[i] * vector3_dot(after, run->impact_direction);
-  }
-  return momentum[1] / momentum[0];
-}
-
 /* Depth of the crater over that of a box with damped sides, or its width over that of the box: the larger one. */
 static double wide(const struct condition_run *r) {
   const struct sph_run *run = run_of(r);
@@ -893,11 +877,6 @@ const struct condition sph_conditions[] = {
               .remedy = "give an earlier stop.end_time",
               .results = "crater.depth crater.radius crater.volume crater.compaction_share", .withheld = true,
               .after = moved),
-    CONDITION("bounced", .number = "the momentum that the projectile carries back, over the one that it brought,",
-              .bound = 0.05,
-              .doubt = "the target gains more by that: matter of the projectile does not count as ejecta",
-              .reason = "our choice", .remedy = "add the momentum of the projectile",
-              .results = "ejecta.momentum_enhancement", .after = bounced),
     CONDITION("attached", .fact = "matter moves out of the target, which is in one piece",
               .doubt = "nothing has come off: a part of the body moves outwards", .reason = "a fragment that is one",
               .remedy = "raise crater.ejection_speed, or give a longer stop.end_time",
