@@ -104,7 +104,7 @@ static void mesh(const struct sph_shape *s, FILE *out) {
 }
 
 static void shape(const char *name, const struct sph_shape *s, const struct sph_body_inputs *b, double spacing,
-                  FILE *out) {
+                  bool graded, FILE *out) {
   static FIELD_WORDS(lattices, SPH_LATTICES, [SPH_LATTICE_HEXAGONAL] = "hexagonal lattice",
                      [SPH_LATTICE_CUBIC] = "cubic lattice", [SPH_LATTICE_IRREGULAR] = "irregular points");
   double volume = sph_shape_volume(s);
@@ -118,7 +118,8 @@ static void shape(const char *name, const struct sph_shape *s, const struct sph_
   else
     fprintf(out, "box of %.4g x %.4g x %.4g m", s->side[0], s->side[1], s->side[2]);
   fprintf(out, " of %s, %.4g kg; about %.0f particles, spacing %.3g m, %s\n", b->material_name,
-          sph_derived_density(b) * volume, volume / (spacing * spacing * spacing), spacing, lattices[b->lattice]);
+          sph_derived_density(b) * volume, volume / (spacing * spacing * spacing), spacing,
+          lattices[graded ? SPH_LATTICE_IRREGULAR : b->lattice]);
 }
 
 static void protocol(const struct sph_inputs *in, FILE *out) {
@@ -150,11 +151,11 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
     break;
   case SPH_KINDS: break;
   }
-  shape("target", &target, &in->target, spacing, out);
+  shape("target", &target, &in->target, spacing, in->kind == SPH_IMPACT && in->fidelity.graded, out);
   if (sph_derived_has_projectile(in)) {
     projectile = sph_derived_projectile(in);
     shape("projectile", &projectile, &in->projectile, sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing,
-          out);
+          false, out);
     if (in->fidelity.graded)
       fprintf(out, "  graded: spacing %.3g m within %.3g m of the point of impact\n", in->fidelity.fine_spacing,
               in->fidelity.fine_radius);
