@@ -737,7 +737,7 @@ const struct condition sph_conditions[] = {
     CONDITION("uncracked",
               .number = "the elastic strain that would hold all the energy put in, of a target without flaws,",
               .bound = 0.1, .doubt = "it cannot crack, and counts as whole: no solid bears so much",
-              .reason = "our choice; steel rods break on a wall from 500 m/s on, a strain of 0.1",
+              .reason = "a perfect solid bears about a tenth of its modulus (Orowan's estimate)",
               .remedy = "give the material weibull.m and weibull.k", .results = ALL_OF_A_BODY, .after = borne),
     CONDITION("uncracked", .number = "the strain at which the weakest flaw of the target opens", .bound = 0.1,
               .doubt = "it hardly cracks: no rock bears so much", .reason = "rocks crack from 1e-4 to 1e-2 on",
