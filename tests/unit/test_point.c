@@ -289,8 +289,9 @@ static size_t pairs_of(const char *a, const char *b, status expected, struct ask
 /* Points of two stores are paired by their varied inputs; points of one store only are passed over. */
 static void pairs_of_points(void **state) {
   (void)state;
-  /* By inputs: k = 1e30 with m = 6 and 7, then k = 1e31. The second store has three values of k for each m. */
-  static const int64_t same[4][2] = {{1, 1}, {3, 4}, {2, 2}, {4, 5}};
+  /* In the order of the first store: m = 6 with k = 1e30 and 1e31, then m = 7. The second store has three values of k
+   * for each m. */
+  static const int64_t same[4][2] = {{1, 1}, {2, 2}, {3, 4}, {4, 5}};
   char a[64], b[64], point[80];
   struct store *store;
   struct ask_pairs_row rows[MOST_PAIRS];
