@@ -343,7 +343,7 @@ static void finest_zone_keeps_the_coarsest_spacing(void **state) {
   (void)state;
   const struct sph_shape shapes[] = {{.kind = SPH_SHAPE_SPHERE, .radius = 0.03},
                                      {.kind = SPH_SHAPE_BOX, .side = {0.06, 0.06, 0.06}}};
-  const double numbers[] = {400, 3000, 20000}, bounds[] = {1.3, 2, 2.5};
+  const double numbers[] = {400, 1500, 6000}, bounds[] = {1.3, 2, 2.5};
   int bounded = 0;
   for (size_t k = 0; k < 18; k++) {
     const struct sph_shape *shape = &shapes[k % 2];
