@@ -353,7 +353,7 @@ static double count(const struct sph_grading *g, struct shells *shells) {
 
 static const double steepest = 0.12; /* growth at which spacings of neighbours differ by a factor of less than 1.15 */
 
-static const double within = 0.01; /* what shells and rays know of a number of particles */
+static const double within = 0.01; /* relative error of a number of particles that shells and rays give */
 
 /* STATUS_CONTENT: no growth gives so many particles. Leaves the most of them in the shells. */
 static status check_range(struct sph_grading *g, double particles, struct shells *shells, struct error *error) {

@@ -99,7 +99,7 @@ void sph_inputs_complete(void *inputs, const bool *given) {
   COMPLETE(fidelity.fine_spacing,
            by_radius ? sph_derived_projectile_radius(in) / in->fidelity.spacings_per_radius : 0.5 * spacing);
   COMPLETE(fidelity.fine_radius, 4 * in->fidelity.fine_spacing);
-  if (by_radius && in->fidelity.graded)
+  if (by_radius && in->fidelity.graded) /* the zone keeps its size where too few particles make it coarser */
     COMPLETE(fidelity.fine_spacing, sph_derived_asked_spacing(in));
   COMPLETE(gradient_correction.on, can_turn(in));
   COMPLETE(method.negative_energy,
