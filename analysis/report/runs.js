@@ -41,10 +41,10 @@ function sorted(rows, columns) {
 
 export function showRuns() {
   const from = store(), results = columnsOf(from), columns = ['run_id', 'point_id', 'seed', 'state', ...results];
-  const rows = sorted(chosenPoints().flatMap((point) => ask(from, questions.runs(results), {point: point.point_id})), columns);
+  const rows = sorted(chosenPoints().flatMap((point) => ask(from, questions.runs(results, from.runColumns.has('doubtful') ? 'doubtful' : "warnings <> '' AS doubtful"), {point: point.point_id})), columns);
   const marks = new Map(results.map((column) => [column, new Set(has(from, 'doubt_mark')
     ? ask(from, questions.marks, {quantity: column}).map((row) => `${row.engine} ${row.words}`) : [])]));
-  const isMarked = (row, column) => results.includes(column) && row.counts && (has(from, 'doubt_mark') ? marks.get(column).has(`${row.engine} ${row.warnings}`) : !['', 'elastic', null].includes(row.warnings));
+  const isMarked = (row, column) => results.includes(column) && row.counts && (has(from, 'doubt_mark') ? marks.get(column).has(`${row.engine} ${row.warnings}`) : row.doubtful);
   const heading = (column) => ({run_id: 'run', point_id: 'point', seed: 'seed', state: 'state'})[column] ?? label(state.stores, column);
   const cell = (row, column) => column === 'run_id'
     ? element('button', {type: 'button', 'aria-label': `run ${row.run_id}`, click: () => showRun(row.run_id)}, String(row.run_id)) : marked(number(row[column]), isMarked(row, column) && {withheld: 0});

@@ -50,7 +50,7 @@ function quantitiesOf(store) {
 }
 
 const NO_RESULTS = new Set(['run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus',
-  'counts', 'rank', 'attempt', 'finished_at']);
+  'counts', 'doubtful', 'rank', 'attempt', 'finished_at']);
 function variedResults(store, main) {
   const axes = new Set(store.axes.map((axis) => axis.column_name));
   const names = [...store.runColumns].filter((name) => !NO_RESULTS.has(name) && !axes.has(name) && !main.includes(name));

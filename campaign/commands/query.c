@@ -27,6 +27,19 @@ static status read_parameters(const struct options *options, struct parameters *
   return STATUS_OK;
 }
 
+/* A table of SQL has no marks: says that runs are in doubt, unless the question asks for their words. */
+static status tell_doubts(struct store *store, const char *sql, struct error *error) {
+  double doubtful = 0;
+  if (strcasestr(sql, OUTCOME_NAME(warnings)) || strcasestr(sql, "doubtful") ||
+      !(strcasestr(sql, "run") || strcasestr(sql, "point") || strcasestr(sql, "result_")))
+    return STATUS_OK;
+  TRY(ask_doubts_count(store, &doubtful, error));
+  if (doubtful > 0)
+    fprintf(stderr, "clast: %.0f runs of this store are in doubt: columns doubtful and warnings of the view runs\n",
+            doubtful);
+  return STATUS_OK;
+}
+
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const struct query_canned *canned = options->named ? ask_canned_find(options->named, error) : NULL;
@@ -35,9 +48,10 @@ static status ask(struct store *store, const struct command_line *line, struct e
     return STATUS_USAGE;
   TRY(read_parameters(options, &parameters, error));
   TRY(ask_register_functions(store, error));
-  return table_answer(answer_to_user(store, canned ? canned->sql : line->arguments[1], options->with.count,
-                                     parameters.all, (double)options->seconds, error),
-                      canned != NULL, line->format, stdout);
+  const char *sql = canned ? canned->sql : line->arguments[1];
+  TRY(table_answer(answer_to_user(store, sql, options->with.count, parameters.all, (double)options->seconds, error),
+                   canned != NULL, line->format, stdout));
+  return tell_doubts(store, sql, error);
 }
 
 /* Lists the canned queries: name, parameters and meaning; for programs also the SQL. */

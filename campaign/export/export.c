@@ -62,17 +62,6 @@ static void write_tabular(const struct query_value *value, FILE *out) {
     fprintf(out, " %.17g", value->real);
 }
 
-/* Is the value of this column withheld by the words of its run? */
-static bool is_withheld(const struct answer *rows, const char *name) {
-  const char *engine = "", *words = "";
-  for (size_t c = 0; c < answer_count(rows); c++) {
-    engine = strcmp(answer_name(rows, c), "engine") == 0 ? answer_text(rows, c) : engine;
-    words = strcmp(answer_name(rows, c), OUTCOME_NAME(warnings)) == 0 ? answer_text(rows, c) : words;
-  }
-  const struct engine_kind *kind = engine_find(engine, NULL);
-  return kind && words && condition_mark(kind->conditions, words, name) == CONDITION_WITHHELD;
-}
-
 static status write_all_tabular(struct store *store, const char *view, FILE *out, struct error *error) {
   const bool means = strcmp(view, "points") == 0;
   OWNED struct ask_column *axis = memory_small(LIMITS_AXES_OF_TABLE, sizeof *axis);
@@ -90,9 +79,7 @@ static status write_all_tabular(struct store *store, const char *view, FILE *out
         if (!is_tabular(name, axis, axes, responses, means))
           continue;
         const struct query_value value = head ? (struct query_value){.kind = QUERY_TEXT, .text = name}
-                                         : responses && is_withheld(&rows, name)
-                                             ? (struct query_value){.kind = QUERY_NULL}
-                                             : answer_value(&rows, c);
+                                              : answer_value(&rows, c);
         write_tabular(&value, out);
       }
     fputc('\n', out);

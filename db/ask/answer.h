@@ -75,8 +75,8 @@ status answer_number(struct store *store, double *number, struct error *error, c
 
 /* Adds SQL functions to this connection only: the aggregates stdev(x), median(x) and hist_sum(masses), which pools mass
  * blobs into the store's bins as a JSON array of [bin, count, mass], and pooled_hw95(runs, count, squares), which is
- * pooled_spectrum_count_hw95(). Of the conditions that a run breaks (engine/condition.h): meant(engine, warnings,
- * results, value) is NULL where one of the results is withheld, doubts(engine, warnings, results) has the words that
+ * pooled_spectrum_count_hw95(). Of the conditions that a run breaks (engine/condition.h): withheld(engine, warnings,
+ * results) is 1 where one of the results is withheld, doubts(engine, warnings, results) has the words that
  * mark one of them (NULL: none), and the aggregate words(texts) has each word once. The views of a store use none of
  * them, so that any tool can read the views. */
 status ask_register_functions(struct store *store, struct error *error);

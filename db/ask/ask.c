@@ -107,8 +107,8 @@ static struct answer ask_judged(struct store *store, const char *question, struc
       store, error,
       "WITH judged AS (SELECT campaign_id, point_id, identity, state, message, %s AS drift, %g AS "
       "drift_allowed, coalesce(warnings, '') AS warnings, CASE WHEN state NOT IN ('completed', 'end-time') "
-      "THEN 'refused' WHEN coalesce(warnings, '') NOT IN " VIEWS_SOUND " THEN 'warned' ELSE 'safe' END AS class FROM "
-      "campaign_point JOIN run USING (point_id) WHERE surplus < 2) %s",
+      "THEN 'refused' WHEN doubtful THEN 'warned' ELSE 'safe' END AS class FROM "
+      "campaign_point JOIN runs USING (point_id) WHERE surplus < 2) %s",
       OUTCOME_NAME(energy_error), CONDITION_LARGEST_DRIFT, question);
 }
 
@@ -439,31 +439,6 @@ struct answer ask_points_rows(struct store *store, const struct ask_points_choic
   return answer_to(store, error, "%z ORDER BY point_id, results_version", sqlite3_str_finish(sql));
 }
 
-/* The view has the mean of all runs: where some values are withheld, the mean is that of the others. */
-static status read_doubts(struct store *store, struct ask_points_row *row, struct error *error) {
-  const struct ask_doubts_choice choice = {.point = row->point_id};
-  TRY(ask_doubts(store, &choice, OUTCOME_DEFAULT, &row->doubts, error));
-  if (row->doubts.withheld == 0)
-    return STATUS_OK;
-  struct sample_moments moments = {0};
-  TRY(ask_register_functions(store, error));
-  ANSWER answer = answer_to(store, error,
-                            "SELECT meant(engine, warnings, %Q, \"%w\") AS value FROM runs WHERE point_id = %lld AND "
-                            "results_version = %lld AND counts = 1 AND value IS NOT NULL ORDER BY replicate, seed",
-                            OUTCOME_DEFAULT, OUTCOME_DEFAULT, (long long)row->point_id,
-                            (long long)row->results_version);
-  while (answer_next(&answer))
-    sample_add(&moments, answer_real(&answer, 0));
-  struct sample_summary of_others = sample_summarise_moments(&moments, 0.95);
-  sample_of_share(&of_others, 0.95); /* it is one */
-  row->mean = moments.n ? of_others.mean : (double)NAN;
-  row->half_width = of_others.half_width;
-  row->low = of_others.low;
-  row->high = of_others.high;
-  row->weak = of_others.weak;
-  return answer_end(&answer);
-}
-
 bool ask_points_next(struct answer *answer, struct ask_points_row *row) {
   if (!answer_next(answer))
     return false;
@@ -481,7 +456,8 @@ bool ask_points_next(struct answer *answer, struct ask_points_row *row) {
                                  .input_count = answer_count(answer) - FIRST_INPUT};
   for (size_t i = 0; i < row->input_count; i++)
     row->inputs[i] = answer_value(answer, FIRST_INPUT + i);
-  answer->code = read_doubts(answer->store, row, answer->error);
+  const struct ask_doubts_choice choice = {.point = row->point_id};
+  answer->code = ask_doubts(answer->store, &choice, OUTCOME_DEFAULT, &row->doubts, answer->error);
   return answer->code == STATUS_OK;
 }
 
@@ -668,7 +644,7 @@ struct answer ask_run_of_point(struct store *store, int64_t point_id, const stru
     return answer_failed(code, error);
   return answer_to(store, error,
                    "SELECT replicate, seed, identity, surplus, state, \"%w\".\"%w\", wall_time, cpu_time, peak_memory, "
-                   "fields_path, meant(%Q, warnings, %Q, 1) IS NULL, warnings, %Q FROM run%s%w%s WHERE point_id = "
+                   "fields_path, withheld(%Q, warnings, %Q), warnings, %Q FROM run%s%w%s WHERE point_id = "
                    "%lld AND results_version = %d ORDER BY replicate, seed",
                    table, column, kind->name, column, kind->name, of_outcome ? "" : " LEFT JOIN \"",
                    of_outcome ? "" : table, of_outcome ? "" : "\" USING (run_id)", (long long)point_id,

@@ -99,6 +99,9 @@ struct ask_doubts_choice {
 status ask_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *results,
                   struct ask_doubts *doubts, struct error *error);
 
+/* How many runs of the store count and are in doubt. */
+status ask_doubts_count(struct store *store, double *runs, struct error *error);
+
 /* Adds `runs` runs of these words, and returns what the words say of the results. */
 enum condition_mark ask_doubts_run(struct ask_doubts *doubts, const char *engine, const char *words,
                                    const char *results, int64_t runs);

@@ -22,6 +22,10 @@ static void add_word(struct ask_doubts *doubts, const char *word, const struct c
   doubts->word[k].runs += runs;
 }
 
+status ask_doubts_count(struct store *store, double *runs, struct error *error) {
+  return answer_number(store, runs, error, "SELECT count(*) FROM runs WHERE counts AND doubtful");
+}
+
 enum condition_mark ask_doubts_run(struct ask_doubts *doubts, const char *engine, const char *words,
                                    const char *results, int64_t runs) {
   const struct engine_kind *kind = engine_find(engine, NULL);

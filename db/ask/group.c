@@ -182,8 +182,7 @@ static void write_points(FILE *out, const struct names *axes, const struct names
   fputs("\nFROM (SELECT ", out); /* only the needed columns, because the rows are sorted */
   write_names(out, axes);
   for (size_t i = 0; i < quantities->count; i++)
-    fprintf(out, "meant(engine, warnings, '%1$s', \"%1$s\") AS \"%1$s\", doubts(engine, warnings, '%1$s') AS w%2$zu, ",
-            quantities->name[i], i);
+    fprintf(out, "\"%1$s\", doubts(engine, warnings, '%1$s') AS w%2$zu, ", quantities->name[i], i);
   fputs("engine, results_version, point_id, counts, state, surplus FROM runs WHERE surplus <> 1 ORDER BY point_id, "
         "results_version, replicate, seed)\nGROUP BY ",
         out);

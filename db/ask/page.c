@@ -254,8 +254,7 @@ static status add_run(struct reading *reading, const struct answer *run, struct 
 static status read_results(struct reading *reading, struct store *store, struct error *error) {
   sqlite3_str *columns = sqlite3_str_new(NULL);
   for (size_t i = 0; i < reading->count; i++)
-    sqlite3_str_appendf(columns, ", meant(engine, warnings, %Q, \"%w\")", reading->column[i].name,
-                        reading->column[i].name);
+    sqlite3_str_appendf(columns, ", \"%w\"", reading->column[i].name);
   ANSWER
   runs = answer_to(store, error,
                    "SELECT point_id, results_version%z FROM runs WHERE counts ORDER BY point_id, results_version, "
@@ -336,8 +335,7 @@ static void write_results(const struct reading *reading, double runs, sqlite3_st
         ++*left_out;
         continue;
       }
-      sqlite3_str_appendf(sql, ", meant(engine, warnings, %Q, \"%w\") AS \"%w\"", column->name, column->name,
-                          column->name);
+      sqlite3_str_appendf(sql, ", \"%w\"", column->name);
       room -= room > 0;
     }
 }
@@ -358,13 +356,14 @@ static status copy_runs(struct reading *reading, struct store *store, struct err
       reading->page,
       answer_to(store, error,
                 "SELECT run_id, point_id, replicate, seed, results_version, counts, surplus, state, engine, scene, "
-                "message, warnings, session_id, host, attempt%z FROM runs WHERE run_id IN (SELECT run_id FROM (SELECT "
+                "message, warnings, doubtful, session_id, host, attempt%z FROM runs WHERE run_id IN (SELECT run_id "
+                "FROM (SELECT "
                 "run_id, "
                 "row_number() OVER (PARTITION BY point_id, results_version ORDER BY replicate, seed) AS place FROM run "
                 "WHERE surplus = 0 AND point_id %% %d = %d) WHERE place <= %d) ORDER BY point_id, results_version, "
                 "replicate, seed",
                 sqlite3_str_finish(columns), every, every > 1 ? 1 : 0, replicates),
-      "runs", 15 + axis_count));
+      "runs", 16 + axis_count));
   TRY(set_fact(reading->page, "results_left_out", left_out, error));
   TRY(set_fact(reading->page, "modes_runs", SCATTER_MODES_RUNS, error));
   TRY(set_fact(reading->page, "replicates_kept", (size_t)replicates, error));
@@ -378,8 +377,8 @@ static status add_mark(struct reading *reading, const struct answer *words, cons
                        struct error *error) {
   return sql_executef(
       reading->page->store.db, doing, error,
-      "INSERT INTO doubt_mark SELECT engine, words, %Q, doubts(engine, words, %Q) AS marks, meant(engine, "
-      "words, %Q, 1) IS NULL FROM (SELECT %Q AS engine, %Q AS words) WHERE marks IS NOT NULL",
+      "INSERT INTO doubt_mark SELECT engine, words, %Q, doubts(engine, words, %Q) AS marks, withheld(engine, "
+      "words, %Q) FROM (SELECT %Q AS engine, %Q AS words) WHERE marks IS NOT NULL",
       quantity, results, results, answer_text(words, 0), answer_text(words, 1));
 }
 

@@ -38,10 +38,10 @@ static struct answer ask_values(struct store *store, const char *column, struct 
       store, error,
       "WITH varied AS MATERIALIZED (SELECT point_id, (SELECT group_concat(v, ', ') FROM (SELECT path || ' = ' || "
       "CAST(value AS TEXT) AS v FROM axis JOIN point_input i USING (path) WHERE i.point_id = p.point_id ORDER BY "
-      "path)) AS inputs FROM point p)\nSELECT inputs, point_id, seed, meant(engine, warnings, %Q, \"%w\") FROM runs "
+      "path)) AS inputs FROM point p)\nSELECT inputs, point_id, seed, \"%w\" FROM runs "
       "JOIN varied USING (point_id) WHERE counts = 1 AND results_version = (SELECT max(results_version) FROM run WHERE "
       "counts = 1) ORDER BY inputs, point_id, seed, replicate",
-      column, column);
+      column);
 }
 
 /* Adds a run to its point, which is the last one or a new one. */

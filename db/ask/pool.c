@@ -86,10 +86,10 @@ static status read_values(const struct ask_pools *pools, struct point_data *poin
   size_t room[3] = {0};
   ANSWER
   answer = answer_to(pools->store, error,
-                     "SELECT run_id, seed, meant(engine, warnings, %Q, \"%w\") FROM runs WHERE point_id = %lld AND "
+                     "SELECT run_id, seed, \"%w\" FROM runs WHERE point_id = %lld AND "
                      "results_version = %lld AND "
                      "counts = 1 ORDER BY replicate, seed",
-                     pools->quantity, pools->quantity, (long long)point->point_id, (long long)point->results_version);
+                     pools->quantity, (long long)point->point_id, (long long)point->results_version);
   for (; answer_next(&answer); point->runs.count++) {
     const size_t run = point->runs.count;
     TRY(grow_or_fail(&point->run_id, &room[0], run + 1, sizeof *point->run_id, the_pools, error));

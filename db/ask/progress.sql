@@ -2,10 +2,10 @@
 -- campaign of its name has. :writing is 1 while a process writes the store. The last session has the largest number:
 -- clocks are set back at times. Without earlier forms, the rounds of one search or study are one row.
 WITH done AS (SELECT campaign_id, count(*) AS runs, sum(counts) AS counted,
-  sum(counts AND state = 'end-time') AS censored, sum(counts AND warnings NOT IN ('', 'elastic')) AS warned,
+  sum(counts AND state = 'end-time') AS censored, sum(counts AND doubtful) AS warned,
   sum(state NOT IN ('completed', 'end-time') AND surplus < 2) AS failed, sum(surplus = 1) AS surplus,
   sum(surplus > 1) AS excluded, sum(cpu_time) AS cpu_time
-  FROM campaign_point JOIN run USING (point_id) GROUP BY campaign_id),
+  FROM campaign_point JOIN runs USING (point_id) GROUP BY campaign_id),
 tried AS (SELECT campaign_id, count(*) AS failed_attempts
   FROM campaign_point JOIN attempt USING (point_id) GROUP BY campaign_id),
 given_up AS (SELECT campaign_id, count(DISTINCT attempt.identity) AS without_result

@@ -66,11 +66,11 @@ static const struct condition *conditions_of(sqlite3_value *engine) {
   return kind ? kind->conditions : NULL;
 }
 
-/* meant(engine, warnings, results, value): the value; NULL where one of the results is withheld. */
-static void meant(sqlite3_context *context, int count, sqlite3_value **values) {
+/* withheld(engine, warnings, results): 1 where one of the results is withheld, else 0. */
+static void withheld(sqlite3_context *context, int count, sqlite3_value **values) {
   (void)count;
-  if (condition_mark(conditions_of(values[0]), text_of(values[1]), text_of(values[2])) != CONDITION_WITHHELD)
-    sqlite3_result_value(context, values[3]);
+  sqlite3_result_int(context, condition_mark(conditions_of(values[0]), text_of(values[1]), text_of(values[2])) ==
+                                  CONDITION_WITHHELD);
 }
 
 /* doubts(engine, warnings, results): the words that mark one of the results; NULL: none. */
@@ -166,7 +166,7 @@ static const struct {
     {"median", 1, NULL, median_step, median_final},
     {"hist_sum", 1, NULL, hist_sum_step, hist_sum_final},
     {"pooled_hw95", 3, pooled_hw95, NULL, NULL},
-    {"meant", 4, meant, NULL, NULL},
+    {"withheld", 3, withheld, NULL, NULL},
     {"doubts", 3, doubts, NULL, NULL},
     {"words", 1, NULL, words_step, words_final},
 };

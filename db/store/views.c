@@ -8,6 +8,7 @@
 #include "analysis/statistics/statistics.h"
 #include "engine/engine.h"
 #include "engine/outcome.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 static const char doing[] = "making the views";
@@ -98,39 +99,87 @@ void views_statistics_columns(size_t i, const char *name, const char *n, bool sh
           name);
 }
 
-/* One pass over the index run_statistics. Deviations are from the value of the point's first run (kN), so that nothing
- * cancels; they are summed in the order of replicates, so that the bits do not depend on which run finished first. No
- * main result of a run that counts is NULL (a CHECK of table run). */
+/* Writes SQL that is true where the words of run r, of point p, withhold a result of an engine (NULL: of any engine);
+ * nothing when no condition withholds it. Returns whether one does. */
+static bool write_withheld(const char *engine, const char *column, FILE *out) {
+  bool any = false;
+  for (size_t i = 0; i < engine_count(); i++) {
+    const struct engine_kind *kind = engine_at(i);
+    const struct condition *before = NULL;
+    for (const struct condition *c = kind->conditions; c && c->word; c++) {
+      if ((engine && strcmp(kind->name, engine) != 0) || (before && strcmp(before->word, c->word) == 0) ||
+          condition_mark(kind->conditions, c->word, column) != CONDITION_WITHHELD)
+        continue;
+      if (!before)
+        fprintf(out, "%sp.engine = '%s' AND (", any ? " OR " : "r.warnings <> '' AND (", kind->name);
+      fprintf(out, "%sinstr(', ' || r.warnings || ',', ', %s,')", before ? " OR " : "", c->word);
+      before = c;
+      any = true;
+    }
+    if (before)
+      fputc(')', out);
+  }
+  if (any)
+    fputc(')', out);
+  return any;
+}
+
+/* SQL that is true for words that put a result in doubt: not those of rows with .absent (engine/condition.h), of which
+ * a run has one at most. */
+static void write_doubtful(FILE *out) {
+  fputs("r.warnings NOT IN (''", out);
+  for (size_t i = 0; i < engine_count(); i++)
+    for (const struct condition *c = engine_at(i)->conditions; c && c->word; c++)
+      if (c->absent)
+        fprintf(out, ", '%s'", c->word);
+  fputc(')', out);
+}
+
+/* Deviations are from the value of the point's first run (kN), so that nothing cancels; they are summed in the order of
+ * replicates, so that the bits do not depend on which run finished first. No main result of a run that counts is NULL
+ * (a CHECK of table run). */
 void views_statistics_write(size_t count, const char *const *names, FILE *out) {
-  fprintf(out, "WITH first AS (\n  SELECT ");
+  char degrees[32], n[32], t[32];
+  fputs("WITH first AS (\n  SELECT ", out);
   for (size_t i = 0; i < count; i++)
     fprintf(out, "k.%s AS k%zu, ", names[i], i);
-  fprintf(
-      out,
+  fputs(
       "t.point_id, t.results_version\n  FROM point_total t JOIN run k ON k.run_id = (SELECT f.run_id FROM run f WHERE "
       "f.point_id =\n    t.point_id AND f.results_version = t.results_version AND f.counts = 1 ORDER BY f.replicate, "
       "f.seed LIMIT 1)\n"
-      "), moment AS (\n  SELECT f.point_id, f.results_version, count(*) AS n");
-  for (size_t i = 0; i < count; i++)
-    fprintf(out,
-            ",\n    k%2$zu, total(r.%1$s - k%2$zu) AS s%2$zu, total((r.%1$s - k%2$zu) * (r.%1$s - k%2$zu)) AS q%2$zu",
-            names[i], i);
-  fprintf(out,
-          "\n  FROM first f CROSS JOIN run r ON r.point_id = f.point_id AND r.results_version = f.results_version AND\n"
-          "    r.counts = 1\n  GROUP BY f.point_id, f.results_version\n"
-          "), scatter AS (\n  SELECT point_id, results_version, n,\n    ");
-  views_statistics_student("(n - 1)", out);
-  fprintf(out, " AS t");
-  for (size_t i = 0; i < count; i++)
-    fprintf(out,
-            ",\n    k%1$zu + s%1$zu / n AS m%1$zu, sqrt(max(0, (q%1$zu - s%1$zu * s%1$zu / n) / (n - 1))) AS d%1$zu",
-            i);
-  fprintf(out, "\n  FROM moment\n), width AS (\n  SELECT *");
+      "), away AS (\n  SELECT f.point_id, f.results_version",
+      out);
   for (size_t i = 0; i < count; i++) {
-    fprintf(out, ",\n    ");
-    views_statistics_half_width(i, "n", "t", views_is_share(names[i]), out);
+    fputs(",\n    iif(", out);
+    if (!write_withheld(NULL, names[i], out))
+      fputs("0", out);
+    fprintf(out, ", NULL, r.%1$s - k%2$zu) AS a%2$zu, k%2$zu", names[i], i);
   }
-  fprintf(out, "\n  FROM scatter\n)\n");
+  fputs("\n  FROM first f CROSS JOIN run r ON r.point_id = f.point_id AND r.results_version = f.results_version AND\n"
+        "    r.counts = 1 CROSS JOIN point p ON p.point_id = f.point_id\n"
+        "), moment AS (\n  SELECT point_id, results_version",
+        out);
+  for (size_t i = 0; i < count; i++)
+    fprintf(out, ",\n    k%1$zu, count(a%1$zu) AS n%1$zu, total(a%1$zu) AS s%1$zu, total(a%1$zu * a%1$zu) AS q%1$zu",
+            i);
+  fputs("\n  FROM away GROUP BY point_id, results_version\n), scatter AS (\n  SELECT *", out);
+  for (size_t i = 0; i < count; i++) {
+    fprintf(out,
+            ",\n    k%1$zu + s%1$zu / n%1$zu AS m%1$zu, sqrt(max(0, (q%1$zu - s%1$zu * s%1$zu / n%1$zu) / (n%1$zu - "
+            "1))) AS d%1$zu,\n    ",
+            i);
+    snprintf(degrees, sizeof degrees, "(n%zu - 1)", i);
+    views_statistics_student(degrees, out);
+    fprintf(out, " AS t%zu", i);
+  }
+  fputs("\n  FROM moment\n), width AS (\n  SELECT *", out);
+  for (size_t i = 0; i < count; i++) {
+    snprintf(n, sizeof n, "n%zu", i);
+    snprintf(t, sizeof t, "t%zu", i);
+    fputs(",\n    ", out);
+    views_statistics_half_width(i, n, t, views_is_share(names[i]), out);
+  }
+  fputs("\n  FROM scatter\n)\n", out);
 }
 
 /* A study names a quantity without its engine; the view runs may have the engine's table as a prefix. */
@@ -203,19 +252,45 @@ static char *result_tables(struct view *view) {
   return filled ? filled : all ? all : sql_format("''");
 }
 
+/* Writes columns of results from SQL that returns table, column, name in the view and type; frees it. A value that its
+ * run's words withhold is NULL; the tables have it. */
+static void write_results(struct view *view, char *sql) {
+  STATEMENT row = NULL;
+  if (view->result == STATUS_OK)
+    view->result = sql_prepare(view->db, sql, &row, doing, view->error);
+  while (view->result == STATUS_OK && sql_next(row, &view->result, doing, view->error)) {
+    OWNED char *test = NULL;
+    size_t size = 0;
+    const char *table = sql_text(row, 0);
+    FILE *out = text_open(&test, &size);
+    const bool can_be = write_withheld(strcmp(table, "r") == 0 ? NULL : table + strlen("result_"), sql_text(row, 1),
+                                       out);
+    text_close_small(out, &test);
+    SQL_TEXT column = sql_format("\"%w\".\"%w\"", table, sql_text(row, 1));
+    /* In this form the column of the view keeps its type. */
+    SQL_TEXT value = can_be ? sql_format("(SELECT %s WHERE (%s) IS NOT TRUE)", column, test) : sql_format("%s", column);
+    SQL_TEXT named = sql_format("  %s AS \"%w\",\n", value, sql_text(row, 2));
+    fputs(named, view->out);
+  }
+  sqlite3_free(sql);
+}
+
 /* Writes the columns of run, then of the engines' result tables. An engine's column with the name of another column
  * gets its table's name as a prefix; this happens in a store with runs of two engines. */
 static void write_result_columns(struct view *view, const char *tables) {
-  write_rows(view, "SELECT format('  r.\"%w\",' || char(10), name) FROM pragma_table_xinfo('run') WHERE name NOT "
-                   "IN ('run_id', 'point_id', 'replicate', 'seed', 'identity', 'fields_digest', 'digest')");
-  write_rows_of(
+  write_results(view,
+                sql_format("SELECT 'r', name, name, type FROM pragma_table_xinfo('run') WHERE name NOT IN ('run_id', "
+                           "'point_id', 'replicate', 'seed', 'identity', 'fields_digest', 'digest')"));
+  write_results(
       view,
       sql_format(
-          "WITH mine AS MATERIALIZED (SELECT t.name AS place, c.name AS name, c.cid AS cid FROM main.sqlite_schema t, "
+          "WITH mine AS MATERIALIZED (SELECT t.name AS place, c.name AS name, c.cid AS cid, c.type AS type FROM "
+          "main.sqlite_schema t, "
           "pragma_table_xinfo(t.name, 'main') c WHERE t.type = 'table' AND t.name IN (%s) AND c.name <> 'run_id'), "
           "shared AS MATERIALIZED (SELECT name FROM pragma_table_xinfo('run', 'main') UNION ALL SELECT name FROM mine "
-          "GROUP BY name HAVING count(*) > 1) SELECT format('  \"%%w\".\"%%w\"%%s,' || char(10), place, name, iif(name "
-          "IN shared, format(' AS \"%%w_%%w\"', place, name), '')) FROM mine ORDER BY place, cid",
+          "GROUP BY name HAVING count(*) > 1) SELECT place, name, iif(name IN shared, place || '_' || name, name), "
+          "type FROM "
+          "mine ORDER BY place, cid",
           tables));
 }
 
@@ -226,7 +301,10 @@ static void write_runs(struct view *view) {
         view->out);
   write_axes(view);
   write_result_columns(view, tables);
-  fputs("  lower(hex(r.identity)) AS identity\nFROM run r JOIN point p ON p.point_id = r.point_id", view->out);
+  fputs("  ", view->out);
+  write_doubtful(view->out);
+  fputs(" AS doubtful,\n  lower(hex(r.identity)) AS identity\nFROM run r JOIN point p ON p.point_id = r.point_id",
+        view->out);
   write_rows_of(view,
                 sql_format("SELECT format(char(10) || '  LEFT JOIN \"%%w\" ON \"%%w\".run_id = r.run_id', name, name) "
                            "FROM main.sqlite_schema WHERE type = 'table' AND name IN (%s) ORDER BY name",
@@ -255,17 +333,21 @@ static void write_points(struct view *view) {
   fputs("  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS "
         "failed,\n  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND "
         "r.results_version = t.results_version AND r.counts = 0 AND r.surplus > 1) AS excluded, (SELECT count(*) FROM "
-        "attempt a WHERE a.point_id = p.point_id) AS "
-        "failed_attempts,\n"
-        "  (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND "
-        "r.counts AND r.warnings NOT IN " VIEWS_SOUND ") AS doubtful,\n"
-        "  ifnull((SELECT group_concat(words, '; ') FROM (SELECT DISTINCT r.warnings AS words FROM run r WHERE "
-        "r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings NOT "
-        "IN " VIEWS_SOUND " ORDER BY "
-        "words)), '') AS doubts",
+        "attempt a WHERE a.point_id = p.point_id) AS failed_attempts,\n  (",
         out);
-  for (size_t i = 0; i < count; i++)
-    views_statistics_columns(i, names[i], "n", views_is_share(names[i]), out);
+  static const char of_point[] = " FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version "
+                                 "AND r.counts AND ";
+  fprintf(out, "SELECT count(*)%s", of_point);
+  write_doubtful(out);
+  fprintf(out, ") AS doubtful,\n  ifnull((SELECT group_concat(words, '; ') FROM (SELECT DISTINCT r.warnings AS words%s",
+          of_point);
+  write_doubtful(out);
+  fputs(" ORDER BY words)), '') AS doubts", out);
+  for (size_t i = 0; i < count; i++) {
+    char n[32];
+    snprintf(n, sizeof n, "n%zu", i);
+    views_statistics_columns(i, names[i], n, views_is_share(names[i]), out);
+  }
   fputs("\nFROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id\n"
         "  LEFT JOIN width s ON s.point_id = t.point_id AND s.results_version = t.results_version\n"
         "  LEFT JOIN unresolved u ON u.point_id = t.point_id AND u.results_version = t.results_version;\n",

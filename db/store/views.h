@@ -30,12 +30,9 @@ status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size,
 enum { VIEWS_STATISTICS_MAIN = 16 };
 size_t views_statistics_main(const char *names[VIEWS_STATISTICS_MAIN]);
 
-/* SQL of the texts of `warnings` that put no result in doubt: of rows with .absent (engine/condition.h). */
-#define VIEWS_SOUND "('', 'elastic')"
-
 /* SQL that begins a query on the statistics of columns of table run, for every point and results_version: the table
- * expression `width` with point_id, results_version, n, the quantile t of views_statistics_student() and, for the N-th
- * name from 0, its mean mN, standard deviation dN and half width hN. In C this is sample_summarise(); a test compares
+ * expression `width` with point_id, results_version and, for the N-th name from 0, the number nN of values that are not
+ * withheld, their mean mN, standard deviation dN and half width hN. In C this is sample_summarise(); a test compares
  * the two. */
 void views_statistics_write(size_t count, const char *const *names, FILE *out);
 

@@ -9,6 +9,7 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
   FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v,
     (VALUES ('scene', 'name of the scene the inputs started from')) w;
 INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
+  ('runs', 'doubtful', '1', '1: the run breaks a condition, so that results are in doubt; clast explain WORD says what a word of warnings means'),
   ('points', 'n', '1', 'runs that count: completed, or ended at their time, not surplus, not excluded'),
   ('points', 'excluded', '1', 'runs that a person excluded (clast exclude)'),
   ('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers'),

@@ -183,8 +183,14 @@ assert float(enough["strength_mean"]) > 2e7 and enough["strength_n"] == "3" and 
 PY
 expect 0 "$clast" stats withheld.db -Q strength
 grep -Eq ' [0-9.e+]+ \(3\) !' out || fail "a mean of three of six runs"
-expect 0 "$clast" query withheld.db "select count(strength) as n, count(meant(engine, warnings, 'strength', strength)) as m from runs" --csv
-prints "6,3" # the store keeps the raw values
+expect 0 "$clast" query withheld.db "select count(strength), sum(withheld(engine, warnings, 'strength')), (select count(strength) from result_dem) from runs" --csv
+prints "3,3,6" # the store keeps the raw values
+! grep -q "in doubt" err || fail "a question about the words is told of them"
+expect 0 "$clast" query withheld.db "select avg(strength) from runs"
+says "3 runs of this store are in doubt: columns doubtful and warnings of the view runs"
+printf 'name: liquid\nscene: disruption\nset: {fidelity.particles: 300, fidelity.projectile_spacing: 0.5, stop.end_time: 9 us}\nvary: {target.strength: [true, false]}\nseeds: {per_point: 2}\nstore: liquid.db\n' >liquid.yaml
+expect 0 "$clast" run liquid.yaml -j 2 --quiet
+same "$(number liquid.db "select (select count(*) from run where largest_fraction >= 0) || ' ' || (select count(largest_fraction) from runs) || ' ' || count(largest_fraction_mean) || ' ' || count(largest_fraction_sd) || ' ' || count(mean_fragment_mass_mean) from points")" "4 2 1 1 2" "a main result that is withheld"
 expect 64 "$clast" compare withheld.db:1 withheld.db:2 -Q strength
 says "no run that counts has a value of strength that is not withheld"
 ok "withheld values"
@@ -228,4 +234,4 @@ db.execute(\"UPDATE run SET warnings = 'soot' WHERE point_id = 1\")
 db.commit()"
 expect 0 "$clast" stats old.db --by time_step
 says "marked (!), 3 of 12 runs: soot: a word of another version of clast"
-done_after 98
+done_after 101
