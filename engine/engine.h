@@ -57,6 +57,7 @@ struct engine_materials {
   const char *const (*overview)[2];  /* columns of `clast materials`: heading, path of a value; NULL ends the list */
   const char *const *not_values;     /* NULL-terminated: keys that a reader may expect */
   const char *instead;               /* what to give in place of these */
+  const char *either[2];             /* paths of two names of one value: the one that is given later counts */
   const char *(*name)(size_t index); /* sorted; NULL beyond the last */
   const char *(*text)(const char *name); /* the document, or NULL */
   /* Into an object of `values`. STATUS_MISSING with the nearest name; STATUS_CONTENT: the document has a fault. */

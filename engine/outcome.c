@@ -15,7 +15,7 @@ static FIELD_WORDS(states, OUTCOME_STATES, [OUTCOME_COMPLETED] = "completed", [O
 static const struct field rows[] = {
     ROW(state, FIELD_CHOICE, NULL, .choices = states,
         .choice_docs = "fracture had ceased by the scene's declared rule\n"
-                       "the hard end came first: fragments may still be breaking\n"
+                       "the end time (stop.end_time) came first: fragments may still be breaking\n"
                        "NaN or infinity appeared\n"
                        "the stable time step collapsed\n"
                        "errors of the computation made or lost more energy than the scene allows\n"

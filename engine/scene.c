@@ -77,6 +77,18 @@ static bool is_named(const struct field_table *inputs, const char *section, cons
   return false;
 }
 
+/* Where a section gives one of two names of a value, `base` does not add the other. */
+static void drop_other_name(document_node *section, document_node *base, const struct engine_materials *materials) {
+  for (int k = 0; k < 2 && materials->either[k]; k++) {
+    const char *own = materials->either[k], *other = materials->either[1 - k];
+    char head[PATH_SIZE];
+    snprintf(head, sizeof head, "%.*s", (int)strcspn(own, "."), own);
+    document_node *part = document_key(section, head), *of_base = document_key(base, head);
+    if (part && of_base && document_key(part, strchr(own, '.') + 1))
+      document_graft_drop(of_base, strchr(other, '.') + 1);
+  }
+}
+
 static status take_like(document_node *root, const struct engine_materials *materials, struct error *error) {
   document_node *node = document_key(root, "like");
   const char *word = node ? document_scalar(node) : "", *text = word && *word ? materials->text(word) : NULL;
@@ -88,6 +100,7 @@ static status take_like(document_node *root, const struct engine_materials *mate
     return word ? materials->load(word, unused, error)
                 : status_fail(error, STATUS_CONTENT, "expected the name of a material, such as like: granite");
   TRY(document_parse(word, text, strlen(text), &base, error));
+  drop_other_name(root, document_root(base), materials);
   return document_graft(root, base, material_words) ? STATUS_OK
                                                     : status_fail(error, STATUS_MEMORY, "no memory for a material");
 }
@@ -141,6 +154,8 @@ static void include_material(document_node *section, document_node *place, const
                       : status_fail(&error, STATUS_MEMORY, "no memory for a path");
   char name[FIELD_TEXT_SIZE];
   own_name(file, other, kind->materials, name);
+  if (code == STATUS_OK)
+    drop_other_name(section, document_root(other), kind->materials);
   if (code == STATUS_OK && !document_graft(section, other, material_words))
     code = status_fail(&error, STATUS_MEMORY, "no memory for a material");
   document_graft_drop(section, "name");
@@ -545,6 +560,19 @@ static char *section_document(const char *path, const char *file) {
   return text_close(out, &text);
 }
 
+/* The row of the other name of a material's value; NULL: it has one name. */
+static const struct field *other_name(const struct engine_kind *kind, const struct field *row) {
+  for (int k = 0; k < 2 && kind->materials && kind->materials->either[k]; k++) {
+    const size_t length = strlen(row->path), tail = strlen(kind->materials->either[k]);
+    char path[FIELD_TEXT_SIZE];
+    if (length <= tail || strcmp(row->path + length - tail, kind->materials->either[k]) != 0)
+      continue;
+    snprintf(path, sizeof path, "%.*s%s", (int)(length - tail), row->path, kind->materials->either[1 - k]);
+    return field_find(kind->inputs, path, NULL);
+  }
+  return NULL;
+}
+
 /* Takes the values of a user's material, except those that overrides gave. */
 static status take_own(struct scene *scene, const struct field *row, const char *file, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
@@ -566,7 +594,9 @@ static status take_own(struct scene *scene, const struct field *row, const char 
   document_free(document);
   for (size_t i = 0; code == STATUS_OK && i < table->count; i++) {
     struct field_value value;
-    if (!own->given[i] || (scene->overridden[i] && &table->rows[i] != row))
+    const struct field *other = other_name(scene->kind, &table->rows[i]);
+    if (!own->given[i] || (scene->overridden[i] && &table->rows[i] != row) ||
+        (other && scene->overridden[other - table->rows]))
       continue;
     field_get(&table->rows[i], own->inputs, &value);
     field_set_unchecked(&table->rows[i], scene->inputs, &value);
@@ -603,6 +633,9 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
   if (is_open(row) && strcmp(before.text, value->text) != 0)
     TRY(change_material(scene, row, &before, value->text, error));
   scene->given[row - table->rows] = true;
+  const struct field *other = other_name(scene->kind, row);
+  if (other && !scene->overridden[other - table->rows])
+    scene->given[other - table->rows] = false;
   if (scene->kind->complete)
     scene->kind->complete(scene->inputs, scene->given);
   return STATUS_OK;

@@ -164,7 +164,8 @@ void field_describe_range(const struct field *row, char *text, size_t size) {
   const char *unit = field_shown_unit(row), *space = *unit ? " " : "";
   print_bound(row, row->minimum, low);
   print_bound(row, row->maximum, high);
-  bool has_low = row->minimum > -HUGE_VAL, has_high = row->maximum < HUGE_VAL;
+  bool has_low = row->minimum > -HUGE_VAL,
+       has_high = row->maximum < (row->kind == FIELD_INTEGER ? 0x1p53 : HUGE_VAL); /* 2^53: no bound of its own */
   const char *from = row->flags & FIELD_ABOVE_MINIMUM ? "above" : "at least";
   const char *to = row->flags & FIELD_BELOW_MAXIMUM ? "below" : "at most";
   if (has_low && has_high)
@@ -283,28 +284,9 @@ void field_label(const struct field *row, char *label, size_t size) {
 }
 
 void field_label_unit(const char *unit, char *text, size_t size) {
-  static const char *const raised[] = {"\xe2\x81\xb0", "\xc2\xb9",     "\xc2\xb2",     "\xc2\xb3",     "\xe2\x81\xb4",
-                                       "\xe2\x81\xb5", "\xe2\x81\xb6", "\xe2\x81\xb7", "\xe2\x81\xb8", "\xe2\x81\xb9"};
-  text[0] = '\0';
-  if (!unit || strcmp(unit, "1") == 0)
-    return;
-  char inverse[64];
-  text_unit(unit, inverse, sizeof inverse);
-  const char *power = strstr(inverse, "^-");
-  if (power && strncmp(unit, "1/", 2) == 0 && power[2] >= '0' && power[2] <= '9') {
-    text_append(text, size, "%.*s\xe2\x81\xbb%s", (int)(power - inverse), inverse, raised[power[2] - '0']);
-    return;
-  }
-  while (*unit) {
-    const size_t plain = strcspn(unit, "^");
-    if (plain == 0 && unit[1] >= '0' && unit[1] <= '9') {
-      text_append(text, size, "%s", raised[unit[1] - '0']);
-      unit += 2;
-    } else {
-      text_append(text, size, "%.*s", plain ? (int)plain : 1, unit);
-      unit += plain ? plain : 1;
-    }
-  }
+  char shown[64];
+  text_unit(unit, shown, sizeof shown);
+  text_raise(shown, text, size);
 }
 
 /* ---- an object as nested JSON ---- */

@@ -327,6 +327,27 @@ void text_unit(const char *unit, char *text, size_t size) {
     text_append(text, size, "%s", unit);
 }
 
+void text_raise(const char *text, char *raised, size_t size) {
+  static const char *const digits[] = {"\xe2\x81\xb0", "\xc2\xb9",     "\xc2\xb2",     "\xc2\xb3",     "\xe2\x81\xb4",
+                                       "\xe2\x81\xb5", "\xe2\x81\xb6", "\xe2\x81\xb7", "\xe2\x81\xb8", "\xe2\x81\xb9"};
+  raised[0] = '\0';
+  for (bool high = false; *text; text++) {
+    const size_t sign = text[0] == '^' && text[1] == '-';
+    const bool digit = *text >= '0' && *text <= '9';
+    if (text[0] == '^' && text[1 + sign] >= '0' && text[1 + sign] <= '9') {
+      text_append(raised, size, "%s", sign ? "\xe2\x81\xbb" : "");
+      text += sign;
+      high = true;
+      continue;
+    }
+    high = high && digit;
+    if (high)
+      text_append(raised, size, "%s", digits[*text - '0']);
+    else
+      text_append(raised, size, "%c", *text);
+  }
+}
+
 void text_hex(const void *bytes, size_t size, char *text) {
   static const char digits[] = "0123456789abcdef";
   const unsigned char *at = bytes;

@@ -49,6 +49,9 @@ void text_powers(char *text, size_t size);
  * malloc'd; NULL: no memory. */
 char *text_people(const char *text);
 
+/* Raises the powers in a text: 10^33 and m^-3 become 10³³ and m⁻³. What does not fit is cut. */
+void text_raise(const char *text, char *raised, size_t size);
+
 /* A unit as people write it: "m^-3" for "1/m^3"; "" for a pure number. */
 void text_unit(const char *unit, char *text, size_t size);
 

@@ -132,8 +132,9 @@ static size_t fold(const char *text, size_t most, char *folded, size_t size) {
 
 /* Sets a text cut into lines of at most `most` letters; returns the number of lines. */
 static double folded_text(struct chart *chart, const char *name, const char *text, double most) {
-  char folded[2000];
-  const size_t lines = fold(text, (size_t)most, folded, sizeof folded);
+  char folded[2000], raised[2000];
+  text_raise(text ? text : "", raised, sizeof raised);
+  const size_t lines = fold(raised, (size_t)most, folded, sizeof folded);
   chart_text(chart, name, folded);
   return (double)lines;
 }
@@ -154,14 +155,18 @@ struct chart *chart_new(const char *template, const struct picture_page *page, c
 
 double chart_legend(struct chart *chart, size_t count, const char *const *labels) {
   size_t longest = 0, shown = 0;
+  OWNED char(*raised)[400] = memory_small(count, sizeof *raised); /* at most a few for each series */
+  OWNED const char **label = memory_small(count, sizeof *label);
   for (size_t i = 0; i < count; i++) {
-    const size_t wide = chart_letters(labels[i]);
+    text_raise(labels[i] ? labels[i] : "", raised[i], sizeof raised[i]);
+    label[i] = raised[i];
+    const size_t wide = chart_letters(label[i]);
     longest = wide > longest ? wide : longest;
     shown += wide > 0;
   }
-  size_t columns = (size_t)((chart->page->width - 60) / (LETTER * ((double)longest + 6)));
+  size_t columns = (size_t)((chart->page->width - 125) / (LETTER * ((double)longest + 7)));
   columns = columns < 1 ? 1 : columns > 4 ? 4 : columns;
-  chart_texts(chart, "label", count, labels);
+  chart_texts(chart, "label", count, label);
   chart_number(chart, "legend_columns", (double)columns);
   return (double)(LINE * ((shown + columns - 1) / columns));
 }

@@ -216,7 +216,7 @@ static void compare_runs(const struct measured *m, size_t first, const struct po
     far += (m->single ? distance_of_sample(&run, pool, true) : distance_at(m, first, &run, pool)) >= out->distance;
   }
   out->simulated = sample_summarise_moments(&moments, 0.95);
-  if (judged >= MATCH_RUNS)
+  if (judged >= MATCH_RUNS && isfinite(out->distance))
     out->share = (double)far / (double)judged;
 }
 
@@ -237,7 +237,8 @@ status measured_compare(const struct measured *measured, const struct pooled_run
   TRY(memory_array(&masses, 2 * (2 * all + 1), sizeof *masses, "a measured spectrum", error));
   const struct pooled_runs together = {1, (const size_t[]){0, all}, runs->masses};
   const struct sorted pool = sort_run(&together, 0, out->from, measured->weighed, masses);
-  if (pool.n > 0 && !(out->fragments < 2)) { /* one fragment has no shape */
+  const size_t left = measured->n - first;
+  if (pool.n > 0 && left > 1 && !(out->fragments < 2)) { /* one fragment or class has no shape */
     out->distance = measured_distance(measured, first, &pool);
     out->log_likelihood = measured->weighed ? (double)NAN : log_likelihood(measured, first, out->from, &pool);
   }

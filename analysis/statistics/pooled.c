@@ -212,6 +212,10 @@ status pooled_exponent(const struct pooled_runs *runs, enum exponent_method meth
   return STATUS_OK;
 }
 
+bool pooled_exponent_tells(const struct pooled_exponent *exponent) {
+  return isfinite(exponent->interval.half_width) || exponent->fit.standard_error < 1;
+}
+
 status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,
                                double *values, struct error *error) {
   const size_t n = runs->count;

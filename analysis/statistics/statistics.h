@@ -357,6 +357,8 @@ struct pooled_exponent {
   struct sample_interval interval; /* over runs: quote this error. NaN for one run */
   size_t runs;                     /* number of runs with fragments in their window */
 };
+/* Is there enough of it for a person to read: an interval, or at least the whole number by fit.standard_error? */
+bool pooled_exponent_tells(const struct pooled_exponent *exponent);
 /* Methods: least squares or on masses; STATUS_USAGE for another one. lower: kg, the same for all runs of
  * the point (a number of mean element masses). level: 0.95 for a 95 % interval. The cost is microseconds per run. */
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
@@ -499,7 +501,7 @@ struct measured_match {
   double fragments; /* number of measured fragments; NaN for a sieve table */
   struct sample_summary simulated; /* fragments per run */
   double distance; /* Kolmogorov's: greatest difference between both shares of fragments above a mass. NaN: fewer than
-                      two measured fragments, which have no shape */
+                      two measured fragments or classes, which have no shape */
   double share; /* of runs that are at least as far from the pool of the other runs: one experiment is one specimen, so
                    a share below 0.05 is evidence against the pool. NaN for fewer than MATCH_RUNS runs with two or more
                    fragments: so few can be all nearer by chance */

@@ -39,15 +39,10 @@ static void label_fit(struct curve *curve, double beta, double half_width) {
   const char *name = names[curve->form.size.density > 0][curve->form.cumulative];
   const double value = pooled_spectrum_exponent(&curve->form, beta);
   const double width = pooled_spectrum_half_width(&curve->form, half_width);
-  char *label = curve->fit_label;
-  const size_t size = sizeof curve->fit_label;
-  snprintf(label, size, "%s = ", name);
-  text_append_fixed(label, size, value, 2);
-  text_append(label, size, isfinite(width) ? " \xc2\xb1 " : " (no interval)");
-  if (!isfinite(width))
-    return;
-  text_append_fixed(label, size, width, 2);
-  text_append(label, size, " (seeds, 95 %%)");
+  char number[UNCERTAINTY_TEXT];
+  uncertainty_number(value, width, number);
+  snprintf(curve->fit_label, sizeof curve->fit_label,
+           isfinite(width) ? "%s = %s (seeds, 95 %%)" : "%s = %s (no interval)", name, number);
 }
 
 static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct curve *curve, struct error *error) {
@@ -57,12 +52,14 @@ static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct cu
     return STATUS_OK;
   TRY(pooled_exponent(&pool->data.runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &headline,
                       error));
-  if (!isfinite(headline.fit.beta))
+  if (!isfinite(headline.fit.beta) || !pooled_exponent_tells(&headline))
     return STATUS_OK;
   const double runs = (double)pool->data.runs.count;
   label_fit(curve, headline.fit.beta, headline.interval.half_width);
+  const bool sizes = curve->form.size.density > 0;
   text_append(curve->fit_label, sizeof curve->fit_label, "; %zu fragments from %.2g %s on", headline.fit.n,
-              headline.fit.lower, ask_pool_mass_unit(pool->data.dimensions));
+              sizes ? spectrum_size_of(&curve->form.size, headline.fit.lower) : headline.fit.lower,
+              sizes ? "m" : ask_pool_mass_unit(pool->data.dimensions));
   curve->fit = (struct picture_fit){NULL,
                                     headline.fit.beta,
                                     headline.fit.lower,

@@ -83,5 +83,9 @@ void commands_headline(const char *text, char *line, size_t size) {
          strstr(text, "yaml-language-server") < strchr(text, '\n'))
     text = strchr(text, '\n') + 1;
   text += strspn(text, "# ");
-  snprintf(line, size, "%.*s", (int)strcspn(text, "\n"), text);
+  size_t length = strcspn(text, "\n"), whole = 0; /* whole: up to the last full stop in the line */
+  for (size_t i = 0; i < length; i++)
+    if (text[i] == '.' && strchr(" \n", text[i + 1]))
+      whole = i + 1;
+  snprintf(line, size, "%.*s", (int)(whole ? whole : length), text);
 }

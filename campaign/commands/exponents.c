@@ -1,4 +1,6 @@
 /* `clast exponents STORE`: the exponent of every point under its four names, and a test of the power law. */
+#include <math.h>
+
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/words.h"
 
@@ -8,7 +10,8 @@ struct options {
 
 /* Prints a point's exponent under its four names, with the goodness of its fit by `draws` samples of the bootstrap.
  * Points without estimates have no row. */
-static status print_pool(struct table *table, size_t draws, const struct ask_pool *pool, struct error *error) {
+static status print_pool(struct table *table, size_t draws, bool people, const struct ask_pool *pool,
+                         struct error *error) {
   const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
   struct pooled_exponent fit;
   struct pooled_goodness goodness;
@@ -23,6 +26,8 @@ static status print_pool(struct table *table, size_t draws, const struct ask_poo
   table_reals(table, 2, (const double[]){lower, pool->data.complete_mass});
   table_integer(table, (int64_t)runs->count);
   table_integer(table, fit.fit.n);
+  if (people && !pooled_exponent_tells(&fit))
+    fit.fit.beta = NAN;
   const double any = 1; /* a density: the exponents by size do not depend on it */
   for (int form = 0; form < 4; form++) {
     const struct pooled_form named = ask_pool_form(pool, form % 2, form / 2 ? any : 0);
@@ -60,7 +65,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, NULL, error);
   for (const struct ask_pool *pool; !table_broken(table) && (pool = ask_pools_next(&pools));) {
     ask_doubts_add(&doubts, &pool->doubts);
-    TRY(print_pool(table, (size_t)options->draws, pool, error));
+    TRY(print_pool(table, (size_t)options->draws, table_for_people(line->format), pool, error));
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));

@@ -33,6 +33,9 @@ int64_t accuracy_seeds(double deviation, double margin) {
 struct finding {
   const struct campaign *campaign;
   struct accuracy *accuracy;
+  struct store *store;
+  const struct scene *scene; /* the one that was studied */
+  char results[ASK_DOUBTS_RESULTS];
   const struct knob *open[2]; /* knobs of resolution without a limit at the scene's setting; two tell all */
   bool studied;
   int rank; /* of the level that gave the mean */
@@ -150,6 +153,38 @@ static status add_finer(struct finding *finding, const struct knob *knob, const 
   return STATUS_OK;
 }
 
+/* Marks of the result in runs of the studied scene with this setting; knob NULL: with its own settings. */
+static status read_doubts(const struct finding *finding, const struct knob *knob, const char *setting,
+                          struct ask_doubts *doubts, struct error *error) {
+  struct error ignored;
+  int64_t point = 0;
+  SCENE scene = scene_copy(finding->scene);
+  *doubts = (struct ask_doubts){0};
+  if (knob && ladder_turn(knob, scene, setting, &ignored) != STATUS_OK)
+    return STATUS_OK;
+  TRY(store_point_find(finding->store, scene, &point, error));
+  return point
+             ? ask_doubts(finding->store, &(struct ask_doubts_choice){.point = point}, finding->results, doubts, error)
+             : STATUS_OK;
+}
+
+/* Does a word mark half of the runs of a setting, and less than a quarter with the scene's own? More seeds do not help
+ * there. */
+static status is_marked(const struct finding *finding, const struct knob *knob, const char *setting, bool *is,
+                        struct error *error) {
+  struct ask_doubts here, own;
+  TRY(read_doubts(finding, knob, setting, &here, error));
+  TRY(read_doubts(finding, NULL, NULL, &own, error));
+  *is = false;
+  for (size_t k = 0; k < here.count; k++) {
+    int64_t there = 0;
+    for (size_t i = 0; i < own.count; i++)
+      there += strcmp(own.word[i].word, here.word[k].word) == 0 ? own.word[i].runs : 0;
+    *is |= 2 * here.word[k].runs >= here.runs && 4 * there < own.runs;
+  }
+  return STATUS_OK;
+}
+
 /* Second pass: a level as an option. */
 static status take_option(struct finding *finding, const struct convergence_row *row, struct error *error) {
   struct accuracy *accuracy = finding->accuracy;
@@ -162,6 +197,10 @@ static status take_option(struct finding *finding, const struct convergence_row 
     if (accuracy->options[i].own) /* every knob has the scene's own settings as a level */
       return STATUS_OK;
   if (!row->base && is_varied(finding->campaign, knob, row->setting))
+    return STATUS_OK;
+  bool marked = false;
+  TRY(is_marked(finding, knob, row->setting, &marked, error));
+  if (marked && !row->base)
     return STATUS_OK;
 
   struct accuracy_option option = {.own = row->base,
@@ -231,6 +270,9 @@ static status read_study(struct finding *finding, struct store *store, const str
   int64_t point = 0;
   if (study_quantity_find(scene->kind, finding->campaign->accuracy_quantity, &quantity, error) != STATUS_OK)
     return STATUS_CONTENT;
+  finding->store = store;
+  finding->scene = scene;
+  TRY(ask_doubts_results(store, quantity.column, finding->results, error));
   TRY(store_point_find(store, scene, &point, error));
   for (size_t pass = 0; point && pass < sizeof passes / sizeof passes[0]; pass++) {
     ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, error);
@@ -370,12 +412,12 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
     text_append(more, sizeof more, "allow more, such as %.2g; or ", 1.3 * best->error);
   return status_fail(
       error, STATUS_CONTENT,
-      "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g. The smallest error is %.2g%s, with %s "
-      "= %s. %s. Or %sask for the least error in a time: `clast plan %s --within "
+      "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g (%" PRId64 " seeds). The smallest error is "
+      "%.2g%s, with %s = %s. %s. Or %sask for the least error in a time: `clast plan %s --within "
       "10min`; or take another result: `clast converge %s --quantity fragment_count,kinetic_energy_share` "
       "tells how near these are",
-      quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, best->error, best->open ? " or more" : "",
-      best->knob, best->setting, next, more, path, path);
+      quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n, best->error,
+      best->open ? " or more" : "", best->knob, best->setting, next, more, path, path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {

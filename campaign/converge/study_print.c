@@ -116,14 +116,15 @@ static void print_level(const struct printing *printing, struct table *table, co
 
 enum { WIDTH = 100 };
 
-/* The first line of a quantity says what is known of it at one level: the scene's own, of the knob with most seeds, or
- * the finest that has runs. */
+/* The first line of a quantity says what is known of it at one level, as `plan` does: the scene's own, or the finest
+ * one with runs; of the knob with most seeds. */
 static bool find_told(size_t count, const struct study_found *found, size_t *knob, size_t *level) {
   const struct convergence_row *told = NULL;
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++) {
       const struct convergence_row *row = &found[i].rows[l];
-      if (row->n == 0 || (told && told->base && (!row->base || row->n <= told->n)))
+      const int rank = row->base ? 2 : row->reference, best = !told ? -1 : told->base ? 2 : told->reference;
+      if (row->n == 0 || rank < best || (rank == best && row->n <= told->n))
         continue;
       *knob = i;
       *level = l;

@@ -250,12 +250,18 @@ status campaign_load_changed(const char *path, const struct campaign_changes *ch
                              struct error *error) {
   struct document *document = NULL;
   *out = NULL;
-  TRY(document_open(path, &document, error));
+  status code = document_open(path, &document, error);
+  if (code == STATUS_MISSING && scene_builtin_text(path))
+    return status_fail(error, STATUS_MISSING,
+                       "%s is a built-in scene; a campaign is a file, which names it: `scene: %s`, and `vary:` with an "
+                       "input and its values",
+                       path, path);
+  TRY(code);
   const char *slash = strrchr(path, '/');
   OWNED char *folder = slash ? memory_small_text(path) : NULL;
   if (folder)
     folder[slash - path + (slash == path)] = '\0';
-  const status code = from_document(document, changes, folder, false, out, error);
+  code = from_document(document, changes, folder, false, out, error);
   document_free(document);
   return code;
 }

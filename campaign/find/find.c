@@ -294,7 +294,8 @@ static status read_place(struct find *find, struct store *store, const struct fi
 static void tell(const struct find *find) {
   char low[FIND_TEXT], high[FIND_TEXT], text[3 * FIND_TEXT];
   snprintf(text, sizeof text, "%zu runs", find->runs);
-  if (find->found.low < find->found.high)
+  const bool none = find->found.kind == CROSSING_ABOVE || find->found.kind == CROSSING_BELOW;
+  if (!none && find->found.low < find->found.high)
     snprintf(text, sizeof text, "%zu runs: between %s and %s", find->runs,
              find_show_within(find, find->found.low, find->found.low, find->found.high, low),
              find_show_within(find, find->found.high, find->found.low, find->found.high, high));
@@ -337,9 +338,9 @@ static status run_rounds(void *context, struct launch *launch, struct error *err
   launch->scheduler.store_path = find->limits.store;
   if (launch->manager && !launch->notes.quiet)
     fprintf(stderr,
-            "clast: at most %zu runs, %d at first; --plan tells what they cost. Their points join those of %s in %s: "
-            "--campaign %s leaves them out of a question\n",
-            find->most, FIND_FEWEST_RUNS, find->campaign->name, find->limits.store, find->campaign->name);
+            "clast: at most %zu runs, %d at first; --plan tells what they cost. They are campaigns of their own in "
+            "%s: after `clast run`, --campaign %s leaves them out of a question\n",
+            find->most, FIND_FEWEST_RUNS, find->limits.store, find->campaign->name);
   const status code = driver_run_series(&series, launch->farm, &launch->scheduler, &summary, error);
   launch_tell_series(launch, code, find->limits.store, &summary, true);
   if (!launch->manager || code != STATUS_OK)

@@ -48,13 +48,16 @@ const char *find_show_within(const struct find *find, double x, double low, doub
 
 /* ---- the sentence ---- */
 
+static void show_level(const struct find *find, char level[FIND_TEXT]) {
+  struct field real = *find->quantity.row;
+  real.kind = FIELD_REAL;
+  field_show(&real, &(struct field_value){.kind = FIELD_REAL, .number = find->level}, level, FIND_TEXT);
+}
+
 static void write_subject(const struct find *find, char *text, size_t size) {
   char level[FIND_TEXT];
   const struct field *row = find->quantity.row;
-  const struct field_value value = {.kind = FIELD_REAL, .number = find->level};
-  struct field real = *row;
-  real.kind = FIELD_REAL;
-  field_show(&real, &value, level, sizeof level);
+  show_level(find, level);
   if (isnan(find->share))
     snprintf(text, size, "the mean of %s\n%s", row->path, level);
   else
@@ -168,16 +171,20 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
 static status print_bins(const struct find *find, struct error *error) {
   struct bin bins[2 * BINS + 2];
   size_t count;
-  char text[FIND_TEXT], mean[2 * UNCERTAINTY_TEXT];
+  char text[FIND_TEXT], mean[2 * UNCERTAINTY_TEXT], from[FIELD_TEXT_SIZE + 8], of[FIELD_TEXT_SIZE + 8], above[128];
   TRY(make_bins(find, bins, &count, error));
+  show_level(find, text);
+  snprintf(from, sizeof from, "%s from", find->input->path);
+  snprintf(of, sizeof of, "mean %s", find->quantity.row->path);
+  snprintf(above, sizeof above, "share above %s", text);
   TABLE table = table_new(TABLE_TEXT, stdout);
-  table_columns(table, (const char *const[]){find->input->path, "to", "runs", find->quantity.row->path, "above", NULL});
+  table_columns(table, (const char *const[]){from, "to", "runs", of, above, NULL});
   for (size_t i = 0; i < count; i++) {
     table_text(table, find_show_within(find, bins[i].low, 0, 0.1, text));
     table_text(table, find_show_within(find, bins[i].high, 0, 0.1, text));
     table_integer(table, (int64_t)bins[i].n);
     const bool share = field_is_share(find->quantity.row);
-    (share ? uncertainty_share_cell : uncertainty_cell)(bins[i].mean.mean, bins[i].mean.half_width, mean);
+    (share ? uncertainty_share_cell : uncertainty_number)(bins[i].mean.mean, bins[i].mean.half_width, mean);
     uncertainty_mark(&bins[i].doubts, mean + strlen(mean));
     table_text(table, mean);
     table_fixed(table, (double)bins[i].above / (double)bins[i].n, 2);
@@ -241,6 +248,11 @@ status find_print(const struct find *find, enum table_format format, struct erro
   uncertainty_doubts(&find->doubts, stderr);
   if (find->failed)
     fprintf(stderr, "clast: %zu of %zu runs have no such result and are left out\n", find->failed, find->runs);
+  char column[FIELD_TEXT_SIZE];
+  STORE store = NULL;
+  TRY(store_open_reader(find->limits.store, &store, error));
+  field_column_name(find->quantity.row->path, column, sizeof column);
+  quantity_tell_resolution(store, column, "");
   return STATUS_OK;
 }
 

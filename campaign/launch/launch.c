@@ -114,12 +114,12 @@ static void print_summary(const struct driver_summary *summary, const char *stor
             summary->points_cap_reached);
   fputc('\n', stderr);
   if (summary->runs_censored)
-    fprintf(stderr, "%" PRId64 " run%s ended at the hard end time: fragments may still have been breaking\n",
+    fprintf(stderr, "%" PRId64 " run%s ended at stop.end_time: fragments may still have been breaking\n",
             summary->runs_censored, plural(summary->runs_censored));
   uncertainty_excluded(summary->runs_excluded, store);
   if (summary->runs_doubtful)
-    fprintf(stderr, "%" PRId64 " run%s in doubt (!), which means and stopping rules count\n", summary->runs_doubtful,
-            plural(summary->runs_doubtful));
+    fprintf(stderr, "%" PRId64 " run%s in doubt (!); means and stopping rules count %s\n", summary->runs_doubtful,
+            plural(summary->runs_doubtful), summary->runs_doubtful == 1 ? "it" : "them");
   if (summary->attempts_failed)
     fprintf(stderr, "%" PRId64 " attempt%s failed: clast query %s --named failures\n", summary->attempts_failed,
             plural(summary->attempts_failed), store);

@@ -11,7 +11,7 @@
 
 /* What of the legend occurs in the table for people. */
 struct seen {
-  bool failed, single, interval, ends, weak, all_one, unknown, beta;
+  bool failed, single, interval, ends, weak, all_one, unknown, beta, few, same;
 };
 
 struct printing {
@@ -97,7 +97,8 @@ static void columns_for_people(struct printing *printing) {
   for (size_t i = 0; i < printing->axes; i++)
     table_key(table, &printing->axis[i]);
   table_columns(table, (const char *const[]){"runs", "M_1/M", "\xc2\xb1res M_1/M", "window", "n", "beta ML",
-                                             "beta ML_hw95", "\xc2\xb1res beta", "beta LSQ", "beta LSQ_hw95", NULL});
+                                             "beta ML_hw95", "beta ML_weak", "\xc2\xb1res beta", "beta LSQ",
+                                             "beta LSQ_hw95", "beta LSQ_weak", NULL});
 }
 
 /* "0.928 ± 0.009", "0.928 ± 0.009~" when the interval is weak, "1.000 ≥ 0.905" when all runs are equal. */
@@ -158,10 +159,14 @@ static status row_for_people(struct printing *printing, const struct ask_points_
   for (int m = METHODS; m-- > 0;) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
     table_rests_on(table, &doubts->masses);
-    printing->seen.beta |= isfinite(fit->fit.beta);
-    const double spread = fit->fit.standard_error; /* without an interval it gives the digits */
-    table_fixed(table, fit->fit.beta, isfinite(fit->interval.half_width) || !(spread >= 0.1) ? 2 : spread < 1 ? 1 : 0);
+    const bool tells = isfinite(fit->fit.beta) && pooled_exponent_tells(fit), has = isfinite(fit->interval.half_width);
+    const bool weak = tells && !has && row->n > 1;
+    printing->seen.beta |= tells;
+    printing->seen.weak |= weak;
+    printing->seen.few |= m == MASSES && fit->fit.n > 0 && !tells;
+    table_fixed(table, tells ? fit->fit.beta : (double)NAN, has || !(fit->fit.standard_error >= 0.1) ? 2 : 1);
     table_real(table, fit->interval.half_width);
+    table_integer(table, weak);
     if (m != MASSES)
       continue;
     struct ask_resolution resolution;
@@ -182,11 +187,15 @@ static status print_point(struct printing *printing, const struct ask_points_row
   TRY(ask_doubts(printing->store, &choice, all, &doubts.all, error));
   TRY(point_read(printing->store, row->point_id, row->results_version, &point, error));
   TRY(point_estimates(&point, 0.95, fits, error));
+  const struct point_estimate *masses = &fits[MASSES * ESTIMATES_WINDOWS];
   for (int window = 0; window < ESTIMATES_WINDOWS; window++) {
+    const bool same = window &&
+                      fabs(masses[window].exponent.fit.lower / masses[window - 1].exponent.fit.lower - 1) < 1e-9;
     if (!table_for_people(printing->format))
       TRY(row_for_programs(printing, row, window, fits, &doubts, error));
-    else if (window == 0 || fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n > 0)
+    else if (window == 0 || (masses[window].exponent.fit.n > 0 && !same))
       TRY(row_for_people(printing, row, window, fits, &doubts, error)); /* people do not need an empty row */
+    printing->seen.same |= same && masses[window].exponent.fit.n > 0;
   }
   return STATUS_OK;
 }
@@ -214,6 +223,11 @@ static void print_legend(const struct printing *printing, FILE *out) {
                 ". beta: exponent of F(m) ~ m^-beta, of the n fragments that all runs of a point have in the window. "
                 "`clast explain WORD` tells of beta, ML, LSQ, window%s",
                 seen->weak ? ", weak" : "");
+  if (seen->few)
+    text_append(text, sizeof text, ". beta -: too few fragments");
+  if (seen->same)
+    text_append(text, sizeof text,
+                ". Windows that begin at the same mass, where the spectrum is complete, have one row: the first");
   words_print(out, "", "%s.", text);
   quantity_tell_resolution(printing->store, OUTCOME_DEFAULT, "");
   if (seen->beta)

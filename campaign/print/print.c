@@ -179,7 +179,7 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
   /* As many digits as the number of fragments allows. */
   const double beta = fit ? fit->fit.beta : (double)NAN,
                digit = fit ? pow(10, floor(log10(fit->fit.standard_error))) : 0;
-  answer("exponent", digit > 0 && digit < 1 ? digit * round(beta / digit) : beta,
+  answer("exponent", digit < 1 ? digit * round(beta / digit) : (double)NAN,
          condition_mark(conditions, o->warnings, OUTCOME_NAME(mean_fragment_mass)), says);
   answer("energy error", o->energy_error, CONDITION_SOUND, "of the energy put in, by numerical errors");
   printf("in doubt (!)   %s\n", condition_doubted(conditions, o->warnings) ? o->warnings : "nothing");
@@ -363,14 +363,16 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   if (table_for_people(format)) {
     uncertainty_doubts(&sum, stderr);
     fprintf(stderr,
-            "clast: fragments from %.3g %s on, where the measured and all simulated spectra are complete.\n"
-            "distance: Kolmogorov's, of %s. runs_as_far: share of the runs that are as far from the others\n"
-            "as the measured one (one experiment is one specimen; below 0.05 speaks against the point; -: fewer\n"
-            "than 20 runs of two fragments, or one measured fragment, which has no shape)\n",
-            complete, kg, measured->weighed ? "the shares of mass" : "the shapes");
+            "clast: the measured and all simulated spectra are complete from %.3g %s on; from: the first measured %s "
+            "there. distance: Kolmogorov's, of %s. runs_as_far: share of the runs that are as far from the others as "
+            "the measured one (one experiment is one specimen; below 0.05 speaks against the point; -: fewer than 20 "
+            "runs of two fragments). One measured fragment or class has no shape, and no distance\n",
+            complete, kg, measured->single ? "mass" : "class", measured->weighed ? "the shares of mass" : "the shapes");
     if (nothing)
       fprintf(stderr,
-              "clast: no distance: the heaviest measured fragment has %.3g %s, the heaviest simulated one %.3g %s\n",
+              "clast: no distance: from there on there is no simulated fragment, or only one measured %s. The heaviest "
+              "measured %s %.3g %s, the heaviest simulated one %.3g %s\n",
+              measured->single ? "fragment" : "class", measured->single ? "fragment has" : "class begins at",
               measured->n ? measured->mass[measured->n - 1] : 0, measured->bodies ? "kg" : kg, heaviest, kg);
     for (size_t i = 0; !measured->weighed && i < measured->n; i++) {
       const double beyond = i + 1 < measured->n ? measured->above[i + 1] : 0;

@@ -344,6 +344,20 @@ static double inside(double share) {
   return share < 0 ? 0 : share > 1 ? 1 : share;
 }
 
+/* People see the short names of inputs. */
+static void shorten(struct store *store, enum table_format format, struct run_cells *cells) {
+  struct ask_column axes[LIMITS_AXES_OF_TABLE];
+  size_t count = 0;
+  if (table_for_people(format))
+    (void)ask_columns_axes(store, true, LIMITS_AXES_OF_TABLE, axes, &count, NULL);
+  for (size_t a = 0; a < cells->axes; a++)
+    for (size_t k = 0; k < count; k++)
+      if (*axes[k].word && strcmp(axes[k].name, cells->column[a]) == 0) {
+        snprintf(cells->column[a], sizeof cells->column[a], "%s", axes[k].word);
+        break;
+      }
+}
+
 static status print_parts(const struct run_cells *cells, const struct scatter_part *parts, enum table_format format,
                           struct error *error) {
   static const char *const names[SCATTER_PARTS] = {"all inputs together", "seeds", "seeds, in all points alike",
@@ -385,6 +399,7 @@ status print_variance(struct store *store, const struct scatter_choice *choice, 
   size_t runs = 0;
   TRY(read_points(store, choice, &cells, error));
   TRY(split(&cells, parts, &runs, error));
+  shorten(store, format, &cells);
   TRY(print_parts(&cells, parts, format, error));
   if (table_for_people(format)) {
     uncertainty_doubts(&cells.doubts, stderr);
@@ -673,6 +688,7 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
     for (size_t a = 0; a <= p.cells.axes; a++)
       p.index[a].of_means = p.index[a].of_runs = (struct sensitivity_share){NAN, NAN, NAN};
   sort_inputs(&p);
+  shorten(store, format, &p.cells);
   if (table_for_people(format))
     write_answer(&p);
   TRY(print_indices(&p, format, error));
@@ -819,6 +835,10 @@ static void interval(struct table *table, const struct sample_interval *i, const
   table_reals(table, 2, (const double[]){i->estimate, i->half_width});
 }
 
+static const char *name_of(const struct reading *r, size_t axis, enum table_format format) {
+  return table_for_people(format) ? r->cells.column[axis] : r->campaign->axes[axis].row->path;
+}
+
 static status print_sobol(const struct reading *r, enum table_format format, struct error *error) {
   struct sensitivity_index index[LIMITS_AXES_OF_POOL + 1];
   const size_t n = r->table.inputs;
@@ -827,7 +847,7 @@ static status print_sobol(const struct reading *r, enum table_format format, str
   table_columns(table, (const char *const[]){"input", "first", "first_hw95", "total", "total_hw95", NULL});
   table_doubt_columns(table);
   for (size_t i = 0; i <= n; i++) {
-    table_text(table, i < n ? r->campaign->axes[i].row->path : "seed");
+    table_text(table, i < n ? name_of(r, i, format) : "seed");
     interval(table, &index[i].first, &r->cells.doubts);
     interval(table, &index[i].total, &r->cells.doubts);
     table_doubt_cells(table, &r->cells.doubts);
@@ -868,7 +888,7 @@ static status print_morris(const struct reading *r, enum table_format format, st
                                              "noise", NULL});
   table_doubt_columns(table);
   for (size_t i = 0; i < n; i++) {
-    table_text(table, r->campaign->axes[i].row->path);
+    table_text(table, name_of(r, i, format));
     interval(table, &effect[i].mean_absolute, &r->cells.doubts);
     table_rests_on(table, &r->cells.doubts);
     table_reals(table, 3, (const double[]){effect[i].mean, effect[i].deviation, effect[i].noise});
@@ -890,6 +910,7 @@ status print_sensitivity(struct store *store, const char *path, const char *quan
   TRY(sensitivity_design_find(r.campaign, &r.kind, &r.blocks, error));
   r.points = r.campaign->axis_count + (r.kind == DESIGN_SENSITIVITY_SALTELLI ? 2 : 1);
   TRY(read_runs(store, quantity, &r, error));
+  shorten(store, format, &r.cells);
   if (r.whole < r.blocks)
     fprintf(stderr, "clast: %zu of %zu blocks lack a finished run and are left out\n", r.blocks - r.whole, r.blocks);
   TRY(r.kind == DESIGN_SENSITIVITY_SALTELLI ? print_sobol(&r, format, error) : print_morris(&r, format, error));

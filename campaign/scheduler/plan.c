@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include "campaign/converge/ladder.h"
+#include "campaign/terminal/words.h"
 #include "db/store/store.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"
@@ -419,7 +420,7 @@ static const char *how_timed(const struct plan *plan) {
     return " (whole runs timed)";
   if (plan->trial_whole)
     return " (the first steps timed; a coarse run tells when it ends)";
-  return " (extrapolated to the hard end; runs stop earlier when fracture has ceased)";
+  return " (extrapolated to stop.end_time; runs stop earlier when fracture has ceased)";
 }
 
 static void print_design(const struct campaign *campaign, const struct plan *plan, FILE *out) {
@@ -444,8 +445,8 @@ static void print_times(const struct plan *plan, int slots, FILE *out) {
   }
   progress_duration(plan->run_s_mean, a, sizeof a);
   progress_duration(plan->run_s_most, b, sizeof b);
-  fprintf(out, "a run     %s%s on average, %s for the most expensive%s\n",
-          plan->trial_made && !plan->trial_whole ? "at most " : "", a, b, how_timed(plan));
+  words_print(out, "a run     ", "%s%s on average, %s for the most expensive%s",
+              plan->trial_made && !plan->trial_whole ? "at most " : "", a, b, how_timed(plan));
   progress_duration(plan->wall_s_least, a, sizeof a);
   progress_duration(plan->wall_s_most, b, sizeof b);
   fprintf(out, "time      %s", a);

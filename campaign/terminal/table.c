@@ -560,7 +560,7 @@ static void keep(struct table *table, const struct cell *cell) {
              value->text + value->digits);
   else {
     char number[UNCERTAINTY_TEXT];
-    (column->share ? uncertainty_share_cell : uncertainty_cell)(value->number, cell->number, number);
+    (column->share ? uncertainty_share_cell : uncertainty_number)(value->number, cell->number, number);
     snprintf(text, sizeof text, "%s%.*s", number, UNCERTAINTY_TEXT, value->text + value->digits);
     value->digits = strlen(number);
   }

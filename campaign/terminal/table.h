@@ -91,12 +91,9 @@ status table_text_only(enum table_format format, const char *what, struct error 
 
 enum { UNCERTAINTY_TEXT = 256 };
 
-/* "0.349 +- 0.003": the error has one digit, or two after a leading 1; the value has as many decimals. Without a half
+/* "0.349 ± 0.003": the error has one digit, or two after a leading 1; the value has as many decimals. Without a half
  * width above 0: "0.349". */
 void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_TEXT]);
-
-/* The same as a cell of a table: "0.349 ± 0.003". */
-void uncertainty_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]);
 
 /* The same of a share: "0.11 (0 to 0.27)", its interval, where the half width passes 0 or 1. */
 void uncertainty_share_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]);
@@ -108,12 +105,12 @@ void uncertainty_excluded(int64_t count, const char *store);
  * % interval, as its middle is no better known than its ends. */
 void uncertainty_distance(double distance, double half_width, char text[UNCERTAINTY_TEXT]);
 
-/* "0.349 +- 0.003 (seeds, 95 %)", or "(seeds, 95 %, weak)"; "0.11 (0 to 0.27; seeds, 95 %)"; "1 (all 30 runs; 0.905 to
+/* "0.349 ± 0.003 (seeds, 95 %)", or "(seeds, 95 %, weak)"; "0.11 (0 to 0.27; seeds, 95 %)"; "1 (all 30 runs; 0.905 to
  * 1)" when all values of a share are equal; "0.349" without an interval. */
 void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_TEXT]);
 
-/* "0.03 +- 0.02 below its limit (resolution: particles)", "+- 0.06 (resolution: particles)", "up to +- 0.06
- * (resolution: particles); studied at 2 of 9 points, `clast converge SCENE` studies others", "+- 0.06 or more
+/* "0.03 ± 0.02 below its limit (resolution: particles)", "± 0.06 (resolution: particles)", "up to ± 0.06
+ * (resolution: particles); studied at 2 of 9 points, `clast converge SCENE` studies others", "± 0.06 or more
  * (resolution: particles)", "resolution: not studied; `clast converge SCENE` measures it", or "resolution: does not
  * converge (`clast converge SCENE`)". The knobs are those that were studied. */
 void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]);

@@ -26,24 +26,19 @@ void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_T
   if (value != 0 && fabs(value) < 0.5 * pow(10, leading)) /* 0.3 +- 2.7, not 0 +- 3 */
     leading--;
   if (leading < -MOST_DECIMALS || leading > MOST_DECIMALS || fabs(value) >= MOST_DIGITS) {
-    snprintf(text, UNCERTAINTY_TEXT, "%.4g +- %.2g", value, half_width);
+    snprintf(text, UNCERTAINTY_TEXT, "%.4g \xc2\xb1 %.2g", value, half_width);
     return;
   }
   const int decimals = leading < 0 ? (int)-leading : 0;
-  snprintf(text, UNCERTAINTY_TEXT, "%.*f +- %.*f", decimals, value, decimals, half_width);
-}
-
-void uncertainty_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]) {
-  uncertainty_number(value, half_width, text);
-  char *sign = strstr(text, "+-");
-  if (sign)
-    memcpy(sign, "\xc2\xb1", 2); /* both have two bytes */
+  const double step = leading > 0 ? pow(10, leading) : 0; /* 58 500 000 +- 1 900 000 */
+  snprintf(text, UNCERTAINTY_TEXT, "%.*f \xc2\xb1 %.*f", decimals, step > 0 ? step * round(value / step) : value,
+           decimals, step > 0 ? step * round(half_width / step) : half_width);
 }
 
 void uncertainty_share_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]) {
   const double low = fmax(value - half_width, 0), high = fmin(value + half_width, 1);
   if (!(half_width > 0) || (value - half_width >= 0 && value + half_width <= 1) || !(value >= 0 && value <= 1)) {
-    uncertainty_cell(value, half_width, text);
+    uncertainty_number(value, half_width, text);
     return;
   }
   double last = last_decade(fmax(high - value, value - low));
@@ -113,7 +108,7 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
     text_append(text, UNCERTAINTY_TEXT, " (resolution: %s)", resolution->knobs);
     return;
   }
-  text_append(text, UNCERTAINTY_TEXT, "%s+- %.2g%s (resolution: %s)", resolution->points > 1 ? "up to " : "",
+  text_append(text, UNCERTAINTY_TEXT, "%s\xc2\xb1 %.2g%s (resolution: %s)", resolution->points > 1 ? "up to " : "",
               resolution->half_width, resolution->verdict == ASK_RESOLUTION_AT_LEAST ? " or more" : "",
               resolution->knobs);
   if (resolution->studied < resolution->points)

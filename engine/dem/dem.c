@@ -127,7 +127,7 @@ static void check_stop(void *of) {
   else if (time >= run->inputs.stop.end_time - half_step) {
     if (broke)
       frame_end(&run->state.frame, DEM_STOP_END_TIME, OUTCOME_END_TIME,
-                "beams still broke %.3g s before the hard end: raise stop.end_time", time - last);
+                "beams still broke %.3g s before stop.end_time: raise it", time - last);
     else /* nothing has broken: there is no fracture that could go on */
       frame_end(&run->state.frame, DEM_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
   }
@@ -280,7 +280,7 @@ static const struct knob knobs[] = {
          .meaning = "velocity Verlet, or Gear's method of fifth order"),
     KNOB("stop", RESOLUTION, .inputs = {{"stop.quiet_time", 1}, {"stop.least_time", 1}, {"stop.end_time", 1}},
          .factors = {0.25, 0.5, 1, 2, 4}, .pairs = true,
-         .meaning = "how long no beam must break until a run ends; its least time and the hard end move with it"),
+         .meaning = "how long no beam must break until a run ends; its least time and stop.end_time move with it"),
 
     KNOB("contact_law", MODEL, .inputs = {{"contact.law"}}, .choices = {"off", "printed", "conservative"},
          .pairs = true, .meaning = "repulsion of overlapping grains"),

@@ -53,7 +53,7 @@ static const struct knob knobs[] = {
     KNOB("flaw_list", RESOLUTION, .inputs = {{"fidelity.flaws"}}, .choices = {"compact", "exact"}, .pairs = true,
          .meaning = "how a particle's flaws are stored"),
     KNOB("stop", RESOLUTION, .inputs = {{"stop.quiet_time", 1}, {"stop.end_time", 1}}, .factors = {0.5, 1, 2, 4},
-         .pairs = true, .meaning = "how long no damage must grow until the run ends; the hard end moves with it"),
+         .pairs = true, .meaning = "how long no damage must grow until the run ends; stop.end_time moves with it"),
 
     KNOB("smoothing", MODEL, .inputs = {{"fidelity.smoothing", 1}}, .factors = {0.9, 1, 1.15, 1.3}, .pairs = true,
          .meaning = "smoothing length over the spacing: number of neighbours"),

@@ -181,6 +181,13 @@ sed -i 's/0.05/1e-9/' sharp.yaml
 expect 65 "$clast" run sharp.yaml
 says "smallest error"
 says "or ask for the least error in a time: \`clast plan sharp.yaml --within 10min\`"
+# Gear's step is above the bound of its condition: its runs are marked, so that it is no option.
+sed 's/set: {/&fidelity.time_step: 1.05 us, /; s/1e-9/0.1/; s/sharp/gear/' sharp.yaml >gear.yaml
+expect 0 "$clast" converge gear.yaml --knob integrator --seeds 4 --max-seeds 4 -j 2
+says "step: "
+expect 0 "$clast" plan gear.yaml --no-trial
+prints "the scene's own"
+grep -q 'integrator *gear' out && fail "a marked setting is an option"
 # A terminal gets it in lines of 100 columns, with its commands whole.
 script -qec "$clast run sharp.yaml" /dev/null </dev/null | tr -d '\r' >out || true
 [ "$(wc -l <out)" -gt 3 ] && [ "$(wc -L <out)" -le 100 ] || fail "lines on a terminal"

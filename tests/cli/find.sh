@@ -21,7 +21,7 @@ head -2 out | paste -sd ' ' | grep -qE '^The share of runs with largest_fraction
   fail "the first line is not the answer"
 ok "the first line answers"
 grep -oE '[0-9.]+ ± [0-9.]+' out | awk '$1 - $3 < 0 || $1 + $3 > 1 { exit 1 }' || fail "an interval of a share beyond 0 or 1"
-says "at most 400 runs"
+says "at most 400 runs"; says "resolution: not studied"; prints "share above 0.5"
 runs=$(number disc.db "select count(*) from run")
 expect 0 "$clast" find "${search[@]}" -j 2 --json
 says "0 runs computed"; says "$runs found in the store"
@@ -68,6 +68,9 @@ says "$runs found in the store"; prints "a larger --max-runs goes on"
 # Other answers.
 expect 0 "$clast" find disc.yaml --level 1
 prints "is below 1 for threshold.strain from 1 % to 6 %"; prints "no crossing in the"
+grep -q "runs: between" err && fail "an interval of no crossing"
+expect 66 "$clast" find disc-explosion --level 0.5
+says "disc-explosion is a built-in scene; a campaign is a file"; one_error
 expect 0 "$clast" find disc.yaml --level 1 --json
 python -c "
 import json; row, = json.load(open('out'))

@@ -91,6 +91,11 @@ expect 66 "$clast" explain s.yaml --set target.material=none.yaml
 says "none.yaml: there is no such file"
 expect 64 "$clast" explain s.yaml --set material=granite
 says "'target.material.name', 'projectile.material.name'"
+pores() { "$clast" explain basalt-sphere "$@" --json | python -c "
+import json, sys; print(*[round(r['value'], 3) for r in json.load(sys.stdin) if r['path'] == 'target.material.porosity.distention'])"; }
+printf 'material: froth\nlike: pumice\nporosity: {fraction: 50 %%}\n' >rocks/froth.yaml
+froth=(--set target.material=rocks/froth.yaml)
+same "$(pores "${froth[@]}") $(pores "${froth[@]}" --set target.material.porosity.distention=4)" "2.0 4.0" "one of two names of a porosity"
 printf 'name: mix\nscene: ../s.yaml\nvary: {target.material: [basalt, own.yaml, ./thin.yaml]}\nseeds: 2\n' >rocks/mix.yaml
 expect 0 "$clast" run rocks/mix.yaml --quiet
 expect 0 "$clast" stats mix.db --by material --csv

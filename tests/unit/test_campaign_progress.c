@@ -56,7 +56,7 @@ static void a_log_gets_a_line_per_twentieth_or_minute(void **state) {
   assert_null(strchr(text, '\r'));
   assert_null(strchr(text, '\033'));
   assert_non_null(strstr(text, " 45%  450 of 1000 runs, 2 running, 20 runs/s, 1 min 30 s left, "
-                               "largest_fraction 0.312 +- 0.008 (seeds, 95 %)\n"));
+                               "largest_fraction 0.312 ± 0.008 (seeds, 95 %)\n"));
   rewind(out);
   progress = progress_create(out, PROGRESS_PLAIN, false, 0);
   now = of(3);

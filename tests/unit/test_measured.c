@@ -210,6 +210,8 @@ static void sieves(void **state) {
   assert_true(isnan(match.fragments) && isnan(match.log_likelihood));
   assert_int_equal(measured_compare(&m, &runs, 2, &match, &error), STATUS_OK);
   near(match.distance, 4 / 9.0 - 2 / 9.0);
+  assert_int_equal(measured_compare(&m, &runs, 3.5, &match, &error), STATUS_OK); /* one class has no shape */
+  assert_true(match.from == 4 && isnan(match.distance) && isnan(match.share));
   struct pooled_bin *bins;
   size_t count;
   /* 20 kg in all: 4 kg from 2 to 3 kg are 4 ln(3/2) fragments, as if each decade had the same mass. */

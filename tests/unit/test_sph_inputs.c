@@ -216,8 +216,7 @@ static void missing_values_are_named(void **state) {
   refused("target: {material: {name: custom, density: 1000 kg/m^3}}", "target.material.shear_modulus is needed");
   refused("target: {fracture: on, material: {name: aluminium}}",
           "target.material.weibull.m is needed because fracture is on, and the material 'aluminium' has none: give it, "
-          "or set "
-          "target.fracture: off");
+          "take it from another material (`like: granite` in a file), or set target.fracture: off");
   refused("target: {fracture: on, material: {name: aluminium, weibull: {m: 9}}}", "target.material.weibull.k");
   refused("target: {material: {name: aluminium, weibull: {m: 9}}}", "weibull.m is given without weibull.k");
   refused("target: {material: {shear_modulus: off}}", "target.strength: false");
@@ -332,8 +331,10 @@ static void pores(void **state) {
               in.projectile.material.palpha.curve == SPH_CRUSH_TWO_POWER);
   refused("target: {material: {porosity: {curve: quadratic, distention: 1.5}}}",
           "target.material.porosity.elastic_pressure is needed by the crush curve, and the material 'basalt' has none: "
-          "give it, or set "
+          "give it, take it from another material (`like: pumice` in a file), or set "
           "target.material.porosity.curve: none");
+  refused("target: {material: {porosity: {curve: quadratic}}}",
+          "target.material.porosity.distention (or porosity.fraction) is needed by the crush curve");
   accepted("target: {material: {porosity: {curve: quadratic, distention: 1.5, elastic_pressure: 1 MPa, solid_pressure: "
            "1 GPa}}}");
   refused("target: {material: {porosity: {curve: quadratic, distention: 1.5, elastic_pressure: 1 GPa, solid_pressure: "

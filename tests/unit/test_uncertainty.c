@@ -16,12 +16,12 @@ static void seeds(void **state) {
     struct sample_summary mean;
     const char *expected;
   } cases[] = {
-      {{.mean = 0.34912, .half_width = 0.0031}, "0.349 +- 0.003 (seeds, 95 %)"},
-      {{.mean = 0.34912, .half_width = 0.0031, .weak = true}, "0.349 +- 0.003 (seeds, 95 %, weak)"},
-      {{.mean = 0.34912, .half_width = 0.0144}, "0.349 +- 0.014 (seeds, 95 %)"},
-      {{.mean = 0.34912, .half_width = 0.02}, "0.35 +- 0.02 (seeds, 95 %)"},
-      {{.mean = 4321.6, .half_width = 34}, "4322 +- 34 (seeds, 95 %)"},
-      {{.mean = -2.5e-20, .half_width = 3e-22}, "-2.5e-20 +- 3e-22 (seeds, 95 %)"},
+      {{.mean = 0.34912, .half_width = 0.0031}, "0.349 ± 0.003 (seeds, 95 %)"},
+      {{.mean = 0.34912, .half_width = 0.0031, .weak = true}, "0.349 ± 0.003 (seeds, 95 %, weak)"},
+      {{.mean = 0.34912, .half_width = 0.0144}, "0.349 ± 0.014 (seeds, 95 %)"},
+      {{.mean = 0.34912, .half_width = 0.02}, "0.35 ± 0.02 (seeds, 95 %)"},
+      {{.mean = 4321.6, .half_width = 34}, "4320 ± 30 (seeds, 95 %)"},
+      {{.mean = -2.5e-20, .half_width = 3e-22}, "-2.5e-20 ± 3e-22 (seeds, 95 %)"},
       {{.n = 30, .mean = 1, .half_width = NAN, .low = 0.905, .high = 1}, "1 (all 30 runs; 0.905 to 1)"},
       {{.n = 1, .mean = 0.34912, .half_width = NAN, .low = NAN, .high = NAN}, "0.3491"},
   };
@@ -44,7 +44,7 @@ static void resolution(void **state) {
   found.half_width = 0.0612;
   snprintf(found.knobs, sizeof found.knobs, "particles, time_step");
   uncertainty_resolution(&found, text);
-  assert_string_equal(text, "+- 0.061 (resolution: particles, time_step)");
+  assert_string_equal(text, "± 0.061 (resolution: particles, time_step)");
   found.distance = -0.031;
   found.distance_half_width = 0.022;
   uncertainty_resolution(&found, text);
@@ -55,7 +55,7 @@ static void resolution(void **state) {
   assert_string_equal(text, "0.25 below its limit");
   found.verdict = ASK_RESOLUTION_AT_LEAST; /* a part of the distance is not known */
   uncertainty_resolution(&found, text);
-  assert_string_equal(text, "+- 0.061 or more (resolution: particles, time_step)");
+  assert_string_equal(text, "± 0.061 or more (resolution: particles, time_step)");
   found.verdict = ASK_RESOLUTION_DIVERGES;
   uncertainty_resolution(&found, text);
   assert_string_equal(text, "resolution: does not converge (`clast converge basalt-sphere`)");
@@ -65,7 +65,7 @@ static void resolution(void **state) {
   found.studied = 2;
   uncertainty_resolution(&found, text);
   assert_string_equal(text,
-                      "up to +- 0.061 (resolution: particles, time_step); studied at 2 of 9 points, `clast converge "
+                      "up to ± 0.061 (resolution: particles, time_step); studied at 2 of 9 points, `clast converge "
                       "basalt-sphere` studies others");
 }
 

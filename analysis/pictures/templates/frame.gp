@@ -26,3 +26,7 @@ set tmargin 1.4 + 1.35 * title_lines + 0.95 * caption_lines
 set xlabel x_label noenhanced offset 0, 0.2
 set ylabel y_label noenhanced offset -0.5
 set rmargin 3
+# 5*10^33 as people write it
+power(x) = floor(log10(abs(x)) + 1e-9)
+rest(x) = sprintf('%.4g', x / 10.**power(x))
+people(x) = x == 0 || (abs(x) >= 1e-3 && abs(x) < 1e5) ? sprintf('%.4g', x) : (rest(x) eq '1' ? '' : rest(x) . '×') . sprintf('10^{%d}', power(x))

@@ -3,9 +3,10 @@
 # thin_low, thin_high, doubtful. band[i] > 0: a line without marks in a band from low to high. places > 0: bars, at the
 # words place[1], place[2], ... of the axis.
 if (log_x) { set logscale x }
-if (log_x) { set format x (1.0 * x_high / x_low > 1e4 ? '10^{%T}' : '%h') }
-if (log_x && 1.0 * x_high / x_low < 100) {
-  do for [d = floor(log10(x_low)):ceil(log10(x_high))] { set xtics add (sprintf('%g', 2 * 10.**d) 2 * 10.**d, sprintf('%g', 5 * 10.**d) 5 * 10.**d) }
+if (log_x) { set format x (1.0 * x_high / x_low > 1e4 ? '10^{%T}' : '') }
+if (log_x && 1.0 * x_high / x_low <= 1e4) {
+  do for [d = floor(log10(x_low)):ceil(log10(x_high))] { set xtics add (people(10.**d) 10.**d) }
+  if (1.0 * x_high / x_low < 100) { do for [d = floor(log10(x_low)):ceil(log10(x_high))] { set xtics add (people(2 * 10.**d) 2 * 10.**d, people(5 * 10.**d) 5 * 10.**d) } }
 }
 set xrange [x_low:x_high]
 set autoscale yfix

@@ -19,10 +19,6 @@ fits = wide > 34 && page_height * 0.7 / rows > 16
 small = wide > 60 ? 1.0 : 0.75
 number_font = letters.sprintf(',%g', (ending eq 'svg' ? 14 : 10.5) * small)
 middle = (low + high) / 2.
-# 5*10^33 as people write it
-power(x) = floor(log10(abs(x)) + 1e-9)
-rest(x) = sprintf('%.4g', x / 10.**power(x))
-people(x) = x == 0 || (abs(x) >= 1e-3 && abs(x) < 1e5) ? sprintf('%.4g', x) : (rest(x) eq '1' ? '' : rest(x) . '×') . sprintf('10^{%d}', power(x))
 number(value, doubtful) = sprintf('%.3g', value) . (doubtful > 0 ? ' !' : '')
 plot data index 0 using 1:2:(column(3)) with image pixels notitle, \
      data index 0 using 1:2:(fits && column(3) == column(3) && column(3) >= middle ? number(column(3), column(4)) : '') with labels font number_font tc rgb 0x101010 notitle, \

@@ -12,7 +12,7 @@ do for [k = 1:panels] {
   set tmargin at screen 1 - head - (k - 1) * tall
   set bmargin at screen 1 - head - k * tall + 0.03
   if (k > 1) { unset label 1; unset label 2 }
-  if (k < panels) { set xlabel ''; set format x '' } else { set xlabel x_label noenhanced; set format x '%g' }
+  if (k < panels) { set xlabel ''; set format x '' } else { set xlabel x_label noenhanced; set format x '%h' }
   set ylabel label[k] noenhanced
   plot data using 1:(column(k + 1)) with linespoints lt k dt 1 pt (points > 120 ? 0 : mark[k]) ps 0.7 notitle
 }

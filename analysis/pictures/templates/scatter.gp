@@ -21,7 +21,7 @@ unset label 2
 set tmargin at screen 1 - head - tall
 set bmargin at screen foot
 set yrange [0:1]
-set format x '%g'
+set format x '%h'
 set xlabel x_label noenhanced
 set ylabel 'share of the runs up to here'
 set arrow 1 from graph 0, first 0.5 to graph 1, first 0.5 nohead dt 3 lc rgb 0x808080

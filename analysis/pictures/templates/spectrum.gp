@@ -8,8 +8,8 @@ set mxtics 10
 set mytics 10
 # A short axis needs more than its powers of ten.
 if (x_high < 40 * x_low) {
-  set format x '%g'
-  do for [d = floor(log10(x_low)):ceil(log10(x_high))] { set xtics add (sprintf('%g', 2 * 10.**d) 2 * 10.**d, sprintf('%g', 5 * 10.**d) 5 * 10.**d) }
+  set format x ''
+  do for [d = floor(log10(x_low)):ceil(log10(x_high))] { set xtics add (people(10.**d) 10.**d, people(2 * 10.**d) 2 * 10.**d, people(5 * 10.**d) 5 * 10.**d) }
 }
 set key below left Left reverse samplen 2.5 maxcols legend_columns noenhanced
 set key title ' ' # room below the name of the axis

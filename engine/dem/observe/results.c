@@ -18,7 +18,7 @@ static const struct field rows[] = {
     ROW_OF(dem_results, stop_reason, stop_reason, FIELD_CHOICE, NULL, .choices = reasons,
            .choice_docs = "the run has not ended\n"
                           "no beam broke for the scene's quiet time\n"
-                          "the hard end came\n"
+                          "the end time came\n"
                           "the final strain was reached\n"
                           "the stress fell below the scene's residual share of its maximum\n"
                           "a numerical fault: the outcome's state says which",

@@ -170,6 +170,7 @@ const struct engine_materials sph_materials = {.values = &sph_materials_table,
                                                .instead = "of Young's modulus E and Poisson's ratio nu, give "
                                                           "bulk_modulus: E / (3 (1 - 2 nu)) and shear_modulus: E / "
                                                           "(2 (1 + nu))",
+                                               .either = {"porosity.distention", "porosity.fraction"},
                                                .name = sph_materials_name,
                                                .text = sph_materials_text,
                                                .load = sph_materials_load,

@@ -442,18 +442,19 @@ INPUT_REAL(fidelity.distention_step, palpha.distention_step, "1", 0.01, 1e-6, 1,
 #define TWO_POWER(member, unit, low, high, flags_, ...)                                                                \
   MATERIAL_REAL(porosity.member, palpha.member, unit, NAN, low, high, .when = "porosity.curve=two-power",              \
                 .flags = FIELD_REQUIRED | (flags_), __VA_ARGS__)
-    MATERIAL_CHOICE(porosity.curve, palpha.curve,
-                    FIELD_WORDS_HERE(SPH_CRUSHES, [SPH_CRUSH_NONE] = "none", [SPH_CRUSH_QUADRATIC] = "quadratic",
-                                     [SPH_CRUSH_TWO_POWER] = "two-power"),
-                    .label = "crush curve",
-                    .choice_docs =
-                        "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"
-                        "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",
-                    .doc = "Crush curve: how pores far below the resolution close under pressure (P-alpha). The "
-                           "material's density and yield_stress are then those of the solid between the pores, and the "
-                           "porous body yields at Y_0/alpha. tension_limit is that of the porous body, as strengths "
-                           "are measured (our choice); of the solid's value give that over alpha_0.",
-                    .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"),
+    MATERIAL_CHOICE(
+        porosity.curve, palpha.curve,
+        FIELD_WORDS_HERE(SPH_CRUSHES, [SPH_CRUSH_NONE] = "none", [SPH_CRUSH_QUADRATIC] = "quadratic",
+                         [SPH_CRUSH_TWO_POWER] = "two-power"),
+        .label = "crush curve",
+        .choice_docs = "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"
+                       "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",
+        .doc = "Crush curve: how pores far below the resolution close under pressure (P-alpha). The "
+               "material's density and yield_stress are then those of the solid between the pores, and the "
+               "porous body yields at Y_0/alpha. tension_limit is that of the porous body, as strengths "
+               "are measured (our choice); of the solid's value give that over alpha_0. A material's file takes "
+               "the whole curve of a porous one with `like: pumice`.",
+        .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"),
     PORES(distention, "1", 1, 100, .flags = FIELD_REQUIRED,
           .doc = "alpha_0: density of the solid over that of the porous body. 1: no pores, the solid itself to the "
                  "bit. In a scene porosity.fraction may be given instead.",

@@ -141,7 +141,7 @@ static void stop(void *of) {
     return;
   if (can_crack && !isnan(run->state.first_damage))
     frame_end(&run->state.frame, SPH_STOP_END_TIME, OUTCOME_END_TIME,
-              "damage still grew %.3g s before the hard end: raise stop.end_time", time - run->state.quiet_since);
+              "damage still grew %.3g s before stop.end_time: raise it", time - run->state.quiet_since);
   else /* nothing has broken: there is no fracture that could go on */
     frame_end(&run->state.frame, SPH_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
 }

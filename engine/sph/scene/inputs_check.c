@@ -46,7 +46,11 @@ static status refuse_missing(const struct field *row, const char *material, stru
   }
   if (*by)
     snprintf(remedy, sizeof remedy, "set %s: %s", controller->path, off);
-  REFUSE("%s is needed%s, and the material '%s' has none: give it, or %s", row->path, reason, material, remedy);
+  const char *end = row->path + strlen(row->path) - strlen("distention");
+  REFUSE("%s%s is needed%s, and the material '%s' has none: give it, take it from another material (`like: %s` in a "
+         "file), or %s",
+         row->path, strcmp(end, "distention") == 0 ? " (or porosity.fraction)" : "", reason, material,
+         strcmp(by, ".curve") == 0 ? "pumice" : "granite", remedy);
 }
 
 /* Is it a value of the body's material that is needed and missing? */
@@ -131,8 +135,8 @@ status sph_inputs_check_given(const void *scene, const bool *given, struct error
     if (*missing)
       REFUSE(
           "%s.material '%s' lacks %s: give what is missing (`clast explain %s.material`), or begin with the values of "
-          "another one (`like: granite` in a file)",
-          body, inputs->material_name, missing, body);
+          "another one (`like: %s` in a file)",
+          body, inputs->material_name, missing, body, strstr(missing, "porosity.") ? "pumice" : "granite");
   }
   return STATUS_OK;
 }
