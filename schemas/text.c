@@ -419,10 +419,13 @@ struct text_guess text_guess(const char *typed) {
 }
 
 void text_guess_offer_part(struct text_guess *guess, const char *part, const char *name) {
-  const size_t edits = text_distance(guess->typed, guess->length, part);
+  /* "young" of "young_modulus" */
+  const bool begins = guess->length > 2 && strncmp(part, guess->typed, guess->length) == 0 &&
+                      part[guess->length] == '_';
+  const size_t edits = begins ? 0 : text_distance(guess->typed, guess->length, part);
   if (edits >= strlen(part)) /* all letters would be edited */
     return;
-  const size_t distance = 2 * edits + (part != name);
+  const size_t distance = 2 * edits + (part != name) + begins;
   if (distance >= guess->least)
     return;
   guess->least = distance;

@@ -85,7 +85,7 @@ void commands_headline(const char *text, char *line, size_t size) {
   text += strspn(text, "# ");
   size_t length = strcspn(text, "\n"), whole = 0; /* whole: up to the last full stop in the line */
   for (size_t i = 0; i < length; i++)
-    if (text[i] == '.' && strchr(" \n", text[i + 1]))
+    if ((text[i] == '.' && text[i + 1] == ' ') || (text[i + 1] == '\n' && strchr(".?)", text[i])))
       whole = i + 1;
   snprintf(line, size, "%.*s", (int)(whole ? whole : length), text);
 }

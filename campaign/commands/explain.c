@@ -433,7 +433,8 @@ static status run(const struct command_line *line, struct error *error) {
 
   char name[FIELD_TEXT_SIZE], words[WORDS], meaning[1024]; /* "equation of state" is a word with underscores */
   const bool blanks = strchr(line->arguments[0], ' ') != NULL;
-  snprintf(name, sizeof name, "%s", line->arguments[0]);
+  const bool heading = strncmp(line->arguments[0], "\xc2\xb1", 2) == 0; /* "±res" */
+  snprintf(name, sizeof name, "%s", line->arguments[0] + (heading ? 2 : 0));
   for (char *at = name; blanks && (at = strchr(at, ' '));)
     *at = '_';
   bool is_word = false;

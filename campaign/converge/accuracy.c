@@ -37,6 +37,11 @@ struct finding {
   const struct scene *scene; /* the one that was studied */
   char results[ASK_DOUBTS_RESULTS];
   const struct knob *open[2]; /* knobs of resolution without a limit at the scene's setting; two tell all */
+  double beyond;              /* sum over knobs without a limit: what a law of the least order leaves beyond the finest
+                                 level, by the changes from coarser ones; NaN: not known */
+  char ran[64];               /* the knob of the last level with runs, and its levels so far */
+  size_t levels;
+  double step[KNOB_LEVELS], change[KNOB_LEVELS];
   bool studied;
   int rank; /* of the level that gave the mean */
 };
@@ -66,6 +71,16 @@ static bool is_varied(const struct campaign *campaign, const struct knob *knob, 
   return false;
 }
 
+/* What a law of the least order leaves at the finest level, by its changes from at least two coarser ones. NaN: not
+ * known. */
+static double left_beyond(const struct finding *finding, double step) {
+  double most = NAN;
+  for (size_t l = 0; l < finding->levels && finding->levels > 1; l++)
+    if (finding->change[l] > 0 && finding->step[l] > step)
+      most = fmax(most, finding->change[l] / (pow(finding->step[l] / step, LIMIT_ORDER_LEAST) - 1));
+  return most;
+}
+
 /* First pass: finds the knobs without a limit at the scene's own setting. */
 static status take_open(struct finding *finding, const struct convergence_row *row, struct error *error) {
   (void)error;
@@ -80,9 +95,19 @@ static status take_open(struct finding *finding, const struct convergence_row *r
     finding->accuracy->within = finding->campaign->accuracy_within *
                                 (finding->campaign->accuracy_of_value ? fabs(row->mean) : 1);
   }
-  if (knob && knob->group == KNOB_RESOLUTION && row->base && row->open && finding->open[0] != knob)
+  const bool resolution = knob && knob->group == KNOB_RESOLUTION, ran = strcmp(finding->ran, row->knob) == 0;
+  if (resolution && row->base && row->open && finding->open[0] != knob)
     finding->open[finding->open[0] != NULL] = knob;
-  if (knob && knob->group == KNOB_RESOLUTION && row->n == 0 && !*finding->accuracy->left_out)
+  if (!ran)
+    finding->levels = 0;
+  if (resolution && row->open && row->reference)
+    finding->beyond += left_beyond(finding, row->step);
+  if (row->n > 0 && finding->levels < KNOB_LEVELS) {
+    snprintf(finding->ran, sizeof finding->ran, "%.63s", row->knob);
+    finding->step[finding->levels] = row->step;
+    finding->change[finding->levels++] = fabs(row->bias) + row->bias_half_width;
+  }
+  if (resolution && row->n == 0 && ran && !*finding->accuracy->left_out) /* finer than a level that ran */
     snprintf(finding->accuracy->left_out, sizeof finding->accuracy->left_out, "%.64s = %.64s", row->knob, row->setting);
   return STATUS_OK;
 }
@@ -114,6 +139,11 @@ static status add_option(struct finding *finding, const struct convergence_row *
   if (!grow_block(&accuracy->options, (accuracy->count + 1) * sizeof *accuracy->options))
     return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
   snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
+  if (option->open && finding->beyond >= 0) {
+    option->guessed = true;
+    option->error += finding->beyond;
+  }
+  option->error = fmin(option->error, accuracy->most);
   option->deviation = row->deviation;
   option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(row->deviation, accuracy->within - option->error)
                                            : seeds_in(option, accuracy->point_s);
@@ -236,7 +266,7 @@ static void choose(struct accuracy *accuracy) {
   for (size_t i = accuracy->count; i-- > 0;) {
     const struct accuracy_option *option = &accuracy->options[i];
     if (option->seeds > 0)
-      *(option->open ? &open : &accuracy->chosen) = i;
+      *(option->open && !option->guessed ? &open : &accuracy->chosen) = i;
     if (option->error <= accuracy->options[accuracy->reference].error)
       accuracy->reference = i;
   }
@@ -248,7 +278,8 @@ double accuracy_least(const struct accuracy *accuracy, double point_s, bool *ope
   double least[2] = {NAN, NAN}; /* of options with a limit, without one */
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
-    least[option->open] = fmin(least[option->open], total_of(option, seeds_in(option, point_s)));
+    const bool is_open = option->open && !option->guessed;
+    least[is_open] = fmin(least[is_open], total_of(option, seeds_in(option, point_s)));
   }
   *open = isnan(least[0]);
   return least[*open];
@@ -272,13 +303,16 @@ static status read_study(struct finding *finding, struct store *store, const str
     return STATUS_CONTENT;
   finding->store = store;
   finding->scene = scene;
+  finding->beyond = 0;
   TRY(ask_doubts_results(store, quantity.column, finding->results, error));
   TRY(store_point_find(store, scene, &point, error));
+  const bool share = quantity.row && field_is_share(quantity.row);
   for (size_t pass = 0; point && pass < sizeof passes / sizeof passes[0]; pass++) {
     ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, error);
     for (struct convergence_row row; ask_convergence_next(&levels, &row);)
       TRY(passes[pass](finding, &row, error));
     TRY(answer_end(&levels));
+    finding->accuracy->most = share ? fmax(finding->accuracy->mean, 1 - finding->accuracy->mean) : HUGE_VAL;
   }
   return STATUS_OK;
 }
@@ -394,7 +428,12 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double seeds = ceil((double)accuracy->n * pow(best->error / accuracy->within, 2));
-  char next[600] = "", share[32] = "", more[64] = "";
+  char other[600] = "", next[600] = "", share[32] = "", more[64] = "";
+  if (strcmp(quantity, OUTCOME_DEFAULT) == 0)
+    text_append(other, sizeof other,
+                "; or take another result: `clast converge %s --quantity fragment_count,kinetic_energy_share` tells "
+                "how near these are",
+                path);
   if (campaign->accuracy_of_value)
     snprintf(share, sizeof share, "%.3g %% (", 100 * campaign->accuracy_within);
   if (*accuracy->left_out)
@@ -408,16 +447,14 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   else
     text_append(next, sizeof next,
                 "More than %d seeds of the study would be needed, so no setting is known to reach it", STUDY_SEEDS);
-  if (1.3 * best->error < fabs(accuracy->mean))
+  if (1.3 * best->error < fmin(fabs(accuracy->mean), accuracy->most) && 1.3 * best->error > accuracy->within)
     text_append(more, sizeof more, "allow more, such as %.2g; or ", 1.3 * best->error);
   return status_fail(
       error, STATUS_CONTENT,
       "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g (%" PRId64 " seeds). The smallest error is "
-      "%.2g%s, with %s = %s. %s. Or %sask for the least error in a time: `clast plan %s --within "
-      "10min`; or take another result: `clast converge %s --quantity fragment_count,kinetic_energy_share` "
-      "tells how near these are",
+      "%.2g%s, with %s = %s. %s. Or %sask for the least error in a time: `clast plan %s --within 10min`%s",
       quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n, best->error,
-      best->open ? " or more" : "", best->knob, best->setting, next, more, path, path);
+      best->open ? " or more, as no limit is seen" : "", best->knob, best->setting, next, more, path, other);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {
@@ -450,7 +487,10 @@ static status print_alternatives(const struct accuracy *accuracy, enum table_for
     table_text(table, option->own ? "" : option->knob);
     table_text(table, option->own ? "the scene's own" : option->setting);
     table_real(table, option->error);
-    table_text(table, option->open ? "at least" : option->extrapolated ? "extrapolated" : "yes");
+    table_text(table, option->guessed        ? "no limit"
+                      : option->open         ? "at least"
+                      : option->extrapolated ? "extrapolated"
+                                             : "yes");
     if (option->seeds)
       table_integer(table, option->seeds);
     else
@@ -476,10 +516,15 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
                 time);
     return;
   }
+  if (option->total >= accuracy->most)
+    words_print(out, before,
+                "Such an error says nothing of a share with the mean %.2g: no setting of the study is "
+                "near enough",
+                accuracy->mean);
   bool open[2];
   const double half = accuracy_least(accuracy, accuracy->point_s / 2, &open[0]),
                twice = accuracy_least(accuracy, accuracy->point_s * 2, &open[1]);
-  const char *const or_more[] = {"", " or more"}, *more = or_more[option->open];
+  const char *const or_more[] = {"", " or more"}, *more = or_more[option->open && !option->guessed];
   char in_half[48] = "no result";
   progress_duration(campaign->accuracy_time, time, sizeof time);
   words_print(out, before, "%s \xc2\xb1 %.2g%s in %s of processor time: %s%s%s, %" PRId64 " seeds a point",
@@ -530,6 +575,11 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
                   campaign->accuracy_quantity, accuracy.within);
     print_choice(&accuracy, campaign, "accuracy  ", stdout);
     TRY(print_alternatives(&accuracy, TABLE_TEXT, stdout, error));
+    if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].guessed)
+      words_print(stdout, "",
+                  "The results show no limit in %s. The error has what a law of order %g would leave beyond the finest "
+                  "level, by the changes between levels.",
+                  accuracy.open ? accuracy.open->name : "a setting", LIMIT_ORDER_LEAST);
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
       words_print(stdout, "",
                   "The chosen setting is finer than any level that was run. Its error is that of the finest level "

@@ -13,8 +13,9 @@ struct accuracy_option {
   char knob[64], setting[64];
   bool own;          /* the scene's own settings */
   bool extrapolated; /* finer than any level that was run: error by the law, cost by the engine's measure of work */
-  bool open;         /* the results show no limit, so that `error` may be too small: chosen for a time only, if no
-                        other can be run */
+  bool open;         /* the results show no limit */
+  bool guessed;      /* open, and `error` has what the slowest law would leave beyond the finest level. Without it the
+                        error may be too small, and the option is chosen for a time only, if no other can be run */
   double error;      /* change by finer settings of all knobs together, in the quantity's SI unit */
   double deviation;  /* standard deviation between seeds */
   int64_t seeds;     /* of a point: the fewest that reach the accuracy, or as many as the time allows; 0: none do */
@@ -31,6 +32,7 @@ struct accuracy {
   double within;  /* the campaign's, in the quantity's SI unit; NaN for a time */
   double mean;    /* with the scene's own settings */
   int64_t n;      /* seeds of the study there */
+  double most;    /* no error of a share is larger than its distance from the farther end; else infinite */
   const struct knob *open; /* of resolution, without a limit; NULL: none */
   char left_out[160];      /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
   const char *path;        /* the campaign's file; borrowed */

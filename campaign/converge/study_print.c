@@ -389,10 +389,16 @@ status study_print(const struct study *study, enum table_format format, bool qui
   words_print(stderr, "", "%s", legend);
   if (format == TABLE_ALL)
     words_print(stderr, "", "%s", legend_of_all);
+  bool main = false;
+  for (size_t q = 0; q < study->quantity_count; q++)
+    main |= strcmp(study->quantity[q].name, OUTCOME_DEFAULT) == 0;
+  if (main)
+    fprintf(stderr, "clast: next: `clast estimates %s` now has this error beside M_1/M of each level, and ",
+            study->limits.store);
   fprintf(stderr,
-          "clast: next: `clast estimates %s` now has this error beside M_1/M of each level, and `accuracy: {within: "
-          "...}` in a campaign chooses settings by it\n",
-          study->limits.store);
+          main ? "`accuracy: {within: ...}` in a campaign chooses settings by it\n"
+               : "clast: next: `accuracy: {quantity: %s, within: ...}` in a campaign chooses settings by it\n",
+          study->quantity[0].name);
   return STATUS_OK;
 }
 

@@ -289,6 +289,14 @@ static status run_study(void *context, struct launch *launch, struct error *erro
   launch_tell_series(launch, code, study->limits.store, &summary, false);
   if (!launch->manager || code != STATUS_OK)
     return code;
+  int64_t most = 0;
+  for (size_t i = 0; i < study->ladder_count; i++)
+    most = study->ladder[i].seeds > most ? study->ladder[i].seeds : most;
+  if (most == 0)
+    return status_fail(error, STATUS_USAGE,
+                       "--seconds %.4g: too short for %lld seeds of two levels of any knob; runs so far are in %s, and "
+                       "the same command with more time goes on",
+                       study->rule.seconds, (long long)study->rule.first_seeds, study->limits.store);
   TRY(study_print(study, launching->format, request->launch.quiet, error));
   if (request->picture)
     TRY(study_print_picture(study, false, request->picture, error));

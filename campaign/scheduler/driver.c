@@ -532,11 +532,13 @@ static void tick(void *context, int running, bool last) {
     sample_of_share(&mean, 0.95);
   if (points > 1) /* the interval is one of a single point's seeds */
     mean.half_width = mean.low = mean.high = NOTHING;
+  const int64_t least = (int64_t)points * campaign_replicates_least(driver->campaign), /* as `plan` tells it */
+      total = driver->wanted + (int64_t)unmet * campaign_replicates_least(driver->campaign);
   struct progress_state state = {
       .done = summary->runs_done + summary->runs_reused - summary->runs_surplus,
       .failed = summary->runs_failed,
       .running = running,
-      .total = driver->wanted + (int64_t)unmet * campaign_replicates_least(driver->campaign),
+      .total = driver->campaign->per_point == 0 && open_points > 0 && total < least ? least : total,
       .total_is_minimum = driver->campaign->per_point == 0 && open_points > 0,
       .rate = rated ? (double)driver->started_done / elapsed : NOTHING,
       .seconds_left = last ? NOTHING : time_left(driver, now),

@@ -118,4 +118,4 @@ expect 64 "$clast" find two.yaml --level 0.5 --input strain
 says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
 expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
 prints "The mean of largest_fraction"
-done_after 33
+done_after 34

@@ -60,7 +60,10 @@ static void add_study(struct store *store, int64_t point, const char *knob, size
     snprintf(rows[i].knob, sizeof rows[i].knob, "%s", knob);
     snprintf(rows[i].setting, sizeof rows[i].setting, "%s", levels[i].setting);
     strcpy(rows[i].quantity, "largest_fraction");
-    rows[i].resolution = levels[i].resolution;
+    rows[i].n = 10;
+    rows[i].mean = 0.3;
+    rows[i].bias = rows[i].resolution = levels[i].resolution;
+    rows[i].bias_half_width = 0;
     rows[i].error = levels[i].error;
     rows[i].deviation = levels[i].deviation;
     rows[i].cpu = levels[i].cpu;
@@ -154,6 +157,33 @@ static void finer_than_any_level(void **state) {
   assert_true(chosen->run_s > 15 && chosen->run_s < 25);
   assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_OK);
   accuracy_clear(&accuracy);
+  campaign_free(campaign);
+}
+
+/* No limit is seen, and the levels differ little: the slowest law, of order 0.5, leaves at the finest level the larger
+ * of 0.012/(sqrt 4 - 1) and 0.004/(sqrt 2 - 1) = 0.0097. */
+static void levels_that_differ_little_are_enough(void **state) {
+  (void)state;
+  struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+  struct store *store = NULL;
+  struct accuracy accuracy;
+  int64_t point = 0;
+  assert_int_equal(store_open_writer(fixture_path(path, "flat"), &store, NULL, 0, &error), STATUS_OK);
+  assert_int_equal(store_add_point(store, 0, campaign->scene, 0, NULL, &point, &error), STATUS_OK);
+  add_study(store, point, "time_step", 3,
+            (const struct level[]){{"2e-6", 0.012, 0.012, 1e-4, 5, false, true, 2e-6},
+                                   {"1e-6", 0.004, 0.004, 1e-4, 10, true, true, 1e-6},
+                                   {"5e-7", 0, 0.004, 1e-4, 20, false, true, 5e-7}});
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
+  assert_true(accuracy.count == 3 && accuracy.chosen == 0 && chosen->own && chosen->guessed);
+  assert_true(fabs(chosen->error - (0.004 + fmax(0.012, 0.004 / (sqrt(2) - 1)))) < 1e-12);
+  accuracy_clear(&accuracy);
+  campaign->accuracy_within = 0.012;
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "no limit is seen"));
+  assert_non_null(strstr(error.message, "allow more"));
   campaign_free(campaign);
 }
 
@@ -272,6 +302,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(seeds_for_a_margin),
                                      cmocka_unit_test(the_cheapest_that_reaches_it),
                                      cmocka_unit_test(finer_than_any_level),
+                                     cmocka_unit_test(levels_that_differ_little_are_enough),
                                      cmocka_unit_test(a_finer_setting_that_would_be_marked_is_none),
                                      cmocka_unit_test(the_least_error_in_a_time),
                                      cmocka_unit_test(a_varied_input_is_no_choice),
