@@ -86,12 +86,13 @@ static void heading(FILE *out, const struct scale *scale, const char *mass_unit,
   int free_from = 0;
   for (int decade = (int)ceil(scale->low); decade <= scale->high; decade++) {
     char text[16];
-    snprintf(text, sizeof text, "1e%d", decade);
-    const int length = (int)strlen(text), at = place(scale, decade);
-    if (at < free_from || at + length > scale->columns + 2)
+    snprintf(text, sizeof text, "10^%d", decade);
+    const int length = (int)strlen(text), column = place(scale, decade), most = scale->columns - length;
+    const int at = column < most ? column : most; /* the last one ends with the lines */
+    if (at < free_from)
       continue;
     memcpy(line + at, text, (size_t)length);
-    free_from = at + length + 2;
+    free_from = at + length + 1;
   }
   size_t end = sizeof line - 1;
   while (end > 0 && line[end - 1] == ' ')

@@ -49,6 +49,12 @@ static double shown_unit(const struct fit *fit, size_t i, char text[64]) {
   return good ? unit.factor : 1;
 }
 
+/* Decimals of numbers between which a person sees a difference: two digits of it. */
+static int decimals_of(double low, double high) {
+  const double spread = fabs(high - low);
+  return spread > 0 && spread < 1e15 ? (int)fmin(fmax(1 - floor(log10(spread)), 0), 15) : -1;
+}
+
 static void input_cells(const struct fit *fit, size_t i, double unit, struct table *table) {
   const double z05 = posterior_coordinate(0.05), z95 = posterior_coordinate(0.95);
   double z[3];
@@ -59,9 +65,10 @@ static void input_cells(const struct fit *fit, size_t i, double unit, struct tab
     skip(table, 4);
     return;
   }
+  const int decimals = decimals_of(fit_number(fit, i, z[0]) / unit, fit_number(fit, i, z[2]) / unit);
   for (int q = 0; q < 3; q++) {
     table_rests_on(table, &fit->all_doubts);
-    table_real(table, fit_number(fit, i, z[q]) / unit);
+    table_fixed(table, fit_number(fit, i, z[q]) / unit, decimals);
   }
   table_real(table, (posterior_share(z[2]) - posterior_share(z[0])) / 0.9);
 }
@@ -129,9 +136,10 @@ static status print_data(const struct fit *fit, enum table_format format, struct
     observed_label(fit->observed, k, label, sizeof label);
     table_text(table, label);
     value_cells(fit, k, table);
+    const int decimals = decimals_of(predicted(fit, k, levels[0]), predicted(fit, k, levels[4]));
     for (int q = 0; q < 3; q++) {
       table_rests_on(table, &fit->doubts[k]);
-      table_real(table, predicted(fit, k, levels[2 * q]));
+      table_fixed(table, predicted(fit, k, levels[2 * q]), decimals);
     }
     table_real(table, posterior_below(&fit->surfaces.model, &fit->posterior, k));
   }

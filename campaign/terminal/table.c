@@ -710,8 +710,10 @@ void table_fixed(struct table *table, double number, int decimals) {
     if (strtod(digits, NULL) == number)
       break;
   }
+  const bool error = table->people && !table->broken && table->column_count && !table->asked &&
+                     ends_in(table->columns[table->cell].name, "_resolution");
   if (decimals < 0)
-    text_append(shown, sizeof shown, "%.5g", number);
+    text_append(shown, sizeof shown, error ? "%.2g" : "%.5g", number);
   else
     text_append_fixed(shown, sizeof shown, number, decimals);
   add_cell(table, (struct cell){CELL_NUMBER, digits, shown, number});

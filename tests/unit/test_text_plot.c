@@ -39,14 +39,15 @@ static void rows_and_columns(void **state) {
   char *text = plot(100, false, &series), *line = strtok(text, "\n");
   int last = 1000, rows = 0;
   assert_non_null(strstr(line, "from kg/m"));
-  assert_non_null(strstr(line, "1e8"));
-  long column_of_1e8 = strstr(line, "1e8") - line;
+  assert_non_null(strstr(line, "10^8"));
+  assert_true(strlen(line) <= 100);
+  long column_of_8 = strstr(line, "10^8") - line;
   while ((line = strtok(NULL, "\n")) && line[0] != ':') {
     assert_true(strlen(line) <= 100);
     int at = (int)(strchr(line, '*') - line);
     assert_true(at < last); /* falling */
     if (rows == 0)
-      assert_int_equal(at, column_of_1e8);
+      assert_in_range(at, column_of_8, column_of_8 + 3); /* the last power ends with the lines */
     if (rows < 4)
       assert_true(strchr(line, '[') < strchr(line, '*') && strchr(line, '*') <= strchr(line, ']'));
     last = at;
