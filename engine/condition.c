@@ -68,12 +68,18 @@ uint64_t condition_before(const struct condition *list, const void *inputs, FILE
   return set;
 }
 
+/* Other numbers of a run itself, such as `cut`, concern its end. */
+static double number_of(const struct condition *c, const struct condition_run *run) {
+  if (c->after && (!run->going || strcmp(c->word, "drift") == 0))
+    return c->after(run);
+  return c->before ? c->before(run->inputs) : (double)NAN;
+}
+
 void condition_after(const struct condition *list, const struct condition_run *run, char *words, size_t size) {
   const char *last = "";
   words[0] = 0;
   for (const struct condition *c = list; c && c->word; c++) {
-    const double number = c->after ? c->after(run) : c->before(run->inputs);
-    if (!condition_broken(c, number) || (c->results && !*c->results) || strcmp(last, c->word) == 0)
+    if (!condition_broken(c, number_of(c, run)) || (c->results && !*c->results) || strcmp(last, c->word) == 0)
       continue;
     text_append(words, size, "%s%s", *words ? ", " : "", c->word);
     last = c->word;

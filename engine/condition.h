@@ -14,11 +14,12 @@
 /* Error of the energy ledger, divided by the energy put in, above which a run is marked. */
 #define CONDITION_LARGEST_DRIFT 0.01
 
-/* A run at its end, as conditions look at it. */
+/* A run at its end, as conditions look at it; or at a snapshot. */
 struct condition_run {
   const void *run, *inputs;
   const struct outcome *outcome;
   const void *results; /* of the engine */
+  bool going;          /* a snapshot: the run has not ended */
 };
 
 struct condition {
@@ -56,7 +57,8 @@ bool condition_broken(const struct condition *condition, double number);
  * rows. */
 uint64_t condition_before(const struct condition *list, const void *inputs, FILE *out);
 
-/* Judges a run at its end. Writes the words of broken conditions, separated by ", ", into `words`. */
+/* Judges a run at its end; a run that goes on by its inputs, and for drift, which no later step undoes. Writes the
+ * words of broken conditions, separated by ", ", into `words`. */
 void condition_after(const struct condition *list, const struct condition_run *run, char *words, size_t size);
 
 /* What the words of a run say of its results `names`: paths or columns of the store, separated by spaces or commas; the

@@ -34,11 +34,23 @@ struct picture_body {
 status picture_fragments_read(const char *path, struct picture_body *body, struct error *error);
 void picture_fragments_clear(struct picture_body *body);
 
+/* One frame for several pictures of a run: those of a movie or a sheet. Begin with PICTURE_NO_FRAME. */
+struct picture_frame {
+  double view[4];   /* m: x0, y0, x1, y1 */
+  double low, high; /* of the values */
+  double plane;     /* m: of cuts; NaN: not known yet */
+  /* Of each grain or particle, its fragment in the last picture: a fragment has the colour of the heaviest one that it
+   * becomes. */
+  size_t members;
+  int64_t *last; /* NULL: a fragment has the colour of its own number */
+};
+#define PICTURE_NO_FRAME                                                                                               \
+  { .view = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, .low = HUGE_VAL, .high = -HUGE_VAL, .plane = NAN }
+
 /* A sheet: pictures of one run in rows, in one frame, with a caption under each and one legend. Each call of
  * picture_particles() with look->sheet, or of picture_fragments_on_sheet(), draws the next of `count` pictures. The
  * frame is that of all of them. */
 struct picture_sheet; /* opaque */
-struct picture_frame;
 status picture_sheet_open(const char *path, size_t count, const struct picture_frame *frame,
                           struct picture_sheet **sheet, struct error *error);
 /* Frees the sheet. The file appears when `code` is STATUS_OK. Returns code, or the error of writing. */
@@ -46,8 +58,8 @@ status picture_sheet_close(struct picture_sheet *sheet, status code, struct erro
 
 struct picture_panel {
   struct picture_body body;
-  const char *caption; /* under the panel; NULL: none */
-  double view[4];      /* m: x0, y0, x1, y1; all zero: the whole body without distant dust */
+  const char *caption;               /* under the panel; NULL: none */
+  const struct picture_frame *frame; /* NULL: the whole body without distant dust */
 };
 /* Draws one to three panels side by side, each with its own scale bar. subtitle may be NULL. */
 status picture_fragments(const char *path, double width, const char *title, const char *subtitle, size_t panels,
@@ -103,15 +115,6 @@ status picture_cloud_read_column(const char *path, const struct picture_cloud *c
 status picture_cloud_read_axis(const char *path, const char *name, double **values, size_t *rows, char unit[32],
                                struct error *error);
 void picture_cloud_clear(struct picture_cloud *cloud);
-
-/* One frame for several pictures: those of a movie or a sheet. Begin with PICTURE_NO_FRAME. */
-struct picture_frame {
-  double view[4];   /* m: x0, y0, x1, y1 */
-  double low, high; /* of the values */
-  double plane;     /* m: of cuts; NaN: not known yet */
-};
-#define PICTURE_NO_FRAME                                                                                               \
-  { {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, HUGE_VAL, -HUGE_VAL, NAN }
 
 enum picture_view {
   PICTURE_CUT,     /* a cut: every particle that the plane meets, drawn as the disc of its section */

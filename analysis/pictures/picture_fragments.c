@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "schemas/memory.h"
+#include "schemas/text.h"
 
 enum { LARGE = 10 }; /* cells: a smaller fragment is poorly resolved and gets a pale tint */
 
@@ -120,6 +121,17 @@ static void path_of(cairo_t *cairo, const struct picture_body *body, uint32_t ce
   cairo_close_path(cairo);
 }
 
+/* The number that a fragment is coloured by. */
+static size_t number_of(const struct picture_panel *panel, const struct grouping *g, size_t f) {
+  const struct picture_frame *frame = panel->frame;
+  int64_t number = INT64_MAX;
+  if (!frame || !frame->last || frame->members != panel->body.cells)
+    return f;
+  for (uint32_t i = g->start[f]; i < g->start[f + 1]; i++)
+    number = frame->last[g->order[i]] < number ? frame->last[g->order[i]] : number;
+  return (size_t)number;
+}
+
 /* Golden-angle steps of hue: fragments of successive numbers often lie side by side and get very different colours. */
 static void colour(cairo_t *cairo, size_t fragment, size_t cells, double darker, double alpha) {
   double hue = fmod(252 + 137.50776 * (double)fragment, 360), wave = 0.045 * ((double)(fragment % 3) - 1);
@@ -144,17 +156,18 @@ static bool is_inside(const struct picture_body *body, const struct grouping *g,
 
 /* Draws all cells of a fragment: first a wide dark stroke, then the fill and a thin stroke in the fragment's colour.
  * The visible rest of the dark stroke is the fragment's outline, and no background shows between cells. */
-static void draw_fragment(cairo_t *cairo, const struct picture_body *body, const struct grouping *g, size_t f,
+static void draw_fragment(cairo_t *cairo, const struct picture_panel *panel, const struct grouping *g, size_t f,
                           double cell) {
-  size_t count = g->start[f + 1] - g->start[f];
+  const struct picture_body *body = &panel->body;
+  const size_t count = g->start[f + 1] - g->start[f], number = number_of(panel, g, f);
   if (count == 0)
     return;
   for (uint32_t i = g->start[f]; i < g->start[f + 1]; i++)
     path_of(cairo, body, g->order[i]);
-  colour(cairo, f, count, count == 1 ? 0.18 : 0.42, 1);
+  colour(cairo, number, count, count == 1 ? 0.18 : 0.42, 1);
   cairo_set_line_width(cairo, cell * (count == 1 ? 0.10 : 0.17));
   cairo_stroke(cairo);
-  colour(cairo, f, count, 0, 1);
+  colour(cairo, number, count, 0, 1);
   cairo_set_line_width(cairo, cell * 0.03);
   for (uint32_t i = g->start[f]; i < g->start[f + 1]; i++) {
     path_of(cairo, body, g->order[i]);
@@ -165,7 +178,7 @@ static void draw_fragment(cairo_t *cairo, const struct picture_body *body, const
     return;
   for (uint32_t i = g->start[f]; i < g->start[f + 1]; i++)
     path_of(cairo, body, g->order[i]);
-  colour(cairo, f, count, 0.14, 0.55); /* grain boundaries */
+  colour(cairo, number, count, 0.14, 0.55); /* grain boundaries */
   cairo_set_line_width(cairo, cell * 0.028);
   cairo_stroke(cairo);
 }
@@ -221,11 +234,12 @@ void picture_fragments_numbers(const struct picture_body *body, const char *cell
   }
 }
 
-/* In the coordinates of picture_canvas_place(). */
-static status draw_body(cairo_t *cairo, const struct picture_panel *panel, const double view[4]) {
+enum { NOTE = 400 };
+
+/* In the coordinates of picture_canvas_place(). Writes into `note` the caption, and how many grains are not drawn. */
+static status draw_body(cairo_t *cairo, const struct picture_panel *panel, const double view[4], char note[NOTE]) {
   const struct picture_body *body = &panel->body;
-  const bool chosen = panel->view[2] >
-                      panel->view[0]; /* a chosen part of the body: its fragments may extend beyond the panel */
+  size_t beyond = 0;
   GROUPING grouping = {0};
   TRY(group(body, &grouping));
   double area = 0;
@@ -233,30 +247,34 @@ static status draw_body(cairo_t *cairo, const struct picture_panel *panel, const
     area += area_of(body, i);
   const double cell = sqrt(area / (double)body->cells); /* a typical size */
   for (size_t f = grouping.fragments; f-- > 0;)
-    if (chosen || is_inside(body, &grouping, f, view))
-      draw_fragment(cairo, body, &grouping, f, cell); /* the largest is drawn last, on top */
+    if (is_inside(body, &grouping, f, view))
+      draw_fragment(cairo, panel, &grouping, f, cell); /* the largest is drawn last, on top */
+    else
+      beyond += grouping.start[f + 1] - grouping.start[f];
   for (size_t i = 0; i < body->cracks; i++) {
     const uint32_t f = body->fragment[body->crack[i][0]];
-    if (f == body->fragment[body->crack[i][1]] && (chosen || is_inside(body, &grouping, f, view)))
+    if (f == body->fragment[body->crack[i][1]] && is_inside(body, &grouping, f, view))
       draw_crack(cairo, body, body->crack[i][0], body->crack[i][1]);
   }
   cairo_set_source_rgb(cairo, 0.12, 0.08, 0.08);
   cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
   cairo_set_line_width(cairo, 0.11 * cell);
   cairo_stroke(cairo);
+  snprintf(note, NOTE, "%s", panel->caption ? panel->caption : "");
+  if (beyond)
+    text_append(note, NOTE, "%s%zu of %zu grains beyond the frame", *note ? "; " : "", beyond, body->cells);
   return STATUS_OK;
 }
 
 static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, const double view[4], double left,
                          double top, double width, double height, double font) {
+  char note[NOTE] = "";
   const double scale = picture_canvas_place(cairo, view, left, top, width, height);
-  const status code = draw_body(cairo, panel, view);
+  const status code = draw_body(cairo, panel, view, note);
   cairo_restore(cairo);
   picture_canvas_scale_bar(cairo, left + 0.02 * width, top + height + 1.75 * font, scale, width, font);
   cairo_set_source_rgb(cairo, 0.25, 0.25, 0.25);
-  if (panel->caption)
-    picture_canvas_text(cairo, left + width * 0.98, top + height + 1.75 * font, font, PICTURE_RIGHT, false,
-                        panel->caption);
+  picture_canvas_text(cairo, left + width * 0.98, top + height + 1.75 * font, font, PICTURE_RIGHT, false, note);
   return code;
 }
 
@@ -275,8 +293,10 @@ status picture_fragments(const char *path, double width, const char *title, cons
   for (size_t p = 0; p < panels; p++) {
     if (panel[p].body.cells == 0)
       return status_fail(error, STATUS_USAGE, "%s: there is no cell to draw", path);
-    memcpy(view[p], panel[p].view, sizeof view[p]); /* the part of the body that the panel shows */
-    const status framed = view[p][2] > view[p][0] ? STATUS_OK : picture_fragments_view(&panel[p].body, view[p]);
+    const struct picture_frame *frame = panel[p].frame;
+    const status framed = frame ? STATUS_OK : picture_fragments_view(&panel[p].body, view[p]);
+    if (frame)
+      memcpy(view[p], frame->view, sizeof view[p]);
     if (framed)
       return fail(path, framed, error);
     double tall = each * (view[p][3] - view[p][1]) / (view[p][2] - view[p][0]);
@@ -301,13 +321,14 @@ status picture_fragments(const char *path, double width, const char *title, cons
 status picture_fragments_on_sheet(struct picture_sheet *sheet, const char *title, const char *caption,
                                   const struct picture_panel *panel, struct error *error) {
   cairo_t *cairo = sheet->canvas.cairo;
+  char note[NOTE] = "";
   const double scale = picture_sheet_next(sheet, title, caption);
-  const status code = draw_body(cairo, panel, sheet->view);
+  const status code = draw_body(cairo, panel, sheet->view, note);
   cairo_restore(cairo);
   if (sheet->drawn == 1)
     picture_canvas_scale_bar(cairo, sheet->gap, sheet->below + 3 * sheet->font, scale, sheet->wide, sheet->font);
-  if (sheet->drawn == sheet->count && panel->caption)
-    picture_canvas_note(cairo, sheet->gap, sheet->below + 5 * sheet->font, sheet->right, sheet->font, panel->caption);
+  if (sheet->drawn == sheet->count)
+    picture_canvas_note(cairo, sheet->gap, sheet->below + 5 * sheet->font, sheet->right, sheet->font, note);
   return code ? fail(sheet->canvas.file.path, code, error) : STATUS_OK;
 }
 

@@ -17,6 +17,7 @@ struct scene {
   const struct picture_look *look;
   size_t fragments, discs;
   uint32_t *count; /* particles by fragment */
+  int64_t *number; /* by fragment: what it is coloured by */
   double *mass;    /* kg by fragment */
   double (*centre)[3];
   double middle[3]; /* m: centre of the heaviest fragment, or of all particles */
@@ -36,6 +37,7 @@ static const double REACH = 0.80; /* disc radius divided by size: discs overlap 
 #define SCENE_OF_DISCS __attribute__((cleanup(clear))) struct scene
 static void clear(struct scene *s) {
   free(s->count);
+  free(s->number);
   free(s->mass);
   free(s->centre);
   free(s->disc);
@@ -52,10 +54,15 @@ static status gather(struct scene *s) {
     if (s->cloud->fragment[i] >= (int64_t)s->fragments)
       s->fragments = (size_t)s->cloud->fragment[i] + 1;
   TRY(memory_array(&s->count, s->fragments, sizeof *s->count, "", NULL));
+  TRY(memory_array(&s->number, s->fragments, sizeof *s->number, "", NULL));
   TRY(memory_array(&s->mass, s->fragments, sizeof *s->mass, "", NULL));
   TRY(memory_array(&s->centre, s->fragments, sizeof *s->centre, "", NULL));
   TRY(memory_array(&s->disc, s->cloud->n, sizeof *s->disc, "", NULL));
   double total = 0, all[3] = {0, 0, 0};
+  const struct picture_frame *frame = s->look ? s->look->frame : NULL;
+  const bool follows = frame && frame->last && frame->members == c->n;
+  for (size_t f = 0; f < s->fragments; f++)
+    s->number[f] = follows ? INT64_MAX : (int64_t)f;
   for (size_t i = 0; i < c->n; i++) {
     total += c->mass[i];
     add_weighted(all, c->mass[i], c->position[i]);
@@ -63,12 +70,16 @@ static status gather(struct scene *s) {
       continue;
     const size_t f = (size_t)c->fragment[i];
     s->count[f]++;
+    if (follows && frame->last[i] >= 0 && frame->last[i] < s->number[f])
+      s->number[f] = frame->last[i];
     s->mass[f] += c->mass[i];
     add_weighted(s->centre[f], c->mass[i], c->position[i]);
   }
-  for (size_t f = 0; f < s->fragments; f++)
+  for (size_t f = 0; f < s->fragments; f++) {
+    s->number[f] = s->number[f] < INT64_MAX ? s->number[f] : (int64_t)f;
     for (int d = 0; d < 3; d++)
       s->centre[f][d] /= s->count[f] ? s->mass[f] : 1;
+  }
   const bool large = s->fragments > 0 && s->count[0] >= RESOLVED;
   for (int d = 0; d < 3; d++)
     s->middle[d] = large ? s->centre[0][d] : all[d] / total;
@@ -328,7 +339,8 @@ static void fragment_colour(cairo_t *cairo, const struct scene *s, size_t i, dou
     picture_canvas_colour(cairo, 0.90 + 0.03 * light, 0.004, 250, 1);
     return;
   }
-  const double hue = fmod(252 + 137.50776 * (double)f, 360), wave = 0.03 * ((double)(f % 3) - 1);
+  const int64_t number = s->number[f];
+  const double hue = fmod(252 + 137.50776 * (double)number, 360), wave = 0.03 * ((double)(number % 3) - 1);
   const bool large = s->count[f] >= RESOLVED;
   double lightness = (large ? 0.68 : 0.84) + wave + 0.14 * light, chroma = large ? 0.125 : 0.05;
   if (part == PICTURE_LAYER) {

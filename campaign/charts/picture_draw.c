@@ -82,9 +82,13 @@ static void name_run(const char *fields, const struct movie *movie, const char *
     text_append(text, size, ", %s", shown);
 }
 
-/* Widens a frame to what the picture of the body would show. */
+/* Widens a frame to what the picture of the body would show, and keeps its fragments. */
 static status widen(struct picture_frame *frame, const struct picture_body *body) {
   double view[4];
+  free(frame->last);
+  TRY(memory_array(&frame->last, frame->members = body->cells, sizeof *frame->last, "", NULL));
+  for (size_t i = 0; i < body->cells; i++)
+    frame->last[i] = body->fragment[i];
   TRY(picture_fragments_view(body, view));
   for (int k = 0; k < 2; k++) {
     frame->view[k] = fmin(frame->view[k], view[k]);
@@ -122,8 +126,7 @@ static status draw_grains(const char *fields, const char *picture, const struct 
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
   tell_doubts(fields, movie, doubts);
   panel.caption = *doubts ? doubts : NULL;
-  if (movie)
-    memcpy(panel.view, movie->frame.view, sizeof panel.view);
+  panel.frame = movie ? &movie->frame : NULL;
   if (movie && movie->sheet) {
     const char *largest = strstr(numbers, "largest");
     write_time(time, caption);
@@ -216,7 +219,14 @@ static status draw_particles(const char *fields, const char *picture, const stru
   look.unit = unit;
   look.frame = movie ? &movie->frame : NULL;
   look.sheet = movie ? movie->sheet : NULL;
-  return picture_particles(picture, width_of(options), &cloud, &look, error);
+  TRY(picture_particles(picture, width_of(options), &cloud, &look, error));
+  if (movie && !picture) {
+    free(movie->frame.last);
+    movie->frame.last = cloud.fragment;
+    movie->frame.members = cloud.n;
+    cloud.fragment = NULL;
+  }
+  return STATUS_OK;
 }
 
 /* One column of a profile, beside its depths. */
@@ -283,6 +293,7 @@ static status draw_fields(const char *fields, const char *picture, const struct 
 /* ---- movies and sheets ---- */
 
 static void movie_free(struct movie *movie) {
+  free(movie->frame.last);
   for (size_t i = 0; i < movie->count; i++) {
     if (*movie->folder && movie->picture[i])
       unlink(movie->picture[i]);

@@ -168,6 +168,18 @@ static status snapshots_look(struct snapshots *s, const struct engine_kind *kind
   return write_series(s, error);
 }
 
+/* A run that ends before its longest time has fewer snapshots than were asked for. */
+static void tell_missing(const struct snapshots *s) {
+  int64_t written = 0;
+  for (int64_t k = 0; k < s->count; k++)
+    written += !isnan(s->time[k]);
+  if (written < s->count)
+    fprintf(stderr,
+            "clast: %lld of %lld snapshots written: they divide the longest time that the run may take, and it ended "
+            "before\n",
+            (long long)written, (long long)s->count);
+}
+
 /* ---- the run ---- */
 
 enum { BLOCK = 8 }; /* steps between two calls of look(): less than a second, even with a million particles */
@@ -212,6 +224,8 @@ static status compute(const struct scene *scene, const struct one_run_options *o
     code = run_simulate(&request, look, &watch, BLOCK, result, error);
   if (watch.terminal)
     fputs("\r\033[K", stderr);
+  if (code == STATUS_OK && !options->quiet)
+    tell_missing(&watch.snapshots);
   free(watch.snapshots.time);
   return code;
 }

@@ -66,6 +66,13 @@ data = open('end.png', 'rb').read()
 assert data[:8] == b'\x89PNG\r\n\x1a\n' and len(data) > 5000, len(data)
 PY
 ok "snapshots, fields and picture"
+expect 0 "$clast" picture disc-explosion_000001.hdf middle.png
+silent err # what only the end tells is no doubt before it
+expect 0 "$clast" picture disc-explosion_000002.hdf middle.png
+says "marked (!), 1 of 1 runs: cut"
+expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]:0:4}" --set body.diameter='6 cm' --snapshots 5
+says "3 of 5 snapshots written"
+ok "a snapshot before the end is not judged as an end"
 sleep 1 # HDF5 knows seconds
 expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --fields later.h5
 cmp -s end.h5 later.h5 || fail "the fields of the same run differ from one second to the next"
@@ -118,4 +125,4 @@ expect 1 "$clast" simulate gabbro-crater --seed 1 --set fidelity.graded=false --
 prints "no results"; ! grep -q "M_1/M" out || fail "numbers of a run that did not begin"
 expect 65 "$clast" explain gabbro-crater --set fidelity.particles=3000
 says "particles, not 3000"
-done_after $((36 + 3 * $(echo "$scenes" | wc -w)))
+done_after $((40 + 3 * $(echo "$scenes" | wc -w)))

@@ -90,6 +90,7 @@ static const struct condition rows[] = {
      .withheld = true,
      .before = five,
      .after = three},
+    {.word = "drift", .number = "n", .bound = 2, .doubt = "d", .remedy = "r", .results = "z", .after = three},
     {0},
 };
 
@@ -103,8 +104,10 @@ static void bounds_are_exclusive_and_the_end_decides(void **state) {
   assert_int_equal(set, 1 | 8);
   assert_string_equal(text, "high: n is 5, above 4 (clast explain high)\ntold: n is 5, above 4 (clast explain told)\n");
   free(text);
+  condition_after(rows, &(struct condition_run){.going = true}, words, sizeof words);
+  assert_string_equal(words, "high, drift"); /* a snapshot: nothing of the end */
   condition_after(rows, &(struct condition_run){0}, words, sizeof words);
-  assert_string_equal(words, "high, end");
+  assert_string_equal(words, "high, end, drift");
 
   assert_int_equal(condition_mark(rows, words, "a"), CONDITION_MARKED);
   assert_int_equal(condition_mark(rows, words, "b"), CONDITION_WITHHELD);
@@ -134,7 +137,7 @@ static void bounds_are_exclusive_and_the_end_decides(void **state) {
   out = open_memstream(&text, &size);
   condition_tell(rows, words, set, "! ", out);
   fclose(out);
-  assert_string_equal(text, "! end: n is below 4 (clast explain end)\n");
+  assert_string_equal(text, "! end: n is below 4 (clast explain end)\n! drift: n is above 2 (clast explain drift)\n");
   free(text);
 }
 

@@ -478,9 +478,12 @@ static void pixels_are_pinned(void **state) {
                               .fragment = (uint32_t[]){0, 0, 1, 2},
                               .cracks = 1,
                               .crack = (uint32_t[][2]){{0, 1}}};
+  int64_t last[] = {2, 1, 0, 3}; /* the first fragment becomes 2 and 1, the second becomes the heaviest */
+  const struct picture_frame frames[2] = {{.view = {-1, 0, 3, 2}, .members = 4, .last = last},
+                                          {.view = {2.5, -1, 4.5, 1}}};
   struct picture_panel panels[3] = {{.body = body, .caption = "whole"},
-                                    {.body = body, .view = {1, 0, 3, 2}},
-                                    {.body = body, .caption = "right", .view = {2.5, -1, 4.5, 1}}};
+                                    {.body = body, .frame = &frames[0]},
+                                    {.body = body, .caption = "right", .frame = &frames[1]}};
   assert_int_equal(picture_fragments(at("grains.png"), 640, "Grains", "four of them", 3, panels, NULL), STATUS_OK);
 
   enum { N = 24 };

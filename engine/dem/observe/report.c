@@ -164,7 +164,7 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
 /* The words of broken conditions. When grains met too fast, a message says so, unless a fault has its own message. */
 static void judge(const struct dem_run *run, const struct dem_results *results, struct outcome *outcome) {
   const double fastest = dem_system_fastest_approach(run->system);
-  const struct condition_run end = {run, &run->inputs, outcome, results};
+  const struct condition_run end = {run, &run->inputs, outcome, results, !run->state.frame.finished};
   condition_after(dem_conditions, &end, outcome->warnings, sizeof outcome->warnings);
   if (run->passing_speed > 0 && fastest > run->passing_speed && outcome_is_usable(outcome->state))
     snprintf(outcome->message, sizeof outcome->message,

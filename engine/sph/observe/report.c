@@ -315,7 +315,7 @@ status sph_report_finish(void *of, struct outcome *outcome, void *results, struc
   TRY(fill_results(run, &ledger, input, &found, results, error));
   fill_outcome(run, &ledger, input, &found, outcome);
   TRY(find_gaps(run, error));
-  const struct condition_run end = {run, in, outcome, results};
+  const struct condition_run end = {run, in, outcome, results, !run->state.frame.finished};
   condition_after(sph_conditions, &end, outcome->warnings, sizeof outcome->warnings);
   *fragments = found.fragments;
   *count = found.count;
