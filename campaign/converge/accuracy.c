@@ -508,6 +508,12 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     return;
   const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
   char time[32];
+  if (option->guessed)
+    words_print(
+        out, before,
+        "no limit is seen in %s: the error has what a law of order %g would leave beyond the finest level, which "
+        "is a guess and no bound",
+        accuracy->open ? accuracy->open->name : "a setting", LIMIT_ORDER_LEAST);
   if (isnan(accuracy->point_s)) {
     progress_duration(option->cpu_s, time, sizeof time);
     words_print(out, before, "%s \xc2\xb1 %.2g with %s%s%s and %" PRId64 " seeds a point: %s of processor time",
@@ -575,11 +581,6 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
                   campaign->accuracy_quantity, accuracy.within);
     print_choice(&accuracy, campaign, "accuracy  ", stdout);
     TRY(print_alternatives(&accuracy, TABLE_TEXT, stdout, error));
-    if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].guessed)
-      words_print(stdout, "",
-                  "The results show no limit in %s. The error has what a law of order %g would leave beyond the finest "
-                  "level, by the changes between levels.",
-                  accuracy.open ? accuracy.open->name : "a setting", LIMIT_ORDER_LEAST);
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
       words_print(stdout, "",
                   "The chosen setting is finer than any level that was run. Its error is that of the finest level "
