@@ -52,16 +52,16 @@ static void write_curve(struct chart *chart, const struct picture_curve *curve) 
   chart_block_end(chart);
 }
 
-/* Writes the range of the axis, with some space at both ends. */
-static void write_range(struct chart *chart, const double range[2]) {
+/* Writes the range of the axis 'x' or 'y', with some space at both ends. */
+static void write_range(struct chart *chart, char axis, const double range[2]) {
   const bool logarithmic = range[0] > 0 && range[1] >= LOG_FROM * range[0];
   double margin = 0.05 * (range[1] - range[0]);
   if (!(margin > 0))
     margin = range[1] != 0 ? 0.05 * fabs(range[1]) : 1;
   const double factor = pow(range[1] / range[0], 0.05);
-  chart_number(chart, "log_x", logarithmic);
-  chart_number(chart, "x_low", logarithmic ? range[0] / factor : range[0] - margin);
-  chart_number(chart, "x_high", logarithmic ? range[1] * factor : range[1] + margin);
+  chart_number(chart, axis == 'x' ? "log_x" : "log_y", logarithmic);
+  chart_number(chart, axis == 'x' ? "x_low" : "y_low", logarithmic ? range[0] / factor : range[0] - margin);
+  chart_number(chart, axis == 'x' ? "x_high" : "y_high", logarithmic ? range[1] * factor : range[1] + margin);
 }
 
 status picture_curves(const struct picture_page *page, const struct picture_words *words, size_t count,
@@ -81,7 +81,7 @@ status picture_curves(const struct picture_page *page, const struct picture_word
   struct chart *chart = chart_new("lines", page, words);
   chart_number(chart, "series", (double)count);
   const size_t places = curve[0].places;
-  write_range(chart, places > 0 ? (double[2]){0.5, (double)places + 0.5} : range);
+  write_range(chart, 'x', places > 0 ? (double[2]){0.5, (double)places + 0.5} : range);
   chart_number(chart, "places", (double)places);
   chart_texts(chart, "place", places, curve[0].place);
   for (size_t c = 0; c < count; c++) {
@@ -273,6 +273,16 @@ static size_t place(const struct axis *axis, double value) {
   return (size_t)(found - axis->values); /* always found: the axis was made from these values */
 }
 
+/* Points that share no value of an axis, as a Latin hypercube has them: their places are those of their values. */
+static void write_points(struct chart *chart, const struct axis axis[2], size_t count, const double (*points)[4]) {
+  for (int a = 0; a < 2; a++)
+    write_range(chart, a ? 'y' : 'x', (const double[2]){axis[a].values[0], axis[a].values[axis[a].count - 1]});
+  chart_columns(chart, "x y value doubtful");
+  for (size_t i = 0; i < count; i++)
+    chart_row(chart, 4, points[i]);
+  chart_block_end(chart);
+}
+
 /* Blocks: the tiles (number of column and row from 0, value, doubtful), the columns' values, the rows' values. */
 static void write_tiles(struct chart *chart, const struct axis *x, const struct axis *y, const double (*value)[2]) {
   chart_columns(chart, "column row value doubtful");
@@ -289,12 +299,14 @@ static void write_tiles(struct chart *chart, const struct axis *x, const struct 
   }
 }
 
-/* Draws x->count times y->count values, a row for each value of y. */
+/* Draws tiles of x->count times y->count values, a row for each value of y. value NULL: draws points. */
 static status draw_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
-                       const struct axis *x, const struct axis *y, const double (*value)[2], struct error *error) {
+                       const struct axis axis[2], size_t count, const double (*points)[4], const double (*value)[2],
+                       struct error *error) {
+  const struct axis *x = &axis[0], *y = &axis[1];
   double range[2] = {none[0], none[1]};
-  for (size_t i = 0; i < x->count * y->count; i++)
-    extend(range, value[i][0]);
+  for (size_t i = 0; i < count; i++)
+    extend(range, points[i][2]);
   if (!(range[1] >= range[0]))
     return status_fail(error, STATUS_USAGE, "%s: there is no value to draw", page->path);
   struct chart *chart = chart_new("map", page, words);
@@ -303,7 +315,11 @@ static status draw_map(const struct picture_page *page, const struct picture_wor
   chart_number(chart, "rows", (double)y->count);
   chart_number(chart, "low", range[0]);
   chart_number(chart, "high", range[1] > range[0] ? range[1] : range[0] + fmax(fabs(range[0]), 1) * 1e-6);
-  write_tiles(chart, x, y, value);
+  chart_number(chart, "scattered", !value);
+  if (value)
+    write_tiles(chart, x, y, value);
+  else
+    write_points(chart, axis, count, points);
   return chart_draw(chart, 0.72 * page->width, error);
 }
 
@@ -318,17 +334,20 @@ status picture_map(const struct picture_page *page, const struct picture_words *
   OWNED double(*value)[2] = NULL;
   TRY(memory_array(&along, 2 * count, sizeof *along, "the map", error));
   TRY(memory_array(&value, MOST_TILES, sizeof *value, "the map", error));
-  struct axis x = {.values = along}, y = {.values = along + count};
-  distinct(count, points, 0, &x);
-  distinct(count, points, 1, &y);
-  if (x.count * y.count > MOST_TILES)
+  struct axis axis[2] = {{.values = along}, {.values = along + count}};
+  const struct axis *x = &axis[0], *y = &axis[1];
+  distinct(count, points, 0, &axis[0]);
+  distinct(count, points, 1, &axis[1]);
+  if (count > 2 && x->count == count && y->count == count)
+    return draw_map(page, words, quantity, axis, count, points, NULL, error);
+  if (x->count * y->count > MOST_TILES)
     return status_fail(error, STATUS_USAGE, "%s: %zu x %zu tiles are too many for a map; choose axes with fewer values",
-                       page->path, x.count, y.count);
-  for (size_t i = 0; i < x.count * y.count; i++)
+                       page->path, x->count, y->count);
+  for (size_t i = 0; i < x->count * y->count; i++)
     value[i][0] = NAN;
   for (size_t i = 0; i < count; i++)
-    memcpy(value[place(&y, points[i][1]) * x.count + place(&x, points[i][0])], &points[i][2], sizeof *value);
-  return draw_map(page, words, quantity, &x, &y, (const double(*)[2])value, error);
+    memcpy(value[place(y, points[i][1]) * x->count + place(x, points[i][0])], &points[i][2], sizeof *value);
+  return draw_map(page, words, quantity, axis, count, points, (const double(*)[2])value, error);
 }
 
 /* ---- log-log spectra with error bars or bands, and fitted lines ---- */

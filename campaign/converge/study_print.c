@@ -145,7 +145,8 @@ static void print_change(const struct knob *knob, const struct study_found *foun
   const double factor = row[0] ? log(2) * fabs(knob->step_power) / log(row[0]->step / row[1]->step) : 1;
   const struct limit_range *change = &found->limit.change;
   uncertainty_number(factor * change->value, factor * (change->high - change->low) / 2, text);
-  fprintf(out, "no limit seen, moving by %s per %s", text, knob->step_power < 0 ? "doubling" : "halving");
+  fprintf(out, "no limit seen, moving by %s per %s of %s", text, knob->step_power < 0 ? "doubling" : "halving",
+          knob->inputs[0].path);
 }
 
 static void print_distance(const struct knob *knob, const struct study_found *found, const struct convergence_row *row,
@@ -351,7 +352,9 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
 }
 
 static const char legend[] =
-    "* the scene's own setting; ref: what bias is measured against. bias: mean minus that of ref, with the half width "
+    "* the scene's own setting; a knob's levels are compared with the seeds that all of them have, so that n and mean "
+    "of "
+    "* differ between knobs. ref: what bias is measured against. bias: mean minus that of ref, with the half width "
     "of its 95 % interval. error: largest distance to the limit (none seen: |bias| + half width, perhaps too small), "
     "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer.";
 static const char legend_of_all[] =

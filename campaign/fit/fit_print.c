@@ -280,11 +280,15 @@ static void tell_determined(const struct fit *fit, FILE *out) {
     tell_open_direction(fit, i, out);
 }
 
+static bool is_unstudied(const struct fit *fit, size_t k) {
+  return isnan(fit->observed->data[k].resolution) && fit->resolution[k].verdict == ASK_RESOLUTION_NOT_STUDIED;
+}
+
 /* Names the data whose error of resolution is unknown. */
 static void tell_not_studied(const struct fit *fit, FILE *out) {
   char names[PARAGRAPH] = "", label[LABEL];
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
-    if (!isnan(fit->observed->data[k].resolution) || fit->resolution[k].verdict != ASK_RESOLUTION_NOT_STUDIED)
+    if (!is_unstudied(fit, k))
       continue;
     observed_label(fit->observed, k, label, sizeof label);
     text_append(names, sizeof names, "%s %s", *names ? "," : "", label);
@@ -405,7 +409,9 @@ status fit_print_picture(const struct fit *fit, const char *path, const struct c
   static char labels[OBSERVED_DATA][LABEL];
   struct picture_prediction rows[OBSERVED_DATA];
   char title[LABEL];
+  size_t unstudied = 0;
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
+    unstudied += is_unstudied(fit, k);
     const struct observed_datum *datum = &fit->observed->data[k];
     label_of(fit, k, labels[k], sizeof labels[k]);
     text_append(labels[k], sizeof labels[k], "%s", fit->doubts[k].doubtful ? " !" : "");
@@ -415,8 +421,11 @@ status fit_print_picture(const struct fit *fit, const char *path, const struct c
   }
   snprintf(title, sizeof title, "%s: one more experiment, as the fit predicts it", fit->observed->name);
   const struct picture_page page = charts_page(path, chart);
-  char caption[CHARTS_LABEL] =
-      "Over the posterior; with the scatter of specimens, the errors of measurement and of the resolution";
+  char caption[CHARTS_LABEL] = "Over the posterior; with the scatter of specimens, the errors of measurement "
+                               "and of the resolution";
+  if (unstudied)
+    text_append(caption, sizeof caption, ", which is not known for %zu of %zu numbers and counts as 0", unstudied,
+                fit->observed->datum_count);
   charts_doubts(&fit->all_doubts, caption, sizeof caption);
   const struct picture_words words = {title, caption, "predicted over measured", NULL};
   return picture_predicted(&page, &words, fit->observed->datum_count, rows, error);

@@ -592,14 +592,14 @@ static void write_answer(const struct from_points *p) {
   }
   if (is_told(p, first)) {
     char others[1024] = "";
-    const bool certain = share->low > 0;
-    if (!certain)
-      text_append(text, sizeof text, "No input can be told from one that does nothing: ");
+    const bool certain = share->low > 0, alone = certain && p->index[first].last_rank == 1;
+    if (!alone)
+      text_append(text, sizeof text, "%s: ",
+                  certain ? "Which input matters most is not sure" : "No input can be told from one that does nothing");
     append_input(p, first, text, sizeof text);
-    text_append(text, sizeof text, certain && p->index[first].last_rank == 1 ? " matters most" : " comes first");
-    text_append(text, sizeof text, ": alone it explains %.0f %% (%.0f to %.0f %%) of the variance of %s %s",
-                100 * fmax(share->estimate, 0), 100 * share->low, 100 * share->high, p->column,
-                share == &p->index[first].of_means ? "between points" : "of single runs");
+    text_append(text, sizeof text, "%s explains %.0f %% (%.0f to %.0f %%) of the variance of %s %s",
+                alone ? " matters most: alone it" : " alone", 100 * fmax(share->estimate, 0), 100 * share->low,
+                100 * share->high, p->column, share == &p->index[first].of_means ? "between points" : "of single runs");
     if (certain && list_inputs(p, AS_MUCH, others, sizeof others))
       text_append(text, sizeof text, "; %s may matter as much", others);
     *others = '\0';
@@ -697,8 +697,8 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
   words_print(
       stderr, "",
       "clast: shares of the variance that an input explains alone, with 95 %% intervals, of %zu points%s; what the "
-      "shares leave is of inputs together%s. rank: inputs with overlapping intervals share it. Four times the "
-      "points halve the intervals",
+      "shares leave is of inputs together%s. rank: inputs with overlapping intervals share it. not_told: "
+      "why these points tell nothing of an input. Four times the points halve the intervals",
       p.data.points,
       p.data.most > 1 ? ". of_means: variance of the means over seeds; of_runs: of single runs, with their scatter "
                         "over seeds"

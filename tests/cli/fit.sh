@@ -51,6 +51,7 @@ prints "RIDGE: these data cannot tell threshold.strain and threshold.angle apart
 prints "TOGETHER: the data determine threshold.strain and threshold.angle together"
 prints "One experiment is one specimen"
 prints "RESOLUTION: what a finer resolution would change is not known"
+grep -q 'which is not known' predicted.gp || fail "no word on a resolution that is not known"
 grep -q 'M₁/M' predicted.svg || fail "the picture has no readable label"
 sed -i 's/^left_margin = .*/left_margin = 300/' predicted.gp # a quotient of whole numbers is whole: 300 / 900 was 0
 gnuplot predicted.gp

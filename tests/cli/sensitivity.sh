@@ -98,7 +98,7 @@ seeds: {per_point: 2}
 YAML
 expect 0 "$clast" run latin.yaml -j 2 --quiet
 expect 0 "$clast" sensitivity latin.db
-grep -q "^strain comes first: alone it explains" out || fail "no short name"
+grep -q "^Which input matters most is not sure: strain alone explains" out || fail "no short name"
 prints "energy may matter as much"
 tr "\n" " " <out | grep -q "between points" || fail "no word on the means"
 [ "$(wc -L <out)" -le 100 ] || fail "a line of more than 100 columns"

@@ -230,6 +230,12 @@ static void maps_are_drawn(void **state) {
   assert_int_equal(picture_map(&(struct picture_page){.path = at("loose.png"), .width = 600},
                                &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 5, loose, NULL),
                    STATUS_OK);
+  const double sampled[3][4] = {{1, 0.1, 5}, {40, 0.3, 7, 1}, {2, 0.2, 6}};
+  assert_int_equal(picture_map(&(struct picture_page){.path = at("sampled.png"), .width = 600},
+                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 3, sampled, NULL),
+                   STATUS_OK);
+  ink(at("sampled.png"), &dark, &coloured, &width, &height);
+  assert_true(coloured < 0.1); /* marks, no tiles */
   const double nowhere[1][4] = {{NAN, 1, 1}};
   assert_int_equal(picture_map(&(struct picture_page){.path = at("none.png"), .width = 600},
                                &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 1, nowhere, NULL),
@@ -584,6 +590,7 @@ int main(int count, char **arguments) {
                            "spectrum.svg",
                            "map.png",
                            "loose.png",
+                           "sampled.png",
                            "curves.png",
                            "curves.gp",
                            "curves.dat",
