@@ -61,6 +61,10 @@ static void draw(uint64_t item, double scale, double p[3]) {
 static void same_as_a_box(void **state) {
   (void)state;
   near(sph_shape_volume(&as_mesh), sph_shape_volume(&box), 1e-20);
+  near(sph_shape_thinnest(&as_mesh), sph_shape_thinnest(&box), 1e-15);
+  near(sph_shape_thinnest(&box), fmin(box.side[0], fmin(box.side[1], box.side[2])), 0);
+  const struct sph_shape ring = {.kind = SPH_SHAPE_CYLINDER, .radius = 3, .inner_radius = 2, .length = 1.5};
+  near(sph_shape_thinnest(&ring), 1, 0);
   for (uint64_t i = 0; i < 2000; i++) {
     double p[3], d[3], q[2][3], n[2][3];
     draw(i, 0.02, p);

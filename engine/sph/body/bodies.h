@@ -39,6 +39,8 @@ struct sph_shape {
 /* STATUS_CONTENT: a size is not positive and finite, a hole is as wide as its cylinder, or an axis has no length. */
 status sph_shape_check(const struct sph_shape *shape, struct error *error);
 double sph_shape_volume(const struct sph_shape *shape); /* m^3 */
+/* m: the shortest way through its middle between two faces, of a ring through the wall, of a mesh across its box */
+double sph_shape_thinnest(const struct sph_shape *shape);
 bool sph_shape_inside(const struct sph_shape *shape, const double point[3]);
 /* The exact signed distance to the nearest surface, m, positive outside. `normal` (NULL is fine) points outwards there.
  */

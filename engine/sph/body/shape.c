@@ -176,6 +176,18 @@ double sph_shape_volume(const struct sph_shape *s) {
   }
 }
 
+double sph_shape_thinnest(const struct sph_shape *s) {
+  const double across = s->inner_radius > 0 ? s->radius - s->inner_radius : 2 * s->radius;
+  double side[3] = {s->side[0], s->side[1], s->side[2]};
+  for (int k = 0; k < 3 && s->kind == SPH_SHAPE_MESH; k++)
+    side[k] = s->mesh ? s->unit * (s->mesh->high[k] - s->mesh->low[k]) : (double)NAN;
+  switch (s->kind) {
+  case SPH_SHAPE_SPHERE: return across;
+  case SPH_SHAPE_CYLINDER: return fmin(across, s->length);
+  default: return fmin(side[0], fmin(side[1], side[2]));
+  }
+}
+
 void sph_shape_frame(const struct sph_shape *s, double f[3][3]) {
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++)

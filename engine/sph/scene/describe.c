@@ -189,11 +189,12 @@ static void modules(const struct sph_inputs *in, bool all, FILE *out) {
 
 static void numbers(const struct sph_inputs *in, FILE *out) {
   const struct sph_body_inputs *target = &in->target;
+  const bool porous = sph_material_solid_ratio(&target->material) > 1;
   double speed = sph_derived_wave_speed(target), crossing = sph_derived_crossing(in);
   fprintf(out, "  waves: c_p %.0f m/s, through the target in %.3g s", speed, crossing);
   if (target->strength)
-    fprintf(out, "; Young's modulus %.4g Pa, Poisson's ratio %.3g", sph_material_young_modulus(&target->material),
-            sph_material_poisson_ratio(&target->material));
+    fprintf(out, "; Young's modulus %.4g Pa, Poisson's ratio %.3g%s", sph_material_young_modulus(&target->material),
+            sph_material_poisson_ratio(&target->material), porous ? " (of the solid between the pores)" : "");
   fputc('\n', out);
   if (sph_derived_cracks(target)) {
     double E = sph_material_young_modulus(&target->material), m = target->material.weibull.m, n = flaws_expected(in);
@@ -211,7 +212,7 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
     fprintf(out, "  impact energy %.4g J of %.4g kg: Q = %.4g J/kg of the target; %.3g spacings in its radius\n",
             energy, mass, sph_derived_specific_energy(in), sph_derived_projectile_radius(in) / spacing);
   }
-  if (in->kind == SPH_VIBRATION && target->strength)
+  if (in->kind == SPH_VIBRATION && target->strength && !porous)
     fprintf(out, "  a thin bar of that length rings at %.5g Hz\n",
             sqrt(sph_material_young_modulus(&target->material) / target->material.density) / (2 * target->length));
 }
