@@ -81,20 +81,35 @@ static bool explain_conditions(const char *word) {
   return found;
 }
 
+/* Does a word mark every result of its engine? */
+static bool marks_all(const struct condition *list, const char *word) {
+  for (const struct condition *c = list; c->word; c++)
+    if (!c->results && strcmp(c->word, word) == 0)
+      return true;
+  return false;
+}
+
 /* Prints the words of the conditions on which a result of an engine rests, besides those on which all rest; a withheld
  * one in parentheses. Nothing when there are none. `path` NULL: the words on which all rest. */
-static void explain_rests_on(const struct engine_kind *kind, const char *path) {
+static void explain_rests_on(const struct engine_kind *kind, const char *path, const char *before) {
   const char *last = "";
   char words[1024] = "";
   for (const struct condition *c = kind->conditions; c && c->word; c++) {
-    if (strcmp(last, c->word) == 0 || !c->results != !path ||
+    if (strcmp(last, c->word) == 0 || marks_all(kind->conditions, c->word) != !path ||
         (path && condition_mark(c, c->word, path) == CONDITION_SOUND))
       continue;
     text_append(words, sizeof words, c->withheld ? "%s(%s)" : "%s%s", *words ? ", " : "", c->word);
     last = c->word;
   }
   if (*words)
-    words_print(stdout, "- ", "%s (%s): %s", path ? path : "every result", kind->name, words);
+    words_print(stdout, before, "%s (%s): %s", path ? path : "every result", kind->name, words);
+}
+
+/* The same of a row that is a result. */
+static void explain_doubts_of(const struct field_table *table, const char *path) {
+  for (size_t i = 0; i < engine_count(); i++)
+    if (table == &outcome_table || table == engine_at(i)->results)
+      explain_rests_on(engine_at(i), path, "    Can be in doubt (clast explain conditions): ");
 }
 
 /* Prints the meaning of a word of the glossary. */
@@ -205,8 +220,10 @@ static size_t explain_rows(const char *path, struct text_guess *guess) {
     }
     fputs(found++ ? "\n" : "", stdout);
     words_print(stdout, "", "%s: %s", list[i]->name, list[i]->doc);
-    if (row || first)
+    if (row || first) {
       field_explain(list[i], row ? row->path : first->path, stdout);
+      explain_doubts_of(list[i], row ? row->path : first->path);
+    }
     if (section)
       field_explain(list[i], path, stdout);
     for (const struct field *next = first; next && (next = field_ending(list[i], path, next));)
@@ -242,10 +259,10 @@ static bool explain_whole(const char *word) {
     puts("\n## Results and their conditions\n\nIn parentheses: beyond the bound the result is withheld.\n");
     for (size_t i = 0; i < engine_count(); i++) {
       const struct field_table *tables[] = {&outcome_table, engine_at(i)->results};
-      explain_rests_on(engine_at(i), NULL);
+      explain_rests_on(engine_at(i), NULL, "- ");
       for (size_t t = 0; t < 2; t++)
         for (size_t k = 0; k < tables[t]->count; k++)
-          explain_rests_on(engine_at(i), tables[t]->rows[k].path);
+          explain_rests_on(engine_at(i), tables[t]->rows[k].path, "- ");
     }
     puts("\n## Conditions\n");
     explain_conditions(NULL);
