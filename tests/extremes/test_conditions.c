@@ -307,7 +307,8 @@ static const struct twin {
      {"projectile.shape=box", "projectile.height=26 mm"}},
     {"quiet",
      "colliding-cylinders",
-     {"fidelity.particles=600", "method.artificial_stress=0", "target.material.name=basalt", "collision.speed=200 m/s", "stop.end_time=0.5 ms"},
+     {"fidelity.particles=600", "method.artificial_stress=0", "target.material.name=basalt", "collision.speed=200 m/s",
+      "stop.end_time=0.5 ms"},
      {"stop.quiet_time=1 us"},
      {NULL}},
     /* it breaks by its spin long before the projectile comes */
