@@ -68,9 +68,9 @@ uint64_t condition_before(const struct condition *list, const void *inputs, FILE
   return set;
 }
 
-/* Other numbers of a run itself, such as `cut`, concern its end. */
+/* Of a run that goes on, numbers such as that of `cut` are not known yet. */
 static double number_of(const struct condition *c, const struct condition_run *run) {
-  if (c->after && (!run->going || strcmp(c->word, "drift") == 0))
+  if (c->after && (!run->going || c->lasting))
     return c->after(run);
   return c->before ? c->before(run->inputs) : (double)NAN;
 }

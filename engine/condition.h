@@ -34,6 +34,7 @@ struct condition {
   const char
       *results;  /* the results that rest on it: paths, separated by spaces. NULL: all; "": none, it is only told */
   bool withheld; /* beyond the bound these results have no meaning */
+  bool lasting;  /* `after` tells at any time of a run: what it finds does not go away later */
   bool absent;   /* and nothing is wrong: the scene does not ask for them. The run does not count as one in doubt */
   const char *inputs; /* of the word "effect": the inputs that then have none; paths, separated by spaces */
   /* The number; NaN where the condition does not apply. At least one of the two. A condition with both is judged at the
@@ -57,8 +58,8 @@ bool condition_broken(const struct condition *condition, double number);
  * rows. */
 uint64_t condition_before(const struct condition *list, const void *inputs, FILE *out);
 
-/* Judges a run at its end; a run that goes on by its inputs, and for drift, which no later step undoes. Writes the
- * words of broken conditions, separated by ", ", into `words`. */
+/* Judges a run at its end; a run that goes on by its inputs and by conditions with .lasting. Writes the words of broken
+ * conditions, separated by ", ", into `words`. */
 void condition_after(const struct condition *list, const struct condition_run *run, char *words, size_t size);
 
 /* What the words of a run say of its results `names`: paths or columns of the store, separated by spaces or commas; the

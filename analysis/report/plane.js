@@ -23,7 +23,7 @@ function statistics(from, quantity) {
 
 function doubtsOf(from, quantity) {
   if (has(from, 'doubt')) return ask(from, questions.doubts, {quantity});
-  return from.runColumns.has('doubtful') ? ask(from, questions.doubtsOfRuns) : [];
+  return from.runColumns.has('warnings') ? ask(from, questions.doubtsOfRuns(from.doubtful)) : [];
 }
 
 const wordsOf = (doubt) => [...new Set(doubt?.words.split(/[, ]+/) ?? [])];

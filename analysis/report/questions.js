@@ -46,8 +46,8 @@ export const resolution = `SELECT point_id, half_width, verdict FROM resolution
 // marks every result here: the conditions are in clast.
 export const doubts = `SELECT point_id, sum(runs) AS doubtful, sum(runs * withheld) AS withheld, group_concat(DISTINCT marks) AS words
   FROM doubt JOIN doubt_mark USING (engine, words) WHERE quantity = :quantity GROUP BY point_id`;
-export const doubtsOfRuns = `SELECT point_id, count(*) AS doubtful, 0 AS withheld, group_concat(DISTINCT warnings) AS words
-  FROM runs WHERE counts AND doubtful GROUP BY point_id`;
+export const doubtsOfRuns = (doubtful) => `SELECT point_id, count(*) AS doubtful, 0 AS withheld, group_concat(DISTINCT warnings) AS words
+  FROM runs WHERE counts AND ${doubtful} GROUP BY point_id`;
 export const sentences = `SELECT word, min(sentence) AS sentence FROM doubt_word JOIN (SELECT DISTINCT engine FROM doubt) USING (engine) GROUP BY word`;
 export const marks = 'SELECT engine, words FROM doubt_mark WHERE quantity = :quantity';
 
@@ -64,7 +64,7 @@ export const completeMassOfRuns = 'SELECT avg(complete_mass) AS mean FROM runs W
 
 export const values = (quantity) => `SELECT results_version, ${name(quantity)} AS value FROM runs
   WHERE counts AND point_id = :point AND ${name(quantity)} IS NOT NULL ORDER BY results_version, replicate`;
-export const runs = (columns, doubtful) => `SELECT run_id, point_id, replicate, CAST(seed AS TEXT) AS seed, state, counts, surplus, engine, warnings, ${doubtful}
+export const runs = (columns, doubtful) => `SELECT run_id, point_id, replicate, CAST(seed AS TEXT) AS seed, state, counts, surplus, engine, warnings, ${doubtful} AS doubtful
   ${columns.map((column) => `, ${name(column)}`).join('')} FROM runs WHERE point_id = :point ORDER BY replicate, seed`;
 export const run = 'SELECT * FROM runs WHERE run_id = :run';
 export const pictures = 'SELECT run_id, quantile, png FROM picture WHERE point_id = :point ORDER BY quantile';

@@ -41,7 +41,7 @@ function sorted(rows, columns) {
 
 export function showRuns() {
   const from = store(), results = columnsOf(from), columns = ['run_id', 'point_id', 'seed', 'state', ...results];
-  const rows = sorted(chosenPoints().flatMap((point) => ask(from, questions.runs(results, from.runColumns.has('doubtful') ? 'doubtful' : "warnings <> '' AS doubtful"), {point: point.point_id})), columns);
+  const rows = sorted(chosenPoints().flatMap((point) => ask(from, questions.runs(results, from.doubtful), {point: point.point_id})), columns);
   const marks = new Map(results.map((column) => [column, new Set(has(from, 'doubt_mark')
     ? ask(from, questions.marks, {quantity: column}).map((row) => `${row.engine} ${row.words}`) : [])]));
   const isMarked = (row, column) => results.includes(column) && row.counts && (has(from, 'doubt_mark') ? marks.get(column).has(`${row.engine} ${row.warnings}`) : row.doubtful);

@@ -71,6 +71,7 @@ function describe(store) {
   store.axes = ask(store, questions.axes);
   store.pointColumns = columns('points');
   store.runColumns = new Set(columns('runs'));
+  store.doubtful = store.runColumns.has('doubtful') ? 'doubtful' : store.runColumns.has('warnings') ? "warnings <> ''" : '0'; // of older stores
   store.points = newest(ask(store, questions.points(store.axes.map((axis) => axis.column_name),
     store.pointColumns.includes('excluded') ? ', excluded' : ''))); // an older store has no such column
   store.quantities = quantitiesOf(store);

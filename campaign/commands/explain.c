@@ -109,7 +109,7 @@ static void explain_rests_on(const struct engine_kind *kind, const char *path, c
 static void explain_doubts_of(const struct field_table *table, const char *path) {
   for (size_t i = 0; i < engine_count(); i++)
     if (table == &outcome_table || table == engine_at(i)->results)
-      explain_rests_on(engine_at(i), path, "    Can be in doubt (clast explain conditions): ");
+      explain_rests_on(engine_at(i), path, "    Conditions; a condition in parentheses withholds it: ");
 }
 
 /* Prints the meaning of a word of the glossary. */

@@ -35,7 +35,7 @@ static status tell_doubts(struct store *store, const char *sql, struct error *er
     return STATUS_OK;
   TRY(ask_doubts_count(store, &doubtful, error));
   if (doubtful > 0)
-    fprintf(stderr, "clast: %.0f runs of this store are in doubt: columns doubtful and warnings of the view runs\n",
+    fprintf(stderr, "clast: %.0f runs of this store are in doubt: see columns doubtful and warnings of the view runs\n",
             doubtful);
   return STATUS_OK;
 }

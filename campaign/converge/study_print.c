@@ -353,8 +353,7 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
 
 static const char legend[] =
     "* the scene's own setting; a knob's levels are compared with the seeds that all of them have, so that n and mean "
-    "of "
-    "* differ between knobs. ref: what bias is measured against. bias: mean minus that of ref, with the half width "
+    "of * differ between knobs. ref: what bias is measured against. bias: mean minus that of ref, with the half width "
     "of its 95 % interval. error: largest distance to the limit (none seen: |bias| + half width, perhaps too small), "
     "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer.";
 static const char legend_of_all[] =

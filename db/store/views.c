@@ -252,8 +252,8 @@ static char *result_tables(struct view *view) {
   return filled ? filled : all ? all : sql_format("''");
 }
 
-/* Writes columns of results from SQL that returns table, column, name in the view and type; frees it. A value that its
- * run's words withhold is NULL; the tables have it. */
+/* Writes columns of results from SQL that returns table, column and name in the view; frees it. A value that its run's
+ * words withhold is NULL; the tables have it. */
 static void write_results(struct view *view, char *sql) {
   STATEMENT row = NULL;
   if (view->result == STATUS_OK)
@@ -278,18 +278,15 @@ static void write_results(struct view *view, char *sql) {
 /* Writes the columns of run, then of the engines' result tables. An engine's column with the name of another column
  * gets its table's name as a prefix; this happens in a store with runs of two engines. */
 static void write_result_columns(struct view *view, const char *tables) {
-  write_results(view,
-                sql_format("SELECT 'r', name, name, type FROM pragma_table_xinfo('run') WHERE name NOT IN ('run_id', "
-                           "'point_id', 'replicate', 'seed', 'identity', 'fields_digest', 'digest')"));
+  write_results(view, sql_format("SELECT 'r', name, name FROM pragma_table_xinfo('run') WHERE name NOT IN ('run_id', "
+                                 "'point_id', 'replicate', 'seed', 'identity', 'fields_digest', 'digest')"));
   write_results(
       view,
       sql_format(
-          "WITH mine AS MATERIALIZED (SELECT t.name AS place, c.name AS name, c.cid AS cid, c.type AS type FROM "
-          "main.sqlite_schema t, "
+          "WITH mine AS MATERIALIZED (SELECT t.name AS place, c.name AS name, c.cid AS cid FROM main.sqlite_schema t, "
           "pragma_table_xinfo(t.name, 'main') c WHERE t.type = 'table' AND t.name IN (%s) AND c.name <> 'run_id'), "
           "shared AS MATERIALIZED (SELECT name FROM pragma_table_xinfo('run', 'main') UNION ALL SELECT name FROM mine "
-          "GROUP BY name HAVING count(*) > 1) SELECT place, name, iif(name IN shared, place || '_' || name, name), "
-          "type FROM "
+          "GROUP BY name HAVING count(*) > 1) SELECT place, name, iif(name IN shared, place || '_' || name, name) FROM "
           "mine ORDER BY place, cid",
           tables));
 }

@@ -90,7 +90,14 @@ static const struct condition rows[] = {
      .withheld = true,
      .before = five,
      .after = three},
-    {.word = "drift", .number = "n", .bound = 2, .doubt = "d", .remedy = "r", .results = "z", .after = three},
+    {.word = "drift",
+     .number = "n",
+     .bound = 2,
+     .doubt = "d",
+     .remedy = "r",
+     .results = "z",
+     .lasting = true,
+     .after = three},
     {0},
 };
 
@@ -273,6 +280,11 @@ static const struct twin {
      {"loading.strain_end=2 %"},
      {"loading.strain_end=6 %"}},
     /* it fails before a wave has crossed it, however far its sides go */
+    {"load",
+     "compression",
+     {"body.columns=12", "body.rows=20", "loading.strain_end=80 %"},
+     {"loading.rate=100 1/s", "loading.ramp=0.1 ms"},
+     {NULL}},
     {"rapid",
      "compression",
      {"body.columns=12", "body.rows=20", "loading.strain_end=80 %"},

@@ -65,8 +65,9 @@ static double smoothing(const void *inputs) {
   return in->gradient_correction.on ? (double)NAN : in->fidelity.smoothing;
 }
 
-/* Radius of the sphere of the projectile's volume over the coarser spacing of both bodies; of a plate, rod or tube the
- * radius for a cube as wide as its thinnest side. */
+/* Radius of the projectile over the coarser spacing of both bodies. The radius is that of the sphere of the
+ * projectile's volume; of a plate, rod or tube, that of the sphere of the volume of a cube as wide as its thinnest
+ * side. */
 static double spacings(const void *inputs) {
   const struct sph_inputs *in = inputs;
   if (!sph_derived_has_projectile(in))
@@ -679,7 +680,7 @@ const struct condition sph_conditions[] = {
     CONDITION("drift", .number = "the error of the energy ledger, over the energy put in,",
               .bound = CONDITION_LARGEST_DRIFT, .doubt = "numerical errors made or lost more than 1 % of the energy",
               .reason = "our choice; the scene's fidelity.energy_bound may allow more",
-              .remedy = "lower fidelity.cfl, or take more particles", .after = drift),
+              .remedy = "lower fidelity.cfl, or take more particles", .lasting = true, .after = drift),
     CONDITION("step", .number = "fidelity.cfl", .bound = 0.5, .doubt = "energy may drift",
               .reason = "measured (tests/extremes/map.md)", .remedy = "give a cfl of 0.3", .before = courant),
     CONDITION("growth", .number = "fidelity.cfl over its default, which follows from viscosity.alpha,", .bound = 1.25,
@@ -953,7 +954,7 @@ const struct condition sph_conditions[] = {
     CONDITION("moduli", .number = "the ratio of material.bulk_modulus and material.tillotson.A", .bound = 1.2,
               .doubt = "waves are as fast as tillotson.A makes them, cracks as bulk_modulus does",
               .reason = "at 1.2 the wave speeds of the two differ by 5 % in a rock of Poisson's ratio 0.25",
-              .remedy = "give tillotson.A the measured bulk modulus, and give bulk_modulus: off", .before = moduli,
+              .remedy = "give tillotson.A the measured bulk modulus, and set bulk_modulus: off", .before = moduli,
               .both = both_moduli, .unit = "Pa"),
     CONDITION("poisson", .number = "Poisson's ratio, by material.bulk_modulus and material.shear_modulus,", .bound = 0,
               .least = true, .doubt = "no rock widens when it is pulled", .reason = "K below 2/3 of the shear modulus",

@@ -46,10 +46,9 @@ static status refuse_missing(const struct field *row, const char *material, stru
   }
   if (*by)
     snprintf(remedy, sizeof remedy, "set %s: %s", controller->path, off);
-  const char *end = row->path + strlen(row->path) - strlen("distention");
   REFUSE("%s%s is needed%s, and the material '%s' has none: give it, take it from another material (`like: %s` in a "
          "file), or %s",
-         row->path, strcmp(end, "distention") == 0 ? " (or porosity.fraction)" : "", reason, material,
+         row->path, strstr(row->path, ".porosity.distention") ? " (or porosity.fraction)" : "", reason, material,
          strcmp(by, ".curve") == 0 ? "pumice" : "granite", remedy);
 }
 
