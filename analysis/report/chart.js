@@ -3,7 +3,7 @@ import {View, parse} from 'vega';
 import {compile} from 'vega-lite';
 import {expressionInterpreter} from 'vega-interpreter';
 import {command, download, element, fill} from './elements.js';
-import {csv} from './words.js';
+import {csv, raisedIn} from './words.js';
 
 // Okabe and Ito's colours, told apart without colour vision; marks and dashes differ, too.
 export const COLOURS = ['#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#000000'];
@@ -48,12 +48,23 @@ export function nothing(figure, text) {
 }
 
 // Ticks of a logarithmic axis: powers of ten; within two decades also their double and fivefold.
-export function ticks(values) {
+function ticks(values) {
   const low = Math.min(...values), high = Math.max(...values), decades = Math.log10(high / low);
   const step = Math.max(1, Math.ceil(decades / 7)), found = [];
   for (let k = Math.floor(Math.log10(low)); k <= Math.log10(high); k += step)
     for (const digit of decades < 2 ? [1, 2, 5] : [1]) found.push(Number(`${digit}e${k}`));
   return found.filter((tick) => tick >= low && tick <= high);
+}
+
+// 2.5×10³³ for 2.5e+33.
+const SHORT = "format(datum.value, '.4~g')";
+export const NUMBER = `!isNumber(datum.value) ? datum.value : !test(/e/, ${SHORT}) ? ${SHORT} : replace(replace(${SHORT}, /e.*/, '×10'), /^1×/, '') + ${raisedIn(`toNumber(replace(${SHORT}, /.*e/, ''))`)}`;
+const POWER = `'10' + ${raisedIn('round(log(datum.value) / LN10)')}`;
+
+// The ticks of a logarithmic axis, named by powers of ten or, within two decades, by numbers: never both.
+export function logAxis(values) {
+  const positive = values.filter((value) => value > 0);
+  return {values: ticks(positive), labelExpr: Math.max(...positive) / Math.min(...positive) < 100 ? NUMBER : POWER};
 }
 
 // A title in lines that fit into a figure.

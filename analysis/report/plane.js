@@ -1,13 +1,13 @@
 // The plane of two inputs, coloured by a quantity; or a line over one input. Cells are chosen by a click, a brush or keys,
 // or in the table of points.
 import {body, element, fill, select, table} from './elements.js';
-import {COLOURS, draw, nothing, scale, ticks, wrapped} from './chart.js';
+import {COLOURS, NUMBER, draw, logAxis, nothing, scale, wrapped} from './chart.js';
 import {listenToKeys, placesOf} from './keys.js';
 import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
 import {interval} from './statistics.js';
 import {ask, has, newest} from './stores.js';
-import {inUnit, isShare, label, marked, number, plural, raisedIn, shellFile, withInterval} from './words.js';
+import {inUnit, isShare, label, marked, number, plural, shellFile, withInterval} from './words.js';
 
 const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
 
@@ -30,14 +30,16 @@ const wordsOf = (doubt) => [...new Set(doubt?.words.split(/[, ]+/) ?? [])];
 const doubtText = ({doubt, n}) => (doubt ? `${doubt.doubtful} of ${plural(n ?? 0, 'run')}: ${wordsOf(doubt).join(', ')}` : 'none');
 
 // What the marks of these cells mean: how many runs, which conditions they break, and what to do.
-export function doubtSentence(from, rows) {
+export function doubtSentence(from, rows, quantity = state.quantity) {
   const doubtful = rows.filter((row) => row.doubt);
   if (doubtful.length === 0) return '';
-  const sentences = new Map(has(from, 'doubt_word') ? ask(from, questions.sentences).map((row) => [row.word, row.sentence]) : []);
+  const result = ` ${quantity === 'beta' ? 'mean_fragment_mass' : quantity.replace(/^result_[^_]+_/, '')} `;
+  const known = has(from, 'doubt_word') ? ask(from, questions.sentences).filter(({results}) => results === null || results.includes(result)) : [];
+  const sentences = new Map(known.map((row) => [row.word, `${row.withheld ? ' (withholds the value)' : ''}: ${row.sentence}`]));
   const sum = (of) => of.reduce((total, count) => total + (count ?? 0), 0);
   const words = [...new Set(doubtful.flatMap((row) => wordsOf(row.doubt)))];
   return ` !: in doubt, ${sum(doubtful.map((row) => row.doubt.doubtful))} of ${sum(rows.map((row) => row.n))} runs. ` +
-    words.map((word) => `${word}: ${sentences.get(word) ?? `clast explain ${word}`}.`).join(' ');
+    words.map((word) => `${word}${sentences.get(word) ?? `: clast explain ${word}`}.`).join(' ');
 }
 
 // Every point with the mean of the quantity, the half width of its interval over seeds, and the error that the
@@ -62,11 +64,7 @@ function placeOf(column, value) {
   return typeof value === 'number' ? Number(inUnit(state.stores, column, value).toPrecision(7)) : String(value);
 }
 
-// 2.5×10³³ for 2.5e+33.
-const SHORT = "format(datum.value, '.4~g')";
-const NUMBER = `!isNumber(datum.value) ? datum.value : !test(/e/, ${SHORT}) ? ${SHORT} : replace(replace(${SHORT}, /e.*/, '×10'), /^1×/, '') + ${raisedIn(`toNumber(replace(${SHORT}, /.*e/, ''))`)}`;
-
-const numbers = (values) => ({labelExpr: NUMBER, ...(scale(values).type === 'log' ? {values: ticks(values)} : {})});
+const numbers = (values) => (scale(values).type === 'log' ? logAxis(values) : {labelExpr: NUMBER});
 
 function axisOf(column, rows, title) {
   const values = [...new Set(rows.map((row) => row[column]))];
@@ -152,10 +150,10 @@ function planeSpec(rows, title) {
   const several = rows.length > new Set(rows.map((row) => JSON.stringify([row[state.x], row[state.y]]))).size;
   const layers = [{
     params: [{name: 'brush', select: {type: 'interval', encodings: ['x', 'y']}}],
-    mark: grid ? {type: 'rect', cursor: 'pointer'} : {type: 'point', filled: true, size: 120, cursor: 'pointer'},
+    mark: grid ? {type: 'rect', cursor: 'pointer'} : {type: 'point', filled: true, size: 120, opacity: 1, cursor: 'pointer'},
     encoding: {...place,
       color: {field: 'mean', type: 'quantitative', title: wrapped(title, document.getElementById('plane-chart')), scale: {scheme: 'cividis', zero: false}, legend: {orient: 'top', gradientLength: 220, titleLimit: 0}},
-      ...(grid ? {stroke: {value: 'white'}} : {stroke: {condition: {test: isChosen, value: '#D40000'}, value: 'white'}, strokeWidth: {condition: {test: isChosen, value: 4}, value: 1}}),
+      ...(grid ? {stroke: {value: 'white'}} : {stroke: {condition: {test: isChosen, value: '#D40000'}, value: '#606060'}, strokeWidth: {condition: {test: isChosen, value: 4}, value: 1}}),
       tooltip: tooltip([[state.x, label(state.stores, state.x)], [state.y, label(state.stores, state.y)]], title)},
   }];
   if (grid) // over the white lines of the neighbours
@@ -255,7 +253,7 @@ function commandOf() {
   return `clast plot ${from} plot.png -x ${state.x} -Q ${quantity}`;
 }
 
-const WHAT_ERRORS = 'The ± is the half width of the 95 % interval over seeds. It does not hold the error of the resolution';
+const WHAT_ERRORS = '±, which the table of points has too, is the half width of the 95 % interval over seeds. It does not hold the error of the resolution';
 function resolutionSentence(rows) {
   const studied = rows.filter((row) => row.resolution !== null);
   if (studied.length === 0) return `${WHAT_ERRORS}, which was not studied (clast converge).`;
@@ -267,7 +265,7 @@ export async function showPlane() {
   const title = label(state.stores, state.quantity);
   const rows = (plane.rows = data(state.quantity));
   const known = rows.filter((row) => row.mean !== null);
-  if (known.length === 0) return nothing(figure, 'No point has a value of this quantity.');
+  if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${doubtSentence(store(), rows)}`);
   const caption = `${title}: mean over the runs of each point. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${doubtSentence(store(), rows)}`;
   if (!state.x) {
     nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows)}${doubtSentence(store(), rows)}`);

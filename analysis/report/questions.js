@@ -48,7 +48,9 @@ export const doubts = `SELECT point_id, sum(runs) AS doubtful, sum(runs * withhe
   FROM doubt JOIN doubt_mark USING (engine, words) WHERE quantity = :quantity GROUP BY point_id`;
 export const doubtsOfRuns = (doubtful) => `SELECT point_id, count(*) AS doubtful, 0 AS withheld, group_concat(DISTINCT warnings) AS words
   FROM runs WHERE counts AND ${doubtful} GROUP BY point_id`;
-export const sentences = `SELECT word, min(sentence) AS sentence FROM doubt_word JOIN (SELECT DISTINCT engine FROM doubt) USING (engine) GROUP BY word`;
+// Of the results that rest on it, or of all of them; those that withhold a value come last.
+export const sentences = `SELECT word, sentence, ' ' || replace(results, '.', '_') || ' ' AS results, withheld FROM doubt_word
+  JOIN (SELECT DISTINCT engine FROM doubt) USING (engine) ORDER BY withheld, sentence DESC`;
 export const marks = 'SELECT engine, words FROM doubt_mark WHERE quantity = :quantity';
 
 export const modes = `SELECT point_id, lower_mode, upper_mode, upper_share, upper_low, upper_high FROM modes

@@ -16,7 +16,7 @@ function columnsOf(from) {
 function pictureOf(row) {
   const place = row.quantile === 0 ? 'least' : row.quantile === 1 ? 'largest' : 'median';
   return element('figure', {}, element('img', {src: URL.createObjectURL(new Blob([row.png], {type: 'image/png'})), alt: `The broken body of run ${row.run_id}`}),
-    element('figcaption', {}, `Run ${row.run_id}: ${place} ${label(state.stores, store().facts.default_quantity ?? '')} of its point`));
+    element('figcaption', {}, `Run ${row.run_id}: ${place} ${label(state.stores, store().facts.pictures_by ?? '')} of its point`));
 }
 
 function showRun(id) {

@@ -41,7 +41,11 @@ export async function showSeeds() {
   if (!from.runColumns.has(quantity))
     return nothing(figure, quantity === 'beta' ? 'An exponent belongs to all runs of a point together: choose another quantity.' : 'Single runs of this quantity are not on this page (see "left out here").');
   const samples = chosenPoints().map((point) => ({point, name: nameOf(from, point), values: valuesOf(from, point, quantity)})).filter((sample) => sample.values.length);
-  if (samples.length === 0) return nothing(figure, 'No run of the chosen points is on this page.');
+  if (samples.length === 0) {
+    const kept = chosenPoints().some((point) => ask(from, questions.values('run_id'), {point: point.point_id}).length);
+    return nothing(figure, kept ? `No run of the chosen points has a value of this quantity.${doubtSentence(from, cells(from, quantity).filter((cell) => state.chosen.has(cell.point_id)))}`
+      : 'No run of the chosen points is on this page.');
+  }
   const apart = samples.length <= COLOURS.length;
   const drawn = apart ? samples : [{name: 'all chosen points', values: samples.flatMap((sample) => sample.values)}];
   const all = drawn.flatMap((sample) => sample.values), title = label(state.stores, quantity), step = stepOf(drawn);

@@ -1,15 +1,12 @@
 // The fragment mass spectrum of the chosen points with its band and the fitted power law: each point for itself, or all
 // of them together when they are too many to be told apart.
-import {COLOURS, DASHES, SHAPES, draw, nothing, ticks} from './chart.js';
+import {COLOURS, DASHES, SHAPES, draw, logAxis, nothing} from './chart.js';
 import * as questions from './questions.js';
 import {chosenPoints, state, store} from './state.js';
 import {cells, doubtSentence} from './plane.js';
 import {pool} from './statistics.js';
 import {ask, has, newest} from './stores.js';
-import {inUnit, marked, number, plural, raisedIn, shellFile, unitOf, withError} from './words.js';
-
-// 10³ at a power of ten, and plain digits beside it.
-const POWERS = `abs(log(datum.value) / LN10 - round(log(datum.value) / LN10)) < 1e-9 ? '10' + ${raisedIn('round(log(datum.value) / LN10)')} : format(datum.value, '.1~r')`;
+import {inUnit, marked, number, plural, shellFile, unitOf, withError} from './words.js';
 
 export const inputsOf = (from, point) => from.axes.map((axis) => `${axis.path.split('.').pop()} ${number(inUnit(state.stores, axis.column_name, point[axis.column_name]))}${unitOf(state.stores, axis.column_name)}`).join(', ');
 
@@ -90,8 +87,8 @@ export async function showSpectrum() {
     return nothing(figure, chosenPoints().length ? 'No spectrum of the chosen points is on this page (see "left out here").' : 'Choose a point.');
   const rows = drawn.flatMap(bandOf), fits = drawn.map(fitOf), complete = completeMass(drawn[0].from, drawn[0].points);
   const names = drawn.map((curve) => curve.name), kg = drawn[0].from.facts.mass_unit ?? 'kg';
-  const x = {field: 'mass', type: 'quantitative', scale: {type: 'log', nice: false}, title: `fragment mass m (${kg})`, axis: {labelExpr: POWERS, values: ticks(rows.map((row) => row.mass))}};
-  const y = (field) => ({field, type: 'quantitative', scale: {type: 'log'}, title: `F(m), fragments per run and ${kg}`, axis: {labelExpr: POWERS, tickCount: 6}});
+  const x = {field: 'mass', type: 'quantitative', scale: {type: 'log', nice: false}, title: `fragment mass m (${kg})`, axis: logAxis(rows.map((row) => row.mass))};
+  const y = (field) => ({field, type: 'quantitative', scale: {type: 'log'}, title: `F(m), fragments per run and ${kg}`, axis: logAxis(rows.flatMap((row) => [row.low, row.high]))});
   const legend = drawn.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null;
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend};
   const layer = [
@@ -108,7 +105,7 @@ export async function showSpectrum() {
   const told = drawn.map((curve, i) => marked(`${curve.name}${fits[i] ? `: ${fits[i].text}` : ''}`, of(curve).some((cell) => cell.doubt) && {withheld: 0})).join('; ');
   await draw(figure, {data: {values: rows}, height: 340, layer}, {
     name: 'spectrum', description: `Fragment mass spectrum of ${told}`,
-    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood; p (clast exponents): below 0.1 a power law does not fit.${complete ? ` Pale marks: below ${number(complete, 2)} ${kg} fragments are missing (too few particles or grains).` : ''}${doubtSentence(drawn[0].from, drawn.flatMap(of))}`,
+    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood; p (clast exponents): below 0.1 a power law does not fit.${complete ? ` Pale marks: below ${number(complete, 2)} ${kg} fragments are missing (too few particles or grains).` : ''}${doubtSentence(drawn[0].from, drawn.flatMap(of), 'beta')}`,
     command: commandOf(drawn),
     columns: ['point', 'lower_kg', 'upper_kg', 'fragments', 'density', 'density_hw95'],
     rows: rows.map((row) => [row.name, row.lower, row.upper, row.count, row.density, row.hw95]),

@@ -33,8 +33,29 @@ struct making {
   size_t picture_bytes, not_drawn;
 };
 
+/* The column of the main quantity of the newest campaign that a person wrote; else M_1/M. */
+static status main_quantity(struct store *store, char column[ASK_GROUP_NAME], struct error *error) {
+  snprintf(column, ASK_GROUP_NAME, "%s", OUTCOME_DEFAULT);
+  ANSWER campaigns = ask_campaign_documents(store, error);
+  while (answer_next(&campaigns)) {
+    const char *text = answer_text(&campaigns, 2);
+    struct document *document = NULL;
+    char name[ASK_GROUP_NAME];
+    if (strncmp(text, "# Written by clast", 18) == 0 ||
+        document_parse(answer_text(&campaigns, 1), text, strlen(text), &document, NULL))
+      continue;
+    document_node *quantity = document_key(document_root(document), "quantity");
+    const char *word = quantity ? document_scalar(quantity) : OUTCOME_DEFAULT;
+    if (word && ask_group_quantity(store, word, name, NULL) == STATUS_OK)
+      snprintf(column, ASK_GROUP_NAME, "%s", name);
+    document_free(document);
+  }
+  return answer_end(&campaigns);
+}
+
 static status add_facts(struct making *making, const char *name, struct error *error) {
-  char now[32], refresh[32];
+  char now[32], refresh[32], quantity[ASK_GROUP_NAME];
+  TRY(main_quantity(making->store, quantity, error));
   const time_t seconds = time(NULL);
   strftime(now, sizeof now, "%Y-%m-%d %H:%M:%S UTC", gmtime(&seconds));
   snprintf(refresh, sizeof refresh, "%lld", (long long)making->choice->refresh);
@@ -44,7 +65,8 @@ static status add_facts(struct making *making, const char *name, struct error *e
                             {"mass_unit", ask_pool_mass_unit(dimensions)},
                             {"made_at", now},
                             {"program", "clast " BUILD_VERSION ", commit " BUILD_COMMIT},
-                            {"default_quantity", OUTCOME_DEFAULT},
+                            {"default_quantity", quantity},
+                            {"pictures_by", OUTCOME_DEFAULT},
                             {"refresh", refresh},
                             {"chosen", ask_chosen(making->store)}};
   for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)

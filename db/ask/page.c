@@ -384,14 +384,16 @@ static status add_mark(struct reading *reading, const struct answer *words, cons
 
 static status add_sentences(struct reading *reading, struct error *error) {
   STATEMENT insert = NULL;
-  TRY(sql_prepare(reading->page->store.db, "INSERT INTO doubt_word VALUES (?1, ?2, ?3)", &insert, doing, error));
+  TRY(sql_prepare(reading->page->store.db, "INSERT INTO doubt_word VALUES (?1, ?2, ?3, ?4, ?5)", &insert, doing,
+                  error));
   for (size_t e = 0; e < engine_count(); e++)
     for (const struct condition *c = engine_at(e)->conditions; c && c->word; c++) {
       char says[CONDITION_SAYS];
       OWNED char *text = NULL;
       if (asprintf(&text, "%s: %s; %s", condition_says(c, says), c->doubt, c->remedy) < 0)
         memory_refused();
-      SQL_BIND(insert, sql_of_text(engine_at(e)->name), sql_of_text(c->word), sql_of_text(text));
+      SQL_BIND(insert, sql_of_text(engine_at(e)->name), sql_of_text(c->word), sql_of_text(text),
+               sql_of_text(c->results), sql_of_integer(c->withheld));
       TRY(sql_run(insert, doing, error));
     }
   return STATUS_OK;
@@ -401,7 +403,7 @@ static status add_doubts(struct reading *reading, struct store *store, struct er
   TRY(ask_register_functions(&reading->page->store, error));
   TRY(sql_execute(reading->page->store.db,
                   "CREATE TABLE doubt_mark (engine, words, quantity, marks, withheld);"
-                  "CREATE TABLE doubt_word (engine, word, sentence)",
+                  "CREATE TABLE doubt_word (engine, word, sentence, results, withheld)",
                   doing, error));
   TRY(copy(
       reading->page,

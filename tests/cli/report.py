@@ -264,6 +264,9 @@ def loads_again(browser):
         db.deserialize(gzip.decompress(base64.b64decode(data)))
         db.execute("UPDATE fact SET value = '1' WHERE name = 'refresh'")
         db.execute("INSERT INTO modes VALUES (3, 'broken', 20, 60, 40, 0.25, 0.1, 0.5)")
+        db.execute("INSERT INTO doubt VALUES (3, 'sph', 'box', 3)")
+        db.execute("INSERT INTO doubt_mark VALUES ('sph', 'box', 'largest_fraction', 'box', 1)")
+        db.execute("UPDATE runs SET largest_fraction = NULL")
         db.commit()
         changed = base64.b64encode(gzip.compress(db.serialize())).decode()
     with open("again.html", "w", encoding="utf-8") as file:
@@ -277,6 +280,9 @@ def loads_again(browser):
     browser.until("document.querySelector('#plane-chart svg')?.textContent.split('◆').length === 2"
                   " && document.querySelector('#points').textContent.includes('two: 20 and 60')")
     done("two modes of a result that is no main one are marked")
+    browser.open("again.html", "#points=3")
+    browser.until("/has a value of this quantity. .*box .withholds the value.: /.test(document.querySelector('#seeds')?.textContent)")
+    done("values that are withheld are told with their reason")
     done("a page of a running campaign loads itself again, and keeps what was chosen")
 
 

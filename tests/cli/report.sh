@@ -28,7 +28,7 @@ says "apt-get install nodejs npm"
 
 # The goodness of fits is that of clast exponents.
 tiny fits
-sed -i 's/per_point: 3/per_point: 20/' fits.yaml
+sed -i 's/per_point: 3/per_point: 20/; $a quantity: fragment_count' fits.yaml
 expect 0 "$clast" run fits.yaml -j 2 --quiet
 expect 0 "$clast" report fits.db
 expect 0 "$clast" exponents fits.db --draws 1000 --json
@@ -37,6 +37,7 @@ import base64, gzip, json, re, sqlite3
 (text,) = re.findall(r'class="store">([^<]*)<', open('fits.html').read())
 db = sqlite3.connect(':memory:')
 db.deserialize(gzip.decompress(base64.b64decode(text)))
+assert db.execute("select value from fact where name = 'default_quantity'").fetchone() == ('fragment_count',)
 page = dict(db.execute('select point_id, p from goodness'))
 table = {row['point_id']: row['p'] for row in json.load(open('out')) if row['p'] is not None}
 assert table and {point: p for point, p in page.items() if p is not None} == table, (page, table)
