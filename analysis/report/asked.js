@@ -21,7 +21,7 @@ function varied(store) {
     const numbers = values.filter((value) => typeof value === 'number').sort((a, b) => a - b);
     const shown = values.length <= 8 ? values.map((value) => number(value)).join(', ')
       : `${values.length} values from ${number(numbers[0])} to ${number(numbers[numbers.length - 1])}`;
-    const path = element('span', {class: 'path'}, ...axis.path.split(/(?<=\.)/).flatMap((part) => [element('wbr'), part])); // lines end between its words
+    const path = element('span', {}, ...axis.path.split(/(?<=\.)/).flatMap((part) => [element('wbr'), part])); // lines end between its words
     return [path, shown, unitOf([store], axis.column_name), axis.meaning];
   });
 }
