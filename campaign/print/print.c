@@ -218,7 +218,7 @@ static status print_for_people(const struct scene *scene, const char *reference,
     return table_flush(stdout, error);
   }
   TRY(ask_resolution(NULL, 0, OUTCOME_DEFAULT, &resolution, error));
-  snprintf(resolution.scene, sizeof resolution.scene, "%.127s", reference);
+  snprintf(resolution.command, sizeof resolution.command, "%.199s", reference);
   uncertainty_resolution(&resolution, text);
   printf("errors: one run alone has no interval; `clast run` with several seeds gives one\n%s\n", text);
   if (format == TABLE_ALL) {

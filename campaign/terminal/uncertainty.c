@@ -95,10 +95,10 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
   text[0] = '\0';
   switch (resolution->verdict) {
   case ASK_RESOLUTION_NOT_STUDIED:
-    snprintf(text, UNCERTAINTY_TEXT, "resolution: not studied; `clast converge %s` measures it", resolution->scene);
+    snprintf(text, UNCERTAINTY_TEXT, "resolution: not studied; `clast converge %s` measures it", resolution->command);
     return;
   case ASK_RESOLUTION_DIVERGES:
-    snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (`clast converge %s`)", resolution->scene);
+    snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (`clast converge %s`)", resolution->command);
     return;
   case ASK_RESOLUTION_KNOWN:
   case ASK_RESOLUTION_AT_LEAST: break;
@@ -113,7 +113,7 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
               resolution->knobs);
   if (resolution->studied < resolution->points)
     text_append(text, UNCERTAINTY_TEXT, "; studied at %lld of %lld points, `clast converge %s` studies others",
-                (long long)resolution->studied, (long long)resolution->points, resolution->scene);
+                (long long)resolution->studied, (long long)resolution->points, resolution->command);
 }
 
 void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double half_width, char text[UNCERTAINTY_TEXT]) {

@@ -289,27 +289,45 @@ enum ask_resolution_verdict ask_resolution_verdict(const char *verdict) {
   return ASK_RESOLUTION_NOT_STUDIED;
 }
 
+/* What `clast converge` takes so that its levels belong to these points: the file or the scene that computed them, with
+ * the inputs and the store of that command line. A campaign is preferred to a study of one of its points. */
+static status find_command(struct store *store, long long id, const char *quantity, struct ask_resolution *out,
+                           struct error *error) {
+  ANSWER found = answer_to(
+      store, error,
+      "SELECT DISTINCT json_extract(facts, '$.command[1]') AS verb, (SELECT group_concat(iif(value GLOB "
+      "'*[^-A-Za-z0-9_./=,:%%+]*', '''' || replace(value, '''', '''\\''''') || '''', value), ' ') FROM "
+      "json_each(facts, "
+      "'$.command') WHERE key = json_array_length(facts, '$.command') - 1 OR value GLOB '--set=*' OR value GLOB "
+      "'--store=*' OR value IN ('-s', '--set', '--store') OR json_extract(facts, '$.command[' || max(key - 1, 0) || "
+      "']') IN "
+      "('-s', '--set', '--store')) FROM session WHERE verb IN ('run', 'converge') AND (%lld = 0 OR campaign_id IN "
+      "(SELECT campaign_id FROM campaign_point WHERE point_id = %lld)) ORDER BY verb DESC LIMIT 2",
+      id, id);
+  char verb[16] = "", command[512] = "";
+  while (answer_next(&found) && strcmp(answer_text(&found, 0), verb) >= 0) {
+    snprintf(command, sizeof command, "%s -Q %s", *verb ? "" : answer_text(&found, 1), quantity);
+    snprintf(verb, sizeof verb, "%s", answer_text(&found, 0));
+  }
+  if (*command > ' ' && strlen(command) < sizeof out->command)
+    snprintf(out->command, sizeof out->command, "%s", command);
+  text_make_plain(out->command, "");
+  return answer_end(&found);
+}
+
 status ask_resolution(struct store *store, int64_t point_id, const char *quantity, struct ask_resolution *out,
                       struct error *error) {
   *out = (struct ask_resolution){.verdict = ASK_RESOLUTION_NOT_STUDIED,
                                  .half_width = NAN,
                                  .distance = NAN,
                                  .distance_half_width = NAN,
-                                 .scene = "SCENE"};
+                                 .command = "CAMPAIGN.yaml"};
   if (!store)
     return STATUS_OK;
   const long long id = point_id;
   quantity = estimates_short_name(quantity);
 
-  ANSWER scenes = answer_to(store, error,
-                            "SELECT count(DISTINCT scene_name), min(scene_name) FROM point WHERE %lld IN (0, "
-                            "point_id)",
-                            id);
-  if (answer_next(&scenes) && answer_integer(&scenes, 0) == 1 && answer_value(&scenes, 1).kind == QUERY_TEXT)
-    snprintf(out->scene, sizeof out->scene, "%s",
-             scene_builtin_text(answer_text(&scenes, 1)) ? answer_text(&scenes, 1) : "SCENE.yaml"); /* its file */
-  text_make_plain(out->scene, "");
-  TRY(answer_end(&scenes));
+  TRY(find_command(store, id, quantity, out, error));
 
   ANSWER found = answer_to(
       store, error,

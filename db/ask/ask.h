@@ -177,8 +177,8 @@ struct ask_resolution {
   double distance, distance_half_width; /* of the mean to its limit (mean less limit), of one point; NaN: not known */
   int64_t points, studied;              /* requested points with runs, and how many of them were studied */
   char knobs[128]; /* settings studied: "particles, time_step"; other settings may also change the quantity */
-  char scene[128]; /* the scene that was studied, or needs a study; "SCENE" when the store has several scenes,
-                      "SCENE.yaml" for one from a file */
+  char command[200]; /* what `clast converge` takes to study these points: "impact.yaml --store other.db -Q broken";
+                        "CAMPAIGN.yaml" when several campaigns made them */
 };
 
 /* "not-studied", "known", "at-least", "diverges": as in the views. */

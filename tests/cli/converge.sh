@@ -242,6 +242,17 @@ YAML
 expect 0 "$clast" converge file.yaml --knob grains=1.8cm,1.4cm --seeds 2 --within off -j 2
 says "8 runs computed"
 
+# The advice of a table that was not studied can be typed: its study belongs to these points.
+tiny advised
+expect 0 "$clast" run advised.yaml --quiet --set charge.energy='3 kJ/m' --store 'its store.db' -j 2
+expect 0 "$clast" stats 'its store.db'
+advice=$(tr '\n' ' ' <err | grep -o '`clast converge [^`]*` measures it')
+same "$advice" '`clast converge --set '\''charge.energy=3 kJ/m'\'' --store '\''its store.db'\'' advised.yaml -Q largest_fraction` measures it'
+advice=${advice#*clast } advice=${advice%\`*}
+eval "expect 0 \"\$clast\" $advice --knob time_step --seeds 2 --within off -j 2"
+expect 0 "$clast" stats 'its store.db'
+says "resolution: time_step"
+
 # Time that is spent before the first run ends the study.
 expect 64 timeout -k 1 30 "$clast" converge "${disc[@]}" --knob time_step --seconds 1e-9 --store spent.db -j 2
 says "too short for"; one_error
@@ -256,4 +267,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 66
+done_after 71

@@ -19,7 +19,9 @@ static struct store *fill(char path[64], int64_t *point) {
   struct scene scene = fixture_scene(&inputs, 9, 1e33);
   int64_t campaign, session;
   OK(store_add_campaign(store, "c", "text", "{}", &campaign, &error));
-  OK(store_begin_session(store, "{}", &session, &error));
+  OK(store_begin_session(store, "{\"command\": [\"clast\", \"run\", \"-j\", \"2\", \"-s\", \"a=8 cm\", \"c.yaml\"]}",
+                         &session, &error));
+  OK(store_set_session(store, session, campaign, &error));
   OK(store_add_point(store, campaign, &scene, 2, fixture_axes, point, &error));
   for (int64_t r = RUNS - 1; r >= 0; r--) { /* added in another order than that of replicates */
     struct fixture_run f;
@@ -47,9 +49,8 @@ static double number_of(struct store *store, const char *format, ...) {
   return number(store, sql);
 }
 
-/* A study of the resolution uses the point's own scene. One that is not built in came from a file, whose name the store
- * does not have. */
-static void resolution_names_the_scene(void **state) {
+/* A study of the resolution uses the campaign that made the point, with its inputs. */
+static void resolution_names_the_campaign(void **state) {
   (void)state;
   char path[64];
   int64_t id;
@@ -58,9 +59,9 @@ static void resolution_names_the_scene(void **state) {
   OK(ask_resolution(store, id, "largest_fraction", &found, &error));
   assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
   assert_true(isnan(found.half_width));
-  assert_string_equal(found.scene, "SCENE.yaml");
+  assert_string_equal(found.command, "-s 'a=8 cm' c.yaml -Q largest_fraction");
   OK(ask_resolution(store, id + 1, "largest_fraction", &found, &error));
-  assert_string_equal(found.scene, "SCENE");
+  assert_string_equal(found.command, "CAMPAIGN.yaml");
   OK(store_close(store, &error));
 }
 
@@ -358,6 +359,6 @@ int main(void) {
                                      cmocka_unit_test(pairs_of_points),
                                      cmocka_unit_test(methods_of_older_stores),
                                      cmocka_unit_test(pairs_of_exponents),
-                                     cmocka_unit_test(resolution_names_the_scene)};
+                                     cmocka_unit_test(resolution_names_the_campaign)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

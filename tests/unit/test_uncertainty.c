@@ -37,7 +37,7 @@ static void resolution(void **state) {
   char text[UNCERTAINTY_TEXT];
   struct ask_resolution found;
   assert_int_equal(ask_resolution(NULL, 0, "largest_fraction", &found, NULL), STATUS_OK);
-  snprintf(found.scene, sizeof found.scene, "basalt-sphere");
+  snprintf(found.command, sizeof found.command, "basalt-sphere");
   uncertainty_resolution(&found, text);
   assert_string_equal(text, "resolution: not studied; `clast converge basalt-sphere` measures it");
   found.verdict = ASK_RESOLUTION_KNOWN;
