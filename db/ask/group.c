@@ -42,10 +42,22 @@ struct choice { /* possible meanings of a word */
   size_t matches;
   bool exact;
   char near[NAME], known[4096], matching[1024];
+  char alike[512]; /* names with a word of it, of many the first ones */
+  int similar;
 };
 
 static void append(char *list, size_t size, const char *name) {
   text_append(list, size, "%s%s", *list ? ", " : "", name);
+}
+
+/* Has `name` one of the words of `wanted`, such as "mass" of mass_largest? */
+static bool is_alike(const char *name, const char *wanted) {
+  char words[NAME], *rest = words;
+  snprintf(words, sizeof words, "%s", wanted);
+  for (const char *word; (word = strsep(&rest, "._ "));)
+    if (strlen(word) > 2 && strstr(name, word))
+      return true;
+  return false;
 }
 
 static void consider(struct choice *choice, const char *column, const char *path) {
@@ -56,6 +68,8 @@ static void consider(struct choice *choice, const char *column, const char *path
     choice->guess.nearest = choice->near;
   }
   append(choice->known, sizeof choice->known, name);
+  if (is_alike(name, choice->wanted) && choice->similar++ < NAMED)
+    append(choice->alike, sizeof choice->alike, name);
   bool exact = strcmp(column, choice->wanted) == 0 || (path && strcmp(path, choice->wanted) == 0);
   if (choice->exact || !(exact || ends_in(column, choice->wanted) || (path && ends_in(path, choice->wanted)) ||
                          (path && choice->sections && is_section(path, choice->wanted))))
@@ -91,7 +105,8 @@ static status look_for(struct store *store, const char *columns_sql, const char 
   for (size_t i = 0; choice->matches == 0 && i < sizeof forms / sizeof forms[0]; i++) {
     choice->wanted = forms[i];
     choice->sections = i + 1 == sizeof forms / sizeof forms[0];
-    choice->known[0] = '\0';
+    choice->known[0] = choice->alike[0] = '\0';
+    choice->similar = 0;
     ANSWER answer = answer_to(store, error, "%s", columns_sql);
     while (answer_next(&answer))
       consider(choice, answer_text(&answer, 0), answer_count(&answer) > 1 ? answer_text(&answer, 1) : NULL);
@@ -107,6 +122,9 @@ static status judge(const struct choice *choice, const char *what, const char *n
     return status_fail(error, STATUS_USAGE, "%s '%s' is ambiguous: it may be %s.", what, name, choice->matching);
   if (choice->near[0])
     return status_fail(error, STATUS_USAGE, "%s '%s' is unknown; did you mean '%s'?", what, name, choice->near);
+  if (strcmp(what, "Quantity") == 0) /* of a hundred */
+    return status_fail(error, STATUS_USAGE, "Quantity '%s' is unknown%s%s; `clast explain results` lists all.", name,
+                       *choice->alike ? ". Similar are: " : "", choice->alike);
   return status_fail(error, STATUS_USAGE, "%s '%s' is unknown. Known are: %s.", what, name,
                      choice->known[0] ? choice->known : "none");
 }

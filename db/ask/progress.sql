@@ -37,9 +37,7 @@ FROM campaign LEFT JOIN done USING (campaign_id) LEFT JOIN tried USING (campaign
 WHERE :earlier OR NOT EXISTS (SELECT 1 FROM campaign AS later WHERE later.name = campaign.name AND later.campaign_id > campaign.campaign_id
     AND NOT EXISTS (SELECT 1 FROM campaign_point AS p WHERE p.campaign_id = campaign.campaign_id
       AND p.point_id NOT IN (SELECT point_id FROM campaign_point AS q WHERE q.campaign_id = later.campaign_id))))
-SELECT CASE WHEN count(*) = 1 THEN campaign WHEN max(campaign) - min(campaign) = count(*) - 1
-  THEN min(campaign) || ' .. ' || max(campaign) ELSE min(campaign) || ' and ' || (count(*) - 1) || ' more' END
-  AS campaign, name, state,
+SELECT iif(count(*) = 1, campaign, NULL) AS campaign, name, state, -- of several, the name is what --campaign takes
   sum(points) AS points, sum(runs) AS runs, sum(counted) AS counted, sum(censored) AS censored, sum(failed) AS failed,
   sum(surplus) AS surplus, sum(excluded) AS excluded, sum(failed_attempts) AS failed_attempts,
   sum(without_result) AS without_result, sum(cpu_time) AS cpu_time, min(last_started) AS last_started,

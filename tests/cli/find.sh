@@ -23,6 +23,9 @@ ok "the first line answers"
 grep -oE '[0-9.]+ ± [0-9.]+' out | awk '$1 - $3 < 0 || $1 + $3 > 1 { exit 1 }' || fail "an interval of a share beyond 0 or 1"
 says "at most 400 runs"; says "resolution: not studied"; prints "share above 0.5"
 runs=$(number disc.db "select count(*) from run")
+expect 0 "$clast" status disc.db # its rounds are one row, with a name that can be typed
+grep -q '^ *-  disc find threshold.strain ' out || fail "the rounds are no row of their name"
+expect 0 "$clast" stats disc.db --campaign 'disc find threshold.strain'
 expect 0 "$clast" find "${search[@]}" -j 2 --json
 says "0 runs computed"; says "$runs found in the store"
 cp out one.json
@@ -118,4 +121,4 @@ expect 64 "$clast" find two.yaml --level 0.5 --input strain
 says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
 expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
 prints "The mean of largest_fraction"
-done_after 34
+done_after 36
