@@ -110,9 +110,9 @@ void uncertainty_distance(double distance, double half_width, char text[UNCERTAI
 void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_TEXT]);
 
 /* "0.03 ± 0.02 below its limit (resolution: particles)", "± 0.06 (resolution: particles)", "up to ± 0.06
- * (resolution: particles); studied at 2 of 9 points, `clast converge CAMPAIGN.yaml` studies others", "± 0.06 or more
- * (resolution: particles)", "resolution: not studied; `clast converge CAMPAIGN.yaml` measures it", or "resolution: does not
- * converge (`clast converge CAMPAIGN.yaml`)". The knobs are those that were studied. */
+ * (resolution: particles); studied at 2 of 9 points, `clast converge COMMAND` studies others", "± 0.06 or more
+ * (resolution: particles)", "resolution: not studied; `clast converge COMMAND` measures it", or "resolution: does not
+ * converge (`clast converge COMMAND`)". The knobs are those that were studied. */
 void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]);
 
 /* The same for the cell of a table: "0.06", ">= 0.06", "diverges", or "not studied". */
