@@ -113,6 +113,29 @@ static void cost_follows_the_options(void **state) {
   assert_true(sph_engine.memory(&corrected) > sph_engine.memory(&plain));
 }
 
+/* Steps that a run makes, over those that its cost was estimated with. */
+static double steps_over_estimate(const struct sph_inputs *in) {
+  const struct ran ran = run_case_run(&sph_engine, in, 1);
+  free(ran.fragments);
+  return (double)ran.outcome.steps * in->stop.end_time / ran.outcome.time * sph_derived_particles(in) /
+         sph_engine.work(in);
+}
+
+/* At rest the Courant limit is exact. Closed pores and a fast projectile count; the largest distention step does not.
+ */
+static void steps_are_as_estimated(void **state) {
+  (void)state;
+  const struct sph_inputs bar = SPH_CASE("elastic-bar", "fidelity.particles=300"),
+                          steel = SMALL("fidelity.particles=2000", "fidelity.projectile_spacing=0.4",
+                                        "projectile.material.name=steel", "impact.speed=1 km/s", "stop.end_time=20 us"),
+                          porous = SPH_CASE("porous-target", "fidelity.particles=1000",
+                                            "fidelity.projectile_spacing=0.5", "stop.end_time=0.1 ms");
+  const double of_bar = steps_over_estimate(&bar), of_steel = steps_over_estimate(&steel),
+               of_porous = steps_over_estimate(&porous);
+  if (!(fabs(of_bar - 1) < 0.01 && of_steel > 0.8 && of_steel < 1.2 && of_porous > 0.8 && of_porous < 1.2))
+    fail_msg("%g %g %g", of_bar, of_steel, of_porous);
+}
+
 static void impact_starts_as_described(void **state) {
   (void)state;
   struct sph_inputs inputs = SMALL(NULL);
@@ -304,6 +327,7 @@ int main(void) {
       cmocka_unit_test(builtin_scenes_say_what_they_model),
       cmocka_unit_test(flaws_are_described),
       cmocka_unit_test(cost_follows_the_options),
+      cmocka_unit_test(steps_are_as_estimated),
       cmocka_unit_test(impact_starts_as_described),
       cmocka_unit_test(stretch_and_vibration_start),
       cmocka_unit_test(chunks_and_restarts_do_not_matter),

@@ -71,11 +71,24 @@ size_t sph_describe_memory(const void *inputs) {
   return bytes < 1e18 ? (size_t)bytes : SIZE_MAX / 2;
 }
 
+/* m/s: the Courant limit of a body at rest (modules/motion.h) times its spacing. Closed pores bring its particles
+ * nearer to each other. */
+static double signal_expected(const struct sph_inputs *in, const struct sph_body_inputs *body) {
+  struct sph_material solid = body->material;
+  solid.palpha.curve = SPH_CRUSH_NONE;
+  return cbrt(sph_material_solid_ratio(&body->material)) *
+         (sph_material_longitudinal_speed(&solid, body->strength) +
+          0.6 * in->viscosity.alpha * sph_material_longitudinal_speed(&solid, false));
+}
+
 static double steps_expected(const struct sph_inputs *in) {
-  double h = sph_derived_smallest_spacing(in) * in->fidelity.smoothing;
-  double blow = in->kind == SPH_IMPACT ? 0.25 * in->impact.speed
-                                       : 0; /* waves in compressed matter are faster than at rest */
-  return in->stop.end_time / (in->fidelity.cfl * h / (1.5 * sph_derived_wave_speed(&in->target) + blow));
+  const double spacing = sph_derived_fine_spacing(in), finest = sph_derived_smallest_spacing(in);
+  double per_spacing = signal_expected(in, &in->target) / spacing; /* 1/s */
+  if (sph_derived_has_projectile(in))
+    per_spacing = fmax(per_spacing, signal_expected(in, &in->projectile) / (spacing * in->fidelity.projectile_spacing));
+  if (in->kind == SPH_IMPACT) /* waves in compressed matter are faster than at rest */
+    per_spacing += 0.25 * in->impact.speed / finest;
+  return in->stop.end_time * per_spacing / (in->fidelity.cfl * in->fidelity.smoothing);
 }
 
 /* Particle-steps of one core in a second. */
