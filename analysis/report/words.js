@@ -17,23 +17,28 @@ export function number(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
-// Decimals that an error allows: one digit of it, two after a leading 1. Below 0: of numbers that are shown by powers.
-function decimals(mean, half) {
-  const leading = Math.floor(Math.log10(half)), last = half < 2 * 10 ** leading ? leading - 1 : leading;
-  return Math.abs(mean) < 1e5 && half >= 1e-6 ? Math.max(0, -last) : -1;
+// The digits of tables (campaign/terminal/uncertainty.c): one digit of the error, two after a leading 1.
+function lastDecade(half) {
+  const leading = Math.floor(Math.log10(half));
+  return half < 2 * 10 ** leading ? leading - 1 : leading;
 }
 
+const fixed = (value, places) => (places === 0 && Math.abs(value % 1) === 0.5 ? 2 * Math.round(value / 2) : value).toFixed(places); // 2.5 is 2
+
 export function withError(mean, half) {
-  if (half === null || half === undefined) return number(mean);
-  const places = half > 0 && typeof mean === 'number' ? decimals(mean, half) : -1;
-  return places < 0 ? `${number(mean)} ± ${number(half, 2)}` : `${mean.toFixed(places)} ± ${half.toFixed(places)}`;
+  if (!(half > 0) || typeof mean !== 'number') return number(mean);
+  const decade = lastDecade(half), last = mean !== 0 && Math.abs(mean) < 0.5 * 10 ** decade ? decade - 1 : decade;
+  if (Math.abs(last) > 15 || Math.abs(mean) >= 1e15) return `${number(mean)} ± ${number(half, 2)}`;
+  const shown = (value) => (last > 0 ? String(10 ** last * Math.round(value / 10 ** last)) : fixed(value, -last));
+  return `${shown(mean)} ± ${shown(half)}`;
 }
 
 // A mean with its interval; of equal shares, what they bound.
 export function withInterval({mean, hw95, low95, high95, weak}) {
   if (hw95 === null && typeof low95 === 'number') return `${number(mean)} (all equal: ${number(low95, 3)} to ${number(high95, 3)})`;
   const cut = typeof low95 === 'number' && hw95 > 0 && (low95 - (mean - hw95) > 1e-6 || mean + hw95 - high95 > 1e-6);
-  const told = cut ? `${number(mean, 2)} (${number(low95, 2)} to ${number(high95, 2)})` : withError(mean, hw95); // a share
+  const last = cut && lastDecade(Math.max(high95 - mean, mean - low95)), places = mean < 2 * 10 ** last ? 1 - last : -last;
+  const told = cut ? `${fixed(mean, places)} (${low95 > 0 ? fixed(low95, places) : 0} to ${high95 < 1 ? fixed(high95, places) : 1})` : withError(mean, hw95); // a share
   return told + (weak ? ' (weak)' : '');
 }
 

@@ -61,6 +61,21 @@ for (const {share, n, mean, sd, ...want} of rows)
       throw new Error(`${name}: ${value}, not ${want[name]} (${JSON.stringify({share, n, mean, sd})})`);
 if (rows.length !== 12) throw new Error(`${rows.length} rows`);
 JS
+  # Their digits are those of the tables.
+  expect 0 "$clast" stats $store.db --by angle,strain -Q largest_fraction,fragment_count,mean_fragment_mass,wall_time --json
+  cp out rows.json
+  expect 0 "$clast" stats $store.db --by angle,strain -Q largest_fraction,fragment_count,mean_fragment_mass,wall_time
+  node --input-type=module - "$source/analysis/report/words.js" <<'JS' || fail "$store: other digits on the page"
+import {readFileSync} from 'node:fs';
+const {withInterval} = await import(process.argv[2]);
+const table = readFileSync('out', 'utf8');
+for (const row of JSON.parse(readFileSync('rows.json', 'utf8')))
+  for (const name of ['largest_fraction', 'fragment_count', 'mean_fragment_mass', 'wall_time']) {
+    const of = (what) => row[`${name}_${what}`] ?? null;
+    const shown = withInterval({mean: of('mean'), hw95: of('hw95'), low95: of('low95'), high95: of('high95')});
+    if (!table.includes(` ${shown}`)) throw new Error(`${name}: the table has no ${shown}`);
+  }
+JS
 done
 ok "intervals"
 
@@ -116,7 +131,7 @@ if [ "$sanitized" -eq 0 ]; then
   expect 0 "$clast" report marked.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 26
+  done_after 30
 else
-  done_after 22
+  done_after 26
 fi
