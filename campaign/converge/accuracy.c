@@ -42,6 +42,7 @@ struct finding {
   char ran[64];               /* the knob of the last level with runs, and its levels so far */
   size_t levels;
   double step[KNOB_LEVELS], change[KNOB_LEVELS];
+  char marks[ACCURACY_MARKS]; /* of the level that becomes an option */
   bool studied;
   int rank; /* of the level that gave the mean */
 };
@@ -139,6 +140,7 @@ static status add_option(struct finding *finding, const struct convergence_row *
   if (!grow_block(&accuracy->options, (accuracy->count + 1) * sizeof *accuracy->options))
     return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
   snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
+  memcpy(option->marks, finding->marks, sizeof option->marks);
   if (option->open && finding->beyond >= 0) {
     option->guessed = true;
     option->error += finding->beyond;
@@ -199,15 +201,18 @@ static status read_doubts(const struct finding *finding, const struct knob *knob
 }
 
 /* Does a word mark half of the runs of a setting, and less than a quarter with the scene's own? More seeds do not help
- * there. */
-static status is_marked(const struct finding *finding, const struct knob *knob, const char *setting, bool *is,
+ * there. Writes the marks of the setting. */
+static status is_marked(struct finding *finding, const struct knob *knob, const char *setting, bool *is,
                         struct error *error) {
   struct ask_doubts here, own;
   TRY(read_doubts(finding, knob, setting, &here, error));
   TRY(read_doubts(finding, NULL, NULL, &own, error));
   *is = false;
+  snprintf(finding->marks, sizeof finding->marks, here.count ? "%" PRId64 " of %" PRId64 " runs of the study:" : "",
+           here.doubtful, here.runs);
   for (size_t k = 0; k < here.count; k++) {
     int64_t there = 0;
+    text_append(finding->marks, sizeof finding->marks, "%s %s", k ? "," : "", here.word[k].word);
     for (size_t i = 0; i < own.count; i++)
       there += strcmp(own.word[i].word, here.word[k].word) == 0 ? own.word[i].runs : 0;
     *is |= 2 * here.word[k].runs >= here.runs && 4 * there < own.runs;
@@ -514,6 +519,9 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
         "no limit is seen in %s: the error has what a law of order %g would leave beyond the finest level, which "
         "is a guess and no bound",
         accuracy->open ? accuracy->open->name : "a setting", LIMIT_ORDER_LEAST);
+  if (*option->marks)
+    words_print(out, before, "the results of this choice are in doubt (!), %s (`clast explain` and the word)",
+                option->marks);
   if (isnan(accuracy->point_s)) {
     progress_duration(option->cpu_s, time, sizeof time);
     words_print(out, before, "%s \xc2\xb1 %.2g with %s%s%s and %" PRId64 " seeds a point: %s of processor time",

@@ -8,6 +8,8 @@
 #include "campaign/document/campaign.h"
 #include "db/store/store.h"
 
+enum { ACCURACY_MARKS = 160 };
+
 /* A way to run the campaign: one level of one knob, all other inputs as in the campaign's scene. */
 struct accuracy_option {
   char knob[64], setting[64];
@@ -22,6 +24,9 @@ struct accuracy_option {
   double total;      /* error and half width of the 95 % interval of the mean of so many seeds; NaN when seeds is 0 */
   double run_s;      /* processor time of a run, s */
   double cpu_s;      /* processor time of one point (`seeds` runs), s; NaN when seeds is 0 */
+
+  char marks[ACCURACY_MARKS]; /* of the level's runs, of an extrapolated one those of the finest: "3 of 4 runs of the
+                                 study: cut"; "": none */
 };
 
 struct accuracy {

@@ -142,7 +142,7 @@ assert all(a['point_cpu'] is None or a['point_cpu'] >= chosen['point_cpu'] for a
 PY
 ok "the plan takes the cheapest alternative"
 expect 0 "$clast" plan sharp.yaml
-prints "chosen"; prints "seeds a point: "
+prints "chosen"; prints "seeds a point: "; prints "in doubt (!)"; prints "runs of the study: cut" # as at its own settings
 expect 0 "$clast" run sharp.yaml -j 2 --quiet --csv
 same "$(number sharp.db "select value from campaign join campaign_point using (campaign_id) join point_input using (point_id) \
   where name = 'sharp' and path = 'fidelity.time_step'")" "$(cat setting)" "time step of the campaign's point"
