@@ -118,8 +118,8 @@ expect 64 "$clast" plot small.db m.png -x strain --by strain
 expect 64 "$clast" plot small.db m.png -x strain,angle
 expect 64 "$clast" plot small.db m.png -x strain -Q largest_fraction,dust_fraction
 says "one quantity"
-expect 64 "$clast" plot small.db m.png -x strain -Q nothing
-says "largest_fraction"
+expect 64 "$clast" plot small.db m.png -x strain -Q largest_share
+says "'largest_share' is unknown. Similar are: largest_fraction,"
 expect 64 "$clast" plot small.db m.jpg -x strain
 expect 74 "$clast" plot small.db no/such/folder/m.png -x strain
 
