@@ -41,6 +41,7 @@ status commands_ask(const struct command_line *line,
   if (line->chooses_runs)
     TRY(ask_run_excluded_count(store, &excluded, error));
   uncertainty_excluded(excluded, line->arguments[0]);
+  uncertainty_left_out(ask_choice_left_out(store));
   return STATUS_OK;
 }
 

@@ -47,8 +47,10 @@ static status run(const struct command_line *line, struct error *error) {
   TRY(table_end(table, error));
   for (int side = 0; side < 2; side++) {
     const char *path;
-    const int64_t count = ask_pairs_excluded(pairs, side, &path);
+    int64_t left_out;
+    const int64_t count = ask_pairs_excluded(pairs, side, &left_out, &path);
     uncertainty_excluded(count, path);
+    uncertainty_left_out(left_out);
   }
   if (table_for_people(line->format)) {
     uncertainty_doubts(&doubts, stderr);

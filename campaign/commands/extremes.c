@@ -25,5 +25,5 @@ static const struct option_row rows[] = {
     OPTION_ROW_FLAG("why", 0, struct options, why),
 };
 
-COMMAND(extremes, "results", "STORE", .chooses_runs = true, COMMAND_OPTIONS(struct options, rows), .has_table = true,
-        .ask = ask);
+COMMAND(extremes, "results", "STORE", .chooses_runs = true, .lists_campaigns = true,
+        COMMAND_OPTIONS(struct options, rows), .has_table = true, .ask = ask);

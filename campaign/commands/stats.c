@@ -51,8 +51,8 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const int64_t levels = *pooled ? ask_campaign_levels(store) : 0;
   if (levels > 0)
     fprintf(stderr,
-            "clast: %" PRId64 " of these points are of studies and searches (`clast status` lists them): `clast "
-            "estimates` tells each point; --campaign NAME takes those of one campaign\n",
+            "clast: %" PRId64 " of these points are of studies and searches. Points of one study share seeds, so the "
+            "interval is too narrow: `clast estimates` tells each point\n",
             levels);
   if (table_for_people(line->format)) {
     TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, options->quantity, error));

@@ -19,4 +19,4 @@ static status ask(struct store *store, const struct command_line *line, struct e
   return STATUS_OK;
 }
 
-COMMAND(status, "results", "STORE", .chooses_runs = true, .has_table = true, .ask = ask);
+COMMAND(status, "results", "STORE", .chooses_runs = true, .lists_campaigns = true, .has_table = true, .ask = ask);

@@ -339,8 +339,8 @@ static status run_rounds(void *context, struct launch *launch, struct error *err
   if (launch->manager && !launch->notes.quiet)
     fprintf(stderr,
             "clast: at most %zu runs, %d at first; --plan tells what they cost. They are campaigns of their own in "
-            "%s: after `clast run`, --campaign %s leaves them out of a question\n",
-            find->most, FIND_FEWEST_RUNS, find->limits.store, find->campaign->name);
+            "%s; questions about other campaigns leave them out\n",
+            find->most, FIND_FEWEST_RUNS, find->limits.store);
   const status code = driver_run_series(&series, launch->farm, &launch->scheduler, &summary, error);
   launch_tell_series(launch, code, find->limits.store, &summary, true);
   if (!launch->manager || code != STATUS_OK)

@@ -17,7 +17,7 @@ enum { HELP_VALUE = 1000, ROW_VALUE = 1001, WORD_MAXIMUM = 63 };
 /* Options of several commands, whose values are in struct command_line. */
 struct shared_options {
   struct ask_choice choice;
-  bool json, csv, all, allow_commands;
+  bool studies, json, csv, all, allow_commands;
 };
 static const struct option_row choice_rows[] = {
     OPTION_ROW_INTEGER("point", 'p', "N", struct shared_options, choice.point, 0, INT64_MAX, "0",
@@ -26,6 +26,8 @@ static const struct option_row choice_rows[] = {
                     .doc = "Only the points of this campaign: its number or its name (`clast status` lists them)."),
     OPTION_ROW_TEXT("where", 'w', "SQL", struct shared_options, choice.where, NULL,
                     .doc = "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\"."),
+    OPTION_ROW_FLAG("studies", 0, struct shared_options, studies,
+                    .doc = "Also the points that only a study or a search (converge, find, fit) has."),
 };
 static const struct option_row table_rows[] = {
     OPTION_ROW_FLAG("json", 0, struct shared_options, json, .doc = "Print JSON: one array of objects, SI units."),
@@ -42,10 +44,11 @@ const struct option_row *option_row(const struct command *command, size_t index)
   if (index < command->option_count)
     return &command->options[index];
   index -= command->option_count;
-  enum { CHOICE_ROWS = sizeof choice_rows / sizeof choice_rows[0] };
-  if (command->chooses_runs && index < CHOICE_ROWS)
+  const size_t choices = command->chooses_runs ? sizeof choice_rows / sizeof choice_rows[0] - command->lists_campaigns
+                                               : 0;
+  if (index < choices)
     return &choice_rows[index];
-  index -= command->chooses_runs ? CHOICE_ROWS : 0;
+  index -= choices;
   if (command->computes && index == 0)
     return &allow_row;
   index -= command->computes;
@@ -260,6 +263,7 @@ status option_parse(const struct command *command, int argc, char **argv, void *
   if (parse.shared.allow_commands)
     engine_allow_commands();
   line->choice = parse.shared.choice;
+  line->choice.campaigns_alone = command->chooses_runs && !command->lists_campaigns && !parse.shared.studies;
   if (parse.shared.json && parse.shared.csv)
     return status_fail(error, STATUS_USAGE, "--json and --csv exclude each other");
   line->format = parse.shared.json  ? TABLE_JSON

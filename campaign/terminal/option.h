@@ -68,7 +68,7 @@ struct command_line {
   size_t count;        /* operands, as many as the command takes */
   char **arguments;
   bool chooses_runs;        /* of the command */
-  struct ask_choice choice; /* by --point, --campaign and --where; all without them */
+  struct ask_choice choice; /* by --point, --campaign, --where and --studies */
   enum table_format format; /* by --json and --csv; TABLE_TEXT for a command without them */
   bool help;                /* --help was given; then no other argument was checked */
   int argc;                 /* the whole command line, for provenance */
@@ -82,12 +82,13 @@ struct command {
   const char *text;      /* campaign/commands/NAME.txt: option_part() tells its form */
   const struct option_row *options;
   size_t option_count;
-  size_t options_size; /* sizeof the options struct */
-  bool has_table;      /* prints a table: has --json and --csv, too */
-  bool chooses_runs;   /* asks for runs of a store: has --point, --campaign and --where, too */
-  bool has_runs;       /* exits 1 and 75 apply */
-  bool computes;       /* may compute runs: has --allow-commands, too */
-  bool has_farm;       /* computes with a farm: under mpirun only rank 0 prints an error (launch_quiet_ranks()) */
+  size_t options_size;  /* sizeof the options struct */
+  bool has_table;       /* prints a table: has --json and --csv, too */
+  bool chooses_runs;    /* asks for runs of a store: has --point, --campaign, --where and --studies, too */
+  bool lists_campaigns; /* of these, it tells each campaign: also studies and searches, without --studies */
+  bool has_runs;        /* exits 1 and 75 apply */
+  bool computes;        /* may compute runs: has --allow-commands, too */
+  bool has_farm;        /* computes with a farm: under mpirun only rank 0 prints an error (launch_quiet_ranks()) */
   /* Data goes to stdout, remarks to stderr; an error is returned, not printed. A command has `run` or `ask`. */
   status (*run)(const struct command_line *line, struct error *error);
   /* Checks the options before that; NULL: there is nothing to check. */

@@ -100,6 +100,8 @@ void uncertainty_share_cell(double value, double half_width, char text[UNCERTAIN
 
 /* Says on stderr that so many runs of a store are excluded; nothing for 0. */
 void uncertainty_excluded(int64_t count, const char *store);
+/* Says on stderr that so many points of studies and searches are left out; nothing for 0. */
+void uncertainty_left_out(int64_t points);
 
 /* "0.01 to 0.05 below its limit", or "from 0.01 below to 0.02 above its limit", of a mean less its limit: the whole 95
  * % interval, as its middle is no better known than its ends. */

@@ -57,6 +57,14 @@ void uncertainty_excluded(int64_t count, const char *store) {
             count == 1 ? " is" : "s are", store, count == 1 ? "it" : "them");
 }
 
+void uncertainty_left_out(int64_t points) {
+  if (points > 0)
+    fprintf(stderr,
+            "clast: left out: %" PRId64 " point%s that only studies and searches have; --studies counts %s, --campaign "
+            "NAME takes those of one (`clast status` lists them)\n",
+            points, points == 1 ? "" : "s", points == 1 ? "it" : "them");
+}
+
 void uncertainty_distance(double distance, double half_width, char text[UNCERTAINTY_TEXT]) {
   const double width = fmax(half_width, 0), ends[2] = {distance - width, distance + width};
   const bool across = ends[0] < 0 && ends[1] > 0, below = ends[1] <= 0;

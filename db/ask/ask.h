@@ -15,12 +15,18 @@ struct ask_choice {
   int64_t point;        /* 0: all */
   const char *campaign; /* number or name (several may have it); NULL: all */
   const char *where;    /* NULL: all */
+  /* Without the points that only studies and searches (clast converge, find, fit) have: their points share seeds, or
+   * lie where the search looked, so they are no sample. Holds without `point` and `campaign`, in a store with others.
+   */
+  bool campaigns_alone;
 };
 /* For a reader. Points without a chosen run are no points. An empty choice: all. STATUS_USAGE: unknown point or
  * campaign; the condition is no valid SQL. */
 status ask_choose(struct store *store, const struct ask_choice *choice, struct error *error);
 /* The choice in words: "campaign 2, m > 5"; "": all runs, or all of a point. Borrowed. */
 const char *ask_chosen(const struct store *store);
+/* Points that campaigns_alone left out. */
+int64_t ask_choice_left_out(const struct store *store);
 /* Fits the exponents of the points whose runs were chosen by a condition: the view estimates has them from then on. */
 status ask_choose_estimates(struct store *store, struct error *error);
 
@@ -403,8 +409,8 @@ status ask_pairs_read(const char *first, const char *second, const char *quantit
                       struct ask_pairs **out, struct error *error);
 /* The next pair, in the order of the points of A; its texts are borrowed from `pairs`. False at the end. */
 bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row);
-/* The runs of a side (0, 1) that a person excluded, and the path of its store, borrowed. */
-int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, const char **path);
+/* The runs of a side (0, 1) that a person excluded, its ask_choice_left_out(), and the path of its store, borrowed. */
+int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *left_out, const char **path);
 /* After the last pair. STATUS_USAGE: the sides have no point in common. */
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error);
 void ask_pairs_free(struct ask_pairs *pairs); /* NULL is fine */

@@ -43,6 +43,20 @@ static status choose_campaigns(struct store *store, const char *campaign, struct
                      doing, error);
 }
 
+/* Points with a campaign, but none that a person wrote. */
+#define OF_PEOPLE                                                                                                      \
+  "SELECT point_id FROM main.campaign_point JOIN main.campaign USING (campaign_id) WHERE document NOT LIKE '# "        \
+  "Written "                                                                                                           \
+  "by clast %'"
+static status choose_campaigns_alone(struct store *store, struct error *error) {
+  TRY(sql_execute(store->db,
+                  "DELETE FROM temp.chosen_point WHERE point_id IN (SELECT point_id FROM main.campaign_point) AND "
+                  "point_id NOT IN (" OF_PEOPLE ") AND EXISTS (" OF_PEOPLE ")",
+                  doing, error));
+  store->left_out = sqlite3_changes64(store->db);
+  return STATUS_OK;
+}
+
 /* The condition comes from the command line: it is asked as a question, which can only read. */
 static status choose_runs(struct store *store, const char *where, struct error *error) {
   STATEMENT insert = NULL;
@@ -82,6 +96,8 @@ static status choose(struct store *store, const struct ask_choice *choice, struc
       (long long)choice->point));
   if (choice->campaign)
     TRY(choose_campaigns(store, choice->campaign, error));
+  else if (choice->campaigns_alone && choice->point == 0)
+    TRY(choose_campaigns_alone(store, error));
   if (choice->where)
     TRY(choose_runs(store, choice->where, error));
   else
@@ -96,9 +112,10 @@ status ask_choose(struct store *store, const struct ask_choice *choice, struct e
   TRY(ask_points_known(store, choice->point, error));
   sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL); /* it covers temporary tables, too */
   status code = forget(store->db, error);
+  store->left_out = 0;
   if (code == STATUS_OK)
     code = ask_register_functions(store, error);
-  if (code == STATUS_OK && (choice->point || choice->campaign || choice->where))
+  if (code == STATUS_OK && (choice->point || choice->campaign || choice->where || choice->campaigns_alone))
     code = choose(store, choice, error);
   store->chosen[0] = '\0';
   if (choice->campaign)
@@ -112,6 +129,10 @@ status ask_choose(struct store *store, const struct ask_choice *choice, struct e
 
 const char *ask_chosen(const struct store *store) {
   return store->chosen;
+}
+
+int64_t ask_choice_left_out(const struct store *store) {
+  return store->left_out;
 }
 
 static status fit_point(struct store *store, const struct ask_points_version *which, struct error *error) {

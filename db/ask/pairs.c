@@ -22,6 +22,7 @@ struct group { /* the runs of one point */
 struct side {
   char path[LIMITS_PATH]; /* of the store */
   int64_t excluded;       /* runs that a person excluded */
+  int64_t left_out;       /* ask_choice_left_out() */
   bool one_point;
   struct group *groups;
   struct difference_value *values;
@@ -110,6 +111,7 @@ static status read_values(struct store *store, const char *quantity, struct side
       TRY(add_run(side, &answer, error));
   TRY(answer_end(&answer));
   TRY(ask_run_excluded_count(store, &side->excluded, error));
+  side->left_out = ask_choice_left_out(store);
   for (size_t i = 0; i < side->group_count; i++) {
     struct group *group = &side->groups[i];
     TRY(ask_points_label(store, group->point, group->label, sizeof group->label, error));
@@ -209,8 +211,9 @@ bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
   return false;
 }
 
-int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, const char **path) {
+int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *left_out, const char **path) {
   *path = pairs->side[side].path;
+  *left_out = pairs->side[side].left_out;
   return pairs->side[side].excluded;
 }
 

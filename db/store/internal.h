@@ -231,6 +231,7 @@ struct store {
   int64_t lowest_bin, highest_bin; /* range covered by table bin; lowest > highest: none */
 
   char chosen[512];       /* what questions see: ask_choose(); "": all */
+  int64_t left_out;       /* points: ask_choice_left_out() */
   int64_t excluded_there; /* of the last merge: store_merge_excluded() */
 
   double waits_since, waited_at, wait_until; /* s, monotonic: for another program that holds the file */

@@ -114,8 +114,17 @@ tiny tiny
 expect 0 "$clast" converge tiny.yaml --knob integrator --seeds 2 --within off -j 2
 same "$(number tiny.db "select count(distinct base_point_id) from convergence")" 4 "points studied"
 expect 0 "$clast" stats tiny.db
+says "points are of studies and searches"
+
+# Questions to a store with a campaign leave the points of studies out.
+expect 0 "$clast" run tiny.yaml -j 2
+expect 0 "$clast" stats tiny.db
+says "pooled over threshold.angle, threshold.strain"
+says "left out: 4 points that only studies and searches have"
+expect 0 "$clast" stats tiny.db --studies
 says "pooled over fidelity.integrator, threshold.angle, threshold.strain"
-says "of these points are of studies and searches"
+expect 0 "$clast" plot tiny.db tiny.png --x threshold.angle --by threshold.strain
+says "left out: 4 points"
 
 # Accuracy on demand: without a study the command is named; then the cheapest settings are taken, and their seeds run.
 cat >sharp.yaml <<'YAML'
@@ -267,4 +276,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 71
+done_after 75
