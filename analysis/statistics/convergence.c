@@ -46,17 +46,6 @@ struct convergence_difference convergence_bias(size_t n, const double *level, co
   return difference;
 }
 
-double convergence_skew(size_t n, const double *values) {
-  const struct sample_summary summary = sample_summarise(n, values, 0.95);
-  if (summary.n < 3 || !(summary.standard_deviation > 0))
-    return NOTHING;
-  double sum = 0;
-  for (size_t i = 0; i < n; i++)
-    if (!isnan(values[i]))
-      sum += pow((values[i] - summary.mean) / summary.standard_deviation, 3);
-  return sum / (double)summary.n;
-}
-
 struct convergence_correlation convergence_correlate(size_t n, const double *coarse, const double *fine,
                                                      double confidence) {
   struct convergence_correlation correlation = {0, NOTHING, NOTHING, NOTHING};
@@ -163,7 +152,7 @@ static const struct field rows[] = {
     LEVEL(mean, -HUGE_VAL, .doc = "Mean over seeds."),
     LEVEL(half_width, 0, .doc = "Half width of the 95 % interval of the mean (Student's t)."),
     LEVEL(deviation, 0, .doc = "Standard deviation between seeds."),
-    LEVEL(skew, -HUGE_VAL, .doc = "Skewness over seeds. Off for fewer than three."),
+    LEVEL(skew, -HUGE_VAL, .doc = "Skewness over seeds. Off for fewer than 20."),
     LEVEL(upper_mode, 0, .doc = "Share of the runs in the upper of two modes (`clast scatter`). Off: one mode."),
     ROW_OF(convergence_row, cpu, cpu, FIELD_REAL, "s", .number = NAN, .maximum = HUGE_VAL, .flags = FIELD_MAY_BE_OFF,
            .doc = "Mean processor time of a run."),

@@ -99,9 +99,6 @@ struct convergence_difference {
 struct convergence_difference convergence_bias(size_t n, const double *level, const double *reference, bool paired,
                                                double level_of_confidence);
 
-/* Sample skewness, sum of ((x - mean)/s)^3 over n. NaN for fewer than 3 values, or equal ones. */
-double convergence_skew(size_t n, const double *values);
-
 /* Pearson's correlation over seeds, with Fisher's interval: tanh(atanh r +- z/sqrt(n - 3)). NaN for fewer than 4 pairs,
  * or a level that does not scatter. */
 struct convergence_correlation {

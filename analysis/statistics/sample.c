@@ -156,6 +156,20 @@ struct sample_interval sample_jackknife(size_t runs, double level, sample_statis
   return sample_jackknife_of(runs, level, estimate, theta);
 }
 
+/* share = (rest + alike)/(whole of the rest + alike), or the same without `alike` above: it has its ends where `alike`
+ * has. The variance over seeds of the mean of all points contains 1/points of what differs between points. */
+double sample_alike_half(const struct sample_alike *v, double share, bool of_seeds) {
+  const double differs = (v->own - v->alike) / v->points, of_means = v->alike + differs;
+  const double freedom = (double)v->seeds - 1;
+  double half = 0;
+  for (int end = 0; end < 2; end++) {
+    const double law = gsl_cdf_chisq_Pinv(end ? 0.025 : 0.975, freedom) / freedom;
+    const double change = fmax(of_means / law - differs, 0) - v->alike;
+    half = fmax(half, fabs((share * v->whole + (of_seeds ? change : 0)) / (v->whole + change) - share));
+  }
+  return half;
+}
+
 bool sample_may_stop(size_t n, const double *values, double half_width, double level, size_t n0) {
   if (n < n0 || !(half_width > 0))
     return false;

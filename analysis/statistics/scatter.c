@@ -92,13 +92,13 @@ status scatter_make(size_t n, const double *values, struct scatter *out, struct 
     two += d * d / (double)out->n;
     three += d * d * d / (double)out->n;
   }
-  if (out->n > 2 && isfinite(out->mean.half_width)) /* else all values are equal */
+  if (out->n >= SCATTER_SHAPE_RUNS && isfinite(out->mean.half_width)) /* else all values are equal */
     out->skewness = three / pow(two, 1.5);
   qsort(out->sorted, out->n, sizeof *out->sorted, sample_ascending);
   for (int q = 0; q < SCATTER_QUANTILES; q++)
     out->quantile[q] = quantile(out->n, out->sorted, scatter_shares[q]);
   out->dip = scatter_dip(out->n, out->sorted);
-  const bool known = out->n >= SCATTER_MODES_RUNS && !scatter_in_steps(out->n, out->sorted);
+  const bool known = out->n >= SCATTER_SHAPE_RUNS && !scatter_in_steps(out->n, out->sorted);
   out->dip_share = known ? scatter_dip_share(out->n, out->dip) : (double)NAN;
   if (out->dip_share < 0.05)
     scatter_find_modes(out);
@@ -251,9 +251,12 @@ static size_t count_levels(const struct scatter_table *t, size_t axis) {
   return levels;
 }
 
-static struct scatter_part part_of(struct split *s, const uint32_t *all) {
-  const struct sample_interval share = sample_jackknife(s->table->runs, 0.95, share_of, s);
-  return (struct scatter_part){variance_of(s, s->table->runs, all), share.estimate, share.half_width};
+static struct scatter_part part_of(struct split *s, const uint32_t *all, const struct sample_alike *alike) {
+  const size_t runs = s->table->runs;
+  const struct sample_interval share = sample_jackknife(runs, 0.95, share_of, s);
+  const double of_alike = sample_alike_half(alike, share.estimate, s->part != SCATTER_INPUTS);
+  return (struct scatter_part){variance_of(s, runs, all), share.estimate,
+                               isnan(share.half_width) ? share.half_width : fmax(share.half_width, of_alike)};
 }
 
 status scatter_split(const struct scatter_table *t, struct scatter_part *parts, struct error *error) {
@@ -272,17 +275,23 @@ status scatter_split(const struct scatter_table *t, struct scatter_part *parts, 
   for (size_t a = 0; a < t->axes; a++)
     combinations *= (double)count_levels(t, a);
   s.part = SCATTER_INPUTS;
+  s.axis = t->axes;
+  s.levels = t->points;
+  struct sample_alike alike = {t->runs, (double)t->points, seeds(t, t->runs, all, false), seeds(t, t->runs, all, true),
+                               between(&s, t->runs, all)};
+  alike.whole += alike.own;
+  s.axis = 0;
   for (; s.axis < t->axes; s.axis++) { /* each axis alone, if every combination of their values occurs exactly once */
     s.levels = count_levels(t, s.axis);
     parts[s.axis] = (struct scatter_part){NAN, NAN, NAN};
     if (combinations == (double)t->points)
-      parts[s.axis] = part_of(&s, all);
+      parts[s.axis] = part_of(&s, all, &alike);
   }
   parts += t->axes; /* all inputs, and the seeds; the whole is their sum */
   s.levels = t->points;
   for (s.part = 0; s.part < SCATTER_PARTS; s.part++)
     if (s.part != SCATTER_WHOLE)
-      parts[s.part] = part_of(&s, all);
+      parts[s.part] = part_of(&s, all, &alike);
   parts[SCATTER_WHOLE] = (struct scatter_part){parts[SCATTER_INPUTS].variance + parts[SCATTER_SEEDS].variance, 1, NAN};
   return STATUS_OK;
 }

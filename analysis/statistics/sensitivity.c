@@ -139,13 +139,20 @@ static struct sample_interval interval_of(struct asking *a) {
   size_t groups = 1;
   for (size_t b = 1; b < a->table->blocks; b++)
     groups += !same_group(a->table, b, b - 1);
-  struct sample_interval interval = sample_jackknife(groups, 0.95, over_groups, a);
-  if (a->seeds < 3) {
-    if (a->input == a->table->inputs && !a->total) /* a covariance of two seeds: more blocks do not tell how far off */
-      interval.standard_error = interval.half_width = NAN;
+  const bool seed = a->input == a->table->inputs;
+  struct sample_interval interval = sample_jackknife(groups, 0.95, over_groups, a), seeds = {NAN, 0, NAN};
+  if (seed && !a->total && a->seeds < 3) { /* a covariance of two seeds: more blocks do not tell how far off */
+    interval.standard_error = interval.half_width = NAN;
     return interval;
   }
-  const struct sample_interval seeds = sample_jackknife(a->seeds, 0.95, over_seeds, a);
+  if (a->seeds > 2)
+    seeds = sample_jackknife(a->seeds, 0.95, over_seeds, a);
+  if (a->seeds > 1 && a->table->same_seeds) {
+    const double alike = of_seeds(a, true);
+    const struct sample_alike variance = {a->seeds, 2 * (double)a->blocks, of_seeds(a, false), alike,
+                                          between_points(a) + alike};
+    seeds.half_width = fmax(seeds.half_width, sample_alike_half(&variance, interval.estimate, seed));
+  }
   interval.standard_error = hypot(interval.standard_error, seeds.standard_error);
   if (!isnan(seeds.half_width)) /* NaN: no seed moves the index */
     interval.half_width = hypot(interval.half_width, seeds.half_width);

@@ -99,7 +99,6 @@ static void find_level(const struct study_ladder *ladder, size_t quantity, bool 
   row->mean = summary.mean;
   row->half_width = summary.half_width;
   row->deviation = summary.standard_deviation;
-  row->skew = convergence_skew(n, values[l]);
   row->cpu = ladder->cpu[l];
   row->paired = ladder->levels.knob->pairs;
   const struct convergence_difference bias = convergence_bias(n, values[l], values[reference], row->paired, CONFIDENCE);
@@ -254,14 +253,15 @@ static void combine(const struct study_ladder *ladders, size_t count, struct stu
   mark_frontier(count, found);
 }
 
-/* Separates the two modes of a level that has two. */
-static void find_modes(const struct study_ladder *ladder, size_t quantity, struct study_found *found) {
+/* Skewness, and the two modes of a level that has two. */
+static void find_shapes(const struct study_ladder *ladder, size_t quantity, struct study_found *found) {
   for (size_t l = 0; l < found->count; l++) {
     SCATTER scatter = {0};
     struct error ignored;
     if (found->rows[l].n < 4 ||
         scatter_make((size_t)ladder->seeds, ladder->values[quantity][l], &scatter, &ignored) != STATUS_OK)
       continue;
+    found->rows[l].skew = scatter.skewness;
     found->rows[l].upper_mode = scatter.upper_share;
   }
 }
@@ -271,7 +271,7 @@ size_t study_of_scene(const struct study *study, size_t from, size_t quantity, s
   for (size_t i = from; i < study->ladder_count && study->ladder[i].base == study->ladder[from].base; i++)
     if (count < LIMITS_STUDY_KNOBS) {
       study_find(study, &study->ladder[i], quantity, &found[count]);
-      find_modes(&study->ladder[i], quantity, &found[count++]);
+      find_shapes(&study->ladder[i], quantity, &found[count++]);
     }
   combine(&study->ladder[from], count, found);
   return count;

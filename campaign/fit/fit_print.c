@@ -55,21 +55,29 @@ static int decimals_of(double low, double high) {
   return spread > 0 && spread < 1e15 ? (int)fmin(fmax(1 - floor(log10(spread)), 0), 15) : -1;
 }
 
+/* q05, median, q95. The median has the mark of all three, as the value before an interval has in other tables. */
+static void quantile_cells(struct table *table, const double *quantile, const struct ask_doubts *doubts) {
+  const int decimals = decimals_of(quantile[0], quantile[2]);
+  for (int q = 0; q < 3; q++) {
+    if (q == 1)
+      table_rests_on(table, doubts);
+    table_fixed(table, quantile[q], decimals);
+  }
+}
+
 static void input_cells(const struct fit *fit, size_t i, double unit, struct table *table) {
   const double z05 = posterior_coordinate(0.05), z95 = posterior_coordinate(0.95);
-  double z[3];
-  for (int q = 0; q < 3; q++)
+  double z[3], quantile[3];
+  for (int q = 0; q < 3; q++) {
     z[q] = posterior_quantile(&fit->posterior, i, levels[2 * q]);
+    quantile[q] = fit_number(fit, i, z[q]) / unit;
+  }
   table_reals(table, 2, (const double[]){fit_number(fit, i, z05) / unit, fit_number(fit, i, z95) / unit});
   if (is_outside(fit)) {
     skip(table, 4);
     return;
   }
-  const int decimals = decimals_of(fit_number(fit, i, z[0]) / unit, fit_number(fit, i, z[2]) / unit);
-  for (int q = 0; q < 3; q++) {
-    table_rests_on(table, &fit->all_doubts);
-    table_fixed(table, fit_number(fit, i, z[q]) / unit, decimals);
-  }
+  quantile_cells(table, quantile, &fit->all_doubts);
   table_real(table, (posterior_share(z[2]) - posterior_share(z[0])) / 0.9);
 }
 
@@ -136,11 +144,10 @@ static status print_data(const struct fit *fit, enum table_format format, struct
     observed_label(fit->observed, k, label, sizeof label);
     table_text(table, label);
     value_cells(fit, k, table);
-    const int decimals = decimals_of(predicted(fit, k, levels[0]), predicted(fit, k, levels[4]));
-    for (int q = 0; q < 3; q++) {
-      table_rests_on(table, &fit->doubts[k]);
-      table_fixed(table, predicted(fit, k, levels[2 * q]), decimals);
-    }
+    double quantile[3];
+    for (int q = 0; q < 3; q++)
+      quantile[q] = predicted(fit, k, levels[2 * q]);
+    quantile_cells(table, quantile, &fit->doubts[k]);
     table_real(table, posterior_below(&fit->surfaces.model, &fit->posterior, k));
   }
   return table_end(table, error);

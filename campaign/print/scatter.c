@@ -92,7 +92,8 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
     words_print(
         stderr, "",
         "clast: low and high: 95 %% intervals over runs; of a mode, the values that belong to it. Modes are peaks; "
-        "p of one mode below 0.05: the runs have two; fewer than 20 runs cannot tell");
+        "p of one mode below 0.05: the runs have two. Fewer than %d runs tell neither modes nor skewness",
+        SCATTER_SHAPE_RUNS);
   }
   if (several)
     fputs("clast: pooled over points: the scatter holds that of the inputs; the intervals take the runs as "

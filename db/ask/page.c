@@ -114,7 +114,7 @@ struct modes {
 static status add_modes(struct modes *modes, int64_t point, const char *quantity, size_t n, double *values,
                         struct error *error) {
   struct scatter s = {.n = n, .sorted = values};
-  if (n < SCATTER_MODES_RUNS)
+  if (n < SCATTER_SHAPE_RUNS)
     return STATUS_OK;
   qsort(values, n, sizeof *values, sample_ascending);
   if (!(values[n - 1] > values[0]) || scatter_in_steps(n, values))
@@ -365,7 +365,7 @@ static status copy_runs(struct reading *reading, struct store *store, struct err
                 sqlite3_str_finish(columns), every, every > 1 ? 1 : 0, replicates),
       "runs", 16 + axis_count));
   TRY(set_fact(reading->page, "results_left_out", left_out, error));
-  TRY(set_fact(reading->page, "modes_runs", SCATTER_MODES_RUNS, error));
+  TRY(set_fact(reading->page, "modes_runs", SCATTER_SHAPE_RUNS, error));
   TRY(set_fact(reading->page, "replicates_kept", (size_t)replicates, error));
   return set_fact(reading->page, "runs_of_every_nth_point", (size_t)every, error);
 }

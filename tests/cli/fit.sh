@@ -148,6 +148,10 @@ for r in rows:
 assert any(r['q05'] == 0 or r['q95'] == 1 for r in rows), rows
 PY
 ok "predictions lie in the range of their quantity"
+# A median and its quantiles have one mark.
+expect 0 "$clast" fit ends_measured.yaml ends.yaml --rounds 3 --store ends.db -j 2
+grep -qE '^threshold.strain +% +[0-9.]+ +[0-9.]+ ! +[0-9.]+ ' out || fail "an input's quantiles have not one mark"
+grep -qE '^largest_fraction( +[0-9.]+){5} ! +[0-9.]+ +[0-9.]+$' out || fail "predicted quantiles have not one mark"
 
 # Error messages and their places.
 sed 's/largest_fraction/largest_fractoin/' one.yaml >wrong.yaml

@@ -39,13 +39,6 @@ static void biases(void **state) {
   assert_true(d.value == 0 && d.half_width == 0);
 }
 
-static void skews(void **state) {
-  (void)state;
-  const double values[5] = {0, 0, NAN, 0, 4}; /* mean 1, s = 2: (3 (-1/2)^3 + (3/2)^3) / 4 = 0.75 */
-  NEAR(convergence_skew(5, values), 0.75, 1e-12);
-  assert_true(isnan(convergence_skew(2, values)));
-}
-
 static void correlations(void **state) {
   (void)state;
   const double x[5] = {1, 2, 3, 4, 5}, y[5] = {1, 3, 2, 5, 4}, flat[5] = {1, 1, 1, 1, 1};
@@ -111,7 +104,7 @@ static void resolutions(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(biases), cmocka_unit_test(skews), cmocka_unit_test(correlations),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(biases), cmocka_unit_test(correlations),
                                      cmocka_unit_test(frontiers), cmocka_unit_test(resolutions)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,6 +40,7 @@ static void known_samples(void **state) {
   const double few[4] = {3, NAN, 1, 2};
   assert_int_equal(scatter_make(4, few, &s, NULL), STATUS_OK);
   assert_true(s.n == 3 && s.quantile[2].value == 2 && isnan(s.quantile[2].low) && isnan(s.dip_share));
+  assert_true(isnan(s.skewness)); /* few values tell none */
   scatter_release(&s);
   assert_int_equal(scatter_make(0, few, &s, NULL), STATUS_OK);
   assert_true(s.n == 0 && isnan(s.mean.mean) && isnan(s.quantile[0].value) && scatter_histogram_of(&s).bins == 0);
@@ -189,6 +190,36 @@ static void split_by_hand(void **state) {
   }
 }
 
+/* The 95 % intervals of a split hold the true shares when few seeds, the same at all points, make a part of the
+ * scatter. By the jackknife alone they held them in 0.84 to 0.90 of the cases. */
+static void shares_of_few_seeds(void **state) {
+  (void)state;
+  enum { A = 3, B = 4, RUNS = 4, POINTS = A * B, CASES = 2000, COUNT = 5 };
+  uint32_t level[POINTS * 2];
+  double value[POINTS * RUNS];
+  struct scatter_part parts[2 + SCATTER_PARTS];
+  for (uint64_t law = 0; law < 3; law++) {
+    const double alike = law == 0 ? 2 : law == 1 ? 0.5 : 0.1, own = law == 2 ? 1 : 0.2;
+    const double of[2] = {2 / 3.0, 0.25 * 5 / 4}, whole = of[0] + of[1] + alike + own;
+    const double truth[COUNT] = {of[0], of[1], of[0] + of[1], alike + own, alike};
+    int held[COUNT] = {0};
+    for (uint64_t c = 0; c < CASES; c++) {
+      for (uint32_t p = 0; p < POINTS; p++) {
+        level[2 * p] = p / B;
+        level[2 * p + 1] = p % B;
+        for (uint64_t r = 0; r < RUNS; r++)
+          value[p * RUNS + r] = p / B + 0.5 * (p % B) + sqrt(alike) * normal(10 + law, c, r) +
+                                sqrt(own) * normal(20 + law, c, p * RUNS + r);
+      }
+      assert_int_equal(scatter_split(&(struct scatter_table){POINTS, RUNS, 2, level, value}, parts, NULL), STATUS_OK);
+      for (int i = 0; i < COUNT; i++)
+        held[i] += fabs(parts[i].share - truth[i] / whole) <= parts[i].half_width;
+    }
+    for (int i = 0; i < COUNT; i++)
+      assert_true(held[i] >= 0.93 * CASES - 4 * sqrt(0.93 * 0.07 * CASES));
+  }
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(known_samples),
@@ -197,6 +228,7 @@ int main(void) {
                                      cmocka_unit_test(runs_for_an_interval),
                                      cmocka_unit_test(coverage),
                                      cmocka_unit_test(split_of_a_variance),
-                                     cmocka_unit_test(split_by_hand)};
+                                     cmocka_unit_test(split_by_hand),
+                                     cmocka_unit_test(shares_of_few_seeds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -67,7 +67,7 @@ static void of_samples(void) {
       summary = sample_summarise_moments(&moments, 0.9);
       summaries("moments", &summary);
       SAY("stop", sample_may_stop(n, values, 0.05, 0.95, 30), sample_may_stop(n, values, 0.3, 0.95, 7),
-          sample_may_stop(n, values, 1e3, 0.95, 2), convergence_skew(n, values));
+          sample_may_stop(n, values, 1e3, 0.95, 2));
       if (n > 1 && kind != 4) {
         const struct sample_interval i = sample_jackknife(n, 0.95, middle, values);
         SAY("jackknife", i.estimate, i.standard_error, i.half_width);
