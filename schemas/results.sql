@@ -230,7 +230,7 @@ CREATE TABLE convergence ( -- Studies of convergence (clast converge): the level
   mean REAL, -- Mean over seeds.
   half_width REAL, -- Half width of the 95 % interval of the mean (Student's t).
   deviation REAL, -- Standard deviation between seeds.
-  skew REAL, -- Skewness over seeds. Off for fewer than three.
+  skew REAL, -- Skewness over seeds. Off for fewer than 20.
   upper_mode REAL, -- Share of the runs in the upper of two modes (`clast scatter`). Off: one mode.
   cpu REAL, -- [s] Mean processor time of a run.
   bias REAL, -- Mean of this level less that of the reference.
@@ -805,7 +805,7 @@ INSERT INTO column_doc VALUES ('convergence', 'results_version', NULL, 'version 
 
 INSERT INTO column_doc VALUES ('convergence', 'setting', NULL, 'Value of the knob''s first input at this level.', 1);
 
-INSERT INTO column_doc VALUES ('convergence', 'skew', NULL, 'Skewness over seeds. Off for fewer than three.', 1);
+INSERT INTO column_doc VALUES ('convergence', 'skew', NULL, 'Skewness over seeds. Off for fewer than 20.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'step', NULL, 'Size that goes to zero as the knob gets finer, such as particles^(-1/3). Off: none.', 1);
 

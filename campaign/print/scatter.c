@@ -866,7 +866,7 @@ static status print_sobol(const struct reading *r, enum table_format format, str
   if (r->whole < ENOUGH)
     words_print(stderr, "",
                 "clast: %zu blocks are few: 95 %% intervals held 0.80 to 0.96 of the true indices with 16 blocks, "
-                "0.88 to 0.96 with 32, 0.91 to 0.96 with %d",
+                "0.88 to 0.96 with 32, 0.91 to 0.96 with %d (0.88 of a total near 0)",
                 r->whole, ENOUGH);
   return table_end(table, error);
 }

@@ -165,4 +165,4 @@ expect 65 "$clast" fit one.yaml grid.yaml
 says "latin_hypercube"
 expect 64 "$clast" fit one.yaml
 expect 64 "$clast" fit one.yaml disc.yaml --rounds 2
-done_after 21
+done_after 22
