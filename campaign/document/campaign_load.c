@@ -24,8 +24,9 @@ static const struct field rows[] = {
          .doc = "What is run: a built-in scene (`clast scenes`) or a file, relative to this document's folder."),
     TEXT("quantity", quantity, .text = OUTCOME_DEFAULT,
          .doc = "The main quantity: shown while running and in the table at the end, and compared by `keep: {fields: "
-                "extremes}`. Any number that a run reports (`clast explain`). Unless given: what the scene is made "
-                "for, such as the strength of a compression; where bodies break largest_fraction."),
+                "extremes}`. Any number that a run reports (`clast explain`). Unless given: that of `accuracy` or "
+                "`seeds.until`, else what the scene is made for, such as the strength of a compression; where bodies "
+                "break largest_fraction."),
     TEXT("store", store, .text = "",
          .doc = "The results file, relative to the current folder. Default: the name with .db after it."),
     COUNT(

@@ -214,10 +214,21 @@ static void check_quantity(document_node *node, const char *path, const char *na
     document_report_error(node, path, &error);
 }
 
+/* The quantity that decides about settings or seeds, if a run has it; else what the scene is made for. */
+static const char *main_quantity(const struct campaign *campaign) {
+  const char *const asked[] = {campaign->accuracy_quantity, campaign->until_quantity};
+  struct error error;
+  bool of_outcome;
+  for (size_t i = 0; i < sizeof asked / sizeof asked[0]; i++)
+    if (asked[i][0] && campaign_quantity(campaign->scene->kind, asked[i], &of_outcome, &error))
+      return asked[i];
+  return scene_headline(campaign->scene);
+}
+
 static void check_quantities(document_node *root, struct campaign *campaign) {
   char *const follow[] = {campaign->until_quantity, campaign->accuracy_quantity};
   if (!document_key(root, "quantity"))
-    snprintf(campaign->quantity, sizeof campaign->quantity, "%s", scene_headline(campaign->scene));
+    snprintf(campaign->quantity, sizeof campaign->quantity, "%s", main_quantity(campaign));
   for (size_t i = 0; i < sizeof follow / sizeof follow[0]; i++)
     if (!follow[i][0])
       memcpy(follow[i], campaign->quantity, sizeof campaign->quantity);

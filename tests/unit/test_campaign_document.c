@@ -80,6 +80,18 @@ static void defaults_and_units(void **state) {
     assert_string_equal(campaign->accuracy_quantity, made_for[i][1]);
     campaign_free(campaign);
   }
+  static const char *const asked[][2] =
+      {{"accuracy: {quantity: dust_fraction, within: 1}\n", "dust_fraction"},
+       {"seeds: {until: {quantity: dust_fraction, half_width: 0.1}}\n", "dust_fraction"},
+       {"quantity: fragment_count\naccuracy: {quantity: dust_fraction, within: 1}\n", "fragment_count"},
+       {"accuracy: {quantity: beta, within: 1}\n", "largest_fraction"}}; /* an exponent is of a point, not of a run */
+  for (size_t i = 0; i < sizeof asked / sizeof asked[0]; i++) {
+    char text[128];
+    snprintf(text, sizeof text, HEAD "%s", asked[i][0]);
+    campaign = good(text);
+    assert_string_equal(campaign->quantity, asked[i][1]);
+    campaign_free(campaign);
+  }
   campaign = good(HEAD "seeds: 4\n");
   assert_int_equal(campaign_replicates_least(campaign), 4);
   campaign_free(campaign);

@@ -920,11 +920,11 @@ const struct condition sph_conditions[] = {
         "box", .number = "the damaged share of the damped sides", .bound = 0.01,
         .doubt =
             "the damage reaches the sides of a box that stands for a half-space, so shares of the mass measure the box",
-        .reason = "our choice", .remedy = "take a larger target, and use masses and the crater",
+        .reason = "our choice", .remedy = "take a larger target, and use the crater and the ejecta",
         .results = ALL_OF_A_BODY, .withheld = true, .after = box),
     CONDITION("box", .number = "the damaged share of the damped sides", .bound = 0.01,
-              .doubt = "a share of the box's mass depends on the box; times target_mass it is a mass",
-              .reason = "our choice", .remedy = "use masses: the share times target_mass",
+              .doubt = "a share of the box's mass depends on the box", .reason = "our choice",
+              .remedy = "multiply it by target_mass: the mass does not depend on the box",
               .results = "ejecta.mass_fraction compaction.mass_fraction mean_distention", .after = box),
     CONDITION(
         "hot",
