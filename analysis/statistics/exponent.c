@@ -131,11 +131,12 @@ static void fit_pure(size_t n, const double *masses, double upper, struct expone
 static void fit_with_cutoff(size_t n, const double *masses, double upper, struct exponent *out) {
   const struct power_law_group group = power_law_group_of(POWER_LAW_CUTOFF, n, masses, out->lower, upper);
   const struct power_law_rival fit = power_law_rival_fit(POWER_LAW_CUTOFF, 1, &group);
+  if (!(fabs(fit.beta - 1) < POWER_LAW_STEEPEST))
+    return;
   out->beta = fit.beta;
   out->standard_error = fit.standard_error;
   out->log_likelihood = fit.log_likelihood;
-  if (isfinite(fit.beta))
-    out->cutoff_mass = fit.rate > 0 ? out->lower / fit.rate : HUGE_VAL;
+  out->cutoff_mass = fit.rate > 0 ? out->lower / fit.rate : HUGE_VAL;
 }
 
 status exponent_fit(enum exponent_method method, size_t n, const double *masses, struct exponent_window window,

@@ -413,9 +413,10 @@ struct power_law_rival power_law_rival_fit(enum power_law_kind kind, size_t coun
 }
 
 double power_law_rival_ratio(const struct power_law_rival *fit, double pure_log_likelihood) {
-  return fmax(2 * (fit->log_likelihood - pure_log_likelihood), 0);
+  const double ratio = 2 * (fit->log_likelihood - pure_log_likelihood);
+  return ratio < 0 ? 0 : ratio; /* NaN: no fit */
 }
 
 double power_law_rival_p_value(double ratio) {
-  return ratio > 0 ? 0.5 * erfc(sqrt(ratio / 2)) : 1; /* P(chi2_1 > x) = erfc(sqrt(x/2)) */
+  return ratio <= 0 ? 1 : 0.5 * erfc(sqrt(ratio / 2)); /* P(chi2_1 > x) = erfc(sqrt(x/2)) */
 }

@@ -275,8 +275,8 @@ struct power_law_group {
 struct power_law_group power_law_group_of(enum power_law_kind kind, size_t n, const double *masses, double lower,
                                           double upper);
 
-/* A larger beta - 1 is no exponent: the masses lie within some hundredth of one end of their windows, such as four
- * equal quarters of a body. */
+/* A larger beta - 1 is no exponent, with or without a cut-off: the masses lie within some hundredth of one end of their
+ * windows, such as four equal quarters of a body. */
 #define POWER_LAW_STEEPEST 100
 
 struct power_law {

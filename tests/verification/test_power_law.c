@@ -120,6 +120,24 @@ static void pure_sample_needs_no_factor(void **state) {
   assert_true(fabs(fit.beta - 1 - 1 / mean) < 1e-13);
 }
 
+/* Masses that are equal but for a thousandth, in a window that begins far below them: no method tells an exponent. The
+ * law with a cut-off has one of -76 000 there. A rival that cannot be fitted has no p. */
+static void near_equal_masses_have_no_exponent(void **state) {
+  (void)state;
+  double masses[40];
+  for (uint64_t i = 0; i < 40; i++)
+    masses[i] = 1 + 0.01 * random_draw(4, 4, i, 0);
+  for (int method = 0; method < EXPONENT_METHODS; method++)
+    for (int end = 0; end < 2; end++) {
+      struct exponent e;
+      const struct exponent_window window = {end ? 0.5 : 0.999, end ? 2 : 100};
+      assert_int_equal(exponent_fit((enum exponent_method)method, 40, masses, window, &e, NULL), STATUS_OK);
+      assert_true(isnan(e.beta) || fabs(e.beta) < 101);
+      assert_true(method != EXPONENT_UPPER_CUTOFF || (isnan(e.beta) && isnan(e.cutoff_mass)));
+    }
+  assert_true(isnan(power_law_rival_p_value(power_law_rival_ratio(&(struct power_law_rival){NAN, NAN, NAN, NAN}, 1))));
+}
+
 /* Moving all masses by a factor moves no exponent; the windows go along. */
 static void units_do_not_matter(void **state) {
   (void)state;
@@ -194,6 +212,7 @@ int main(void) {
       cmocka_unit_test(normalisation_is_incomplete_gamma),
       cmocka_unit_test(moments_are_derivatives),
       cmocka_unit_test(pure_sample_needs_no_factor),
+      cmocka_unit_test(near_equal_masses_have_no_exponent),
       cmocka_unit_test(units_do_not_matter),
       cmocka_unit_test(leaving_out_is_fitting_the_rest),
   };
