@@ -188,6 +188,8 @@ says "nothing to try again"
 expect 0 "$clast" export tiny.db hand.db
 expect 0 "$clast" check hand.db
 expect 74 "$clast" export tiny.db hand.db
+expect 74 "$clast" export tiny.db hand.db/tables --csv
+says "cannot make the folder"
 expect 0 "$clast" export tiny.db tables --csv
 same "$(ls tables | tr '\n' ' ')" "column_doc.csv estimates.csv points.csv runs.csv spectra.csv " "exported tables"
 same "$(python -c "import csv; print(len(list(csv.DictReader(open('tables/runs.csv', newline='')))))")" 20 "rows of runs.csv"
@@ -224,4 +226,4 @@ expect 64 "$clast" query tiny.db "select :x"
 says "give --with x=VALUE"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 61
+done_after 62

@@ -66,6 +66,9 @@ says "command.version: is missing"
 sed 's/{{a}}/{{b}}/' mark.yaml >wrong.yaml
 expect 65 "$clast" explain wrong.yaml
 says "{{b}} is no input of the command"; says "wrong.yaml:6:"
+sed 's/files: .*/templates: {in.txt: "{{b}}"}/' mark.yaml >wrong.yaml
+expect 65 "$clast" explain wrong.yaml
+says "command.templates: {{b}} is no input of the command"
 sed 's/doc: A result/unit: km, doc: A result/' mark.yaml >wrong.yaml
 expect 65 "$clast" explain wrong.yaml
 says "SI unit without prefix"
@@ -312,4 +315,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 117
+done_after 118

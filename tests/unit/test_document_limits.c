@@ -78,6 +78,13 @@ static void limits_hold(void **state) {
   report = report_of(text, used, &thing);
   assert_non_null(strstr(report, "more than 1048576 values, aliases counted as often as used; use less"));
   free(report);
+  used = (size_t)sprintf(text, "note: ["); /* one value too many, where it would also be too deep */
+  for (int i = 3 + 30; i < 1 << 20; i++)
+    used += (size_t)sprintf(text + used, "x,");
+  memset(text + used, '[', 31);
+  report = report_of(text, used + 31, &thing);
+  assert_non_null(strstr(report, "more than 1048576 values, aliases counted as often as used; use less"));
+  free(report);
   used = (size_t)sprintf(text, "note:\n");
   for (int i = 0; i < 1001; i++)
     used += (size_t)sprintf(text + used, "- &a%d x\n", i);

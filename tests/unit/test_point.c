@@ -117,6 +117,25 @@ static void views_and_c_agree(void **state) {
   OK(store_close(store, &error));
 }
 
+/* The rows of estimates follow the choice of runs. */
+static void chosen_runs_have_their_exponents(void **state) {
+  (void)state;
+  char path[64];
+  int64_t id;
+  struct store *store = fill(path, &id);
+  struct pooled_exponent all, chosen;
+  OK(store_close(store, &error));
+  OK(store_open_reader(path, &store, &error));
+  OK(point_exponent(store, id, 0, EXPONENT_MASSES, ESTIMATES_FROM_5, 0.95, &all, &error));
+  OK(ask_choose(store, &(struct ask_choice){.where = "replicate > 4"}, &error));
+  OK(ask_choose_estimates(store, &error));
+  OK(point_exponent(store, id, 0, EXPONENT_MASSES, ESTIMATES_FROM_5, 0.95, &chosen, &error));
+  assert_true(chosen.fit.beta != all.fit.beta);
+  assert_near(number(store, "SELECT beta FROM point_estimate WHERE method = 'masses' AND \"window\" = 'from_5'"),
+              chosen.fit.beta, 0);
+  OK(store_close(store, &error));
+}
+
 /* A point without a window has no exponent of any run. */
 static void no_window_no_exponents(void **state) {
   (void)state;
@@ -189,6 +208,7 @@ static void runs_that_count_in_order(void **state) {
                      STATUS_USAGE);
   }
   point_release(&point);
+  assert_int_equal(point_read_where(store, id, 0, "no_such > 1", &point, &error), STATUS_USAGE);
 
   OK(point_read(store, id + 7, 0, &point, &error)); /* no such point */
   assert_int_equal(point.runs.count, 0);
@@ -353,7 +373,8 @@ static void pairs_of_points(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(no_window_no_exponents),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(chosen_runs_have_their_exponents),
+                                     cmocka_unit_test(no_window_no_exponents),
                                      cmocka_unit_test(runs_that_count_in_order),
                                      cmocka_unit_test(views_and_c_agree),
                                      cmocka_unit_test(pairs_of_points),

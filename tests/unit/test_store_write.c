@@ -82,6 +82,18 @@ static void same_run_is_stored_once(void **state) {
   OK(store_close(store, &error));
 }
 
+static void a_full_disk_takes_no_campaign(void **state) {
+  (void)state;
+  char path[64];
+  static char document[1 << 20];
+  struct store *store = writer(fixture_path(path, "full"));
+  int64_t campaign;
+  memset(document, '#', sizeof document - 1);
+  sqlite3_exec(store->db, "PRAGMA max_page_count = 1", NULL, NULL, NULL); /* = as many as there are */
+  assert_int_equal(store_add_campaign(store, "c", document, "{}", &campaign, &error), STATUS_IO);
+  store_close(store, NULL);
+}
+
 static void batches_commit_by_count_and_close(void **state) {
   (void)state;
   char path[64];
@@ -251,13 +263,10 @@ static void estimates_are_replaced(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_value_comes_back),
-      cmocka_unit_test(same_run_is_stored_once),
-      cmocka_unit_test(batches_commit_by_count_and_close),
-      cmocka_unit_test(sums_are_those_of_the_rows),
-      cmocka_unit_test(failed_and_censored_are_counted_apart),
-      cmocka_unit_test(runs_of_a_point_in_order),
-      cmocka_unit_test(estimates_are_replaced),
+      cmocka_unit_test(every_value_comes_back),        cmocka_unit_test(same_run_is_stored_once),
+      cmocka_unit_test(a_full_disk_takes_no_campaign), cmocka_unit_test(batches_commit_by_count_and_close),
+      cmocka_unit_test(sums_are_those_of_the_rows),    cmocka_unit_test(failed_and_censored_are_counted_apart),
+      cmocka_unit_test(runs_of_a_point_in_order),      cmocka_unit_test(estimates_are_replaced),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
