@@ -924,7 +924,7 @@ const struct condition sph_conditions[] = {
         .results = ALL_OF_A_BODY, .withheld = true, .after = box),
     CONDITION("box", .number = "the damaged share of the damped sides", .bound = 0.01,
               .doubt = "a share of the box's mass depends on the box", .reason = "our choice",
-              .remedy = "multiply it by target_mass: the mass does not depend on the box",
+              .remedy = "multiply shares of the mass by target_mass: that does not depend on the box",
               .results = "ejecta.mass_fraction compaction.mass_fraction mean_distention", .after = box),
     CONDITION(
         "hot",
