@@ -310,7 +310,7 @@ static status find_command(struct store *store, long long id, const char *quanti
     snprintf(verb, sizeof verb, "%s", answer_text(&found, 0));
   }
   if (*command > ' ' && strlen(command) < sizeof out->command)
-    snprintf(out->command, sizeof out->command, "%s", command);
+    memcpy(out->command, command, strlen(command) + 1);
   text_make_plain(out->command, "");
   return answer_end(&found);
 }
