@@ -193,12 +193,14 @@ static void the_store_has_the_second_error(void **state) {
 /* A seed without a run leaves its own place empty, so that levels are still compared seed by seed. */
 static void a_missing_seed_keeps_its_place(void **state) {
   (void)state;
-  struct fixture f;
   const uint64_t missing = 3;
-  set_up(&f, "exponent-missing", "beta", missing);
-  for (int64_t s = 0; s < SEEDS; s++)
-    assert_int_equal(isnan(f.ladder->values[0][0][s]), s == (int64_t)missing - 1);
-  tear_down(&f);
+  for (int result = 0; result < 2; result++) {
+    struct fixture f;
+    set_up(&f, result ? "result-missing" : "exponent-missing", result ? OUTCOME_DEFAULT : "beta", missing);
+    for (int64_t s = 0; s < SEEDS; s++)
+      assert_int_equal(isnan(f.ladder->values[0][0][s]), s == (int64_t)missing - 1);
+    tear_down(&f);
+  }
 }
 
 /* One run has no interval, so a study of one seed has no result for an exponent. */

@@ -153,6 +153,12 @@ static void a_place_that_contradicts_is_looked_at(void **state) {
   assert_true(found.contradicted && !crossing_is_answer(&found, 0.2));
   NEAR(found.next[0], 0.925, 1e-12);
   NEAR(found.next[3], 1, 1e-12);
+  for (int i = 0; i < 36; i++)
+    x[i] = 1 - x[i]; /* the first place contradicts */
+  found = find(36, x, y, 0, NAN);
+  assert_true(found.contradicted);
+  NEAR(found.next[0], 0, 1e-12);
+  NEAR(found.next[3], 0.075, 1e-12);
   for (int i = 32; i < 36; i++)
     y[i] += 1.65;
   found = find(36, x, y, 0, NAN);

@@ -91,6 +91,7 @@ static void every_ending(void **state) {
     assert_each_once(&list);
     assert_int_equal(list.endings[3], FARM_CRASHED);
     assert_int_equal(list.signals[3], SIGSEGV);
+    assert_int_equal(list.exit_codes[3], 0);
     assert_int_equal(list.endings[7], FARM_CRASHED);
     assert_int_equal(list.signals[7], SIGABRT);
     assert_non_null(strstr(list.messages[7], "signal 6"));

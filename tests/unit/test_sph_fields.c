@@ -208,6 +208,7 @@ static void what_is_written_is_what_is_read(void **state) {
   }
   struct picture_body body; /* its cells are no polygons */
   assert_int_equal(picture_fragments_read(at("a.hdf"), &body, &error), STATUS_CONTENT);
+  assert_int_equal(body.cells, 0);
   picture_cloud_clear(&cloud);
   sph_fragments_clear(&pieces);
   sph_particles_free(p);

@@ -275,7 +275,7 @@ static void of_masses(void) {
     if (exponent_fit_bins(filled, bins, (struct exponent_window){1e-3, 0.1}, &fit, NULL) == STATUS_OK)
       exponents("of bins", &fit);
     for (int kind = POWER_LAW_PURE; kind <= POWER_LAW_LOGNORMAL; kind++) {
-      struct power_law_group groups[RUNS];
+      struct power_law_group groups[RUNS + 1] = {0}; /* the last one is empty: the rivals have it */
       for (size_t r = 0; r < RUNS; r++) {
         const double upper = kind == POWER_LAW_PURE ? masses[r * EACH] : 0.5;
         groups[r] = power_law_group_of((enum power_law_kind)kind, EACH, &masses[r * EACH], 1.5e-3, upper);
@@ -291,7 +291,7 @@ static void of_masses(void) {
         say("left out", 2, left);
         continue;
       }
-      const struct power_law_rival rival = power_law_rival_fit((enum power_law_kind)kind, RUNS, groups);
+      const struct power_law_rival rival = power_law_rival_fit((enum power_law_kind)kind, RUNS + 1, groups);
       const double ratio = power_law_rival_ratio(&rival, pure.log_likelihood);
       SAY("rival", rival.beta, rival.standard_error, rival.rate, rival.log_likelihood, ratio,
           power_law_rival_p_value(ratio));
@@ -372,6 +372,32 @@ static void of_inputs(void) {
     }
 }
 
+/* Points of two inputs that do something and one that does not, with 1 to 3 seeds. */
+static void of_points(void) {
+  enum { POINTS = 40, RUNS = 3, INPUTS = 3 };
+  double x[POINTS * INPUTS], value[POINTS * RUNS];
+  size_t runs[POINTS], needed;
+  const bool named[INPUTS] = {false};
+  for (size_t k = 0; k < POINTS * INPUTS; k++)
+    x[k] = random_draw(29, RANDOM_LATTICE, k, 0);
+  for (size_t seeds = 1; seeds <= RUNS; seeds++)
+    for (int same = 0; same < 2; same++) {
+      for (size_t j = 0; j < POINTS; j++) {
+        runs[j] = seeds;
+        for (size_t r = 0; r < seeds; r++)
+          value[j * seeds + r] = x[INPUTS * j] + 0.5 * x[INPUTS * j + 1] * x[INPUTS * j + 1] +
+                                 0.4 * random_draw(29, RANDOM_LATTICE, same ? 0 : j, 1 + r) +
+                                 0.3 * random_draw(29, RANDOM_LATTICE, j, 10 + r);
+      }
+      struct sensitivity_point found[INPUTS + 1];
+      const struct sensitivity_points given = {INPUTS, POINTS, x, named, seeds, runs, value, same};
+      assert_int_equal(sensitivity_points(&given, found, &needed, NULL), STATUS_OK);
+      for (size_t i = 0; i <= INPUTS; i++)
+        SAY("of points", found[i].of_runs.estimate, found[i].of_runs.low, found[i].of_runs.high,
+            found[i].of_means.estimate, found[i].of_means.low, found[i].of_means.high);
+    }
+}
+
 /* ---- nothing, too little, and what is no number ---- */
 
 static void of_nothing(void) {
@@ -423,7 +449,7 @@ static void numbers_stay(void **state) {
   char *text = NULL;
   size_t size = 0;
   assert_non_null(out = open_memstream(&text, &size));
-  of_samples(), of_pairs(), of_ladders(), of_masses(), of_inputs(), of_nothing();
+  of_samples(), of_pairs(), of_ladders(), of_masses(), of_inputs(), of_points(), of_nothing();
   fclose(out);
   pinned_same("unit/statistics.txt", text, 1e-8);
   free(text);
@@ -435,7 +461,7 @@ static void part(void *context) {
 
 static void nothing_is_left(void **state) {
   (void)state;
-  void (*const parts[])(void) = {of_pairs, of_ladders, of_masses, of_inputs};
+  void (*const parts[])(void) = {of_pairs, of_ladders, of_masses, of_inputs, of_points};
   assert_non_null(out = fopen("/dev/null", "w"));
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
     pinned_frees("statistics", part, (void *)(intptr_t)parts[k]);
