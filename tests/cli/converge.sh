@@ -8,6 +8,7 @@ prints "particles"; prints "grains"
 expect 0 "$clast" converge "${disc[@]}" --knob time_step --knob grains=1.2cm,1.069cm,0.9cm -Q largest_fraction,broken \
   --seeds 4 --max-seeds 8 --within '0.01 %' --store disc.db --picture disc.png -j 2
 says "56 runs computed"; prints "largest number of seeds"; prints "grains"; [ -s disc.png ] || fail "no picture"
+head -2 out | tr '\n' ' ' | grep -q ' its limit (time_step), .* its limit (grains) $' || fail "no distance to the limits"
 same "$(number disc.db "select count(*) from convergence where n = 8")" 16 "levels of two knobs and two quantities"
 same "$(number disc.db "select count(*) from convergence_limit")" 4 "limits"
 # The bias that the study printed is the one of the runs themselves, seed by seed.

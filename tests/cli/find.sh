@@ -105,6 +105,10 @@ sed 's/stop.end_time: 4 ms/stop.end_time: 0.3 ms, fidelity.time_step: 4 us/; s/d
 expect 0 "$clast" find coarse.yaml --level 0.5 --max-runs 40
 head -1 out | grep -q ' !' || fail "no mark"
 says "marked (!), 30 of 36 runs: step: fidelity.time_step over"
+# No answer without runs: the step is far too long.
+sed 's/stop.end_time: 4 ms/&, fidelity.time_step: 1 ms/; s/disc.db/failed.db/' disc.yaml >failed.yaml
+expect 1 "$clast" find failed.yaml --level 0.5 --max-runs 20
+says "20 of the first 20 runs failed"
 
 # Wrong command lines.
 for wrong in "--share 0.5|--level is missing" "--level 1.5|at most 1, got 1.5" "--level nine|expected a number" "--level 0.5 -Q largest_friction|largest_fraction" \
@@ -121,4 +125,4 @@ expect 64 "$clast" find two.yaml --level 0.5 --input strain
 says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
 expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
 prints "The mean of largest_fraction"
-done_after 36
+done_after 37

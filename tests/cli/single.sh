@@ -74,8 +74,9 @@ expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]:0:4}" --set body.
 says "3 of 5 snapshots written"
 ok "a snapshot before the end is not judged as an end"
 sleep 1 # HDF5 knows seconds
-expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --fields later.h5
+expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --fields later.h5 --snapshots 1
 cmp -s end.h5 later.h5 || fail "the fields of the same run differ from one second to the next"
+cmp -s end.h5 disc-explosion_000000.hdf || fail "a single snapshot is not one of the end"
 time=$(python -c "import h5py; print('%.4g' % (1e6 * float(h5py.File('end.h5')['run'].attrs['time'])))") # s
 expect 0 "$clast" picture end.h5 again.png --caption "disc-explosion: dem, seed 7, $time µs"
 cmp -s end.png again.png || fail "the picture of the same fields differs"
@@ -119,10 +120,13 @@ expect 0 "$clast" explain vary
 prints "log_uniform"
 expect 65 "$clast" explain desing
 says "design"
+# The scene's own result stands first, and its line says what it is.
+expect 0 "$clast" simulate elastic-bar --set stop.end_time=0.1us
+sed -n 2p out | grep -qE '^frequency .* 1/s; frequency of the first mode' || fail "no line of the frequency"
 # What the inputs alone forbid is refused before a run; a run that could not begin has no numbers.
 expect 1 "$clast" simulate gabbro-crater --seed 1 --set fidelity.graded=false --set fidelity.particles=3000 \
   --set fidelity.projectile_spacing=0.1 --set sides.far=damped --set sides.depth='0.1 mm'
 prints "no results"; ! grep -q "M_1/M" out || fail "numbers of a run that did not begin"
 expect 65 "$clast" explain gabbro-crater --set fidelity.particles=3000
 says "particles, not 3000"
-done_after $((40 + 3 * $(echo "$scenes" | wc -w)))
+done_after $((41 + 3 * $(echo "$scenes" | wc -w)))
