@@ -119,7 +119,8 @@ static void answer(const char *name, double value, enum condition_mark mark, con
            : whole                    ? "%.0f%s"
                                       : "%.4g%s",
            value, mark == CONDITION_MARKED ? UNCERTAINTY_MARK : "");
-  snprintf(head, sizeof head, strchr(name, '.') ? "%-20s %-11s" : "%-14s %-11s", name, text); /* a path: an engine's */
+  snprintf(head, sizeof head, strchr(name, '.') ? "%-20s %-10s " : "%-14s %-10s ", name,
+           text); /* a path: an engine's */
   words_print(stdout, head, "%s", says);
 }
 

@@ -123,10 +123,12 @@ says "design"
 # The scene's own result stands first, and its line says what it is.
 expect 0 "$clast" simulate elastic-bar --set stop.end_time=0.1us
 sed -n 2p out | grep -qE '^frequency .* 1/s; frequency of the first mode' || fail "no line of the frequency"
+expect 0 "$clast" simulate uniaxial --set body.rows=6 --set body.columns=4 # a marked number of four digits
+grep -qE '^young_modulus +[0-9.e+]+ ! Pa' out || fail "no blank before the unit"
 # What the inputs alone forbid is refused before a run; a run that could not begin has no numbers.
 expect 1 "$clast" simulate gabbro-crater --seed 1 --set fidelity.graded=false --set fidelity.particles=3000 \
   --set fidelity.projectile_spacing=0.1 --set sides.far=damped --set sides.depth='0.1 mm'
 prints "no results"; ! grep -q "M_1/M" out || fail "numbers of a run that did not begin"
 expect 65 "$clast" explain gabbro-crater --set fidelity.particles=3000
 says "particles, not 3000"
-done_after $((41 + 3 * $(echo "$scenes" | wc -w)))
+done_after $((42 + 3 * $(echo "$scenes" | wc -w)))
