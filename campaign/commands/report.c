@@ -35,22 +35,11 @@ struct making {
 
 /* The column of the main quantity of the newest campaign that a person wrote; else M_1/M. */
 static status main_quantity(struct store *store, char column[ASK_GROUP_NAME], struct error *error) {
-  snprintf(column, ASK_GROUP_NAME, "%s", OUTCOME_DEFAULT);
-  ANSWER campaigns = ask_campaign_documents(store, error);
-  while (answer_next(&campaigns)) {
-    const char *text = answer_text(&campaigns, 2);
-    struct document *document = NULL;
-    char name[ASK_GROUP_NAME];
-    if (strncmp(text, "# Written by clast", 18) == 0 ||
-        document_parse(answer_text(&campaigns, 1), text, strlen(text), &document, NULL))
-      continue;
-    document_node *quantity = document_key(document_root(document), "quantity");
-    const char *word = quantity ? document_scalar(quantity) : OUTCOME_DEFAULT;
-    if (word && ask_group_quantity(store, word, name, NULL) == STATUS_OK)
-      snprintf(column, ASK_GROUP_NAME, "%s", name);
-    document_free(document);
-  }
-  return answer_end(&campaigns);
+  char name[ASK_GROUP_NAME], word[FIELD_TEXT_SIZE];
+  TRY(ask_campaign_quantity(store, word, error));
+  const bool has = *word && ask_group_quantity(store, word, name, NULL) == STATUS_OK;
+  snprintf(column, ASK_GROUP_NAME, "%s", has ? name : OUTCOME_DEFAULT);
+  return STATUS_OK;
 }
 
 static status add_facts(struct making *making, const char *name, struct error *error) {

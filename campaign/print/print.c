@@ -119,8 +119,8 @@ static void answer(const char *name, double value, enum condition_mark mark, con
            : whole                    ? "%.0f%s"
                                       : "%.4g%s",
            value, mark == CONDITION_MARKED ? UNCERTAINTY_MARK : "");
-  snprintf(head, sizeof head, strchr(name, '.') ? "%-20s %-10s " : "%-14s %-10s ", name,
-           text); /* a path: an engine's */
+  const bool is_path = strchr(name, '.') != NULL; /* an engine's result */
+  snprintf(head, sizeof head, is_path ? "%-20s %-10s " : "%-14s %-10s ", name, text);
   words_print(stdout, head, "%s", says);
 }
 

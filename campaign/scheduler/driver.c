@@ -99,9 +99,11 @@ static status begin(void *context, struct scheduler *scheduler, struct error *er
   char plan[4096];
   struct driver_summary *summary = &driver->summary;
   snprintf(plan, sizeof plan,
-           "{\"design\": %d, \"points\": %llu, \"replicates_least\": %lld, \"replicates_most\": %lld, \"axes\": [",
+           "{\"design\": %d, \"points\": %llu, \"replicates_least\": %lld, \"replicates_most\": %lld, \"quantity\": "
+           "\"%s\", \"axes\": [",
            campaign->design.kind, (unsigned long long)design_points(driver->walk.design),
-           (long long)campaign_replicates_least(campaign), (long long)campaign_replicates_most(campaign));
+           (long long)campaign_replicates_least(campaign), (long long)campaign_replicates_most(campaign),
+           campaign->quantity);
   for (size_t i = 0; i < campaign->axis_count && strlen(plan) + 2 * FIELD_TEXT_SIZE < sizeof plan; i++)
     text_append(plan, sizeof plan, "%s\"%s\"", i ? ", " : "", driver->paths[i]); /* their order in tables */
   text_append(plan, sizeof plan, "]}");

@@ -47,8 +47,8 @@ int64_t ask_campaign_levels(struct store *store) {
   const status code = answer_number(
       store, &points, NULL,
       "SELECT count(*) FROM points WHERE point_id IN (SELECT point_id FROM campaign_point) AND point_id NOT IN (SELECT "
-      "point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE document NOT LIKE '# Written by clast "
-      "%%')");
+      "point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE NOT %s)",
+      CAMPAIGN_IS_ROUND);
   return code == STATUS_OK ? (int64_t)points : 0;
 }
 
@@ -80,6 +80,16 @@ struct answer ask_campaign_sessions(struct store *store, struct error *error) {
       store, error,
       "SELECT session_id, campaign_id, started_at, ended_at, outcome, facts ->> '$.version', facts ->> '$.commit',"
       " (SELECT group_concat(value, ' ') FROM json_each(facts, '$.command')) FROM session ORDER BY session_id");
+}
+
+status ask_campaign_quantity(struct store *store, char quantity[FIELD_TEXT_SIZE], struct error *error) {
+  ANSWER found = answer_to(store, error,
+                           "SELECT plan ->> '$.quantity' FROM campaign WHERE json_valid(plan) AND NOT %s ORDER BY "
+                           "campaign_id DESC LIMIT 1",
+                           CAMPAIGN_IS_ROUND);
+  const bool has = answer_next(&found) && answer_value(&found, 0).kind == QUERY_TEXT;
+  snprintf(quantity, FIELD_TEXT_SIZE, "%s", has ? answer_text(&found, 0) : "");
+  return answer_end(&found);
 }
 
 struct answer ask_campaign_documents(struct store *store, struct error *error) {

@@ -60,6 +60,8 @@ status ask_campaign_attempts(struct store *store, int64_t *attempts, struct erro
 /* One row per session (invocation that wrote to the store): session, campaign (number; may be NULL), started, ended
  * (may be NULL), outcome (may be NULL), version, commit, command (words with spaces between them). */
 struct answer ask_campaign_sessions(struct store *store, struct error *error);
+/* The main quantity of the newest campaign that a person wrote. "": not known, as in a store of an older program. */
+status ask_campaign_quantity(struct store *store, char quantity[FIELD_TEXT_SIZE], struct error *error);
 /* One row per campaign: campaign, name, document. */
 struct answer ask_campaign_documents(struct store *store, struct error *error);
 

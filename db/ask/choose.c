@@ -43,11 +43,9 @@ static status choose_campaigns(struct store *store, const char *campaign, struct
                      doing, error);
 }
 
-/* Points with a campaign, but none that a person wrote. */
 #define OF_PEOPLE                                                                                                      \
-  "SELECT point_id FROM main.campaign_point JOIN main.campaign USING (campaign_id) WHERE document NOT LIKE '# "        \
-  "Written "                                                                                                           \
-  "by clast %'"
+  "SELECT point_id FROM main.campaign_point JOIN main.campaign USING (campaign_id) WHERE NOT " CAMPAIGN_IS_ROUND
+/* Points with a campaign, but none that a person wrote, leave. */
 static status choose_campaigns_alone(struct store *store, struct error *error) {
   TRY(sql_execute(store->db,
                   "DELETE FROM temp.chosen_point WHERE point_id IN (SELECT point_id FROM main.campaign_point) AND "

@@ -216,6 +216,9 @@ struct store_kind { /* fills result_<engine> */
   struct digest *names; /* digest_names_make() */
 };
 
+/* SQL: did clast write the document of this campaign, a round of a study or a search (converge, find, fit)? */
+#define CAMPAIGN_IS_ROUND "ifnull(document LIKE '# Written by clast %', 0)"
+
 struct store {
   sqlite3 *db;
   bool writer, functions;

@@ -44,6 +44,22 @@ assert table and {point: p for point, p in page.items() if p is not None} == tab
 PY
 ok "the goodness of fits"
 
+# Without the key `quantity`, the page opens on what the scene is made for, also after a study.
+printf '%s\n' 'name: load' 'scene: uniaxial' 'set: {body.rows: 6, body.columns: 4}' 'seeds: 1' >load.yaml
+expect 0 "$clast" run load.yaml --quiet
+expect 0 "$clast" converge load.yaml --knob time_step -Q young_modulus --seeds 2 --max-seeds 2 --within off --store load.db
+expect 0 "$clast" report load.db
+says "left out: "
+python - <<'PY'
+import base64, gzip, re, sqlite3
+(text,) = re.findall(r'class="store">([^<]*)<', open('load.html').read())
+db = sqlite3.connect(':memory:')
+db.deserialize(gzip.decompress(base64.b64decode(text)))
+(quantity,) = db.execute("select value from fact where name = 'default_quantity'").fetchone()
+assert quantity.endswith('young_modulus'), quantity
+PY
+ok "what the scene is made for"
+
 # The page makes intervals as the program does: of shares and of counts, of 20 and of 3 runs, and of equal runs.
 for store in fits small; do
   expect 0 "$clast" query $store.db --json "select 1 as share, n, largest_fraction_mean as mean, largest_fraction_sd as sd,
@@ -131,7 +147,7 @@ if [ "$sanitized" -eq 0 ]; then
   expect 0 "$clast" report marked.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 30
+  done_after 34
 else
-  done_after 26
+  done_after 30
 fi
