@@ -171,6 +171,17 @@ status quantity_tell_doubts(struct store *store, const struct ask_doubts_choice 
   return add_doubts(store, choice, quantities, caption, sizeof caption, error);
 }
 
+status quantity_tell_idle(struct store *store, struct error *error) {
+  char idle[ASK_GROUP_POOLED];
+  TRY(ask_group_idle(store, idle, error));
+  if (*idle)
+    fprintf(
+        stderr,
+        "clast: no effect in these runs: %s (runs that differ in it alone have the same results, to the last bit)\n",
+        idle);
+  return STATUS_OK;
+}
+
 void quantity_tell_resolution(struct store *store, const char *name, const char *pooled) {
   struct ask_resolution resolution;
   char text[UNCERTAINTY_TEXT];

@@ -56,6 +56,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
             levels);
   if (table_for_people(line->format)) {
     TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, options->quantity, error));
+    TRY(quantity_tell_idle(store, error));
     quantity_tell_resolutions(store, options->quantity, pooled);
   }
   return warn_of_twins(store, error);

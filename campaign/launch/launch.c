@@ -155,14 +155,16 @@ static status print_answers(const char *path, int64_t campaign, const char *quan
   int64_t points = 0;
   TRY(store_open_reader(path, &store, error));
   TRY(ask_points_count(store, &choice, &points, error));
-  if (table_for_people(format) && points > MANY_POINTS) {
+  if (!table_for_people(format))
+    return print_estimates(store, &choice, format, !quiet, error);
+  if (points > MANY_POINTS)
     fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
             campaign);
-    return STATUS_OK;
-  }
-  if (table_for_people(format) && strcmp(quantity, OUTCOME_DEFAULT) != 0 && strncmp(quantity, "beta", 4) != 0)
-    return print_means(store, path, campaign, quantity, format, quiet, error);
-  return print_estimates(store, &choice, format, !quiet, error);
+  else if (strcmp(quantity, OUTCOME_DEFAULT) != 0 && strncmp(quantity, "beta", 4) != 0)
+    TRY(print_means(store, path, campaign, quantity, format, quiet, error));
+  else
+    TRY(print_estimates(store, &choice, format, !quiet, error));
+  return quantity_tell_idle(store, error);
 }
 
 struct launching {

@@ -392,6 +392,10 @@ struct ask_group_twins {
 };
 status ask_group_twins(struct store *store, struct ask_group_twins *twins, struct error *error);
 
+/* The varied inputs without effect: runs that differ in one of them alone have the same results, bit for bit. Runs that
+ * differ in several say nothing. Their words, "strain, angle"; "": none. */
+status ask_group_idle(struct store *store, char idle[ASK_GROUP_POOLED], struct error *error);
+
 /* ---- The pairs of points that `clast compare` compares, and their differences. ---- */
 
 struct ask_pairs; /* opaque */

@@ -381,3 +381,41 @@ status ask_group_twins(struct store *store, struct ask_group_twins *twins, struc
   }
   return answer_end(&answer);
 }
+
+status ask_group_idle(struct store *store, char idle[ASK_GROUP_POOLED], struct error *error) {
+  struct ask_column axes[LIMITS_AXES_OF_POOL];
+  size_t count, size = 0;
+  char *sql = NULL;
+  idle[0] = '\0';
+  TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_POOL, axes, &count, error));
+  FILE *out = text_open(&sql, &size);
+  ANSWER
+  results = answer_to(store, error,
+                      "%s AND c.name NOT IN (SELECT column_name FROM column_doc WHERE table_name = 'run' AND NOT "
+                      "deterministic)",
+                      quantities_sql);
+  while (answer_next(&results))
+    fprintf(out, " AND min(\"%1$s\") IS max(\"%1$s\") AND count(\"%1$s\") IN (0, count(*))", answer_text(&results, 0));
+  OWNED char *same = text_close_small(out, &sql);
+  TRY(answer_end(&results));
+  for (size_t i = 0; i < count; i++) {
+    bool idle_so_far = true; /* the first seeds show most effects; only without one all seeds are read */
+    for (int all = 0; all <= 1 && idle_so_far; all++) {
+      sqlite3_str *others = sqlite3_str_new(NULL);
+      for (size_t j = 0; j < count; j++)
+        if (j != i)
+          sqlite3_str_appendf(others, "\"%w\", ", axes[j].name);
+      ANSWER answer =
+          answer_to(store, error,
+                    "SELECT ifnull(min(same), %d) FROM (SELECT count(DISTINCT \"%w\") AS kinds, (1%s) AS same FROM "
+                    "runs WHERE counts AND (%d OR replicate = 0) GROUP BY %zengine, results_version, seed "
+                    "HAVING kinds > 1)",
+                    !all, axes[i].name, same, all, sqlite3_str_finish(others));
+      idle_so_far = answer_next(&answer) && answer_integer(&answer, 0);
+      TRY(answer_end(&answer));
+    }
+    if (idle_so_far)
+      append(idle, ASK_GROUP_POOLED, axes[i].word);
+  }
+  return STATUS_OK;
+}

@@ -234,4 +234,23 @@ db.execute(\"UPDATE run SET warnings = 'soot' WHERE point_id = 1\")
 db.commit()"
 expect 0 "$clast" stats old.db --by time_step
 says "marked (!), 3 of 12 runs: soot: a word of another version of clast"
-done_after 101
+
+# An input that changes nothing is named by the runs themselves: friction bounds the tangential damping, which is off here.
+cat >idle.yaml <<'YAML'
+name: idle
+scene: disc-explosion
+set: {body.diameter: 14 cm, charge.energy: 6 kJ/m, stop.least_time: 1 ms}
+vary: {threshold.strain: [2 %, 5 %], contact.friction: [0.1, 0.5]}
+seeds: {per_point: 2}
+YAML
+sed '/^set/s/}/, contact.tangential_damping: 1e4 1\/s}/' idle.yaml >acts.yaml # its sound twin
+sed 's/per_point: 2/&, independent: true/' idle.yaml >alone.yaml  # no two runs differ in friction alone
+for name in idle acts alone; do
+  expect 0 "$clast" run $name.yaml --store $name.db -j 2
+  cp err run.err
+  expect 0 "$clast" stats $name.db --by threshold.strain
+  same "$(cat err run.err | grep -o 'no effect in these runs: [a-z, ]*[a-z]' | sort -u)" \
+    "$([ $name != idle ] || echo 'no effect in these runs: friction')" "inputs without effect of $name"
+done
+ok "inputs without effect"
+done_after 111
