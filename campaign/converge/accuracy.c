@@ -428,12 +428,24 @@ static void advise_seeds(const struct accuracy *accuracy, double seeds, char *ne
               accuracy->n, seeds, time, accuracy->path, seeds, seeds);
 }
 
+/* "particles = 40000", "stop = 0.0012 s", "the scene's own settings". */
+static void name_option(const struct campaign *campaign, const struct accuracy_option *option, char *text,
+                        size_t size) {
+  char setting[160];
+  study_show_setting(campaign->scene->kind, knob_of(campaign, option->knob), option->setting, setting, sizeof setting);
+  if (option->own)
+    snprintf(text, size, "the scene's own settings");
+  else
+    snprintf(text, size, "%s = %s", option->knob, setting);
+}
+
 /* No level reaches the accuracy: what would. */
 static status out_of_reach(const struct accuracy *accuracy, const struct campaign *campaign, struct error *error) {
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double seeds = ceil((double)accuracy->n * pow(best->error / accuracy->within, 2));
-  char other[600] = "", next[600] = "", share[32] = "", more[64] = "";
+  char other[600] = "", next[600] = "", share[32] = "", more[64] = "", chosen[256];
+  name_option(campaign, best, chosen, sizeof chosen);
   if (strcmp(quantity, OUTCOME_DEFAULT) == 0)
     text_append(other, sizeof other,
                 "; or take another result: `clast converge %s --quantity fragment_count,kinetic_energy_share` tells "
@@ -454,12 +466,12 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
                 "More than %d seeds of the study would be needed, so no setting is known to reach it", STUDY_SEEDS);
   if (1.3 * best->error < fmin(fabs(accuracy->mean), accuracy->most) && 1.3 * best->error > accuracy->within)
     text_append(more, sizeof more, "allow more, such as %.2g; or ", 1.3 * best->error);
-  return status_fail(
-      error, STATUS_CONTENT,
-      "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g (%" PRId64 " seeds). The smallest error is "
-      "%.2g%s, with %s = %s. %s. Or %sask for the least error in a time: `clast plan %s --within 10min`%s",
-      quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n, best->error,
-      best->open ? " or more, as no limit is seen" : "", best->knob, best->setting, next, more, path, other);
+  return status_fail(error, STATUS_CONTENT,
+                     "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g (%" PRId64
+                     " seeds). The smallest error is "
+                     "%.2g%s, with %s. %s. Or %sask for the least error in a time: `clast plan %s --within 10min`%s",
+                     quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n, best->error,
+                     best->open ? " or more, as no limit is seen" : "", chosen, next, more, path, other);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {
@@ -478,8 +490,8 @@ status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign
 /* ---- the table of settings and seeds that reach an accuracy ---- */
 
 /* One row per way to run the campaign: cost of a point against that of the most accurate one. */
-static status print_alternatives(const struct accuracy *accuracy, enum table_format format, FILE *out,
-                                 struct error *error) {
+static status print_alternatives(const struct accuracy *accuracy, const struct campaign *campaign,
+                                 enum table_format format, FILE *out, struct error *error) {
   const struct accuracy_option *reference = &accuracy->options[accuracy->reference];
   TABLE table = table_new(format, out);
   table_columns(table, (const char *const[]){"choice", "knob", "setting", "error", "known", "seeds", "total", NULL});
@@ -488,9 +500,12 @@ static status print_alternatives(const struct accuracy *accuracy, enum table_for
   table_column(table, "run_cost", NULL);
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
+    char setting[160];
+    const struct knob *knob = table_for_people(format) ? knob_of(campaign, option->knob) : NULL;
+    study_show_setting(campaign->scene->kind, knob, option->setting, setting, sizeof setting);
     table_text(table, i == accuracy->chosen ? "chosen" : "");
     table_text(table, option->own ? "" : option->knob);
-    table_text(table, option->own ? "the scene's own" : option->setting);
+    table_text(table, option->own ? "the scene's own" : setting);
     table_real(table, option->error);
     table_text(table, option->guessed        ? "no limit"
                       : option->open         ? "at least"
@@ -512,7 +527,8 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
   if (accuracy->chosen == accuracy->count)
     return;
   const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
-  char time[32];
+  char time[32], chosen[256];
+  name_option(campaign, option, chosen, sizeof chosen);
   if (option->guessed)
     words_print(
         out, before,
@@ -524,10 +540,8 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
                 option->marks);
   if (isnan(accuracy->point_s)) {
     progress_duration(option->cpu_s, time, sizeof time);
-    words_print(out, before, "%s \xc2\xb1 %.2g with %s%s%s and %" PRId64 " seeds a point: %s of processor time",
-                campaign->accuracy_quantity, accuracy->within, option->own ? "" : option->knob,
-                option->own ? "" : " = ", option->own ? "the scene's own settings" : option->setting, option->seeds,
-                time);
+    words_print(out, before, "%s \xc2\xb1 %.2g with %s and %" PRId64 " seeds a point: %s of processor time",
+                campaign->accuracy_quantity, accuracy->within, chosen, option->seeds, time);
     return;
   }
   if (option->total >= accuracy->most)
@@ -539,11 +553,11 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
   const double half = accuracy_least(accuracy, accuracy->point_s / 2, &open[0]),
                twice = accuracy_least(accuracy, accuracy->point_s * 2, &open[1]);
   const char *const or_more[] = {"", " or more"}, *more = or_more[option->open && !option->guessed];
-  char in_half[48] = "no result";
-  progress_duration(campaign->accuracy_time, time, sizeof time);
-  words_print(out, before, "%s \xc2\xb1 %.2g%s in %s of processor time: %s%s%s, %" PRId64 " seeds a point",
-              campaign->accuracy_quantity, option->total, more, time, option->own ? "" : option->knob,
-              option->own ? "" : " = ", option->own ? "the scene's own settings" : option->setting, option->seeds);
+  char in_half[48] = "no result", allowed[32];
+  progress_duration(option->cpu_s * campaign->accuracy_time / accuracy->point_s, time, sizeof time);
+  progress_duration(campaign->accuracy_time, allowed, sizeof allowed);
+  words_print(out, before, "%s \xc2\xb1 %.2g%s with %s and %" PRId64 " seeds a point: %s of processor time, of %s",
+              campaign->accuracy_quantity, option->total, more, chosen, option->seeds, time, allowed);
   if (!isnan(half))
     snprintf(in_half, sizeof in_half, "\xc2\xb1 %.2g%s", half, or_more[open[0]]);
   words_print(out, before,
@@ -551,10 +565,11 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
               option->error, more, in_half, twice, or_more[open[1]]);
 }
 
-static status alternatives_json(const struct accuracy *accuracy, char **json, struct error *error) {
+static status alternatives_json(const struct accuracy *accuracy, const struct campaign *campaign, char **json,
+                                struct error *error) {
   size_t size = 0;
   FILE *out = text_open(json, &size);
-  const status code = print_alternatives(accuracy, TABLE_JSON, out, error);
+  const status code = print_alternatives(accuracy, campaign, TABLE_JSON, out, error);
   if (code == STATUS_OK && !isnan(accuracy->point_s)) {
     static const struct {
       const char *name;
@@ -578,7 +593,7 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
     return STATUS_OK;
   TRY(accuracy_find(campaign, path, store, &accuracy, error));
   if (print == ACCURACY_JSON)
-    TRY(alternatives_json(&accuracy, json, error));
+    TRY(alternatives_json(&accuracy, campaign, json, error));
   if (print == ACCURACY_NOTE)
     print_choice(&accuracy, campaign, "clast: ", stderr);
   if (print == ACCURACY_TEXT) {
@@ -588,7 +603,7 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
                   "the smallest error",
                   campaign->accuracy_quantity, accuracy.within);
     print_choice(&accuracy, campaign, "accuracy  ", stdout);
-    TRY(print_alternatives(&accuracy, TABLE_TEXT, stdout, error));
+    TRY(print_alternatives(&accuracy, campaign, TABLE_TEXT, stdout, error));
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
       words_print(stdout, "",
                   "The chosen setting is finer than any level that was run. Its error is that of the finest level "

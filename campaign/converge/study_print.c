@@ -74,13 +74,13 @@ static status sum_doubts(const struct printing *printing, size_t ladders, size_t
   return doubts_of(printing, points, names, sum, error);
 }
 
-/* A number with the digits and the unit that people need. */
-static void show_setting(const struct study_ladder *ladder, const char *setting, char *text, size_t size) {
+void study_show_setting(const struct engine_kind *kind, const struct knob *knob, const char *setting, char *text,
+                        size_t size) {
   char *end, unit[64];
   struct error ignored;
   const double number = strtod(setting, &end);
-  const char *path = ladder->levels.knob->inputs[0].path;
-  const struct field *row = path ? field_find(ladder->base->kind->inputs, path, &ignored) : NULL;
+  const char *path = knob ? knob->inputs[0].path : NULL;
+  const struct field *row = path ? field_find(kind->inputs, path, &ignored) : NULL;
   if (*end || end == setting || !row) {
     snprintf(text, size, "%.64s", setting);
     return;
@@ -97,7 +97,7 @@ static void print_level(const struct printing *printing, struct table *table, co
                         row->bias_half_width < 1e-12 * fabs(row->mean);
   if (row->n == 0)
     return; /* left out by the budget, or every run failed: print_limit names it */
-  show_setting(ladder, row->setting, setting, sizeof setting);
+  study_show_setting(ladder->base->kind, ladder->levels.knob, row->setting, setting, sizeof setting);
   text_append(setting, sizeof setting, "%s%s", row->base ? " *" : "", row->reference ? " ref" : "");
   table_text(table, row->knob);
   table_text(table, setting);
@@ -108,7 +108,12 @@ static void print_level(const struct printing *printing, struct table *table, co
   table_rests_on(table, doubts);
   table_reals(table, 2, (const double[]){rounding ? 0 : row->bias, rounding ? 0 : row->bias_half_width});
   table_reals(table, 3, (const double[]){row->correlation, row->correlation_low, row->correlation_high});
-  table_reals(table, 2, (const double[]){row->break_even, row->error});
+  table_real(table, row->break_even);
+  if (table_for_people(printing->format) && row->open && isfinite(row->error)) { /* no bound */
+    snprintf(setting, sizeof setting, ">= %.3g", row->error);
+    table_text(table, setting);
+  } else
+    table_real(table, row->error);
   table_text(table, row->frontier ? "yes" : "");
 }
 
@@ -154,7 +159,7 @@ static void print_distance(const struct knob *knob, const struct study_found *fo
   char text[UNCERTAINTY_TEXT];
   switch ((enum limit_verdict)found->limit.verdict) {
   case LIMIT_SEEN:
-    uncertainty_distance(row->distance, row->distance_half_width, text);
+    uncertainty_distance(row->distance, row->distance_half_width, "its limit", text);
     fprintf(out, "%s", text);
     break;
   case LIMIT_NOT_SEEN: print_change(knob, found, out); break;
@@ -164,7 +169,10 @@ static void print_distance(const struct knob *knob, const struct study_found *fo
     else
       fprintf(out, "all runs are equal, so that the mean may be off by up to %.2g", row->resolution);
     break;
-  case LIMIT_TOO_FEW: /* told together */
+  case LIMIT_TOO_FEW: /* here of a knob without a step; others are told together */
+    uncertainty_distance(row->bias, row->bias_half_width, "the finest level", text);
+    fprintf(out, "%s", text);
+    break;
   case LIMIT_VERDICTS: return;
   }
   fprintf(out, " (%s)", knob->name);
@@ -196,7 +204,11 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
     if (!found[i].adds || !row || row->n == 0)
       continue;
     const char *const name = study->ladder[from + i].levels.knob->name;
-    if (found[i].limit.verdict == LIMIT_TOO_FEW) {
+    const bool stepless = isnan(row->step) && isfinite(row->bias_half_width);
+    if (stepless &&
+        fabs(row->bias) + row->bias_half_width <= 1e-12 * fabs(row->mean)) /* the finest level, or all runs are equal */
+      continue;
+    if (found[i].limit.verdict == LIMIT_TOO_FEW && !stepless) {
       text_append(few, sizeof few, "%s%s", *few ? ", " : "", name);
       continue;
     }

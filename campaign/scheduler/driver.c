@@ -131,7 +131,8 @@ static void count_run(struct driver *driver, struct point *point, int64_t r, con
                       bool fields) {
   struct driver_summary *summary = &driver->summary;
   const bool usable = outcome_is_usable(run->state) && !run->excluded;
-  const double value = usable ? run->value : NOTHING;
+  const enum condition_mark mark = condition_mark(point->scene->kind->conditions, run->warnings, driver->row->path);
+  const double value = usable && mark != CONDITION_WITHHELD ? run->value : NOTHING;
   point_finish_replicate(point, r, POINT_DONE, value);
   point->replicates[r].surplus = run->surplus;
   point->replicates[r].fields = fields || run->state == OUTCOME_INVALID;
@@ -141,8 +142,7 @@ static void count_run(struct driver *driver, struct point *point, int64_t r, con
   summary->runs_excluded += run->excluded;
   summary->runs_surplus += run->surplus;
   summary->runs_censored += usable && run->state == OUTCOME_END_TIME;
-  summary->runs_doubtful += !run->excluded && condition_mark(point->scene->kind->conditions, run->warnings,
-                                                             driver->row->path) != CONDITION_SOUND;
+  summary->runs_doubtful += !run->excluded && mark != CONDITION_SOUND;
 }
 
 /* Takes over a stored run. */

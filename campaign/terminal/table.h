@@ -103,9 +103,9 @@ void uncertainty_excluded(int64_t count, const char *store);
 /* Says on stderr that so many points of studies and searches are left out; nothing for 0. */
 void uncertainty_left_out(int64_t points);
 
-/* "0.01 to 0.05 below its limit", or "from 0.01 below to 0.02 above its limit", of a mean less its limit: the whole 95
- * % interval, as its middle is no better known than its ends. */
-void uncertainty_distance(double distance, double half_width, char text[UNCERTAINTY_TEXT]);
+/* "0.01 to 0.05 below its limit", or "from 0.01 below to 0.02 above its limit", of a mean less `of`: the whole 95 %
+ * interval, as its middle is no better known than its ends. */
+void uncertainty_distance(double distance, double half_width, const char *of, char text[UNCERTAINTY_TEXT]);
 
 /* "0.349 ± 0.003 (seeds, 95 %)", or "(seeds, 95 %, weak)"; "0.11 (0 to 0.27; seeds, 95 %)"; "1 (all 30 runs; 0.905 to
  * 1)" when all values of a share are equal; "0.349" without an interval. */

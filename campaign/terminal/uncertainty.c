@@ -65,7 +65,7 @@ void uncertainty_left_out(int64_t points) {
             points, points == 1 ? "" : "s", points == 1 ? "it" : "them");
 }
 
-void uncertainty_distance(double distance, double half_width, char text[UNCERTAINTY_TEXT]) {
+void uncertainty_distance(double distance, double half_width, const char *of, char text[UNCERTAINTY_TEXT]) {
   const double width = fmax(half_width, 0), ends[2] = {distance - width, distance + width};
   const bool across = ends[0] < 0 && ends[1] > 0, below = ends[1] <= 0;
   const double near = fabs(ends[below]), far = fabs(ends[!below]);
@@ -73,8 +73,7 @@ void uncertainty_distance(double distance, double half_width, char text[UNCERTAI
   if (width > 0)
     text_append(text, UNCERTAINTY_TEXT, near < 100 ? "%s%.2g%s to " : "%s%.4g%s to ", across ? "from " : "", near,
                 across ? " below" : "");
-  text_append(text, UNCERTAINTY_TEXT, far < 100 ? "%.2g %s its limit" : "%.4g %s its limit", far,
-              below ? "below" : "above");
+  text_append(text, UNCERTAINTY_TEXT, far < 100 ? "%.2g %s %s" : "%.4g %s %s", far, below ? "below" : "above", of);
 }
 
 void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_TEXT]) {
@@ -112,7 +111,7 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
   case ASK_RESOLUTION_AT_LEAST: break;
   }
   if (resolution->verdict == ASK_RESOLUTION_KNOWN && isfinite(resolution->distance)) {
-    uncertainty_distance(resolution->distance, resolution->distance_half_width, text);
+    uncertainty_distance(resolution->distance, resolution->distance_half_width, "its limit", text);
     text_append(text, UNCERTAINTY_TEXT, " (resolution: %s)", resolution->knobs);
     return;
   }

@@ -81,7 +81,10 @@ static const struct knob knobs[] = {
 };
 
 static const char *headline(const void *inputs) {
-  switch ((enum sph_kind)((const struct sph_inputs *)inputs)->kind) {
+  const struct sph_inputs *in = inputs;
+  switch ((enum sph_kind)in->kind) {
+  case SPH_IMPACT:
+    return in->sides.far == SPH_FAR_DAMPED ? "crater.volume" : NULL; /* of a half-space, no share has a meaning */
   case SPH_STRETCH: return "peak.stress";
   case SPH_VIBRATION: return "frequency";
   case SPH_PISTON: return "shock.pressure";

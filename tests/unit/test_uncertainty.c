@@ -49,9 +49,9 @@ static void resolution(void **state) {
   found.distance_half_width = 0.022;
   uncertainty_resolution(&found, text);
   assert_string_equal(text, "0.009 to 0.053 below its limit (resolution: particles, time_step)");
-  uncertainty_distance(0.0031, 0.0144, text);
+  uncertainty_distance(0.0031, 0.0144, "its limit", text);
   assert_string_equal(text, "from 0.011 below to 0.017 above its limit");
-  uncertainty_distance(-0.25, 0, text);
+  uncertainty_distance(-0.25, 0, "its limit", text);
   assert_string_equal(text, "0.25 below its limit");
   found.verdict = ASK_RESOLUTION_AT_LEAST; /* a part of the distance is not known */
   uncertainty_resolution(&found, text);
