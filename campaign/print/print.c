@@ -124,19 +124,25 @@ static void answer(const char *name, double value, enum condition_mark mark, con
   words_print(stdout, head, "%s", says);
 }
 
-/* A result of the engine, with the mark of this run. */
+/* A result of the engine, with the mark of this run, and its exact value, where the engine has one. */
 static void answer_result(const struct engine_kind *kind, const struct run_result *result, const struct field *row) {
-  struct field_value value;
+  struct field_value value, exact = {.number = NAN};
   field_get(row, result->result, &value);
-  char says[256];
+  char says[256], path[FIELD_TEXT_SIZE];
   const bool plain = !row->unit || strcmp(row->unit, "1") == 0;
   snprintf(says, sizeof says, "%s%s", plain ? "" : row->unit, plain ? "" : "; ");
+  snprintf(path, sizeof path, "%s_exact", row->path);
+  const struct field *beside = field_find(kind->results, path, NULL);
+  if (beside)
+    field_get(beside, result->result, &exact);
+  if (isfinite(exact.number))
+    text_append(says, sizeof says, "exact: %.4g; ", exact.number);
   const char *of = strstr(row->doc, ": "); /* "Piston: mean pressure" */
   text_sentence(of ? of + 2 : row->doc, says + strlen(says), sizeof says - strlen(says));
   answer(row->path, value.number, condition_mark(kind->conditions, result->outcome.warnings, row->path), says);
 }
 
-/* What else such a run is made for: a crater, where there is one. */
+/* What else such a run is made for: a crater or a shock, where there is one. */
 static void answer_also(const struct engine_kind *kind, const struct run_result *result) {
   for (size_t i = 0; i < kind->also_count; i++)
     for (size_t k = 0; k < kind->results->count; k++) {

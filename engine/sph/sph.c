@@ -31,8 +31,12 @@ static status load_system(void *run, const void *bytes, size_t size, struct erro
   return status_fail(error, code, "%s", r->system->failure);
 }
 
-static const size_t crater[] = {offsetof(struct sph_results, crater.depth), offsetof(struct sph_results, crater.radius),
-                                offsetof(struct sph_results, ejecta.mass_fraction)};
+static const size_t also[] = {offsetof(struct sph_results, crater.depth),
+                              offsetof(struct sph_results, crater.radius),
+                              offsetof(struct sph_results, ejecta.mass_fraction),
+                              offsetof(struct sph_results, shock.speed),
+                              offsetof(struct sph_results, precursor.speed),
+                              offsetof(struct sph_results, precursor.pressure)};
 
 static const struct knob knobs[] = {
     KNOB("particles", RESOLUTION, .inputs = {{"fidelity.particles", 1}}, KNOB_THIRDS, .step_power = -1.0 / 3,
@@ -109,8 +113,8 @@ const struct engine_kind sph_engine = {
     .conditions = sph_conditions,
     .headline = headline,
     .describe = sph_describe_scene,
-    .also = crater,
-    .also_count = sizeof crater / sizeof *crater,
+    .also = also,
+    .also_count = sizeof also / sizeof *also,
     .memory = sph_describe_memory,
     .work = sph_describe_work,
     .threads = threads,

@@ -123,6 +123,10 @@ says "design"
 # The scene's own result stands first, and its line says what it is.
 expect 0 "$clast" simulate elastic-bar --set stop.end_time=0.1us
 sed -n 2p out | grep -qE '^frequency .* 1/s; frequency of the first mode' || fail "no line of the frequency"
+expect 0 "$clast" simulate porous-plate --set piston.speed='200 m/s' --set fidelity.points=100 # beside the exact values
+for row in shock.pressure shock.speed precursor.speed precursor.pressure; do
+  grep -qE "^$row +[0-9.e+]+ +(Pa|m/s); exact: [0-9.e+]+; " out || fail "no exact $row"
+done
 expect 0 "$clast" simulate uniaxial --set body.rows=6 --set body.columns=4 # a marked number of four digits
 grep -qE '^young_modulus +[0-9.e+]+ ! Pa' out || fail "no blank before the unit"
 # What the inputs alone forbid is refused before a run; a run that could not begin has no numbers.
@@ -131,4 +135,4 @@ expect 1 "$clast" simulate gabbro-crater --seed 1 --set fidelity.graded=false --
 prints "no results"; ! grep -q "M_1/M" out || fail "numbers of a run that did not begin"
 expect 65 "$clast" explain gabbro-crater --set fidelity.particles=3000
 says "particles, not 3000"
-done_after $((42 + 3 * $(echo "$scenes" | wc -w)))
+done_after $((43 + 3 * $(echo "$scenes" | wc -w)))
