@@ -235,7 +235,7 @@ status picture_predicted(const struct picture_page *page, const struct picture_w
   chart_number(chart, "x_low", range[0] - margin);
   chart_number(chart, "x_high", range[1] + margin);
   chart_texts(chart, "row_label", rows, labels);
-  const double below = chart_legend(chart, 4, legend);
+  (void)chart_legend(chart, 4, legend);
   chart_columns(chart, "row, measured, error, quantiles 5 25 50 75 95 %, over the measured value");
   for (size_t k = 0, at = rows; k < count && at > 0; k++) {
     const double m = row[k].measured, *q = row[k].quantile;
@@ -246,7 +246,7 @@ status picture_predicted(const struct picture_page *page, const struct picture_w
               (double[]){(double)at, 1, row[k].error / fabs(m), q[0] / m, q[1] / m, q[2] / m, q[3] / m, q[4] / m});
   }
   chart_block_end(chart);
-  return chart_draw(chart, 46 * (double)rows + 150 + below, error);
+  return chart_draw(chart, 46 * (double)rows + 240, error); /* a long row_label leaves the legend one column */
 }
 
 /* ---- a quantity over two axes: one tile for each pair of values, with the value as text where it fits ---- */

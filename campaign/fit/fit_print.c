@@ -55,6 +55,11 @@ static int decimals_of(double low, double high) {
   return spread > 0 && spread < 1e15 ? (int)fmin(fmax(1 - floor(log10(spread)), 0), 15) : -1;
 }
 
+static void quantiles_of(const struct fit *fit, size_t i, double unit, double quantile[3]) {
+  for (int q = 0; q < 3; q++)
+    quantile[q] = fit_number(fit, i, posterior_quantile(&fit->posterior, i, levels[2 * q])) / unit;
+}
+
 /* q05, median, q95. The median has the mark of all three, as the value before an interval has in other tables. */
 static void quantile_cells(struct table *table, const double *quantile, const struct ask_doubts *doubts) {
   const int decimals = decimals_of(quantile[0], quantile[2]);
@@ -67,18 +72,15 @@ static void quantile_cells(struct table *table, const double *quantile, const st
 
 static void input_cells(const struct fit *fit, size_t i, double unit, struct table *table) {
   const double z05 = posterior_coordinate(0.05), z95 = posterior_coordinate(0.95);
-  double z[3], quantile[3];
-  for (int q = 0; q < 3; q++) {
-    z[q] = posterior_quantile(&fit->posterior, i, levels[2 * q]);
-    quantile[q] = fit_number(fit, i, z[q]) / unit;
-  }
+  double quantile[3];
   table_reals(table, 2, (const double[]){fit_number(fit, i, z05) / unit, fit_number(fit, i, z95) / unit});
   if (is_outside(fit)) {
     skip(table, 4);
     return;
   }
+  quantiles_of(fit, i, unit, quantile);
   quantile_cells(table, quantile, &fit->all_doubts);
-  table_real(table, (posterior_share(z[2]) - posterior_share(z[0])) / 0.9);
+  table_real(table, fit->found.kept[i]);
 }
 
 static status print_inputs(const struct fit *fit, enum table_format format, struct error *error) {
@@ -232,23 +234,24 @@ static const double AS_WIDE = 0.9;
 
 static void tell_open_direction(const struct fit *fit, size_t direction, FILE *out) {
   char names[PARAGRAPH], ends[PARAGRAPH];
-  const double information = fit->found.direction[direction].information;
+  const double information = fit->found.direction[direction].information, given = 100 * information / (1 + information);
   list_mixed(fit, direction, names);
   if (count_mixed(fit, direction) > 1) {
     words_print(
         out, "",
         "RIDGE: these data cannot tell %s apart. What was measured hardly changes while they change together: %s. "
-        "Along this line the data tell %.2g times what the priors tell; its ends are set by the priors. Quote the "
-        "inputs together, or measure something that changes along it.",
-        names, list_ends(fit, direction, ends), information);
+        "Along this line the data give %.0f %% of what is known, the priors the rest: the priors set its ends. State "
+        "the inputs together, or measure something that changes along it.",
+        names, list_ends(fit, direction, ends), given);
     return;
   }
   size_t input = 0;
   while (input + 1 < fit->inputs && !identify_mixed(&fit->found, direction, input))
     input++;
-  words_print(out, "", "NOT DETERMINED: %s. The data say %.2g times as much as its prior says%s", names, information,
+  words_print(out, "", "NOT DETERMINED: %s. The data give %.0f %% of what is known of it, its prior the rest%s", names,
+              given,
               fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (kept)."
-                                               : "; its interval is that of the prior.");
+                                               : ": its interval is that of the prior.");
 }
 
 /* What the data determine of several inputs together, though not of each. */
@@ -259,17 +262,29 @@ static void tell_together(const struct fit *fit, size_t direction, FILE *out) {
                 list_mixed(fit, direction, names), list_ends(fit, direction, ends));
 }
 
+/* The answer: each input with its interval, and what the data determine; or that no inputs give what was measured. */
 static void tell_determined(const struct fit *fit, FILE *out) {
   const size_t known = fit->found.determined, p = fit->inputs;
+  char found[PARAGRAPH] = "", unit[64];
   bool as_wide = false;
-  for (size_t i = 0; i < p; i++)
-    as_wide = as_wide || fit->found.kept[i] >= AS_WIDE;
   if (is_outside(fit)) {
     words_print(out, "",
-                "OUTSIDE: the measured values lie outside of what the priors can make (MISFIT). The inputs have "
+                "OUTSIDE: no inputs within the priors give what was measured (MISFIT below). The inputs have "
                 "no interval (-): widen the priors, or ask what the model lacks.");
     return;
   }
+  for (size_t i = 0; i < p; i++) {
+    double quantile[3];
+    quantiles_of(fit, i, shown_unit(fit, i, unit), quantile);
+    const int decimals = decimals_of(quantile[0], quantile[2]);
+    char text[3][40];
+    for (int q = 0; q < 3; q++)
+      snprintf(text[q], sizeof text[q], decimals < 0 ? "%.*g" : "%.*f", decimals < 0 ? 3 : decimals, quantile[q]);
+    text_append(found, sizeof found, "%s%s %s%s%s (%s to %s)", *found ? ", " : "", row_of(fit, i)->path, text[1],
+                strcmp(unit, "1") == 0 || !*unit ? "" : " ", strcmp(unit, "1") == 0 ? "" : unit, text[0], text[2]);
+    as_wide = as_wide || fit->found.kept[i] >= AS_WIDE;
+  }
+  words_print(out, "", "%s: median and 90 %% interval.", found);
   if (known == p && as_wide)
     words_print(
         out, "",
@@ -372,7 +387,6 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
 }
 
 static void tell(const struct fit *fit, FILE *out) {
-  tell_determined(fit, out);
   tell_errors(fit, out);
   tell_doubts(fit, out);
   words_print(
@@ -388,6 +402,8 @@ static void tell(const struct fit *fit, FILE *out) {
 status fit_print(const struct fit *fit, enum table_format format, struct error *error) {
   if (!table_for_people(format))
     return print_rows(fit, format, error);
+  tell_determined(fit, stdout);
+  putchar('\n');
   TRY(print_inputs(fit, format, error));
   putchar('\n');
   TRY(print_data(fit, format, error));

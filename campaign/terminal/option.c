@@ -84,6 +84,8 @@ void option_doc(const struct command *command, const struct option_row *row, cha
   doc[size] = '\0';
   if (row->doc)
     snprintf(doc, OPTION_DOC, "%s", row->doc);
+  if (row->kind == OPTION_INTEGER && row->minimum > 1)
+    text_append(doc, OPTION_DOC, " From %" PRId64 " to %" PRId64 ".", row->minimum, row->maximum);
 }
 
 const char *option_nearest(const char *typed, size_t count, const char *const *names) {
