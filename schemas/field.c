@@ -61,6 +61,16 @@ void field_column_name(const char *path, char *name, size_t size) {
     *at = '_';
 }
 
+const struct field *field_of_column(const struct field_table *table, const char *column) {
+  char name[FIELD_TEXT_SIZE];
+  for (size_t i = 0; i < table->count; i++) {
+    field_column_name(table->rows[i].path, name, sizeof name);
+    if (strcmp(name, column) == 0)
+      return &table->rows[i];
+  }
+  return NULL;
+}
+
 size_t field_first_word(const struct field_table *table, size_t i, const char *prefix, size_t length) {
   const char *path = table->rows[i].path;
   if (strncmp(path, prefix, length) != 0)

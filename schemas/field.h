@@ -144,6 +144,8 @@ void field_members(const struct field_table *table, const char *section, const c
 
 /* A path as the name of a column: dots become underscores. */
 void field_column_name(const char *path, char *name, size_t size);
+/* The row whose path has this name as a column; NULL: none. */
+const struct field *field_of_column(const struct field_table *table, const char *column);
 
 /* The name of a row on the axis of a chart: its label, else the last two words of its path ("young modulus", "charge
  * energy"). */

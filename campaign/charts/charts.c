@@ -17,16 +17,6 @@ struct picture_page charts_page(const char *path, const struct chart_options *op
   return (struct picture_page){path, WIDTH, options && options->keep_script, options ? options->templates : NULL};
 }
 
-static const struct field *row_of(const struct field_table *table, const char *column) {
-  char name[256];
-  for (size_t i = 0; i < table->count; i++) {
-    field_column_name(table->rows[i].path, name, sizeof name);
-    if (strcmp(name, column) == 0)
-      return &table->rows[i];
-  }
-  return NULL;
-}
-
 void charts_label(const char *column, char label[CHARTS_LABEL]) {
   if (strncmp(column, "beta", 4) == 0 && (column[4] == '\0' || column[4] == '_')) {
     snprintf(label, CHARTS_LABEL, "exponent \xce\xb2 of F(m) ~ m^-\xce\xb2");
@@ -34,11 +24,11 @@ void charts_label(const char *column, char label[CHARTS_LABEL]) {
   }
   char plain[256];
   field_column_name(column, plain, sizeof plain);
-  const struct field *row = row_of(&outcome_table, plain);
+  const struct field *row = field_of_column(&outcome_table, plain);
   for (int input = 0; input < 2 && !row; input++) {
     const char *name = strncmp(plain, "input_", 6) == 0 ? plain + 6 : plain; /* an input with the name of a result */
     for (size_t i = 0; i < engine_count() && !row; i++)
-      row = row_of(input ? engine_at(i)->inputs : engine_at(i)->results, input ? name : plain);
+      row = field_of_column(input ? engine_at(i)->inputs : engine_at(i)->results, input ? name : plain);
   }
   if (row)
     field_label(row, label, CHARTS_LABEL);

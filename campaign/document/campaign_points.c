@@ -70,12 +70,7 @@ static bool open_points(struct reading *r, const char *folder) {
 static const struct field *input_of(const struct reading *r, const char *name, struct error *error) {
   const struct scene *scene = r->campaign->scene;
   const struct field *row = field_find_in(scene->kind->inputs, name, scene->inputs, error);
-  for (size_t i = 0; r->tabular && !row && i < scene->kind->inputs->count; i++) {
-    char column[FIELD_TEXT_SIZE];
-    field_column_name(scene->kind->inputs->rows[i].path, column, sizeof column);
-    row = strcmp(column, name) == 0 ? &scene->kind->inputs->rows[i] : NULL;
-  }
-  return row;
+  return row || !r->tabular ? row : field_of_column(scene->kind->inputs, name);
 }
 
 static bool add_column(struct reading *r, size_t column) {

@@ -27,7 +27,7 @@ void print_pool_columns(struct table *table, const struct ask_pools *pools) {
 }
 
 void print_pool_cells(struct table *table, const struct ask_pools *pools, const struct ask_pool *pool) {
-  for (size_t a = 0; a < pool->axes; a++)
+  for (size_t a = 0; a < pools->axes; a++)
     table_value(table, &pool->input[a]);
   table_integer(table, pools->choice.by ? (int64_t)pool->points : pool->data.point_id);
 }

@@ -52,11 +52,10 @@ static void print_scatter(const struct printing *printing, struct scatter *s) {
   row(printing, "skewness", s->skewness, NAN, NAN);
   for (int q = 0; q < SCATTER_QUANTILES; q++)
     row(printing, names[q], s->quantile[q].value, s->quantile[q].low, s->quantile[q].high);
-  const bool judged = !printing->people || isfinite(s->dip_share);
-  if (judged)
+  if (!printing->people || isfinite(s->dip_share)) {
     row(printing, printing->people ? "Hartigan's dip" : "dip", s->dip, NAN, NAN);
-  if (judged)
     row(printing, printing->people ? "p of one mode (dip test)" : "dip p", s->dip_share, NAN, NAN);
+  }
   if (isfinite(s->between)) {
     row(printing, "lower mode", s->lower_mode, s->sorted[0], s->between);
     row(printing, "upper mode", s->upper_mode, s->between, s->sorted[s->n - 1]);
@@ -130,63 +129,50 @@ status print_scatter_plots(struct store *store, const struct scatter_choice *cho
 
 struct samples {
   size_t count;
-  bool more;
   struct scatter scatter[PICTURE_SERIES];
-  struct ask_doubts doubts;
   char label[PICTURE_SERIES][ASK_POOL_LABEL + 64];
 };
 
-static status take_samples(struct store *store, const struct scatter_choice *choice, struct samples *samples,
-                           struct error *error) {
-  ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
-  for (const struct ask_pool *pool; !samples->more && (pool = ask_pools_next(&pools));) {
-    samples->more = samples->count == PICTURE_SERIES; /* enough */
-    if (samples->more)
-      break;
-    struct scatter *scatter = &samples->scatter[samples->count];
-    TRY(scatter_make(pool->data.runs.count, pool->value, scatter, error));
-    if (scatter->n == 0)
-      scatter_release(scatter);
-    else
-      snprintf(samples->label[samples->count++], sizeof samples->label[0], "%s, %zu runs%s%s", pool->label, scatter->n,
-               isfinite(scatter->between) ? ", two modes" : "", pool->doubts.doubtful ? " !" : "");
-    ask_doubts_add(&samples->doubts, &pool->doubts);
-  }
-  TRY(ask_pools_end(&pools));
-  if (samples->count > 0)
-    return STATUS_OK;
-  return status_fail(error, STATUS_USAGE, "no finished run has a value of %s", choice->quantity);
-}
-
-static status draw_samples(const struct samples *samples, const char *axis, const struct picture_page *page,
-                           struct error *error) {
-  struct picture_sample sample[PICTURE_SERIES];
+static void release_samples(struct samples *samples) {
   for (size_t i = 0; i < samples->count; i++)
-    sample[i] = (struct picture_sample){samples->label[i], samples->scatter[i].n, samples->scatter[i].sorted,
-                                        scatter_histogram_of(&samples->scatter[i])};
-  char caption[CHARTS_LABEL] = "";
-  charts_doubts(&samples->doubts, caption, sizeof caption);
-  const status code = picture_scatter(page,
-                                      &(struct picture_words){"Scatter of the runs", *caption ? caption : NULL, axis,
-                                                              NULL},
-                                      samples->count, sample, error);
-  if (code == STATUS_OK && samples->more)
-    fprintf(stderr, "clast: only the first %d are drawn; --point, --where and --by choose others\n", PICTURE_SERIES);
-  return code;
+    scatter_release(&samples->scatter[i]);
 }
 
 status print_scatter_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
                              struct error *error) {
-  char column[ASK_GROUP_NAME], axis[CHARTS_LABEL] = "";
-  OWNED struct samples *samples = memory_small(1, sizeof *samples);
+  char column[ASK_GROUP_NAME], axis[CHARTS_LABEL] = "", caption[CHARTS_LABEL] = "";
+  struct picture_sample sample[PICTURE_SERIES];
+  __attribute__((cleanup(release_samples))) struct samples samples = {0};
+  struct ask_doubts doubts = {0};
+  bool more = false; /* pools than are drawn */
   TRY(ask_group_quantity(store, choice->quantity, column, error));
   TRY(charts_axis(store, column, axis, error));
-  status code = take_samples(store, choice, samples, error);
-  if (code == STATUS_OK)
-    code = draw_samples(samples, axis, page, error);
-  for (size_t i = 0; i < samples->count; i++)
-    scatter_release(&samples->scatter[i]);
-  return code;
+  ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
+  for (const struct ask_pool *pool; !more && (pool = ask_pools_next(&pools));) {
+    more = samples.count == PICTURE_SERIES;
+    if (more)
+      break;
+    const size_t i = samples.count;
+    struct scatter *scatter = &samples.scatter[i];
+    TRY(scatter_make(pool->data.runs.count, pool->value, scatter, error));
+    ask_doubts_add(&doubts, &pool->doubts);
+    if (scatter->n == 0) {
+      scatter_release(scatter);
+      continue;
+    }
+    snprintf(samples.label[samples.count++], sizeof samples.label[0], "%s, %zu runs%s%s", pool->label, scatter->n,
+             isfinite(scatter->between) ? ", two modes" : "", pool->doubts.doubtful ? " !" : "");
+    sample[i] = (struct picture_sample){samples.label[i], scatter->n, scatter->sorted, scatter_histogram_of(scatter)};
+  }
+  TRY(ask_pools_end(&pools));
+  if (samples.count == 0)
+    return status_fail(error, STATUS_USAGE, "no finished run has a value of %s", choice->quantity);
+  charts_doubts(&doubts, caption, sizeof caption);
+  const struct picture_words words = {"Scatter of the runs", *caption ? caption : NULL, axis, NULL};
+  TRY(picture_scatter(page, &words, samples.count, sample, error));
+  if (more)
+    fprintf(stderr, "clast: only the first %d are drawn; --point, --where and --by choose others\n", PICTURE_SERIES);
+  return STATUS_OK;
 }
 
 /* ---- runs in cells, one for each set of varied inputs, with the seeds that the cells share ---- */
@@ -200,6 +186,7 @@ struct run_cell {
   size_t runs;
   struct run_cells_run *run;        /* by seed */
   char *input[LIMITS_AXES_OF_POOL]; /* as text: a number with 17 digits, a choice, "off" */
+  bool left_out;                    /* not compared: part of no complete block of a design */
 };
 struct run_cells {
   size_t axes, count, room;
@@ -219,16 +206,17 @@ static void release_cell(struct run_cells *cells, size_t c) {
     free(cells->cell[c].input[a]);
 }
 
-static status add_cell(struct run_cells *cells, const struct ask_pool *pool, struct error *error) {
+static status add_cell(struct run_cells *cells, const struct ask_pools *pools, const struct ask_pool *pool,
+                       struct error *error) {
   if (!grow_room(&cells->cell, &cells->room, cells->count + 1, sizeof *cells->cell))
     return status_fail(error, STATUS_MEMORY, "no memory for the runs of the points");
   struct run_cell *cell = &cells->cell[cells->count++];
   *cell = (struct run_cell){.run_id = pool->data.run_id[0]};
   TRY(memory_array(&cell->run, pool->data.runs.count, sizeof *cell->run, "the runs of the points", error));
-  cells->axes = pool->axes;
+  cells->axes = pools->axes;
   ask_doubts_add(&cells->doubts, &pool->doubts);
-  memcpy(cells->column, pool->column, sizeof cells->column);
-  for (size_t a = 0; a < pool->axes; a++) {
+  memcpy(cells->column, pools->column, sizeof cells->column);
+  for (size_t a = 0; a < pools->axes; a++) {
     char text[ASK_POOL_TEXT] = "off";
     if (pool->input[a].kind == QUERY_TEXT)
       snprintf(text, sizeof text, "%s", pool->input[a].text);
@@ -252,7 +240,7 @@ static status run_cells_read(struct store *store, const struct ask_pool_choice *
                              struct run_cells *cells, struct error *error) {
   ASK_POOLS pools = ask_pools(store, choice, quantity, error);
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));)
-    TRY(add_cell(cells, pool, error));
+    TRY(add_cell(cells, &pools, pool, error));
   return ask_pools_end(&pools);
 }
 
@@ -263,15 +251,16 @@ static void run_cells_release(struct run_cells *cells) {
 }
 #define RUN_CELLS __attribute__((cleanup(run_cells_release))) struct run_cells
 
-/* Runs of the first cell whose seed every cell has; *shared has room for them. */
-static size_t find_shared(size_t count, struct run_cell *const *cell, struct run_cells_run *shared) {
+/* Runs of the first compared cell whose seed every such cell has; *shared has room for them. */
+static size_t find_shared(const struct run_cells *cells, const struct run_cell *first, struct run_cells_run *shared) {
   size_t common = 0;
-  for (size_t r = 0; r < cell[0]->runs; r++) {
-    size_t c = 1;
-    while (c < count && bsearch(&cell[0]->run[r], cell[c]->run, cell[c]->runs, sizeof *shared, by_seed))
+  for (size_t r = 0; r < first->runs; r++) {
+    size_t c = 0;
+    while (c < cells->count && (cells->cell[c].left_out || bsearch(&first->run[r], cells->cell[c].run,
+                                                                   cells->cell[c].runs, sizeof *shared, by_seed)))
       c++;
-    if (c >= count)
-      shared[common++] = cell[0]->run[r];
+    if (c == cells->count)
+      shared[common++] = first->run[r];
   }
   return common;
 }
@@ -290,18 +279,23 @@ static void keep_shared(struct run_cell *cell, const struct run_cells_run *share
 /* Puts runs with the same seeds first in all cells: the seeds that all cells have, if there are at least two (or one,
  * and some cell has only one run). Otherwise takes as many runs as every cell has, with any seeds. Returns the number
  * of runs per cell. */
-static size_t run_cells_balance(size_t count, struct run_cell *const *cell, bool *same_seeds) {
+static size_t run_cells_balance(struct run_cells *cells, bool *same_seeds) {
+  const struct run_cell *first = NULL;
   size_t least = SIZE_MAX;
   *same_seeds = false;
-  for (size_t c = 0; c < count; c++)
-    least = cell[c]->runs < least ? cell[c]->runs : least;
-  if (count == 0 || least == 0)
+  for (size_t c = cells->count; c-- > 0;)
+    if (!cells->cell[c].left_out) {
+      first = &cells->cell[c];
+      least = first->runs < least ? first->runs : least;
+    }
+  if (!first)
     return 0;
-  OWNED struct run_cells_run *shared = malloc(cell[0]->runs * sizeof *shared);
-  const size_t common = shared ? find_shared(count, cell, shared) : 0;
+  OWNED struct run_cells_run *shared = malloc(first->runs * sizeof *shared);
+  const size_t common = shared ? find_shared(cells, first, shared) : 0;
   *same_seeds = common >= 2 || (common == 1 && least == 1);
-  for (size_t c = 0; *same_seeds && c < count; c++)
-    keep_shared(cell[c], shared, common);
+  for (size_t c = 0; *same_seeds && c < cells->count; c++)
+    if (!cells->cell[c].left_out)
+      keep_shared(&cells->cell[c], shared, common);
   return *same_seeds ? common : least;
 }
 
@@ -321,14 +315,10 @@ static void number_levels(const struct run_cells *cells, uint32_t *level) {
 }
 
 static status split(struct run_cells *cells, struct scatter_part *parts, size_t *runs, struct error *error) {
-  OWNED struct run_cell **all = NULL;
   OWNED uint32_t *level = NULL;
   OWNED double *value = NULL;
   bool same_seeds;
-  TRY(memory_array(&all, cells->count, sizeof *all, "the parts of a variance", error));
-  for (size_t c = 0; c < cells->count; c++)
-    all[c] = &cells->cell[c];
-  *runs = run_cells_balance(cells->count, all, &same_seeds);
+  *runs = run_cells_balance(cells, &same_seeds);
   if (cells->count < 2 || *runs < 2)
     return status_fail(error, STATUS_USAGE, "splitting a variance needs at least two points with two runs each");
   TRY(memory_array(&level, cells->count * cells->axes, sizeof *level, "the parts of a variance", error));
@@ -441,12 +431,7 @@ static void release_points(struct from_points *p) {
 static bool has_no_effect(const struct scene *scene, const char *column) {
   const struct condition *list = scene->kind->conditions;
   const uint64_t broken = condition_before(list, scene->inputs, NULL);
-  const struct field *row = NULL;
-  for (size_t i = 0; i < scene->kind->inputs->count && !row; i++) {
-    char name[FIELD_TEXT_SIZE];
-    field_column_name(scene->kind->inputs->rows[i].path, name, sizeof name);
-    row = strcmp(name, column) == 0 ? &scene->kind->inputs->rows[i] : NULL;
-  }
+  const struct field *row = field_of_column(scene->kind->inputs, column);
   for (size_t k = 0; row && list && list[k].word; k++)
     if (broken >> k & 1 && list[k].inputs && condition_has(list[k].inputs, row->path))
       return true;
@@ -505,13 +490,9 @@ static status fill_runs(struct from_points *p, struct error *error) {
   struct run_cells *cells = &p->cells;
   const size_t count = cells->count;
   size_t most = 0;
-  OWNED struct run_cell **all = NULL;
-  TRY(memory_array(&all, count, sizeof *all, "the points", error));
   TRY(memory_array(&p->runs, count, sizeof *p->runs, "the points", error));
-  for (size_t c = 0; c < count; c++)
-    all[c] = &cells->cell[c];
   p->data = (struct sensitivity_points){.inputs = cells->axes, .points = count, .runs = p->runs, .named = p->named};
-  run_cells_balance(count, all, &p->data.same_seeds);
+  run_cells_balance(cells, &p->data.same_seeds);
   for (size_t c = 0; c < count; c++)
     most = cells->cell[c].runs > most ? cells->cell[c].runs : most;
   TRY(memory_array(&p->value, count * most, sizeof *p->value, "the points", error));
@@ -763,6 +744,8 @@ static void find_places(struct reading *r) {
   char text[LIMITS_AXES_OF_POOL][ASK_POOL_TEXT];
   if (r->cells.count > 0)
     qsort(r->cells.cell, r->cells.count, sizeof *r->cells.cell, by_inputs);
+  for (size_t c = 0; c < r->cells.count; c++)
+    r->cells.cell[c].left_out = true;
   for (size_t b = 0; b < r->blocks; b++) {
     bool whole = true;
     for (size_t i = b * r->points; i < (b + 1) * r->points; i++) {
@@ -773,34 +756,21 @@ static void find_places(struct reading *r) {
       }
       r->place[i] = r->cells.count ? bsearch(&wanted, r->cells.cell, r->cells.count, sizeof *r->cells.cell, by_inputs)
                                    : NULL;
-      whole = whole && r->place[i] && r->place[i]->runs > 0;
+      whole = whole && r->place[i];
     }
     if (!whole)
       continue;
+    for (size_t i = b * r->points; i < (b + 1) * r->points; i++)
+      r->place[i]->left_out = false;
     r->group[r->whole] = design_sensitivity_group(r->blocks, b);
     r->block[r->whole++] = b;
   }
 }
 
-/* Two rows may be the same point, which run_cells_balance may get only once. */
-static int by_address(const void *a, const void *b) {
-  const struct run_cell *p = *(struct run_cell *const *)a, *q = *(struct run_cell *const *)b;
-  return p < q ? -1 : p > q;
-}
-
 static status fill_table(struct reading *r, struct error *error) {
   const size_t rows = r->whole * r->points;
-  OWNED struct run_cell **used = NULL;
-  size_t count = 0;
-  TRY(memory_array(&used, rows, sizeof *used, "the points of a design", error));
-  for (size_t i = 0; i < rows; i++)
-    used[i] = r->place[r->block[i / r->points] * r->points + i % r->points];
-  qsort(used, rows, sizeof *used, by_address);
-  for (size_t i = 0; i < rows; i++)
-    if (i == 0 || used[i] != used[i - 1])
-      used[count++] = used[i];
   r->table = (struct sensitivity_table){.inputs = r->campaign->axis_count, .blocks = r->whole, .group = r->group};
-  r->table.seeds = run_cells_balance(count, used, &r->table.same_seeds);
+  r->table.seeds = run_cells_balance(&r->cells, &r->table.same_seeds);
   TRY(memory_array(&r->value, rows * r->table.seeds, sizeof *r->value, "the points of a design", error));
   for (size_t i = 0; i < rows; i++)
     for (size_t s = 0; s < r->table.seeds; s++)

@@ -447,6 +447,13 @@ status point_read(struct store *store, int64_t point_id, int64_t results_version
  * SQL. */
 status point_read_where(struct store *store, int64_t point_id, int64_t results_version, const char *where,
                         struct point_data *out, struct error *error);
+/* Adds the runs of a point to those that *out has, which is a POINT_EMPTY at first; its masses become the largest ones
+ * of all points. */
+status point_add(struct store *store, int64_t point_id, const char *where, struct point_data *out, struct error *error);
+#define POINT_EMPTY(point_, version_)                                                                                  \
+  (struct point_data) {                                                                                                \
+    .point_id = point_, .results_version = version_, .dimensions = 3, .element_mass = NAN, .complete_mass = NAN        \
+  }
 #define POINT_DATA __attribute__((cleanup(point_release))) struct point_data
 void point_release(struct point_data *point); /* a zeroed one is fine */
 
@@ -488,16 +495,14 @@ enum { ASK_POOL_TEXT = 64, ASK_POOL_LABEL = 256 };
 struct ask_pool {
   char label[ASK_POOL_LABEL]; /* "strain 3 %, angle 4 deg", or "point 7" */
   size_t points;
-  const int64_t *point;    /* numbers of the points */
-  const size_t *first_run; /* points + 1: the runs of point p are first_run[p] .. first_run[p + 1] - 1 */
-  size_t axes;             /* of `by` */
-  char column[LIMITS_AXES_OF_POOL][ASK_GROUP_NAME];
-  struct query_value input[LIMITS_AXES_OF_POOL];
+  int64_t *point;                  /* numbers of the points */
+  size_t *first_run;               /* points + 1: the runs of point p are first_run[p] .. first_run[p + 1] - 1 */
+  const struct query_value *input; /* of the axes of `by` */
   /* without a quantity: fragments of all runs, point after point; complete_mass and element_mass are those of the point
    * where they are largest; point_id is 0 if there are several. With a quantity: only the run ids, no fragments. */
   struct point_data data;
-  const double *value;      /* with a quantity: of each run, NaN: off or withheld; else NULL */
-  const int64_t *seed;      /* with a quantity: of each run */
+  double *value;            /* with a quantity: of each run, NaN: off or withheld; else NULL */
+  int64_t *seed;            /* with a quantity: of each run */
   struct ask_doubts doubts; /* of the quantity, or of the masses */
 };
 /* Pools under way. A variable of type ASK_POOLS frees itself where its block is left. */
@@ -508,17 +513,12 @@ struct ask_pools {
   bool of_values;
   char quantity[ASK_GROUP_NAME]; /* column of the values */
   bool share;                    /* they are between 0 and 1 */
-  size_t axes;
+  size_t axes;                   /* of `by`, and their columns */
   char column[LIMITS_AXES_OF_POOL][ASK_GROUP_NAME];
   struct ask_pool_member *list;
   size_t count, room, next;
   status code;
-  /* memory of the current pool */
-  struct ask_pool pool;
-  int64_t *point;
-  size_t *first_run;
-  double *value;
-  int64_t *seed;
+  struct ask_pool pool; /* the current one; owns its arrays */
 };
 #define ASK_POOLS __attribute__((cleanup(ask_pools_end))) struct ask_pools
 

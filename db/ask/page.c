@@ -474,20 +474,17 @@ static status add_quantiles(struct ask_page *page, struct store *store, struct e
     return STATUS_OK;
   TRY(sql_prepare(page->store.db, "INSERT INTO quantile VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &insert, doing, error));
   ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, OUTCOME_DEFAULT, error);
-  const struct ask_pool *pool;
-  status code = STATUS_OK;
-  while (code == STATUS_OK && (pool = ask_pools_next(&pools))) {
-    struct scatter scatter = {0};
-    code = scatter_make(pool->data.runs.count, pool->value, &scatter, error);
-    for (size_t i = 0; code == STATUS_OK && scatter.n > 1 && i < SCATTER_QUANTILES; i++) {
+  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
+    SCATTER scatter = {0};
+    TRY(scatter_make(pool->data.runs.count, pool->value, &scatter, error));
+    for (size_t i = 0; scatter.n > 1 && i < SCATTER_QUANTILES; i++) {
       const struct scatter_quantile *quantile = &scatter.quantile[i];
       SQL_BIND(insert, sql_of_integer(pool->point[0]), sql_of_text(OUTCOME_DEFAULT), sql_of_real(scatter_shares[i]),
                sql_of_real(quantile->value), sql_of_real(quantile->low), sql_of_real(quantile->high));
-      code = sql_run(insert, doing, error);
+      TRY(sql_run(insert, doing, error));
     }
-    scatter_release(&scatter);
   }
-  return code ? code : ask_pools_end(&pools);
+  return ask_pools_end(&pools);
 }
 
 /* ---- does a power law fit the fragments of a point? the same test as in `clast exponents` ---- */
@@ -520,11 +517,9 @@ static status add_goodness(struct ask_page *page, struct store *store, struct er
   TRY(sql_execute(page->store.db, "CREATE TABLE goodness (point_id, n, p)", doing, error));
   TRY(sql_prepare(page->store.db, "INSERT INTO goodness VALUES (?1, ?2, ?3)", &insert, doing, error));
   ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, NULL, error);
-  const struct ask_pool *pool;
-  status code = STATUS_OK;
-  while (code == STATUS_OK && !enough && (pool = ask_pools_next(&pools)))
-    code = add_fit(insert, pool, &fragments, &enough, error);
-  return code ? code : ask_pools_end(&pools);
+  for (const struct ask_pool *pool; !enough && (pool = ask_pools_next(&pools));)
+    TRY(add_fit(insert, pool, &fragments, &enough, error));
+  return ask_pools_end(&pools);
 }
 
 /* The canned queries that the page's tables can answer. */

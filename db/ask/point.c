@@ -10,29 +10,13 @@
 #include "engine/engine.h"
 #include "engine/grow.h"
 
-struct growing {
-  struct point_data *point;
-  size_t masses, firsts, runs, seeds; /* room in its arrays */
-};
-
-/* Room for so many masses, and one more run. */
-static status make_room(struct growing *growing, size_t masses, struct error *error) {
-  static const char what[] = "the runs of a point";
-  struct point_data *point = growing->point;
-  const size_t runs = point->runs.count + 2;
-  TRY(grow_or_fail(&point->masses, &growing->masses, masses, sizeof *point->masses, what, error));
-  TRY(grow_or_fail(&point->first, &growing->firsts, runs, sizeof *point->first, what, error));
-  TRY(grow_or_fail(&point->run_id, &growing->runs, runs, sizeof *point->run_id, what, error));
-  return grow_or_fail(&point->seed, &growing->seeds, runs, sizeof *point->seed, what, error);
-}
-
 /* The newest version with runs that count (0: none), unless one is given, and the dimensions of the engine. */
-static status read_version(struct store *store, struct point_data *out, struct error *error) {
+static status read_version(struct store *store, int64_t point_id, struct point_data *out, struct error *error) {
   ANSWER
   answer = answer_to(store, error,
                      "SELECT (SELECT max(results_version) FROM run WHERE point_id = p.point_id AND counts = 1), engine "
                      "FROM point AS p WHERE point_id = %lld",
-                     (long long)out->point_id);
+                     (long long)point_id);
   if (answer_next(&answer)) {
     if (out->results_version == 0)
       out->results_version = answer_integer(&answer, 0);
@@ -42,16 +26,20 @@ static status read_version(struct store *store, struct point_data *out, struct e
   return answer_end(&answer);
 }
 
-static status read_runs(struct store *store, const char *where, struct point_data *out, struct error *error) {
-  const long long point = out->point_id, version = out->results_version;
-  struct growing growing = {.point = out};
+/* Adds the runs behind those that *out has. */
+static status read_runs(struct store *store, int64_t point_id, const char *where, struct point_data *out,
+                        struct error *error) {
+  static const char what[] = "the runs of a point";
+  const long long point = point_id, version = out->results_version;
+  size_t have = out->runs.count, ids = have, seeds = have, firsts = out->first ? have + 1 : 0;
+  size_t masses_have = out->first ? out->first[have] : 0, room = masses_have;
   SQL_TEXT condition = where ? sql_format(" AND run_id IN (SELECT run_id FROM runs WHERE point_id = %lld AND (%s\n))",
                                           point, where)
                              : sql_format("");
   char of[64];
   snprintf(of, sizeof of, "a run of point %lld", point);
-  TRY(make_room(&growing, 0, error));
-  out->first[0] = 0;
+  TRY(grow_or_fail(&out->first, &firsts, have + 1, sizeof *out->first, what, error));
+  out->first[have] = masses_have;
   ANSWER answer = answer_to(store, error,
                             "SELECT masses, run_id, seed FROM run JOIN fragment_mass USING (run_id) WHERE point_id = "
                             "%lld AND results_version = %lld AND counts = 1%s ORDER BY replicate, seed",
@@ -59,43 +47,45 @@ static status read_runs(struct store *store, const char *where, struct point_dat
   const void *masses;
   size_t n;
   while (answer_next(&answer) && answer_masses(&answer, 0, of, &masses, &n)) {
-    const size_t run = out->runs.count, have = out->first[run];
-    TRY(make_room(&growing, have + n, error));
+    TRY(grow_or_fail(&out->masses, &room, masses_have + n, sizeof *out->masses, what, error));
+    TRY(grow_or_fail(&out->first, &firsts, have + 2, sizeof *out->first, what, error));
+    TRY(grow_or_fail(&out->run_id, &ids, have + 1, sizeof *out->run_id, what, error));
+    TRY(grow_or_fail(&out->seed, &seeds, have + 1, sizeof *out->seed, what, error));
     if (n > 0)
-      memcpy(out->masses + have, masses, n * sizeof(double));
-    out->run_id[run] = answer_integer(&answer, 1);
-    out->seed[run] = (uint64_t)answer_integer(&answer, 2);
-    out->first[++out->runs.count] = have + n;
+      memcpy(out->masses + masses_have, masses, n * sizeof(double));
+    out->run_id[have] = answer_integer(&answer, 1);
+    out->seed[have] = (uint64_t)answer_integer(&answer, 2);
+    out->first[++have] = masses_have += n;
   }
+  out->runs = (struct pooled_runs){have, out->first, out->masses};
   return answer_end(&answer);
 }
 
-static status read_point(struct store *store, const char *where, struct point_data *out, struct error *error) {
-  TRY(read_version(store, out, error));
-  TRY(read_runs(store, where, out, error));
+status point_add(struct store *store, int64_t point_id, const char *where, struct point_data *out,
+                 struct error *error) {
+  double element_mass, complete_mass;
+  TRY(read_version(store, point_id, out, error));
+  TRY(read_runs(store, point_id, where, out, error));
   /* The window from_10 of a run begins at a known number of its mean element masses: complete_mass is never above. */
-  TRY(answer_number(store, &out->element_mass, error,
+  TRY(answer_number(store, &element_mass, error,
                     "SELECT avg(lower) FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = %lld "
                     "AND r.results_version = %lld AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_10'",
-                    (long long)out->point_id, (long long)out->results_version));
-  out->element_mass /= estimates_window_elements(ESTIMATES_FROM_10);
-  return answer_number(store, &out->complete_mass, error,
-                       "SELECT avg(%s) FROM run WHERE point_id = %lld AND results_version = %lld AND counts = 1",
-                       OUTCOME_NAME(complete_mass), (long long)out->point_id, (long long)out->results_version);
+                    (long long)point_id, (long long)out->results_version));
+  TRY(answer_number(store, &complete_mass, error,
+                    "SELECT avg(%s) FROM run WHERE point_id = %lld AND results_version = %lld AND counts = 1",
+                    OUTCOME_NAME(complete_mass), (long long)point_id, (long long)out->results_version));
+  /* fmax ignores a NaN */
+  out->element_mass = fmax(out->element_mass, element_mass / estimates_window_elements(ESTIMATES_FROM_10));
+  out->complete_mass = fmax(out->complete_mass, complete_mass);
+  return STATUS_OK;
 }
 
 status point_read_where(struct store *store, int64_t point_id, int64_t results_version, const char *where,
                         struct point_data *out, struct error *error) {
-  *out = (struct point_data){.point_id = point_id,
-                             .results_version = results_version,
-                             .element_mass = NAN,
-                             .complete_mass = NAN,
-                             .dimensions = 3};
-  const status code = read_point(store, where, out, error);
+  *out = POINT_EMPTY(point_id, results_version);
+  const status code = point_add(store, point_id, where, out, error);
   if (code)
     point_release(out);
-  else
-    out->runs = (struct pooled_runs){out->runs.count, out->first, out->masses};
   return code;
 }
 

@@ -76,130 +76,80 @@ static size_t end_of_pool(const struct ask_pools *pools, size_t from, int64_t *v
   return end;
 }
 
-struct values {
-  double *value;
-  int64_t *seed;
-};
-
-static status read_values(const struct ask_pools *pools, struct point_data *point, struct values *values,
-                          struct error *error) {
-  size_t room[3] = {0};
+/* Adds the values of the runs of a point. */
+static status add_values(struct ask_pools *pools, int64_t point, struct error *error) {
+  struct ask_pool *pool = &pools->pool;
+  size_t have = pool->data.runs.count, room[3] = {have, have, have};
   ANSWER
   answer = answer_to(pools->store, error,
                      "SELECT run_id, seed, \"%w\" FROM runs WHERE point_id = %lld AND "
                      "results_version = %lld AND "
                      "counts = 1 ORDER BY replicate, seed",
-                     pools->quantity, (long long)point->point_id, (long long)point->results_version);
-  for (; answer_next(&answer); point->runs.count++) {
-    const size_t run = point->runs.count;
-    TRY(grow_or_fail(&point->run_id, &room[0], run + 1, sizeof *point->run_id, the_pools, error));
-    TRY(grow_or_fail(&values->value, &room[1], run + 1, sizeof *values->value, the_pools, error));
-    TRY(grow_or_fail(&values->seed, &room[2], run + 1, sizeof *values->seed, the_pools, error));
-    point->run_id[run] = answer_integer(&answer, 0);
-    values->seed[run] = answer_integer(&answer, 1);
-    values->value[run] = answer_real(&answer, 2);
+                     pools->quantity, (long long)point, (long long)pool->data.results_version);
+  for (; answer_next(&answer); have++) {
+    TRY(grow_or_fail(&pool->data.run_id, &room[0], have + 1, sizeof *pool->data.run_id, the_pools, error));
+    TRY(grow_or_fail(&pool->value, &room[1], have + 1, sizeof *pool->value, the_pools, error));
+    TRY(grow_or_fail(&pool->seed, &room[2], have + 1, sizeof *pool->seed, the_pools, error));
+    pool->data.run_id[have] = answer_integer(&answer, 0);
+    pool->seed[have] = answer_integer(&answer, 1);
+    pool->value[have] = answer_real(&answer, 2);
   }
+  pool->data.runs.count = have;
   return answer_end(&answer);
 }
 
-static void release(struct ask_pools *pools) {
-  point_release(&pools->pool.data);
-  free(pools->point);
-  free(pools->first_run);
-  free(pools->value);
-  free(pools->seed);
-  pools->point = NULL;
-  pools->first_run = NULL;
-  pools->value = NULL;
-  pools->seed = NULL;
-}
-
-/* Appends `count` elements to the array, whose address is given. */
-static status append(void *array, size_t have, const void *more, size_t count, size_t size, struct error *error) {
-  size_t room = have; /* of the array, which has no spare room */
-  char *block;
-  if (count == 0)
-    return STATUS_OK;
-  TRY(grow_or_fail(array, &room, have + count, size, the_pools, error));
-  memcpy(&block, array, sizeof block); /* a pointer of any type */
-  memcpy(block + have * size, more, count * size);
-  return STATUS_OK;
-}
-
-/* Adds the runs of a point to the pool. `point` and `values` stay the caller's. */
-static status add_point(struct ask_pools *pools, const struct point_data *point, const struct values *values,
-                        struct error *error) {
-  struct point_data *all = &pools->pool.data;
-  const size_t have = all->runs.count, more = point->runs.count;
-  TRY(append(&all->run_id, have, point->run_id, more, sizeof *all->run_id, error));
-  if (values->value) {
-    TRY(append(&pools->value, have, values->value, more, sizeof *values->value, error));
-    TRY(append(&pools->seed, have, values->seed, more, sizeof *values->seed, error));
-  }
-  if (point->first) {
-    const size_t masses = all->first ? all->first[have] : 0;
-    static const size_t zero = 0;
-    if (!all->first)
-      TRY(append(&all->first, 0, &zero, 1, sizeof zero, error));
-    TRY(append(&all->first, have + 1, point->first + 1, more, sizeof *point->first, error));
-    TRY(append(&all->masses, masses, point->masses, point->first[more], sizeof *point->masses, error));
-    for (size_t r = have + 1; r <= have + more; r++)
-      all->first[r] += masses;
-  }
-  all->runs = (struct pooled_runs){have + more, all->first, all->masses};
-  all->element_mass = fmax(all->element_mass, point->element_mass); /* fmax ignores a NaN */
-  all->complete_mass = fmax(all->complete_mass, point->complete_mass);
-  all->dimensions = point->dimensions;
-  pools->point[pools->pool.points++] = point->point_id;
-  pools->first_run[pools->pool.points] = have + more;
-  return STATUS_OK;
+static void release(struct ask_pool *pool) {
+  point_release(&pool->data);
+  free(pool->point);
+  free(pool->first_run);
+  free(pool->value);
+  free(pool->seed);
+  *pool = (struct ask_pool){0};
 }
 
 /* Reads the members from .. end - 1 that have runs of the version. */
 static status read_pool(struct ask_pools *pools, size_t from, size_t end, int64_t version, struct error *error) {
-  TRY(memory_array(&pools->point, end - from, sizeof *pools->point, the_pools, error));
-  TRY(memory_array(&pools->first_run, end - from + 1, sizeof *pools->first_run, the_pools, error));
-  pools->pool.data = (struct point_data){.results_version = version, .element_mass = NAN, .complete_mass = NAN};
-  status code = STATUS_OK;
-  for (size_t i = from; i < end && code == STATUS_OK; i++) {
-    struct point_data point = {.point_id = pools->list[i].point, .results_version = version};
-    struct values values = {0};
+  struct ask_pool *pool = &pools->pool;
+  TRY(memory_array(&pool->point, end - from, sizeof *pool->point, the_pools, error));
+  TRY(memory_array(&pool->first_run, end - from + 1, sizeof *pool->first_run, the_pools, error));
+  pool->data = POINT_EMPTY(0, version);
+  for (size_t i = from; i < end; i++) {
+    const struct ask_doubts_choice runs = {.point = pools->list[i].point};
+    const size_t have = pool->data.runs.count;
     if (pools->list[i].version != version)
       continue;
-    code = pools->of_values ? read_values(pools, &point, &values, error)
-                            : point_read(pools->store, point.point_id, version, &point, error);
-    const struct ask_doubts_choice runs = {.point = point.point_id};
-    if (code == STATUS_OK)
-      code = ask_doubts(pools->store, &runs, pools->of_values ? pools->quantity : OUTCOME_NAME(mean_fragment_mass),
-                        &pools->pool.doubts, error);
-    if (code == STATUS_OK && point.runs.count > 0)
-      code = add_point(pools, &point, &values, error);
-    point_release(&point);
-    free(values.value);
-    free(values.seed);
+    TRY(pools->of_values ? add_values(pools, runs.point, error)
+                         : point_add(pools->store, runs.point, NULL, &pool->data, error));
+    TRY(ask_doubts(pools->store, &runs, pools->of_values ? pools->quantity : OUTCOME_NAME(mean_fragment_mass),
+                   &pool->doubts, error));
+    if (pool->data.runs.count == have)
+      continue;
+    pool->point[pool->points++] = runs.point;
+    pool->first_run[pool->points] = pool->data.runs.count;
   }
-  pools->pool.data.point_id = pools->pool.points == 1 ? pools->point[0] : 0;
-  return code;
+  pool->data.point_id = pool->points == 1 ? pool->point[0] : 0;
+  return STATUS_OK;
 }
 
 /* The pool's label: "strain 3 %, angle 4 deg" from the inputs of `by`; for a single point its varied inputs. */
-static status write_label(struct store *store, struct ask_pool *pool, struct error *error) {
+static status write_label(struct ask_pools *pools, struct error *error) {
+  struct ask_pool *pool = &pools->pool;
   if (pool->points == 1)
-    return ask_points_label(store, pool->point[0], pool->label, sizeof pool->label, error);
-  snprintf(pool->label, sizeof pool->label, "%s", pool->axes ? "" : "all points");
-  for (size_t a = 0; a < pool->axes; a++) {
+    return ask_points_label(pools->store, pool->point[0], pool->label, sizeof pool->label, error);
+  snprintf(pool->label, sizeof pool->label, "%s", pools->axes ? "" : "all points");
+  for (size_t a = 0; a < pools->axes; a++) {
     char unit[72] = "", value[ASK_POOL_TEXT] = "off";
     struct ask_column written;
     const struct query_value *input = &pool->input[a];
-    TRY(ask_columns_written(store, pool->column[a], &written, error));
+    TRY(ask_columns_written(pools->store, pools->column[a], &written, error));
     text_unit(written.unit, unit, sizeof unit);
     if (input->kind == QUERY_TEXT)
       snprintf(value, sizeof value, "%s", input->text);
     else if (input->kind != QUERY_NULL)
       snprintf(value, sizeof value, "%.3g", input->real / written.factor);
     text_powers(value, sizeof value);
-    char column[sizeof pool->column[a]];
-    snprintf(column, sizeof column, "%s", pool->column[a]);
+    char column[sizeof pools->column[a]];
+    snprintf(column, sizeof column, "%s", pools->column[a]);
     char *word = strrchr(column, '_');
     if (word && strcmp(word, "_name") == 0) { /* "material" says more */
       *word = '\0';
@@ -216,16 +166,10 @@ static status read_next(struct ask_pools *pools, struct error *error) {
   int64_t version = 0;
   const size_t from = pools->next;
   pools->next = end_of_pool(pools, from, &version);
-  release(pools);
-  pools->pool = (struct ask_pool){.axes = pools->axes};
-  memcpy(pools->pool.column, pools->column, sizeof pools->pool.column);
-  memcpy(pools->pool.input, pools->list[from].input, sizeof pools->pool.input);
+  release(&pools->pool);
+  pools->pool.input = pools->list[from].input;
   TRY(read_pool(pools, from, pools->next, version, error));
-  pools->pool.point = pools->point;
-  pools->pool.first_run = pools->first_run;
-  pools->pool.value = pools->value;
-  pools->pool.seed = pools->seed;
-  return pools->pool.points > 0 ? write_label(pools->store, &pools->pool, error) : STATUS_OK;
+  return pools->pool.points > 0 ? write_label(pools, error) : STATUS_OK;
 }
 
 const struct ask_pool *ask_pools_next(struct ask_pools *pools) {
@@ -238,7 +182,7 @@ const struct ask_pool *ask_pools_next(struct ask_pools *pools) {
 }
 
 status ask_pools_end(struct ask_pools *pools) {
-  release(pools);
+  release(&pools->pool);
   free(pools->list);
   pools->list = NULL;
   pools->count = 0;

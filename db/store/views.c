@@ -22,16 +22,11 @@ const char *const views_names[VIEWS_COUNT] = {"runs", "points", "spectra", "esti
 
 /* A column that two engines have begins with the name of its table. */
 static bool is_share(const struct field_table *table, const char *engine, const char *column) {
-  char prefix[64], name[FIELD_TEXT_SIZE];
+  char prefix[64];
   snprintf(prefix, sizeof prefix, "result_%s_", engine);
   const size_t length = strlen(prefix);
-  const char *bare = strncmp(column, prefix, length) == 0 ? column + length : column;
-  for (size_t i = 0; i < table->count; i++) {
-    field_column_name(table->rows[i].path, name, sizeof name);
-    if (strcmp(name, bare) == 0)
-      return field_is_share(&table->rows[i]);
-  }
-  return false;
+  const struct field *row = field_of_column(table, strncmp(column, prefix, length) == 0 ? column + length : column);
+  return row && field_is_share(row);
 }
 
 bool views_is_share(const char *column) {
