@@ -212,7 +212,7 @@ static void add_turning(struct turning *t, const struct fragment *f, const struc
 
 static status turn_in_space(size_t n, const struct fragment_member *members, const uint32_t *label, size_t count,
                             struct fragment *fragments, struct error *error) {
-  struct turning *turning = calloc(count, sizeof *turning);
+  OWNED struct turning *turning = calloc(count, sizeof *turning);
   if (!turning)
     return no_memory(n, error);
   for (size_t i = 0; i < n; i++) {
@@ -227,7 +227,6 @@ static status turn_in_space(size_t n, const struct fragment_member *members, con
     if (fragments[k].moment_of_inertia > 0)
       solve_spin(tensor, turning[k].momentum, fragments[k].spin);
   }
-  free(turning);
   return STATUS_OK;
 }
 

@@ -47,11 +47,11 @@ void restart_blocks_load(const struct restart_block *blocks, size_t count, const
 }
 
 static char *identity(const struct engine_kind *kind, const void *inputs) {
-  char *rows = field_identity(kind->inputs, inputs), *text = NULL;
+  OWNED char *rows = field_identity(kind->inputs, inputs);
   const size_t size = strlen(rows) + strlen(kind->name) + 64;
-  if ((text = malloc(size)))
+  char *text = malloc(size);
+  if (text)
     snprintf(text, size, "%s results_version=%d\n%s", kind->name, kind->results_version, rows);
-  free(rows);
   return text;
 }
 

@@ -438,19 +438,14 @@ static void read_scene(document_node *root, const char *folder, const char *fall
   read_settings(document_key(root, "settings"), scene);
 }
 
-/* Frees the document. */
 static status read_document(struct document *document, const char *folder, const char *fallback, struct scene **out,
                             struct error *error) {
-  const char *report;
-  *out = NULL;
   read_scene(document_root(document), folder, fallback, out);
-  const status code = document_finish(document, &report);
+  const status code = document_verdict(document, error);
   if (code) {
-    status_fail(error, code, "%s", report);
     scene_free(*out);
     *out = NULL;
   }
-  document_free(document);
   return code;
 }
 
@@ -460,7 +455,7 @@ static status load_file(const char *path, struct scene **out, struct error *erro
   const size_t length = slash ? (size_t)(slash - path) : 0;
   OWNED char *folder = strndup(path, slash == path ? 1 : length); /* "/" for "/scene.yaml" */
   OWNED char *stem = strdup(slash ? slash + 1 : path);
-  struct document *document = NULL;
+  DOCUMENT document = NULL;
   if (!folder || !stem)
     return status_fail(error, STATUS_MEMORY, "no memory for a path");
   char *dot = strrchr(stem, '.');
@@ -499,14 +494,14 @@ status scene_load(const char *reference, const char *folder, struct scene **out,
 
 status scene_parse(const char *name, const char *text, struct scene **out, struct error *error) {
   *out = NULL;
-  struct document *document = NULL;
+  DOCUMENT document = NULL;
   TRY(document_parse(name, text, strlen(text), &document, error));
   return read_document(document, NULL, name, out, error);
 }
 
 status scene_parse_json(const char *name, const char *json, struct scene **out, struct error *error) {
   *out = NULL;
-  struct document *document = NULL;
+  DOCUMENT document = NULL;
   TRY(document_parse(name, json, strlen(json), &document, error));
   document_take_si(document);
   return read_document(document, NULL, name, out, error);
@@ -546,8 +541,8 @@ void scene_drop(struct scene **scene) {
  * memory. */
 static char *section_document(const char *path, const char *file) {
   char *text = NULL;
-  size_t size = 0, depth = 1;
-  FILE *out = text_open(&text, &size);
+  size_t depth = 1;
+  FILE *out = text_open(&text);
   fputs("{\"", out);
   for (const char *last = strrchr(path, '.'); path < last; path++) {
     depth += *path == '.';
@@ -578,21 +573,17 @@ static status take_own(struct scene *scene, const struct field *row, const char 
   const struct field_table *table = scene->kind->inputs;
   OWNED char *text = section_document(row->path, file);
   SCENE own = NULL;
-  struct document *document = NULL;
-  const char *report = NULL;
-  TRY(open_material(file, scene->kind->materials, &document, error)); /* a message about the file alone */
-  document_free(document);
+  DOCUMENT alone = NULL;
+  DOCUMENT document = NULL;
+  TRY(open_material(file, scene->kind->materials, &alone, error)); /* a message about the file alone */
   if (!text)
     return status_fail(error, STATUS_MEMORY, "no memory for a material");
   own = create(scene->kind);
   TRY(document_parse(row->path, text, strlen(text), &document, error));
   take_materials(document_root(document), scene->kind, "", NULL);
   document_read_given(document_root(document), table, NULL, own->inputs, own->given, scene->kind->complete);
-  const status code = document_finish(document, &report);
-  if (code)
-    status_fail(error, code, "%s", report);
-  document_free(document);
-  for (size_t i = 0; code == STATUS_OK && i < table->count; i++) {
+  TRY(document_verdict(document, error));
+  for (size_t i = 0; i < table->count; i++) {
     struct field_value value;
     const struct field *other = other_name(scene->kind, &table->rows[i]);
     if (!own->given[i] || (scene->overridden[i] && &table->rows[i] != row) ||
@@ -602,7 +593,7 @@ static status take_own(struct scene *scene, const struct field *row, const char 
     field_set_unchecked(&table->rows[i], scene->inputs, &value);
     scene->given[i] = true;
   }
-  return code;
+  return STATUS_OK;
 }
 
 /* Another material in place of the user's own one: all values of that one go, also those from its file. Values that
@@ -718,8 +709,7 @@ status scene_settings_use(struct scene *scene, const char *name, struct error *e
 
 char *scene_json(const struct scene *scene) {
   char *text = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   fputs("{\"engine\":", out);
   text_json_string(scene->kind->name, out);
   fputs(",\"name\":", out);
@@ -759,7 +749,7 @@ void scene_schema(const struct engine_kind *kind, FILE *out) {
 void scene_identity(const struct scene *scene, uint64_t seed, uint8_t identity[16]) {
   char *inputs = field_identity(scene->kind->inputs, scene->inputs), *text = NULL;
   size_t size = 0;
-  FILE *out = text_open(&text, &size); /* small: a store must not get another identity where memory is refused */
+  FILE *out = text_open_sized(&text, &size); /* small: a store must not get another identity where memory is refused */
   fprintf(out, "engine=%s\nresults_version=%d\nseed=%llu\n%s", scene->kind->name, scene->kind->results_version,
           (unsigned long long)seed, inputs);
   text_close_small(out, &text);

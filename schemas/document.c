@@ -128,8 +128,7 @@ static const struct document *after(const struct document *document, const struc
 /* The reports of a document and of its included documents, one after the other. */
 static char *whole_report(struct document *document) {
   char *text = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   const char *between = "";
   for (struct document *other = document; other; other = (struct document *)after(document, other)) {
     if (!other->error_count)
@@ -153,6 +152,16 @@ status document_finish(struct document *document, const char **report) {
     if (other->no_memory)
       return STATUS_MEMORY;
   return document->elsewhere == errors ? STATUS_USAGE : STATUS_CONTENT;
+}
+
+status document_verdict(struct document *document, struct error *error) {
+  const char *report;
+  const status code = document_finish(document, &report);
+  return code ? status_fail(error, code, "%s", report) : STATUS_OK;
+}
+
+void document_release(struct document **document) {
+  document_free(*document);
 }
 
 void document_take_si(struct document *document) {
@@ -345,8 +354,7 @@ char *document_change_text(const struct document *document) {
   if (!document->changed)
     return strdup(document->text);
   char *text = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   fprintf(out, "# as read, with values of the %s; comments are left out\n", document->origin);
   for (size_t i = 0; i < document->root->count; i++) {
     write_scalar(document->root->pairs[i].key, out);

@@ -21,6 +21,9 @@ typedef struct document_node document_node; /* borrowed from its document */
 status document_open(const char *path, struct document **out, struct error *error);
 status document_parse(const char *name, const char *text, size_t size, struct document **out, struct error *error);
 void document_free(struct document *document); /* NULL is fine */
+/* A document that frees itself where its block is left: DOCUMENT document = NULL; */
+#define DOCUMENT __attribute__((cleanup(document_release))) struct document *
+void document_release(struct document **document); /* for DOCUMENT */
 
 /* From now on, numbers without a unit are in SI. For documents that the program wrote, or that it accepted before units
  * were required. */
@@ -89,5 +92,7 @@ void document_unknown_keys(document_node *mapping, const char *path, const char 
 /* STATUS_OK when no error was reported; else STATUS_CONTENT with the whole report in *report (owned by the document).
  * STATUS_USAGE when all errors are about values of document_change_put, STATUS_MEMORY when memory ran out. */
 status document_finish(struct document *document, const char **report);
+/* The same with the report as the message of *error. */
+status document_verdict(struct document *document, struct error *error);
 
 #endif

@@ -97,7 +97,7 @@ static void report_duplicate(document_node *key, const char *path, const documen
 
 /* Keys are sorted, not compared pairwise: a file of a hundred thousand keys must not take minutes. False: no memory. */
 static bool report_duplicates(const document_node *mapping, const char *path) {
-  document_node **keys = malloc((mapping->count + 1) * sizeof(document_node *));
+  OWNED document_node **keys = malloc((mapping->count + 1) * sizeof(document_node *));
   if (!keys)
     return false;
   for (size_t i = 0; i < mapping->count; i++)
@@ -109,7 +109,6 @@ static bool report_duplicates(const document_node *mapping, const char *path) {
     else
       report_duplicate(keys[i], path, keys[first]);
   }
-  free(keys);
   return true;
 }
 

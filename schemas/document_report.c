@@ -151,16 +151,15 @@ static int by_place(const void *a, const void *b) {
 /* Appends one error to the report `out`, whose length is *size, unless the report would grow beyond `limit`. */
 static bool append_error(const struct document *document, const struct document_error *error, FILE *out,
                          const size_t *size, size_t limit) {
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t length = 0;
-  FILE *one = text_open(&text, &length);
+  FILE *one = text_open_sized(&text, &length);
   write_error(document, error, one);
   text_close_small(one, &text);
   fflush(out); /* updates *size */
   const bool fits = *size + length <= limit;
   if (fits)
     fwrite(text, 1, length, out);
-  free(text);
   return fits;
 }
 
@@ -173,7 +172,7 @@ char *document_report_text(struct document *document) {
 
   char *text = NULL;
   size_t size = 0, shown = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open_sized(&text, &size);
   while (shown < kept && append_error(document, &document->errors[shown], out, &size, LIMIT))
     shown++;
   if (shown < document->error_count)

@@ -55,6 +55,14 @@ bool field_nearest(const struct field_table *table, const char *path, char near[
   return *near;
 }
 
+bool field_is_number(const struct field *row) {
+  return row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
+}
+
+double field_number(const struct field_value *value) {
+  return value->kind == FIELD_INTEGER ? (double)value->integer : value->number;
+}
+
 void field_column_name(const char *path, char *name, size_t size) {
   snprintf(name, size, "%s", path);
   for (char *at = name; (at = strchr(at, '.'));)
@@ -480,9 +488,9 @@ static bool is_absent(const struct field *row, const void *object) {
 
 char *field_identity(const struct field_table *table, const void *object) {
   char *text = NULL;
-  size_t size = 0, count = 0;
-  const struct field **rows = memory_small(table->count + 1, sizeof *rows);
-  FILE *out = text_open(&text, &size);
+  size_t count = 0;
+  OWNED const struct field **rows = memory_small(table->count + 1, sizeof *rows);
+  FILE *out = text_open(&text);
   for (size_t i = 0; i < table->count; i++)
     if (field_is_active(table, &table->rows[i], object) && !is_absent(&table->rows[i], object))
       rows[count++] = &table->rows[i];
@@ -495,6 +503,5 @@ char *field_identity(const struct field_table *table, const void *object) {
     write_value(rows[i], &value, out);
     fputc('\n', out);
   }
-  free(rows);
   return text_close_small(out, &text);
 }

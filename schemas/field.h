@@ -142,6 +142,9 @@ size_t field_first_word(const struct field_table *table, size_t i, const char *p
 /* The words that follow a section's path in the table, each once and between two of `quote`: "'a', 'b'". */
 void field_members(const struct field_table *table, const char *section, const char *quote, char *text, size_t size);
 
+bool field_is_number(const struct field *row);        /* a real or a whole one */
+double field_number(const struct field_value *value); /* of such a row */
+
 /* A path as the name of a column: dots become underscores. */
 void field_column_name(const char *path, char *name, size_t size);
 /* The row whose path has this name as a column; NULL: none. */

@@ -119,8 +119,7 @@ void field_describe_inactive(const struct field_table *table, const struct field
   if (!link || !other)
     return;
   char *wanted = NULL, came[FIELD_TEXT_SIZE];
-  size_t length = 0;
-  FILE *words = text_open(&wanted, &length);
+  FILE *words = text_open(&wanted);
   field_describe_condition(link, words);
   text_close_small(words, &wanted);
 
@@ -243,9 +242,9 @@ static void explain_row(const struct field *row, FILE *out) {
 }
 
 size_t field_explain(const struct field_table *table, const char *prefix, FILE *out) {
-  size_t length = strlen(prefix), count = 0, size;
+  size_t length = strlen(prefix), count = 0;
   char *text = NULL;
-  FILE *rows = text_open(&text, &size);
+  FILE *rows = text_open(&text);
   while (length && prefix[length - 1] == '.')
     length--;
   for (size_t i = 0; i < table->count; i++) {
@@ -340,8 +339,7 @@ static void write_level(const struct field_table *table, const void *object, con
 
 char *field_json(const struct field_table *table, const void *object) {
   char *text = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   fputc('{', out);
   field_json_members(table, object, out);
   fputc('}', out);

@@ -112,7 +112,7 @@ status file_read(const char *path, const char *what, unsigned char **bytes, size
     fclose(file);
     return status_fail(error, STATUS_IO, "cannot read the %s '%s': it is no plain file", what, path);
   }
-  FILE *copy = text_open(&text, size);
+  FILE *copy = text_open_sized(&text, size);
   while ((got = fread(block, 1, sizeof block, file)) > 0)
     fwrite(block, 1, got, copy);
   const int why = ferror(file) ? errno : 0;

@@ -114,8 +114,7 @@ static void describe(const struct field *row, FILE *out) {
 /* The description that an editor shows: the row's doc, unit, choices, condition and source as one text. */
 static void description(const struct field *row, FILE *out) {
   char *text = NULL;
-  size_t size = 0;
-  FILE *words = text_open(&text, &size);
+  FILE *words = text_open(&text);
   describe(row, words);
   text_close_small(words, &text);
   text_json_string(*text == ' ' ? text + 1 : text, out);
@@ -296,7 +295,7 @@ static void values(const struct field *row, const char *list, bool excluded, FIL
 
 /* True when the condition holds in an empty document. */
 static bool holds_by_default(const struct field_table *table, const struct field *row, const char *when) {
-  void *object = memory_small(1, table->size);
+  OWNED void *object = memory_small(1, table->size);
   field_defaults(table, object);
   struct field probe = {.path = "", .when = when};
   /* Only this condition is tested: the controlling row's own condition has its own clause. */
@@ -304,7 +303,6 @@ static bool holds_by_default(const struct field_table *table, const struct field
   alone.when = NULL;
   const struct field_table small = {.rows = &alone, .count = 1, .size = table->size};
   bool holds = field_is_active(&small, &probe, object);
-  free(object);
   return holds;
 }
 

@@ -111,7 +111,7 @@ void text_json_string(const char *text, FILE *out) {
 
 struct growing { /* the text of a stream */
   char **text;
-  size_t *size, room;
+  size_t *size, own_size, room;
   bool failed;
 };
 
@@ -152,11 +152,15 @@ static int end_text(void *context) {
   return failed ? -1 : 0;
 }
 
-FILE *text_open(char **text, size_t *size) {
+FILE *text_open(char **text) {
+  return text_open_sized(text, NULL);
+}
+
+FILE *text_open_sized(char **text, size_t *size) {
   struct growing *g = memory_small(1, sizeof *g);
   *text = memory_small(1, 1);
-  *size = 0;
-  *g = (struct growing){.text = text, .size = size, .room = 1};
+  *g = (struct growing){.text = text, .size = size ? size : &g->own_size, .room = 1};
+  *g->size = 0;
   FILE *out = fopencookie(g, "w",
                           (cookie_io_functions_t){.write = grow_text, .seek = place_in_text, .close = end_text});
   /* The stream's buffer is made here: where the first write makes it and memory is refused, that text is lost. */
@@ -225,6 +229,10 @@ const char *text_next_item(const char *list, char *item, size_t size) {
 bool text_ends_in(const char *text, const char *ending) {
   const size_t length = strlen(text), tail = strlen(ending);
   return length > tail && strcmp(text + length - tail, ending) == 0;
+}
+
+const char *text_plural(int64_t count) {
+  return count == 1 ? "" : "s";
 }
 
 bool text_is_one_of(const char *text, const char *const *words) {
@@ -300,21 +308,18 @@ static void write_powers(const char *text, long digits, FILE *out) {
 
 char *text_people(const char *text) {
   char *made = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&made, &size);
+  FILE *out = text_open(&made);
   write_powers(text, 6, out);
   return text_close(out, &made);
 }
 
 void text_powers(char *text, size_t size) {
-  char *made = NULL;
-  size_t length = 0;
-  FILE *out = text_open(&made, &length);
+  OWNED char *made = NULL;
+  FILE *out = text_open(&made);
   write_powers(text, 0, out);
   text_close_small(out, &made);
   text[0] = '\0';
   text_append(text, size, "%s", made);
-  free(made);
 }
 
 void text_unit(const char *unit, char *text, size_t size) {

@@ -29,6 +29,9 @@ void text_make_plain(char *text, const char *kept);
 /* Does `text` end in these bytes, and is it longer? */
 bool text_ends_in(const char *text, const char *ending);
 
+/* "s", and "" for one. */
+const char *text_plural(int64_t count);
+
 /* Is `text` one of the words of a NULL-terminated list? An absent list has no words. */
 bool text_is_one_of(const char *text, const char *const *words);
 
@@ -71,9 +74,11 @@ bool text_has_word(const char *words, const char *word);
 const char *text_next_item(const char *list, char *item, size_t size);
 
 /* A stream that makes *text, which the caller frees: open_memstream() that does not cut the text where memory runs out.
- * *text and *size are right after fflush() or the end; *text is NULL after the end when memory ran out, and fclose()
- * tells so. ftell() gives the length so far. Never NULL: the stream itself is small memory (schemas/memory.h). */
-FILE *text_open(char **text, size_t *size) __attribute__((returns_nonnull));
+ * *text (and its *size) are right after fflush() or the end; *text is NULL after the end when memory ran out, and
+ * fclose() tells so. ftell() gives the length so far. Never NULL: the stream itself is small memory (schemas/memory.h).
+ */
+FILE *text_open(char **text) __attribute__((returns_nonnull));
+FILE *text_open_sized(char **text, size_t *size) __attribute__((returns_nonnull));
 /* Closes the stream that text_open made for *text. Returns the text, which the caller frees; NULL (and *text is NULL)
  * when memory ran out. */
 char *text_close(FILE *out, char **text);

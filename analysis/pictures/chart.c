@@ -143,8 +143,8 @@ struct chart *chart_new(const char *template, const struct picture_page *page, c
   struct chart *chart = memory_small(1, sizeof *chart);
   chart->template = template;
   chart->page = page;
-  chart->variables = text_open(&chart->variables_text, &chart->variables_size);
-  chart->data = text_open(&chart->data_text, &chart->data_size);
+  chart->variables = text_open_sized(&chart->variables_text, &chart->variables_size);
+  chart->data = text_open_sized(&chart->data_text, &chart->data_size);
   const double room = page->width - 40;
   chart_number(chart, "title_lines", folded_text(chart, "title_text", words->title, room / (1.2 * LETTER)));
   chart_number(chart, "caption_lines", folded_text(chart, "caption_text", words->caption, room / (0.88 * LETTER)));
@@ -238,7 +238,7 @@ static status write_script(struct chart *chart, double height, char **script, si
   chart_number(chart, "page_height", height);
   fflush(chart->variables);
   fflush(chart->data);
-  FILE *out = text_open(script, size);
+  FILE *out = text_open_sized(script, size);
   fprintf(out,
           "# A chart of clast for gnuplot 5.4. Change what you like, then run gnuplot on this file in its folder.\n\n"
           "# What this chart shows. The numbers are in the data file.\n%s\n%s\n%s",

@@ -390,7 +390,7 @@ static bool take_cracks(const struct columns *c, struct picture_body *body) {
     return false;
 
   const size_t grains = (size_t)last + 1;
-  uint32_t *cell = malloc(grains * sizeof *cell); /* of each grain; UINT32_MAX: none */
+  OWNED uint32_t *cell = malloc(grains * sizeof *cell); /* of each grain; UINT32_MAX: none */
   body->crack = malloc((c->beams + 1) * sizeof *body->crack);
   const bool good = cell && body->crack;
   for (size_t i = 0; good && i < grains; i++)
@@ -409,7 +409,6 @@ static bool take_cracks(const struct columns *c, struct picture_body *body) {
     body->crack[body->cracks][0] = first;
     body->crack[body->cracks++][1] = second;
   }
-  free(cell);
   return good;
 }
 

@@ -75,7 +75,7 @@ status page_write(const char *path, const unsigned char *html, size_t html_size,
   const unsigned char *place = memmem(html, html_size, mark, sizeof mark - 1);
   if (!place)
     return status_fail(error, STATUS_CONTENT, "share/clast/report.html is damaged: build clast again");
-  FILE *out = text_open(&text, written);
+  FILE *out = text_open_sized(&text, written);
   fwrite(html, 1, (size_t)(place - html), out);
   status code = STATUS_OK;
   for (size_t i = 0; code == STATUS_OK && i < count; i++) {

@@ -422,8 +422,7 @@ static status explain_scene(const struct scene *scene, enum table_format format,
   const bool all = format == TABLE_ALL;
   OWNED char *description = scene->kind->describe(scene->inputs, all);
   OWNED char *doubts = NULL;
-  size_t size;
-  FILE *doubt = text_open(&doubts, &size);
+  FILE *doubt = text_open(&doubts);
   fputs("in doubt: ", doubt);
   if (!condition_before(scene->kind->conditions, scene->inputs, doubt))
     fputs("nothing that the inputs alone tell\n", doubt);

@@ -53,12 +53,12 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct options *options = line->options;
   const char *target = line->count > 1 ? line->arguments[1] : NULL;
   const struct export_crate_options crate = {target, options->license, options->author};
-  if (options->dakota) { /* its files have no place for marks */
-    TRY(export_files_tabular(store, target, strcmp(options->per, "run") == 0 ? "runs" : "points", error));
-    TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, "main", error));
-  } else if (options->per)
+  if (options->per)
     TRY(export_files_write(store, target, strcmp(options->per, "run") == 0 ? "runs" : "points",
-                           options->lines ? TABLE_JSON_LINES : TABLE_CSV, error));
+                           options->dakota  ? EXPORT_TABULAR
+                           : options->lines ? EXPORT_JSON_LINES
+                                            : EXPORT_CSV,
+                           error));
   else if (options->csv)
     TRY(export_files_folder(store, target, error));
   else if (options->cinema)
@@ -66,9 +66,11 @@ static status ask(struct store *store, const struct command_line *line, struct e
   else if (options->crate)
     TRY(export_crate(store, line->arguments[0], &crate, error));
   else if (options->bits)
-    TRY(export_files_write(store, target, NULL, TABLE_CSV, error));
+    TRY(export_files_write(store, target, NULL, EXPORT_CSV, error));
   else
     TRY(store_export(store, target, error));
+  if (options->dakota) /* its files have no place for marks */
+    TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, "main", error));
   if (target)
     fprintf(stderr, "%s written\n", target);
   return STATUS_OK;

@@ -3,7 +3,7 @@
 #include "campaign/commands/commands.h"
 
 static status run(const struct command_line *line, struct error *error) {
-  return fit_rounds_launch(line, line->options, line->format, error);
+  return fit_rounds_launch(line, line->options, error);
 }
 
 static const struct option_row rows[] = {

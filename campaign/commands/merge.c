@@ -2,30 +2,26 @@
 #include "campaign/commands/commands.h"
 #include "campaign/scheduler/scheduler.h"
 
-static const char *plural(int64_t count) {
-  return count == 1 ? "" : "s";
-}
-
 /* Adds one source. *differing counts the runs that both stores have with different results. */
 static status merge_source(struct store *store, const char *target, const char *source, int64_t *differing,
                            struct error *error) {
   int64_t added = 0;
   *differing = 0;
   TRY(store_merge(store, source, &added, differing, error));
-  fprintf(stderr, "%s: %" PRId64 " run%s added\n", source, added, plural(added));
+  fprintf(stderr, "%s: %" PRId64 " run%s added\n", source, added, text_plural(added));
   const int64_t excluded = store_merge_excluded(store);
   if (excluded)
     fprintf(stderr,
             "clast: warning: %s excludes %" PRId64
             " run%s that count%s in %s: `clast exclude %s` lists them with their "
             "reasons, `clast exclude %s RUN --reason TEXT` excludes one here, too\n",
-            source, excluded, plural(excluded), excluded == 1 ? "s" : "", target, source, target);
+            source, excluded, text_plural(excluded), excluded == 1 ? "s" : "", target, source, target);
   if (*differing)
     fprintf(stderr,
             "clast: warning: %s: %" PRId64 " run%s that %s has too gave other results there; those of %s were kept. "
             "Runs are the same bits on one binary and CPU class only: `clast replay STORE RUN` tells which store can "
             "be computed again here\n",
-            source, *differing, plural(*differing), target, target);
+            source, *differing, text_plural(*differing), target, target);
   return STATUS_OK;
 }
 
@@ -51,7 +47,7 @@ static status run(const struct command_line *line, struct error *error) {
     return code ? code : closed;
   if (disagreeing)
     return status_fail(error, STATUS_CONTENT, "merged, but %" PRId64 " run%s disagree between the stores", disagreeing,
-                       plural(disagreeing));
+                       text_plural(disagreeing));
   return STATUS_OK;
 }
 

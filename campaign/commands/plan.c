@@ -23,13 +23,9 @@ status plan_campaign(const char *path, const struct campaign_option *changes, co
   TRY(plan_make(campaign, &options, &plan, error));
   plan.alternatives = alternatives;
   alternatives = NULL;
-  OWNED char *text = json ? plan_print_json(campaign, &plan, options.slots) : NULL;
-  if (text)
-    puts(text);
-  else if (!json)
-    plan_print(campaign, &plan, options.slots, stdout);
+  const status code = plan_show(campaign, &plan, options.slots, json, error);
   plan_clear(&plan);
-  return text || !json ? STATUS_OK : status_fail(error, STATUS_MEMORY, "out of memory");
+  return code;
 }
 
 static status run(const struct command_line *line, struct error *error) {

@@ -13,17 +13,6 @@ struct options {
   int64_t port, wait;
 };
 
-struct serving { /* context of the function that the farm runs */
-  const struct serve_model *model;
-  struct serve_options options;
-};
-
-static status serve_all(void *context, struct launch *launch, struct error *error) {
-  struct serving *serving = context;
-  serving->options.facts = launch->scheduler.facts;
-  return serve_run(serving->model, launch->farm, &serving->options, error);
-}
-
 /* The first line of the file, malloc'd. It is a file because command lines are no secret. */
 static status read_token(const char *path, char **token, struct error *error) {
   OWNED unsigned char *bytes = NULL;
@@ -48,21 +37,21 @@ static status read_token(const char *path, char **token, struct error *error) {
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  struct launch_options launch = options->launch;
   CAMPAIGN campaign = NULL;
   __attribute__((cleanup(serve_model_clear))) struct serve_model model = {0};
-  launch.quiet = true; /* there is no progress to show */
   OWNED char *token = NULL;
   TRY(read_token(options->token, &token, error));
   TRY(campaign_load(line->arguments[0], &campaign, error));
-  struct serving serving = {.model = &model,
-                            .options = {.store = options->store ? options->store : campaign->store,
+  TRY(serve_model_make(campaign, options->quantity, options->knob, &model, error));
+  LAUNCH launch = {0};
+  TRY(launch_begin(&launch, campaign, &options->launch, line, error));
+  const struct serve_options serving = {.store = options->store ? options->store : campaign->store,
+                                        .facts = launch.facts,
                                         .address = options->address,
                                         .token = token,
                                         .port = (int)options->port,
-                                        .wait_s = (double)options->wait}};
-  TRY(serve_model_make(campaign, options->quantity, options->knob, &model, error));
-  return launch_farm(campaign, &launch, line, serve_all, &serving, error);
+                                        .wait_s = (double)options->wait};
+  return serve_run(&model, launch.farm, &serving, error);
 }
 
 static const struct option_row rows[] = {

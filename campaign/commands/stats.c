@@ -13,10 +13,9 @@ static status check(const struct command_line *line, struct error *error) {
   for (const char *names = options->quantity; *names;) {
     enum exponent_method method;
     enum estimates_window window;
-    struct error ignored;
     bool is;
     names = text_next_item(names, name, sizeof name);
-    (void)estimates_named(name, &is, &method, &window, &ignored);
+    (void)estimates_named(name, &is, &method, &window, NULL);
     if (is)
       return status_fail(
           error, STATUS_USAGE,

@@ -48,8 +48,7 @@ struct finding {
 };
 
 static const struct knob *knob_of(const struct campaign *campaign, const char *name) {
-  struct error ignored;
-  return engine_knob(campaign->scene->kind, name, &ignored);
+  return engine_knob(campaign->scene->kind, name, NULL);
 }
 
 static bool is_axis(const struct campaign *campaign, const char *path) {
@@ -398,8 +397,7 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
                           const struct accuracy_option *finest, char *next, size_t size) {
   const struct knob *knob = accuracy->open;
   const double value = strtod(finest->setting, NULL), finer = knob->step_power < 0 ? 2 : 0.5;
-  struct error ignored;
-  const struct field *row = field_find(campaign->scene->kind->inputs, knob->inputs[0].path, &ignored);
+  const struct field *row = field_find(campaign->scene->kind->inputs, knob->inputs[0].path, NULL);
   const char *unit = row && row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
   char setting[64], time[32];
   snprintf(setting, sizeof setting, "%.6g", value * finer);
@@ -567,8 +565,7 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
 
 static status alternatives_json(const struct accuracy *accuracy, const struct campaign *campaign, char **json,
                                 struct error *error) {
-  size_t size = 0;
-  FILE *out = text_open(json, &size);
+  FILE *out = text_open(json);
   const status code = print_alternatives(accuracy, campaign, TABLE_JSON, out, error);
   if (code == STATUS_OK && !isnan(accuracy->point_s)) {
     static const struct {

@@ -17,14 +17,6 @@ struct making {
   FILE *notes;
 };
 
-static bool is_number(const struct field *row) {
-  return row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
-}
-
-static double as_number(const struct field_value *value) {
-  return value->kind == FIELD_INTEGER ? (double)value->integer : value->number;
-}
-
 /* The knob's inputs that are active in the scene. The first one must be; others may be missing. */
 static status find_inputs(struct making *making, struct error *error) {
   const struct field_table *table = making->base->kind->inputs;
@@ -63,7 +55,7 @@ static void print_setting(const struct field *row, const struct field_value *val
 static status set_inputs(const struct making *making, const struct field_value *first, struct scene *scene,
                          struct error *error) {
   status code = scene_set(scene, making->rows[0]->path, first, error);
-  const double factor = is_number(making->rows[0]) ? as_number(first) / as_number(&making->own[0]) : 1;
+  const double factor = field_is_number(making->rows[0]) ? field_number(first) / field_number(&making->own[0]) : 1;
   for (size_t i = 1; code == STATUS_OK && i < KNOB_INPUTS; i++) {
     if (!making->rows[i])
       continue;
@@ -88,7 +80,7 @@ static status add_level(struct making *making, const struct field_value *value, 
 
   level.base = field_same_value(making->rows[0], value, &making->own[0]);
   if (making->knob->step_power != 0)
-    level.step = pow(as_number(value), making->knob->step_power);
+    level.step = pow(field_number(value), making->knob->step_power);
   level.scene = scene_copy(making->base);
   struct error why = {0};
   if (!level.base && set_inputs(making, value, level.scene, &why) != STATUS_OK) {
@@ -227,8 +219,7 @@ status ladder_make(const struct knob *knob, const struct scene *base, const char
                    char **notes, struct error *error) {
   *ladder = (struct ladder){.knob = knob};
   *notes = NULL;
-  size_t size = 0;
-  struct making making = {.knob = knob, .base = base, .ladder = ladder, .notes = text_open(notes, &size)};
+  struct making making = {.knob = knob, .base = base, .ladder = ladder, .notes = text_open(notes)};
   const bool named = knob->group == KNOB_SETTINGS;
   status code = (named ? add_all_named : add_all_levels)(&making, settings, error);
   text_close_small(making.notes, notes);
@@ -252,9 +243,8 @@ status ladder_turn(const struct knob *knob, struct scene *scene, const char *set
 }
 
 void ladder_setting(const struct knob *knob, const struct scene *scene, char *text, size_t size) {
-  struct error ignored;
   struct field_value value;
-  const struct field *row = field_find(scene->kind->inputs, knob->inputs[0].path, &ignored);
+  const struct field *row = field_find(scene->kind->inputs, knob->inputs[0].path, NULL);
   text[0] = '\0';
   if (!row)
     return;

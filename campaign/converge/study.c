@@ -257,9 +257,8 @@ static void combine(const struct study_ladder *ladders, size_t count, struct stu
 static void find_shapes(const struct study_ladder *ladder, size_t quantity, struct study_found *found) {
   for (size_t l = 0; l < found->count; l++) {
     SCATTER scatter = {0};
-    struct error ignored;
     if (found->rows[l].n < 4 ||
-        scatter_make((size_t)ladder->seeds, ladder->values[quantity][l], &scatter, &ignored) != STATUS_OK)
+        scatter_make((size_t)ladder->seeds, ladder->values[quantity][l], &scatter, NULL) != STATUS_OK)
       continue;
     found->rows[l].skew = scatter.skewness;
     found->rows[l].upper_mode = scatter.upper_share;

@@ -40,8 +40,7 @@ static status doubts_of(const struct printing *printing, const char *in, const c
   const long long first = study->limits.first_seed, last = first + (long long)study->rule.most_seeds - 1;
   OWNED char *where = NULL;
   char results[ASK_DOUBTS_RESULTS];
-  size_t size;
-  FILE *text = text_open(&where, &size);
+  FILE *text = text_open(&where);
   fprintf(text, "point_id IN (%s) AND seed BETWEEN %lld AND %lld", in, first, last);
   text_close_small(text, &where);
   *doubts = (struct ask_doubts){0};
@@ -63,8 +62,7 @@ static status sum_doubts(const struct printing *printing, size_t ladders, size_t
   const struct study *study = printing->study;
   OWNED char *points = NULL;
   char names[ASK_DOUBTS_RESULTS] = "";
-  size_t size;
-  FILE *text = text_open(&points, &size);
+  FILE *text = text_open(&points);
   for (size_t i = 0; i < ladders; i++)
     for (size_t l = 0; l < study->ladder[i].levels.count; l++)
       fprintf(text, "%s%lld", i || l ? "," : "", (long long)study->ladder[i].point[l]);
@@ -77,10 +75,9 @@ static status sum_doubts(const struct printing *printing, size_t ladders, size_t
 void study_show_setting(const struct engine_kind *kind, const struct knob *knob, const char *setting, char *text,
                         size_t size) {
   char *end, unit[64];
-  struct error ignored;
   const double number = strtod(setting, &end);
   const char *path = knob ? knob->inputs[0].path : NULL;
-  const struct field *row = path ? field_find(kind->inputs, path, &ignored) : NULL;
+  const struct field *row = path ? field_find(kind->inputs, path, NULL) : NULL;
   if (*end || end == setting || !row) {
     snprintf(text, size, "%.64s", setting);
     return;
@@ -295,8 +292,7 @@ static status print_quantity(const struct printing *printing, size_t from, size_
   if (from || quantity)
     putchar('\n');
   OWNED char *sentences = NULL;
-  size_t size;
-  FILE *out = text_open(&sentences, &size);
+  FILE *out = text_open(&sentences);
   print_sentence(study, from, quantity, count, found, out);
   text_close_small(out, &sentences);
   text_wrap_lines(sentences, WIDTH, stdout);
@@ -324,7 +320,7 @@ static status print_quantity(const struct printing *printing, size_t from, size_
   TRY(table_end(table, error));
   free(sentences);
   sentences = NULL;
-  out = text_open(&sentences, &size);
+  out = text_open(&sentences);
   for (size_t i = 0; i < count; i++)
     print_limit(&study->ladder[from + i], &found[i], out);
   if (printing->format == TABLE_ALL)

@@ -267,16 +267,10 @@ static bool is_enough(void *context) {
 
 /* ---- from the farm to the tables ---- */
 
-struct launching {
-  struct study *study;
-  const struct study_request *request;
-  enum table_format format;
-};
-
-static status run_study(void *context, struct launch *launch, struct error *error) {
-  const struct launching *launching = context;
-  const struct study_request *request = launching->request;
-  struct study *study = launching->study;
+static status run_study(struct study *study, const struct study_request *request, const struct command_line *line,
+                        struct error *error) {
+  LAUNCH launch = {0};
+  TRY(launch_begin(&launch, &study->limits, &request->launch, line, error));
   struct rounds rounds = {.study = study, .begin = clock_s()};
   const struct series series = {.context = &rounds,
                                 .limits = &study->limits,
@@ -284,10 +278,10 @@ static status run_study(void *context, struct launch *launch, struct error *erro
                                 .done = end_round,
                                 .is_enough = is_enough};
   struct series_summary summary;
-  launch->scheduler.store_path = study->limits.store;
-  const status code = driver_run_series(&series, launch->farm, &launch->scheduler, &summary, error);
-  launch_tell_series(launch, code, study->limits.store, &summary, false);
-  if (!launch->manager || code != STATUS_OK)
+  launch.scheduler.store_path = study->limits.store;
+  const status code = driver_run_series(&series, launch.farm, &launch.scheduler, &summary, error);
+  launch_tell_series(&launch, code, study->limits.store, &summary, false);
+  if (!launch.manager || code != STATUS_OK)
     return code;
   int64_t most = 0;
   for (size_t i = 0; i < study->ladder_count; i++)
@@ -297,7 +291,7 @@ static status run_study(void *context, struct launch *launch, struct error *erro
                        "--seconds %.4g: too short for %lld seeds of two levels of any knob; runs so far are in %s, and "
                        "the same command with more time goes on",
                        study->rule.seconds, (long long)study->rule.first_seeds, study->limits.store);
-  TRY(study_print(study, launching->format, request->launch.quiet, error));
+  TRY(study_print(study, line->format, request->launch.quiet, error));
   if (request->picture)
     TRY(study_print_picture(study, false, request->picture, error));
   return request->frontier ? study_print_picture(study, true, request->frontier, error) : STATUS_OK;
@@ -305,12 +299,11 @@ static status run_study(void *context, struct launch *launch, struct error *erro
 
 status study_launch(const struct study_request *request, const struct command_line *line, struct error *error) {
   OWNED struct study_subject *subject = memory_small(1, sizeof *subject);
-  struct launching launching = {&subject->study, request, line->format};
   status code = study_request_read(request, line->arguments[0], subject, error);
   if (code == STATUS_OK && subject->scene_count)
     code = engine_ready(subject->scenes[0]->kind, subject->scenes[0]->inputs, error);
   if (code == STATUS_OK)
-    code = launch_farm(&subject->study.limits, &request->launch, line, run_study, &launching, error);
+    code = run_study(&subject->study, request, line, error);
   study_request_clear(subject);
   return code;
 }

@@ -151,7 +151,7 @@ void design_axis_follow(const struct design_axis *axis, const struct field_value
     *value = axis->levels[level < axis->level_count ? level : axis->level_count - 1];
     return;
   }
-  double x = followed->kind == FIELD_INTEGER ? (double)followed->integer : followed->number;
+  double x = field_number(followed);
   set_number(axis->row, axis->a * x + axis->b, value);
 }
 

@@ -129,7 +129,7 @@ const struct field *campaign_quantity(const struct engine_kind *kind, const char
                 path, nearest ? ": did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "", kind->name);
     return NULL;
   }
-  if (row->kind != FIELD_REAL && row->kind != FIELD_INTEGER) {
+  if (!field_is_number(row)) {
     status_fail(error, STATUS_CONTENT, "'%s' is no number, so it has no mean; name another quantity", path);
     return NULL;
   }
@@ -141,15 +141,14 @@ double campaign_value(const struct field *row, bool of_outcome, const struct out
     return NAN;
   struct field_value value;
   field_get(row, of_outcome ? (const void *)outcome : result, &value);
-  return row->kind == FIELD_INTEGER ? (double)value.integer : value.number;
+  return field_number(&value);
 }
 
 /* The document for the store. The checksum identifies the file of points; another file of points is another
  * campaign. */
 static char *text_for_store(const char *document, const struct campaign *campaign) {
   char *text = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   fputs(document, out);
   if (campaign->points_sha256[0])
     fprintf(out, "%s# design.file: %lld points, sha256 %s\n",
@@ -211,10 +210,7 @@ static status from_document(struct document *document, const struct campaign_cha
   campaign->text = changed ? text_for_store(changed, campaign) : NULL;
   if (!campaign->text)
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
-  const char *report = NULL;
-  const status code = document_finish(document, &report);
-  if (code != STATUS_OK)
-    return status_fail(error, code, "%s", report);
+  TRY(document_verdict(document, error));
   *out = campaign;
   campaign = NULL;
   return STATUS_OK;
@@ -222,15 +218,12 @@ static status from_document(struct document *document, const struct campaign_cha
 
 static status from_text(const char *name, const char *text, size_t size, const char *folder, bool si,
                         struct campaign **out, struct error *error) {
-  struct document *document = NULL;
+  DOCUMENT document = NULL;
   *out = NULL;
-  status code = document_parse(name, text, size, &document, error);
-  if (code == STATUS_OK && si)
+  TRY(document_parse(name, text, size, &document, error));
+  if (si)
     document_take_si(document);
-  if (code == STATUS_OK)
-    code = from_document(document, NULL, folder, si, out, error);
-  document_free(document);
-  return code;
+  return from_document(document, NULL, folder, si, out, error);
 }
 
 status campaign_parse(const char *name, const char *text, size_t size, const char *folder, struct campaign **out,
@@ -249,9 +242,9 @@ status campaign_load(const char *path, struct campaign **out, struct error *erro
 
 status campaign_load_changed(const char *path, const struct campaign_changes *changes, struct campaign **out,
                              struct error *error) {
-  struct document *document = NULL;
+  DOCUMENT document = NULL;
   *out = NULL;
-  status code = document_open(path, &document, error);
+  const status code = document_open(path, &document, error);
   if (code == STATUS_MISSING && scene_builtin_text(path))
     return status_fail(error, STATUS_MISSING,
                        "%s is a built-in scene; a campaign is a file, which names it: `scene: %s`, and `vary:` with an "
@@ -262,9 +255,7 @@ status campaign_load_changed(const char *path, const struct campaign_changes *ch
   OWNED char *folder = slash ? memory_small_text(path) : NULL;
   if (folder)
     folder[slash - path + (slash == path)] = '\0';
-  code = from_document(document, changes, folder, false, out, error);
-  document_free(document);
-  return code;
+  return from_document(document, changes, folder, false, out, error);
 }
 
 void campaign_free(struct campaign *campaign) {

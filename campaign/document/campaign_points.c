@@ -218,7 +218,7 @@ static bool read_items(struct reading *r) {
 }
 
 bool campaign_points_read(document_node *node, const char *folder, struct campaign *campaign) {
-  struct reading *r = memory_small(1, sizeof *r); /* too large for the stack of a thread */
+  OWNED struct reading *r = memory_small(1, sizeof *r); /* too large for the stack of a thread */
   bool good = false;
   r->campaign = campaign;
   r->node = node;
@@ -227,6 +227,5 @@ bool campaign_points_read(document_node *node, const char *folder, struct campai
     good = read_items(r);
     csv_close(&r->csv);
   }
-  free(r);
   return good;
 }

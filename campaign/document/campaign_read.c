@@ -59,7 +59,7 @@ bool campaign_read_set(document_node *set, const char *folder, const struct camp
     document_report(set, "set", "expected a mapping of paths to values, e.g. contact.friction: 0.2");
     return false;
   }
-  const char **names = memory_small(inputs->count, sizeof *names); /* the key that has set an input */
+  OWNED const char **names = memory_small(inputs->count, sizeof *names); /* the key that has set an input */
   for (size_t i = 0; i < document_count(set); i++) {
     const char *key = NULL;
     char path[320];
@@ -77,7 +77,6 @@ bool campaign_read_set(document_node *set, const char *folder, const struct camp
     }
     *name = key;
   }
-  free(names);
   return good;
 }
 

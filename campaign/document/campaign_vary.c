@@ -70,10 +70,6 @@ static bool read_own(struct reading *r, document_node *node, double *x) {
   return read_number(r, node, "", &row, x);
 }
 
-static bool is_number(const struct field *row) {
-  return row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
-}
-
 static bool read_pair(struct reading *r, document_node *node, bool positive, double *a, double *b) {
   if (document_kind(node) != DOCUMENT_SEQUENCE || document_count(node) != 2)
     return wrong(r, node, "expected two values, [from, to]");
@@ -213,7 +209,7 @@ static bool read_linked(struct reading *r, document_node *node) {
     axis->kind = DESIGN_AXIS_LINKED;
     return good;
   }
-  if (!is_number(row) || !is_number(axis->row))
+  if (!field_is_number(row) || !field_is_number(axis->row))
     return wrong(r, node, "only numbers follow by factor and offset; give `values`");
   const struct field any = number_row(r, "1", -HUGE_VAL, HUGE_VAL, 0);
   const struct field offset = number_row(r, axis->row->unit, -HUGE_VAL, HUGE_VAL, axis->row->flags & FIELD_PERCENT);
@@ -253,7 +249,7 @@ static bool read_form(struct reading *r) {
   for (int k = 0; form->keys[k]; k++)
     document_key(r->node, form->keys[k]); /* marks the keys as known before any error below can end the reading */
   document_unknown_keys(r->node, r->path, form->keys);
-  if (form->kind != DESIGN_AXIS_LINKED && !is_number(r->axis->row))
+  if (form->kind != DESIGN_AXIS_LINKED && !field_is_number(r->axis->row))
     return wrong(r, NULL, "this input is no number: give a list of its values");
   document_node *first = document_key(r->node, form->keys[0]);
   r->axis->kind = form->kind;

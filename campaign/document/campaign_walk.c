@@ -44,8 +44,7 @@ struct doubts {
 /* The engine writes its lines in the order of the bits. */
 static void add(struct doubts *doubts, const struct scene *scene) {
   OWNED char *text = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   doubts->points++;
   const uint64_t set = condition_before(scene->kind->conditions, scene->inputs, out);
   const char *line = text_close_small(out, &text);
@@ -135,8 +134,7 @@ static void write_axes(const struct campaign *campaign, FILE *out) {
 
 char *campaign_write_list(const struct campaign *campaign, const char *scene_reference, const char *comment) {
   char *text = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   fprintf(out, "# %s\nname: ", comment);
   text_json_string(campaign->name, out);
   fputs("\nscene: ", out);

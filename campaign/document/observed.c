@@ -253,37 +253,28 @@ static void read_all(struct reading *r, document_node *root) {
 static status from_document(struct document *document, const struct campaign *campaign, struct observed **out,
                             struct error *error) {
   struct reading r = {.campaign = campaign, .observed = memory_small(1, sizeof *r.observed)};
-  const char *report = NULL;
   read_all(&r, document_root(document));
-  const status code = document_finish(document, &report);
-  if (code != STATUS_OK) {
-    status_fail(error, code, "%s", report);
+  const status code = document_verdict(document, error);
+  if (code)
     observed_free(r.observed);
-    return code;
-  }
-  *out = r.observed;
-  return STATUS_OK;
+  else
+    *out = r.observed;
+  return code;
 }
 
 status observed_parse(const char *name, const char *text, size_t size, const struct campaign *campaign,
                       struct observed **out, struct error *error) {
-  struct document *document = NULL;
+  DOCUMENT document = NULL;
   *out = NULL;
-  status code = document_parse(name, text, size, &document, error);
-  if (code == STATUS_OK)
-    code = from_document(document, campaign, out, error);
-  document_free(document);
-  return code;
+  TRY(document_parse(name, text, size, &document, error));
+  return from_document(document, campaign, out, error);
 }
 
 status observed_load(const char *path, const struct campaign *campaign, struct observed **out, struct error *error) {
-  struct document *document = NULL;
+  DOCUMENT document = NULL;
   *out = NULL;
-  status code = document_open(path, &document, error);
-  if (code == STATUS_OK)
-    code = from_document(document, campaign, out, error);
-  document_free(document);
-  return code;
+  TRY(document_open(path, &document, error));
+  return from_document(document, campaign, out, error);
 }
 
 void observed_free(struct observed *observed) {

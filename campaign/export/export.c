@@ -20,22 +20,15 @@
 
 /* ---- views and bits as text ---- */
 
-static const char *const exported[] = {"runs", "points", "spectra", "estimates", "column_doc"};
-
-static status write_rows(struct store *store, const char *view, enum table_format format, FILE *out,
-                         struct error *error) {
-  return view ? table_answer(ask_columns_view(store, view, error), false, format, out)
-              : store_export_digests(store, out, error);
-}
-
-status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
-                          struct error *error) {
-  struct file_output file;
-  if (!path)
-    return write_rows(store, view, format, stdout, error);
-  TRY(file_begin(&file, path, "rows", error));
-  return file_end(&file, write_rows(store, view, format, file.out, error), error);
-}
+/* The views of a folder, and what a crate says of their tables. */
+static const char *const exported[][2] = {
+    {"runs", "A row for each run: inputs, every result, state, times. SI units; column_doc.csv tells them"},
+    {"points", "A row for each point: inputs, and means over its runs with 95 % intervals"},
+    {"spectra", "A row for each point and bin of fragment mass"},
+    {"estimates", "A row for each exponent of the fragment mass distribution"},
+    {"column_doc", "Meaning and unit of every column of the store and of these tables"},
+};
+enum { TABLES = sizeof exported / sizeof exported[0] };
 
 /* Is this column of a view written for Dakota? */
 static bool is_tabular(const char *name, const struct ask_column *axis, size_t axes, bool responses, bool means) {
@@ -62,6 +55,7 @@ static void write_tabular(const struct query_value *value, FILE *out) {
     fprintf(out, " %.17g", value->real);
 }
 
+/* As a tabular file of Dakota, annotated. */
 static status write_all_tabular(struct store *store, const char *view, FILE *out, struct error *error) {
   const bool means = strcmp(view, "points") == 0;
   OWNED struct ask_column *axis = memory_small(LIMITS_AXES_OF_TABLE, sizeof *axis);
@@ -87,25 +81,40 @@ static status write_all_tabular(struct store *store, const char *view, FILE *out
   return answer_end(&rows);
 }
 
-status export_files_tabular(struct store *store, const char *path, const char *view, struct error *error) {
+static status write_rows(struct store *store, const char *view, enum export_format format, FILE *out,
+                         struct error *error) {
+  if (format == EXPORT_TABULAR)
+    return write_all_tabular(store, view, out, error);
+  return view ? table_answer(ask_columns_view(store, view, error), false,
+                             format == EXPORT_CSV ? TABLE_CSV : TABLE_JSON_LINES, out)
+              : store_export_digests(store, out, error);
+}
+
+status export_files_write(struct store *store, const char *path, const char *view, enum export_format format,
+                          struct error *error) {
   struct file_output file;
   if (!path)
-    return write_all_tabular(store, view, stdout, error);
+    return write_rows(store, view, format, stdout, error);
   TRY(file_begin(&file, path, "rows", error));
-  return file_end(&file, write_all_tabular(store, view, file.out, error), error);
+  return file_end(&file, write_rows(store, view, format, file.out, error), error);
+}
+
+static status join(char path[LIMITS_PATH], const char *folder, const char *name, struct error *error) {
+  return snprintf(path, LIMITS_PATH, "%s/%s", folder, name) < LIMITS_PATH
+             ? STATUS_OK
+             : status_fail(error, STATUS_USAGE, "the folder's name is too long");
 }
 
 status export_files_folder(struct store *store, const char *folder, struct error *error) {
-  enum { TABLES = sizeof exported / sizeof exported[0] };
-  char path[TABLES][LIMITS_PATH];
+  char path[TABLES][LIMITS_PATH], name[64];
   TRY(file_folder(folder, error));
   for (size_t i = 0; i < TABLES; i++) { /* all before the first is written */
-    if (snprintf(path[i], sizeof path[i], "%s/%s.csv", folder, exported[i]) >= (int)sizeof path[i])
-      return status_fail(error, STATUS_USAGE, "the folder's name is too long");
+    snprintf(name, sizeof name, "%s.csv", exported[i][0]);
+    TRY(join(path[i], folder, name, error));
     TRY(file_may_replace(path[i], "table", error));
   }
   for (size_t i = 0; i < TABLES; i++)
-    TRY(export_files_write(store, path[i], exported[i], TABLE_CSV, error));
+    TRY(export_files_write(store, path[i], exported[i][0], EXPORT_CSV, error));
   return STATUS_OK;
 }
 
@@ -125,16 +134,11 @@ struct crate {
   bool failed;                     /* there was no memory for an entity */
 };
 
-static bool join(char path[LIMITS_PATH], const char *folder, const char *name) {
-  return snprintf(path, LIMITS_PATH, "%s/%s", folder, name) < LIMITS_PATH;
-}
-
 /* A text from a user: bytes that are not UTF-8 become U+FFFD. */
 static json_t *text_of(const char *text) {
   json_t *made = json_string(text);
   OWNED char *quoted = NULL;
-  size_t size = 0;
-  FILE *out = made ? NULL : text_open(&quoted, &size);
+  FILE *out = made ? NULL : text_open(&quoted);
   if (!out)
     return made;
   text_json_string(text, out);
@@ -154,7 +158,7 @@ static void append(struct crate *crate, json_t *list, json_t *made) {
 static void add_file(struct crate *crate, const char *name, const char *format, const char *description) {
   char path[LIMITS_PATH], size[32];
   struct stat facts;
-  const bool known = join(path, crate->options->folder, name) && stat(path, &facts) == 0;
+  const bool known = join(path, crate->options->folder, name, NULL) == STATUS_OK && stat(path, &facts) == 0;
   if (known)
     snprintf(size, sizeof size, "%lld", (long long)facts.st_size);
   append(crate, crate->graph,
@@ -184,8 +188,7 @@ static void add_program(struct crate *crate, const char *version, const char *co
 static status add_campaign(struct crate *crate, const struct answer *row, struct error *error) {
   char name[64], path[LIMITS_PATH], description[512];
   snprintf(name, sizeof name, "campaign-%" PRId64 ".yaml", answer_integer(row, 0));
-  if (!join(path, crate->options->folder, name))
-    return status_fail(error, STATUS_USAGE, "the folder's name is too long");
+  TRY(join(path, crate->options->folder, name, error));
   TRY(file_write(path, "campaign", answer_text(row, 2), strlen(answer_text(row, 2)), error));
   snprintf(description, sizeof description, "The campaign \"%.400s\" as it was read", answer_text(row, 1));
   add_file(crate, name, "application/yaml", description);
@@ -217,19 +220,13 @@ static void now_text(char text[32]) {
 }
 
 static status add_tables(struct crate *crate, struct store *store, struct error *error) {
-  static const char *const described[][2] = {
-      {"runs.csv", "A row for each run: inputs, every result, state, times. SI units; column_doc.csv tells them"},
-      {"points.csv", "A row for each point: inputs, and means over its runs with 95 % intervals"},
-      {"spectra.csv", "A row for each point and bin of fragment mass"},
-      {"estimates.csv", "A row for each exponent of the fragment mass distribution"},
-      {"column_doc.csv", "Meaning and unit of every column of the store and of these tables"},
-  };
-  char date[32], program[ID];
+  char date[32], program[ID], name[64];
   TRY(export_files_folder(store, crate->options->folder, error));
   json_t *tables = json_array();
-  for (size_t i = 0; i < sizeof described / sizeof described[0]; i++) {
-    add_file(crate, described[i][0], "text/csv", described[i][1]);
-    append(crate, tables, id_of(described[i][0]));
+  for (size_t i = 0; i < TABLES; i++) {
+    snprintf(name, sizeof name, "%s.csv", exported[i][0]);
+    add_file(crate, name, "text/csv", exported[i][1]);
+    append(crate, tables, id_of(name));
   }
   add_program(crate, BUILD_VERSION, BUILD_COMMIT, program);
   now_text(date);
@@ -258,8 +255,7 @@ static status finish(struct crate *crate, const char *title, struct error *error
   const char *license = crate->options->license;
   char path[LIMITS_PATH], date[32];
   now_text(date);
-  if (!join(path, crate->options->folder, METADATA))
-    return status_fail(error, STATUS_USAGE, "the folder's name is too long");
+  TRY(join(path, crate->options->folder, METADATA, error));
   json_auto_t *root = json_pack(
       "{s:[s, s], s:[{s:s, s:s, s:o, s:o}, {s:s, s:s, s:o, s:o, s:s, s:s, s:o, s:o*, s:O, s:O}, {s:s, s:s, s:s, s:s}]}",
       "@context", SPECIFICATION "/context", "https://w3id.org/ro/terms/workflow-run/context", "@graph",   /* */
@@ -295,8 +291,7 @@ static status take_folder(const char *folder, struct error *error) {
 
 static status fill(struct crate *crate, struct store *store, const char *title, struct error *error) {
   char path[LIMITS_PATH];
-  if (!join(path, crate->options->folder, STORE_COPY))
-    return status_fail(error, STATUS_USAGE, "the folder's name is too long");
+  TRY(join(path, crate->options->folder, STORE_COPY, error));
   TRY(store_export(store, path, error));
   add_file(crate, STORE_COPY, "application/vnd.sqlite3",
            "Every run with its inputs, results and fragment masses; any SQLite tool reads it, and its table "

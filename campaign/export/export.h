@@ -5,15 +5,15 @@
 #include "campaign/terminal/table.h"
 #include "db/store/store.h"
 
+/* EXPORT_TABULAR: the varied inputs (SI units) and the main results of each run, or their means of each point (view
+ * "points"), as a tabular file of Dakota, annotated: eval_id is the number of the run or point. */
+enum export_format { EXPORT_CSV, EXPORT_JSON_LINES, EXPORT_TABULAR };
+
 /* Writes the rows of a view (runs, points, ...; NULL: the bits) into a file; path NULL: to standard output. The file is
  * written under a temporary name and renamed: a file with its final name is complete. A pipe or a device (/dev/stdout)
  * is written directly. */
-status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
+status export_files_write(struct store *store, const char *path, const char *view, enum export_format format,
                           struct error *error);
-
-/* The varied inputs (SI units) and the main results of each run, or their means of each point (view "points"), as a
- * tabular file of Dakota, annotated: eval_id is the number of the run or point. */
-status export_files_tabular(struct store *store, const char *path, const char *view, struct error *error);
 
 /* runs.csv, points.csv, spectra.csv, estimates.csv and column_doc.csv in the folder, which is made. */
 status export_files_folder(struct store *store, const char *folder, struct error *error);

@@ -134,6 +134,6 @@ struct farm_usage {
 };
 struct farm_usage farm_usage(const struct farm *farm);
 
-status farm_stop(struct farm *farm, struct error *error); /* ends slots and server, MPI_Finalize. NULL is fine */
+void farm_stop(struct farm *farm); /* ends slots and server, MPI_Finalize. NULL is fine */
 
 #endif

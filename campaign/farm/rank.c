@@ -160,7 +160,7 @@ status farm_start(const struct farm_options *options, farm_work work, struct far
   if (farm->ranks == 1)
     farm_link_close(farm->link, true, 0); /* no other rank waits */
   farm->link = NULL; /* MPI stays open, so that the caller can report the error; mpirun ends the other ranks */
-  farm_stop(farm, NULL);
+  farm_stop(farm);
   return result;
 }
 
@@ -364,10 +364,9 @@ static bool agree_to_finalize(struct farm *farm) {
   return true;
 }
 
-status farm_stop(struct farm *farm, struct error *error) {
-  (void)error;
+void farm_stop(struct farm *farm) {
   if (!farm)
-    return STATUS_OK;
+    return;
   farm_pool_end(farm->pool);
   if (farm->link)
     farm_link_close(farm->link, agree_to_finalize(farm), farm->last);
@@ -378,5 +377,4 @@ status farm_stop(struct farm *farm, struct error *error) {
   }
   free(farm->peers);
   free(farm);
-  return STATUS_OK;
 }

@@ -12,10 +12,6 @@
 
 /* ---- places of the bracket ---- */
 
-static double number_of(const struct field_value *value) {
-  return value->kind == FIELD_INTEGER ? (double)value->integer : value->number;
-}
-
 void find_value(const struct find *find, double x, struct field_value *value) {
   const double low = find->from, high = find->to;
   const double exact = find->logarithmic ? low * pow(high / low, x) : low + (high - low) * x;
@@ -31,7 +27,7 @@ void find_value(const struct find *find, double x, struct field_value *value) {
 }
 
 double find_place(const struct find *find, const struct field_value *value) {
-  const double number = number_of(value);
+  const double number = field_number(value);
   return find->logarithmic ? log(number / find->from) / log(find->to / find->from)
                            : (number - find->from) / (find->to - find->from);
 }
@@ -42,7 +38,7 @@ static double widest(const struct find *find) {
   struct field_value low, high;
   find_value(find, find->found.low, &low);
   find_value(find, find->found.high, &high);
-  const double width = number_of(&high) - number_of(&low), share = find->found.high - find->found.low;
+  const double width = field_number(&high) - field_number(&low), share = find->found.high - find->found.low;
   if (find->input->kind == FIELD_INTEGER && width <= 1)
     return share;
   return find->relative ? find->within : find->within / width * share;
@@ -70,7 +66,7 @@ static status find_input(struct find *find, const char *name, struct error *erro
   find->input = name ? field_find_in(scene->kind->inputs, name, scene->inputs, error) : only->row;
   if (!find->input)
     return STATUS_USAGE;
-  if (find->input->kind != FIELD_REAL && find->input->kind != FIELD_INTEGER)
+  if (!field_is_number(find->input))
     return status_fail(error, STATUS_USAGE, "--input %s: not a number, so nothing can be between two of its values",
                        find->input->path);
   return STATUS_OK;
@@ -119,7 +115,7 @@ static status read_end(const struct field *row, const char *option, const char *
     return STATUS_OK;
   if (field_parse(row, text, &value, &why) != STATUS_OK)
     return status_fail(error, STATUS_USAGE, "--%s %s: %s", option, text, why.message);
-  *end = number_of(&value);
+  *end = field_number(&value);
   return STATUS_OK;
 }
 
@@ -128,8 +124,8 @@ static status find_bracket(struct find *find, const struct find_request *request
   const struct design_axis *axis = campaign_axis(find->campaign, row);
   find->from = find->to = NAN;
   for (size_t i = 0; axis && i < axis->level_count; i++) {
-    find->from = fmin(find->from, number_of(&axis->levels[i]));
-    find->to = fmax(find->to, number_of(&axis->levels[i]));
+    find->from = fmin(find->from, field_number(&axis->levels[i]));
+    find->to = fmax(find->to, field_number(&axis->levels[i]));
   }
   if (axis && (axis->kind == DESIGN_AXIS_UNIFORM || axis->kind == DESIGN_AXIS_LOG_UNIFORM)) {
     find->from = axis->a;
@@ -234,7 +230,7 @@ static void choose_places(struct find *find) {
   for (size_t i = 0; i < count; i++) {
     struct field_value *value = &find->place[find->places];
     find_value(find, next[i], value);
-    find->places += find->places == 0 || number_of(value) != number_of(value - 1);
+    find->places += find->places == 0 || field_number(value) != field_number(value - 1);
   }
 }
 
@@ -321,31 +317,25 @@ static status end_round(void *context, const struct scheduler *scheduler, struct
 
 /* ---- from the document to the answer ---- */
 
-struct launching {
-  struct find *find;
-  const struct find_request *request;
-  enum table_format format;
-};
-
-static status run_rounds(void *context, struct launch *launch, struct error *error) {
-  const struct launching *launching = context;
-  const struct find_request *request = launching->request;
-  struct find *find = launching->find;
+static status run_rounds(struct find *find, const struct find_request *request, const struct command_line *line,
+                         struct error *error) {
+  LAUNCH launch = {0};
+  TRY(launch_begin(&launch, &find->limits, &request->launch, line, error));
   const struct series series = {.context = find, .limits = &find->limits, .next = next_round, .done = end_round};
   struct series_summary summary;
   find->note = launch_note;
-  find->note_context = &launch->notes;
-  launch->scheduler.store_path = find->limits.store;
-  if (launch->manager && !launch->notes.quiet)
+  find->note_context = &launch.notes;
+  launch.scheduler.store_path = find->limits.store;
+  if (launch.manager && !launch.notes.quiet)
     fprintf(stderr,
             "clast: at most %zu runs, %d at first; --plan tells what they cost. They are campaigns of their own in "
             "%s; questions about other campaigns leave them out\n",
             find->most, FIND_FEWEST_RUNS, find->limits.store);
-  const status code = driver_run_series(&series, launch->farm, &launch->scheduler, &summary, error);
-  launch_tell_series(launch, code, find->limits.store, &summary, true);
-  if (!launch->manager || code != STATUS_OK)
+  const status code = driver_run_series(&series, launch.farm, &launch.scheduler, &summary, error);
+  launch_tell_series(&launch, code, find->limits.store, &summary, true);
+  if (!launch.manager || code != STATUS_OK)
     return code;
-  TRY(find_print(find, launching->format, error));
+  TRY(find_print(find, line->format, error));
   return request->picture ? find_print_picture(find, request->picture, &request->chart, error) : STATUS_OK;
 }
 
@@ -358,26 +348,21 @@ static status print_plan(struct find *find, const struct find_request *request, 
   find->each = find->most / find->places;
   TRY(make_campaign(find, &campaign, error));
   TRY(plan_make(campaign, &options, &plan, error));
-  OWNED char *text = json ? plan_print_json(campaign, &plan, options.slots) : NULL;
-  if (text)
-    puts(text);
-  else if (!json)
-    printf("At most %zu runs, %d at first; fewer when the crossing is known before.\n", find->most, FIND_FEWEST_RUNS);
   if (!json)
-    plan_print(campaign, &plan, options.slots, stdout);
+    printf("At most %zu runs, %d at first; fewer when the crossing is known before.\n", find->most, FIND_FEWEST_RUNS);
+  const status code = plan_show(campaign, &plan, options.slots, json, error);
   plan_clear(&plan);
-  return text || !json ? STATUS_OK : status_fail(error, STATUS_MEMORY, "out of memory");
+  return code;
 }
 
 status find_launch(const struct find_request *request, const struct command_line *line, struct error *error) {
   OWNED struct find *find = memory_small(1, sizeof *find);
-  struct launching launching = {find, request, line->format};
   status code = read_request(request, line->arguments[0], find, error);
   if (code == STATUS_OK && !request->plan)
     code = engine_ready(find->base->kind, find->base->inputs, error);
   if (code == STATUS_OK)
     code = request->plan ? print_plan(find, request, line->format == TABLE_JSON, error)
-                         : launch_farm(&find->limits, &request->launch, line, run_rounds, &launching, error);
+                         : run_rounds(find, request, line, error);
   clear(find);
   return code;
 }

@@ -199,7 +199,7 @@ static double value_at(const struct find *find, double x) {
   if (!(x >= 0 && x <= 1))
     return NAN;
   find_value(find, x, &value);
-  return value.kind == FIELD_INTEGER ? (double)value.integer : value.number;
+  return field_number(&value);
 }
 
 static status print_rows(const struct find *find, enum table_format format, struct error *error) {

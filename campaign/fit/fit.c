@@ -36,7 +36,7 @@ void fit_value(const struct fit *fit, size_t input, double z, struct field_value
 double fit_number(const struct fit *fit, size_t input, double z) {
   struct field_value value;
   design_axis_quantile(&fit->campaign->axes[fit->axis[input]], posterior_share(z), &value);
-  return value.kind == FIELD_INTEGER ? (double)value.integer : value.number;
+  return field_number(&value);
 }
 
 /* ---- from the documents ---- */

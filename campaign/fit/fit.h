@@ -2,7 +2,7 @@
  * sampled points are the first ensemble. Rounds of runs move the ensemble towards the data (analysis/inference).
  * Surfaces are fitted to the means of all runs and give the posterior.
  *
- *     fit_rounds_launch(line, &options, format, &error);   // documents, farm, rounds, report
+ *     fit_rounds_launch(line, &options, &error);   // documents, farm, rounds, report
  *
  * The rounds depend only on the documents and the rule, so that a repeated command finds all its runs in the store. */
 #ifndef CLAST_CAMPAIGN_FIT_FIT_H
@@ -94,8 +94,7 @@ struct fit_launch {
 };
 
 /* Reads both documents (line->arguments), runs the rounds, prints the report on rank 0. */
-status fit_rounds_launch(const struct command_line *line, const struct fit_launch *options, enum table_format format,
-                         struct error *error);
+status fit_rounds_launch(const struct command_line *line, const struct fit_launch *options, struct error *error);
 
 /* ---- fit_print.c ---- */
 

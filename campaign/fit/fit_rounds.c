@@ -206,8 +206,6 @@ struct launching { /* the two documents, and what is made from them */
   struct campaign *campaign;
   struct observed *observed;
   struct fit *fit;
-  const struct fit_launch *options;
-  enum table_format format;
 };
 
 static void end_launching(struct launching *launching) {
@@ -216,28 +214,27 @@ static void end_launching(struct launching *launching) {
   campaign_free(launching->campaign);
 }
 
-static status run_fit(void *context, struct launch *launch, struct error *error) {
-  const struct launching *launching = context;
-  const struct fit_launch *options = launching->options;
-  struct fit *fit = launching->fit;
+static status run_fit(struct fit *fit, const struct fit_launch *options, const struct command_line *line,
+                      struct error *error) {
+  LAUNCH launch = {0};
+  TRY(launch_begin(&launch, fit->campaign, &options->launch, line, error));
   const struct series series = {.context = fit, .limits = fit->campaign, .next = next_round, .done = end_round};
-  const char *store = launch->scheduler.store_path = fit->campaign->store;
+  const char *store = launch.scheduler.store_path = fit->campaign->store;
   struct series_summary summary;
-  if (launch->manager && !launch->notes.quiet)
+  if (launch.manager && !launch.notes.quiet)
     fprintf(stderr, "clast: at most %" PRId64 " runs in %" PRId64 " rounds\n",
             (int64_t)(fit->observed->shot_count * fit->members * fit->replicates) * options->rounds, options->rounds);
-  const status code = driver_run_series(&series, launch->farm, &launch->scheduler, &summary, error);
-  launch_tell_series(launch, code, store, &summary, true);
-  if (!launch->manager || code != STATUS_OK)
+  const status code = driver_run_series(&series, launch.farm, &launch.scheduler, &summary, error);
+  launch_tell_series(&launch, code, store, &summary, true);
+  if (!launch.manager || code != STATUS_OK)
     return code;
   TRY(fit_find(fit, error));
-  TRY(fit_print(fit, launching->format, error));
+  TRY(fit_print(fit, line->format, error));
   return options->picture ? fit_print_picture(fit, options->picture, &options->chart, error) : STATUS_OK;
 }
 
-status fit_rounds_launch(const struct command_line *line, const struct fit_launch *options, enum table_format format,
-                         struct error *error) {
-  __attribute__((cleanup(end_launching))) struct launching launching = {.options = options, .format = format};
+status fit_rounds_launch(const struct command_line *line, const struct fit_launch *options, struct error *error) {
+  __attribute__((cleanup(end_launching))) struct launching launching = {0};
   struct launch_notes notes = {.quiet = options->launch.quiet};
   const struct fit_rule rule = {.rounds = options->rounds,
                                 .seed = (uint64_t)options->seed,
@@ -251,5 +248,5 @@ status fit_rounds_launch(const struct command_line *line, const struct fit_launc
   if (options->store)
     snprintf(campaign->store, sizeof campaign->store, "%s", options->store);
   TRY(fit_create(campaign, launching.observed, &rule, scene, &launching.fit, error));
-  return launch_farm(campaign, &options->launch, line, run_fit, &launching, error);
+  return run_fit(launching.fit, options, line, error);
 }

@@ -27,8 +27,8 @@ void launch_tell_runs(const char *store, int64_t computed, int64_t found, double
   char wall[64], cpu[64];
   progress_duration(wall_s, wall, sizeof wall);
   progress_duration(cpu_s, cpu, sizeof cpu);
-  fprintf(stderr, "%s: %" PRId64 " run%s computed in %s (%s of processor time)", store, computed,
-          computed == 1 ? "" : "s", wall, cpu);
+  fprintf(stderr, "%s: %" PRId64 " run%s computed in %s (%s of processor time)", store, computed, text_plural(computed),
+          wall, cpu);
   if (found >= 0)
     fprintf(stderr, ", %" PRId64 " found in the store", found);
   fputc('\n', stderr);
@@ -50,27 +50,30 @@ void launch_tell_series(const struct launch *launch, status code, const char *st
     fprintf(stderr, "some runs failed: clast query %s --named failures\n", store);
 }
 
-status launch_farm(const struct campaign *limits, const struct launch_options *options, const struct command_line *line,
-                   status (*body)(void *context, struct launch *launch, struct error *error), void *context,
-                   struct error *error) {
+status launch_begin(struct launch *launch, const struct campaign *limits, const struct launch_options *options,
+                    const struct command_line *line, struct error *error) {
   struct farm_options farm_options = {.slots = (int)options->slots,
                                       .in_process = options->in_process,
                                       .use_mpi = farm_under_mpi()};
-  struct farm *farm = NULL;
   scheduler_limits(limits, &farm_options);
   if (limits->scene)
     TRY(engine_ready(limits->scene->kind, limits->scene->inputs, error));
-  TRY(farm_start(&farm_options, run_work, &farm, error));
-  struct launch launch = {.farm = farm, .manager = farm_rank(farm) == 0, .notes = {.quiet = options->quiet}};
-  OWNED char *facts = provenance_json(farm_ranks(farm), farm_slots_total(farm), line->argc, line->argv);
-  launch.scheduler = (struct scheduler_options){.facts = facts,
-                                                .note = launch_note,
-                                                .note_context = &launch.notes,
-                                                .slots = farm_slots_total(farm)};
-  launch.begin_s = clock_s();
-  status code = facts ? body(context, &launch, error) : status_fail(error, STATUS_MEMORY, "out of memory");
-  const status stopped = farm_stop(farm, code ? NULL : error);
-  return code ? code : stopped;
+  TRY(farm_start(&farm_options, run_work, &launch->farm, error));
+  const int slots = farm_slots_total(launch->farm);
+  launch->manager = farm_rank(launch->farm) == 0;
+  launch->notes.quiet = options->quiet;
+  launch->begin_s = clock_s();
+  launch->facts = provenance_json(farm_ranks(launch->farm), slots, line->argc, line->argv);
+  launch->scheduler = (struct scheduler_options){.facts = launch->facts,
+                                                 .note = launch_note,
+                                                 .note_context = &launch->notes,
+                                                 .slots = slots};
+  return launch->facts ? STATUS_OK : status_fail(error, STATUS_MEMORY, "out of memory");
+}
+
+void launch_end(struct launch *launch) {
+  farm_stop(launch->farm);
+  free(launch->facts);
 }
 
 int launch_slots(int64_t slots) {
@@ -102,10 +105,6 @@ status launch_quiet_ranks(status code, struct error *error) {
 
 enum { MANY_POINTS = 64 }; /* above this number the table at the end is printed only with --json or --csv */
 
-static const char *plural(int64_t count) {
-  return count == 1 ? "" : "s";
-}
-
 static void print_summary(const struct driver_summary *summary, const char *store, double wall_s, status code) {
   launch_tell_runs(store, summary->runs_done, summary->runs_reused, summary->cpu_s, wall_s);
   fprintf(stderr, "points: %" PRIu64 " of %" PRIu64 " complete", summary->points_done, summary->points);
@@ -115,14 +114,14 @@ static void print_summary(const struct driver_summary *summary, const char *stor
   fputc('\n', stderr);
   if (summary->runs_censored)
     fprintf(stderr, "%" PRId64 " run%s ended at stop.end_time: fragments may still have been breaking\n",
-            summary->runs_censored, plural(summary->runs_censored));
+            summary->runs_censored, text_plural(summary->runs_censored));
   uncertainty_excluded(summary->runs_excluded, store);
   if (summary->runs_doubtful)
     fprintf(stderr, "%" PRId64 " run%s in doubt (!); means and stopping rules count %s\n", summary->runs_doubtful,
-            plural(summary->runs_doubtful), summary->runs_doubtful == 1 ? "it" : "them");
+            text_plural(summary->runs_doubtful), summary->runs_doubtful == 1 ? "it" : "them");
   if (summary->attempts_failed)
     fprintf(stderr, "%" PRId64 " attempt%s failed: clast query %s --named failures\n", summary->attempts_failed,
-            plural(summary->attempts_failed), store);
+            text_plural(summary->attempts_failed), store);
   if (code == STATUS_STOPPED)
     fputs("stopped; the same command goes on\n", stderr);
 }
@@ -167,41 +166,31 @@ static status print_answers(const char *path, int64_t campaign, const char *quan
   return quantity_tell_idle(store, error);
 }
 
-struct launching {
-  const struct campaign *campaign;
-  const char *store;
-  enum table_format format;
-};
-
-static status run_campaign(void *context, struct launch *launch, struct error *error) {
-  const struct launching *launching = context;
-  const bool quiet = launch->notes.quiet;
+status launch_campaign(const struct campaign *campaign, const char *store, const struct launch_options *options,
+                       enum table_format format, const struct command_line *line, struct error *error) {
+  LAUNCH launch = {0};
+  TRY(launch_begin(&launch, campaign, options, line, error));
+  const bool quiet = options->quiet;
   const enum progress_style style = progress_style_of(stderr);
   const char *no_colour = getenv("NO_COLOR");
   const bool colour = style == PROGRESS_BAR && !(no_colour && *no_colour);
-  struct progress *progress = launch->manager && !quiet ? progress_create(stderr, style, colour, 0) : NULL;
+  struct progress *progress = launch.manager && !quiet ? progress_create(stderr, style, colour, 0) : NULL;
   struct driver_summary summary = {0};
-  launch->notes.progress = launch->scheduler.progress = progress;
-  launch->scheduler.store_path = launching->store;
-  const status code = driver_run(launching->campaign, launch->farm, &launch->scheduler, &summary, error);
-  const double wall_s = clock_s() - launch->begin_s;
-  launch->notes.progress = NULL;
+  launch.notes.progress = launch.scheduler.progress = progress;
+  launch.scheduler.store_path = store;
+  const status code = driver_run(campaign, launch.farm, &launch.scheduler, &summary, error);
+  const double wall_s = clock_s() - launch.begin_s;
+  launch.notes.progress = NULL;
   progress_free(progress);
-  if (!launch->manager)
+  if (!launch.manager)
     return code;
 
   const bool done = code == STATUS_OK || code == STATUS_FAILED_RUNS;
   if ((done || code == STATUS_STOPPED) && !quiet)
-    print_summary(&summary, launching->store, wall_s, code);
+    print_summary(&summary, store, wall_s, code);
   if (!done)
     return code;
-  const status printed = print_answers(launching->store, summary.campaign_id, launching->campaign->quantity,
-                                       launching->format, quiet, code ? NULL : error);
+  const status printed = print_answers(store, summary.campaign_id, campaign->quantity, format, quiet,
+                                       code ? NULL : error);
   return printed ? printed : code;
-}
-
-status launch_campaign(const struct campaign *campaign, const char *store, const struct launch_options *options,
-                       enum table_format format, const struct command_line *line, struct error *error) {
-  struct launching launching = {campaign, store, format};
-  return launch_farm(campaign, options, line, run_campaign, &launching, error);
 }

@@ -30,20 +30,22 @@ struct launch_notes {
 };
 void launch_note(void *notes, const char *text);
 
-/* Argument of the function that every rank runs between the farm's start and end. */
+/* The farm of a command. A variable of type LAUNCH ends the farm where its block is left. */
 struct launch {
   struct farm *farm;
-  struct scheduler_options scheduler; /* facts, notes and slots are filled in; the body adds the store */
+  struct scheduler_options scheduler; /* facts, notes and slots are filled in; the command adds the store */
   struct launch_notes notes;
+  char *facts;  /* owned */
   bool manager; /* rank 0 */
   double begin_s;
 };
+#define LAUNCH __attribute__((cleanup(launch_end))) struct launch
 
-/* Starts the farm, calls `body` on every rank, and ends the farm. The farm is started before anything opens HDF5 or
- * starts a thread. `limits`: limits of time and memory. Returns what `body` returns, or an error of the farm. */
-status launch_farm(const struct campaign *limits, const struct launch_options *options, const struct command_line *line,
-                   status (*body)(void *context, struct launch *launch, struct error *error), void *context,
-                   struct error *error);
+/* Starts the farm, on every rank, before anything opens HDF5 or starts a thread. `limits`: limits of time and memory.
+ */
+status launch_begin(struct launch *launch, const struct campaign *limits, const struct launch_options *options,
+                    const struct command_line *line, struct error *error);
+void launch_end(struct launch *launch); /* for LAUNCH; a zeroed one is fine */
 
 /* Prints a line on stderr: how many runs were computed, and how many were found in the store (-1: left out). */
 void launch_tell_runs(const char *store, int64_t computed, int64_t found, double cpu_s, double wall_s);

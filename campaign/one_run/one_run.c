@@ -125,7 +125,7 @@ static status write_series(const struct snapshots *s, struct error *error) {
   OWNED char *text = NULL;
   char path[PATH];
   size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open_sized(&text, &size);
   const char *base = strrchr(s->name, '/');
   fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [", out);
   const char *between = "\n";

@@ -695,9 +695,8 @@ static void tick_of_series(void *context, int on_slots, bool last) {
 
 static status end_series(void *context, status code, struct error *error) {
   struct running *running = context;
-  struct error ignored;
   if (running->driver)
-    (void)end_campaign(running, code == STATUS_STOPPED ? "stopped" : "failed", &ignored);
+    (void)end_campaign(running, code == STATUS_STOPPED ? "stopped" : "failed", NULL);
   return code == STATUS_OK ? pooling_store(running->scheduler->store, 0, error) : code;
 }
 

@@ -112,7 +112,7 @@ static const struct knob *size_knob(const struct scene *scene, double *own) {
     if (!row || !field_is_active(scene->kind->inputs, row, scene->inputs))
       return NULL;
     field_get(row, scene->inputs, &value);
-    *own = row->kind == FIELD_INTEGER ? (double)value.integer : value.number;
+    *own = field_number(&value);
     return knob;
   }
   return NULL;
@@ -459,7 +459,7 @@ static void print_times(const struct plan *plan, int slots, FILE *out) {
   fprintf(out, " (%s of processor time)\n", a);
 }
 
-void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
+static void print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
   char a[64], b[64];
   print_design(campaign, plan, out);
   campaign_warn(campaign, "warning   ", out);
@@ -496,8 +496,7 @@ static void number(FILE *out, const char *name, double value) {
 
 static void axis_json(const struct campaign *campaign, size_t index, FILE *out) {
   OWNED char *values = NULL;
-  size_t size = 0;
-  FILE *text = text_open(&values, &size);
+  FILE *text = text_open(&values);
   design_axis_describe(campaign->axes, index, text);
   const struct field *row = campaign->axes[index].row;
   fputs(index ? ", {\"path\": " : "{\"path\": ", out);
@@ -511,8 +510,7 @@ static void axis_json(const struct campaign *campaign, size_t index, FILE *out) 
 
 char *plan_print_json(const struct campaign *campaign, const struct plan *plan, int slots) {
   char *text = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   fputs("{\"campaign\": ", out);
   text_json_string(campaign->name, out);
   fputs(", \"scene\": ", out);
@@ -546,4 +544,15 @@ char *plan_print_json(const struct campaign *campaign, const struct plan *plan, 
   text_json_string(plan->model ? plan->model : "", out);
   fputs("}\n", out);
   return text_close(out, &text);
+}
+
+status plan_show(const struct campaign *campaign, const struct plan *plan, int slots, bool json, struct error *error) {
+  OWNED char *text = json ? plan_print_json(campaign, plan, slots) : NULL;
+  if (text)
+    puts(text);
+  else if (json)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  else
+    print(campaign, plan, slots, stdout);
+  return STATUS_OK;
 }

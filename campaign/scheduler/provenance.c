@@ -34,9 +34,8 @@ static void member(FILE *out, const char *name, const char *value) {
 
 char *provenance_json(int ranks, int slots, int argc, char *const *argv) {
   char *text = NULL, model[256];
-  size_t size = 0;
   struct utsname host;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   cpu_model(model, sizeof model);
   fputs("{\"version\": ", out);
   text_json_string(BUILD_VERSION, out);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "campaign/farm/farm.h"
+#include "engine/grow.h"
 #include "engine/restart.h"
 #include "engine/threads.h"
 #include "schemas/file.h"
@@ -113,9 +114,9 @@ status run_simulate(const struct run_request *request, run_watch watch, void *co
   return code;
 }
 
-/* The bytes of a task or a result: the same functions write and read them, so that a layout stands once. Writing, a
- * first pass with bytes = NULL counts. Reading, missing or unexpected bytes set `good` to false, and all later reads
- * give zero. */
+/* The bytes of a task or a result: the same functions write and read them, so that a layout stands once. Writing,
+ * `bytes` grow. Without memory for them, and for missing or unexpected bytes when reading, `good` becomes false, and
+ * all later reads give zero. */
 struct wire {
   uint8_t *bytes;
   size_t at, size;
@@ -124,13 +125,20 @@ struct wire {
 
 /* The place of the next `size` bytes. NULL: there is none. */
 static uint8_t *next_bytes(struct wire *wire, uint64_t size) {
-  if (wire->reads && (!wire->good || size > wire->size - wire->at)) {
-    wire->good = false;
+  wire->good = wire->good && (wire->reads ? size <= wire->size - wire->at
+                                          : grow_room(&wire->bytes, &wire->size, wire->at + (size_t)size, 1));
+  if (!wire->good)
     return NULL;
-  }
-  uint8_t *here = wire->bytes ? wire->bytes + wire->at : NULL;
   wire->at += (size_t)size;
-  return here;
+  return wire->bytes + wire->at - size;
+}
+
+/* What was written, malloc'd. NULL: there was no memory. */
+static uint8_t *written(struct wire *wire, size_t *size) {
+  *size = wire->at;
+  if (!wire->good)
+    memory_free(&wire->bytes);
+  return wire->good ? wire->bytes : NULL;
 }
 
 /* Written, or filled when reading. */
@@ -204,11 +212,7 @@ static void write_task(struct wire *wire, const struct run_request *request) {
 uint8_t *run_encode_task(const struct run_request *request, size_t *size) {
   struct wire wire = {.good = true};
   write_task(&wire, request);
-  *size = wire.at;
-  wire = (struct wire){.bytes = malloc(*size), .good = true};
-  if (wire.bytes)
-    write_task(&wire, request);
-  return wire.bytes;
+  return written(&wire, size);
 }
 
 /* False: no memory. */
@@ -231,16 +235,6 @@ static bool pass_result(struct wire *wire, const struct engine_kind *kind, struc
   result->unwritten.status = (status)pass_count(wire, result->unwritten.status);
   pass_text(wire, result->unwritten.message, sizeof result->unwritten.message);
   return true;
-}
-
-static uint8_t *encode_result(const struct engine_kind *kind, struct run_result *result, size_t *size) {
-  struct wire wire = {.good = true};
-  pass_result(&wire, kind, result);
-  *size = wire.at;
-  wire = (struct wire){.bytes = malloc(*size), .good = true};
-  if (wire.bytes)
-    pass_result(&wire, kind, result);
-  return wire.bytes;
 }
 
 status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, size_t size, struct run_result *result,
@@ -314,6 +308,8 @@ status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t 
   if (code != STATUS_OK && error)
     values.unwritten = *error;
   values.unwritten.status = code;
-  *result = encode_result(request.kind, &values, result_size);
+  struct wire wire = {.good = true};
+  pass_result(&wire, request.kind, &values);
+  *result = written(&wire, result_size);
   return *result ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the result");
 }

@@ -10,7 +10,7 @@
  *
  *     farm_start(&farm_options, run_work, &farm, &error);     // before HDF5, threads, MPI
  *     scheduler_compute(&planner, farm, &options, &error);    // every rank; only rank 0 opens the store
- *     farm_stop(farm, &error);
+ *     farm_stop(farm);
  *
  * Each run has an identity, so that nothing is computed twice: a planner looks its runs up in the store first. */
 #ifndef CLAST_CAMPAIGN_SCHEDULER_SCHEDULER_H
@@ -244,8 +244,9 @@ struct plan {
 status plan_make(const struct campaign *campaign, const struct plan_options *options, struct plan *plan,
                  struct error *error);
 void plan_clear(struct plan *plan);
-void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out); /* for people */
-char *plan_print_json(const struct campaign *campaign, const struct plan *plan, int slots);      /* malloc'd */
+/* Prints the plan on standard output, for people or as JSON. */
+status plan_show(const struct campaign *campaign, const struct plan *plan, int slots, bool json, struct error *error);
+char *plan_print_json(const struct campaign *campaign, const struct plan *plan, int slots); /* malloc'd */
 
 /* ---- trials: the beginning of a run, whole runs, and coarse whole runs that tell which share of a run the beginning
  * was. All times are processor time of this process, so that other work on the machine does not count. ---- */

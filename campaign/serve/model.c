@@ -8,10 +8,6 @@
 
 #include <jansson.h>
 
-static bool is_number(const struct field *row) {
-  return row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
-}
-
 static status take_inputs(struct serve_model *model, struct error *error) {
   const struct campaign *campaign = model->campaign;
   if (campaign->axis_count == 0)
@@ -20,7 +16,7 @@ static status take_inputs(struct serve_model *model, struct error *error) {
   model->inputs = memory_small(campaign->axis_count, sizeof *model->inputs);
   for (size_t i = 0; i < campaign->axis_count; i++) {
     const struct design_axis *axis = &campaign->axes[i];
-    if (!is_number(axis->row))
+    if (!field_is_number(axis->row))
       return status_fail(error, STATUS_CONTENT, "vary.%s: inputs of a server are numbers; put this one into `set`",
                          axis->row->path);
     if (axis->kind == DESIGN_AXIS_LINKED && axis->level_count)

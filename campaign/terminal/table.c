@@ -448,8 +448,7 @@ static void drop_kept(struct table *table) {
 /* Tells people on stderr what they do not see. An ending that several columns have is told once. */
 static void tell_left_out(const struct table *table) {
   OWNED char *text = NULL;
-  size_t size;
-  FILE *note = text_open(&text, &size);
+  FILE *note = text_open(&text);
   const char *before = "clast: not shown (--all): ";
   bool told[RULES] = {false};
   for (size_t c = 0; note && c < table->column_count; c++) {

@@ -217,8 +217,7 @@ static void write_points(FILE *out, const struct names *axes, const struct names
  * the largest one among its points. */
 static char *group_sql(const struct names *axes, const struct names *quantities) {
   char *sql = NULL, units[32], quantile[32];
-  size_t size = 0;
-  FILE *out = text_open(&sql, &size);
+  FILE *out = text_open(&sql);
   fputs("SELECT ", out);
   write_names(out, axes);
   fputs("engine, results_version, points, n, failed, censored, excluded", out);
@@ -384,11 +383,11 @@ status ask_group_twins(struct store *store, struct ask_group_twins *twins, struc
 
 status ask_group_idle(struct store *store, char idle[ASK_GROUP_POOLED], struct error *error) {
   struct ask_column axes[LIMITS_AXES_OF_POOL];
-  size_t count, size = 0;
+  size_t count;
   char *sql = NULL;
   idle[0] = '\0';
   TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_POOL, axes, &count, error));
-  FILE *out = text_open(&sql, &size);
+  FILE *out = text_open(&sql);
   ANSWER
   results = answer_to(store, error,
                       "%s AND c.name NOT IN (SELECT column_name FROM column_doc WHERE table_name = 'run' AND NOT "

@@ -137,13 +137,12 @@ static void hist_sum_step(sqlite3_context *context, int count, sqlite3_value **v
 static void hist_sum_final(sqlite3_context *context) {
   struct histogram *h = sqlite3_aggregate_context(context, 0);
   char *text = NULL;
-  size_t size = 0;
   bool first = true;
   if (h && h->wrong) {
     sqlite3_result_error(context, "hist_sum() takes fragment_mass.masses: blobs of float64", -1);
     return;
   }
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   fputc('[', out);
   for (int i = 0; h && i < BINS; i++) {
     if (h->count[i] == 0)

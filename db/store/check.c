@@ -133,9 +133,8 @@ static status check_ranges(struct report *report, struct error *error) {
     const struct engine_kind *kind = engine_at(k / 2);
     const struct schema_table own = schema_result_table(kind);
     const char *name = k % 2 ? own.name : "run";
-    char *sql = NULL;
-    size_t size = 0;
-    FILE *text = text_open(&sql, &size);
+    OWNED char *sql = NULL;
+    FILE *text = text_open(&sql);
     fputs("SELECT 'run ' || run_id || ', out of range:' || wrong FROM (SELECT run_id, ", text);
     const bool any = range_columns(report->store, name, k % 2 ? kind->results : &outcome_table, text);
     fprintf(text,
@@ -146,7 +145,6 @@ static status check_ranges(struct report *report, struct error *error) {
     text_close_small(text, &sql);
     if (any)
       result = no_rows(report, sql, error);
-    free(sql);
   }
   return result;
 }

@@ -10,6 +10,7 @@
 #include "db/store/schema.h"
 #include "db/store/views.h"
 #include "schemas/limits.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum { LONGEST_VALUE = 1 << 28 }; /* bytes of a text or blob: the masses of 3e7 fragments */
@@ -295,37 +296,30 @@ static status write_table(struct guard *guard, const struct schema_table *table,
 
 /* `ours` and `sql`, which the file has, are texts of the table. */
 static status compare(struct guard *guard, const char *table, const char *ours, const char *sql, struct error *error) {
-  char *expected = comparable(ours), *found = comparable(sql);
-  const bool memory = expected && found;
-  if (memory) {
-    size_t same = 0;
-    forget_main_results(expected);
-    forget_main_results(found);
-    while (found[same] && found[same] == expected[same])
-      same++;
-    if (found[same] || expected[same]) /* a part that begins before the difference */
-      refuse(guard, "the text", found + (same > 70 ? same - 70 : 0), table);
-  }
-  free(expected);
-  free(found);
-  return memory ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: memory ran out", reading);
+  OWNED char *expected = comparable(ours), *found = comparable(sql);
+  size_t same = 0;
+  if (!expected || !found)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", reading);
+  forget_main_results(expected);
+  forget_main_results(found);
+  while (found[same] && found[same] == expected[same])
+    same++;
+  if (found[same] || expected[same]) /* a part that begins before the difference */
+    refuse(guard, "the text", found + (same > 70 ? same - 70 : 0), table);
+  return STATUS_OK;
 }
 
 static status judge_table(struct guard *guard, const struct schema_table *table, const char *sql, struct error *error) {
   const size_t before = guard->strangers;
-  char *ours = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&ours, &size);
+  OWNED char *ours = NULL;
+  FILE *out = text_open(&ours);
   status result = write_table(guard, table, out, error);
   text_close_small(out, &ours);
   for (size_t i = 0; guard->version >= SCHEMA_READABLE && i < table->count; i++)
     if (!schema_may_lack(table->name, table->columns[i].name) &&
         !schema_has_column(guard->db, table->name, table->columns[i].name))
       refuse(guard, "the lack of column", table->columns[i].name, table->name);
-  if (result == STATUS_OK && guard->strangers == before)
-    result = compare(guard, table->name, ours, sql, error);
-  free(ours);
-  return result;
+  return result || guard->strangers != before ? result : compare(guard, table->name, ours, sql, error);
 }
 
 static status judge_tables(struct guard *guard, struct error *error) {
@@ -365,17 +359,15 @@ static status judge(struct guard *guard, struct error *error) {
 }
 
 status guard_schema(sqlite3 *db, const char *path, int version, struct error *error) {
-  char *names = NULL;
-  size_t size = 0;
-  struct guard guard = {.db = db, .version = version, .out = text_open(&names, &size)};
-  status result = judge(&guard, error);
+  OWNED char *names = NULL;
+  struct guard guard = {.db = db, .version = version, .out = text_open(&names)};
+  const status result = judge(&guard, error);
   text_close_small(guard.out, &names);
-  if (result == STATUS_OK && guard.strangers > 0)
-    result = status_fail(error, STATUS_CONTENT,
-                         "%s is not as clast makes its stores: %.6000s%s. clast ran and changed nothing. Remove your "
-                         "own additions (`sqlite3 FILE`, then DROP ...; keep views of your own in another file that "
-                         "attaches this one). Do not use the file if you do not know where that comes from.",
-                         path, names, guard.strangers > 50 ? " and more" : "");
-  free(names);
-  return result;
+  if (result || guard.strangers == 0)
+    return result;
+  return status_fail(error, STATUS_CONTENT,
+                     "%s is not as clast makes its stores: %.6000s%s. clast ran and changed nothing. Remove your "
+                     "own additions (`sqlite3 FILE`, then DROP ...; keep views of your own in another file that "
+                     "attaches this one). Do not use the file if you do not know where that comes from.",
+                     path, names, guard.strangers > 50 ? " and more" : "");
 }

@@ -66,13 +66,13 @@ static char *folder_of(const char *file, char resolved[PATHS_LONGEST]) {
 
 char *paths_between(const char *target, const char *source) {
   char from[PATHS_LONGEST], to[PATHS_LONGEST], *way = NULL;
-  size_t shared = 0, size = 0;
+  size_t shared = 0;
   if (!folder_of(target, from) || !folder_of(source, to))
     return NULL;
   for (size_t i = 0; from[i] && from[i] == to[i]; i++)
     if (from[i] == '/')
       shared = i + 1;
-  FILE *out = text_open(&way, &size);
+  FILE *out = text_open(&way);
   for (const char *at = from + shared; *at; at++)
     if (*at == '/')
       fputs("../", out);

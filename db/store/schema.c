@@ -7,6 +7,7 @@
 #include "analysis/statistics/convergence.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/outcome.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 static const struct schema_column campaign[] = {
@@ -426,30 +427,24 @@ bool schema_is_complete(sqlite3 *db) {
 
 /* Results must be deterministic; the table's own columns may differ from machine to machine. */
 static status write_doc(sqlite3 *db, const char *table, const struct column *column, struct error *error) {
-  char *meaning = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&meaning, &size);
+  OWNED char *meaning = NULL;
+  FILE *out = text_open(&meaning);
   write_column_meaning(column, out);
   text_close_small(out, &meaning);
-  const status result = sql_executef(db, "documenting columns", error,
-                                     "INSERT OR REPLACE INTO column_doc (table_name, column_name, unit, meaning, "
-                                     "deterministic) VALUES (%Q, %Q, %Q, %Q, %d)",
-                                     table, column->name, column->unit, meaning, column->row != NULL);
-  free(meaning);
-  return result;
+  return sql_executef(db, "documenting columns", error,
+                      "INSERT OR REPLACE INTO column_doc (table_name, column_name, unit, meaning, "
+                      "deterministic) VALUES (%Q, %Q, %Q, %Q, %d)",
+                      table, column->name, column->unit, meaning, column->row != NULL);
 }
 
 static status create(sqlite3 *db, const struct schema_table *table, struct error *error) {
-  char *sql = NULL;
-  size_t size = 0;
-  FILE *text = text_open(&sql, &size);
+  OWNED char *sql = NULL;
+  FILE *text = text_open(&sql);
   schema_write_table(table, text);
   for (size_t i = 0; i < schema_indexes_count; i++)
     if (strcmp(schema_indexes[i].table, table->name) == 0)
       schema_write_index(&schema_indexes[i], text);
-  const status result = sql_execute(db, text_close_small(text, &sql), "creating tables", error);
-  free(sql);
-  return result;
+  return sql_execute(db, text_close_small(text, &sql), "creating tables", error);
 }
 
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error) {

@@ -68,8 +68,7 @@ status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id
 /* SQL of `counts`, which the caller frees. */
 static char *counts_of(const char *not_surplus) {
   char *counts = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&counts, &size);
+  FILE *out = text_open(&counts);
   schema_write_counts(not_surplus, out);
   return text_close_small(out, &counts);
 }

@@ -255,9 +255,8 @@ static void write_results(struct view *view, char *sql) {
     view->result = sql_prepare(view->db, sql, &row, doing, view->error);
   while (view->result == STATUS_OK && sql_next(row, &view->result, doing, view->error)) {
     OWNED char *test = NULL;
-    size_t size = 0;
     const char *table = sql_text(row, 0);
-    FILE *out = text_open(&test, &size);
+    FILE *out = text_open(&test);
     const bool can_be = write_withheld(strcmp(table, "r") == 0 ? NULL : table + strlen("result_"), sql_text(row, 1),
                                        out);
     text_close_small(out, &test);
@@ -407,8 +406,7 @@ static status make_all(sqlite3 *db, bool stored, struct error *error) {
   char *text[VIEWS_COUNT] = {NULL}; /* after their CREATE VIEW and schema: "runs AS SELECT ...;" */
   status result = STATUS_OK;
   for (size_t i = 0; result == STATUS_OK && i < VIEWS_COUNT; i++) {
-    size_t size = 0;
-    struct view view = {.db = db, .out = text_open(&text[i], &size), .error = error};
+    struct view view = {.db = db, .out = text_open(&text[i]), .error = error};
     writers[i](&view);
     text_close_small(view.out, &text[i]);
     result = view.result;

@@ -96,7 +96,7 @@ static status prepare(const void *inputs, uint64_t seed, void **out, struct erro
 
 static char *filled(const struct run *run, const char *text, size_t *size) {
   char *out_text = NULL;
-  FILE *out = text_open(&out_text, size);
+  FILE *out = text_open_sized(&out_text, size);
   definition_fill(run->d, text, run->inputs, run->seed, out);
   return text_close_small(out, &out_text);
 }
@@ -250,10 +250,9 @@ static status check(const void *inputs, struct error *error) {
 static char *describe(const void *inputs, bool all) {
   const struct definition *d = NULL;
   char *text = NULL;
-  size_t size = 0;
   if (definition_of(inputs, &d, NULL))
     return NULL;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   fprintf(out, "runs the program: %s", d->place ? d->place : d->settings.program);
   for (size_t i = 0; i < d->word_count; i++)
     fprintf(out, " %s", d->words[i]);

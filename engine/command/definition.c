@@ -513,8 +513,7 @@ static char *write_section(const struct definition *d, const char *program) {
   struct definition_settings settings = d->settings;
   const struct field *state = field_find(&outcome_table, "state", NULL);
   char *text = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   field_copy_text(settings.program, program);
   fputs("\"command\":{", out);
   field_json_members(&settings_table, &settings, out);
@@ -555,7 +554,7 @@ static void make_digest(struct definition *d) {
   uint8_t digest[16];
   char *text = NULL;
   size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open_sized(&text, &size);
   settings.same_bits = false;
   settings.limits.time = settings.limits.memory = settings.limits.output = 0;
   add_identity(&settings_table, &settings, "command", out);
@@ -694,7 +693,7 @@ const struct engine_kind *definition_read(document_node *root, const char *folde
 
 const struct engine_kind *definition_read_task(const char *text, size_t size, const struct engine_kind *base,
                                                struct error *error) {
-  struct document *document = NULL;
+  DOCUMENT document = NULL;
   OWNED char *whole = NULL;
   for (const struct definition *d = first; d; d = d->next) /* slots have those of the process that forked them */
     if (strlen(d->whole) == size && memcmp(d->whole, text, size) == 0)
@@ -708,7 +707,6 @@ const struct engine_kind *definition_read_task(const char *text, size_t size, co
   const char *report = "";
   if (!kind && document_finish(document, &report))
     status_fail(error, STATUS_INTERNAL, "the task cannot be read: %s", report);
-  document_free(document);
   return kind;
 }
 

@@ -150,17 +150,15 @@ static status json_masses(struct reading *r, const char *file, document_node *ro
 }
 
 static status read_json(struct reading *r, const char *file, const char *text, size_t size, bool results, bool masses) {
-  struct document *document = NULL;
+  DOCUMENT document = NULL;
   struct error why;
   const status parsed = document_parse(file, text, size, &document, &why);
   if (parsed)
     return status_fail(r->error, parsed, "%.100s is no JSON: %.500s", file, why.message);
   document_node *root = document_root(document);
-  status code = results ? json_results(r, file, root) : STATUS_OK;
-  if (code == STATUS_OK && masses)
-    code = json_masses(r, file, root);
-  document_free(document);
-  return code;
+  if (results)
+    TRY(json_results(r, file, root));
+  return masses ? json_masses(r, file, root) : STATUS_OK;
 }
 
 /* ---- CSV: results in the last record, masses in all ---- */
@@ -203,16 +201,13 @@ static status csv_records(struct reading *r, struct csv *csv, const char *file, 
 }
 
 static status read_csv(struct reading *r, const char *file, const char *text, size_t size, bool results, bool masses) {
-  struct csv *csv = memory_small(1, sizeof *csv);
+  OWNED struct csv *csv = memory_small(1, sizeof *csv);
   struct error why;
   status code = csv_text(csv, file, text, size, &why);
   if (code)
-    code = status_fail(r->error, code, "%.500s", why.message);
-  else {
-    code = csv_records(r, csv, file, results, masses);
-    csv_close(csv);
-  }
-  free(csv);
+    return status_fail(r->error, code, "%.500s", why.message);
+  code = csv_records(r, csv, file, results, masses);
+  csv_close(csv);
   return code;
 }
 

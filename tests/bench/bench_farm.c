@@ -98,7 +98,7 @@ static struct timing farm_over(const double *cost, int count, bool in_process, s
     code = farm_run(farm, &own, &error);
   if (code == STATUS_OK)
     measured.usage = farm_usage(farm);
-  farm_stop(farm, NULL);
+  farm_stop(farm);
   if (code != STATUS_OK) { /* a signal or a fault: figures of the remaining parts would be meaningless */
     fprintf(stderr, "bench_farm: %s\n", error.message);
     unlink(burn_program);
@@ -190,7 +190,7 @@ static int rank_main(char **argv) {
       sum += list.tasks[i].amount;
     printf("%g %g %g %g %g\n", sum, usage.wall_s, usage.manager_cpu_s, usage.waiting_cpu_s, usage.start_up_s);
   }
-  farm_stop(farm, NULL);
+  farm_stop(farm);
   task_list_free(&list);
   return (int)result;
 }

@@ -38,7 +38,7 @@ static int sleepers_main(char **argv) {
     const struct farm_usage usage = farm_usage(farm);
     printf("%g %g\n", usage.wall_s, usage.manager_cpu_s);
   }
-  farm_stop(farm, NULL);
+  farm_stop(farm);
   if (store)
     storing_end(&s);
   task_list_free(&list);

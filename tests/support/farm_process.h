@@ -100,7 +100,7 @@ static inline int program_work(char **argv) {
     }
   }
   task_list_free(&list);
-  farm_stop(farm, NULL);
+  farm_stop(farm);
   return (int)result;
 }
 

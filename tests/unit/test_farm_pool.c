@@ -27,7 +27,7 @@ static status run_list(struct farm_options options, struct task_list *list, stru
   struct farm *farm = start(options);
   const struct farm_manager manager = task_list_manager(list);
   const status result = farm_run(farm, &manager, error);
-  farm_stop(farm, NULL);
+  farm_stop(farm);
   return result;
 }
 
@@ -193,7 +193,7 @@ static void runs_again_after_a_run(void **state) {
     assert_each_once(&list);
     task_list_free(&list);
   }
-  farm_stop(farm, NULL);
+  farm_stop(farm);
 }
 
 /* The last short tasks do not wait behind a long one that started earlier. */
@@ -243,7 +243,7 @@ static void computed_once_though_taken_back(void **state) {
     const struct farm_manager manager = task_list_manager(&list);
     assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
     task_sleep(0.2); /* the slot reads the rest of its channel */
-    farm_stop(farm, NULL);
+    farm_stop(farm);
     assert_each_once(&list);
     for (size_t i = 0; i < list.count; i++)
       assert_int_equal(times_computed[i], 1);
@@ -284,7 +284,7 @@ static void leaks_nothing(void **state) {
       task_list_free(&list);
       getrusage(RUSAGE_SELF, &usage[round]);
     }
-    farm_stop(farm, NULL);
+    farm_stop(farm);
     assert_in_range(files[1], files[0] - 2, files[0] + 2); /* a crashed slot's channel may not be back yet: two slots */
     assert_int_equal(open_files(), before);
 #ifndef __SANITIZE_ADDRESS__
@@ -305,7 +305,7 @@ static void asleep_while_tasks_sleep(void **state) {
   const struct farm_manager manager = task_list_manager(&list);
   assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
   const struct farm_usage usage = farm_usage(farm);
-  farm_stop(farm, NULL);
+  farm_stop(farm);
   assert_true(usage.wall_s >= 2);
   assert_true(usage.manager_cpu_s < 0.005 * usage.wall_s); /* half a percent of a core; a busy wait would be 100 % */
   assert_in_range(list.ticks, 10, 21);                     /* every 100 ms at most, and not much less often */

@@ -160,7 +160,7 @@ static void texts_grow(void **state) {
   enum { LINES = 3000 };
   char *text, line[32];
   size_t size;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open_sized(&text, &size);
   assert_non_null(out);
   assert_int_equal(fflush(out), 0);
   assert_true(size == 0 && *text == '\0');
@@ -180,7 +180,7 @@ static void texts_grow(void **state) {
     assert_memory_equal(text + 14 * (size_t)i, line, 14);
   }
   free(text);
-  out = text_open(&text, &size);
+  out = text_open_sized(&text, &size);
   assert_string_equal(text_close(out, &text), "");
   free(text);
 }

@@ -141,8 +141,7 @@ char *dem_describe_scene(const void *inputs, bool all) {
   (void)all;
   const struct dem_inputs *in = inputs;
   char *text = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   protocol(in, out);
   model(in, out);
   double extension, compression;

@@ -82,12 +82,9 @@ static void read_sources(document_node *sources) {
   }
 }
 
-/* Frees the document. */
 static status read_material(struct document *document, struct sph_material *out, struct error *error) {
   static const char *const own_keys[] = {"material", "source", "sources", "like", NULL};
-  const char *report = NULL;
   struct error unknown;
-  status code;
   field_defaults(&sph_materials_table, out);
   document_node *root = document_root(document);
   if (scene_material_complete(root, &sph_materials, &unknown))
@@ -95,21 +92,17 @@ static status read_material(struct document *document, struct sph_material *out,
   else if (document_read(root, &sph_materials_table, own_keys, out) && !(out->tillotson.E_cv > out->tillotson.E_iv))
     document_report(root, "tillotson.E_cv", "must be above tillotson.E_iv");
   read_sources(document_key(root, "sources"));
-  code = document_finish(document, &report);
-  if (code)
-    status_fail(error, code, "%s", report);
-  document_free(document);
-  return code;
+  return document_verdict(document, error);
 }
 
 status sph_materials_parse(const char *name, const char *text, struct sph_material *out, struct error *error) {
-  struct document *document = NULL;
-  const status code = document_parse(name, text, strlen(text), &document, error);
-  return code ? code : read_material(document, out, error);
+  DOCUMENT document = NULL;
+  TRY(document_parse(name, text, strlen(text), &document, error));
+  return read_material(document, out, error);
 }
 
 status sph_materials_open(const char *path, void *out, char **text, struct error *error) {
-  struct document *document = NULL;
+  DOCUMENT document = NULL;
   *text = NULL;
   TRY(document_open(path, &document, error));
   *text = strdup(document_text(document));
@@ -132,7 +125,7 @@ static document_node *find_section(document_node *sources, const char *path) {
 
 status sph_materials_source(const char *name, const char *path, char source[FIELD_TEXT_SIZE]) {
   const char *text = sph_materials_text(name);
-  struct document *document = NULL;
+  DOCUMENT document = NULL;
   source[0] = '\0';
   if (!text || document_parse(name, text, strlen(text), &document, NULL) != STATUS_OK)
     return STATUS_MISSING;
@@ -141,7 +134,6 @@ status sph_materials_source(const char *name, const char *path, char source[FIEL
   if (!found)
     found = document_key(root, "source");
   field_copy_text(source, found ? document_scalar(found) : NULL);
-  document_free(document);
   return source[0] ? STATUS_OK : STATUS_MISSING;
 }
 

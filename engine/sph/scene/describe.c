@@ -233,8 +233,7 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
 char *sph_describe_scene(const void *inputs, bool all) {
   const struct sph_inputs *in = inputs;
   char *text = NULL;
-  size_t size = 0;
-  FILE *out = text_open(&text, &size);
+  FILE *out = text_open(&text);
   struct error error = {0};
   protocol(in, out);
   modules(in, all, out);
