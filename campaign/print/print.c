@@ -316,6 +316,24 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   return STATUS_OK;
 }
 
+static const double FAR = 0.05; /* the measured spectrum differs from a pool when fewer runs are as far */
+
+/* The answer in words: of one pool with its share of runs, of more with their numbers. */
+static void tell_shape(size_t pools, size_t agree, size_t differ, double share) {
+  if (agree + differ == 0)
+    printf("no verdict on the shape: it takes a distance, and %d runs of two fragments or more\n", MATCH_RUNS);
+  else if (pools > 1)
+    printf("agrees in shape with %zu of %zu rows (runs_as_far %.2g or more), differs from %zu, no verdict on %zu\n",
+           agree, pools, FAR, differ, pools - agree - differ);
+  else
+    words_print(
+        stdout, "",
+        "%s in shape, whatever the number of fragments: %.2g %% of the runs are as far from the other runs as the "
+        "measured spectrum is (differs: below %.2g %%)",
+        agree ? "agrees" : "differs", 100 * share, 100 * FAR);
+  putchar('\n');
+}
+
 static const double SAME_MASS = 1.5; /* bodies whose masses differ by a smaller factor can be compared */
 
 status print_spectrum_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
@@ -339,11 +357,17 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
                                              "runs_as_far", "log_likelihood", NULL});
   table_doubt_columns(table);
   struct ask_doubts sum = {0};
+  size_t count = 0, agree = 0, differ = 0;
+  double share = NAN;
   bool nothing = false; /* a spectrum has no fragment above the mass where all are complete */
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
     struct measured_match match;
     TRY(measured_compare(choice->measured, &pool->data.runs, complete, &match, error));
     nothing |= !isfinite(match.distance);
+    share = match.share;
+    count++;
+    agree += share >= FAR;
+    differ += share < FAR;
     const struct pooled_runs *runs = &pool->data.runs;
     double mass = 0;
     for (size_t i = 0; i < runs->first[runs->count]; i++) {
@@ -366,6 +390,8 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
     ask_doubts_add(&sum, &pool->doubts);
   }
   TRY(ask_pools_end(&pools));
+  if (table_for_people(format))
+    tell_shape(count, agree, differ, share);
   TRY(table_end(table, error));
   if (table_for_people(format)) {
     uncertainty_doubts(&sum, stderr);

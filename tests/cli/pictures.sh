@@ -49,6 +49,12 @@ assert len(rows) == 4 and all(float(r["from"]) >= 0.3 and 0 <= float(r["distance
 assert len({r["from"] for r in rows}) == 1 # likelihoods are comparable
 PY
 ok "distances from a measured spectrum"
+expect 0 "$clast" spectrum small.db --point 1 --with measured.csv # the first line answers
+head -1 out | grep -q '^no verdict on the shape' || fail "no word on 3 runs"
+expect 0 "$clast" run small.yaml --seeds 40 --store many.db -j 2
+far=$("$clast" spectrum many.db --point 1 --with measured.csv --json | sed -n 's/.*runs_as_far": \([0-9.]*\).*/\1/p')
+expect 0 "$clast" spectrum many.db --point 1 --with measured.csv
+same "$(head -1 out | cut -d' ' -f1-3)" "$(awk "BEGIN {print $far < 0.05 ? \"differs\" : \"agrees\"}") in shape," "verdict of $far"
 expect 0 "$clast" spectrum small.db --with measured.csv --cumulative --size "5000 kg/m^3" --runs --picture beside.svg
 is_svg beside.svg
 grep -q 'measured: &lt;made up>' beside.svg || fail "the source of the measured spectrum is not in the picture"
@@ -249,4 +255,4 @@ says "no line joins the points"
 same "$(sed '/^$/,$d' sampled.dat | grep -c '^NaN')" 8 "gaps between the points of a sample"
 expect 0 "$clast" plot small.db grid.png -x strain --by angle --keep-script
 same "$(sed '/^$/,$d' grid.dat | grep -c '^NaN' || true)" 0 "gaps between the points of a grid"
-done_after 93
+done_after 97
