@@ -30,13 +30,14 @@ bool condition_has(const char *words, const char *word) {
   return is_in(words, word, strlen(word));
 }
 
-/* Columns of a run that are no results of the simulation. */
-static const char costs[] = "wall_time cpu_time peak_memory";
+/* Columns of a run that tell how it was computed: they are right whatever the conditions say. */
+static const char facts[] = "wall_time cpu_time peak_memory steps time time_step total_mass target_mass particles "
+                            "energy_error momentum_error angular_momentum_error";
 
-/* Is one of the names one of the results? NULL: of all results. */
+/* Is one of the names one of the results? NULL: all but the facts. */
 static bool rests_on(const char *names, const char *results) {
   for (size_t n; (n = next_word(&names)) > 0; names += n)
-    if (results ? is_in(results, names, n) : !is_in(costs, names, n))
+    if (results ? is_in(results, names, n) : !is_in(facts, names, n))
       return true;
   return false;
 }

@@ -171,6 +171,20 @@ status quantity_tell_doubts(struct store *store, const struct ask_doubts_choice 
   return add_doubts(store, choice, quantities, caption, sizeof caption, error);
 }
 
+status quantity_no_values(struct store *store, const char *quantity, struct error *error) {
+  char results[ASK_DOUBTS_RESULTS], words[256] = "";
+  struct ask_doubts doubts = {0};
+  TRY(ask_doubts_results(store, quantity, results, error));
+  TRY(ask_doubts(store, &(struct ask_doubts_choice){0}, results, &doubts, error));
+  for (size_t k = 0; k < doubts.count; k++)
+    if (doubts.word[k].row && doubts.word[k].row->withheld && !condition_has(words, doubts.word[k].word))
+      text_append(words, sizeof words, "%s%s", *words ? ", " : "", doubts.word[k].word);
+  if (doubts.withheld == 0)
+    return status_fail(error, STATUS_USAGE, "no finished run has a value of %s", quantity);
+  return status_fail(error, STATUS_USAGE, "no run has a value of %s: it is withheld in %lld of %lld runs (%s)",
+                     quantity, (long long)doubts.withheld, (long long)doubts.runs, words);
+}
+
 status quantity_tell_idle(struct store *store, struct error *error) {
   char idle[ASK_GROUP_POOLED];
   TRY(ask_group_idle(store, idle, error));

@@ -60,8 +60,10 @@ static status run(const struct command_line *line, struct error *error) {
     code = ask_run_excluded_count(store, &count, error);
   const status closed = store_close(store, code ? NULL : error);
   if (code == STATUS_OK && closed == STATUS_OK)
-    fprintf(stderr, "%s: %" PRId64 " run%s excluded now, and left out of all statistics\n", line->arguments[0], count,
-            count == 1 ? " is" : "s are");
+    fprintf(stderr,
+            count ? "%s: %" PRId64 " run%s excluded now, and left out of all statistics\n"
+                  : "%s: no run is excluded now\n",
+            line->arguments[0], count, count == 1 ? " is" : "s are");
   return code ? code : closed;
 }
 

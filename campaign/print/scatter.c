@@ -166,7 +166,7 @@ status print_scatter_picture(struct store *store, const struct scatter_choice *c
   }
   TRY(ask_pools_end(&pools));
   if (samples.count == 0)
-    return status_fail(error, STATUS_USAGE, "no finished run has a value of %s", choice->quantity);
+    return quantity_no_values(store, choice->quantity, error);
   charts_doubts(&doubts, caption, sizeof caption);
   const struct picture_words words = {"Scatter of the runs", *caption ? caption : NULL, axis, NULL};
   TRY(picture_scatter(page, &words, samples.count, sample, error));
@@ -660,10 +660,10 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
   TRY(leave_idle_out(store, &p.cells, idle, sizeof idle, error));
   if (*idle)
     fprintf(stderr, "clast: no effect at any of these points, and left out: %s (clast explain effect)\n", idle);
-  if (p.cells.axes == 0 || p.cells.count == 0)
-    return status_fail(error, STATUS_USAGE,
-                       p.cells.count ? "no input varies between the points" : "no finished run has a value of %s",
-                       choice->quantity);
+  if (p.cells.count == 0)
+    return quantity_no_values(store, choice->quantity, error);
+  if (p.cells.axes == 0)
+    return status_fail(error, STATUS_USAGE, "no input varies between the points");
   TRY(fill_runs(&p, error));
   TRY(sensitivity_points(&p.data, p.index, &p.needed, error));
   if (p.data.points < p.needed || p.index[0].verdict == SENSITIVITY_STEPS) /* no numbers */

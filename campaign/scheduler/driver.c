@@ -259,11 +259,11 @@ static status tell_hidden_inputs(struct driver *driver, const struct scene *scen
       write_hidden(scene, row, &theirs, names, sizeof names);
   }
   TRY(answer_end(&hidden));
-  if (count == 0)
-    return STATUS_OK;
   for (size_t i = 0; i < count; i++)
     TRY(store_add_axis(driver->scheduler->store, differs[i],
                        strcmp(differs[i]->unit ? differs[i]->unit : "", "rad") == 0 ? "deg" : "", error));
+  if (count == 0 || !driver->alone) /* the campaigns of a series differ on purpose */
+    return STATUS_OK;
   snprintf(text, sizeof text,
            "warning: the store has other points of this campaign or scene: %s%s differs, and is a varied input of this "
            "store from now on (--by). For one campaign alone, name another store or ask with --campaign %lld",
@@ -303,7 +303,7 @@ static status expand(struct driver *driver, bool *more, struct error *error) {
   point->id = id;
   driver->summary.points++;
   driver->wanted += point->prefix;
-  if (driver->alone && driver->summary.points == 1)
+  if (driver->summary.points == 1)
     code = tell_hidden_inputs(driver, scene, id, error);
   if (code == STATUS_OK)
     code = resume(driver, point, error);

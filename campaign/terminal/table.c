@@ -28,6 +28,7 @@ enum {
 enum role {
   PLAIN,
   KEY,   /* tells rows apart: never left out, and repeated in each part of a table in parts */
+  MEAN,  /* somebody asked for it: never left out, but it may stand in a further part */
   RARE,  /* left out without --all */
   SAME,  /* the same, if all rows have the same cell; the note has the cell */
   ZERO,  /* the same, if all cells are 0 or missing */
@@ -54,6 +55,7 @@ static const struct {
     {"last_started", RARE},
     {"last_ended", RARE},
     {"command", RARE},
+    {"_mean", MEAN},
     {"_sd", RARE},
     {"_se", RARE},
     {"_low95", RARE},
@@ -354,7 +356,7 @@ static void lay_out(struct table *table) {
   make_narrow(table, room);
   if (table->format == TABLE_TEXT)
     for (size_t c = table->column_count; c-- > 1 && total_width(table) > room;)
-      table->columns[c].left_out |= table->columns[c].role != KEY;
+      table->columns[c].left_out |= table->columns[c].role != KEY && table->columns[c].role != MEAN;
 }
 
 /* Prints one line after the other of cells, whose texts go on at rest[]. row NULL: the headings. A row whose texts are
@@ -387,7 +389,7 @@ static void print_lines(struct table *table, size_t count, const size_t *list, c
 
 /* The keys and the columns of a part, from *next on: as many as there is room for, at least one. */
 static size_t take_part(const struct table *table, size_t *next, size_t *list) {
-  const size_t from = *next, room = table->format == TABLE_ALL ? room_for(table->out) : SIZE_MAX;
+  const size_t from = *next, room = room_for(table->out);
   size_t used = 0, count = 0;
   for (size_t c = 0; c < table->column_count; c++)
     used += table->columns[c].role == KEY && !table->columns[c].left_out ? table->columns[c].width + GAP : 0;
@@ -417,7 +419,7 @@ static bool fits(const struct table *table) {
   return true;
 }
 
-/* Prints the kept rows: in one part, or with --all in as many as it takes. */
+/* Prints the kept rows, in as many parts as it takes. */
 static void print_kept(struct table *table) {
   const bool first = !table->laid_out || !fits(table);
   OWNED size_t *list = malloc((table->column_count + 1) * sizeof *list);

@@ -99,13 +99,16 @@ void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_
 }
 
 void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]) {
+  char converge[sizeof resolution->command + 40] = "`clast converge` with a campaign's file";
+  if (*resolution->command)
+    snprintf(converge, sizeof converge, "`clast converge %s`", resolution->command);
   text[0] = '\0';
   switch (resolution->verdict) {
   case ASK_RESOLUTION_NOT_STUDIED:
-    snprintf(text, UNCERTAINTY_TEXT, "resolution: not studied; `clast converge %s` measures it", resolution->command);
+    snprintf(text, UNCERTAINTY_TEXT, "resolution: not studied; %s measures it", converge);
     return;
   case ASK_RESOLUTION_DIVERGES:
-    snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (`clast converge %s`)", resolution->command);
+    snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (%s)", converge);
     return;
   case ASK_RESOLUTION_KNOWN:
   case ASK_RESOLUTION_AT_LEAST: break;
@@ -119,8 +122,8 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
               resolution->half_width, resolution->verdict == ASK_RESOLUTION_AT_LEAST ? " or more" : "",
               resolution->knobs);
   if (resolution->studied < resolution->points)
-    text_append(text, UNCERTAINTY_TEXT, "; studied at %lld of %lld points, `clast converge %s` studies others",
-                (long long)resolution->studied, (long long)resolution->points, resolution->command);
+    text_append(text, UNCERTAINTY_TEXT, "; studied at %lld of %lld points, %s studies others",
+                (long long)resolution->studied, (long long)resolution->points, converge);
 }
 
 void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double half_width, char text[UNCERTAINTY_TEXT]) {

@@ -300,7 +300,8 @@ enum ask_resolution_verdict ask_resolution_verdict(const char *verdict) {
 }
 
 /* What `clast converge` takes so that its levels belong to these points: the file or the scene that computed them, with
- * the inputs and the store of that command line. A campaign is preferred to a study of one of its points. */
+ * the inputs and the store of that command line. A campaign is preferred to a study of one of its points. Several
+ * files: no command. */
 static status find_command(struct store *store, long long id, const char *quantity, struct ask_resolution *out,
                            struct error *error) {
   ANSWER found = answer_to(
@@ -311,7 +312,8 @@ static status find_command(struct store *store, long long id, const char *quanti
       "'$.command') WHERE key = json_array_length(facts, '$.command') - 1 OR value GLOB '--set=*' OR value GLOB "
       "'--store=*' OR value IN ('-s', '--set', '--store') OR json_extract(facts, '$.command[' || max(key - 1, 0) || "
       "']') IN "
-      "('-s', '--set', '--store')) FROM session WHERE verb IN ('run', 'converge') AND (%lld = 0 OR campaign_id IN "
+      "('-s', '--set', '--store')) FROM session WHERE verb IN ('run', 'fit', 'find', 'converge') AND (%lld = 0 OR "
+      "campaign_id IN "
       "(SELECT campaign_id FROM campaign_point WHERE point_id = %lld)) ORDER BY verb DESC LIMIT 2",
       id, id);
   char verb[16] = "", command[512] = "";
@@ -330,8 +332,7 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
   *out = (struct ask_resolution){.verdict = ASK_RESOLUTION_NOT_STUDIED,
                                  .half_width = NAN,
                                  .distance = NAN,
-                                 .distance_half_width = NAN,
-                                 .command = "CAMPAIGN.yaml"};
+                                 .distance_half_width = NAN};
   if (!store)
     return STATUS_OK;
   const long long id = point_id;

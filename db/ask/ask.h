@@ -186,7 +186,7 @@ struct ask_resolution {
   int64_t points, studied;              /* requested points with runs, and how many of them were studied */
   char knobs[128];   /* settings studied: "particles, time_step"; other settings may also change the quantity */
   char command[200]; /* what `clast converge` takes to study these points: "impact.yaml --store other.db -Q broken";
-                        "CAMPAIGN.yaml" when several campaigns made them */
+                        "" when several files made them */
 };
 
 /* "not-studied", "known", "at-least", "diverges": as in the views. */

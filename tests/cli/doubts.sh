@@ -224,6 +224,13 @@ YAML
 expect 0 "$clast" run dust.yaml -j 2 --quiet
 expect 0 "$clast" export dust.db --per run --dakota
 same "$(awk '{print $5}' out | tr '\n' ' ')" "dust_fraction nan nan " "withheld for Dakota"
+expect 64 "$clast" sensitivity dust.db -Q dust_fraction
+says "no run has a value of dust_fraction: it is withheld in 2 of 2 runs (dust)"
+# Facts of the computation have no mark; of a half-space the crater is told, whose shares of the mass are withheld.
+expect 0 "$clast" simulate uniaxial --set 'fidelity.time_step=4 us' --set body.columns=6 --set body.rows=8 --all
+grep -q '^energy_error .*[0-9] ! ' out && fail "a marked fact"
+expect 0 "$clast" simulate solid-ice --set fidelity.projectile_spacing=0.5 --set fidelity.particles=1000 --set 'stop.end_time=2 us'
+sed -n 2p out | grep -q '^crater.volume' || fail "a half-space does not open on its crater"
 
 # A word without a row comes from another version of clast, and marks every result.
 expect 0 "$clast" export marked.db old.db
@@ -253,4 +260,4 @@ for name in idle acts alone; do
     "$([ $name != idle ] || echo 'no effect in these runs: friction')" "inputs without effect of $name"
 done
 ok "inputs without effect"
-done_after 111
+done_after 114

@@ -103,6 +103,7 @@ YAML
 expect 0 "$clast" fit two.yaml disc.yaml --rounds 3 --store two.db -j 2
 prints "weak: fragments above"
 same "$(number two.db "select count(distinct value) from point_input where path = 'charge.energy'")" 2 "energies of two shots"
+same "$(number two.db "select count(*) from axis where path = 'charge.energy'")" 1 "an input that differs between shots is a column"
 
 # Numbers above a share of the body are those of the masses in the store: priors so narrow that all points are alike. The
 # surface may tilt by a part of the scatter that three seeds leave in it.
@@ -168,4 +169,4 @@ expect 64 "$clast" fit one.yaml
 expect 64 "$clast" fit one.yaml disc.yaml --rounds 2
 expect 0 "$clast" fit --help
 prints "From 3 to 10"
-done_after 23
+done_after 24

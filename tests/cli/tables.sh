@@ -51,6 +51,7 @@ says "not shown (--all)"; says "engine toy"
 expect 0 env COLUMNS=60 "$toy" stats toy.db --by strain,angle -Q main
 [ "$(widest)" -le 60 ] || fail "wider than COLUMNS"
 prints strain; prints angle
+for word in largest_ second_ mean_ dust_ fragment_; do prints $word; done # asked for, so never left out
 expect 0 "$toy" stats toy.db --by strain,angle --csv
 prints "stick_strain,stick_angle,engine,results_version,points,n,failed,censored,excluded,largest_fraction_mean,largest_fraction_sd"
 # masses of a scene in the plane are per metre of thickness
