@@ -108,7 +108,6 @@ function data(quantity) {
     [state.x]: placeOf(state.x, cell[state.x]),
     ...(state.y ? {[state.y]: placeOf(state.y, cell[state.y])} : {}),
     shown: marked(withInterval(cell), cell.doubt, cell.n),
-    text: number(cell.mean, 3),
     told: cell.hw95 === null ? number(cell.mean, 3) : withInterval({...cell, weak: false}),
     mark: cell.doubt ? ' !' : '',
     doubtText: doubtText(cell),
@@ -131,11 +130,11 @@ function frame(place, grid) {
   return [line('white', 5, [1, 0]), line('black', 3, [6, 3])];
 }
 
-// What a cell may hold, the longest text first.
+// What a cell may hold, the widest text first; the last has the interval in a line of its own.
 function cellTexts(row) {
   if (row.mean === null) return ['-', '-', '-'];
   const told = row.told + (row.weak ? '~' : '') + row.mark;
-  return [`${told}  n=${row.n}`, told, row.text + row.mark];
+  return [`${told}  n=${row.n}`, told, told.replace(/ (?=[±(])/, '\n')];
 }
 
 function planeSpec(rows, title) {
@@ -159,12 +158,12 @@ function planeSpec(rows, title) {
   if (grid) // over the white lines of the neighbours
     layers.push({transform: [{filter: isChosen}], mark: {type: 'rect', filled: false, stroke: '#D40000', strokeWidth: 4, tooltip: null}, encoding: place});
   const texts = rows.map(cellTexts), LETTER = 7.5; // pixels
-  const fitting = [0, 1, 2].find((k) => texts.every((text) => text[k].length * LETTER <= room)); // undefined: the colour alone
+  const fitting = [0, 1, 2].find((k) => texts.every((text) => text[k].split('\n').every((line) => line.length * LETTER <= room))); // undefined: the colour alone
   if (grid && fitting !== undefined && !several)
-    layers.push({mark: {type: 'text', baseline: 'middle', tooltip: null, fontSize: 12},
+    layers.push({mark: {type: 'text', baseline: 'middle', lineBreak: '\n', dy: fitting === 2 ? -7 : 0, tooltip: null, fontSize: 12},
       encoding: {...place, text: {field: 'cell'}, color: {condition: {test: `datum.mean === null || datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
   if (rows.some((row) => row.twoModes))
-    layers.push({transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: room >= 90 ? '◆ two modes' : '◆', dy: 15, fontSize: 12, tooltip: null},
+    layers.push({transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: room >= 90 ? '◆ two modes' : '◆', dy: fitting === 2 ? 22 : 15, fontSize: 12, tooltip: null},
       encoding: {...place, color: {condition: {test: `datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
   layers.push(...frame(place, grid));
   const height = y.discrete ? Math.min(560, Math.max(300, 130 + 40 * new Set(rows.map((row) => row[state.y])).size)) : 420;
@@ -255,9 +254,9 @@ function commandOf() {
 
 const WHAT_ERRORS = '±, which the table of points has too, is the half width of the 95 % interval over seeds. It does not hold the error of the resolution';
 function resolutionSentence(rows) {
-  const studied = rows.filter((row) => row.resolution !== null);
-  if (studied.length === 0) return `${WHAT_ERRORS}, which was not studied (clast converge).`;
-  return `${WHAT_ERRORS}; that is known of ${plural(studied.length, 'point')}, at most ± ${number(Math.max(...studied.map((row) => row.resolution)), 2)}.`;
+  const studied = rows.filter((row) => row.resolution !== null), weak = rows.some((row) => row.weak) ? ' ~: weak, too few runs for the interval.' : '';
+  if (studied.length === 0) return `${WHAT_ERRORS}, which was not studied (clast converge).${weak}`;
+  return `${WHAT_ERRORS}; that is known of ${plural(studied.length, 'point')}, at most ± ${number(Math.max(...studied.map((row) => row.resolution)), 2)}.${weak}`;
 }
 
 export async function showPlane() {

@@ -7,7 +7,7 @@ import {nameOf, whereOf} from './spectrum.js';
 import {chosenPoints, state, store} from './state.js';
 import {summary} from './statistics.js';
 import {ask, has} from './stores.js';
-import {isShare, label, marked, number, plural, shellFile, withInterval} from './words.js';
+import {between, isShare, label, marked, number, plural, shellFile, withInterval} from './words.js';
 
 function valuesOf(from, point, quantity) {
   const rows = ask(from, questions.values(quantity), {point: point.point_id});
@@ -62,7 +62,7 @@ export async function showSeeds() {
     ? {mark: {type: 'line', interpolate: 'step-after', strokeWidth: 2}, encoding: {x, y, color: colour, strokeDash: dash}}
     : {mark: {type: 'bar', stroke: 'white'}, encoding: {x: {...x, bin: 'binned'}, x2: {field: 'high'}, y, color: colour}};
   await draw(figure, {data: {values: drawn.flatMap((sample) => histogram(sample, step))}, height: 340, layer: [shape,
-    {data: {values: means}, mark: {type: 'rule', strokeWidth: 1.5, strokeDash: [5, 3]}, encoding: {x: {field: 'mean', type: 'quantitative'}, color: colour}},
+    {data: {values: means}, mark: {type: 'rule', strokeWidth: 1.5, strokeDash: [5, 3]}, encoding: {x: {field: 'mean', type: 'quantitative'}, color: names.length > 1 ? colour : {value: 'black'}}},
   ]}, {
     name: 'seeds', description: `Histogram of ${title} over ${plural(all.length, 'run')}`,
     caption: `${title} of ${plural(all.length, 'run')}${apart ? '' : `, ${samples.length} points together`}. Dashed lines: means.${doubtSentence(from, samples.map((sample) => whole.get(sample.point.point_id)))}`,
@@ -73,7 +73,7 @@ export async function showSeeds() {
   const known = apart && has(from, 'quantile') ? samples.map(({point}) => new Map(ask(from, questions.quantiles, {quantity, point: point.point_id}).map((row) => [row.share, row]))) : [];
   const quantileOf = (share, key) => (row, i) => {
     const all = known[i]?.get(share);
-    return all ? `${number(all.value)}${all.low !== null && all.high !== null ? ` (${number(all.low, 3)} to ${number(all.high, 3)})` : ''}` : number(row[key]);
+    return all ? between(all.value, all.low, all.high) : number(row[key]);
   };
   const lines = [['mean', mean], ['median', quantileOf(0.5, 'median')], ['lower quartile', quantileOf(0.25, 'quarter')], ['upper quartile', quantileOf(0.75, 'threeQuarters')],
     ['standard deviation of the runs here', (row) => number(row.sd)], ['smallest here', (row) => number(row.least)], ['largest here', (row) => number(row.largest)], ['runs here', (row) => row.n]];

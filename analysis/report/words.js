@@ -33,6 +33,13 @@ export function withError(mean, half) {
   return `${shown(mean)} ± ${shown(half)}`;
 }
 
+// A value with the ends of its interval, in the digits of the farther one.
+export function between(value, low, high) {
+  if (low === null || high === null || !(high > low)) return number(value);
+  const places = Math.max(0, -lastDecade(Math.max(high - value, value - low)));
+  return `${fixed(value, places)} (${fixed(low, places)} to ${fixed(high, places)})`;
+}
+
 // A mean with its interval; of equal shares, what they bound.
 export function withInterval({mean, hw95, low95, high95, weak}) {
   if (hw95 === null && typeof low95 === 'number') return `${number(mean)} (all equal: ${number(low95, 3)} to ${number(high95, 3)})`;
