@@ -258,7 +258,7 @@ struct axis {
   double *values; /* ascending, distinct */
 };
 
-static void distinct(size_t count, const double (*points)[4], int coordinate, struct axis *axis) {
+static void distinct(size_t count, const double (*points)[5], int coordinate, struct axis *axis) {
   axis->count = 0;
   for (size_t i = 0; i < count; i++)
     axis->values[i] = points[i][coordinate];
@@ -274,21 +274,23 @@ static size_t place(const struct axis *axis, double value) {
 }
 
 /* Points that share no value of an axis, as a Latin hypercube has them: their places are those of their values. */
-static void write_points(struct chart *chart, const struct axis axis[2], size_t count, const double (*points)[4]) {
+static void write_points(struct chart *chart, const struct axis axis[2], size_t count, const double (*points)[5]) {
   for (int a = 0; a < 2; a++)
     write_range(chart, a ? 'y' : 'x', (const double[2]){axis[a].values[0], axis[a].values[axis[a].count - 1]});
-  chart_columns(chart, "x y value doubtful");
+  chart_columns(chart, "x y value doubtful decimals");
   for (size_t i = 0; i < count; i++)
-    chart_row(chart, 4, points[i]);
+    chart_row(chart, 5, points[i]);
   chart_block_end(chart);
 }
 
 /* Blocks: the tiles (number of column and row from 0, value, doubtful), the columns' values, the rows' values. */
-static void write_tiles(struct chart *chart, const struct axis *x, const struct axis *y, const double (*value)[2]) {
-  chart_columns(chart, "column row value doubtful");
+static void write_tiles(struct chart *chart, const struct axis *x, const struct axis *y, const double (*value)[3]) {
+  chart_columns(chart, "column row value doubtful decimals");
   for (size_t j = 0; j < y->count; j++)
-    for (size_t i = 0; i < x->count; i++)
-      chart_row(chart, 4, (double[]){(double)i, (double)j, value[j * x->count + i][0], value[j * x->count + i][1]});
+    for (size_t i = 0; i < x->count; i++) {
+      const double *v = value[j * x->count + i];
+      chart_row(chart, 5, (double[]){(double)i, (double)j, v[0], v[1], v[2]});
+    }
   chart_block_end(chart);
   const struct axis *axes[2] = {x, y};
   for (int a = 0; a < 2; a++) {
@@ -301,7 +303,7 @@ static void write_tiles(struct chart *chart, const struct axis *x, const struct 
 
 /* Draws tiles of x->count times y->count values, a row for each value of y. value NULL: draws points. */
 static status draw_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
-                       const struct axis axis[2], size_t count, const double (*points)[4], const double (*value)[2],
+                       const struct axis axis[2], size_t count, const double (*points)[5], const double (*value)[3],
                        struct error *error) {
   const struct axis *x = &axis[0], *y = &axis[1];
   double range[2] = {none[0], none[1]};
@@ -324,14 +326,14 @@ static status draw_map(const struct picture_page *page, const struct picture_wor
 }
 
 status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
-                   size_t count, const double (*points)[4], struct error *error) {
+                   size_t count, const double (*points)[5], struct error *error) {
   if (count == 0)
     return status_fail(error, STATUS_USAGE, "%s: an axis of the map is empty or not finite", page->path);
   for (size_t i = 0; i < count; i++)
     if (!isfinite(points[i][0]) || !isfinite(points[i][1]))
       return status_fail(error, STATUS_USAGE, "%s: a point of the map is not on its axes", page->path);
   OWNED double *along = NULL;
-  OWNED double(*value)[2] = NULL;
+  OWNED double(*value)[3] = NULL;
   TRY(memory_array(&along, 2 * count, sizeof *along, "the map", error));
   TRY(memory_array(&value, MOST_TILES, sizeof *value, "the map", error));
   struct axis axis[2] = {{.values = along}, {.values = along + count}};
@@ -347,7 +349,7 @@ status picture_map(const struct picture_page *page, const struct picture_words *
     value[i][0] = NAN;
   for (size_t i = 0; i < count; i++)
     memcpy(value[place(y, points[i][1]) * x->count + place(x, points[i][0])], &points[i][2], sizeof *value);
-  return draw_map(page, words, quantity, axis, count, points, (const double(*)[2])value, error);
+  return draw_map(page, words, quantity, axis, count, points, (const double(*)[3])value, error);
 }
 
 /* ---- log-log spectra with error bars or bands, and fitted lines ---- */

@@ -10,6 +10,7 @@
 #include "campaign/charts/charts.h"
 #include "campaign/terminal/table.h"
 #include "db/ask/ask.h"
+#include "db/store/views.h"
 #include "engine/grow.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
@@ -388,7 +389,7 @@ status quantity_plot(struct store *store, const char *x, const char *by, const c
 
 /* ---- tiles ---- */
 
-static status draw_tiles(struct store *store, const struct quantity *quantity, size_t count, const double (*tile)[4],
+static status draw_tiles(struct store *store, const struct quantity *quantity, size_t count, const double (*tile)[5],
                          double widest, const struct picture_page *page, struct error *error) {
   char x[CHARTS_LABEL], y[CHARTS_LABEL], z[CHARTS_LABEL], title[ASK_GROUP_POOLED + 400], caption[1100];
   char made[ASK_GROUP_POOLED + 40], intervals[600], resolution[400];
@@ -409,8 +410,18 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
   return picture_map(page, &(struct picture_words){title, caption, x, y}, z, count, tile, error);
 }
 
+/* Decimals of a value in tables, -1: no interval, or only its leading digits count. */
+static int decimals_of(double value, double half_width, bool share) {
+  char text[UNCERTAINTY_TEXT];
+  if (!(half_width > 0 && half_width < 10))
+    return -1;
+  (share ? uncertainty_share_cell : uncertainty_number)(value, half_width, text);
+  text[strcspn(text, " ")] = '\0';
+  return strchr(text, '.') ? (int)strlen(strchr(text, '.') + 1) : 0;
+}
+
 /* Makes a tile (x, y, value) of each row that has two numbers, and draws them. */
-static status make_tiles(struct store *store, const struct quantity *quantity, double (*tile)[4],
+static status make_tiles(struct store *store, const struct quantity *quantity, double (*tile)[5],
                          const struct picture_page *page, struct error *error) {
   double widest = 0; /* half width of the widest interval, in the quantity's unit; 0: there is none */
   size_t count = 0;
@@ -426,16 +437,17 @@ static status make_tiles(struct store *store, const struct quantity *quantity, d
     tile[count][0] = row->input[0];
     tile[count][1] = row->input[1];
     tile[count][2] = row->value;
-    tile[count++][3] = row->doubtful;
+    tile[count][3] = row->doubtful;
+    tile[count++][4] = decimals_of(row->value, row->upper - row->value, views_is_share(quantity->name));
     widest = fmax(widest, row->upper - row->value); /* NaN: no interval */
   }
-  return draw_tiles(store, quantity, count, (const double(*)[4])tile, widest, page, error);
+  return draw_tiles(store, quantity, count, (const double(*)[5])tile, widest, page, error);
 }
 
 status quantity_map(struct store *store, const char *x, const char *y, const char *name,
                     const struct picture_page *page, struct error *error) {
   __attribute__((cleanup(release))) struct quantity quantity = {0};
-  OWNED double(*tile)[4] = NULL;
+  OWNED double(*tile)[5] = NULL;
   TRY(read_quantity(store, x, y, name, true, "a map needs two different inputs (--x, --y) and one quantity", &quantity,
                     error));
   TRY(memory_array(&tile, quantity.count, sizeof *tile, "the map", error));

@@ -210,7 +210,7 @@ static void spectra_are_drawn(void **state) {
 
 static void maps_are_drawn(void **state) {
   (void)state;
-  double points[24][4] = {{0}};
+  double points[24][5] = {{0}};
   for (int i = 0; i < 24; i++) {
     points[i][0] = 0.01 * (i % 6 + 1);
     points[i][1] = i / 6 + 1;
@@ -220,23 +220,23 @@ static void maps_are_drawn(void **state) {
   const char *const x = "threshold.strain", *const y = "beam.threshold.angle (deg)";
   assert_int_equal(picture_map(&(struct picture_page){.path = at("map.png"), .width = 900},
                                &(struct picture_words){"beta over both thresholds", NULL, x, y}, "beta", 24,
-                               (const double(*)[4])points, NULL),
+                               (const double(*)[5])points, NULL),
                    STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("map.png"), &dark, &coloured, &width, &height);
   assert_true(coloured > 0.3);
-  const double loose[5][4] = {{2, 0.1, 5}, {1, 0.1, 4, 1}, {2, 0.3, 7}, {1, 0.1, 4.5}, {3, 0.2, NAN}};
+  const double loose[5][5] = {{2, 0.1, 5}, {1, 0.1, 4, 1}, {2, 0.3, 7}, {1, 0.1, 4.5}, {3, 0.2, NAN}};
   assert_int_equal(picture_map(&(struct picture_page){.path = at("loose.png"), .width = 600},
                                &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 5, loose, NULL),
                    STATUS_OK);
-  const double sampled[3][4] = {{1, 0.1, 5}, {40, 0.3, 7, 1}, {2, 0.2, 6}};
+  const double sampled[3][5] = {{1, 0.1, 5}, {40, 0.3, 7, 1}, {2, 0.2, 6}};
   assert_int_equal(picture_map(&(struct picture_page){.path = at("sampled.png"), .width = 600},
                                &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 3, sampled, NULL),
                    STATUS_OK);
   ink(at("sampled.png"), &dark, &coloured, &width, &height);
   assert_true(coloured < 0.1); /* marks, no tiles */
-  const double nowhere[1][4] = {{NAN, 1, 1}};
+  const double nowhere[1][5] = {{NAN, 1, 1}};
   assert_int_equal(picture_map(&(struct picture_page){.path = at("none.png"), .width = 600},
                                &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 1, nowhere, NULL),
                    STATUS_USAGE);
@@ -246,7 +246,7 @@ static void maps_are_drawn(void **state) {
   for (int i = 0; i < 24; i++)
     points[i][2] = NAN;
   assert_int_equal(picture_map(&(struct picture_page){.path = at("none.png"), .width = 900},
-                               &(struct picture_words){NULL, NULL, x, y}, "beta", 24, (const double(*)[4])points, NULL),
+                               &(struct picture_words){NULL, NULL, x, y}, "beta", 24, (const double(*)[5])points, NULL),
                    STATUS_USAGE);
 }
 
