@@ -108,6 +108,7 @@ struct engine_kind {
   const size_t *also; /* offsets of results that `simulate` shows beside the headline where they are above 0 */
   size_t also_count;
   size_t (*memory)(const void *inputs); /* bytes a run will need, before anything is allocated */
+  double (*steps)(const void *inputs);  /* about the steps to the hard end. NULL: not known */
   double (*work)(const void *inputs); /* a-priori cost in arbitrary units (grain- or particle-steps), for scheduling */
   int64_t *(*threads)(void *inputs);  /* the input that says how many threads one run takes. NULL: always one */
 

@@ -62,7 +62,7 @@ status plan_try(const struct scene *scene, uint64_t seed, double seconds, struct
   OWNED struct fragment *list = NULL;
   struct outcome outcome;
   const double begin = spent_s();
-  *run = (struct plan_trial){0};
+  *run = (struct plan_trial){.expected = kind->steps ? kind->steps(scene->inputs) : (double)NAN};
   SCENE alone = scene_copy(scene); /* one thread: the processor time of several includes their waiting */
   if (kind->threads)
     *kind->threads(alone->inputs) = 1;
@@ -99,7 +99,10 @@ double plan_whole(const struct plan_trial *piece, const struct plan_trial *coars
 }
 
 double plan_to_hard_end(const struct plan_trial *piece) {
-  return piece->prepare_s + piece->step_s / piece->progress + piece->finish_s;
+  /* The first steps of an impact are the shortest: then the engine's number of steps tells more than the time reached.
+   */
+  const double pieces = fmin(1 / piece->progress, piece->expected / piece->steps);
+  return piece->prepare_s + piece->step_s * fmax(pieces, 1) + piece->finish_s;
 }
 
 /* The first knob of the engine with a step that applies to the scene: its number of particles or grains. */

@@ -257,6 +257,7 @@ enum { PLAN_MARKS = 512 };
 struct plan_trial {
   double prepare_s, step_s, finish_s;
   double steps;    /* made */
+  double expected; /* to the hard end; NaN: not known */
   double progress; /* 0..1 at the end of the piece */
   bool finished;   /* the run ended before the time limit of the trial */
   size_t fragments;

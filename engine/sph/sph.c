@@ -116,6 +116,7 @@ const struct engine_kind sph_engine = {
     .also = also,
     .also_count = sizeof also / sizeof *also,
     .memory = sph_describe_memory,
+    .steps = sph_describe_steps,
     .work = sph_describe_work,
     .threads = threads,
     .prepare = prepare,

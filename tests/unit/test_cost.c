@@ -66,7 +66,12 @@ static void whole_runs(void **state) {
     coarse->mark_progress[i] = progress[i];
   }
   NEAR(plan_whole(piece, coarse), 1 + 2 * 20.0 / 5 + 0.5, 1e-12);
+  piece->expected = NAN;
   NEAR(plan_to_hard_end(piece), 1 + 2 * 4 + 0.5, 1e-12); /* without a coarse run: four times the steps */
+  piece->expected = 30;                                  /* the engine knows that later steps are longer */
+  NEAR(plan_to_hard_end(piece), 1 + 2 * 3 + 0.5, 1e-12);
+  piece->expected = 50;
+  NEAR(plan_to_hard_end(piece), 1 + 2 * 4 + 0.5, 1e-12);
   piece->progress = 0.7;
   assert_true(isnan(plan_whole(piece, coarse)));
   piece->progress = 0.25;

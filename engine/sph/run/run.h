@@ -79,6 +79,7 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error);
 /* describe.c */
 char *sph_describe_scene(const void *inputs, bool all);
 size_t sph_describe_memory(const void *inputs); /* bytes a run will need */
+double sph_describe_steps(const void *inputs);  /* to stop.end_time, an estimate */
 double sph_describe_work(const void *inputs);   /* particle-steps, an estimate */
 
 /* conditions.c */

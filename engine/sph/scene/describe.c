@@ -81,7 +81,8 @@ static double signal_expected(const struct sph_inputs *in, const struct sph_body
           0.6 * in->viscosity.alpha * sph_material_longitudinal_speed(&solid, false));
 }
 
-static double steps_expected(const struct sph_inputs *in) {
+double sph_describe_steps(const void *inputs) {
+  const struct sph_inputs *in = inputs;
   const double spacing = sph_derived_fine_spacing(in), finest = sph_derived_smallest_spacing(in);
   double per_spacing = signal_expected(in, &in->target) / spacing; /* 1/s */
   if (sph_derived_has_projectile(in))
@@ -102,7 +103,7 @@ static double speed_expected(const struct sph_inputs *in) {
 }
 
 double sph_describe_work(const void *inputs) {
-  return sph_derived_particles(inputs) * steps_expected(inputs);
+  return sph_derived_particles(inputs) * sph_describe_steps(inputs);
 }
 
 /* ---- text ---- */
@@ -246,7 +247,7 @@ char *sph_describe_scene(const void *inputs, bool all) {
   double particles = sph_derived_particles(in);
   fprintf(out, "  memory: about %.0f bytes per particle, %.3g MB in all\n", (double)sph_describe_memory(in) / particles,
           (double)sph_describe_memory(in) / 1e6);
-  const double steps = steps_expected(in), speed = speed_expected(in), seconds = steps * particles / speed;
+  const double steps = sph_describe_steps(in), speed = speed_expected(in), seconds = steps * particles / speed;
   fprintf(out,
           "  about %.3g steps of %.4g particles to stop.end_time%s: %.2g %s of a core that does %.2g particle-steps a "
           "second\n",
