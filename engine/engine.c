@@ -53,7 +53,7 @@ const struct knob *engine_knob(const struct engine_kind *kind, const char *name,
       return knob;
     text_append(known, sizeof known, "%s%s", *known ? ", " : "", knob->name);
   }
-  status_fail(error, STATUS_USAGE, "engine %s has no knob '%.64s'; it has %s (`clast converge --list`)", kind->name,
-              name, *known ? known : "none");
+  status_fail(error, STATUS_USAGE, "engine %s has no setting (knob) '%.64s'; it has %s (`clast converge --list`)",
+              kind->name, name, *known ? known : "none");
   return NULL;
 }

@@ -250,7 +250,7 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
     input++;
   words_print(out, "", "NOT DETERMINED: %s. The data give %.0f %% of what is known of it, its prior the rest%s", names,
               given,
-              fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (kept)."
+              fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (share of prior)."
                                                : ": its interval is that of the prior.");
 }
 
@@ -286,10 +286,10 @@ static void tell_determined(const struct fit *fit, FILE *out) {
   }
   words_print(out, "", "%s: median and 90 %% interval.", found);
   if (known == p && as_wide)
-    words_print(
-        out, "",
-        "The data tell more than the priors at most places, and yet they leave an input its whole range (kept): "
-        "inputs that are far apart give what was measured.");
+    words_print(out, "",
+                "The data tell more than the priors at most places, and yet they leave an input its whole range (share "
+                "of prior): "
+                "inputs that are far apart give what was measured.");
   else if (known == p)
     words_print(out, "", "The data determine %s: in every direction they tell more than the priors.",
                 p == 1 ? "the input" : "all inputs");
@@ -389,12 +389,12 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
 static void tell(const struct fit *fit, FILE *out) {
   tell_errors(fit, out);
   tell_doubts(fit, out);
-  words_print(
-      out, "",
-      "Surfaces through %zu points of %zu seeds in %zu rounds; posterior %s. kept: width of the 90 %% interval over "
-      "that of the prior. below: share of predicted experiments below the value. Source of the data: %.200s",
-      fit->points, fit->replicates, fit->rounds, fit->posterior.sampled ? "sampled" : "on a grid",
-      fit->observed->source);
+  words_print(out, "",
+              "Surfaces through %zu points of %zu seeds in %zu rounds; posterior %s. share of prior: width of the 90 "
+              "%% interval over "
+              "that of the prior. below: share of predicted experiments below the value. Source of the data: %.200s",
+              fit->points, fit->replicates, fit->rounds, fit->posterior.sampled ? "sampled" : "on a grid",
+              fit->observed->source);
 }
 
 /* ---- the whole report ---- */

@@ -109,8 +109,12 @@ static void print_summary(const struct driver_summary *summary, const char *stor
   launch_tell_runs(store, summary->runs_done, summary->runs_reused, summary->cpu_s, wall_s);
   fprintf(stderr, "points: %" PRIu64 " of %" PRIu64 " complete", summary->points_done, summary->points);
   if (summary->points_interval_met || summary->points_cap_reached)
-    fprintf(stderr, " (interval met %" PRIu64 ", most runs reached %" PRIu64 ")", summary->points_interval_met,
-            summary->points_cap_reached);
+    fprintf(stderr,
+            ": %" PRIu64 " with the interval that was asked for, %" PRIu64 " with seeds.max runs and a wider one",
+            summary->points_interval_met, summary->points_cap_reached);
+  if (summary->points_cap_reached)
+    fprintf(stderr, summary->points_cap_reached > 1 ? " (point %" PRId64 " and others)" : " (point %" PRId64 ")",
+            summary->capped_point);
   fputc('\n', stderr);
   if (summary->runs_censored)
     fprintf(stderr, "%" PRId64 " run%s ended at stop.end_time: fragments may still have been breaking\n",

@@ -53,8 +53,8 @@ static void print_scatter(const struct printing *printing, struct scatter *s) {
   for (int q = 0; q < SCATTER_QUANTILES; q++)
     row(printing, names[q], s->quantile[q].value, s->quantile[q].low, s->quantile[q].high);
   if (!printing->people || isfinite(s->dip_share)) {
-    row(printing, printing->people ? "Hartigan's dip" : "dip", s->dip, NAN, NAN);
-    row(printing, printing->people ? "p of one mode (dip test)" : "dip p", s->dip_share, NAN, NAN);
+    row(printing, printing->people ? "dip: distance from one peak" : "dip", s->dip, NAN, NAN);
+    row(printing, printing->people ? "p of one peak" : "dip p", s->dip_share, NAN, NAN);
   }
   if (isfinite(s->between)) {
     row(printing, "lower mode", s->lower_mode, s->sorted[0], s->between);
@@ -91,7 +91,7 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
     words_print(
         stderr, "",
         "clast: low and high: 95 %% intervals over runs; of a mode, the values that belong to it. Modes are peaks; "
-        "p of one mode below 0.05: the runs have two. Fewer than %d runs tell neither modes nor skewness",
+        "p of one peak below 0.05: the runs have two. Fewer than %d runs tell neither modes nor skewness",
         SCATTER_SHAPE_RUNS);
   }
   if (several)
@@ -396,7 +396,8 @@ status print_variance(struct store *store, const struct scatter_choice *choice, 
     uncertainty_doubts(&cells.doubts, stderr);
     words_print(
         stderr, "",
-        "clast: %zu points with %zu seeds each, which count alike. An input: variance of its means over the other "
+        "clast: %zu points with %zu seeds each, which count alike. Share: of the variance of these points. An input: "
+        "variance of its means over the other "
         "inputs%s what the inputs together have beyond their sum is their interaction. Low, high: 95 %% interval "
         "over seeds",
         cells.count, runs,
@@ -679,12 +680,16 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
   words_print(
       stderr, "",
       "clast: shares of the variance that an input explains alone, with 95 %% intervals, of %zu points%s; what the "
-      "shares leave is of inputs together%s. rank: inputs with overlapping intervals share it. not_told: "
-      "why these points tell nothing of an input. Four times the points halve the intervals",
+      "shares leave is of inputs together%s. The whole is that of inputs which do not move together by chance, as "
+      "those "
+      "of these points do; `clast scatter --split` divides by the variance of the points as they are. rank: inputs "
+      "with "
+      "overlapping intervals share it. Four times the points halve the intervals",
       p.data.points,
-      p.data.most > 1 ? ". of_means: variance of the means over seeds; of_runs: of single runs, with their scatter "
-                        "over seeds"
-                      : " with one seed each",
+      p.data.most > 1
+          ? ". Share of means: of the variance of the means over seeds; share of runs: of single runs, with "
+            "their scatter over seeds"
+          : " with one seed each",
       p.data.most > 1 ? "" : " and of the scatter over seeds");
   uncertainty_doubts(&p.cells.doubts, stderr);
   return STATUS_OK;

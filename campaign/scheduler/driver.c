@@ -201,6 +201,8 @@ static status judge(struct driver *driver, struct point *point, struct error *er
     driver->summary.points_done++;
     driver->summary.points_interval_met += point->verdict == DESIGN_INTERVAL_MET;
     driver->summary.points_cap_reached += point->verdict == DESIGN_CAP_REACHED;
+    if (point->verdict == DESIGN_CAP_REACHED)
+      driver->summary.capped_point = point->id;
     point_want_fields(point, driver->campaign);
   }
   return admit(driver, point, error);

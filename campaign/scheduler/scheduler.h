@@ -155,6 +155,7 @@ struct driver_summary {
   int64_t fields_written;  /* HDF5 files kept */
   int64_t attempts_failed; /* attempts that failed in this invocation */
   uint64_t points_interval_met, points_cap_reached; /* with `until` */
+  int64_t capped_point;                             /* the last one that reached the cap */
   double cpu_s;                                     /* processor time of the runs computed now */
 };
 

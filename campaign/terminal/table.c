@@ -35,6 +35,11 @@ enum role {
   ERROR, /* half width of an interval, or whether it is weak: stands in the cell of its value */
 };
 
+/* Headings for people. */
+static const char *const headings[][2] = {{"surplus", "after the rule's stop"}, {"censored", "ended at end_time"},
+                                          {"kept", "share of prior"},           {"not_told", "why not told"},
+                                          {"of_means", "share of means"},       {"of_runs", "share of runs"}};
+
 /* What people need of columns with such a name, or with such an ending. */
 static const struct {
   const char *name;
@@ -182,7 +187,9 @@ void table_column(struct table *table, const char *name, const char *unit) {
     column->unit = copy(table, unit);
   if (table->people && !table->broken) {
     column->role = role_of(table, name, &column->value);
-    const char *head = !table->asked && strcmp(name, "surplus") == 0 ? "after the rule's stop" : name;
+    const char *head = name;
+    for (size_t i = 0; !table->asked && i < sizeof headings / sizeof *headings; i++)
+      head = strcmp(name, headings[i][0]) == 0 ? headings[i][1] : head;
     column->head = heading(table, head, column->unit);
   }
   table->column_count++;
