@@ -1,6 +1,7 @@
 /* Small tools for text: UTF-8, JSON strings, paragraphs, a hash, guesses of names. */
 #include "schemas/text.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <nettle/sha2.h>
 #include <stdarg.h>
@@ -186,6 +187,9 @@ void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *o
   for (size_t word; *text; text += word) {
     text += strspn(text, " \n");
     word = strcspn(text, " \n");
+    while (word && isdigit((unsigned char)text[word - 1]) && text[word] == ' ' &&
+           strspn(text + word + 1, "0123456789") == 3)
+      word += 1 + strcspn(text + word + 1, " \n"); /* 4 660 000 is one number */
     if (column > indent && column + 1 + word > width) {
       fprintf(out, "\n%*s", (int)indent, "");
       column = indent;

@@ -169,15 +169,15 @@ static status snapshots_look(struct snapshots *s, const struct engine_kind *kind
 }
 
 /* A run that ends before its longest time has fewer snapshots than were asked for. */
-static void tell_missing(const struct snapshots *s) {
+static void tell_missing(const struct snapshots *s, double time) {
   int64_t written = 0;
   for (int64_t k = 0; k < s->count; k++)
     written += !isnan(s->time[k]);
   if (written < s->count)
     fprintf(stderr,
             "clast: %lld of %lld snapshots written: they divide the longest time that the run may take, and it ended "
-            "before\n",
-            (long long)written, (long long)s->count);
+            "before. `--set stop.end_time='%.4g s'`, the time of its end, gives all (scenes that have this input)\n",
+            (long long)written, (long long)s->count, time);
 }
 
 /* ---- the run ---- */
@@ -225,7 +225,7 @@ static status compute(const struct scene *scene, const struct one_run_options *o
   if (watch.terminal)
     fputs("\r\033[K", stderr);
   if (code == STATUS_OK && !options->quiet)
-    tell_missing(&watch.snapshots);
+    tell_missing(&watch.snapshots, result->outcome.time);
   free(watch.snapshots.time);
   return code;
 }

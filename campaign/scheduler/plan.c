@@ -463,17 +463,17 @@ static void print_times(const struct plan *plan, int slots, FILE *out) {
 }
 
 static void print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
-  char a[64], b[64];
+  char a[64], b[64], until[2 * FIELD_TEXT_SIZE] = "";
   print_design(campaign, plan, out);
   campaign_warn(campaign, "warning   ", out);
 
-  fprintf(out, "runs      %llu", (unsigned long long)plan->runs_least);
   if (plan->runs_most != plan->runs_least)
-    fprintf(out, " to %llu (%s to ±%g%s)", (unsigned long long)plan->runs_most, campaign->until_quantity,
-            campaign->until_half_width * (campaign->until_of_value ? 100 : 1),
-            campaign->until_of_value ? " % of its mean" : "");
-  fprintf(out, ", %llu of them in the store%s\n", (unsigned long long)plan->runs_there,
-          plan->store_exists ? "" : " (there is none yet)");
+    snprintf(until, sizeof until, " to %llu (%s to ±%g%s)", (unsigned long long)plan->runs_most,
+             campaign->until_quantity, campaign->until_half_width * (campaign->until_of_value ? 100 : 1),
+             campaign->until_of_value ? " % of its mean" : "");
+  snprintf(a, sizeof a, plan->store_exists ? "%llu of them in the store" : "no store yet",
+           (unsigned long long)plan->runs_there);
+  words_print(out, "runs      ", "%llu%s, %s", (unsigned long long)plan->runs_least, until, a);
   print_times(plan, slots, out);
   fprintf(out, "memory    %s per run, %s on all slots\n", bytes(plan->memory_most, a, sizeof a),
           bytes(plan->memory_most * slots, b, sizeof b));

@@ -57,6 +57,17 @@ static void test_fixed_has_few_digits(void **state) {
   }
 }
 
+static void test_wrap_keeps_numbers(void **state) {
+  (void)state;
+  char *wrapped;
+  size_t size;
+  FILE *out = open_memstream(&wrapped, &size);
+  text_wrap("the last at (4 660 000 Pa)", 0, 0, 18, out);
+  fclose(out);
+  assert_string_equal(wrapped, "the last at\n(4 660 000 Pa)\n");
+  free(wrapped);
+}
+
 static void test_hexadecimal(void **state) {
   (void)state;
   char text[9] = "--------";
@@ -84,7 +95,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_append_stays_in_its_array), cmocka_unit_test(test_append_cuts_whole_characters),
       cmocka_unit_test(test_fixed_has_few_digits),      cmocka_unit_test(test_hexadecimal),
-      cmocka_unit_test(test_numbers_for_people),
+      cmocka_unit_test(test_wrap_keeps_numbers),        cmocka_unit_test(test_numbers_for_people),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
