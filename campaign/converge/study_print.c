@@ -228,8 +228,11 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
             limit->limit.high, limit->order.value, limit->order.low, limit->order.high);
   else if (limit->verdict == LIMIT_NOT_SEEN) {
     print_change(knob, found, out);
-    fprintf(out, ": a law of order 0.5 to 2 would be this far from the three finest levels in %.2g of the cases; ",
-            limit->fit);
+    fprintf(out,
+            ": the three finest levels do not follow limit + a step^p with p from 0.5 to 2 (if they did, chance would "
+            "put them "
+            "this far off in %.2g %% of studies); ",
+            100 * limit->fit);
   }
   int64_t dropped = limit->verdict == LIMIT_SEEN ? limit->dropped : 0;
   for (size_t l = 0; l < found->count && dropped > 0; l++)
@@ -360,10 +363,11 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
 }
 
 static const char legend[] =
-    "* the scene's own setting; a knob's levels are compared with the seeds that all of them have, so that n and mean "
+    "knob: the setting that is changed. *: the scene's own level; a knob's levels are compared with the seeds that all "
+    "of them have, so that n and mean "
     "of * differ between knobs. ref: what bias is measured against. bias: mean minus that of ref, with the half width "
     "of its 95 % interval. error: largest distance to the limit (none seen: |bias| + half width, perhaps too small), "
-    "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer.";
+    "and those of the other knobs of group resolution at *. best for its cost: no level is both cheaper and nearer.";
 static const char legend_of_all[] =
     "correlation: of the runs of a seed with those at the next finer level; from \"pays from correlation\" on, the "
     "coarse level as a control variate would save time. share of upper mode: of the runs, where their values have two "
@@ -519,7 +523,7 @@ status study_print_picture(const struct study *study, bool of_errors, const char
   if (stepped < knobs)
     draw_law(study, stepped, drawing, label);
   if (of_errors)
-    add_curve(drawing, "frontier: no level is both cheaper and nearer", 0, knobs, true, true);
+    add_curve(drawing, "best for their cost: no level is both cheaper and nearer", 0, knobs, true, true);
   for (size_t i = 0; stepped == knobs && i < knobs && drawing->count < CURVES; i++)
     add_curve(drawing, drawing->found[i].limit.knob, i, 1, of_errors, false);
 

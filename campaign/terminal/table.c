@@ -38,7 +38,8 @@ enum role {
 /* Headings for people. */
 static const char *const headings[][2] = {{"surplus", "after the rule's stop"}, {"censored", "ended at end_time"},
                                           {"kept", "share of prior"},           {"not_told", "why not told"},
-                                          {"of_means", "share of means"},       {"of_runs", "share of runs"}};
+                                          {"of_means", "share of means"},       {"of_runs", "share of runs"},
+                                          {"frontier", "best for its cost"}};
 
 /* What people need of columns with such a name, or with such an ending. */
 static const struct {
