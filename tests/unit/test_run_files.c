@@ -66,7 +66,8 @@ static void restart_continues_with_the_same_bits(void **state) {
                "fidelity.threads=2"),
       SPH_CASE("tensile-rod", "fidelity.particles=600", "stop.end_time=8 us"),
       SPH_CASE("elastic-bar", "fidelity.particles=600", "stop.end_time=12 us"),
-      SPH_CASE("porous-ice", "fidelity.particles=800", "fidelity.projectile_spacing=0.5", "stop.end_time=15 us"),
+      SPH_CASE("porous-ice", "fidelity.particles=800", "fidelity.projectile_spacing=0.5", "impact.mass=1 g",
+               "stop.end_time=15 us"),
   };
   for (size_t c = 0; c < sizeof dem / sizeof *dem; c++)
     continues(&dem_engine, &dem[c]);

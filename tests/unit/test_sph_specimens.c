@@ -14,7 +14,7 @@ static void flaws_are_as_many_as_told(void **state) {
   static const char *const cracked[] = {"disruption", "solid-ice", "basalt-sphere"};
   for (size_t k = 0; k < sizeof cracked / sizeof *cracked; k++) {
     const struct sph_inputs inputs = SPH_CASE(cracked[k], "fidelity.particles=4000", "projectile.fracture=off",
-                                              "fidelity.graded=false", "fidelity.projectile_spacing=0.5");
+                                              "fidelity.graded=false", "fidelity.projectile_spacing=0.3");
     struct sph_run *run;
     assert_int_equal(sph_run_create(&inputs, 2, &run, NULL), STATUS_OK);
     const double n = (double)run->targets, told = n * (log(n) + 0.5772);

@@ -33,7 +33,7 @@ struct result {
   size_t layers;
 };
 
-/* Even spacing: that of the page's figures; half of it in the projectile. */
+/* Even spacing, a projectile of 1 g and 200 us: those of the page's figures; half the spacing in the projectile. */
 static struct result run(const char *name, uint64_t seed, const char *particles, bool even) {
   struct result r = {0};
   struct scene *scene;
@@ -44,7 +44,9 @@ static struct result run(const char *name, uint64_t seed, const char *particles,
   bool finished = false;
   if (scene_load(name, NULL, &scene, &error) || scene_set_text(scene, "fidelity.particles", particles, &error) ||
       (even && (scene_set_text(scene, "fidelity.graded", "false", &error) ||
-                scene_set_text(scene, "fidelity.projectile_spacing", "0.5", &error))) ||
+                scene_set_text(scene, "fidelity.projectile_spacing", "0.5", &error) ||
+                scene_set_text(scene, "impact.mass", "1 g", &error) ||
+                scene_set_text(scene, "stop.end_time", "200 us", &error))) ||
       scene_check(scene, &error) || scene->kind->prepare(scene->inputs, seed, &made, &error))
     fail_msg("%s: %s", name, error.message);
   while (!finished)
