@@ -7,6 +7,7 @@
 
 #include "engine/sph/material/material.h"
 #include "engine/sph/step/system.h"
+#include "tests/support/allocated.h"
 #include "tests/support/case_parameters.h"
 
 enum { ROUNDS = 3, STEPS = 60, N = 24, SMALL = 6 };
@@ -93,6 +94,7 @@ int main(void) {
       struct sph_material m = material;
       if (pores == 2)
         m.palpha.distention = 1;
+      const size_t before = allocated();
       struct sph_system *s = make(&m, pores > 0, true);
       double start = now();
       for (int k = 0; k < STEPS; k++)
@@ -108,7 +110,7 @@ int main(void) {
         if (pores)
           limit = fmin(limit, loop(s, s->ranges->module[SPH_MODULE_palpha][SPH_RATES]));
       }
-      bytes[pores] = (double)sph_system_bytes(s) / particles;
+      bytes[pores] = (double)(allocated() - before) / particles;
       sph_system_free(s);
     }
   printf("palpha_solid_particle_step %.1f ns\n", 1e9 * best[0]);

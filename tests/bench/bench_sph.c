@@ -17,6 +17,7 @@
 #include "engine/sph/pairs/pairs.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/bench/sph_whole_runs.h"
+#include "tests/support/allocated.h"
 #include "tests/support/noise.h"
 #include "tests/support/pair_sums.h"
 
@@ -134,6 +135,7 @@ static double pass(struct cloud *c, const struct sph_pair_options *options, cloc
   double best = INFINITY;
   *listing = INFINITY;
   double *const *a = c->column;
+  const size_t before = allocated();
   if (sph_pairs_create(c->n, options, &pairs, &error) != STATUS_OK)
     fail("create:", &error);
   for (int k = 0; k < 3; k++) {
@@ -150,7 +152,7 @@ static double pass(struct cloud *c, const struct sph_pair_options *options, cloc
     best = fmin(best, (clock_of(clock) - start) / repeats);
   }
   *neighbours = sph_pairs_neighbours(pairs);
-  *bytes = sph_pairs_bytes(pairs);
+  *bytes = allocated() - before;
   sph_pairs_free(pairs);
   return best;
 }

@@ -9,6 +9,7 @@
 #include "engine/scene.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/step/system.h"
+#include "tests/support/allocated.h"
 
 static _Noreturn void fail(const char *what, const struct error *error) {
   fprintf(stderr, "bench_sph: %s %s\n", what, error ? error->message : "");
@@ -72,6 +73,7 @@ static struct figures whole(const char *name, const char *particles, const char 
   const struct setting set[] = {{"fidelity.precision", precision}, {NULL, NULL}};
   struct scene *scene;
   struct error error = {0};
+  const size_t before = allocated();
   struct sph_run *run = prepare(particles, set, &scene);
   struct phases sum = {0, 0, 0};
   double spent = 0, looks = 0;
@@ -105,7 +107,7 @@ static struct figures whole(const char *name, const char *particles, const char 
   printf("sph_share_pairs_%s %.3f 1\n", name, pairs);
   printf("sph_share_lists_%s %.3f 1\n", name, listing + stale);
   printf("sph_share_ranges_and_sorting_%s %.3f 1\n", name, 1 - pairs - listing - stale);
-  printf("sph_bytes_per_particle_%s %.0f B\n", name, (double)sph_system_bytes(run->system) / n);
+  printf("sph_run_bytes_per_particle_%s %.0f B\n", name, (double)(allocated() - before) / n);
   printf("sph_largest_fraction_%s %.4f 1\n", name, f.largest);
   printf("sph_energy_error_%s %.2e 1\n", name, f.energy);
   printf("sph_undamaged_fraction_%s %.4f 1\n", name, f.undamaged);
@@ -146,6 +148,7 @@ static double steps_of(const char *particles, const struct setting *set, clockid
   double best = INFINITY;
   for (int k = 0; k < tries; k++) {
     struct scene *scene;
+    const size_t before = allocated();
     struct sph_run *run = prepare(particles, set, &scene);
     const double n = (double)run->system->n;
     to_listing(scene, run, 2);
@@ -154,7 +157,7 @@ static double steps_of(const char *particles, const struct setting *set, clockid
     to_listing(scene, run, LISTINGS);
     best = fmin(best, (clock_of(clock) - start) / (n * (double)(run->system->now.steps - first)));
     if (bytes)
-      *bytes = (double)sph_system_bytes(run->system) / n;
+      *bytes = (double)(allocated() - before) / n;
     scene->kind->free(run);
     scene_free(scene);
   }
@@ -172,7 +175,7 @@ void sph_whole_runs_sizes(void) {
     const double cost = steps_of(size[k].particles, NULL, CLOCK_PROCESS_CPUTIME_ID, size[k].tries, &bytes);
     least = fmin(least, cost), most = fmax(most, cost);
     printf("sph_ns_per_particle_step_first_steps_%s %.1f ns\n", size[k].particles, 1e9 * cost);
-    printf("sph_bytes_per_particle_first_steps_%s %.0f B\n", size[k].particles, bytes);
+    printf("sph_run_bytes_per_particle_first_steps_%s %.0f B\n", size[k].particles, bytes);
     fflush(stdout);
   }
   printf("sph_cost_most_over_least_by_size %.3f 1\n", most / least);

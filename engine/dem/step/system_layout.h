@@ -280,14 +280,7 @@ extern const struct dem_kernels dem_kernels_v3, dem_kernels_v4;
 
 /* The kernels of the CPU class that this run uses. */
 static inline const struct dem_kernels *dem_kernels_choose(void) {
-#ifdef __x86_64__
-  const enum cpu_class best = cpu_class_choose();
-  if (best == CPU_V4)
-    return &dem_kernels_v4;
-  if (best == CPU_V3)
-    return &dem_kernels_v3;
-#endif
-  return &dem_kernels_baseline;
+  return CPU_CLASS_OF(dem_kernels);
 }
 
 #endif

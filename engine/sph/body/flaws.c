@@ -374,13 +374,6 @@ status sph_flaws_lists_make(const struct sph_flaws *flaws, bool compact, void **
   return STATUS_OK;
 }
 
-size_t sph_flaws_lists_bytes(const void *prepared) {
-  const struct sph_flaws_lists *w = prepared;
-  return sizeof *w + (w->cell ? w->particles * sizeof *w->cell : 0) +
-         (w->strain ? (w->lists + 1) * sizeof *w->first + w->count * sizeof *w->strain
-                    : w->lists * (2 * sizeof *w->lowest + sizeof *w->total));
-}
-
 static size_t list_of(const struct sph_flaws_lists *w, size_t particle) {
   return w->cell ? w->cell[particle] : particle;
 }

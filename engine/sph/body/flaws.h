@@ -99,7 +99,6 @@ struct sph_flaws_lists; /* opaque; body->prepared[SPH_MODULE_weibull] */
 /* STATUS_MEMORY. *out is a struct sph_flaws_lists. */
 status sph_flaws_lists_make(const struct sph_flaws *flaws, bool compact, void **out, struct error *error);
 void sph_flaws_lists_free(void *lists); /* NULL is fine */
-size_t sph_flaws_lists_bytes(const void *lists);
 double sph_flaws_lowest(const struct sph_flaws_lists *lists, size_t particle);
 uint32_t sph_flaws_total(const struct sph_flaws_lists *lists, size_t particle);
 /* Number of open flaws; the same for every strain with bracket[0] <= strain < bracket[1]. */

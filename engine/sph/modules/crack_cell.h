@@ -48,11 +48,6 @@ static void crack_cell_free_prepared(void *prepared) {
   free(c);
 }
 
-static size_t crack_cell_bytes_prepared(const void *prepared) {
-  const struct crack_cells *c = prepared;
-  return sizeof *c + (c->count + 2) * sizeof *c->first + c->particles * (sizeof *c->member + sizeof *c->index);
-}
-
 /* Counting sort by cell. */
 static void crack_cell_sort_members(struct crack_cells *c, const uint32_t *cell_of) {
   size_t *next = c->first + 1;
@@ -145,7 +140,6 @@ static const struct sph_module crack_cell_module = {
     .cost = 15, /* basalt sphere of 30 000 particles to 15 us: 6 % of a step */
     .prepare = crack_cell_prepare,
     .free_prepared = crack_cell_free_prepared,
-    .bytes_prepared = crack_cell_bytes_prepared,
     .meet = crack_cell_average_stress,
     .fill = crack_cell_fill,
 };

@@ -209,12 +209,6 @@ static void crack_front_free_prepared(void *prepared) {
   free(links);
 }
 
-static size_t crack_front_bytes_prepared(const void *prepared) {
-  const struct sph_crack_front_links *l = prepared;
-  return sizeof *l + l->first[l->particles] * sizeof *l->other +
-         l->particles * (3 * sizeof *l->place + sizeof *l->first + sizeof *l->tip + sizeof *l->near);
-}
-
 /* The lists of the particles within 2h of each, itself included. h: of each particle. False without memory. */
 static bool crack_front_link_up(struct sph_crack_front_links *l, const struct sph_kd_tree *tree, const double *h) {
   l->first[0] = 0;
@@ -284,7 +278,6 @@ static const struct sph_module crack_front_module = {
     .bytes_linked = 350, /* of a particle with 56 neighbours */
     .prepare = crack_front_prepare,
     .free_prepared = crack_front_free_prepared,
-    .bytes_prepared = crack_front_bytes_prepared,
     .restored = crack_front_restored,
 };
 

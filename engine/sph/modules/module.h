@@ -133,11 +133,10 @@ struct sph_module {
                   struct error *error);
   /* Sets up the particles first .. last - 1 of a body at rest. */
   void (*set_up)(const struct sph_body_physics *body, struct sph_particles *particles, size_t first, size_t last);
-  /* Makes body->prepared[index]; `free_prepared` frees it, `bytes_prepared` counts it. */
+  /* Makes body->prepared[index]; `free_prepared` frees it. */
   status (*prepare)(const struct sph_inputs *inputs, const struct sph_particles *particles, struct sph_solid *body,
                     struct error *error);
   void (*free_prepared)(void *prepared);
-  size_t (*bytes_prepared)(const void *prepared);
   /* After a restart, makes again from the columns those prepared data that change in a run. */
   void (*restored)(struct sph_system *system, const struct sph_solid *body);
   /* Called once a step between SPH_RETURN and SPH_CRACK, when all blocks of all bodies have their new stress: for

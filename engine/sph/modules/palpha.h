@@ -374,11 +374,6 @@ static status palpha_prepare(const struct sph_inputs *inputs, const struct sph_p
   return sph_palpha_prepare(&body->physics.material.palpha, &body->physics.material, law, error);
 }
 
-static size_t palpha_bytes_prepared(const void *prepared) {
-  (void)prepared;
-  return sizeof(struct sph_palpha_law);
-}
-
 /* Distention as the particles have it (or alpha_0), at its pressure. Their damage is that of all causes. */
 static void palpha_fill(struct sph_system *s, const struct sph_solid *body, const struct sph_particles *p) {
   const struct sph_palpha_law *law = body->prepared[SPH_MODULE_palpha];
@@ -421,7 +416,6 @@ static const struct sph_module palpha_module = {
     .set_up = palpha_set_up,
     .prepare = palpha_prepare,
     .free_prepared = free,
-    .bytes_prepared = palpha_bytes_prepared,
     .fill = palpha_fill,
     .complete_material = palpha_complete_material,
 };

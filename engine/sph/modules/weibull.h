@@ -44,7 +44,6 @@ static const struct sph_module weibull_module = {
     .on = weibull_on,
     .prepare = weibull_prepare,
     .free_prepared = sph_flaws_lists_free,
-    .bytes_prepared = sph_flaws_lists_bytes,
 };
 
 #endif

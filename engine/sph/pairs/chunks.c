@@ -33,15 +33,6 @@ void sph_chunks_clear(struct sph_chunks *c) {
   *c = (struct sph_chunks){0};
 }
 
-size_t sph_chunks_bytes(const struct sph_chunks *c) {
-  size_t bytes = sph_neighbours_bytes(c->neighbours) + c->stretch_capacity * sizeof *c->stretch;
-  for (size_t k = 0; k < c->count; k++)
-    bytes += sizeof *c->chunk + (c->chunk[k].lists.capacity + c->chunk[k].halo_capacity +
-                                 2 * c->chunk[k].foreign_capacity + 2 * c->chunk[k].own + 1) *
-                                    sizeof(uint32_t);
-  return bytes;
-}
-
 /* ---- balance ----
  *
  * Lists of neighbours are balanced so that most of them fill whole batches.

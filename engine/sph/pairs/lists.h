@@ -41,7 +41,6 @@ struct sph_neighbour_lists {
 struct sph_neighbours *sph_neighbours_create(size_t n, size_t chunk, size_t per_list,
                                              const struct sph_pair_kernels *kernels);
 void sph_neighbours_free(struct sph_neighbours *neighbours); /* NULL is fine */
-size_t sph_neighbours_bytes(const struct sph_neighbours *neighbours);
 
 /* Builds the boxes for pairs with r < reach_i + reach_j; along axes whose `periodic` length is not NaN the nearest
  * image counts. The arrays must stay until the next call and be readable up to 7 elements beyond their end. Bits do not
@@ -98,7 +97,6 @@ struct sph_chunks {
 status sph_chunks_create(size_t n, size_t per_list, const struct sph_pair_kernels *kernels, struct sph_chunks *out,
                          struct error *error);
 void sph_chunks_clear(struct sph_chunks *chunks);
-size_t sph_chunks_bytes(const struct sph_chunks *chunks);
 
 /* Makes new lists. Arguments and errors as for sph_neighbours_find. `body` (by particle; NULL: all pairs are in lists)
  * parts the pairs: those of different bodies go to `foreign` of the chunks. */

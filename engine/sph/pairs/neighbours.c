@@ -58,10 +58,6 @@ void sph_neighbours_free(struct sph_neighbours *s) {
   free(s);
 }
 
-size_t sph_neighbours_bytes(const struct sph_neighbours *s) {
-  return sizeof *s + s->box_capacity * sizeof *s->box + s->leaf_capacity * sizeof *s->leaf_first + s->size_capacity;
-}
-
 struct bounds {
   double low[3], high[3], reach;
 };

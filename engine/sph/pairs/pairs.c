@@ -75,14 +75,7 @@ static size_t lag_of(const struct sph_pairs *p) {
 }
 
 const struct sph_pair_kernels *sph_pairs_kernels_choose(void) {
-#ifdef __x86_64__
-  const enum cpu_class best = cpu_class_choose();
-  if (best == CPU_V4)
-    return &sph_pairs_kernels_v4;
-  if (best == CPU_V3)
-    return &sph_pairs_kernels_v3;
-#endif
-  return &sph_pairs_kernels_baseline;
+  return CPU_CLASS_OF(sph_pairs_kernels);
 }
 
 /* ---- life ---- */
@@ -191,17 +184,6 @@ void sph_pairs_free(struct sph_pairs *p) {
   free(p->halo);
   free(p->buffer);
   free(p);
-}
-
-size_t sph_pairs_bytes(const struct sph_pairs *p) {
-  const size_t bytes = p->records->bytes;
-  size_t arrays = p->apart ? 7 : 6;
-  for (size_t k = 0; k < MADE_ALL; k++)
-    arrays += p->made[k] != NULL;
-  return sizeof *p + arrays * sizeof(double) * p->n + sph_chunks_bytes(&p->lists) +
-         (p->out_capacity + p->halo_capacity) * p->out_columns * bytes + p->in_capacity * p->in_columns * bytes +
-         p->threads * BUFFER * sizeof(double) + p->foreign.row_capacity * sizeof *p->foreign.row +
-         p->foreign.other_capacity * sizeof *p->foreign.other;
 }
 
 bool sph_pairs_look_back(const struct sph_pairs *p) {

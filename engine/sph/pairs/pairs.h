@@ -78,7 +78,6 @@ struct sph_pairs; /* opaque: lists and records */
  * not compiled for terms that are on together (SPH_PAIR_COMBINATIONS). */
 status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct sph_pairs **out, struct error *error);
 void sph_pairs_free(struct sph_pairs *pairs); /* NULL is fine */
-size_t sph_pairs_bytes(const struct sph_pairs *pairs);
 
 /* The smallest remaining slack (m) of the particles low .. high - 1. Slack shrinks as a particle moves and as its h
  * grows. Negative: the lists may miss pairs; it is also negative when a position is not finite or there are no lists

@@ -469,17 +469,6 @@ static status build(struct sph_system *s, const struct sph_particles *p, const s
 }
 
 /* The loops of the CPU class that this process runs. */
-static const struct sph_ranges *choose_ranges(void) {
-#ifdef __x86_64__
-  const enum cpu_class best = cpu_class_choose();
-  if (best == CPU_V4)
-    return &sph_ranges_v4;
-  if (best == CPU_V3)
-    return &sph_ranges_v3;
-#endif
-  return &sph_ranges_baseline;
-}
-
 status sph_system_create(const struct sph_particles *particles, size_t body_count,
                          const struct sph_body_physics *bodies, const struct sph_inputs *inputs,
                          const struct sph_domain *domain, struct sph_system **out, struct error *error) {
@@ -494,7 +483,7 @@ status sph_system_create(const struct sph_particles *particles, size_t body_coun
   s->domain = *domain;
   s->n = particles->n;
   s->body_count = body_count;
-  s->ranges = choose_ranges();
+  s->ranges = CPU_CLASS_OF(sph_ranges);
   s->solid = solid;
   status code = build(s, particles, bodies, error);
   if (code) {
@@ -522,19 +511,6 @@ void sph_system_free(struct sph_system *s) {
   free(s->solid);
   free(s->block);
   free(s);
-}
-
-size_t sph_system_bytes(const struct sph_system *s) {
-  size_t bytes = sizeof *s + s->arena_doubles * sizeof(double) + s->n * 2 * sizeof(uint32_t) +
-                 s->body_count * sizeof *s->solid + s->block_count * sizeof *s->block + sph_pairs_bytes(s->pairs);
-  if (s->held)
-    bytes += s->n * sizeof *s->held;
-  bytes += (s->body ? s->n : 0) + s->touch_capacity * sizeof *s->touch;
-  for (size_t b = 0; b < s->body_count; b++)
-    for (size_t m = 0; m < SPH_MODULES; m++)
-      if (s->solid[b].prepared[m])
-        bytes += sph_modules_at(m)->bytes_prepared(s->solid[b].prepared[m]);
-  return bytes;
 }
 
 static const struct sph_flaws_lists *flaws_of(const struct sph_solid *body) {

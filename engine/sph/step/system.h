@@ -56,7 +56,6 @@ status sph_system_create(const struct sph_particles *particles, size_t body_coun
                          const struct sph_body_physics *bodies, const struct sph_inputs *inputs,
                          const struct sph_domain *domain, struct sph_system **out, struct error *error);
 void sph_system_free(struct sph_system *system); /* NULL is fine */
-size_t sph_system_bytes(const struct sph_system *system);
 
 enum sph_fault { /* why a step failed */
                  SPH_FAULT_NONE,

@@ -1,0 +1,20 @@
+/* Memory of this process that malloc() and its kin have given and that is not yet freed, in bytes. */
+#ifndef CLAST_TESTS_ALLOCATED_H
+#define CLAST_TESTS_ALLOCATED_H
+
+#include <stddef.h>
+
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/allocator_interface.h>
+static inline size_t allocated(void) {
+  return __sanitizer_get_current_allocated_bytes();
+}
+#else
+#include <malloc.h>
+static inline size_t allocated(void) {
+  const struct mallinfo2 all = mallinfo2();
+  return all.uordblks + all.hblkhd;
+}
+#endif
+
+#endif
