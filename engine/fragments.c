@@ -230,9 +230,9 @@ static status turn_in_space(size_t n, const struct fragment_member *members, con
   return STATUS_OK;
 }
 
-static status find(bool in_space, size_t n, const struct fragment_member *members, size_t link_count,
-                   const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
-                   struct error *error) {
+status fragments_find(bool in_space, size_t n, const struct fragment_member *members, size_t link_count,
+                      const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
+                      struct error *error) {
   *out = NULL;
   *count = 0;
   if (n == 0)
@@ -253,16 +253,4 @@ static status find(bool in_space, size_t n, const struct fragment_member *member
   *out = NULL;
   *count = 0;
   return code;
-}
-
-status fragments_find_plane(size_t n, const struct fragment_member *members, size_t link_count,
-                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
-                            struct error *error) {
-  return find(false, n, members, link_count, links, label, out, count, error);
-}
-
-status fragments_find_space(size_t n, const struct fragment_member *members, size_t link_count,
-                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
-                            struct error *error) {
-  return find(true, n, members, link_count, links, label, out, count, error);
 }

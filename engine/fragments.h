@@ -32,18 +32,16 @@ struct fragment_member {
   double moment_of_inertia;        /* kg m^2 about its own centre (particles: 0) */
 };
 
-/* Finds and measures fragments in 2D: spin and moment of inertia are about z. *out has *count fragments by
- * descending mass (malloc'd, owned by the caller; NULL when n is 0); `label` (n entries) may be NULL. STATUS_MEMORY. */
-status fragments_find_plane(size_t n, const struct fragment_member *members, size_t link_count,
-                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
-                            struct error *error);
-
-/* The same in 3D. Spin is I^-1 L with the full inertia tensor I about the centre of mass: the angular velocity of a
- * rigidly turning fragment of any shape. About an axis without inertia (one particle, particles in a line) it is 0.
- * moment_of_inertia is trace(I)/3. A member's own moment is that of a sphere, its own spin is about z. */
-status fragments_find_space(size_t n, const struct fragment_member *members, size_t link_count,
-                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
-                            struct error *error);
+/* Finds and measures fragments. *out has *count fragments by descending mass (malloc'd, owned by the caller; NULL when
+ * n is 0); `label` (n entries) may be NULL. STATUS_MEMORY.
+ *
+ * In 2D spin and moment of inertia are about z. In space spin is I^-1 L with the full inertia tensor I about the centre
+ * of mass: the angular velocity of a rigidly turning fragment of any shape. About an axis without inertia (one
+ * particle, particles in a line) it is 0. moment_of_inertia is trace(I)/3. A member's own moment is that of a sphere,
+ * its own spin is about z. */
+status fragments_find(bool in_space, size_t n, const struct fragment_member *members, size_t link_count,
+                      const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
+                      struct error *error);
 
 /* Principal axes of a symmetric tensor xx xy xz yy yz zz: values ascending, axis[k] the unit vector of value[k].
  * Jacobi's rotations: exact to rounding for every finite tensor. */

@@ -85,7 +85,7 @@ static void dumbbell(void **state) {
   const uint32_t links[1][2] = {{1, 0}};
   struct fragment *f;
   size_t count;
-  assert_int_equal(fragments_find_plane(3, members, 1, links, NULL, &f, &count, NULL), STATUS_OK);
+  assert_int_equal(fragments_find(false, 3, members, 1, links, NULL, &f, &count, NULL), STATUS_OK);
   assert_int_equal(count, 2);
   near(f[0].mass, 4);
   near(f[0].position[0], 0);
@@ -114,7 +114,7 @@ static void dumbbell(void **state) {
   near(outcome.mean_fragment_mass, 16.25 / 4.5);
   near(outcome.mean_fragment_mass_rest, 0.5);
   free(f);
-  assert_int_equal(fragments_find_plane(0, NULL, 0, NULL, NULL, &f, &count, NULL), STATUS_OK);
+  assert_int_equal(fragments_find(false, 0, NULL, 0, NULL, NULL, &f, &count, NULL), STATUS_OK);
   assert_null(f);
 }
 

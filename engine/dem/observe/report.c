@@ -67,7 +67,7 @@ static status fragments_of(const struct dem_run *run, double when, uint32_t *lab
     return status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains", n);
   add_grains(run, &w);
   add_links(run, when, &w);
-  TRY(fragments_find_plane(w.present, member, w.links, (const uint32_t(*)[2])link, found, fragments, count, error));
+  TRY(fragments_find(false, w.present, member, w.links, (const uint32_t(*)[2])link, found, fragments, count, error));
   for (size_t k = 0; k < *count; k++)
     (*fragments)[k].first = grain[(*fragments)[k].first];
   for (size_t i = 0; label && i < n; i++)

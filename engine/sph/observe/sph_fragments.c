@@ -551,8 +551,8 @@ static status find(struct search *s, struct error *error) {
   classify(s);
   TRY(link_members(s, error));
   unwrap(s);
-  TRY(fragments_find_space(s->members, s->member, s->links, (const uint32_t(*)[2])s->link, s->label, &s->out->fragments,
-                           &s->out->count, error));
+  TRY(fragments_find(true, s->members, s->member, s->links, (const uint32_t(*)[2])s->link, s->label, &s->out->fragments,
+                     &s->out->count, error));
   TRY(stop_endless_spins(s, error));
   sum_up(s);
   measure_shape(s, s->out->axis_ratio);
