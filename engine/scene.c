@@ -8,7 +8,6 @@
 
 #include "engine/blake2s.h"
 #include "engine/builtin.h"
-#include "schemas/document.h"
 #include "schemas/file.h"
 #include "schemas/json_schema.h"
 #include "schemas/limits.h"

@@ -18,10 +18,15 @@ static inline double clock_s(void) {
   return 1e-9 * (double)clock_ns();
 }
 
-static inline double clock_cpu_s(void) {
+/* s of a clock of POSIX. */
+static inline double clock_read_s(clockid_t clock) {
   struct timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  clock_gettime(clock, &now);
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static inline double clock_cpu_s(void) {
+  return clock_read_s(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 /* Seconds as ns, at most 1e18. */

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { QUOTE = 60 };
 
@@ -20,14 +19,6 @@ bool field_is_share(const struct field *row) {
 }
 
 /* ---- names ---- */
-
-/* Does `path` end with the whole words of `suffix`? */
-static bool ends_with(const char *path, const char *suffix) {
-  size_t path_length = strlen(path), length = strlen(suffix);
-  if (length == 0 || length > path_length || strcmp(path + path_length - length, suffix) != 0)
-    return false;
-  return length == path_length || path[path_length - length - 1] == '.';
-}
 
 void field_guess(const struct field_table *table, struct text_guess *guess) {
   for (size_t i = 0; i < table->count; i++) {
@@ -43,7 +34,7 @@ bool field_nearest(const struct field_table *table, const char *path, char near[
   const char *dot = strrchr(path, '.'), *word = dot ? dot + 1 : path;
   field_guess(table, &guess);
   *near = 0;
-  const bool sure = dot && guess.nearest && ends_with(guess.nearest, word);
+  const bool sure = dot && guess.nearest && text_ends_in_words(guess.nearest, word, ".");
   const struct field *row = sure ? NULL : field_ending(table, word, NULL);
   while (row) {
     const struct field *const next = field_ending(table, word, row);
@@ -124,7 +115,7 @@ const struct field *field_find(const struct field_table *table, const char *path
   for (size_t i = 0; i < table->count; i++) {
     if (strcmp(table->rows[i].path, path) == 0)
       return &table->rows[i];
-    if (!ends_with(table->rows[i].path, path))
+    if (!text_ends_in_words(table->rows[i].path, path, "."))
       continue;
     found = &table->rows[i];
     candidates++;
@@ -154,7 +145,7 @@ const struct field *field_find(const struct field_table *table, const char *path
 
 const struct field *field_ending(const struct field_table *table, const char *suffix, const struct field *after) {
   for (size_t i = after ? (size_t)(after - table->rows) + 1 : 0; i < table->count; i++)
-    if (ends_with(table->rows[i].path, suffix))
+    if (text_ends_in_words(table->rows[i].path, suffix, "."))
       return &table->rows[i];
   return NULL;
 }

@@ -5,8 +5,6 @@
 #include <math.h>
 #include <nettle/sha2.h>
 #include <stdarg.h>
-#include <stdbool.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -233,6 +231,18 @@ const char *text_next_item(const char *list, char *item, size_t size) {
 bool text_ends_in(const char *text, const char *ending) {
   const size_t length = strlen(text), tail = strlen(ending);
   return length > tail && strcmp(text + length - tail, ending) == 0;
+}
+
+bool text_ends_in_words(const char *text, const char *words, const char *separators) {
+  return *words && (strcmp(text, words) == 0 ||
+                    (text_ends_in(text, words) && strchr(separators, text[strlen(text) - strlen(words) - 1])));
+}
+
+size_t text_characters(const char *text, size_t bytes) {
+  size_t count = 0;
+  for (size_t i = 0; i < bytes && text[i]; i++)
+    count += (text[i] & 0xC0) != 0x80;
+  return count;
 }
 
 const char *text_plural(int64_t count) {

@@ -28,6 +28,10 @@ void text_make_plain(char *text, const char *kept);
 
 /* Does `text` end in these bytes, and is it longer? */
 bool text_ends_in(const char *text, const char *ending);
+/* Is `words` all of the text, or its end behind one of these separators? No text ends in "". */
+bool text_ends_in_words(const char *text, const char *words, const char *separators);
+/* Characters in the first `bytes` bytes, or up to the text's end: continuation bytes of UTF-8 do not count. */
+size_t text_characters(const char *text, size_t bytes);
 
 /* "s", and "" for one. */
 const char *text_plural(int64_t count);

@@ -213,10 +213,6 @@ static void fill_sample(const struct posterior_model *model, uint64_t seed, doub
 
 status posterior_make(const struct posterior_model *model, uint64_t seed, struct posterior *out, struct error *error) {
   *out = (struct posterior){0};
-  if (model->inputs == 0 || model->inputs > INFERENCE_INPUTS || model->outputs == 0 ||
-      model->outputs > INFERENCE_OUTPUTS)
-    return status_fail(error, STATUS_CONTENT, "a fit has 1 to %d inputs and 1 to %d measured numbers, not %zu and %zu",
-                       INFERENCE_INPUTS, INFERENCE_OUTPUTS, model->inputs, model->outputs);
   if (model->inputs <= GRID_INPUTS) {
     double effective = 0;
     TRY(make_grid(model, out, &effective, error));

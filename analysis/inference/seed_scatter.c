@@ -92,9 +92,6 @@ static void find_shape(const struct seed_scatter_runs *runs, struct seed_scatter
 status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, struct seed_scatter *out,
                         struct error *error) {
   *out = (struct seed_scatter){.inputs = runs->inputs};
-  if (runs->inputs > INFERENCE_INPUTS)
-    return status_fail(error, STATUS_CONTENT, "%zu inputs are too many for a fit: at most %d", runs->inputs,
-                       INFERENCE_INPUTS);
   double pooled = 0; /* mean variance over all points */
   for (size_t i = 0; i < runs->points; i++) {
     const struct sample_moments m = moments_of(runs, i);

@@ -115,9 +115,6 @@ static status fit_output(const struct surfaces_runs *runs, const bool *bounded, 
 status surfaces_fit(const struct surfaces_runs *runs, const struct posterior_datum *data, const bool *bounded,
                     struct surfaces *out, struct error *error) {
   *out = (struct surfaces){.model = {.inputs = runs->inputs, .outputs = runs->outputs}};
-  if (runs->outputs > INFERENCE_OUTPUTS || runs->inputs > INFERENCE_INPUTS)
-    return status_fail(error, STATUS_CONTENT, "a fit has at most %d inputs and %d measured numbers, not %zu and %zu",
-                       INFERENCE_INPUTS, INFERENCE_OUTPUTS, runs->inputs, runs->outputs);
   memcpy(out->model.bounded, bounded, runs->inputs * sizeof *bounded);
   status code = STATUS_OK;
   for (size_t k = 0; code == STATUS_OK && k < runs->outputs; k++) {

@@ -87,15 +87,8 @@ void chart_numbers(struct chart *chart, const char *name, size_t count, const do
     fprintf(chart->variables, "%s[%zu] = %.17g\n", name, i + 1, isfinite(values[i]) ? values[i] : 0);
 }
 
-static size_t letters(const char *text, size_t bytes) {
-  size_t count = 0;
-  for (size_t i = 0; i < bytes; i++)
-    count += (text[i] & 0xC0) != 0x80;
-  return count;
-}
-
 size_t chart_letters(const char *text) {
-  return text ? letters(text, strlen(text)) : 0;
+  return text ? text_characters(text, SIZE_MAX) : 0;
 }
 
 /* Breaks a text at blanks into lines of at most `most` letters. Text beyond LINES lines is cut and ends in "...".
@@ -107,7 +100,7 @@ static size_t fold(const char *text, size_t most, char *folded, size_t size) {
     return 0;
   while (*text && used + 8 < size) {
     const size_t bytes = strcspn(text, " \n");
-    const size_t wide = letters(text, bytes);
+    const size_t wide = text_characters(text, bytes);
     if (column > 0 && column + 1 + wide > most) {
       if (lines == LINES) {
         text_append(folded, size, " ...");

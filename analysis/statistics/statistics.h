@@ -10,7 +10,6 @@
 
 #include "engine/fragments.h"
 #include "schemas/field.h"
-#include "schemas/limits.h"
 #include "schemas/status.h"
 
 /* ---- samples ----

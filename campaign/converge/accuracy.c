@@ -51,22 +51,15 @@ static const struct knob *knob_of(const struct campaign *campaign, const char *n
   return engine_knob(campaign->scene->kind, name, NULL);
 }
 
-static bool is_axis(const struct campaign *campaign, const char *path) {
-  for (size_t a = 0; a < campaign->axis_count; a++)
-    if (strcmp(campaign->axes[a].row->path, path) == 0)
-      return true;
-  return false;
-}
-
 /* True when the campaign varies an input that this level of the knob sets. */
 static bool is_varied(const struct campaign *campaign, const struct knob *knob, const char *setting) {
   for (size_t i = 0; i < KNOB_INPUTS && knob->inputs[i].path; i++)
-    if (is_axis(campaign, knob->inputs[i].path))
+    if (campaign_axis(campaign, knob->inputs[i].path))
       return true;
   const struct scene_settings *settings = knob->group == KNOB_SETTINGS ? scene_settings_find(campaign->scene, setting)
                                                                        : NULL;
   for (size_t i = 0; settings && i < settings->count; i++)
-    if (is_axis(campaign, campaign->scene->kind->inputs->rows[settings->item[i].row].path))
+    if (campaign_axis(campaign, campaign->scene->kind->inputs->rows[settings->item[i].row].path))
       return true;
   return false;
 }

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "schemas/text.h"
 #include "schemas/unit.h"
 
 void design_axis_free_all(struct design_axis *axes, size_t count) {

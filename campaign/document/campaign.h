@@ -109,7 +109,7 @@ void campaign_free(struct campaign *campaign); /* NULL is fine */
 void campaign_drop(struct campaign **campaign); /* for CAMPAIGN */
 
 /* The axis of an input; NULL: it does not vary. */
-const struct design_axis *campaign_axis(const struct campaign *campaign, const struct field *row);
+const struct design_axis *campaign_axis(const struct campaign *campaign, const char *path);
 
 /* Least and greatest number of replicates of a point. Equal for per_point. */
 int64_t campaign_replicates_least(const struct campaign *campaign);

@@ -103,9 +103,9 @@ static const struct field design_rows[] = {
 const struct field_table campaign_design_table = FIELD_TABLE(design_rows, struct campaign_design_keys, "design",
                                                              "How points are made from the varied inputs.");
 
-const struct design_axis *campaign_axis(const struct campaign *campaign, const struct field *row) {
+const struct design_axis *campaign_axis(const struct campaign *campaign, const char *path) {
   for (size_t i = 0; i < campaign->axis_count; i++)
-    if (campaign->axes[i].row == row)
+    if (strcmp(campaign->axes[i].row->path, path) == 0)
       return &campaign->axes[i];
   return NULL;
 }

@@ -87,7 +87,7 @@ static bool add_column(struct reading *r, size_t column) {
     return wrong(r, "%s", error.message);
   if (row->flags & FIELD_FILE)
     return wrong(r, "%s: a shape file cannot be varied: write a scene for each shape", row->path);
-  if (campaign_axis(campaign, row))
+  if (campaign_axis(campaign, row->path))
     return wrong(r, "two columns for %s", row->path);
   if (*unit && row->kind != FIELD_REAL)
     return wrong(r, "%s has no unit; leave [%s] out", row->path, unit);

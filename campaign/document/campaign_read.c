@@ -39,7 +39,7 @@ static const struct field *read_set_value(document_node *node, const char *key, 
     return NULL;
   }
   const struct field *row = field_find_in(scene->kind->inputs, key, scene->inputs, &error);
-  if (row && campaign_axis(campaign, row))
+  if (row && campaign_axis(campaign, row->path))
     document_report(node, path, "%s", varied);
   else if (!row ||
            (campaign_read_value(node, row, folder, &value) && scene_set(scene, row->path, &value, &error) != STATUS_OK))

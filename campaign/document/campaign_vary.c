@@ -197,7 +197,7 @@ static bool read_linked(struct reading *r, document_node *node) {
                                  : NULL;
   if (!row)
     return wrong(r, node, name ? error.message : "expected the path of the varied input that this one follows");
-  const struct design_axis *other = campaign_axis(campaign, row);
+  const struct design_axis *other = campaign_axis(campaign, row->path);
   if (!other || other == axis)
     return wrong(r, node, "follows an input that is not varied; name one of the other keys of `vary`");
   axis->linked = (size_t)(other - campaign->axes);
@@ -336,7 +336,7 @@ static bool begin_axis(struct reading *readings, size_t index, document_node *va
                                 : NULL;
   if (!row)
     return wrong(r, NULL, key ? error.message : "expected a path");
-  const struct design_axis *same = campaign_axis(campaign, row);
+  const struct design_axis *same = campaign_axis(campaign, row->path);
   *r->axis = (struct design_axis){.row = row, .lower = -HUGE_VAL, .upper = HUGE_VAL};
   campaign->axis_count = index + 1;
   if (same)

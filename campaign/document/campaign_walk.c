@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "campaign/terminal/words.h"
-#include "engine/outcome.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 

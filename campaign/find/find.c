@@ -121,7 +121,7 @@ static status read_end(const struct field *row, const char *option, const char *
 
 static status find_bracket(struct find *find, const struct find_request *request, struct error *error) {
   const struct field *row = find->input;
-  const struct design_axis *axis = campaign_axis(find->campaign, row);
+  const struct design_axis *axis = campaign_axis(find->campaign, row->path);
   find->from = find->to = NAN;
   for (size_t i = 0; axis && i < axis->level_count; i++) {
     find->from = fmin(find->from, field_number(&axis->levels[i]));
@@ -193,7 +193,7 @@ static status read_request(const struct find_request *request, const char *path,
   driver_list_reference(campaign, path, find->reference, sizeof find->reference);
   find->most = (size_t)request->most_runs;
   find->axis = (struct design_axis){.row = find->input};
-  const struct design_axis *axis = campaign_axis(campaign, find->input);
+  const struct design_axis *axis = campaign_axis(campaign, find->input->path);
   if (axis)
     memcpy(find->axis.unit, axis->unit, sizeof axis->unit);
   find->limits = *campaign;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/statistics.h"
 #include "campaign/terminal/words.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
@@ -128,11 +129,6 @@ struct bin {
   struct sample_summary mean;
 };
 
-static int by_x(const void *a, const void *b) {
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Pools the runs, in order of the input, into at most `BINS` + 1 bins of whole places. */
 static status make_bins(const struct find *find, struct bin *bins, size_t *count, struct error *error) {
   OWNED double(*pairs)[3] = NULL;
@@ -146,7 +142,7 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
       pairs[n][2] = find->doubtful[i];
       pairs[n++][1] = find->y[i];
     }
-  qsort(pairs, n, sizeof *pairs, by_x);
+  qsort(pairs, n, sizeof *pairs, sample_ascending); /* by x */
   *count = 0;
   for (size_t i = 0, from = 0; i < n; i++) {
     values[i - from] = pairs[i][1];

@@ -5,8 +5,8 @@
  *     a campaign   chooses among the replicates of its points: driver_run()
  *     a series     campaigns one after another, each depends on the results before: driver_run_series(). A study of
  *                  convergence (converge/) and a fit (fit/) are series. So is whatever else looks for something by
- * runs: it gives the next campaign and reads its results, and nothing more a server     runs that requests ask for:
- * serve/
+ *                  runs: it gives the next campaign and reads its results, and nothing more
+ *     a server     runs that requests ask for: serve/
  *
  *     farm_start(&farm_options, run_work, &farm, &error);     // before HDF5, threads, MPI
  *     scheduler_compute(&planner, farm, &options, &error);    // every rank; only rank 0 opens the store

@@ -56,10 +56,9 @@ static status take_levels(struct serve_model *model, const char *text, struct er
   if (!knob)
     return STATUS_USAGE;
   for (size_t k = 0; k < KNOB_INPUTS && knob->inputs[k].path; k++)
-    for (size_t i = 0; i < campaign->axis_count; i++)
-      if (strcmp(campaign->axes[i].row->path, knob->inputs[k].path) == 0)
-        return status_fail(error, STATUS_USAGE, "--knob %s sets %s, which the campaign varies", name,
-                           knob->inputs[k].path);
+    if (campaign_axis(campaign, knob->inputs[k].path))
+      return status_fail(error, STATUS_USAGE, "--knob %s sets %s, which the campaign varies", name,
+                         knob->inputs[k].path);
   OWNED char *notes = NULL;
   const status code = ladder_make(knob, campaign->scene, text[length] ? text + length + 1 : NULL, &model->ladder,
                                   &notes, error);

@@ -232,16 +232,8 @@ void table_rare(struct table *table) {
 
 /* ---- the table for people: which columns, how wide, and the lines of a row ---- */
 
-/* Characters in so many bytes: continuation bytes of UTF-8 do not count. */
-static size_t characters(const char *text, size_t bytes) {
-  size_t width = 0;
-  for (size_t i = 0; i < bytes && text[i]; i++)
-    width += (text[i] & 0xC0) != 0x80;
-  return width;
-}
-
 static size_t width_of(const char *text) {
-  return characters(text, SIZE_MAX);
+  return text_characters(text, SIZE_MAX);
 }
 
 /* Can a line end behind this character? "M_1" stays whole. */
@@ -384,7 +376,7 @@ static void print_lines(struct table *table, size_t count, const size_t *list, c
       const char *const text = column->rest;
       const size_t bytes = row && !column->text ? strlen(text) : line_of(text, column->width);
       const size_t mark = row && *text ? room_of_mark(column, &row[list[i]]) : 0;
-      const size_t width = characters(text, bytes) + mark, gap = column->width > width ? column->width - width : 0;
+      const size_t width = text_characters(text, bytes) + mark, gap = column->width > width ? column->width - width : 0;
       if (bytes)
         fprintf(out, "%*s%.*s", (int)(blanks + (column->text ? 0 : gap)), "", (int)bytes, text);
       blanks = bytes ? GAP + mark + (column->text ? gap : 0) : blanks + GAP + column->width;

@@ -8,6 +8,7 @@
 
 #include "db/store/internal.h"
 #include "schemas/clock.h"
+#include "schemas/text.h"
 
 enum { STEPS_BETWEEN_LOOKS = 10000 };
 
@@ -23,13 +24,8 @@ static bool describes(const char *pragma, const char *value) {
                                            "index_info",     "index_xinfo",       "foreign_key_list", "database_list",
                                            "application_id", "schema_version",    "user_version",     "page_count",
                                            "page_size",      "function_list",     "compile_options",  "integrity_check",
-                                           "quick_check",    "foreign_key_check", "encoding"};
-  if (strcmp(pragma, "journal_mode") == 0)
-    return !value;
-  for (size_t i = 0; i < sizeof describing / sizeof describing[0]; i++)
-    if (strcmp(pragma, describing[i]) == 0)
-      return true;
-  return false;
+                                           "quick_check",    "foreign_key_check", "encoding",         NULL};
+  return strcmp(pragma, "journal_mode") == 0 ? !value : text_is_one_of(pragma, describing);
 }
 
 static bool only_reads(int action, const char *first, const char *second) {

@@ -16,15 +16,6 @@ struct names {
   size_t count;
 };
 
-/* Is `column` equal to `wanted`, or does it end in `wanted` after an underscore or a dot? */
-static bool ends_in(const char *column, const char *wanted) {
-  size_t length = strlen(column), tail = strlen(wanted);
-  if (tail > length)
-    return false;
-  const char *end = column + length - tail;
-  return strcmp(end, wanted) == 0 && (end == column || end[-1] == '_' || end[-1] == '.');
-}
-
 /* Is it a section of the path: "porosity" of target.material.porosity.fraction? */
 static bool is_section(const char *path, const char *wanted) {
   const size_t length = strlen(wanted);
@@ -71,7 +62,8 @@ static void consider(struct choice *choice, const char *column, const char *path
   if (is_alike(name, choice->wanted) && choice->similar++ < NAMED)
     append(choice->alike, sizeof choice->alike, name);
   bool exact = strcmp(column, choice->wanted) == 0 || (path && strcmp(path, choice->wanted) == 0);
-  if (choice->exact || !(exact || ends_in(column, choice->wanted) || (path && ends_in(path, choice->wanted)) ||
+  if (choice->exact || !(exact || text_ends_in_words(column, choice->wanted, "_.") ||
+                         (path && text_ends_in_words(path, choice->wanted, "_.")) ||
                          (path && choice->sections && is_section(path, choice->wanted))))
     return;
   choice->matches = exact ? 1 : choice->matches + 1;

@@ -1,13 +1,13 @@
 /* Adding rows: campaigns, points with their inputs and shape files, axes, runs with everything that follows from them,
  * and attempts. Statements are prepared once; adding a run needs no further SQL text or JSON. */
 #include <string.h>
-#include <time.h>
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "db/store/views.h"
 #include "engine/grow.h"
 #include "engine/scene.h"
+#include "schemas/clock.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
 
@@ -16,13 +16,6 @@ static const char adding_campaign[] = "adding a campaign";
 static const char adding_run[] = "adding a run";
 
 /* ---- engines ---- */
-
-/* s since 1970-01-01 UTC */
-static double wall_clock(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_REALTIME, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* Results that a scene names itself: scenes that give one name to results of different units need different stores. */
 static status check_defined(struct store *store, const struct engine_kind *kind, const char *table,
@@ -407,8 +400,8 @@ static status add_row(struct store *store, const struct store_kind *kind, const 
                               sql_of_integer(run->surplus), sql_of_integer(store_run_counts(run)),
                               sql_of_integer(run->attempt), sql_of_real(run->wall_s), sql_of_real(run->cpu_s),
                               sql_of_integer(run->peak_memory), sql_of_text(run->host), sql_of_integer(run->rank),
-                              sql_of_real(wall_clock()), sql_of_text(run->fields_path), sql_of_text(run->fields_digest),
-                              sql_of_bytes(digest, sizeof digest));
+                              sql_of_real(clock_read_s(CLOCK_REALTIME)), sql_of_text(run->fields_path),
+                              sql_of_text(run->fields_digest), sql_of_bytes(digest, sizeof digest));
   sql_bind_fields(store->run, behind, &outcome_table, run->outcome);
   const status result = sql_run(store->run, adding_run, error);
   *run_id = sqlite3_last_insert_rowid(store->db);
@@ -477,7 +470,7 @@ static status add_attempt(struct store *store, const struct store_attempt *attem
            sql_of_integer(attempt->exit_code), sql_of_integer(attempt->signal), sql_of_real(attempt->wall_s),
            sql_of_integer(attempt->peak_memory), sql_of_real(attempt->limit),
            sql_of_text(attempt->message ? attempt->message : ""), sql_of_text(attempt->host),
-           sql_of_integer(attempt->rank), sql_of_real(wall_clock()));
+           sql_of_integer(attempt->rank), sql_of_real(clock_read_s(CLOCK_REALTIME)));
   TRY(sql_run(store->attempt, doing, error));
   state->attempts++;
   return STATUS_OK;
