@@ -35,8 +35,8 @@ bool ask_campaign_shared(struct store *store) {
   double points = 0;
   return answer_number(
              store, &points, NULL,
-             "SELECT count(*) FROM (SELECT point_id FROM campaign_point GROUP BY point_id HAVING count(*) > 1)") ==
-             STATUS_OK &&
+             "SELECT count(*) FROM (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) GROUP BY "
+             "point_id HAVING count(DISTINCT name) > 1)") == STATUS_OK &&
          points > 0;
 }
 

@@ -47,7 +47,7 @@ status ask_run_excluded_count(struct store *store, int64_t *count, struct error 
 struct answer ask_campaign_progress(struct store *store, bool writing, bool earlier, struct error *error);
 /* Seconds since the store had its last sign of life: a run was stored, or a session began. NaN: none is known. */
 double ask_campaign_silence(struct store *store);
-bool ask_campaign_shared(struct store *store); /* have several campaigns the same point? */
+bool ask_campaign_shared(struct store *store); /* have campaigns of several names the same point? */
 /* Number of chosen points that only a study (clast converge) or a search (find, fit) has. */
 int64_t ask_campaign_levels(struct store *store);
 
