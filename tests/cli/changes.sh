@@ -5,7 +5,7 @@
 
 tiny tiny
 expect 0 "$clast" plan tiny.yaml --set contact.friction=0.3 --seeds 5 --no-trial
-prints "20, 0 of them"
+prints "20, no store yet"
 expect 0 "$clast" run tiny.yaml --set contact.friction=0.3 --set body.diameter='7 cm' --seeds 2 --quiet
 same "$(sqlite3 tiny.db "select distinct path, value from point_input where path in ('contact.friction', 'body.diameter')" | xargs)" \
   "body.diameter|0.07 contact.friction|0.3" "inputs of --set in the store"
