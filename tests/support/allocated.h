@@ -5,7 +5,7 @@
 #include <stddef.h>
 
 #ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/allocator_interface.h>
+size_t __sanitizer_get_current_allocated_bytes(void); /* of the runtime; gcc may come without its header */
 static inline size_t allocated(void) {
   return __sanitizer_get_current_allocated_bytes();
 }
