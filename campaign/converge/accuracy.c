@@ -407,16 +407,20 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
 /* More seeds: how many, and what they take at all levels. */
 static void advise_seeds(const struct accuracy *accuracy, double seeds, char *next, size_t size) {
   double time_s = 0;
-  char time[32];
-  for (size_t i = 0; i < accuracy->count; i++)
-    if (!accuracy->options[i].extrapolated)
-      time_s += (seeds - (double)accuracy->n) * accuracy->options[i].run_s;
+  char time[32], knobs[512] = "";
+  for (size_t i = 0; i < accuracy->count; i++) {
+    const struct accuracy_option *option = &accuracy->options[i];
+    if (!option->extrapolated)
+      time_s += (seeds - (double)accuracy->n) * option->run_s;
+    if (!condition_has(knobs, option->knob))
+      text_append(knobs, sizeof knobs, "%s%s", *knobs ? "," : "", option->knob);
+  }
   progress_duration(time_s, time, sizeof time);
   text_append(next, size,
               "The error shrinks with the seeds of the study, which has %" PRId64
               "; about %.0f at every level are needed, which take %s of processor time: `clast converge %s "
-              "--max-seeds %.0f --within off --seeds %.0f`",
-              accuracy->n, seeds, time, accuracy->path, seeds, seeds);
+              "--knob %s --max-seeds %.0f --within off --seeds %.0f`",
+              accuracy->n, seeds, time, accuracy->path, knobs, seeds, seeds);
 }
 
 /* "particles = 40000", "stop = 0.0012 s", "the scene's own settings". */
@@ -547,7 +551,8 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
   char in_half[48] = "no result", allowed[32];
   progress_duration(option->cpu_s * campaign->accuracy_time / accuracy->point_s, time, sizeof time);
   progress_duration(campaign->accuracy_time, allowed, sizeof allowed);
-  words_print(out, before, "%s \xc2\xb1 %.2g%s with %s and %" PRId64 " seeds a point: %s of processor time, of %s",
+  words_print(out, before,
+              "%s \xc2\xb1 %.2g%s with %s and %" PRId64 " seeds a point: %s of processor time (%s allowed)",
               campaign->accuracy_quantity, option->total, more, chosen, option->seeds, time, allowed);
   if (!isnan(half))
     snprintf(in_half, sizeof in_half, "\xc2\xb1 %.2g%s", half, or_more[open[0]]);

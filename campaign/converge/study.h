@@ -105,10 +105,10 @@ status study_launch(const struct study_request *request, const struct command_li
 
 /* ---- study_print.c ---- */
 
-/* The table of knobs of every engine. */
 /* A setting of a knob with the digits and the unit that people need. knob NULL, or not a number: as it is. */
 void study_show_setting(const struct engine_kind *kind, const struct knob *knob, const char *setting, char *text,
                         size_t size);
+/* The table of knobs of every engine. */
 status study_print_knobs(enum table_format format, struct error *error);
 /* For people a table per scene and quantity, with a sentence per knob and, unless `quiet`, a legend on stderr. For
  * programs the rows of convergence_table. */

@@ -201,11 +201,10 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
     if (!found[i].adds || !row || row->n == 0)
       continue;
     const char *const name = study->ladder[from + i].levels.knob->name;
-    const bool stepless = isnan(row->step) && isfinite(row->bias_half_width);
-    if (stepless &&
-        fabs(row->bias) + row->bias_half_width <= 1e-12 * fabs(row->mean)) /* the finest level, or all runs are equal */
-      continue;
-    if (found[i].limit.verdict == LIMIT_TOO_FEW && !stepless) {
+    const bool few_levels = found[i].limit.verdict == LIMIT_TOO_FEW, stepless = isnan(row->step);
+    if (few_levels && stepless && fabs(row->bias) + row->bias_half_width <= 1e-12 * fabs(row->mean))
+      continue; /* the finest level, or one with the same results */
+    if (few_levels && !(stepless && isfinite(row->bias_half_width))) {
       text_append(few, sizeof few, "%s%s", *few ? ", " : "", name);
       continue;
     }
@@ -230,8 +229,7 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
     print_change(knob, found, out);
     fprintf(out,
             ": the three finest levels do not follow limit + a step^p with p from 0.5 to 2 (if they did, chance would "
-            "put them "
-            "this far off in %.2g %% of studies); ",
+            "put them this far off in %.2g %% of studies); ",
             100 * limit->fit);
   }
   int64_t dropped = limit->verdict == LIMIT_SEEN ? limit->dropped : 0;

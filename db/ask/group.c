@@ -376,18 +376,22 @@ status ask_group_twins(struct store *store, struct ask_group_twins *twins, struc
 status ask_group_idle(struct store *store, char idle[ASK_GROUP_POOLED], struct error *error) {
   struct ask_column axes[LIMITS_AXES_OF_POOL];
   size_t count;
-  char *sql = NULL;
   idle[0] = '\0';
   TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_POOL, axes, &count, error));
-  FILE *out = text_open(&sql);
+  /* Lists, because an expression of hundreds of terms is too deep for SQLite. A result that some of the runs lack is
+   * not the same. */
+  char *lists[2] = {NULL, NULL};
+  FILE *out[2] = {text_open(&lists[0]), text_open(&lists[1])};
   ANSWER
   results = answer_to(store, error,
                       "%s AND c.name NOT IN (SELECT column_name FROM column_doc WHERE table_name = 'run' AND NOT "
                       "deterministic)",
                       quantities_sql);
-  while (answer_next(&results))
-    fprintf(out, " AND min(\"%1$s\") IS max(\"%1$s\") AND count(\"%1$s\") IN (0, count(*))", answer_text(&results, 0));
-  OWNED char *same = text_close_small(out, &sql);
+  for (const char *before = ""; answer_next(&results); before = ", ") {
+    fprintf(out[0], "%1$smin(\"%2$s\"), count(\"%2$s\") %% count(*)", before, answer_text(&results, 0));
+    fprintf(out[1], "%1$smax(\"%2$s\"), 0", before, answer_text(&results, 0));
+  }
+  OWNED char *least = text_close_small(out[0], &lists[0]), *most = text_close_small(out[1], &lists[1]);
   TRY(answer_end(&results));
   for (size_t i = 0; i < count; i++) {
     bool idle_so_far = true; /* the first seeds show most effects; only without one all seeds are read */
@@ -396,12 +400,12 @@ status ask_group_idle(struct store *store, char idle[ASK_GROUP_POOLED], struct e
       for (size_t j = 0; j < count; j++)
         if (j != i)
           sqlite3_str_appendf(others, "\"%w\", ", axes[j].name);
-      ANSWER answer =
-          answer_to(store, error,
-                    "SELECT ifnull(min(same), %d) FROM (SELECT count(DISTINCT \"%w\") AS kinds, (1%s) AS same FROM "
-                    "runs WHERE counts AND (%d OR replicate = 0) GROUP BY %zengine, results_version, seed "
-                    "HAVING kinds > 1)",
-                    !all, axes[i].name, same, all, sqlite3_str_finish(others));
+      ANSWER answer = answer_to(
+          store, error,
+          "SELECT ifnull(min(same), %d) FROM (SELECT count(DISTINCT \"%w\") AS kinds, (%s) IS (%s) AS same FROM "
+          "runs WHERE counts AND (%d OR replicate = 0) GROUP BY %zengine, results_version, seed "
+          "HAVING kinds > 1)",
+          !all, axes[i].name, least, most, all, sqlite3_str_finish(others));
       idle_so_far = answer_next(&answer) && answer_integer(&answer, 0);
       TRY(answer_end(&answer));
     }
