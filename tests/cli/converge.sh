@@ -226,6 +226,13 @@ assert float(re.search(r"its mean ([0-9.e-]+) ", open("err").read())[1]) == floa
 PY
 ok "the mean of most seeds"
 
+# Advice of seeds keeps the knobs of the study: others would bring errors of their own.
+sed 's/sharp/narrow/; s/1e-9/0.003/' sharp.yaml >narrow.yaml
+expect 0 "$clast" converge narrow.yaml --knob time_step,integrator --seeds 8 --within off --store narrow.db -j 2
+expect 65 "$clast" plan narrow.yaml
+grep -q '`clast converge narrow.yaml --knob [a-z_,]*time_step[a-z_,]* --max-seeds' err || fail "no knobs: $(cat err)"
+ok "advice keeps the knobs"
+
 # Levels without the scene's own grains: the mean and the seeds of the finest one.
 sed 's/sharp/without/' sharp.yaml >without.yaml
 expect 0 "$clast" converge without.yaml --knob grains=1.3cm,0.9cm --seeds 3 --within off --store without.db -j 2
@@ -277,4 +284,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 75
+done_after 78
