@@ -213,7 +213,8 @@ status pooled_exponent(const struct pooled_runs *runs, enum exponent_method meth
 }
 
 bool pooled_exponent_tells(const struct pooled_exponent *exponent) {
-  return isfinite(exponent->interval.half_width) || exponent->fit.standard_error < 1;
+  const double half = exponent->interval.half_width;
+  return (isfinite(half) ? half / 2 : exponent->fit.standard_error) < 1; /* half: about two standard errors */
 }
 
 status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,

@@ -368,7 +368,7 @@ struct pooled_exponent {
   struct sample_interval interval; /* over runs: quote this error. NaN for one run */
   size_t runs;                     /* number of runs with fragments in their window */
 };
-/* Is there enough of it for a person to read: an interval, or at least the whole number by fit.standard_error? */
+/* Is there enough of it for a person to read: is the whole number known, by the interval or by fit.standard_error? */
 bool pooled_exponent_tells(const struct pooled_exponent *exponent);
 /* Methods: least squares or on masses; STATUS_USAGE for another one. lower: kg, the same for all runs of
  * the point (a number of mean element masses). level: 0.95 for a 95 % interval. The cost is microseconds per run. */

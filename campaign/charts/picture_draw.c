@@ -106,12 +106,14 @@ static status draw_grains(const char *fields, const char *picture, const struct 
   long long seed = 0;
   double time = NAN;
   status code = STATUS_OK;
-  if (options->what || options->view || options->axis || options->at)
-    return status_fail(error, STATUS_USAGE,
+  TRY(picture_fragments_read(fields, &panel.body, error));
+  if (options->what || options->view || options->axis || options->at) {
+    code = status_fail(error, STATUS_USAGE,
                        "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
                        "are for particles in space",
                        fields);
-  TRY(picture_fragments_read(fields, &panel.body, error));
+    goto cleanup;
+  }
   if (movie && !picture) {
     code = widen(&movie->frame, &panel.body);
     goto cleanup;

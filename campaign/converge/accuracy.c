@@ -439,13 +439,8 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double seeds = ceil((double)accuracy->n * pow(best->error / accuracy->within, 2));
-  char other[600] = "", next[600] = "", share[32] = "", more[64] = "", chosen[256];
+  char next[600] = "", share[32] = "", more[64] = "", chosen[256];
   name_option(campaign, best, chosen, sizeof chosen);
-  if (strcmp(quantity, OUTCOME_DEFAULT) == 0)
-    text_append(other, sizeof other,
-                "; or take another result: `clast converge %s --quantity fragment_count,kinetic_energy_share` tells "
-                "how near these are",
-                path);
   if (campaign->accuracy_of_value)
     snprintf(share, sizeof share, "%.3g %% (", 100 * campaign->accuracy_within);
   if (*accuracy->left_out)
@@ -464,9 +459,9 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   return status_fail(error, STATUS_CONTENT,
                      "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g (%" PRId64
                      " seeds). The smallest error is "
-                     "%.2g%s, with %s. %s. Or %sask for the least error in a time: `clast plan %s --within 10min`%s",
+                     "%.2g%s, with %s. %s. Or %sask for the least error in a time: `clast plan %s --within 10min`",
                      quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n, best->error,
-                     best->open ? " or more, as no limit is seen" : "", chosen, next, more, path, other);
+                     best->open ? " or more, as no limit is seen" : "", chosen, next, more, path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {

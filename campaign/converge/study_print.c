@@ -86,6 +86,23 @@ void study_show_setting(const struct engine_kind *kind, const struct knob *knob,
   snprintf(text, size, number >= 1e6 ? "%.0f%s%s" : "%.6g%s%s", number, *unit ? " " : "", unit);
 }
 
+/* The rows of a quantity, for print. No error of a share is larger than its distance from the farther end of 0 to 1;
+ * the store keeps the sum of errors, from which `accuracy` takes those of finer levels. */
+static size_t find_shown(const struct study *study, size_t from, size_t quantity, struct study_found *found) {
+  const struct field *result = study->quantity[quantity].row;
+  const size_t count = study_of_scene(study, from, quantity, found);
+  for (size_t i = 0; i < count && result && field_is_share(result); i++)
+    for (size_t l = 0; l < found[i].count; l++) {
+      struct convergence_row *row = &found[i].rows[l];
+      const double most = fmax(row->mean, 1 - row->mean);
+      if (row->error > most) {
+        row->error = most;
+        row->open = false; /* a bound, if a weak one */
+      }
+    }
+  return count;
+}
+
 static void print_level(const struct printing *printing, struct table *table, const struct study_ladder *ladder,
                         const struct convergence_row *row, const struct ask_doubts *doubts) {
   char setting[160];
@@ -386,7 +403,7 @@ status study_print(const struct study *study, enum table_format format, bool qui
     table_doubt_columns(table);
   for (size_t from = 0, count = 0; from < study->ladder_count; from += count)
     for (size_t q = 0; q < study->quantity_count; q++) {
-      count = study_of_scene(study, from, q, found);
+      count = find_shown(study, from, q, found);
       TRY(table ? print_rows(&printing, from, q, count, found, table, error)
                 : print_quantity(&printing, from, q, count, found, error));
     }
@@ -506,7 +523,7 @@ status study_print_picture(const struct study *study, bool of_errors, const char
   STORE store = NULL;
   TRY(memory_array(&drawing, 1, sizeof *drawing, "the picture of a study", error));
   TRY(store_open_reader(study->limits.store, &store, error));
-  const size_t knobs = study_of_scene(study, 0, 0, drawing->found);
+  const size_t knobs = find_shown(study, 0, 0, drawing->found);
   const struct printing printing = {.study = study, .store = store};
   for (size_t i = 0; i < knobs; i++)
     for (size_t l = 0; l < drawing->found[i].count; l++) {

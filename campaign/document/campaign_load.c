@@ -164,7 +164,7 @@ static const char origin[] = "command line";
 status campaign_change_split(const char *text, char path[FIELD_TEXT_SIZE], const char **value, struct error *error) {
   const char *equals = strchr(text, '=');
   if (!equals || equals == text || equals - text >= FIELD_TEXT_SIZE)
-    return status_fail(error, STATUS_USAGE, "--set expects PATH=VALUE (--set contact.friction=0.3), got \"%.128s\"",
+    return status_fail(error, STATUS_USAGE, "--set expects PATH=VALUE (--set threshold.strain=0.03), got \"%.128s\"",
                        text);
   snprintf(path, FIELD_TEXT_SIZE, "%.*s", (int)(equals - text), text);
   *value = equals + 1;

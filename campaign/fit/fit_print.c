@@ -269,8 +269,9 @@ static void tell_determined(const struct fit *fit, FILE *out) {
   bool as_wide = false;
   if (is_outside(fit)) {
     words_print(out, "",
-                "OUTSIDE: no inputs within the priors give what was measured (MISFIT below). The inputs have "
-                "no interval (-): widen the priors, or ask what the model lacks.");
+                "OUTSIDE: no inputs within the priors give %s (MISFIT below). The inputs have no interval (-): widen "
+                "the priors, or ask what the model lacks.",
+                fit->observed->datum_count > 1 ? "all that was measured" : "what was measured");
     return;
   }
   for (size_t i = 0; i < p; i++) {
@@ -373,10 +374,10 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
                   "formula (pyabc, on `clast serve`) fits without that.",
                   label, found);
     if (beyond(fit, k) < 0.025)
-      words_print(
-          out, "",
-          "MISFIT: no inputs within the priors predict %s well: at most %.2g of predicted experiments lie %s it.",
-          label, fmax(beyond(fit, k), 1e-4), below < 0.5 ? "below" : "above");
+      words_print(out, "", "MISFIT: %s %s well: at most %.2g of predicted experiments lie %s it.",
+                  fit->observed->datum_count > 1 ? "the inputs that suit all data together do not predict"
+                                                 : "no inputs within the priors predict",
+                  label, fmax(beyond(fit, k), 1e-4), below < 0.5 ? "below" : "above");
     if (fit->surfaces.left_out[k] > 1.5)
       words_print(
           out, "",

@@ -319,9 +319,11 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
 static const double FAR = 0.05; /* the measured spectrum differs from a pool when fewer runs are as far */
 
 /* The answer in words: of one pool with its share of runs, of more with their numbers. */
-static void tell_shape(size_t pools, size_t agree, size_t differ, double share) {
-  if (agree + differ == 0)
-    printf("no verdict on the shape: it takes a distance, and %d runs of two fragments or more\n", MATCH_RUNS);
+static void tell_shape(size_t pools, size_t agree, size_t differ, double share, bool nothing) {
+  if (agree + differ == 0 && nothing)
+    puts("no verdict on the shape: no distance can be told, see below");
+  else if (agree + differ == 0)
+    printf("no verdict on the shape: it needs %d runs of two fragments or more\n", MATCH_RUNS);
   else if (pools > 1)
     printf("agrees in shape with %zu of %zu rows (runs_as_far %.2g or more), differs from %zu, no verdict on %zu\n",
            agree, pools, FAR, differ, pools - agree - differ);
@@ -391,7 +393,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   }
   TRY(ask_pools_end(&pools));
   if (table_for_people(format))
-    tell_shape(count, agree, differ, share);
+    tell_shape(count, agree, differ, share, nothing);
   TRY(table_end(table, error));
   if (table_for_people(format)) {
     uncertainty_doubts(&sum, stderr);

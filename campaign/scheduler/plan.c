@@ -468,9 +468,10 @@ static void print(const struct campaign *campaign, const struct plan *plan, int 
   campaign_warn(campaign, "warning   ", out);
 
   if (plan->runs_most != plan->runs_least)
-    snprintf(until, sizeof until, " to %llu (%s to ±%g%s)", (unsigned long long)plan->runs_most,
-             campaign->until_quantity, campaign->until_half_width * (campaign->until_of_value ? 100 : 1),
-             campaign->until_of_value ? " % of its mean" : "");
+    snprintf(until, sizeof until, " to %llu (%s to ±%g%s; at least %lld seeds a point, as few can be alike by chance)",
+             (unsigned long long)plan->runs_most, campaign->until_quantity,
+             campaign->until_half_width * (campaign->until_of_value ? 100 : 1),
+             campaign->until_of_value ? " % of its mean" : "", (long long)campaign_replicates_least(campaign));
   snprintf(a, sizeof a, plan->store_exists ? "%llu of them in the store" : "no store yet",
            (unsigned long long)plan->runs_there);
   words_print(out, "runs      ", "%llu%s, %s", (unsigned long long)plan->runs_least, until, a);

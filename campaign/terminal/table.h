@@ -92,7 +92,7 @@ status table_text_only(enum table_format format, const char *what, struct error 
 enum { UNCERTAINTY_TEXT = 400 };
 
 /* "0.349 ± 0.003": the error has one digit, or two after a leading 1; the value has as many decimals. Without a half
- * width above 0: "0.349". */
+ * width above 0: "0.349". Below 0.001: "(3.3 ± 0.2)e-05". */
 void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_TEXT]);
 
 /* The same of a share: "0.11 (0 to 0.27)", its interval, where the half width passes 0 or 1. */

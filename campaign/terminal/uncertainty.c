@@ -9,6 +9,7 @@
 
 enum { MOST_DECIMALS = 15 };
 static const double MOST_DIGITS = 1e15; /* a double has no more digits than that */
+static const double SMALL = 1e-3;       /* below it a common power of ten is shorter than zeros */
 
 /* Decade of the last digit that an error allows: one digit of the error, two after a leading 1. Rounding moves it by at
  * most a quarter. */
@@ -20,6 +21,14 @@ static double last_decade(double half_width) {
 void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_TEXT]) {
   if (!(half_width > 0)) {
     snprintf(text, UNCERTAINTY_TEXT, "%.4g", value);
+    return;
+  }
+  const double size = fmax(fabs(value), half_width);
+  if (size < SMALL) { /* (3.3 +- 0.2)e-05 */
+    const double decade = floor(log10(size));
+    char digits[UNCERTAINTY_TEXT];
+    uncertainty_number(value / pow(10, decade), half_width / pow(10, decade), digits);
+    snprintf(text, UNCERTAINTY_TEXT, "(%.40s)e%03d", digits, (int)decade);
     return;
   }
   double leading = last_decade(half_width);

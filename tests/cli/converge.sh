@@ -39,8 +39,9 @@ says "0 runs computed"
 python -c "
 import json; rows = json.load(open('out'))
 assert len(rows) == 8 and {r['knob'] for r in rows} == {'time_step', 'grains'}, rows
-assert all(r['bias'] == 0 for r in rows if r['reference'])"
-ok "the table as JSON"
+assert all(r['bias'] == 0 for r in rows if r['reference'])
+assert all(r['error'] <= max(r['mean'], 1 - r['mean']) for r in rows), rows"
+ok "the table as JSON, in which no error of a share is larger than the share can move"
 expect 0 "$clast" check disc.db
 # An exponent belongs to all runs of a level: its study finds the beta and the interval that `estimates` prints.
 expect 0 "$clast" estimates disc.db

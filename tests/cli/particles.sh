@@ -39,6 +39,7 @@ PY
 [ "$(echo movie* all*)" = "movie.gif all.png" ] || fail "the frames of the movie stay: $(echo movie* all*)"
 ok "a movie of the snapshots, and a sheet"
 expect 64 "$clast" picture basalt-sphere.hdf.series movie.mp4
+expect 66 "$clast" picture none.hdf none.png --what damage
 
 expect 0 "$clast" simulate elastic-bar --set fidelity.particles=600 --set "stop.end_time=5 us" --quiet --fields bar.hdf
 for what in damage pressure density energy flaws fragments; do

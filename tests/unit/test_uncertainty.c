@@ -21,7 +21,8 @@ static void seeds(void **state) {
       {{.mean = 0.34912, .half_width = 0.0144}, "0.349 ± 0.014 (seeds, 95 %)"},
       {{.mean = 0.34912, .half_width = 0.02}, "0.35 ± 0.02 (seeds, 95 %)"},
       {{.mean = 4321.6, .half_width = 34}, "4320 ± 30 (seeds, 95 %)"},
-      {{.mean = -2.5e-20, .half_width = 3e-22}, "-2.5e-20 ± 3e-22 (seeds, 95 %)"},
+      {{.mean = -2.5e-20, .half_width = 3e-22}, "(-2.50 ± 0.03)e-20 (seeds, 95 %)"},
+      {{.mean = 3.321e-5, .half_width = 1.66e-6}, "(3.32 ± 0.17)e-05 (seeds, 95 %)"},
       {{.n = 30, .mean = 1, .half_width = NAN, .low = 0.905, .high = 1}, "1 (all 30 runs; 0.905 to 1)"},
       {{.n = 1, .mean = 0.34912, .half_width = NAN, .low = NAN, .high = NAN}, "0.3491"},
   };

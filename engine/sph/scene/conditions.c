@@ -706,7 +706,9 @@ const struct condition sph_conditions[] = {
         .doubt = "the shock of the impact is not resolved, and all that follows from it moves with the particles",
         .reason =
             "benchmarks of impact codes ask for 10 to 20 (Pierazzo and others 2008, Meteorit. Planet. Sci. 43, 1917)",
-        .remedy = "take more particles, or fidelity: {graded: true, spacings_per_radius: 5, projectile_spacing: 1}",
+        .remedy = "take more particles; or, of a scene that is not graded, set fidelity: {graded: true, "
+                  "spacings_per_radius: 5, "
+                  "projectile_spacing: 1}",
         .results = ALL_OF_AN_IMPACT, .before = spacings),
     CONDITION("wall", .number = "the number of particle spacings through the wall of colliding rings or cylinders",
               .bound = 4, .least = true,
@@ -883,7 +885,7 @@ const struct condition sph_conditions[] = {
     CONDITION("shallow", .number = "the depth of the crater in particle spacings", .bound = 2, .least = true,
               .doubt = "the crater is as shallow as the error of its depth, one spacing",
               .reason = "a hole of less than one spacing counts as none",
-              .remedy = "take more particles, or fidelity.graded: true",
+              .remedy = "take more particles, or fidelity.graded: true where it is false",
               .results = "crater.depth crater.radius crater.volume", .after = shallow),
     CONDITION("growing",
               .number =
