@@ -159,7 +159,7 @@ struct campaign_option {
 #define CAMPAIGN_OPTION(type_, member_)                                                                                \
   OPTION_ROW_LIST(                                                                                                     \
       "set", 's', "PATH=VALUE", type_, member_.set,                                                                    \
-      .doc = "Another value of an input, like a line under `set` of the campaign: threshold.strain=0.03. May be "       \
+      .doc = "Another value of an input, like a line under `set` of the campaign: threshold.strain=0.03. May be "      \
              "given several times."),                                                                                  \
       OPTION_ROW_INTEGER("seeds", 0, "N", type_, member_.seeds, 0, 1000000000000, "0",                                 \
                          .doc = "Number of seeds for every point, instead of the campaign's; 0: the campaign's."),     \
