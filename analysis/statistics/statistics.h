@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "engine/bins.h"
 #include "engine/fragments.h"
 #include "schemas/field.h"
 #include "schemas/status.h"
@@ -144,17 +145,12 @@ bool sample_could_stop(size_t n, double level);
  *
  * The mass spectrum of one run on fixed logarithmic bins. Estimates and the store use the same edges.
  *
- * Bin k covers [10^(k/n), 10^((k+1)/n)) kg with n = SPECTRUM_BINS_PER_DECADE: the same edges for every scene, so that
- * bins of different runs, points and stores add up. */
+ * Bins are those of engine/bins.h, in kg. */
 
-enum { SPECTRUM_BINS_PER_DECADE = 10, SPECTRUM_NO_BIN = INT32_MIN };
+enum { SPECTRUM_BINS_PER_DECADE = BINS_PER_DECADE, SPECTRUM_NO_BIN = BINS_NONE };
 
-/* The bin whose [edge, next edge) holds the mass: exact against spectrum_edge() for every double (1e-3 kg is in bin
- * -30, the double before it in bin -31). SPECTRUM_NO_BIN for zero, negative, infinite and NaN masses. */
-int spectrum_bin(double mass);
-
-/* Lower edge of a bin, kg. Whole decades from 1e-22 to 1e22 are the doubles nearest to the powers of ten. */
-double spectrum_edge(int bin);
+int spectrum_bin(double mass); /* bins_of() */
+double spectrum_edge(int bin); /* bins_edge(), kg */
 
 /* The size of a fragment: diameter of the sphere, or in two dimensions of the disc, of its mass and this density. */
 struct spectrum_size {
