@@ -35,6 +35,10 @@ const struct engine_kind *engine_at(size_t index) {
   return index < engine_count() ? engines_list[index] : NULL;
 }
 
+struct ejecta *engine_ejecta(const struct engine_kind *kind, void *result) {
+  return kind->ejecta ? (struct ejecta *)((char *)result + kind->ejecta) : NULL;
+}
+
 const struct engine_kind *engine_find(const char *name, struct error *error) {
   char list[256] = "";
   for (size_t i = 0; i < engine_count(); i++) {

@@ -1,8 +1,8 @@
--- The store of clast: schema of version 4.
+-- The store of clast: schema of version 5.
 -- Made from the tables in db/store/schema.c and the engines' field tables; do not edit: a test compares.
 -- Views have, besides, one column per input that some campaign varied (table axis).
 PRAGMA application_id = 1129075540;
-PRAGMA user_version = 4;
+PRAGMA user_version = 5;
 
 CREATE TABLE column_doc ( -- Meaning and unit of every column.
   table_name TEXT NOT NULL, -- table or view
@@ -127,6 +127,15 @@ CREATE TABLE spectrum ( -- Fragment mass spectrum of each run.
   bin INTEGER NOT NULL, -- mass bin (table bin); only bins that hold something
   count INTEGER NOT NULL, -- [1] fragments in the bin
   mass REAL NOT NULL, -- [kg] their mass
+  PRIMARY KEY (run_id, bin)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE ejecta ( -- Ejecta of each impact over their speed.
+  run_id INTEGER NOT NULL REFERENCES run (run_id), -- the run
+  bin INTEGER NOT NULL, -- number of a bin of speed: ten per decade, bin 0 starts at 1 m/s
+  speed REAL NOT NULL, -- [m/s] lower edge of the bin, inside it; only bins that hold something
+  mass REAL NOT NULL, -- [kg] mass of the target's matter that leaves at such a speed (result ejecta.mass_fraction)
+  momentum REAL NOT NULL, -- [kg m/s] its momentum along the outward normal (result ejecta.momentum)
   PRIMARY KEY (run_id, bin)
 ) STRICT, WITHOUT ROWID;
 
@@ -344,9 +353,9 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   largest_speed REAL, -- [m/s] Speed of the largest fragment's centre of mass. Off when that has fewer than 100 particles.
   second_mass REAL, -- [kg] Mass of the second largest fragment; off when there is only one.
   second_angle REAL, -- [rad] Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.
-  ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target leaving faster than crater.ejection_speed. Times target_mass: their mass.
+  ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target leaving faster than crater.ejection_speed and crater.escape_speed. Times target_mass: their mass. `clast spectrum STORE --ejecta` shows it over the speed.
   ejecta_momentum REAL, -- [kg m/s] Impact: momentum of the ejecta along the outward normal.
-  ejecta_momentum_enhancement REAL, -- [1] Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.
+  ejecta_momentum_enhancement REAL, -- [1] Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed; all matter counts that is faster than crater.escape_speed.
   crater_depth REAL, -- [m] Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.
   crater_radius REAL, -- [m] Impact: radius of a circle whose area is that of the crater at the surface.
   crater_volume REAL, -- [m^3] Impact: volume of the crater, between the surface at the start and the surface of the retained matter.
@@ -845,6 +854,16 @@ INSERT INTO column_doc VALUES ('convergence_limit', 'results_version', NULL, 've
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'verdict', NULL, 'What all levels and seeds together tell. One of: too-few, constant, limit, no-limit', 1);
 
+INSERT INTO column_doc VALUES ('ejecta', 'bin', NULL, 'number of a bin of speed: ten per decade, bin 0 starts at 1 m/s', 0);
+
+INSERT INTO column_doc VALUES ('ejecta', 'mass', 'kg', 'mass of the target''s matter that leaves at such a speed (result ejecta.mass_fraction)', 0);
+
+INSERT INTO column_doc VALUES ('ejecta', 'momentum', 'kg m/s', 'its momentum along the outward normal (result ejecta.momentum)', 0);
+
+INSERT INTO column_doc VALUES ('ejecta', 'run_id', NULL, 'the run', 0);
+
+INSERT INTO column_doc VALUES ('ejecta', 'speed', 'm/s', 'lower edge of the bin, inside it; only bins that hold something', 0);
+
 INSERT INTO column_doc VALUES ('estimate', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.', 1);
@@ -1229,11 +1248,11 @@ INSERT INTO column_doc VALUES ('result_sph', 'crater_volume', 'm^3', 'Impact: vo
 
 INSERT INTO column_doc VALUES ('result_sph', 'density_held_share', '1', 'Share of all particle steps that held the density at its lower limit. Such a step adds no energy.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target leaving faster than crater.ejection_speed. Times target_mass: their mass.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target leaving faster than crater.ejection_speed and crater.escape_speed. Times target_mass: their mass. `clast spectrum STORE --ejecta` shows it over the speed.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of the ejecta along the outward normal.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum_enhancement', '1', 'Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum_enhancement', '1', 'Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed; all matter counts that is faster than crater.escape_speed.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_clamped', 'J', 'Energy added where internal energy would have become negative.', 1);
 
@@ -1467,11 +1486,11 @@ INSERT INTO column_doc VALUES ('runs', 'doubtful', '1', '1: the run breaks a con
 
 INSERT INTO column_doc VALUES ('runs', 'dust_fraction', '1', 'Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target leaving faster than crater.ejection_speed. Times target_mass: their mass.', 0);
+INSERT INTO column_doc VALUES ('runs', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target leaving faster than crater.ejection_speed and crater.escape_speed. Times target_mass: their mass. `clast spectrum STORE --ejecta` shows it over the speed.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of the ejecta along the outward normal.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'ejecta_momentum_enhancement', '1', 'Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed.', 0);
+INSERT INTO column_doc VALUES ('runs', 'ejecta_momentum_enhancement', '1', 'Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed; all matter counts that is faster than crater.escape_speed.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'end_triangle_share', '1', 'Compression: share of beams broken inside the two 45-degree triangles on the confined ends, over the same share outside them, up to the largest stress. 0 is intact triangles, 1 no pattern.', 0);
 

@@ -4,7 +4,7 @@
 
 struct options {
   const char *by, *size, *with, *picture;
-  bool cumulative, runs, plot, ascii;
+  bool cumulative, runs, ejecta, plot, ascii;
   struct chart_options chart;
 };
 
@@ -12,11 +12,21 @@ static status print(struct store *store, const struct options *options, const st
                     enum table_format format, struct error *error) {
   const struct picture_page page = charts_page(options->picture, &options->chart);
   const struct spectrum_drawing drawing = {options->picture ? &page : NULL, options->plot, options->ascii};
+  if (options->ejecta)
+    return print_ejecta(store, &choice->pool, &drawing, format, error);
   if (choice->measured)
     TRY(print_spectrum_match(store, choice, format, error));
   else if (!options->plot)
     TRY(print_spectrum(store, choice, format, error));
   return drawing.page || drawing.text ? spectrum_curves_draw(store, choice, &drawing, error) : STATUS_OK;
+}
+
+static status check(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  if (options->ejecta && (options->cumulative || options->runs || options->size || options->with))
+    return status_fail(error, STATUS_USAGE,
+                       "--ejecta shows masses over speeds: --cumulative, --size, --runs and --with are for fragments");
+  return STATUS_OK;
 }
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
@@ -39,10 +49,11 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_FLAG("runs", 0, struct options, runs),
     OPTION_ROW_TEXT("with", 0, "FILE.csv", struct options, with, NULL),
     OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture),
+    OPTION_ROW_FLAG("ejecta", 0, struct options, ejecta),
     OPTION_ROW_FLAG("plot", 0, struct options, plot),
     OPTION_ROW_FLAG("ascii", 0, struct options, ascii),
     CHART_OPTIONS(struct options, chart),
 };
 
 COMMAND(spectrum, "results", "STORE", .chooses_runs = true, COMMAND_OPTIONS(struct options, option_rows),
-        .has_table = true, .ask = ask);
+        .has_table = true, .check = check, .ask = ask);

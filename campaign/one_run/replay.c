@@ -142,6 +142,22 @@ static void compare_masses(struct comparison *comparison, const double *masses, 
     difference(comparison, "fragment masses", "other", "masses");
 }
 
+static status compare_ejecta(struct comparison *comparison, struct store *store, int64_t run_id, struct error *error) {
+  const struct ejecta *here = engine_ejecta(comparison->kind, comparison->result->result);
+  struct ejecta ejecta;
+  bool stored;
+  TRY(ask_run_ejecta(store, run_id, &ejecta, &stored, error));
+  if (!here || !stored) /* of an older program */
+    return STATUS_OK;
+  comparison->out->compared++;
+  for (int i = 0; i < EJECTA_BINS; i++)
+    if (here->bin[i].mass != ejecta.bin[i].mass || here->bin[i].momentum != ejecta.bin[i].momentum) {
+      difference(comparison, "ejecta over speed", "other", "masses");
+      break;
+    }
+  return STATUS_OK;
+}
+
 status replay_compare(struct store *store, int64_t run_id, const struct engine_kind *kind,
                       const struct run_result *result, struct table *table, struct replay_compare *out,
                       struct error *error) {
@@ -153,6 +169,7 @@ status replay_compare(struct store *store, int64_t run_id, const struct engine_k
   TRY(ask_run_masses(store, run_id, &masses, &count, error));
   if (masses)
     compare_masses(&comparison, masses, count);
+  TRY(compare_ejecta(&comparison, store, run_id, error));
   if (out->compared < 3)
     return status_fail(error, STATUS_CONTENT, "the store keeps no results of run %" PRId64, run_id);
   return STATUS_OK;

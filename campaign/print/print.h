@@ -39,6 +39,13 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
 status print_spectrum_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
                             struct error *error);
 
+/* ---- ejecta of impacts over their speed ---- */
+
+/* Prints one row per bin of speed of each pool: mass and momentum of what leaves at that speed or faster. drawing:
+ * also, or as text instead, the mass of the first eight pools. STATUS_USAGE: no run has ejecta. */
+status print_ejecta(struct store *store, const struct ask_pool_choice *choice, const struct spectrum_drawing *drawing,
+                    enum table_format format, struct error *error);
+
 /* ---- how the runs of pools scatter, as rows, text and a picture, and the split of a variance ---- */
 
 struct scatter_choice {

@@ -16,7 +16,7 @@
 /* The encodings begin with these marks. All ranks of a farm run one binary, so arrays of structs are sent as they are
  * in memory. The marks, the sizes and the hashes of the tables find anything else. */
 #define TASK_MARK   "clast task 3"
-#define RESULT_MARK "clast result 3"
+#define RESULT_MARK "clast result 4"
 
 void run_result_clear(struct run_result *result) {
   free(result->result);
@@ -221,6 +221,8 @@ static bool pass_result(struct wire *wire, const struct engine_kind *kind, struc
   pass_mark(wire, RESULT_MARK);
   pass_object(wire, &outcome_table, &result->outcome);
   pass_object(wire, kind->results, result->result);
+  if (kind->ejecta)
+    pass(wire, engine_ejecta(kind, result->result), sizeof(struct ejecta));
   const size_t most = wire->reads ? (wire->size - wire->at) / fragment : SIZE_MAX;
   result->fragment_count = pass_array_count(wire, result->fragment_count, fragment, most);
   if (wire->reads && result->fragment_count > 0) {

@@ -5,6 +5,7 @@
 #include "analysis/statistics/convergence.h"
 #include "analysis/statistics/statistics.h"
 #include "db/ask/answer.h"
+#include "engine/ejecta.h"
 #include "engine/outcome.h"
 #include "schemas/limits.h"
 
@@ -315,6 +316,9 @@ bool ask_run_of_point_next(struct answer *answer, struct ask_run_of_point *run);
 /* Fragment masses in kg, largest first; the caller frees them. NULL: the store has none. */
 status ask_run_masses(struct store *store, int64_t run_id, double **masses, size_t *count, struct error *error);
 
+/* Ejecta of one run. stored: the store has some, which it has not of runs of older programs. */
+status ask_run_ejecta(struct store *store, int64_t run_id, struct ejecta *ejecta, bool *stored, struct error *error);
+
 /* Wall time of all stored runs in s: mean and longest. NaN: there are none. */
 status ask_run_wall_times(struct store *store, double *mean, double *longest, struct error *error);
 
@@ -540,6 +544,26 @@ const char *ask_pool_mass_unit(int dimensions); /* "kg/m", "kg" */
 /* The pool in the form that the pooled spectrum needs. Mean and interval are over the runs of a point, or over the
  * points. */
 struct pooled_form ask_pool_form(const struct ask_pool *pool, bool cumulative, double density);
+
+/* ---- Ejecta of the impacts of a pool over their speed ---- */
+
+#define ASK_EJECTA "ejecta_momentum" /* the quantity that the pool was made with: what marks it, marks the table */
+/* Has the store runs of an engine with ejecta? */
+status ask_ejecta_known(struct store *store, bool *known, struct error *error);
+
+struct ask_ejecta {
+  size_t runs, without; /* in the means; with ejecta, but of an older program, which did not store them */
+  size_t count;
+  struct ask_ejecta_row {
+    double speed, upper; /* m/s: of the bin */
+    /* Of all target matter that leaves at `speed` or faster: kg, kg m/s. Means over the runs of a point, or over the
+     * points. */
+    struct sample_summary mass, momentum;
+  } row[EJECTA_BINS]; /* by ascending speed */
+};
+/* From the slowest bin to the fastest one in which a run has ejecta. Runs whose value is off or withheld are left out.
+ */
+status ask_ejecta(struct store *store, const struct ask_pool *pool, struct ask_ejecta *out, struct error *error);
 
 /* ---- The data of a page of `clast report`: a small SQLite file, made in memory, with tables that have the names and
  * columns of the store's views. Queries of the page and of its readers work on both.

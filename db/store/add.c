@@ -365,6 +365,27 @@ status store_add_spectrum(struct store *store, int64_t run_id, const struct sums
 
 /* ---- runs ---- */
 
+/* NULL: the run has no result, or its engine no ejecta. */
+static const struct ejecta *ejecta_of(const struct store_run *run) {
+  return run->result ? engine_ejecta(run->kind, (void *)run->result) : NULL;
+}
+
+static status add_ejecta(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
+  const struct ejecta *ejecta = ejecta_of(run);
+  for (int i = 0; ejecta && i < EJECTA_BINS; i++) {
+    if (!(ejecta->bin[i].mass > 0))
+      continue;
+    const int bin = EJECTA_FIRST + i;
+    TRY(sql_prepare_once(store->db, &store->ejecta,
+                         "INSERT INTO ejecta (run_id, bin, speed, mass, momentum) VALUES (?1, ?2, ?3, ?4, ?5)",
+                         adding_run, error));
+    SQL_BIND(store->ejecta, sql_of_integer(run_id), sql_of_integer(bin), sql_of_real(bins_edge(bin)),
+             sql_of_real(ejecta->bin[i].mass), sql_of_real(ejecta->bin[i].momentum));
+    TRY(sql_run(store->ejecta, adding_run, error));
+  }
+  return STATUS_OK;
+}
+
 /* The digest of the rows of a run that is about to be stored. digest_rows() computes the same from the
  * rows. */
 static void digest_run(const struct store *store, const struct store_kind *kind, const struct store_run *run,
@@ -382,6 +403,14 @@ static void digest_run(const struct store *store, const struct store_kind *kind,
   digest_add(&sum, digest_name("fragment_mass", "masses"), 0, masses_of(store, run));
   for (size_t i = 0; i < run->estimate_count; i++)
     digest_add_fields(&sum, store->estimate_names, &estimates_table, i, &run->estimates[i]);
+  const struct ejecta *ejecta = ejecta_of(run);
+  for (int i = 0; ejecta && i < EJECTA_BINS; i++)
+    if (ejecta->bin[i].mass > 0) {
+      const uint64_t bin = (uint64_t)(int64_t)(EJECTA_FIRST + i);
+      digest_add(&sum, digest_name("ejecta", "speed"), bin, sql_of_real(bins_edge(EJECTA_FIRST + i)));
+      digest_add(&sum, digest_name("ejecta", "mass"), bin, sql_of_real(ejecta->bin[i].mass));
+      digest_add(&sum, digest_name("ejecta", "momentum"), bin, sql_of_real(ejecta->bin[i].momentum));
+    }
   digest_write(sum, digest);
 }
 
@@ -435,6 +464,7 @@ static status add_run(struct store *store, const struct store_run *run, struct e
                                 run->outcome->state == OUTCOME_END_TIME, run->surplus};
   TRY(store_make_bins(store, run->fragment_count, &bins, error));
   TRY(store_add_spectrum(store, run_id, &sums, bins, error));
+  TRY(add_ejecta(store, run_id, run, error));
   if (run->estimate_count > 0)
     TRY(store_set_estimates_rows(store, run_id, run->estimate_count, run->estimates, error));
 

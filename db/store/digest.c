@@ -306,6 +306,7 @@ static const struct source of_runs[] = {
      "'host', 'rank', 'finished_at', 'fields_path', 'excluded', 'excluded_at', 'digest'"},
     {"fragment_mass", "0", "'run_id'"},
     {"estimate", "ordinal", "'run_id', 'ordinal'"},
+    {"ejecta", "bin", "'run_id', 'bin'"},
 };
 static const struct source of_points[] = {
     {"point", "0", "'point_id', 'digest'"},
@@ -315,6 +316,8 @@ static const struct source of_points[] = {
 static status open_table(struct digest_rows *rows, const struct source *source, bool to_print, struct error *error) {
   if (rows->count == DIGEST_TABLES)
     return status_fail(error, STATUS_CONTENT, "more than %d tables of results in one store", DIGEST_TABLES);
+  if (!schema_has_column(rows->db, source->table, NULL) && schema_may_lack(source->table, ""))
+    return STATUS_OK; /* an older store */
   SQL_TEXT columns = NULL;
   TRY(sql_textf(rows->db, &columns, doing, rows->error,
                 "SELECT group_concat(format(', \"%%w\"', name), '') FROM pragma_table_info(%Q, 'main') WHERE name NOT "

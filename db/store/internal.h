@@ -247,7 +247,7 @@ struct store {
   struct digest *outcome_names, *estimate_names; /* digest_names_make() */
   sqlite3_stmt *run, *attempt, *estimate;
   size_t estimate_rows; /* that `estimate` inserts */
-  sqlite3_stmt *mass_row, *spectrum, *spectrum_together;
+  sqlite3_stmt *mass_row, *spectrum, *spectrum_together, *ejecta;
   sqlite3_stmt *point_find, *point, *point_input, *campaign_point, *axis_find;
   struct store_kind kinds[LIMITS_ENGINES];
   size_t kind_count;

@@ -201,7 +201,7 @@ static status copy_results(sqlite3 *db, struct error *error) {
   STATEMENT tables = NULL;
   status result = sql_prepare(db,
                               "SELECT 'fragment_mass' UNION ALL SELECT 'estimate' UNION ALL SELECT name FROM "
-                              "other.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*'",
+                              "other.sqlite_schema WHERE type = 'table' AND (name GLOB 'result_*' OR name = 'ejecta')",
                               &tables, doing, error);
   while (sql_next(tables, &result, doing, error)) {
     const char *table = sql_text(tables, 0);

@@ -113,6 +113,15 @@ static const struct schema_column spectrum[] = {
     {"mass", "REAL NOT NULL", "kg", "their mass"},
 };
 
+static const struct schema_column ejecta[] = {
+    {"run_id", "INTEGER NOT NULL REFERENCES run (run_id)", NULL, "the run"},
+    {"bin", "INTEGER NOT NULL", NULL, "number of a bin of speed: ten per decade, bin 0 starts at 1 m/s"},
+    {"speed", "REAL NOT NULL", "m/s", "lower edge of the bin, inside it; only bins that hold something"},
+    {"mass", "REAL NOT NULL", "kg",
+     "mass of the target's matter that leaves at such a speed (result ejecta.mass_fraction)"},
+    {"momentum", "REAL NOT NULL", "kg m/s", "its momentum along the outward normal (result ejecta.momentum)"},
+};
+
 static const struct schema_column point_total[] = {
     {"point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the point"},
     {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results"},
@@ -221,6 +230,7 @@ const struct schema_table schema_tables[] = {
     TABLE(fragment_mass, "Fragment masses: any spectrum can be made from them without a new run.", ROWID),
     TABLE(bin, "Edges of the mass bins in use.", ROWID),
     TABLE(spectrum, "Fragment mass spectrum of each run.", CLUSTERED("run_id, bin")),
+    TABLE(ejecta, "Ejecta of each impact over their speed.", CLUSTERED("run_id, bin")),
     TABLE(point_total, "Running totals of each point, kept in the transaction that adds the runs.",
           CLUSTERED("point_id, results_version")),
     TABLE(point_spectrum, "Running pooled spectrum of each point, kept in the transaction that adds the runs.",
@@ -410,7 +420,7 @@ bool schema_has_column(sqlite3 *db, const char *table, const char *column) {
 }
 
 bool schema_may_lack(const char *table, const char *column) {
-  return strcmp(table, "table_digest") == 0 ||
+  return strcmp(table, "table_digest") == 0 || strcmp(table, "ejecta") == 0 ||
          (strcmp(table, "run") == 0 && (strcmp(column, "fields_digest") == 0 || strncmp(column, "excluded", 8) == 0));
 }
 

@@ -11,9 +11,10 @@
 
 enum {
   SCHEMA_APPLICATION_ID = 0x434c5354, /* "CLST" */
-  SCHEMA_VERSION = 4,
-  SCHEMA_READABLE = 3, /* the oldest version that is read; 4 added table_digest */
-  SCHEMA_OLDEST = 2,   /* the oldest version that is brought forward */
+  SCHEMA_VERSION = 5,                 /* added table ejecta */
+  SCHEMA_DIGESTS = 4,                 /* added table_digest */
+  SCHEMA_READABLE = 3,                /* the oldest version that is read */
+  SCHEMA_OLDEST = 2,                  /* the oldest version that is brought forward */
   SCHEMA_NAME_SIZE = 128,
 };
 
@@ -63,8 +64,8 @@ status schema_check_names(const struct schema_table *table, struct error *error)
 
 /* Does this table have this column (NULL: does the table exist)? */
 bool schema_has_column(sqlite3 *db, const char *table, const char *column);
-/* May a store of the current version lack this column? These came without a new version: readers do without them, a
- * writer adds them (NULL in old rows), and programs that do not know them leave them as they are. */
+/* May a store that is read lack this column? Versions before 5 lack some, and some came without a new version: readers
+ * do without them, a writer adds them (NULL in old rows), and programs that do not know them leave them as they are. */
 bool schema_may_lack(const char *table, const char *column);
 /* Has the database all tables and columns but those, and those that only one engine reports? An older program's may
  * lack some. */

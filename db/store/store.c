@@ -357,7 +357,7 @@ static status bring_forward(sqlite3 *db, int version, struct error *error) {
   TRY(schema_complete_all(db, error));
   if (version == 2)
     TRY(sql_execute(db, name_campaigns, "bringing the store forward", error));
-  if (version < SCHEMA_VERSION)
+  if (version < SCHEMA_DIGESTS)
     TRY(digest_tables_fill(db, error));
   TRY(views_regenerate(db, error));
   return sql_executef(db, "opening for writing", error, "PRAGMA application_id = %d; PRAGMA user_version = %d; COMMIT",
@@ -398,7 +398,7 @@ static void release(struct store *store) {
   sqlite3_stmt *const statements[] = {
       store->run,         store->attempt,           store->estimate,   store->mass_row,
       store->spectrum,    store->spectrum_together, store->point_find, store->point,
-      store->point_input, store->campaign_point,    store->axis_find,
+      store->point_input, store->campaign_point,    store->axis_find,  store->ejecta,
   };
   for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++)
     sqlite3_finalize(statements[i]);

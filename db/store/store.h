@@ -88,8 +88,8 @@ struct store_run {
   const char *fields_path;   /* HDF5 file kept, or NULL */
   const char *fields_digest; /* of store_digest_fields(); NULL: it is not known */
 };
-/* Adds the rows of run, result_<engine>, fragment_mass, spectrum and estimate and the point's running sums, in the
- * transaction of its batch (500 rows or 1 s). If the identity is stored already, nothing changes and the status is
+/* Adds the rows of run, result_<engine>, fragment_mass, spectrum, ejecta and estimate and the point's running sums, in
+ * the transaction of its batch (500 rows or 1 s). If the identity is stored already, nothing changes and the status is
  * STATUS_OK. */
 status store_add_run(struct store *store, const struct store_run *run, struct error *error);
 

@@ -115,6 +115,7 @@ const struct engine_kind sph_engine = {
     .describe = sph_describe_scene,
     .also = also,
     .also_count = sizeof also / sizeof *also,
+    .ejecta = offsetof(struct sph_results, ejecta_over_speed),
     .memory = sph_describe_memory,
     .steps = sph_describe_steps,
     .work = sph_describe_work,

@@ -413,6 +413,7 @@ static void try_values(struct acting *a, const struct field *row) {
                           1.4 * own,
                           own == 0 ? 0.01 : (double)NAN,
                           own == 0 || isnan(own) ? 1 : (double)NAN,
+                          own == 0 ? 1000 : (double)NAN,
                           isnan(own) ? 1e7 : (double)NAN,
                           0.1 * own,
                           10 * own};

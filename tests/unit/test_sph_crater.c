@@ -87,6 +87,37 @@ static void thrown_out(void **state) {
   sph_particles_free(now);
 }
 
+/* 100 particles leave: the i-th with i m/s along x and 10 m/s outwards. Sums of the table are those of the results, and
+ * a bin has what its speeds say. With an escape speed of 50 m/s, those of 49 m/s and more along x leave; the hole is
+ * the same. */
+static void thrown_out_at_many_speeds(void **state) {
+  (void)state;
+  struct sph_particles *start = slab(), *now = slab();
+  for (size_t i = 0; i < 100; i++) {
+    const size_t top = now->n - 1 - i;
+    now->vx[top] = (double)i;
+    now->vz[top] = 10;
+    now->z[top] += 1;
+  }
+  struct sph_crater_options o = options;
+  struct sph_results c[2] = {{0}};
+  for (int k = 0; k < 2; k++, o.escape_speed = 50) {
+    struct ejecta *e = &c[k].ejecta_over_speed;
+    const double count = k ? 51 : 100;
+    measure(start, now, &o, 2, &c[k]);
+    near(c[k].ejecta.mass_fraction * o.mass, count * 1e-6, 1e-12, "ejected mass");
+    near(c[k].ejecta.momentum, count * 10e-6, 1e-12, "ejected momentum");
+    ejecta_sum(e);
+    near(e->bin[0].mass, count * 1e-6, 1e-12, "mass in the table");
+    near(e->bin[0].momentum, count * 10e-6, 1e-12, "momentum in the table");
+    near(e->bin[19 - EJECTA_FIRST].mass, 21e-6, 1e-12, "mass above 79.4 m/s: from 78.8 along x on");
+  }
+  assert_true(c[0].crater.volume == c[1].crater.volume && c[0].crater.depth == c[1].crater.depth &&
+              c[0].crater.compaction_share == c[1].crater.compaction_share);
+  sph_particles_free(start);
+  sph_particles_free(now);
+}
+
 /* The same bowl where the particles are 2.5 times as coarse as at the point of impact, and all that is left has moved
  * by half a spacing: a narrow column that lost its particle so is no hole. */
 static void thrown_out_of_coarse_matter(void **state) {
@@ -193,6 +224,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(untouched),
                                      cmocka_unit_test(thrown_out),
                                      cmocka_unit_test(thrown_out_of_coarse_matter),
+                                     cmocka_unit_test(thrown_out_at_many_speeds),
                                      cmocka_unit_test(nothing_left),
                                      cmocka_unit_test(hardly_porous),
                                      cmocka_unit_test(compacted)};

@@ -216,6 +216,11 @@ static void rebound_counts_in_the_enhancement(void **state) {
   assert_true(momentum[1] > 0.1 * brought && ran.results.sph.ejecta.momentum == 0);
   assert_true(fabs(ran.results.sph.ejecta.momentum_enhancement - -momentum[0] / brought) < 0.02);
   free(ran.fragments);
+  run->inputs.crater.escape_speed = 1000; /* all of it falls back */
+  assert_int_equal(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, &error),
+                   STATUS_OK);
+  assert_true(ran.results.sph.ejecta.momentum_enhancement == 1);
+  free(ran.fragments);
   sph_run_free(run);
 }
 

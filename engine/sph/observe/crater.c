@@ -184,16 +184,27 @@ static status measure_hole(const struct map *m, const struct sph_crater_options 
   return STATUS_OK;
 }
 
-/* Sums over the target's particles. Without a module that compacts matter, all of the crater is ejecta. */
+double sph_crater_speed(const struct sph_particles *p, size_t i) {
+  return sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i] + p->vz[i] * p->vz[i]);
+}
+
+/* Sums over the target's particles. Without a module that compacts matter, all of the crater is ejecta. Matter that
+ * falls back has left the crater, but the target keeps it. */
 static void measure_ejecta(const struct sph_particles *start, const struct sph_particles *now,
                            const struct sph_crater_options *o, struct sph_results *results) {
   double mass = 0, momentum = 0, volume = 0;
+  memset(&results->ejecta_over_speed, 0, sizeof results->ejecta_over_speed);
   for (size_t i = o->first; i < o->first + o->count; i++) {
     if (!is_ejected(now, i, o))
       continue;
-    mass += now->mass[i];
-    momentum += isfinite(now->vz[i]) ? now->mass[i] * now->vz[i] : 0;
     volume += start->mass[i] / start->density[i];
+    const double speed = sph_crater_speed(now, i);
+    if (speed < o->escape_speed) /* false for NaN */
+      continue;
+    const double along = isfinite(now->vz[i]) ? now->mass[i] * now->vz[i] : 0;
+    mass += now->mass[i];
+    momentum += along;
+    ejecta_add(&results->ejecta_over_speed, speed, now->mass[i], along);
   }
   results->ejecta.mass_fraction = sph_results_share(mass, o->mass);
   results->ejecta.momentum = sph_results_finite(momentum);

@@ -1,11 +1,11 @@
 /* Crater and ejecta of an impact on a target. A pure function of the target's particles at the
  * start and now; its resolution is the spacing of the particles.
  *
- * The impact moves along -z. Ejecta are the target's particles that move outwards (+z) faster than a given speed; all
- * other particles are retained. A map divides the target's outline into columns of two spacings. The surface in a
- * column is the highest retained particle. The crater is the connected region round the axis where the surface lies at
- * least one spacing deeper than at the start. Two processes make a crater: ejecta leave, and matter is compacted
- * permanently, which the modules that compact it measure. */
+ * The impact moves along -z. Ejecta are the target's particles that move outwards (+z) faster than a given speed, in
+ * the frame where the target was at rest; all other particles are retained. A map divides the target's outline into
+ * columns of two spacings. The surface in a column is the highest retained particle. The crater is the connected region
+ * round the axis where the surface lies at least one spacing deeper than at the start. Two processes make a crater:
+ * ejecta leave, and matter is compacted permanently, which the modules that compact it measure. */
 #ifndef CLAST_ENGINE_SPH_OBSERVE_OBSERVE_H
 #define CLAST_ENGINE_SPH_OBSERVE_OBSERVE_H
 
@@ -22,10 +22,14 @@ struct sph_crater_options {
   double axis[2];        /* m, x and y of the point of impact */
   double spacing;        /* m, of the particles at the point of impact */
   bool graded;           /* particles elsewhere are coarser */
-  double ejection_speed; /* m/s */
+  double ejection_speed; /* m/s, outwards */
+  double escape_speed;   /* m/s, in any direction: slower matter falls back; 0: there is no gravity */
 };
 
-/* Fills the results ejecta.* and crater.*. STATUS_MEMORY. */
+/* m/s, of particle i, in the frame where the target was at rest. */
+double sph_crater_speed(const struct sph_particles *particles, size_t i);
+
+/* Fills the results ejecta.* and crater.*, and the ejecta over their speed. STATUS_MEMORY. */
 status sph_crater_measure(const struct sph_particles *start, const struct sph_particles *now,
                           const struct sph_crater_options *options, struct sph_results *results, struct error *error);
 

@@ -161,15 +161,17 @@ struct sph_crater_options sph_report_crater_options(const struct sph_run *run) {
                                      .mass = run->range[0].mass,
                                      .spacing = sph_derived_fine_spacing(in),
                                      .graded = in->fidelity.graded,
-                                     .ejection_speed = in->crater.ejection_speed};
+                                     .ejection_speed = in->crater.ejection_speed,
+                                     .escape_speed = in->crater.escape_speed};
 }
 
-/* kg m/s, along the outward normal, of the projectile's matter that moves outwards, however slowly: a body that
- * rebounds may be slower than ejecta. */
+/* kg m/s, along the outward normal, of the projectile's matter that moves outwards and escapes: a body that rebounds
+ * may be slower than crater.ejection_speed. */
 static double carried_back(const struct sph_run *run) {
   double sum = 0;
   for (size_t i = run->range[1].first; i < run->range[1].first + run->range[1].n; i++)
-    sum += run->now->vz[i] > 0 ? run->now->mass[i] * run->now->vz[i] : 0;
+    if (run->now->vz[i] > 0 && !(sph_crater_speed(run->now, i) < run->inputs.crater.escape_speed))
+      sum += run->now->mass[i] * run->now->vz[i];
   return sum;
 }
 

@@ -57,8 +57,8 @@ static const struct field rows[] = {
                 "largest fragment. pi is the antipode. Off when that has fewer than 100 particles.",
          .source = "BA95 section 5.2"),
     SHARE(ejecta.mass_fraction,
-          .doc = "Impact: mass share of the target leaving faster than crater.ejection_speed. Times "
-                 "target_mass: their mass.",
+          .doc = "Impact: mass share of the target leaving faster than crater.ejection_speed and crater.escape_speed. "
+                 "Times target_mass: their mass. `clast spectrum STORE --ejecta` shows it over the speed.",
           .source = "Jutzi & Benz, section 3"),
     REAL(ejecta.momentum, "kg m/s", 0, .doc = "Impact: momentum of the ejecta along the outward normal."),
     REAL(
@@ -66,7 +66,7 @@ static const struct field rows[] = {
         .doc =
             "Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that "
             "of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. "
-            "Ejecta are faster than crater.ejection_speed.",
+            "Ejecta are faster than crater.ejection_speed; all matter counts that is faster than crater.escape_speed.",
         .source = "Cheng and others 2023"),
     REAL(crater.depth, "m", 0,
          .doc = "Impact: largest depth of the crater below the surface at the start. 0 when it is less than the "

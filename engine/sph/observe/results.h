@@ -4,6 +4,7 @@
 #ifndef CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
 #define CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
 
+#include "engine/ejecta.h"
 #include "engine/sph/modules/structs.h"
 
 enum sph_stop { SPH_STOP_RUNNING, SPH_STOP_QUIET, SPH_STOP_END_TIME, SPH_STOP_FAULT, SPH_STOPS };
@@ -26,6 +27,7 @@ struct sph_results {
   struct {
     double mass_fraction, momentum, momentum_enhancement;
   } ejecta;
+  struct ejecta ejecta_over_speed; /* table ejecta; its sums are those of ejecta.*. No row: engine_kind.ejecta */
   struct {
     double depth, radius, volume, compaction_share;
   } crater;

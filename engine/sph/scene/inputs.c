@@ -225,6 +225,12 @@ static const struct field rows[] = {
                 "than this counts as ejecta, all else as retained: there is no gravity that could separate them. 0: "
                 "whatever moves outwards.",
          .source = "Jutzi & Benz, section 3.2, for 0"),
+    REAL(crater.escape_speed, "m/s", 0, 0, 1e6, .absent = "0", .when = "kind=impact",
+         .doc = "Escape speed of the target. At the end, matter that is slower, in any direction and relative to the "
+                "target before the impact, falls back: it counts neither in ejecta.mass_fraction nor in "
+                "ejecta.momentum nor in ejecta.momentum_enhancement. 0: a laboratory, where all that moves outwards "
+                "leaves. Ejecta must be faster than crater.ejection_speed, too; the crater does not depend on the "
+                "escape speed."),
     REAL(stop.end_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
          .doc = "End time of the run, also if fracture continues; unless given, ten times the time of a longitudinal "
                 "wave through the target, plus the time until the bodies touch (one spacing later with method.contact: "

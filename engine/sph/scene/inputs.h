@@ -104,7 +104,7 @@ struct sph_inputs {
   struct sph_method method;
   struct sph_fragment_rules fragments;
   struct {
-    double ejection_speed; /* m/s */
+    double ejection_speed, escape_speed; /* m/s */
   } crater;
   struct sph_stop_rules stop;
   struct sph_fidelity fidelity;
