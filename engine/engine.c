@@ -39,6 +39,14 @@ struct ejecta *engine_ejecta(const struct engine_kind *kind, void *result) {
   return kind->ejecta ? (struct ejecta *)((char *)result + kind->ejecta) : NULL;
 }
 
+const struct field *engine_ejecta_sum(void) {
+  for (size_t i = 0; i < engine_count(); i++)
+    for (size_t k = 0; engines_list[i]->ejecta && k < engines_list[i]->results->count; k++)
+      if (engines_list[i]->results->rows[k].offset == engines_list[i]->ejecta_sum)
+        return &engines_list[i]->results->rows[k];
+  return NULL;
+}
+
 const struct engine_kind *engine_find(const char *name, struct error *error) {
   char list[256] = "";
   for (size_t i = 0; i < engine_count(); i++) {

@@ -108,7 +108,8 @@ struct engine_kind {
   char *(*describe)(const void *inputs, bool all);
   const size_t *also; /* offsets of results that `simulate` shows beside the headline where they are above 0 */
   size_t also_count;
-  size_t ejecta; /* offset of a struct ejecta in the results, for table ejecta; 0: the engine has none */
+  size_t ejecta;     /* offset of a struct ejecta in the results, for table ejecta; 0: the engine has none */
+  size_t ejecta_sum; /* offset of the result that sums its momentum */
   size_t (*memory)(const void *inputs); /* bytes a run will need, before anything is allocated */
   double (*steps)(const void *inputs);  /* about the steps to the hard end. NULL: not known */
   double (*work)(const void *inputs); /* a-priori cost in arbitrary units (grain- or particle-steps), for scheduling */
@@ -151,6 +152,8 @@ status engine_ready(const struct engine_kind *kind, const void *inputs, struct e
 status engine_has_fields(const struct engine_kind *kind, const char *what, struct error *error);
 /* In a result of the engine; NULL: it has none. */
 struct ejecta *engine_ejecta(const struct engine_kind *kind, void *result);
+/* The row of the result that sums the momentum of ejecta. */
+const struct field *engine_ejecta_sum(void);
 /* NULL when there is none of that name; *error lists the known ones. */
 const struct engine_kind *engine_find(const char *name, struct error *error);
 /* NULL + STATUS_USAGE with the known names of this engine. */

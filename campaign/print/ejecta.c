@@ -58,7 +58,7 @@ static void print_rows(struct table *table, const struct ask_pools *pools, const
 static status take(struct store *store, const struct ask_pool_choice *choice, struct table *table,
                    struct curves *curves, struct error *error) {
   OWNED struct ask_ejecta *ejecta = memory_small(1, sizeof *ejecta);
-  ASK_POOLS pools = ask_pools(store, choice, ASK_EJECTA, error);
+  ASK_POOLS pools = ask_ejecta_pools(store, choice, error);
   TRY(pools.code);
   if (table) {
     print_pool_columns(table, &pools);

@@ -547,9 +547,10 @@ struct pooled_form ask_pool_form(const struct ask_pool *pool, bool cumulative, d
 
 /* ---- Ejecta of the impacts of a pool over their speed ---- */
 
-#define ASK_EJECTA "ejecta_momentum" /* the quantity that the pool was made with: what marks it, marks the table */
 /* Has the store runs of an engine with ejecta? */
 status ask_ejecta_known(struct store *store, bool *known, struct error *error);
+/* The pools with the momentum of all ejecta as quantity: what marks it, marks the table. */
+struct ask_pools ask_ejecta_pools(struct store *store, const struct ask_pool_choice *choice, struct error *error);
 
 struct ask_ejecta {
   size_t runs, without; /* in the means; with ejecta, but of an older program, which did not store them */

@@ -24,11 +24,18 @@ status ask_run_ejecta(struct store *store, int64_t run_id, struct ejecta *ejecta
 }
 
 status ask_ejecta_known(struct store *store, bool *known, struct error *error) {
+  char name[FIELD_TEXT_SIZE];
   double count = 0;
-  TRY(answer_number(store, &count, error,
-                    "SELECT count(*) FROM pragma_table_info('runs') WHERE name = '" ASK_EJECTA "'"));
+  field_column_name(engine_ejecta_sum()->path, name, sizeof name);
+  TRY(answer_number(store, &count, error, "SELECT count(*) FROM pragma_table_info('runs') WHERE name = %Q", name));
   *known = count > 0;
   return STATUS_OK;
+}
+
+struct ask_pools ask_ejecta_pools(struct store *store, const struct ask_pool_choice *choice, struct error *error) {
+  char name[FIELD_TEXT_SIZE];
+  field_column_name(engine_ejecta_sum()->path, name, sizeof name);
+  return ask_pools(store, choice, name, error);
 }
 
 /* Sums of a unit of the mean, which is a run or a point, and the moments of the units. */

@@ -116,6 +116,7 @@ const struct engine_kind sph_engine = {
     .also = also,
     .also_count = sizeof also / sizeof *also,
     .ejecta = offsetof(struct sph_results, ejecta_over_speed),
+    .ejecta_sum = offsetof(struct sph_results, ejecta.momentum),
     .memory = sph_describe_memory,
     .steps = sph_describe_steps,
     .work = sph_describe_work,

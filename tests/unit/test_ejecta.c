@@ -127,7 +127,7 @@ static void expect_means(const char *path, const char *by) {
   struct ask_ejecta *ejecta = malloc(sizeof *ejecta);
   int pool_count = 0;
   OK(store_open_reader(path, &store, &error));
-  ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){.by = by}, ASK_EJECTA, &error);
+  ASK_POOLS pools = ask_ejecta_pools(store, &(struct ask_pool_choice){.by = by}, &error);
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
     OK(ask_ejecta(store, pool, ejecta, &error));
     if (ejecta->count == 0) /* a point of another engine */
