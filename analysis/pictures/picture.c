@@ -258,10 +258,10 @@ struct axis {
   double *values; /* ascending, distinct */
 };
 
-static void distinct(size_t count, const double (*points)[5], int coordinate, struct axis *axis) {
+static void distinct(size_t count, const struct picture_tile *tiles, bool of_y, struct axis *axis) {
   axis->count = 0;
   for (size_t i = 0; i < count; i++)
-    axis->values[i] = points[i][coordinate];
+    axis->values[i] = of_y ? tiles[i].y : tiles[i].x;
   qsort(axis->values, count, sizeof *axis->values, sample_ascending);
   for (size_t i = 0; i < count; i++)
     if (i == 0 || axis->values[i] != axis->values[axis->count - 1])
@@ -273,83 +273,111 @@ static size_t place(const struct axis *axis, double value) {
   return (size_t)(found - axis->values); /* always found: the axis was made from these values */
 }
 
-/* Points that share no value of an axis, as a Latin hypercube has them: their places are those of their values. */
-static void write_points(struct chart *chart, const struct axis axis[2], size_t count, const double (*points)[5]) {
-  for (int a = 0; a < 2; a++)
-    write_range(chart, a ? 'y' : 'x', (const double[2]){axis[a].values[0], axis[a].values[axis[a].count - 1]});
-  chart_columns(chart, "x y value doubtful decimals");
+struct map {
+  struct axis x, y;
+  size_t panels, columns;           /* columns: of all panels, and one between two panels */
+  const struct picture_tile **tile; /* row by row. Owned; NULL: nothing there */
+};
+
+enum {
+  VALUE,
+  NONE,
+  BETWEEN
+}; /* kinds of places of a map, for its template: gnuplot cannot ask whether a value is NaN */
+
+/* Tiles that share no value of an axis, as a Latin hypercube has them: their places are those of their values. */
+static void write_points(struct chart *chart, const struct map *map, size_t count, const struct picture_tile *tiles) {
+  for (int a = 0; a < 2; a++) {
+    const struct axis *axis = a ? &map->y : &map->x;
+    write_range(chart, a ? 'y' : 'x', (const double[2]){axis->values[0], axis->values[axis->count - 1]});
+  }
+  chart_columns(chart, "x y value doubtful decimals kind");
   for (size_t i = 0; i < count; i++)
-    chart_row(chart, 5, points[i]);
+    chart_row(chart, 6,
+              (double[]){tiles[i].x, tiles[i].y, tiles[i].value, tiles[i].doubtful, tiles[i].decimals,
+                         isfinite(tiles[i].value) ? VALUE : NONE});
   chart_block_end(chart);
 }
 
-/* Blocks: the tiles (number of column and row from 0, value, doubtful), the columns' values, the rows' values. */
-static void write_tiles(struct chart *chart, const struct axis *x, const struct axis *y, const double (*value)[3]) {
-  chart_columns(chart, "column row value doubtful decimals");
-  for (size_t j = 0; j < y->count; j++)
-    for (size_t i = 0; i < x->count; i++) {
-      const double *v = value[j * x->count + i];
-      chart_row(chart, 5, (double[]){(double)i, (double)j, v[0], v[1], v[2]});
+/* Blocks: the tiles (number of column and row from 0, value, doubtful, decimals, kind), the columns' values, the rows'
+ * values. */
+static void write_tiles(struct chart *chart, const struct map *map) {
+  const size_t wide = map->x.count + 1;
+  chart_columns(chart, "column row value doubtful decimals kind");
+  for (size_t j = 0; j < map->y.count; j++)
+    for (size_t i = 0; i < map->columns; i++) {
+      const struct picture_tile *tile = map->tile[j * map->columns + i];
+      const bool has = tile && isfinite(tile->value);
+      chart_row(chart, 6,
+                (double[]){(double)i, (double)j, has ? tile->value : (double)NAN, has && tile->doubtful,
+                           has ? tile->decimals : -1,
+                           has                        ? VALUE
+                           : i % wide == map->x.count ? BETWEEN
+                                                      : NONE});
     }
   chart_block_end(chart);
-  const struct axis *axes[2] = {x, y};
-  for (int a = 0; a < 2; a++) {
-    chart_columns(chart, a ? "row its-value" : "column its-value");
-    for (size_t i = 0; i < axes[a]->count; i++)
-      chart_row(chart, 2, (double[]){(double)i, axes[a]->values[i]});
-    chart_block_end(chart);
-  }
+  chart_columns(chart, "column its-value");
+  for (size_t i = 0; i < map->columns; i++)
+    if (i % wide < map->x.count)
+      chart_row(chart, 2, (double[]){(double)i, map->x.values[i % wide]});
+  chart_block_end(chart);
+  chart_columns(chart, "row its-value");
+  for (size_t j = 0; j < map->y.count; j++)
+    chart_row(chart, 2, (double[]){(double)j, map->y.values[j]});
+  chart_block_end(chart);
 }
 
-/* Draws tiles of x->count times y->count values, a row for each value of y. value NULL: draws points. */
 static status draw_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
-                       const struct axis axis[2], size_t count, const double (*points)[5], const double (*value)[3],
+                       const struct map *map, size_t count, const struct picture_tile *tiles, const char *const *panel,
                        struct error *error) {
-  const struct axis *x = &axis[0], *y = &axis[1];
   double range[2] = {none[0], none[1]};
   for (size_t i = 0; i < count; i++)
-    extend(range, points[i][2]);
+    extend(range, tiles[i].value);
   if (!(range[1] >= range[0]))
     return status_fail(error, STATUS_USAGE, "%s: there is no value to draw", page->path);
   struct chart *chart = chart_new("map", page, words);
   chart_text(chart, "quantity", quantity);
-  chart_number(chart, "columns", (double)x->count);
-  chart_number(chart, "rows", (double)y->count);
+  chart_number(chart, "columns", (double)map->columns);
+  chart_number(chart, "rows", (double)map->y.count);
+  chart_number(chart, "panel_columns", (double)map->x.count);
+  chart_number(chart, "panels", panel ? (double)map->panels : 0);
+  chart_texts(chart, "panel_label", panel ? map->panels : 0, panel);
   chart_number(chart, "low", range[0]);
   chart_number(chart, "high", range[1] > range[0] ? range[1] : range[0] + fmax(fabs(range[0]), 1) * 1e-6);
-  chart_number(chart, "scattered", !value);
-  if (value)
-    write_tiles(chart, x, y, value);
+  chart_number(chart, "scattered", !map->tile);
+  if (map->tile)
+    write_tiles(chart, map);
   else
-    write_points(chart, axis, count, points);
-  return chart_draw(chart, 0.72 * page->width, error);
+    write_points(chart, map, count, tiles);
+  return chart_draw(chart, (map->panels > 1 ? 0.5 : 0.72) * page->width, error);
 }
 
 status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
-                   size_t count, const double (*points)[5], struct error *error) {
+                   size_t count, const struct picture_tile *tiles, size_t panels, const char *const *panel,
+                   struct error *error) {
   if (count == 0)
     return status_fail(error, STATUS_USAGE, "%s: an axis of the map is empty or not finite", page->path);
   for (size_t i = 0; i < count; i++)
-    if (!isfinite(points[i][0]) || !isfinite(points[i][1]))
+    if (!isfinite(tiles[i].x) || !isfinite(tiles[i].y))
       return status_fail(error, STATUS_USAGE, "%s: a point of the map is not on its axes", page->path);
   OWNED double *along = NULL;
-  OWNED double(*value)[3] = NULL;
   TRY(memory_array(&along, 2 * count, sizeof *along, "the map", error));
-  TRY(memory_array(&value, MOST_TILES, sizeof *value, "the map", error));
-  struct axis axis[2] = {{.values = along}, {.values = along + count}};
-  const struct axis *x = &axis[0], *y = &axis[1];
-  distinct(count, points, 0, &axis[0]);
-  distinct(count, points, 1, &axis[1]);
-  if (count > 2 && x->count == count && y->count == count)
-    return draw_map(page, words, quantity, axis, count, points, NULL, error);
-  if (x->count * y->count > MOST_TILES)
+  struct map map = {.x = {.values = along}, .y = {.values = along + count}, .panels = panel ? panels : 1};
+  distinct(count, tiles, false, &map.x);
+  distinct(count, tiles, true, &map.y);
+  if (map.panels == 1 && count > 2 && map.x.count == count && map.y.count == count)
+    return draw_map(page, words, quantity, &map, count, tiles, panel, error);
+  map.columns = map.panels * (map.x.count + 1) - 1;
+  if (map.columns * map.y.count > MOST_TILES)
     return status_fail(error, STATUS_USAGE, "%s: %zu x %zu tiles are too many for a map; choose axes with fewer values",
-                       page->path, x->count, y->count);
-  for (size_t i = 0; i < x->count * y->count; i++)
-    value[i][0] = NAN;
+                       page->path, map.columns, map.y.count);
+  OWNED const struct picture_tile **places = NULL;
+  TRY(memory_array(&places, MOST_TILES, sizeof *places, "the map", error));
+  map.tile = places;
   for (size_t i = 0; i < count; i++)
-    memcpy(value[place(y, points[i][1]) * x->count + place(x, points[i][0])], &points[i][2], sizeof *value);
-  return draw_map(page, words, quantity, axis, count, points, (const double(*)[3])value, error);
+    map.tile[place(&map.y, tiles[i].y) * map.columns + tiles[i].panel * (map.x.count + 1) +
+             place(&map.x, tiles[i].x)] = &tiles[i];
+  return draw_map(page, words, quantity, &map, count, tiles, panel, error);
 }
 
 /* ---- log-log spectra with error bars or bands, and fitted lines ---- */

@@ -242,12 +242,20 @@ struct picture_margin {
 status picture_margins(const char *path, double width, const char *title, size_t count,
                        const struct picture_margin *row, struct error *error);
 
-/* Draws a heat map from points (x, y, value, 1 for a "!" behind it, its decimals or -1) in any order: every distinct x
- * is a column, every distinct y a row. A tile with NaN or without a point is crossed. If two points have the same x and
- * y, the later one counts. At most 10 000 tiles (STATUS_USAGE). Three and more points that share no x and no y are
- * marks at their places on scales instead. quantity: label of the colour bar. */
+struct picture_tile {
+  double x, y, value;
+  bool doubtful; /* a "!" behind the value */
+  int decimals;  /* of the value; -1: three digits */
+  size_t panel;
+};
+/* Draws a heat map from tiles in any order: every distinct x is a column, every distinct y a row. A tile with NaN, or
+ * without an entry, is crossed. If two tiles have the same place, the later one counts. At most 10 000 tiles
+ * (STATUS_USAGE). Three and more tiles that share no x and no y are marks at their places on scales instead. quantity:
+ * label of the colour bar. panel: labels of the panels side by side, one for each value of a third input; NULL: there
+ * is one, without a label. */
 status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
-                   size_t count, const double (*points)[5], struct error *error);
+                   size_t count, const struct picture_tile *tiles, size_t panels, const char *const *panel,
+                   struct error *error);
 
 /* Joins pictures of one size into a movie, by gnuplot. page->path ends in .gif. frame: names relative to the folder of
  * page->path. */

@@ -74,8 +74,9 @@ void quantity_tell_resolutions(struct store *store, const char *names, const cha
 status quantity_plot(struct store *store, const char *x, const char *by, const char *name,
                      const struct picture_page *page, struct error *error);
 
-/* Draws the quantity over x and y as tiles. STATUS_USAGE: too many tiles, unknown names. */
-status quantity_map(struct store *store, const char *x, const char *y, const char *name,
+/* Draws the quantity over x and y as tiles, a panel for each value of `by` (NULL: one panel). STATUS_USAGE: too many
+ * tiles or panels, unknown names. */
+status quantity_map(struct store *store, const char *x, const char *y, const char *by, const char *name,
                     const struct picture_page *page, struct error *error);
 
 /* ---- spectra ---- */

@@ -19,21 +19,29 @@
 /* Columns of ask_group after the axes. */
 enum { VERSION = 1, MEAN = 7, LOW = 11, HIGH = 12, RESOLUTION = 14, DOUBTFUL = 17, COLUMNS = 19 };
 
-enum { MOST_ROWS = 10000, MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, MOST_PLACES = 40, INPUT_TEXT = 200 };
+enum {
+  MOST_ROWS = 10000,
+  MOST_LINES = PICTURE_SERIES,
+  MOST_PANELS = 6,
+  MOST_MEANS = 1000,
+  MOST_PLACES = 40,
+  INPUT_TEXT = 200,
+  AXES = 3
+};
 
 struct row {
-  double input[2];            /* in the campaign's unit; NaN: a text, off, or does not apply */
-  char text[2][INPUT_TEXT];   /* the inputs for people; "": off, or does not apply */
-  int64_t version;            /* results_version */
-  double value, lower, upper; /* bounds of the 95 % interval; NaN: unknown */
-  double resolution;          /* possible change of the value by finer settings; NaN: unknown */
-  bool doubtful;              /* rests on runs in doubt */
+  double input[AXES];          /* in the campaign's unit; NaN: a text, off, or does not apply */
+  char text[AXES][INPUT_TEXT]; /* the inputs for people; "": off, or does not apply */
+  int64_t version;             /* results_version */
+  double value, lower, upper;  /* bounds of the 95 % interval; NaN: unknown */
+  double resolution;           /* possible change of the value by finer settings; NaN: unknown */
+  bool doubtful;               /* rests on runs in doubt */
 };
 
 struct quantity {
   bool exponent;
-  size_t axes;                   /* 1 or 2 */
-  char column[2][256];           /* the axes' columns in the views */
+  size_t axes;                   /* 1 to AXES */
+  char column[AXES][256];        /* the axes' columns in the views */
   char name[256];                /* column of the quantity, or the exponent's name */
   char pooled[ASK_GROUP_POOLED]; /* other varied inputs that the means average over, with points as units; "": none */
   bool sampled;                  /* every point has its own values of the inputs that are not drawn */
@@ -41,7 +49,7 @@ struct quantity {
   size_t count, room;
   struct ask_column written[LIMITS_AXES_OF_TABLE]; /* the varied inputs, in the units that the campaign gives */
   size_t written_count;
-  const struct ask_column *unit[2]; /* the written unit of each axis; NULL: SI */
+  const struct ask_column *unit[AXES]; /* the written unit of each axis; NULL: SI */
 };
 
 static void release(struct quantity *quantity) {
@@ -74,8 +82,11 @@ static status add_row(struct quantity *quantity, const struct query_value *input
 static status read_names(struct quantity *quantity, const struct answer *groups, const char *refusal,
                          struct error *error) {
   const size_t axes = quantity->axes;
-  if (answer_count(groups) != axes + COLUMNS ||
-      (axes == 2 && strcmp(answer_name(groups, 0), answer_name(groups, 1)) == 0))
+  bool twice = false;
+  for (size_t i = 0; i < axes && i < answer_count(groups); i++)
+    for (size_t k = 0; k < i; k++)
+      twice |= strcmp(answer_name(groups, i), answer_name(groups, k)) == 0;
+  if (answer_count(groups) != axes + COLUMNS || twice)
     return status_fail(error, STATUS_USAGE, "%s", refusal);
 
   for (size_t i = 0; i < axes; i++) {
@@ -93,7 +104,9 @@ static status read_names(struct quantity *quantity, const struct answer *groups,
 static status read_groups(struct quantity *quantity, struct answer *groups, struct error *error) {
   const size_t axes = quantity->axes;
   while (answer_next(groups)) {
-    const struct query_value inputs[2] = {answer_value(groups, 0), answer_value(groups, axes - 1)};
+    struct query_value inputs[AXES];
+    for (size_t i = 0; i < axes; i++)
+      inputs[i] = answer_value(groups, i);
     const struct row row = {.version = answer_integer(groups, axes + VERSION),
                             .value = answer_real(groups, axes + MEAN),
                             .lower = answer_real(groups, axes + LOW),
@@ -108,7 +121,7 @@ static status read_groups(struct quantity *quantity, struct answer *groups, stru
 /* newest: only of each point's newest results_version, including points without runs. */
 static status read_exponents(struct store *store, struct quantity *quantity, enum exponent_method method,
                              enum estimates_window window, bool newest, struct error *error) {
-  const char *inputs[2] = {quantity->column[0], quantity->column[1]};
+  const char *inputs[AXES] = {quantity->column[0], quantity->column[1], quantity->column[2]};
   ANSWER points = ask_points_rows(store, &(struct ask_points_choice){0}, newest, quantity->axes, inputs, error);
   for (struct ask_points_row point; ask_points_next(&points, &point);) {
     struct pooled_exponent fit;
@@ -132,18 +145,18 @@ static status read_exponents(struct store *store, struct quantity *quantity, enu
   return answer_end(&points);
 }
 
-/* Reads the quantity `name` over x and y (NULL: over x alone). STATUS_USAGE: unknown names; `refusal` if they are not
- * one or two different inputs and one quantity. The caller releases it, also after an error. */
-static status read_quantity(struct store *store, const char *x, const char *y, const char *name, bool newest,
+/* Reads the quantity `name` over some inputs, the last ones NULL. STATUS_USAGE: unknown names; `refusal` if they are
+ * not different inputs and one quantity. The caller releases it, also after an error. */
+static status read_quantity(struct store *store, const char *const inputs[AXES], const char *name, bool newest,
                             const char *refusal, struct quantity *quantity, struct error *error) {
   enum exponent_method method;
   enum estimates_window window;
-  char by[600];
-  quantity->axes = y ? 2 : 1;
+  char by[900] = "";
+  for (size_t i = 0; i < AXES && inputs[i]; i++, quantity->axes++)
+    text_append(by, sizeof by, "%s%s", i ? "," : "", inputs[i]);
   snprintf(quantity->name, sizeof quantity->name, "%s", name);
   TRY(estimates_named(name, &quantity->exponent, &method, &window, error));
   TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_TABLE, quantity->written, &quantity->written_count, error));
-  snprintf(by, sizeof by, "%s%s%s", x, y ? "," : "", y ? y : "");
   ANSWER groups = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : name, quantity->pooled, error);
   TRY(answer_status(&groups));
   TRY(read_names(quantity, &groups, refusal, error));
@@ -378,7 +391,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
 status quantity_plot(struct store *store, const char *x, const char *by, const char *name,
                      const struct picture_page *page, struct error *error) {
   __attribute__((cleanup(release_plot))) struct plot plot = {0};
-  TRY(read_quantity(store, x, by, name, false,
+  TRY(read_quantity(store, (const char *const[AXES]){x, by}, name, false,
                     "a plot has one axis below (--x), at most one input that tells its lines apart (--by, another "
                     "one), and one quantity",
                     &plot.quantity, error));
@@ -389,10 +402,20 @@ status quantity_plot(struct store *store, const char *x, const char *by, const c
 
 /* ---- tiles ---- */
 
-static status draw_tiles(struct store *store, const struct quantity *quantity, size_t count, const double (*tile)[5],
-                         double widest, const struct picture_page *page, struct error *error) {
+/* The panels of a map, one for each value of the third input. */
+struct panels {
+  size_t count;
+  char text[MOST_PANELS][CHARTS_LABEL + INPUT_TEXT];
+};
+
+static status draw_tiles(struct store *store, const struct quantity *quantity, size_t count,
+                         const struct picture_tile *tile, const struct panels *panels, double widest,
+                         const struct picture_page *page, struct error *error) {
   char x[CHARTS_LABEL], y[CHARTS_LABEL], z[CHARTS_LABEL], title[ASK_GROUP_POOLED + 400], caption[1100];
   char made[ASK_GROUP_POOLED + 40], intervals[600], resolution[400];
+  const char *label[MOST_PANELS];
+  for (size_t p = 0; p < panels->count; p++)
+    label[p] = panels->text[p];
   TRY(charts_axis(store, quantity->column[0], x, error));
   TRY(charts_axis(store, quantity->column[1], y, error));
   TRY(charts_axis(store, quantity->name, z, error));
@@ -407,7 +430,8 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
   else
     snprintf(caption, sizeof caption, "No interval: one run a point; %s", resolution);
   TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
-  return picture_map(page, &(struct picture_words){title, caption, x, y}, z, count, tile, error);
+  return picture_map(page, &(struct picture_words){title, caption, x, y}, z, count, tile, panels->count,
+                     panels->count ? label : NULL, error);
 }
 
 /* Decimals of a value in tables, -1: no interval, or only its leading digits count. */
@@ -420,36 +444,61 @@ static int decimals_of(double value, double half_width, bool share) {
   return strchr(text, '.') ? (int)strlen(strchr(text, '.') + 1) : 0;
 }
 
-/* Makes a tile (x, y, value) of each row that has two numbers, and draws them. */
-static status make_tiles(struct store *store, const struct quantity *quantity, double (*tile)[5],
+/* The panel of a row; rows come in order of their inputs, so panels are in order of the third one. */
+static status find_panel(struct store *store, const struct quantity *quantity, const struct row *row,
+                         struct panels *panels, size_t *panel, struct error *error) {
+  char by[CHARTS_LABEL], text[sizeof *panels->text];
+  *panel = 0;
+  if (quantity->axes < AXES)
+    return STATUS_OK;
+  TRY(charts_axis(store, quantity->column[2], by, error));
+  snprintf(text, sizeof text, *row->text[2] ? "%s = %s" : "%s: none", by, row->text[2]);
+  while (*panel < panels->count && strcmp(panels->text[*panel], text) != 0)
+    (*panel)++;
+  if (*panel == MOST_PANELS)
+    return status_fail(error, STATUS_USAGE, "a map has at most %d panels: choose a --by with fewer values",
+                       MOST_PANELS);
+  if (*panel == panels->count)
+    snprintf(panels->text[panels->count++], sizeof text, "%s", text);
+  return STATUS_OK;
+}
+
+/* Makes a tile of each row that has two numbers, and draws them. */
+static status make_tiles(struct store *store, const struct quantity *quantity, struct picture_tile *tile,
                          const struct picture_page *page, struct error *error) {
   double widest = 0; /* half width of the widest interval, in the quantity's unit; 0: there is none */
   size_t count = 0;
+  struct panels panels = {0};
   for (size_t r = 0; r < quantity->count; r++) {
     const struct row *row = &quantity->row[r];
+    size_t panel;
     if (isnan(row->input[0]) || isnan(row->input[1]))
       continue; /* off, or does not apply: an axis of numbers cannot show it */
+    TRY(find_panel(store, quantity, row, &panels, &panel, error));
     for (size_t i = 0; quantity->exponent && i < count; i++)
-      if (tile[i][0] == row->input[0] && tile[i][1] == row->input[1])
+      if (tile[i].x == row->input[0] && tile[i].y == row->input[1] && tile[i].panel == panel)
         return status_fail(error, STATUS_USAGE,
                            "several points share %s = %g and %s = %g: their exponents are not averaged",
                            quantity->column[0], row->input[0], quantity->column[1], row->input[1]);
-    tile[count][0] = row->input[0];
-    tile[count][1] = row->input[1];
-    tile[count][2] = row->value;
-    tile[count][3] = row->doubtful;
-    tile[count++][4] = decimals_of(row->value, row->upper - row->value, views_is_share(quantity->name));
+    tile[count++] = (struct picture_tile){.x = row->input[0],
+                                          .y = row->input[1],
+                                          .value = row->value,
+                                          .doubtful = row->doubtful,
+                                          .decimals = decimals_of(row->value, row->upper - row->value,
+                                                                  views_is_share(quantity->name)),
+                                          .panel = panel};
     widest = fmax(widest, row->upper - row->value); /* NaN: no interval */
   }
-  return draw_tiles(store, quantity, count, (const double(*)[5])tile, widest, page, error);
+  return draw_tiles(store, quantity, count, tile, &panels, widest, page, error);
 }
 
-status quantity_map(struct store *store, const char *x, const char *y, const char *name,
+status quantity_map(struct store *store, const char *x, const char *y, const char *by, const char *name,
                     const struct picture_page *page, struct error *error) {
   __attribute__((cleanup(release))) struct quantity quantity = {0};
-  OWNED double(*tile)[5] = NULL;
-  TRY(read_quantity(store, x, y, name, true, "a map needs two different inputs (--x, --y) and one quantity", &quantity,
-                    error));
+  OWNED struct picture_tile *tile = NULL;
+  TRY(read_quantity(store, (const char *const[AXES]){x, y, by}, name, true,
+                    "a map needs two different inputs (--x, --y), at most a third one (--by) and one quantity",
+                    &quantity, error));
   TRY(memory_array(&tile, quantity.count, sizeof *tile, "the map", error));
   TRY(make_tiles(store, &quantity, tile, page, error));
   quantity_tell_resolution(store, name, quantity.pooled);

@@ -90,6 +90,40 @@ expect 0 "$clast" map small.db map.svg -x strain -y angle
 is_svg map.svg
 expect 0 "$clast" map small.db beta.png -x strain -y angle -Q beta_masses_from_2
 is_png beta.png
+# A panel for each value of a third input. Two points are left out of the store: their places are crossed.
+cat >three.yaml <<YAML
+name: three
+scene: disc-explosion
+design: list
+vary:
+  threshold.strain: [2 %, 5 %, 2 %, 5 %, 2 %, 5 %]
+  threshold.angle: [2 deg, 2 deg, 6 deg, 2 deg, 2 deg, 6 deg]
+  charge.energy: [1 kJ/m, 1 kJ/m, 1 kJ/m, 2 kJ/m, 2 kJ/m, 2 kJ/m]
+set: {body.diameter: 6 cm}
+seeds: {per_point: 2}
+store: three.db
+YAML
+expect 0 "$clast" run three.yaml -j 2 --quiet
+expect 0 "$clast" map three.db three.svg -x strain -y angle --by energy --keep-script
+expect 0 "$clast" stats three.db --by strain,angle,energy --json
+python - <<'PY'
+import json
+means = {tuple(round(r[k], 6) for k in ('threshold_strain', 'threshold_angle', 'charge_energy')): r['largest_fraction_mean']
+         for r in json.load(open('out'))}
+strains, angles, energies = (sorted({k[i] for k in means}) for i in range(3))
+rows = [[float(v) for v in l.split()] for l in open('three.dat').read().split('\n\n\n')[0].splitlines() if l[0] != '#']
+assert len(means) == 6 and len(rows) == 10, rows
+kinds = [0, 0, 0]
+for column, row, value, _, _, kind in rows:
+    kinds[int(kind)] += 1
+    panel, i = divmod(int(column), 3)
+    mean = means.get((strains[i], angles[int(row)], energies[panel])) if i < 2 else None
+    assert kind == (2 if i == 2 else 1 if mean is None else 0), (column, row, kind)
+    assert mean is None or abs(value - mean) < 1e-8, (column, row, value, mean)
+assert kinds == [6, 2, 2], kinds
+PY
+ok "each panel of a map has the means of its value"
+expect 64 "$clast" map three.db m.png -x strain -y angle --by angle
 
 expect 0 "$clast" plot small.db lines.png -x strain --by angle
 is_png lines.png
@@ -255,4 +289,4 @@ says "no line joins the points"
 same "$(sed '/^$/,$d' sampled.dat | grep -c '^NaN')" 8 "gaps between the points of a sample"
 expect 0 "$clast" plot small.db grid.png -x strain --by angle --keep-script
 same "$(sed '/^$/,$d' grid.dat | grep -c '^NaN' || true)" 0 "gaps between the points of a grid"
-done_after 97
+done_after 102

@@ -210,43 +210,58 @@ static void spectra_are_drawn(void **state) {
 
 static void maps_are_drawn(void **state) {
   (void)state;
-  double points[24][5] = {{0}};
+  struct picture_tile points[24] = {{0}};
   for (int i = 0; i < 24; i++) {
-    points[i][0] = 0.01 * (i % 6 + 1);
-    points[i][1] = i / 6 + 1;
-    points[i][2] = 1.6 + 0.03 * (i % 6) + 0.1 * (i / 6);
+    points[i].x = 0.01 * (i % 6 + 1);
+    points[i].y = i / 6 + 1;
+    points[i].value = 1.6 + 0.03 * (i % 6) + 0.1 * (i / 6);
   }
-  points[7][2] = NAN;
+  points[7].value = NAN;
   const char *const x = "threshold.strain", *const y = "beam.threshold.angle (deg)";
   assert_int_equal(picture_map(&(struct picture_page){.path = at("map.png"), .width = 900},
-                               &(struct picture_words){"beta over both thresholds", NULL, x, y}, "beta", 24,
-                               (const double(*)[5])points, NULL),
+                               &(struct picture_words){"beta over both thresholds", NULL, x, y}, "beta", 24, points, 0,
+                               NULL, NULL),
                    STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("map.png"), &dark, &coloured, &width, &height);
   assert_true(coloured > 0.3);
-  const double loose[5][5] = {{2, 0.1, 5}, {1, 0.1, 4, 1}, {2, 0.3, 7}, {1, 0.1, 4.5}, {3, 0.2, NAN}};
+  const struct picture_tile loose[] = {{.x = 2, .y = 0.1, .value = 5},
+                                       {.x = 1, .y = 0.1, .value = 4, .doubtful = true},
+                                       {.x = 2, .y = 0.3, .value = 7},
+                                       {.x = 1, .y = 0.1, .value = 4.5},
+                                       {.x = 3, .y = 0.2, .value = NAN}};
   assert_int_equal(picture_map(&(struct picture_page){.path = at("loose.png"), .width = 600},
-                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 5, loose, NULL),
+                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 5, loose, 0, NULL, NULL),
                    STATUS_OK);
-  const double sampled[3][5] = {{1, 0.1, 5}, {40, 0.3, 7, 1}, {2, 0.2, 6}};
+  const struct picture_tile sampled[] = {{.x = 1, .y = 0.1, .value = 5},
+                                         {.x = 40, .y = 0.3, .value = 7, .doubtful = true},
+                                         {.x = 2, .y = 0.2, .value = 6}};
   assert_int_equal(picture_map(&(struct picture_page){.path = at("sampled.png"), .width = 600},
-                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 3, sampled, NULL),
+                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 3, sampled, 0, NULL, NULL),
                    STATUS_OK);
   ink(at("sampled.png"), &dark, &coloured, &width, &height);
   assert_true(coloured < 0.1); /* marks, no tiles */
-  const double nowhere[1][5] = {{NAN, 1, 1}};
+  const struct picture_tile nowhere[] = {{.x = NAN, .y = 1, .value = 1}};
   assert_int_equal(picture_map(&(struct picture_page){.path = at("none.png"), .width = 600},
-                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 1, nowhere, NULL),
+                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 1, nowhere, 0, NULL, NULL),
                    STATUS_USAGE);
   assert_int_equal(picture_map(&(struct picture_page){.path = at("none.png"), .width = 600},
-                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 0, loose, NULL),
+                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 0, loose, 0, NULL, NULL),
                    STATUS_USAGE);
   for (int i = 0; i < 24; i++)
-    points[i][2] = NAN;
+    points[i].panel = (size_t)(i % 3 == 2);
+  assert_int_equal(picture_map(&(struct picture_page){.path = at("panels.png"), .width = 900},
+                               &(struct picture_words){"beta, a panel for each k", NULL, x, y}, "beta", 24, points, 2,
+                               (const char *const[]){"k = 1", "k = 2"}, NULL),
+                   STATUS_OK);
+  const double whole = coloured;
+  ink(at("panels.png"), &dark, &coloured, &width, &height);
+  assert_true(coloured > whole); /* tiles */
+  for (int i = 0; i < 24; i++)
+    points[i].value = NAN;
   assert_int_equal(picture_map(&(struct picture_page){.path = at("none.png"), .width = 900},
-                               &(struct picture_words){NULL, NULL, x, y}, "beta", 24, (const double(*)[5])points, NULL),
+                               &(struct picture_words){NULL, NULL, x, y}, "beta", 24, points, 0, NULL, NULL),
                    STATUS_USAGE);
 }
 
@@ -591,6 +606,7 @@ int main(int count, char **arguments) {
                            "map.png",
                            "loose.png",
                            "sampled.png",
+                           "panels.png",
                            "curves.png",
                            "curves.gp",
                            "curves.dat",
