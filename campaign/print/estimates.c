@@ -224,7 +224,7 @@ static void print_legend(const struct printing *printing, FILE *out) {
                 "`clast explain WORD` tells of beta, ML, LSQ, window%s",
                 seen->weak ? ", weak" : "");
   if (seen->few)
-    text_append(text, sizeof text, ". beta -: too few fragments");
+    text_append(text, sizeof text, ". beta -: too few fragments to know it to a whole number");
   if (seen->same)
     text_append(text, sizeof text,
                 ". Windows that begin at the same mass, where the spectrum is complete, have one row: the first");
