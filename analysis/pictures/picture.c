@@ -589,3 +589,47 @@ status picture_margins(const char *path, double width, const char *title, size_t
   }
   return picture_canvas_close(&canvas, STATUS_OK, error);
 }
+
+status picture_collapse(const struct picture_page *page, const struct picture_words *words, const char *const panel[2],
+                        size_t count, const struct picture_size *size, struct error *error) {
+  double x[2] = {none[0], none[1]}, y[2][2] = {{none[0], none[1]}, {none[0], none[1]}}, low[2], high[2];
+  const char *labels[PICTURE_SERIES];
+  if (count > PICTURE_SERIES)
+    return status_fail(error, STATUS_USAGE, "%s: at most %d sizes in a picture, not %zu", page->path, PICTURE_SERIES,
+                       count);
+  for (size_t s = 0; s < count; s++) {
+    labels[s] = size[s].label;
+    for (size_t i = 0; i < size[s].count; i++) {
+      extend(x, size[s].x[i]);
+      for (int k = 0; k < 2; k++)
+        extend(y[k], size[s].y[i][k][0] > 0 ? size[s].y[i][k][0] : (double)NAN);
+    }
+  }
+  if (!(x[1] > x[0] && y[0][1] > 0 && y[1][1] > 0))
+    return nothing_to_draw(page, error);
+  struct chart *chart = chart_new("collapse", page, words);
+  chart_number(chart, "series", (double)count);
+  chart_number(chart, "x_low", x[0] - 0.02 * (x[1] - x[0]));
+  chart_number(chart, "x_high", x[1] + 0.02 * (x[1] - x[0]));
+  for (int k = 0; k < 2; k++) {
+    low[k] = y[k][0] / 1.5;
+    high[k] = y[k][1] * 1.5;
+  }
+  chart_numbers(chart, "y_low", 2, low);
+  chart_numbers(chart, "y_high", 2, high);
+  chart_texts(chart, "panel", 2, panel);
+  for (size_t s = 0; s < count; s++) {
+    for (size_t i = 0; i < size[s].count; i++) {
+      double row[7] = {size[s].x[i]};
+      for (int k = 0; k < 6; k++)
+        row[1 + k] = size[s].y[i][k / 3][0] > 0 ? size[s].y[i][k / 3][k % 3] : (double)NAN;
+      for (int k = 0; k < 2; k++) /* a bar that reaches 0 ends at the lower side of the panel */
+        row[2 + 3 * k] = fmax(row[2 + 3 * k], low[k]);
+      chart_row(chart, 7, row);
+    }
+    chart_block_end(chart);
+  }
+  const double legend = chart_legend(chart, count, labels);
+  chart_number(chart, "legend_height", legend);
+  return chart_draw(chart, 0.9 * page->width + legend, error);
+}

@@ -193,6 +193,17 @@ struct picture_profile {
 status picture_profile(const struct picture_page *page, const struct picture_words *words, size_t count,
                        const double *x, size_t panels, const struct picture_profile *panel, struct error *error);
 
+/* Two quantities of several sizes over a scaled input, one panel above the other, on logarithmic axes: a data collapse.
+ * Values that are not above 0 are left out. One to eight sizes. */
+struct picture_size {
+  const char *label;
+  size_t count;
+  const double *x;
+  const double (*y)[2][3]; /* of each x and panel: value and its interval's ends */
+};
+status picture_collapse(const struct picture_page *page, const struct picture_words *words, const char *const panel[2],
+                        size_t count, const struct picture_size *size, struct error *error);
+
 /* A mean with its interval at a value of an input. */
 struct picture_mean {
   double x, y, low, high; /* low, high: ends of the interval; NaN: none is drawn */

@@ -42,6 +42,7 @@
   ENTRY(stats)                                                                                                         \
   ENTRY(scatter)                                                                                                       \
   ENTRY(sensitivity)                                                                                                   \
+  ENTRY(scaling)                                                                                                       \
   ENTRY(spectrum)                                                                                                      \
   ENTRY(compare)                                                                                                       \
   ENTRY(query)                                                                                                         \

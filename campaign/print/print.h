@@ -78,4 +78,16 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
 status print_sensitivity(struct store *store, const char *campaign, const char *quantity, enum table_format format,
                          struct error *error);
 
+/* ---- finite-size scaling (analysis/inference/scaling.h) ---- */
+
+struct scaling_choice {
+  const char *size, *control; /* varied inputs; NULL: the one that sets the number of elements, and the other one */
+  const char *quantity;       /* order parameter */
+};
+
+/* Prints a sentence that answers, and a row for each exponent; page NULL: no picture. STATUS_USAGE: no input sets the
+ * number of elements, or several inputs vary beside it. */
+status print_scaling(struct store *store, const struct scaling_choice *choice, enum table_format format,
+                     const struct picture_page *page, struct error *error);
+
 #endif

@@ -1,0 +1,220 @@
+/* Finite-size scaling of made-up runs with known exponents, and of runs that have none. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/analysis.h"
+#include "analysis/inference/scaling.h"
+#include "engine/random.h"
+
+enum { SIZES = 5, POINTS = 11, SEEDS = 20, ALL = SIZES * POINTS * SEEDS };
+static const double CRITICAL = 14, NU = 0.8, BETA = 0.2, GAMMA = 1.6, CUTOFF = 1.8; /* 2 beta + gamma = d */
+
+static void assert_near(double a, double b, double tolerance) {
+  assert_true(fabs(a - b) <= tolerance);
+}
+
+struct law {
+  size_t sizes;
+  double noise;      /* standard deviation of ln P and ln S of a run */
+  double correction; /* P is larger by this share of 1/L */
+  double sign;       /* of dP/dx */
+};
+
+static double noise(uint64_t seed, uint64_t item, uint64_t draw) { /* Box and Muller 1958 */
+  const double u = random_draw(seed, 1, item, 2 * draw) + 0x1p-54, v = random_draw(seed, 1, item, 2 * draw + 1);
+  return sqrt(-2 * log(u)) * cos(2 * M_PI * v);
+}
+
+static size_t make(const struct law *law, struct scaling_run *run) {
+  size_t n = 0;
+  for (size_t i = 0; i < law->sizes; i++)
+    for (size_t k = 0; k < POINTS; k++)
+      for (uint64_t seed = 1; seed <= SEEDS; seed++, n++) {
+        const double size = 10 * pow(2, (double)i), x = 12 + 0.4 * (double)k;
+        const double z = law->sign * (x - CRITICAL) * pow(size / 160, 1 / NU);
+        const double p = 0.6 * pow(size, -BETA) * exp(0.2 * z + law->noise * noise(seed, i, 0)) *
+                         (1 + law->correction / size);
+        const double s = 0.05 * pow(size, GAMMA) * exp(-0.3 * z + law->noise * noise(seed, i, 1));
+        run[n] = (struct scaling_run){size, x, seed, p, p, s, s * 0.3 * pow(size, CUTOFF) * exp(-0.1 * z)};
+      }
+  return n;
+}
+
+static void find(size_t n, const struct scaling_run *run, struct scaling *found) {
+  struct error error;
+  assert_int_equal(scaling_find(n, run, 2, found, &error), STATUS_OK);
+}
+
+static const double exact[SCALING_VALUES] = {CRITICAL, NU, BETA, GAMMA, CUTOFF, 3 - 1.6 / 1.8};
+
+/* Without noise and without corrections the fit is exact but for the cubic in z, which is not the law of Q. */
+static void exact_runs_give_exact_values(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL];
+  for (int sign = -1; sign <= 1; sign += 2) {
+    SCALING found;
+    find(make(&(struct law){SIZES, 0, 0, sign}, run), run, &found);
+    assert_int_equal(found.kind, SCALING_FOUND);
+    assert_int_equal(found.sizes, SIZES);
+    assert_int_equal(found.runs, ALL);
+    for (int v = 0; v < SCALING_VALUES; v++) {
+      assert_near(found.value[v].estimate, exact[v], 2e-3 * exact[v]);
+      assert_true(found.value[v].half_width < 5e-3 * exact[v]);
+    }
+  }
+}
+
+/* The interval has the width of the noise and holds the value; 95 % of six values may miss one. */
+static void intervals_hold_the_values(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL];
+  SCALING found;
+  int held = 0;
+  find(make(&(struct law){SIZES, 0.2, 0, 1}, run), run, &found);
+  assert_int_equal(found.kind, SCALING_FOUND);
+  for (int v = 0; v < SCALING_VALUES; v++)
+    held += fabs(found.value[v].estimate - exact[v]) <= found.value[v].half_width;
+  assert_true(held >= SCALING_VALUES - 1);
+  /* ln P scatters by 0.2 / sqrt(20) at a size; over sizes 20 to 160 a slope is off by 0.029, and 1.96 of that is 0.057.
+   * The error of x_c adds to it. */
+  assert_true(found.value[SCALING_BETA].half_width > 0.04 && found.value[SCALING_BETA].half_width < 0.2);
+  assert_true(found.chi_square[0] < 4 && found.chi_square[1] < 4);
+}
+
+/* P is larger by 2/L: a fifth at the smallest size. */
+static void a_correction_is_inside_the_interval(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL];
+  SCALING found;
+  find(make(&(struct law){SIZES, 1e-4, 2, 1}, run), run, &found);
+  assert_int_equal(found.kind, SCALING_FOUND);
+  assert_true(fabs(found.value[SCALING_BETA].shift) > 1e-3);
+  for (int v = 0; v < SCALING_VALUES; v++)
+    assert_true(fabs(found.value[v].estimate - exact[v]) <= found.value[v].half_width + 2e-3 * exact[v]);
+}
+
+static void the_order_of_runs_and_the_unit_of_x_change_nothing(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL], other[ALL];
+  SCALING a, b;
+  const size_t n = make(&(struct law){SIZES, 0.1, 0, 1}, run);
+  for (size_t i = 0; i < n; i++) {
+    other[i] = run[(i * 7) % n];
+    other[i].control *= 1024;
+  }
+  find(n, run, &a);
+  find(n, other, &b);
+  for (int v = 0; v < SCALING_VALUES; v++) {
+    const double unit = v == SCALING_CRITICAL ? 1024 : 1;
+    assert_near(a.value[v].estimate * unit, b.value[v].estimate, 1e-5 * unit);
+    assert_near(a.value[v].half_width * unit, b.value[v].half_width, 1e-5 * unit);
+  }
+}
+
+static void two_sizes_are_too_few(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL];
+  SCALING found;
+  find(make(&(struct law){2, 0.1, 0, 1}, run), run, &found);
+  assert_int_equal(found.kind, SCALING_TOO_FEW);
+  assert_true(isnan(found.value[SCALING_NU].estimate));
+  assert_int_equal(found.cells, 2 * POINTS); /* a picture can be drawn */
+  find(0, run, &(struct scaling){0});
+}
+
+/* The same curve of P at every size: no transition but a slope. */
+static void curves_that_do_not_cross(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL];
+  SCALING found;
+  const size_t n = make(&(struct law){SIZES, 0.1, 0, 1}, run);
+  for (size_t i = 0; i < n; i++) {
+    const double p = 0.3 + 0.05 * (run[i].control - CRITICAL), rest = 1 - p;
+    const double square = run[i].size * run[i].size;
+    run[i].order = run[i].largest = p * (1 + 0.02 * noise(run[i].seed, i, 3));
+    run[i].second = 0.1 * rest * rest * square;
+    run[i].third = 0.01 * rest * rest * rest * square * square;
+  }
+  find(n, run, &found);
+  assert_int_equal(found.kind, SCALING_NO_CROSSING);
+  assert_true(isnan(found.value[SCALING_CRITICAL].estimate));
+}
+
+/* A body breaks into halves at a threshold of its own, or stays whole: the thresholds scatter as L^-2. */
+static void a_jump_is_told(void **state) {
+  (void)state;
+  enum { VALUES = 21, BODIES = 100 };
+  static struct scaling_run run[4 * VALUES * BODIES];
+  SCALING found;
+  size_t n = 0;
+  for (size_t i = 0; i < 4; i++)
+    for (int k = 0; k < VALUES; k++)
+      for (uint64_t seed = 1; seed <= BODIES; seed++, n++) {
+        const double size = 10 * pow(2, (double)i), square = size * size;
+        const double x = 10 + 30 * (k - 10) * pow(size, -2);
+        const bool whole = x > 10 + 100 * noise(seed, i, 4) / square;
+        run[n] = (struct scaling_run){size,
+                                      x,
+                                      seed,
+                                      whole ? 0.9 : 0.05 * 10 / size,
+                                      whole ? 0.9 : 0.05 * 10 / size,
+                                      whole ? 0.5 : 4,
+                                      whole ? 1 : 10};
+      }
+  find(n, run, &found);
+  assert_int_equal(found.kind, SCALING_JUMP);
+  assert_true(fabs(found.value[SCALING_CRITICAL].estimate - 10) <= found.value[SCALING_CRITICAL].half_width);
+}
+
+/* The sizes cross, but P goes up and down with L by a factor of three. */
+static void curves_that_are_not_one(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL];
+  SCALING found;
+  const size_t n = make(&(struct law){SIZES, 0.05, 0, 1}, run);
+  for (size_t i = 0; i < n; i++)
+    run[i].order *= lround(log2(run[i].size / 10)) % 2 ? 3 : 1;
+  find(n, run, &found);
+  assert_int_equal(found.kind, SCALING_NOT_ONE);
+  assert_true(isnan(found.value[SCALING_BETA].estimate));
+  assert_true(found.chi_square[0] > 4 && found.distance[0] > 0.1);
+}
+
+/* Whole bodies have no other fragment: S and T are 0. */
+static void whole_bodies_count(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL];
+  SCALING found;
+  const size_t n = make(&(struct law){SIZES, 0.1, 0, 1}, run);
+  for (size_t i = 0; i < n; i++)
+    if (run[i].control > 15.3) {
+      run[i].order = run[i].largest = 1;
+      run[i].second = run[i].third = 0;
+    }
+  find(n, run, &found);
+  assert_int_equal(found.runs, ALL);
+  assert_int_equal(found.kind, SCALING_FOUND);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(exact_runs_give_exact_values),
+      cmocka_unit_test(intervals_hold_the_values),
+      cmocka_unit_test(a_correction_is_inside_the_interval),
+      cmocka_unit_test(the_order_of_runs_and_the_unit_of_x_change_nothing),
+      cmocka_unit_test(two_sizes_are_too_few),
+      cmocka_unit_test(curves_that_do_not_cross),
+      cmocka_unit_test(a_jump_is_told),
+      cmocka_unit_test(curves_that_are_not_one),
+      cmocka_unit_test(whole_bodies_count),
+  };
+  analysis_init();
+  return cmocka_run_group_tests_name("scaling_fit", tests, NULL, NULL);
+}

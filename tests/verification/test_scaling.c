@@ -1,0 +1,240 @@
+/* Does `clast scaling` find the exponents of site percolation, and do its intervals hold them? Page: scaling.md.
+ *
+ * Quick: small sizes, 400 samples a size. CLAST_FULL=1: the widths asked for, with 9000 samples (half an hour), and
+ * other lattices. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/analysis.h"
+#include "analysis/inference/scaling.h"
+#include "engine/random.h"
+#include "schemas/memory.h"
+
+enum { GRID = 13, MOST_SIZES = 5, REPEATS = 20, LEAST_HELD = 17, MOST_SAMPLES = 9000 };
+
+struct law {
+  const char *name;
+  int dimensions;
+  bool periodic;
+  size_t sizes, samples;
+  uint32_t size[MOST_SIZES];
+  double middle, step, nu;      /* the p are middle + k step L^(-1/nu), k from -6 to 6 */
+  double exact[SCALING_VALUES]; /* p_c, nu, beta/nu, gamma/nu, D, tau */
+  double widest[SCALING_VALUES];
+};
+
+#define SQUARE                                                                                                         \
+  0.593, 0.14, 4.0 / 3, {                                                                                              \
+    0.592746, 4.0 / 3, 5.0 / 48, 43.0 / 24, 91.0 / 48, 187.0 / 91                                                      \
+  }
+#define NONE HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL
+static const struct law small_sizes = {"square, periodic", 2, true, 4, 400, {20, 36, 64, 115}, SQUARE, {NONE}};
+static const struct law asked = {"square, periodic",
+                                 2,
+                                 true,
+                                 5,
+                                 MOST_SAMPLES,
+                                 {50, 90, 160, 290, 520},
+                                 SQUARE,
+                                 {0.001, 0.05, 0.005, 0.02, HUGE_VAL, 0.015}};
+/* Laws that chose nothing in scaling.c. Open sides: the corrections of the border fall as 1/L. The cubic lattice: p_c
+ * and exponents of Wang and others 2013 (doi 10.1103/PhysRevE.87.052107), tau by hyperscaling. */
+static const struct law others[] = {
+    {"square, open sides", 2, false, 5, 2000, {20, 36, 64, 115, 207}, SQUARE, {NONE}},
+    {"cubic, periodic",
+     3,
+     true,
+     5,
+     2000,
+     {8, 12, 18, 27, 40},
+     0.3116,
+     0.14,
+     0.8764,
+     {0.311608, 0.8764, 0.47705, 2.0459, 2.52295, 1 + 3 / 2.52295},
+     {NONE}},
+};
+
+/* ---- clusters of occupied sites: union and find ---- */
+
+struct lattice {
+  const struct law *law;
+  uint32_t length, sites;
+  uint32_t *parent, *size, *order; /* order: sites to be occupied later, at the p number step */
+  uint8_t *step;
+  uint64_t largest;
+  double squares, cubes; /* of all clusters */
+};
+
+static uint32_t root(struct lattice *l, uint32_t i) {
+  while (l->parent[i] != i)
+    i = l->parent[i] = l->parent[l->parent[i]];
+  return i;
+}
+
+static void join(struct lattice *l, uint32_t i, uint32_t j) {
+  uint32_t a = root(l, i), b = root(l, j);
+  if (a == b)
+    return;
+  if (l->size[a] < l->size[b]) {
+    const uint32_t c = a;
+    a = b;
+    b = c;
+  }
+  const double p = l->size[a], q = l->size[b];
+  l->parent[b] = a;
+  l->size[a] += l->size[b];
+  l->squares += 2 * p * q;
+  l->cubes += 3 * p * q * (p + q);
+  if (l->size[a] > l->largest)
+    l->largest = l->size[a];
+}
+
+static void occupy(struct lattice *l, uint32_t i) {
+  l->parent[i] = i;
+  l->size[i] = 1;
+  l->squares += 1;
+  l->cubes += 1;
+  if (l->largest == 0)
+    l->largest = 1;
+  uint32_t stride = 1, rest = i;
+  for (int d = 0; d < l->law->dimensions; d++, stride *= l->length) {
+    const uint32_t x = rest % l->length, row = stride * l->length;
+    rest /= l->length;
+    const uint32_t up = x + 1 < l->length ? i + stride : i + stride - row;
+    const uint32_t down = x > 0 ? i - stride : i - stride + row;
+    if ((l->law->periodic || x + 1 < l->length) && l->size[up])
+      join(l, i, up);
+    if ((l->law->periodic || x > 0) && l->size[down])
+      join(l, i, down);
+  }
+}
+
+static uint64_t next_random(uint64_t *state) { /* splitmix64 (Steele, Lea & Flood 2014) */
+  uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
+  z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+  z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+  return z ^ z >> 31;
+}
+
+/* One sample: each site has a number in 0..1 and is occupied where p is above it. Sites are added from one p of the
+ * grid to the next, so that all p share a sample, as the points of a campaign share a seed. */
+static void sample(struct lattice *l, uint64_t seed, const double *grid, struct scaling_run *runs) {
+  uint32_t count[GRID + 1] = {0}, later = 0;
+  uint64_t state = seed;
+  memset(l->size, 0, l->sites * sizeof *l->size);
+  l->largest = 0;
+  l->squares = l->cubes = 0;
+  for (uint32_t i = 0; i < l->sites; i++) {
+    const double u = random_uniform(next_random(&state));
+    if (u < grid[0])
+      occupy(l, i);
+    else if (u < grid[GRID - 1]) {
+      size_t k = 1;
+      while (u >= grid[k])
+        k++;
+      l->order[later] = i;
+      l->step[later++] = (uint8_t)k;
+      count[k]++;
+    }
+  }
+  for (size_t k = 0; k < GRID; k++) {
+    for (uint32_t i = 0; i < later && count[k]; i++)
+      if (l->step[i] == k)
+        occupy(l, l->order[i]);
+    const double n = (double)l->sites, m = (double)l->largest;
+    runs[k] = (struct scaling_run){(double)l->length,         grid[k], seed, m / n, m / n, (l->squares - m * m) / n,
+                                   (l->cubes - m * m * m) / n};
+  }
+}
+
+static size_t make(const struct law *law, uint64_t repeat, struct scaling_run *runs) {
+  size_t n = 0;
+  for (size_t i = 0; i < law->sizes; i++) {
+    struct lattice l = {.law = law, .length = law->size[i], .sites = 1};
+    for (int d = 0; d < law->dimensions; d++)
+      l.sites *= l.length;
+    l.parent = malloc(l.sites * sizeof *l.parent);
+    l.size = malloc(l.sites * sizeof *l.size);
+    l.order = malloc(l.sites * sizeof *l.order);
+    l.step = malloc(l.sites);
+    double grid[GRID];
+    for (size_t k = 0; k < GRID; k++)
+      grid[k] = law->middle + law->step * ((double)k - GRID / 2) * pow((double)l.length, -1 / law->nu);
+    for (size_t r = 0; r < law->samples; r++, n += GRID)
+      sample(&l, (uint64_t)(random_draw(repeat, 100, i, r) * 0x1p62), grid, runs + n);
+    free(l.parent);
+    free(l.size);
+    free(l.order);
+    free(l.step);
+  }
+  return n;
+}
+
+/* Repeats of a law: how often the intervals hold the exact values, and their widths. */
+static void check(const struct law *law, bool judge) {
+  static const char *const names[] = {"p_c", "nu", "beta/nu", "gamma/nu", "D", "tau"};
+  struct scaling_run *runs = malloc(law->samples * GRID * law->sizes * sizeof *runs);
+  int held[SCALING_VALUES] = {0};
+  double widest[SCALING_VALUES] = {0}, width[SCALING_VALUES] = {0}, off[SCALING_VALUES] = {0},
+         square[SCALING_VALUES] = {0};
+  double quality[4] = {0};
+  assert_non_null(runs);
+  for (uint64_t repeat = 1; repeat <= REPEATS; repeat++) {
+    SCALING found = {0};
+    struct error error;
+    assert_int_equal(scaling_find(make(law, repeat, runs), runs, law->dimensions, &found, &error), STATUS_OK);
+    assert_int_equal(found.kind, SCALING_FOUND);
+    for (int v = 0; v < SCALING_VALUES; v++) {
+      const double half = found.value[v].half_width, error_of = found.value[v].estimate - law->exact[v];
+      held[v] += fabs(error_of) <= half;
+      widest[v] = fmax(widest[v], half);
+      width[v] += half / REPEATS;
+      off[v] += error_of / REPEATS;
+      square[v] += error_of * error_of / REPEATS;
+    }
+    for (int k = 0; k < 4; k++)
+      quality[k] += (k < 2 ? found.chi_square[k] : found.distance[k - 2]) / REPEATS;
+  }
+  printf("%s, L %u to %u, %zu samples a size; chi-square of P %.1f, of S %.1f; distance %.3f, %.3f\n", law->name,
+         law->size[0], law->size[law->sizes - 1], law->samples, quality[0], quality[1], quality[2], quality[3]);
+  printf("| value | exact | held of %d | half width: mean | widest | asked | mean error | rms error |\n"
+         "|---|---|---|---|---|---|---|---|\n",
+         REPEATS);
+  for (int v = 0; v < SCALING_VALUES; v++)
+    printf("| %s | %.5f | %d | %.5f | %.5f | %g | %.5f | %.5f |\n", names[v], law->exact[v], held[v], width[v],
+           widest[v], law->widest[v], off[v], sqrt(square[v]));
+  for (int v = 0; judge && v < SCALING_VALUES; v++) {
+    assert_true(held[v] >= LEAST_HELD);
+    assert_true(widest[v] <= law->widest[v]);
+  }
+  free(runs);
+}
+
+static void percolation_on_the_square_lattice(void **state) {
+  (void)state;
+  check(getenv("CLAST_FULL") ? &asked : &small_sizes, true);
+}
+
+static void laws_that_chose_nothing(void **state) {
+  (void)state;
+  for (size_t k = 0; getenv("CLAST_FULL") && k < sizeof others / sizeof *others; k++)
+    check(&others[k], false);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(percolation_on_the_square_lattice),
+      cmocka_unit_test(laws_that_chose_nothing),
+  };
+  analysis_init();
+  return cmocka_run_group_tests_name("scaling", tests, NULL, NULL);
+}
