@@ -252,8 +252,8 @@ static void write_answer(const struct points *points, const char *quantity, cons
     break;
   case SCALING_TOO_FEW:
     if (found->sizes < SCALING_LEAST_SIZES)
-      text_append(text, sizeof text, "Too few sizes: %s has %zu with runs; exponents need %d.", size->word,
-                  found->sizes, SCALING_LEAST_SIZES);
+      text_append(text, sizeof text, "Too few sizes: the runs have %zu, by %s; exponents need %d.", found->sizes,
+                  size->word, SCALING_LEAST_SIZES);
     else
       text_append(text, sizeof text,
                   "Too few points: a size has fewer than two values of %s, with %d runs each, near the crossing.",
@@ -370,13 +370,14 @@ status print_scaling(struct store *store, const struct scaling_choice *choice, e
   TRY(scaling_find(points.runs, points.run, points.dimensions, &found, error));
   if (table_for_people(format))
     write_answer(&points, quantity, &found);
-  TRY(print_rows(&points, quantity, &found, format, error));
+  if (!table_for_people(format) || (found.kind != SCALING_TOO_FEW && found.kind != SCALING_NO_CROSSING))
+    TRY(print_rows(&points, quantity, &found, format, error));
   if (table_for_people(format)) {
     words_print(stderr, "",
-                "clast: %zu runs of %zu sizes of %s; L is the number of grains or particles to the power 1/%d. P: the "
+                "clast: %zu runs, sizes by %s; L is the number of grains or particles to the power 1/%d. P: the "
                 "mean of %s. S: mean mass of a fragment without the largest one, in elements. 95 %% intervals over "
                 "whole runs, with the shift: without the smallest size less with it",
-                found.runs, found.sizes, points.axis[points.size].word, points.dimensions, quantity);
+                found.runs, points.axis[points.size].word, points.dimensions, quantity);
     uncertainty_doubts(&points.doubts, stderr);
   }
   return page ? draw(&points, quantity, &found, page, error) : STATUS_OK;

@@ -16,7 +16,7 @@ YAML
 expect 0 "$clast" run discs.yaml -j 2 --quiet
 expect 0 "$clast" scaling discs.db
 grep -qE '^(No crossing|Not one curve|Too few)' out || fail "an exponent from three seeds of tiny discs"
-says "84 runs of 4 sizes of diameter"
+says "84 runs, sizes by diameter"
 
 # Masses that obey a law with known exponents (test_scaling_fit.c): the largest fragment, one half of the others equal.
 cat >law.py <<'PY'
