@@ -91,6 +91,7 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
     caption s scatter marked.db --picture s.png ;;
   sensitivity) marked "32 of 32" sensitivity ask.db ask.yaml -Q fragment_count
     columns 0 sensitivity ask.db ask.yaml -Q fragment_count ;;
+  scaling) columns 0 scaling marked.db --size strain --control time_step ;; # marks and a caption: cli.scaling
   spectrum) marked "6 of 12" spectrum marked.db
     columns 1 spectrum marked.db
     columns 1 spectrum marked.db --runs
@@ -260,4 +261,4 @@ for name in idle acts alone; do
     "$([ $name != idle ] || echo 'no effect in these runs: friction')" "inputs without effect of $name"
 done
 ok "inputs without effect"
-done_after 114
+done_after 116

@@ -15,6 +15,7 @@ store: discs.db
 YAML
 expect 0 "$clast" run discs.yaml -j 2 --quiet
 expect 0 "$clast" scaling discs.db
+says "marked (!), "
 grep -qE '^(No crossing|Not one curve|Too few)' out || fail "an exponent from three seeds of tiny discs"
 says "84 runs, sizes by diameter"
 
@@ -42,6 +43,7 @@ cp discs.db law.db
 python law.py law.db
 expect 0 "$clast" scaling law.db
 tr '\n' ' ' <out | grep -q '^Critical speed: .* m/s .*nu .*beta/nu .*gamma/nu .*D .*tau ' || fail "the answer"
+grep -Eq 'm/s !' out && grep -Eq '^nu .* !( |$)' out || fail "no mark"
 expect 0 "$clast" scaling law.db --json
 python - <<'PY'
 import json
@@ -56,7 +58,7 @@ expect 0 "$clast" scaling law.db --size diameter --control speed -Q largest_frac
 same "$(head -1 out | tr -d "\r")" "name,value,value_hw95,shift,meaning,answer,doubtful,doubts" "columns"
 if command -v gnuplot >/dev/null; then
   expect 0 "$clast" scaling law.db --picture collapse.svg --keep-script
-  grep -q 'diameter\|elements' collapse.svg && [ -s collapse.gp ] || fail "the picture"
+  grep -q 'diameter\|elements' collapse.svg && grep -q '! in doubt' collapse.gp || fail "the picture"
 else
   ok "no gnuplot"
 fi
