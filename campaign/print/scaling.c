@@ -367,6 +367,11 @@ status print_scaling(struct store *store, const struct scaling_choice *choice, e
   TRY(choose_size(store, &points, choice->size, error));
   TRY(choose_control(store, &points, choice->control, error));
   set_sizes(&points);
+  if (points.dimensions != 2)
+    return status_fail(
+        error, STATUS_USAGE,
+        "clast scaling is for scenes in the plane: for bodies in space its intervals are too narrow (of a "
+        "cubic lattice, 10 of 20 held beta/nu)");
   TRY(scaling_find(points.runs, points.run, points.dimensions, &found, error));
   if (table_for_people(format))
     write_answer(&points, quantity, &found);
