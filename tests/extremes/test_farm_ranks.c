@@ -77,10 +77,12 @@ static void idle_ranks_sleep(void **state) {
   assert_true(ended(&it, 20, &out));
   assert_int_equal(orphans(&it, 2), 0);
   assert_int_equal(out.exit_code, STATUS_OK);
-  /* Two percent of a core each. The aim is half a percent, which bench_farm measures; on a loaded machine each waking
-   * costs up to three times as much. Waiting in MPI_Recv would be 100 %, polling every 50 us about 20 %. */
-  assert_true(out.manager_cpu_s < 0.02 * out.wall_s);
-  assert_true(out.waiting_cpu_s / 2 < 0.02 * out.wall_s);
+  /* An idle rank sleeps 5 ms at a time (FARM_SLEEP_USUAL_NS), later 10 ms: less than 200 wakings a second. Processor
+   * time only tells a busy wait, which takes all that it can get: what a waking costs depends on the machine and on
+   * what else runs there. bench_farm measures it. */
+  assert_true(out.most_wakings > 0 && (double)out.most_wakings < 200 * out.wall_s);
+  assert_true(out.manager_cpu_s < 0.2 * out.wall_s);
+  assert_true(out.waiting_cpu_s / 2 < 0.2 * out.wall_s);
 }
 
 /* A dead rank ends the job in Open MPI 4.1. The manager receives SIGTERM and is called to commit; no process is left

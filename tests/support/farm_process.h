@@ -9,6 +9,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
 #include "schemas/clock.h"
@@ -38,23 +39,36 @@ struct outcome_of {
   int status, reported, twice, wrong, done, lost, stopping, slots_total;
   double manager_cpu_s, waiting_cpu_s, wall_s;
   unsigned long long sum;
-  bool summary; /* the program reached the end and wrote a summary */
+  long most_wakings; /* of the rank that slept and woke most often while the farm ran */
+  bool summary;      /* the program reached the end and wrote a summary */
 };
+
+/* How often this thread has slept and woken. Unlike its processor time this does not depend on how busy the machine is.
+ */
+static inline long wakings(void) {
+  struct rusage usage;
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_nvcsw;
+}
 
 /* ---- the program ---- */
 
-static inline status journal_report(void *context, const struct farm_report *report, struct error *error) {
-  const status result = task_list_report(context, report, error);
-  const char *path = getenv("CLAST_FARM_TEST_JOURNAL");
-  char line[64];
-  const int n = snprintf(line, sizeof line, "%llu %d %d\n", (unsigned long long)report->id, (int)report->ending,
-                         report->rank);
+static inline status append_line(const char *variable, const char *line) {
+  const char *path = getenv(variable);
   const int file = path ? open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600) : -1;
-  if (file >= 0 && write(file, line, (size_t)n) != n)
+  const size_t length = strlen(line);
+  if (file >= 0 && write(file, line, length) != (ssize_t)length)
     return STATUS_IO;
   if (file >= 0)
     close(file);
-  return result;
+  return STATUS_OK;
+}
+
+static inline status journal_report(void *context, const struct farm_report *report, struct error *error) {
+  const status result = task_list_report(context, report, error);
+  char line[64];
+  snprintf(line, sizeof line, "%llu %d %d\n", (unsigned long long)report->id, (int)report->ending, report->rank);
+  return append_line("CLAST_FARM_TEST_JOURNAL", line) == STATUS_OK ? result : STATUS_IO;
 }
 
 static inline int program_work(char **argv) {
@@ -82,7 +96,11 @@ static inline int program_work(char **argv) {
   struct farm_manager manager = task_list_manager(&list);
   manager.report = journal_report;
   const int total = farm_slots_total(farm);
+  const long woken = wakings();
   const status result = farm_run(farm, &manager, &error);
+  char line[32];
+  snprintf(line, sizeof line, "%ld\n", wakings() - woken);
+  append_line("CLAST_FARM_TEST_WAKINGS", line);
   if (farm_rank(farm) == 0) {
     const struct farm_usage usage = farm_usage(farm);
     int twice = 0, done = 0, lost = 0;
@@ -108,7 +126,7 @@ static inline int program_work(char **argv) {
 
 struct running {
   pid_t pid;
-  char tag[64], summary[128], journal[128];
+  char tag[64], summary[128], journal[128], wakings[128];
 };
 
 static inline struct running launch(const char *program, struct launch it) {
@@ -118,6 +136,7 @@ static inline struct running launch(const char *program, struct launch it) {
   snprintf(running.tag, sizeof running.tag, "%d.%d", (int)getpid(), ++number);
   snprintf(running.summary, sizeof running.summary, "/tmp/clast_farm_%s.summary", running.tag);
   snprintf(running.journal, sizeof running.journal, "/tmp/clast_farm_%s.journal", running.tag);
+  snprintf(running.wakings, sizeof running.wakings, "/tmp/clast_farm_%s.wakings", running.tag);
   snprintf(text, sizeof text, "%d,%d,%d,%d,%d,%g,%g,%g,%g,%d,%d", it.ranks, it.slots, it.in_process, it.count, it.kind,
            it.amount, it.time_limit_s, it.lost_after_s, it.drain_s, it.special, it.special_kind);
   snprintf(ranks, sizeof ranks, "%d", it.ranks);
@@ -129,6 +148,7 @@ static inline struct running launch(const char *program, struct launch it) {
     setenv(TAG_VARIABLE, running.tag, 1);
     setenv("CLAST_FARM_TEST_SUMMARY", running.summary, 1);
     setenv("CLAST_FARM_TEST_JOURNAL", running.journal, 1);
+    setenv("CLAST_FARM_TEST_WAKINGS", running.wakings, 1);
     setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
     setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
 #ifdef __SANITIZE_ADDRESS__
@@ -272,6 +292,11 @@ static inline bool ended(const struct running *running, double seconds, struct o
                                 &out->manager_cpu_s, &out->waiting_cpu_s, &out->wall_s, &out->sum) == 12;
   if (file)
     fclose(file);
+  file = fopen(running->wakings, "r");
+  for (long count; file && fscanf(file, "%ld", &count) == 1;)
+    out->most_wakings = count > out->most_wakings ? count : out->most_wakings;
+  if (file)
+    fclose(file);
   return true;
 }
 
@@ -286,6 +311,7 @@ static inline int orphans(const struct running *running, double seconds) {
     kill(pids[i], SIGKILL);
   unlink(running->summary);
   unlink(running->journal);
+  unlink(running->wakings);
   return count;
 }
 

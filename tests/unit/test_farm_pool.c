@@ -303,12 +303,18 @@ static void asleep_while_tasks_sleep(void **state) {
     list.tasks[i] = (struct task){.id = i, .kind = TASK_SLEEP, .amount = 2};
   struct farm *farm = start((struct farm_options){.slots = 2});
   const struct farm_manager manager = task_list_manager(&list);
+  struct rusage before, after;
+  getrusage(RUSAGE_SELF, &before);
   assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
+  getrusage(RUSAGE_SELF, &after);
   const struct farm_usage usage = farm_usage(farm);
   farm_stop(farm);
   assert_true(usage.wall_s >= 2);
-  assert_true(usage.manager_cpu_s < 0.005 * usage.wall_s); /* half a percent of a core; a busy wait would be 100 % */
-  assert_in_range(list.ticks, 10, 21);                     /* every 100 ms at most, and not much less often */
+  /* It wakes for a tick, and when a task starts or ends. Processor time only tells a busy wait: what a waking costs
+   * depends on the machine and on what else runs there. bench_farm measures it. */
+  assert_in_range(after.ru_nvcsw - before.ru_nvcsw, 10, 60);
+  assert_true(usage.manager_cpu_s < 0.2 * usage.wall_s);
+  assert_in_range(list.ticks, 10, 21); /* every 100 ms at most, and not much less often */
   task_list_free(&list);
 }
 
