@@ -343,7 +343,7 @@ static status draw_map(const struct picture_page *page, const struct picture_wor
   chart_number(chart, "panels", panel ? (double)map->panels : 0);
   chart_texts(chart, "panel_label", panel ? map->panels : 0, panel);
   chart_number(chart, "low", range[0]);
-  chart_number(chart, "high", range[1] > range[0] ? range[1] : range[0] + fmax(fabs(range[0]), 1) * 1e-6);
+  chart_number(chart, "high", range[1] > range[0] ? range[1] : range[0] + (range[0] != 0 ? 0.1 * fabs(range[0]) : 1));
   chart_number(chart, "scattered", !map->tile);
   if (map->tile)
     write_tiles(chart, map);

@@ -6,13 +6,13 @@ import {listenToKeys, placesOf} from './keys.js';
 import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
 import {interval} from './statistics.js';
-import {ask, has, newest} from './stores.js';
+import {ask, exponents, has, newest} from './stores.js';
 import {inUnit, isShare, label, marked, number, plural, shellFile, withInterval} from './words.js';
 
 const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
 
 function statistics(from, quantity) {
-  if (quantity === 'beta') return newest(ask(from, questions.exponents));
+  if (quantity === 'beta') return exponents(from);
   const share = isShare(state.stores, quantity);
   const rows = from.quantities.main.includes(quantity) ? ask(from, questions.mainStatistics(quantity))
     : has(from, 'means') ? ask(from, questions.otherStatistics, {quantity}) : ask(from, questions.statisticsOfRuns(quantity));
@@ -53,9 +53,9 @@ export function cells(from, quantity) {
   const judged = has(from, 'modes') && quantity !== 'beta'; // not on whole stores, and an exponent belongs to all runs
   const enough = Number(from.facts.modes_runs); // of fewer, the test finds chance more often than modes
   return from.points.map((point) => {
-    const {mean = null, hw95 = null, low95 = null, high95 = null, weak = null} = known.get(point.point_id) ?? {};
+    const {mean = null, hw95 = null, low95 = null, high95 = null, weak = null, untold = null} = known.get(point.point_id) ?? {};
     const {half_width: resolution = null, verdict = null} = studied.get(point.point_id) ?? {};
-    return {...point, mean, hw95, low95, high95, weak, resolution, verdict, modes: modes.get(point.point_id) ?? null, judged: judged && point.n >= enough, doubt: doubts.get(point.point_id) ?? null};
+    return {...point, mean, hw95, low95, high95, weak, untold, resolution, verdict, modes: modes.get(point.point_id) ?? null, judged: judged && point.n >= enough, doubt: doubts.get(point.point_id) ?? null};
   });
 }
 
@@ -107,7 +107,7 @@ function data(quantity) {
     ...cell,
     [state.x]: placeOf(state.x, cell[state.x]),
     ...(state.y ? {[state.y]: placeOf(state.y, cell[state.y])} : {}),
-    shown: marked(withInterval(cell), cell.doubt, cell.n),
+    shown: cell.untold ? `- (${cell.untold})` : marked(withInterval(cell), cell.doubt, cell.n),
     told: cell.hw95 === null ? number(cell.mean, 3) : withInterval({...cell, weak: false}),
     mark: cell.doubt ? ' !' : '',
     doubtText: doubtText(cell),
@@ -264,8 +264,10 @@ export async function showPlane() {
   const title = label(state.stores, state.quantity);
   const rows = (plane.rows = data(state.quantity));
   const known = rows.filter((row) => row.mean !== null);
-  if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${doubtSentence(store(), rows)}`);
-  const caption = `${title}: mean over the runs of each point. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${doubtSentence(store(), rows)}`;
+  const untold = [...new Set(rows.map((row) => row.untold).filter(Boolean))].join(', or ');
+  const reason = untold ? ` -: not known to a whole number: ${untold}.` : '';
+  if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence(store(), rows)}`);
+  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${doubtSentence(store(), rows)}`;
   if (!state.x) {
     nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows)}${doubtSentence(store(), rows)}`);
     return;
@@ -274,8 +276,8 @@ export async function showPlane() {
   const view = await draw(figure, state.y ? planeSpec(rows, title) : lineSpec(known, title), {
     name: 'plane', description: `${title} over ${inputs.map((input) => label(state.stores, input)).join(' and ')}. Arrow keys move, the space bar chooses; the table of points below has the numbers`,
     keys: true,
-    caption, command: commandOf(), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'low95', 'high95', 'weak', 'resolution', 'doubtful', 'doubts'],
-    rows: rows.map((row) => [row.point_id, ...inputs.map((input) => row[input]), row.n, row.mean, row.hw95, row.low95, row.high95, row.weak, row.resolution, row.doubt?.doubtful ?? 0, wordsOf(row.doubt).join(', ')]),
+    caption, command: commandOf(), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'low95', 'high95', 'weak', 'untold', 'resolution', 'doubtful', 'doubts'],
+    rows: rows.map((row) => [row.point_id, ...inputs.map((input) => row[input]), row.n, row.mean, row.hw95, row.low95, row.high95, row.weak, row.untold, row.resolution, row.doubt?.doubtful ?? 0, wordsOf(row.doubt).join(', ')]),
   });
   plane.view = view;
   listen(view);

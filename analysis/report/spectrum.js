@@ -5,7 +5,7 @@ import * as questions from './questions.js';
 import {chosenPoints, state, store} from './state.js';
 import {cells, doubtSentence} from './plane.js';
 import {pool} from './statistics.js';
-import {ask, has, newest} from './stores.js';
+import {ask, exponents, has} from './stores.js';
 import {inUnit, marked, number, plural, shellFile, unitOf, withError} from './words.js';
 
 export const inputsOf = (from, point) => from.axes.map((axis) => `${axis.path.split('.').pop()} ${number(inUnit(state.stores, axis.column_name, point[axis.column_name]))}${unitOf(state.stores, axis.column_name)}`).join(', ');
@@ -52,8 +52,9 @@ function goodnessOf(from, point) {
 // The line of m^-beta that holds as many fragments per run in its window as the fit was made from.
 function fitOf(curve) {
   if (curve.points.length !== 1) return null;
-  const fit = newest(ask(curve.from, questions.exponents)).find((row) => row.point_id === curve.points[0].point_id);
-  if (!fit || !(fit.lower > 0) || fit.mean === null) return null;
+  const fit = exponents(curve.from).find((row) => row.point_id === curve.points[0].point_id);
+  if (!fit || !(fit.lower > 0)) return null;
+  if (fit.mean === null) return {text: `no β: ${fit.untold}`, ends: []};
   const upper = Math.min(fit.upper ?? Infinity, Math.max(...curve.bins.map((bin) => bin.upper)));
   const power = 1 - fit.mean;
   const integral = Math.abs(power) < 1e-9 ? Math.log(upper / fit.lower) : (upper ** power - fit.lower ** power) / power;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -10,6 +11,7 @@
 #include "engine/random.h"
 #include "engine/threads.h"
 #include "schemas/memory.h"
+#include "schemas/text.h"
 
 static const char for_runs[] = "the exponent of a point's runs"; /* there was no memory for it */
 
@@ -212,9 +214,25 @@ status pooled_exponent(const struct pooled_runs *runs, enum exponent_method meth
   return STATUS_OK;
 }
 
-bool pooled_exponent_tells(const struct pooled_exponent *exponent) {
+const char *pooled_exponent_untold(const struct pooled_exponent *exponent) {
+  _Static_assert(EXPONENT_LEAST_FRAGMENTS == 5, "as the reason says");
   const double half = exponent->interval.half_width;
-  return (isfinite(half) ? half / 2 : exponent->fit.standard_error) < 1; /* half: about two standard errors */
+  if (exponent->fit.n < EXPONENT_LEAST_FRAGMENTS)
+    return "fewer than 5 fragments";
+  if (!isfinite(exponent->fit.beta))
+    return exponent->fit.method == EXPONENT_LEAST_SQUARES ? "a bin without a fragment" : "no fit";
+  if (isfinite(half))
+    return half / 2 < 1 ? NULL : "an interval of \xc2\xb1 2 or wider"; /* half: about two standard errors */
+  return exponent->fit.standard_error < 1 ? NULL : "no interval and a standard error of 1 or more";
+}
+
+int pooled_exponent_decimals(const struct pooled_exponent *exponent) {
+  return isfinite(exponent->interval.half_width) || !(exponent->fit.standard_error >= 0.1) ? 2 : 1;
+}
+
+void pooled_exponent_tell(const char *reason, char *text, size_t size) {
+  if (reason && !strstr(text, reason))
+    text_append(text, size, "%s%s", *text ? ", or " : "not known to a whole number: ", reason);
 }
 
 status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,

@@ -364,8 +364,13 @@ struct pooled_exponent {
   struct sample_interval interval; /* over runs: quote this error. NaN for one run */
   size_t runs;                     /* number of runs with fragments in their window */
 };
-/* Is there enough of it for a person to read: is the whole number known, by the interval or by fit.standard_error? */
-bool pooled_exponent_tells(const struct pooled_exponent *exponent);
+/* Why tables for people and pictures show no beta: its whole number is not known, by the interval or by
+ * fit.standard_error. NULL: they show it. */
+const char *pooled_exponent_untold(const struct pooled_exponent *exponent);
+/* Decimals of beta for people where no interval gives them. */
+int pooled_exponent_decimals(const struct pooled_exponent *exponent);
+/* Appends a reason to "not known to a whole number: ...", unless it is there or NULL. */
+void pooled_exponent_tell(const char *reason, char *text, size_t size);
 /* Methods: least squares or on masses; STATUS_USAGE for another one. lower: kg, the same for all runs of
  * the point (a number of mean element masses). level: 0.95 for a 95 % interval. The cost is microseconds per run. */
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,

@@ -17,7 +17,7 @@
 #include "schemas/text.h"
 
 /* Columns of ask_group after the axes. */
-enum { VERSION = 1, MEAN = 7, LOW = 11, HIGH = 12, RESOLUTION = 14, DOUBTFUL = 17, COLUMNS = 19 };
+enum { VERSION = 1, MEAN = 7, HALF_WIDTH = 10, LOW = 11, HIGH = 12, RESOLUTION = 14, DOUBTFUL = 17, COLUMNS = 19 };
 
 enum {
   MOST_ROWS = 10000,
@@ -34,8 +34,10 @@ struct row {
   char text[AXES][INPUT_TEXT]; /* the inputs for people; "": off, or does not apply */
   int64_t version;             /* results_version */
   double value, lower, upper;  /* bounds of the 95 % interval; NaN: unknown */
+  double half_width;           /* of this interval, also where a share's interval ends at 0 or 1 */
   double resolution;           /* possible change of the value by finer settings; NaN: unknown */
   bool doubtful;               /* rests on runs in doubt */
+  int decimals;                /* of a value without an interval; -1: its leading digits */
 };
 
 struct quantity {
@@ -44,6 +46,7 @@ struct quantity {
   char column[AXES][256];        /* the axes' columns in the views */
   char name[256];                /* column of the quantity, or the exponent's name */
   char pooled[ASK_GROUP_POOLED]; /* other varied inputs that the means average over, with points as units; "": none */
+  char untold[400];              /* why some exponents are not told: their values are NaN */
   bool sampled;                  /* every point has its own values of the inputs that are not drawn */
   struct row *row;               /* owned */
   size_t count, room;
@@ -111,8 +114,10 @@ static status read_groups(struct quantity *quantity, struct answer *groups, stru
                             .value = answer_real(groups, axes + MEAN),
                             .lower = answer_real(groups, axes + LOW),
                             .upper = answer_real(groups, axes + HIGH),
+                            .half_width = answer_real(groups, axes + HALF_WIDTH),
                             .resolution = answer_real(groups, axes + RESOLUTION),
-                            .doubtful = answer_integer(groups, axes + DOUBTFUL) > 0};
+                            .doubtful = answer_integer(groups, axes + DOUBTFUL) > 0,
+                            .decimals = -1};
     TRY(add_row(quantity, inputs, row, error));
   }
   return answer_end(groups);
@@ -133,13 +138,17 @@ static status read_exponents(struct store *store, struct quantity *quantity, enu
     TRY(ask_resolution(store, point.point_id, quantity->name, &resolution, error));
     TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = point.point_id}, OUTCOME_NAME(mean_fragment_mass),
                    &doubts, error));
-    const double half_width = fit.interval.half_width;
+    const char *untold = pooled_exponent_untold(&fit);
+    const double beta = untold ? (double)NAN : fit.fit.beta, half_width = fit.interval.half_width;
     const struct row row = {.version = point.results_version,
-                            .value = fit.fit.beta,
-                            .lower = fit.fit.beta - half_width,
-                            .upper = fit.fit.beta + half_width,
+                            .value = beta,
+                            .lower = beta - half_width,
+                            .upper = beta + half_width,
+                            .half_width = half_width,
                             .resolution = resolution.half_width,
-                            .doubtful = doubts.doubtful > 0};
+                            .doubtful = !untold && doubts.doubtful > 0,
+                            .decimals = pooled_exponent_decimals(&fit)};
+    pooled_exponent_tell(untold, quantity->untold, sizeof quantity->untold);
     TRY(add_row(quantity, point.inputs, row, error));
   }
   return answer_end(&points);
@@ -236,6 +245,16 @@ static void made_of(const struct quantity *quantity, char *text, size_t size) {
   charts_labels(quantity->pooled, pooled, sizeof pooled);
   snprintf(text, size, "%s%s%s", quantity->exponent ? "fit to all runs of a point" : "mean over seeds",
            *pooled ? " and " : "", pooled);
+}
+
+/* Fails if tables show none of the exponents. */
+static status check_told(const struct quantity *quantity, struct error *error) {
+  for (size_t i = 0; i < quantity->count; i++)
+    if (isfinite(quantity->row[i].value))
+      return STATUS_OK;
+  if (!*quantity->untold)
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE, "no point has an exponent to draw: %s", quantity->untold);
 }
 
 /* ---- lines ---- */
@@ -356,6 +375,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   const struct quantity *quantity = &plot->quantity;
   for (size_t i = 0; i < quantity->count; i++)
     TRY(add_mean(plot, &quantity->row[i], error));
+  TRY(check_told(quantity, error));
   char x[CHARTS_LABEL], by[CHARTS_LABEL] = "", y[CHARTS_LABEL], name[CHARTS_LABEL], over[CHARTS_LABEL];
   char title[ASK_GROUP_POOLED + 3 * CHARTS_LABEL], caption[1200], intervals[600], resolution[400];
   char made[ASK_GROUP_POOLED + 40];
@@ -382,6 +402,8 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   charts_intervals(quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "thin bars add ", resolution, sizeof resolution);
   snprintf(caption, sizeof caption, "Bars: %s; %s", intervals, resolution);
+  if (*quantity->untold)
+    text_append(caption, sizeof caption, "; no mark: %s", quantity->untold);
   if (quantity->sampled)
     tell_sampled(quantity, caption, sizeof caption);
   TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
@@ -408,6 +430,12 @@ struct panels {
   char text[MOST_PANELS][CHARTS_LABEL + INPUT_TEXT];
 };
 
+/* An interval must not shrink by rounding. */
+static double two_digits_up(double half_width) {
+  const double last = pow(10, floor(log10(half_width)) - 1);
+  return last * ceil(half_width / last * (1 - 1e-12));
+}
+
 static status draw_tiles(struct store *store, const struct quantity *quantity, size_t count,
                          const struct picture_tile *tile, const struct panels *panels, double widest,
                          const struct picture_page *page, struct error *error) {
@@ -425,21 +453,26 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
   charts_intervals(quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "", resolution, sizeof resolution);
   if (widest > 0)
-    snprintf(caption, sizeof caption, "The widest of the %s is \xc2\xb1 %.2g, `clast stats` has all; %s", intervals,
-             widest, resolution);
+    snprintf(caption, sizeof caption, "The widest of the %s is \xc2\xb1 %.2g, `clast %s` has all; %s", intervals,
+             two_digits_up(widest), quantity->exponent ? "estimates" : "stats", resolution);
   else
-    snprintf(caption, sizeof caption, "No interval: one run a point; %s", resolution);
+    snprintf(caption, sizeof caption, "No interval: %s; %s",
+             quantity->exponent ? "too few runs or fragments" : "one run a point", resolution);
+  if (*quantity->untold)
+    text_append(caption, sizeof caption, "; \xc3\x97: %s", quantity->untold);
   TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
   return picture_map(page, &(struct picture_words){title, caption, x, y}, z, count, tile, panels->count,
                      panels->count ? label : NULL, error);
 }
 
-/* Decimals of a value in tables, -1: no interval, or only its leading digits count. */
-static int decimals_of(double value, double half_width, bool share) {
+/* Decimals of a value in tables, -1: only its leading digits count. */
+static int decimals_of(const struct row *row, bool share) {
   char text[UNCERTAINTY_TEXT];
-  if (!(half_width > 0 && half_width < 10))
+  if (!(row->half_width > 0))
+    return row->decimals;
+  if (!(row->half_width < 10))
     return -1;
-  (share ? uncertainty_share_cell : uncertainty_number)(value, half_width, text);
+  (share ? uncertainty_share_cell : uncertainty_number)(row->value, row->half_width, text);
   text[strcspn(text, " ")] = '\0';
   return strchr(text, '.') ? (int)strlen(strchr(text, '.') + 1) : 0;
 }
@@ -484,11 +517,12 @@ static status make_tiles(struct store *store, const struct quantity *quantity, s
                                           .y = row->input[1],
                                           .value = row->value,
                                           .doubtful = row->doubtful,
-                                          .decimals = decimals_of(row->value, row->upper - row->value,
-                                                                  views_is_share(quantity->name)),
+                                          .decimals = decimals_of(row, views_is_share(quantity->name)),
                                           .panel = panel};
-    widest = fmax(widest, row->upper - row->value); /* NaN: no interval */
+    if (isfinite(row->value))
+      widest = fmax(widest, row->half_width); /* NaN: no interval */
   }
+  TRY(check_told(quantity, error));
   return draw_tiles(store, quantity, count, tile, &panels, widest, page, error);
 }
 

@@ -28,6 +28,7 @@ struct curve {
   double complete_mass; /* kg; NaN: not known */
   double sieved;        /* kg of a run, in fragments that the finest sieve of a measured table retains */
   struct picture_fit fit;
+  const char *untold;          /* why there is no fit; NULL: there is one, or the pool has several points */
   struct pooled_rivals rivals; /* n 0: not requested */
   struct picture_thin *thin;   /* one for each run; owned with their bins */
   size_t thin_count;
@@ -52,7 +53,8 @@ static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct cu
     return STATUS_OK;
   TRY(pooled_exponent(&pool->data.runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &headline,
                       error));
-  if (!isfinite(headline.fit.beta) || !pooled_exponent_tells(&headline))
+  curve->untold = pooled_exponent_untold(&headline);
+  if (curve->untold)
     return STATUS_OK;
   const double runs = (double)pool->data.runs.count;
   label_fit(curve, headline.fit.beta, headline.interval.half_width);
@@ -174,6 +176,10 @@ static void write_caption(struct store *store, const struct curves *curves, char
       "%s. %s: 95 %% intervals over %s; of \xce\xb2, %s. Grey: fragments are missing (too few particles or grains)",
       laws[choice->density > 0][choice->cumulative], choice->cumulative ? "Bands" : "Bars",
       curves->several ? "points" : "seeds", text);
+  char untold[400] = "";
+  for (size_t i = 0; i < curves->count; i++)
+    pooled_exponent_tell(curves->curve[i].untold, untold, sizeof untold);
+  text_append(caption, CAPTION, "%s%s", *untold ? ". No line: " : "", untold);
   charts_doubts(&curves->doubts, caption, CAPTION);
 }
 

@@ -8,9 +8,11 @@ struct options {
   int64_t draws;
 };
 
+enum { UNTOLD = 400 };
+
 /* Prints a point's exponent under its four names, with the goodness of its fit by `draws` samples of the bootstrap.
  * Points without estimates have no row. */
-static status print_pool(struct table *table, size_t draws, bool people, const struct ask_pool *pool,
+static status print_pool(struct table *table, size_t draws, bool people, const struct ask_pool *pool, char *untold,
                          struct error *error) {
   const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
   struct pooled_exponent fit;
@@ -26,7 +28,8 @@ static status print_pool(struct table *table, size_t draws, bool people, const s
   table_reals(table, 2, (const double[]){lower, pool->data.complete_mass});
   table_integer(table, (int64_t)runs->count);
   table_integer(table, fit.fit.n);
-  if (people && !pooled_exponent_tells(&fit))
+  pooled_exponent_tell(pooled_exponent_untold(&fit), untold, UNTOLD);
+  if (people && pooled_exponent_untold(&fit))
     fit.fit.beta = NAN;
   const double any = 1; /* a density: the exponents by size do not depend on it */
   for (int form = 0; form < 4; form++) {
@@ -62,10 +65,11 @@ static status ask(struct store *store, const struct command_line *line, struct e
   table_column(table, "lognormal_p", NULL);
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
+  char untold[UNTOLD] = "";
   ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, NULL, error);
   for (const struct ask_pool *pool; !table_broken(table) && (pool = ask_pools_next(&pools));) {
     ask_doubts_add(&doubts, &pool->doubts);
-    TRY(print_pool(table, (size_t)options->draws, table_for_people(line->format), pool, error));
+    TRY(print_pool(table, (size_t)options->draws, table_for_people(line->format), pool, untold, error));
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));
@@ -73,7 +77,8 @@ static status ask(struct store *store, const struct command_line *line, struct e
     uncertainty_doubts(&doubts, stderr);
     words_print(stderr, "",
                 "clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete "
-                "mass. p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better");
+                "mass. p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better%s%s",
+                *untold ? ". -: " : "", untold);
   }
   return STATUS_OK;
 }

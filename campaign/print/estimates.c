@@ -11,7 +11,8 @@
 
 /* What of the legend occurs in the table for people. */
 struct seen {
-  bool failed, single, interval, ends, weak, all_one, unknown, beta, few, same;
+  bool failed, single, interval, ends, weak, all_one, unknown, beta, same;
+  char untold[400]; /* why exponents are not told */
 };
 
 struct printing {
@@ -45,7 +46,7 @@ static void columns_for_programs(struct printing *printing) {
                                              "largest_fraction_weak", "largest_fraction_resolution",
                                              "largest_fraction_resolution_verdict", "window", "fragments", NULL});
   for (int m = 0; m < METHODS; m++) {
-    static const char *const ends[] = {"", "_hw95", "_resolution", "_resolution_verdict"};
+    static const char *const ends[] = {"", "_hw95", "_untold", "_resolution", "_resolution_verdict"};
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
       char name[64];
       snprintf(name, sizeof name, "beta_%s%s", exponent_method_names[methods[m]], ends[i]);
@@ -82,7 +83,10 @@ static status row_for_programs(struct printing *printing, const struct ask_point
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
     struct ask_resolution resolution;
     TRY(read_resolution(printing, row, m, window, &resolution, error));
-    table_reals(table, 3, (const double[]){fit->fit.beta, fit->interval.half_width, resolution.half_width});
+    const char *untold = pooled_exponent_untold(fit);
+    table_reals(table, 2, (const double[]){fit->fit.beta, fit->interval.half_width});
+    table_text(table, untold ? untold : "");
+    table_real(table, resolution.half_width);
     table_text(table, ask_resolution_names[resolution.verdict]);
   }
   table_doubt_cells(table, &doubts->all);
@@ -159,12 +163,13 @@ static status row_for_people(struct printing *printing, const struct ask_points_
   for (int m = METHODS; m-- > 0;) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
     table_rests_on(table, &doubts->masses);
-    const bool tells = isfinite(fit->fit.beta) && pooled_exponent_tells(fit), has = isfinite(fit->interval.half_width);
+    const char *untold = pooled_exponent_untold(fit);
+    const bool tells = !untold, has = isfinite(fit->interval.half_width);
     const bool weak = tells && !has && row->n > 1;
     printing->seen.beta |= tells;
     printing->seen.weak |= weak;
-    printing->seen.few |= m == MASSES && fit->fit.n > 0 && !tells;
-    table_fixed(table, tells ? fit->fit.beta : (double)NAN, has || !(fit->fit.standard_error >= 0.1) ? 2 : 1);
+    pooled_exponent_tell(untold, printing->seen.untold, sizeof printing->seen.untold);
+    table_fixed(table, tells ? fit->fit.beta : (double)NAN, pooled_exponent_decimals(fit));
     table_real(table, fit->interval.half_width);
     table_integer(table, weak);
     if (m != MASSES)
@@ -223,8 +228,8 @@ static void print_legend(const struct printing *printing, FILE *out) {
                 ". beta: exponent of F(m) ~ m^-beta, of the n fragments that all runs of a point have in the window. "
                 "`clast explain WORD` tells of beta, ML, LSQ, window%s",
                 seen->weak ? ", weak" : "");
-  if (seen->few)
-    text_append(text, sizeof text, ". beta -: too few fragments to know it to a whole number");
+  if (*seen->untold)
+    text_append(text, sizeof text, ". beta -: %s", seen->untold);
   if (seen->same)
     text_append(text, sizeof text,
                 ". Windows that begin at the same mass, where the spectrum is complete, have one row: the first");

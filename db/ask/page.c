@@ -522,6 +522,41 @@ static status add_goodness(struct ask_page *page, struct store *store, struct er
   return ask_pools_end(&pools);
 }
 
+/* ---- exponents that tables and pictures leave out, with the reason ---- */
+
+/* The estimates have the interval. Without it the fit of the fragments decides, which is made again. */
+static status untold_reason(struct store *store, const struct answer *row, const char **reason, struct error *error) {
+  struct pooled_exponent fit = {.fit = {.method = ESTIMATES_HEADLINE_METHOD,
+                                        .n = answer_integer(row, 2),
+                                        .beta = answer_real(row, 3)},
+                                .interval = {.half_width = answer_real(row, 4)}};
+  if (isfinite(fit.fit.beta) && isnan(fit.interval.half_width))
+    TRY(point_exponent(store, answer_integer(row, 0), answer_integer(row, 1),
+                       (enum exponent_method)ESTIMATES_HEADLINE_METHOD,
+                       (enum estimates_window)ESTIMATES_HEADLINE_WINDOW, 0.95, &fit, error));
+  *reason = pooled_exponent_untold(&fit);
+  return STATUS_OK;
+}
+
+static status add_untold(struct ask_page *page, struct store *store, struct error *error) {
+  STATEMENT insert = NULL;
+  TRY(sql_execute(page->store.db, "CREATE TABLE untold (point_id, results_version, reason)", doing, error));
+  TRY(sql_prepare(page->store.db, "INSERT INTO untold VALUES (?1, ?2, ?3)", &insert, doing, error));
+  ANSWER rows = answer_to(store, error,
+                          "SELECT point_id, results_version, n, beta, hw95 FROM estimates WHERE run_id IS NULL AND "
+                          "headline ORDER BY point_id, results_version");
+  while (answer_next(&rows)) {
+    const char *reason;
+    TRY(untold_reason(store, &rows, &reason, error));
+    if (!reason)
+      continue;
+    SQL_BIND(insert, sql_of_integer(answer_integer(&rows, 0)), sql_of_integer(answer_integer(&rows, 1)),
+             sql_of_text(reason));
+    TRY(sql_run(insert, doing, error));
+  }
+  return answer_end(&rows);
+}
+
 /* The canned queries that the page's tables can answer. */
 static status add_questions(struct ask_page *page, struct error *error) {
   STATEMENT insert = NULL;
@@ -566,6 +601,7 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
   TRY(add_runs(page, store, error));
   TRY(add_quantiles(page, store, error));
   TRY(add_goodness(page, store, error));
+  TRY(add_untold(page, store, error));
   /* canned queries also use the table's name in the store */
   TRY(sql_execute(page->store.db, "CREATE VIEW run AS SELECT * FROM runs", doing, error));
   return add_questions(page, error);

@@ -88,8 +88,6 @@ expect 66 "$clast" spectrum small.db --with none.csv
 
 expect 0 "$clast" map small.db map.svg -x strain -y angle
 is_svg map.svg
-expect 0 "$clast" map small.db beta.png -x strain -y angle -Q beta_masses_from_2
-is_png beta.png
 # A panel for each value of a third input. Two points are left out of the store: their places are crossed.
 cat >three.yaml <<YAML
 name: three
@@ -144,10 +142,44 @@ drawn = [[[float(v) for v in l.split()] for l in block.splitlines() if l and l[0
 angles = sorted({r['threshold_angle'] for r in rows})
 assert len(drawn) == len(angles) == 2, drawn
 for angle, line in zip(angles, drawn):
-    table = sorted((r['threshold_strain'], r['beta_masses']) for r in rows if r['threshold_angle'] == angle)
-    assert len(table) == 2 and all(abs(x - 100 * a) < 1e-8 and abs(y - b) < 1e-8 for (x, y, *_), (a, b) in zip(line, table, strict=True)), (line, table)
+    table = sorted((r['threshold_strain'], r['beta_masses'], r['beta_masses_untold']) for r in rows if r['threshold_angle'] == angle)
+    assert len(table) == 2 and all(abs(x - 100 * a) < 1e-8 and (y != y if why else abs(y - b) < 1e-8) for (x, y, *_), (a, b, why) in zip(line, table, strict=True)), (line, table)
+assert 0 < len([r for r in rows if r['beta_masses_untold']]) < len(rows) == 4, rows
 PY
 ok "the picture shows the table's exponents"
+# An exponent that the table for people refuses is in no picture, which gives the reason; the file for programs has both.
+expect 0 "$clast" map small.db beta.png -x strain -y angle -Q beta_masses_from_2 --keep-script
+expect 0 "$clast" estimates small.db --json
+python - <<'PY'
+import json
+rows = {(round(100 * r['threshold_strain'], 6), round(r['threshold_angle'] * 57.29577951308232, 6)): r for r in json.load(open('out')) if r['window'] == 'from_2'}
+columns, rows_of = (sorted({k[i] for k in rows}) for i in range(2))
+drawn = [l.split() for l in open('beta.dat').read().split('\n\n\n')[0].splitlines() if l[0] != '#']
+for column, row, value, doubtful, _, kind in drawn:
+    r = rows[columns[int(column)], rows_of[int(row)]]
+    assert (kind == '1' and value == 'NaN' and doubtful == '0') if r['beta_masses_untold'] else abs(float(value) - r['beta_masses']) < 1e-8, (r, value)
+    assert r['beta_masses'] is not None and (r['beta_masses_untold'] == 'an interval of ± 2 or wider') == ((r['beta_masses_hw95'] or 0) >= 2), r
+PY
+tr '\n' ' ' <beta.gp | sed "s/'\.\"[^ ]*\"\.'/ /g" >beta.txt
+grep -q '×: not known to a whole number: an interval of ± 2 or wider' beta.txt || fail "no reason in the caption of the map"
+expect 0 "$clast" estimates small.db
+same "$(awk '$NF == "-" && /from_2/ {n += $0 ~ /from_2 +[0-9]+ +- /} END {print n}' out)" "$(awk 'NF == 6 && $6 == 1' beta.dat | wc -l)" "exponents that neither table nor map has"
+says "beta -: not known to a whole number: an interval of ± 2 or wider"
+expect 64 "$clast" map small.db none.png -x strain -y angle -Q beta
+says "no point has an exponent to draw: not known to a whole number: fewer than 5 fragments"
+# The command in a caption has the quantity, and its interval is none the narrower.
+for of in beta_masses_from_2 largest_fraction; do
+  expect 0 "$clast" map many.db wide.png -x strain -y angle -Q $of --keep-script
+  command=$(tr '\n' ' ' <wide.gp | sed "s/'\.\"[^ ]*\"\.'/ /g; s/.*, .clast \([a-z]*\). has all.*/\1/")
+  expect 0 "$clast" "$command" many.db $([ "$command" != stats ] || echo --by strain,angle --quantity $of) --json
+  python - "$of" "$(grep -o '± [0-9.e+-]*[0-9]' wide.gp | head -1)" <<'PY' || fail "widest interval of $of"
+import json, sys
+name = 'largest_fraction_hw95' if sys.argv[1][0] == 'l' else 'beta_masses_hw95'
+rows = [r for r in json.load(open('out')) if r.get('window', 'from_2') == 'from_2' and not (name[0] == 'b' and r['beta_masses_untold'])]
+widest, told = max(r[name] for r in rows), float(sys.argv[2][2:])
+assert widest * (1 - 1e-9) <= told < 1.1 * widest, (widest, told)
+PY
+done
 expect 64 "$clast" plot small.db m.png -x strain -Q beta
 says "--by"
 expect 64 "$clast" plot small.db m.png -x strain --by angle -Q beta_ks_from_2
@@ -289,4 +321,4 @@ says "no line joins the points"
 same "$(sed '/^$/,$d' sampled.dat | grep -c '^NaN')" 8 "gaps between the points of a sample"
 expect 0 "$clast" plot small.db grid.png -x strain --by angle --keep-script
 same "$(sed '/^$/,$d' grid.dat | grep -c '^NaN' || true)" 0 "gaps between the points of a grid"
-done_after 102
+done_after 109

@@ -284,6 +284,11 @@ def loads_again(browser):
     browser.open("again.html", "#points=3")
     browser.until("/has a value of this quantity. !: in doubt, 3 of 3 runs. box .withholds the value.: /.test(document.querySelector('#seeds')?.textContent)")
     done("values that are withheld are told with their reason")
+    browser.open(page, "#quantity=beta")
+    wait_shown(browser, 1)
+    assert "not known to a whole number: fewer than 5 fragments" in text(browser, "#plane-chart"), text(browser, "#plane-chart")
+    assert "no β: fewer than 5 fragments" in text(browser, "#spectrum figcaption"), text(browser, "#spectrum figcaption")
+    done("an exponent that no table shows is not drawn, and the page says why")
     done("a page of a running campaign loads itself again, and keeps what was chosen")
 
 
