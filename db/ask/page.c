@@ -269,15 +269,16 @@ static status read_results(struct reading *reading, struct store *store, struct 
 /* The numbers of particles or grains of the points, for the head of the page. */
 static status tell_elements(struct reading *reading, struct error *error) {
   static const char *const names[] = {"particles", "grains"};
-  char text[128] = "";
+  char text[128] = "", least[32], most[32];
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     ANSWER numbers = answer_to(&reading->page->store, error,
                                "SELECT min(mean), max(mean) FROM means WHERE quantity = %Q", names[i]);
     if (answer_next(&numbers) && answer_real(&numbers, 0) > 0) {
-      text_append(text, sizeof text, "%s%.0f", *text ? ", " : "", answer_real(&numbers, 0));
-      if (answer_real(&numbers, 1) > answer_real(&numbers, 0))
-        text_append(text, sizeof text, " to %.0f", answer_real(&numbers, 1));
-      text_append(text, sizeof text, " %s", names[i]);
+      snprintf(least, sizeof least, "%.0f", answer_real(&numbers, 0));
+      snprintf(most, sizeof most, "%.0f", answer_real(&numbers, 1));
+      const bool equal = strcmp(least, most) == 0; /* means over seeds, which are no whole numbers */
+      text_append(text, sizeof text, "%s%s%s%s %s", *text ? ", " : "", least, equal ? "" : " to ", equal ? "" : most,
+                  names[i]);
     }
     TRY(answer_end(&numbers));
   }

@@ -110,8 +110,9 @@ static double energy_put_in(const struct dem_inputs *in) {
   return NAN;
 }
 
-/* Builds the body of seed 1 and describes it: counts, the energy of its beams, the stability limit. */
-static void body(const struct dem_inputs *in, FILE *out) {
+/* Builds the body of seed 1 and describes it: counts, the energy of its beams, the stability limit. Returns its number
+ * of grains; 0: it cannot be built. */
+static size_t body(const struct dem_inputs *in, FILE *out) {
   struct dem_inputs probe = *in;
   probe.fidelity.time_step = 1e-15; /* any step is good enough to build the body */
   probe.stop.end_time = 1e-12;
@@ -122,11 +123,12 @@ static void body(const struct dem_inputs *in, FILE *out) {
   struct error error = {0};
   if (dem_run_create(&probe, 1, &run, &error)) {
     fprintf(out, "  cannot be run: %s\n", error.message);
-    return;
+    return 0;
   }
+  const size_t grains = run->tessellation->cell_count;
   const double energy = energy_put_in(in), needed = dem_describe_threshold_energy(in, run->tessellation);
   const double step = in->fidelity.time_step, limit = run->stable_time_step;
-  fprintf(out, "  grains: %zu, beams: %zu (seed 1)\n", run->tessellation->cell_count, run->tessellation->pair_count);
+  fprintf(out, "  grains: %zu, beams: %zu (seed 1)\n", grains, run->tessellation->pair_count);
   if (isnan(energy))
     fprintf(out, "  every beam at the strain threshold would hold %.4g J/m\n", needed);
   else
@@ -135,6 +137,7 @@ static void body(const struct dem_inputs *in, FILE *out) {
   fprintf(out, "  time step: %.4g s, stability limit %.4g s (ratio %.2g)%s\n", step, limit, step / limit,
           step > limit ? ": UNSTABLE, will be refused" : "");
   dem_run_free(run);
+  return grains;
 }
 
 char *dem_describe_scene(const void *inputs, bool all) {
@@ -149,11 +152,14 @@ char *dem_describe_scene(const void *inputs, bool all) {
   fprintf(out, "  sound speed (estimate along a square lattice): %.0f m/s in extension, %.0f m/s in compression\n",
           extension, compression);
 
-  const double grains = dem_inputs_grains(in);
+  double grains = dem_inputs_grains(in);
+  size_t built = 0;
   if (grains > MEASURED_UP_TO)
     fprintf(out, "  grains: about %.0f; too many to measure stability and energies for a description\n", grains);
   else
-    body(in, out);
+    built = body(in, out);
+  if (built)
+    grains = (double)built;
   fprintf(out, "  at most %.3g steps of %.3g grains\n", dem_inputs_end_time(in) / in->fidelity.time_step, grains);
   OWNED char *plain = text_close(out, &text);
   return plain ? text_people(plain) : NULL;
