@@ -254,7 +254,7 @@ CREATE TABLE convergence ( -- Studies of convergence (clast converge): the level
   distance_half_width REAL, -- Half width of that interval.
   resolution REAL, -- What this knob leaves unknown at this level: the largest distance to the limit in its interval, or |bias| and half width where no limit is seen. Off for knobs that are no resolution, and where all runs are equal, so that nothing tells it.
   open INTEGER, -- 1: no limit is in sight, so that resolution may be larger.
-  error REAL, -- resolution (of a model: |bias| and half width), and what the other knobs leave unknown at the scene's own setting. Off where it is not known.
+  error REAL, -- What all knobs of group resolution together leave unknown at this level: half_width of the view resolution when the study ended. Off where it is not known.
   frontier INTEGER, -- 1: no level studied is both cheaper and nearer (Pareto).
   PRIMARY KEY (base_point_id, results_version, knob, quantity, level)
 ) STRICT, WITHOUT ROWID;
@@ -656,31 +656,37 @@ FROM (
 ) e JOIN point p ON p.point_id = e.point_id;
 
 CREATE VIEW resolution AS -- what finer settings may change in a result, for every point that was studied
-WITH level AS (SELECT * FROM convergence WHERE resolution IS NOT NULL OR open),
-of_knob AS (SELECT base_point_id, results_version, quantity, knob,
-    max(iif(base, resolution, NULL)) AS at_base, max(open) AS open, max(verdict IN ('no-limit', 'no-order')) AS diverges,
-    max(iif(base, distance, NULL)) AS base_distance, max(iif(base, distance_half_width, NULL)) AS base_width
+WITH share (quantity) AS (VALUES ('dust_fraction'), ('largest_fraction'), ('second_fraction'), ('broken_share'), ('largest_loss'), ('upright_share'), ('mean_damage'), ('undamaged_fraction'), ('largest_bare_fraction'), ('largest_veneer_fraction'), ('largest_dynamic_fraction'), ('largest_axis_middle'), ('largest_axis_short'), ('ejecta_mass_fraction'), ('crater_compaction_share'), ('density_held_share'), ('limited_courant'), ('limited_force'), ('limited_energy'), ('limited_density'), ('limited_distention'), ('limited_damage'), ('compaction_mass_fraction')),
+level AS (SELECT * FROM convergence WHERE (resolution IS NOT NULL OR open) AND knob <> 'settings'),
+of_knob AS (SELECT base_point_id, results_version, quantity, knob, max(iif(base, resolution, NULL)) AS at_base,
+    max(iif(base, open, NULL)) AS base_open, max(resolution) AS largest,
+    max(verdict IN ('no-limit', 'no-order')) AS diverges
   FROM level LEFT JOIN convergence_limit USING (base_point_id, results_version, knob, quantity)
   GROUP BY base_point_id, results_version, quantity, knob),
-studied AS (SELECT DISTINCT base_point_id, results_version, quantity, point_id FROM level),
-of_study AS (SELECT s.point_id, s.results_version, s.quantity,
-    sum(coalesce(l.resolution, k.at_base)) AS half_width, max(k.diverges) AS diverges,
-    max(k.open OR coalesce(l.resolution, k.at_base) IS NULL) AS open,
-    iif(count(*) = count(coalesce(l.distance, k.base_distance)), sum(coalesce(l.distance, k.base_distance)), NULL)
-      AS distance, sum(coalesce(l.distance_half_width, k.base_width)) AS distance_half_width
-  FROM studied s JOIN of_knob k USING (base_point_id, results_version, quantity)
-    LEFT JOIN level l ON l.base_point_id = s.base_point_id AND l.results_version = s.results_version
-    AND l.quantity = s.quantity AND l.knob = k.knob AND l.point_id = s.point_id
-  GROUP BY s.base_point_id, s.point_id, s.results_version, s.quantity
-  UNION ALL SELECT s.point_id, s.results_version, s.quantity, s.error, (SELECT max(k.diverges) FROM of_knob k
-    WHERE k.base_point_id = s.base_point_id AND k.results_version = s.results_version AND
-    k.quantity = s.quantity), s.open, NULL, NULL
-  FROM convergence s WHERE s.knob = 'settings' AND NOT s.base AND s.error IS NOT NULL)
-SELECT point_id, results_version, quantity, max(half_width) AS half_width,
-  CASE WHEN max(diverges) THEN 'diverges' WHEN max(open) THEN 'at-least' ELSE 'known' END AS verdict,
-  iif(count(*) = 1, max(distance), NULL) AS distance, iif(count(*) = 1, max(distance_half_width), NULL)
-    AS distance_half_width
-FROM of_study WHERE half_width IS NOT NULL GROUP BY point_id, results_version, quantity;
+asked AS (SELECT DISTINCT base_point_id, results_version, quantity, point_id, false AS named FROM level
+  UNION ALL SELECT base_point_id, results_version, quantity, point_id, true FROM convergence
+    WHERE knob = 'settings' AND reference),
+of_study AS (SELECT a.*, sum(coalesce(l.resolution, k.at_base, k.largest)) AS error, max(k.diverges) AS diverges,
+    max(coalesce(l.open, k.base_open, 1) OR coalesce(l.resolution, k.at_base) IS NULL) AS open
+  FROM asked a JOIN of_knob k USING (base_point_id, results_version, quantity)
+    LEFT JOIN level l ON l.base_point_id = a.base_point_id AND l.results_version = a.results_version
+    AND l.quantity = a.quantity AND l.knob = k.knob AND (l.point_id = a.point_id OR a.named AND NOT l.base AND NOT EXISTS
+      (SELECT 1 FROM point_input i JOIN point_input b ON b.point_id = a.base_point_id AND b.path = i.path
+        JOIN point_input n ON n.point_id = a.point_id AND n.path = i.path
+        WHERE i.point_id = l.point_id AND i.value <> b.value AND i.value <> n.value))
+  GROUP BY a.base_point_id, a.point_id, a.results_version, a.quantity, a.named),
+of_point AS (SELECT point_id, results_version, quantity, error, diverges, open FROM of_study WHERE NOT named
+  UNION ALL SELECT s.point_id, s.results_version, s.quantity, abs(s.bias) + s.bias_half_width + r.error, r.diverges,
+    r.open FROM convergence s JOIN of_study r USING (base_point_id, results_version, quantity)
+  WHERE r.named AND s.knob = 'settings' AND NOT s.base),
+largest AS (SELECT point_id, results_version, quantity, max(error) AS error, max(diverges) AS diverges,
+    max(open) AS open, iif(quantity IN (SELECT quantity FROM share), coalesce((SELECT max(mean, 1 - mean)
+      FROM convergence c WHERE c.point_id = p.point_id AND c.results_version = p.results_version
+      AND c.quantity = p.quantity AND mean IS NOT NULL ORDER BY n DESC LIMIT 1), 1), 9e999) AS most
+  FROM of_point p WHERE error IS NOT NULL GROUP BY point_id, results_version, quantity)
+SELECT point_id, results_version, quantity, min(error, most) AS half_width,
+  CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN open THEN 'at-least' ELSE 'known' END AS verdict
+FROM largest;
 
 INSERT INTO column_doc VALUES ('attempt', 'attempt_id', NULL, 'number of the failed attempt', 0);
 
@@ -782,7 +788,7 @@ INSERT INTO column_doc VALUES ('convergence', 'distance', NULL, 'Mean less its l
 
 INSERT INTO column_doc VALUES ('convergence', 'distance_half_width', NULL, 'Half width of that interval.', 1);
 
-INSERT INTO column_doc VALUES ('convergence', 'error', NULL, 'resolution (of a model: |bias| and half width), and what the other knobs leave unknown at the scene''s own setting. Off where it is not known.', 1);
+INSERT INTO column_doc VALUES ('convergence', 'error', NULL, 'What all knobs of group resolution together leave unknown at this level: half_width of the view resolution when the study ended. Off where it is not known.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'frontier', NULL, '1: no level studied is both cheaper and nearer (Pareto).', 1);
 
@@ -1137,10 +1143,6 @@ INSERT INTO column_doc VALUES ('points', 'second_fraction_se', '1', 'standard er
 INSERT INTO column_doc VALUES ('points', 'second_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'surplus', '1', 'runs left out because a stopping rule decided without them', 0);
-
-INSERT INTO column_doc VALUES ('resolution', 'distance', NULL, 'mean less its limit; NULL: a knob that was studied has none', 0);
-
-INSERT INTO column_doc VALUES ('resolution', 'distance_half_width', NULL, 'half width of the 95 % interval of distance', 0);
 
 INSERT INTO column_doc VALUES ('resolution', 'half_width', NULL, 'how far finer settings may move the result, in its unit: all knobs that were studied', 0);
 

@@ -93,9 +93,8 @@ function tooltip(columns, title) {
 
 // What finer settings may change, as far as clast converge knows.
 function resolutionText({resolution, verdict}) {
-  if (verdict === 'diverges') return 'does not converge';
   if (resolution === null) return 'not studied';
-  return `${verdict === 'at-least' ? 'at least ' : ''}± ${number(resolution, 2)}`;
+  return `${verdict === 'known' ? '±' : '>='} ${number(resolution, 2)}`;
 }
 
 // Two modes mean that a mean tells little: some runs do one thing, the others another.
@@ -256,7 +255,9 @@ const WHAT_ERRORS = '±, which the table of points has too, is the half width of
 function resolutionSentence(rows) {
   const studied = rows.filter((row) => row.resolution !== null), weak = rows.some((row) => row.weak) ? ' ~: weak, too few runs for the interval.' : '';
   if (studied.length === 0) return `${WHAT_ERRORS}, which was not studied (clast converge).${weak}`;
-  return `${WHAT_ERRORS}; that is known of ${plural(studied.length, 'point')}, at most ± ${number(Math.max(...studied.map((row) => row.resolution)), 2)}.${weak}`;
+  const most = studied.reduce((one, row) => (row.resolution > one.resolution ? row : one));
+  const verdict = studied.every((row) => row.verdict === 'known') ? 'known' : 'at-least';
+  return `${WHAT_ERRORS}; that was studied at ${plural(studied.length, 'point')}: ${verdict === 'known' ? 'up to ' : ''}${resolutionText({...most, verdict})}.${weak}`;
 }
 
 export async function showPlane() {

@@ -119,6 +119,27 @@ void convergence_resolve(size_t count, struct convergence_row *levels, const str
   }
 }
 
+void convergence_resolve_own(size_t count, struct convergence_row *levels, const struct limit_law *law,
+                             const size_t *place, const struct limit_point *own) {
+  struct convergence_row *base = NULL;
+  double largest = NOTHING, coarsest = 0; /* of the levels; step of the coarsest one that the law describes */
+  for (size_t l = 0; l < count; l++) {
+    if (place[l] < LIMIT_LEVELS)
+      largest = fmax(largest, levels[l].resolution);
+    if (place[l] == law->dropped)
+      coarsest = levels[l].step;
+    if (levels[l].base && place[l] >= LIMIT_LEVELS)
+      base = &levels[l];
+  }
+  if (!base)
+    return;
+  base->open = !(law->verdict == LIMIT_SEEN && base->step <= coarsest);
+  if (base->open)
+    base->resolution = largest;
+  else
+    resolve(base, &own->distance);
+}
+
 void convergence_limit_fill(const struct limit_law *law, struct convergence_limit_row *row) {
   row->verdict = law->verdict;
   row->dropped = (int64_t)law->dropped;
@@ -172,8 +193,8 @@ static const struct field rows[] = {
                  "runs are equal, so that nothing tells it."),
     LEVEL_FLAG(open, .doc = "1: no limit is in sight, so that resolution may be larger."),
     LEVEL(error, 0,
-          .doc = "resolution (of a model: |bias| and half width), and what the other knobs leave unknown at the "
-                 "scene's own setting. Off where it is not known."),
+          .doc = "What all knobs of group resolution together leave unknown at this level: half_width of the view "
+                 "resolution when the study ended. Off where it is not known."),
     LEVEL_FLAG(frontier, .doc = "1: no level studied is both cheaper and nearer (Pareto)."),
 };
 const struct field_table convergence_table = FIELD_TABLE(rows, struct convergence_row, "convergence",

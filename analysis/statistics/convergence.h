@@ -134,9 +134,9 @@ struct convergence_row { /* one level of one knob, for one quantity */
   double cost_ratio, break_even, gain;
   double distance, distance_half_width; /* mean less the limit, middle and half width of the interval; NaN: no limit */
   double resolution; /* error that this knob alone leaves at this level (convergence_resolve). NaN: a model's knob */
-  bool open;         /* no limit is known: the error may be larger */
-  double error; /* of this level: resolution, or |bias| and half width of a model's; and the errors that the other knobs
-                   leave at the scene's own setting */
+  bool open;         /* no limit is known: resolution may be larger */
+  double error;      /* that all knobs together leave at this level, by the store's view resolution. NaN: not studied */
+  bool at_least;     /* error is no bound: it may be larger */
   bool frontier;
 };
 extern const struct field_table convergence_table;
@@ -158,6 +158,10 @@ extern const struct field_table convergence_limit_table;
  * LIMIT_LEVELS for a level without one. */
 void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law, const size_t *place,
                          double bound);
+/* The same for the scene's own level when it was left out; else nothing. `own`: the law at its step, of limit_infer().
+ * Where no law reaches it, the largest of the levels is its resolution, and open tells that it is no bound. */
+void convergence_resolve_own(size_t count, struct convergence_row *levels, const struct limit_law *law,
+                             const size_t *place, const struct limit_point *own);
 /* The row of a law. */
 void convergence_limit_fill(const struct limit_law *law, struct convergence_limit_row *row);
 

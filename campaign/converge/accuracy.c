@@ -36,16 +36,21 @@ struct finding {
   struct store *store;
   const struct scene *scene; /* the one that was studied */
   char results[ASK_DOUBTS_RESULTS];
-  const struct knob *open[2]; /* knobs of resolution without a limit at the scene's setting; two tell all */
-  double beyond;              /* sum over knobs without a limit: what a law of the least order leaves beyond the finest
-                                 level, by the changes from coarser ones; NaN: not known */
-  char ran[64];               /* the knob of the last level with runs, and its levels so far */
+  double beyond; /* sum over knobs without a limit: what a law of the least order leaves beyond the finest level, by the
+                    changes from coarser ones; NaN: not known */
+  char ran[64];  /* the knob of the last level with runs, and its levels so far */
   size_t levels;
   double step[KNOB_LEVELS], change[KNOB_LEVELS];
   char marks[ACCURACY_MARKS]; /* of the level that becomes an option */
-  bool studied;
-  int rank; /* of the level that gave the mean */
+  bool studied, share;
+  int unstudied; /* knobs of resolution with levels, but without the scene's own one */
+  int rank;      /* of the level that gave the mean */
 };
+
+/* How far a result with this mean can move. */
+static double most_of(bool share, double mean) {
+  return share ? fmax(mean, 1 - mean) : HUGE_VAL;
+}
 
 static const struct knob *knob_of(const struct campaign *campaign, const char *name) {
   return engine_knob(campaign->scene->kind, name, NULL);
@@ -80,7 +85,7 @@ static status take_open(struct finding *finding, const struct convergence_row *r
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   finding->studied = true;
   /* Levels that the user named need not include the scene's own settings: then it is the mean of the finest one. */
-  const int rank = row->base ? 2 : row->reference;
+  const int rank = row->n == 0 ? 0 : row->base ? 2 : row->reference;
   if (rank > finding->rank || (rank > 0 && rank == finding->rank && row->n > finding->accuracy->n)) {
     finding->rank = rank;
     finding->accuracy->mean = row->mean;
@@ -89,32 +94,34 @@ static status take_open(struct finding *finding, const struct convergence_row *r
                                 (finding->campaign->accuracy_of_value ? fabs(row->mean) : 1);
   }
   const bool resolution = knob && knob->group == KNOB_RESOLUTION, ran = strcmp(finding->ran, row->knob) == 0;
-  if (resolution && row->base && row->open && finding->open[0] != knob)
-    finding->open[finding->open[0] != NULL] = knob;
+  if (resolution && row->base && row->open && !finding->accuracy->open)
+    finding->accuracy->open = knob;
   if (!ran)
     finding->levels = 0;
   if (resolution && row->open && row->reference)
     finding->beyond += left_beyond(finding, row->step);
+  if (resolution && row->open && row->base && row->n == 0) /* no law reaches the scene's own level */
+    finding->beyond = NAN;
+  if (resolution)
+    finding->unstudied += row->reference - (row->base && (row->n > 0 || isfinite(row->resolution)));
   if (row->n > 0 && finding->levels < KNOB_LEVELS) {
     snprintf(finding->ran, sizeof finding->ran, "%.63s", row->knob);
     finding->step[finding->levels] = row->step;
     finding->change[finding->levels++] = fabs(row->bias) + row->bias_half_width;
   }
-  if (resolution && row->n == 0 && ran && !*finding->accuracy->left_out) /* finer than a level that ran */
+  if (resolution && row->n == 0 && !row->base && ran && !*finding->accuracy->left_out) /* finer than a level that ran */
     snprintf(finding->accuracy->left_out, sizeof finding->accuracy->left_out, "%.64s = %.64s", row->knob, row->setting);
   return STATUS_OK;
 }
 
-static bool others_open(const struct finding *finding, const struct knob *knob) {
-  for (size_t i = 0; i < 2 && knob->group != KNOB_SETTINGS; i++)
-    if (finding->open[i] && finding->open[i] != knob)
-      return true;
-  return false;
+/* The error, with what may lie beyond the finest levels. */
+static double resolution_of(const struct accuracy_option *option) {
+  return option->error + (option->beyond > 0 ? option->beyond : 0);
 }
 
 /* As many seeds as the time of a point allows, and no more than make the interval 1 % of the error. */
 static int64_t seeds_in(const struct accuracy_option *option, double point_s) {
-  const int64_t useful = accuracy_seeds(option->deviation, 0.01 * option->error);
+  const int64_t useful = accuracy_seeds(option->deviation, 0.01 * resolution_of(option));
   const int64_t most = useful ? useful : MOST_SEEDS;
   const double seeds = floor(point_s / option->run_s);
   return seeds < FEWEST_SEEDS ? 0 : seeds < (double)most ? (int64_t)seeds : most;
@@ -123,7 +130,7 @@ static int64_t seeds_in(const struct accuracy_option *option, double point_s) {
 static double total_of(const struct accuracy_option *option, int64_t seeds) {
   if (seeds == 0)
     return NAN;
-  return option->error + sample_student((size_t)seeds, 0.95) * option->deviation / sqrt((double)seeds);
+  return resolution_of(option) + sample_student((size_t)seeds, 0.95) * option->deviation / sqrt((double)seeds);
 }
 
 static status add_option(struct finding *finding, const struct convergence_row *row, struct accuracy_option *option,
@@ -133,13 +140,11 @@ static status add_option(struct finding *finding, const struct convergence_row *
     return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
   snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
   memcpy(option->marks, finding->marks, sizeof option->marks);
-  if (option->open && finding->beyond >= 0) {
-    option->guessed = true;
-    option->error += finding->beyond;
-  }
-  option->error = fmin(option->error, accuracy->most);
+  if (option->open) /* the error is no larger than a share can move, as the store tells it */
+    option->beyond = isnan(finding->beyond) ? (double)NAN
+                                            : fmin(finding->beyond, most_of(finding->share, row->mean) - option->error);
   option->deviation = row->deviation;
-  option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(row->deviation, accuracy->within - option->error)
+  option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(row->deviation, accuracy->within - resolution_of(option))
                                            : seeds_in(option, accuracy->point_s);
   option->total = total_of(option, option->seeds);
   option->cpu_s = option->seeds ? (double)option->seeds * option->run_s : (double)NAN;
@@ -220,9 +225,9 @@ static status take_option(struct finding *finding, const struct convergence_row 
   if (!knob || knob->group == KNOB_MODEL || knob->group == KNOB_PART || !isfinite(row->error) ||
       !isfinite(row->deviation))
     return STATUS_OK;
+  bool there = false; /* every knob has the scene's own settings as a level */
   for (size_t i = 0; row->base && i < accuracy->count; i++)
-    if (accuracy->options[i].own) /* every knob has the scene's own settings as a level */
-      return STATUS_OK;
+    there |= accuracy->options[i].own;
   if (!row->base && is_varied(finding->campaign, knob, row->setting))
     return STATUS_OK;
   bool marked = false;
@@ -230,20 +235,20 @@ static status take_option(struct finding *finding, const struct convergence_row 
   if (marked && !row->base)
     return STATUS_OK;
 
-  struct accuracy_option option = {.own = row->base,
-                                   .open = row->open || others_open(finding, knob),
-                                   .error = row->error,
-                                   .run_s = row->cpu};
+  struct accuracy_option option = {.own = row->base, .open = row->at_least, .error = row->error, .run_s = row->cpu};
   snprintf(option.setting, sizeof option.setting, "%.63s", row->setting);
-  TRY(add_option(finding, row, &option, error));
-  const bool finest = row->reference && !option.open && knob->group == KNOB_RESOLUTION && row->step > 0;
+  if (!there)
+    TRY(add_option(finding, row, &option, error));
+  const bool finest = row->reference && !option.open && knob->group == KNOB_RESOLUTION && row->step > 0 &&
+                      row->error < most_of(finding->share, row->mean);
   return finest && !is_varied(finding->campaign, knob, row->setting) ? add_finer(finding, knob, row, error) : STATUS_OK;
 }
 
 static int by_total(const void *a, const void *b) {
   const struct accuracy_option *x = a, *y = b;
   const double p = x->seeds ? x->total : HUGE_VAL, q = y->seeds ? y->total : HUGE_VAL;
-  return p == q ? (x->error > y->error) - (x->error < y->error) : (p > q) - (p < q);
+  const double error_x = resolution_of(x), error_y = resolution_of(y);
+  return p == q ? (error_x > error_y) - (error_x < error_y) : (p > q) - (p < q);
 }
 
 static int by_cost(const void *a, const void *b) {
@@ -251,7 +256,7 @@ static int by_cost(const void *a, const void *b) {
   const bool reach_x = x->seeds > 0, reach_y = y->seeds > 0;
   if (reach_x != reach_y)
     return reach_x ? -1 : 1;
-  const double p = reach_x ? x->cpu_s : x->error, q = reach_x ? y->cpu_s : y->error;
+  const double p = reach_x ? x->cpu_s : resolution_of(x), q = reach_x ? y->cpu_s : resolution_of(y);
   return (p > q) - (p < q);
 }
 
@@ -263,8 +268,8 @@ static void choose(struct accuracy *accuracy) {
   for (size_t i = accuracy->count; i-- > 0;) {
     const struct accuracy_option *option = &accuracy->options[i];
     if (option->seeds > 0)
-      *(option->open && !option->guessed ? &open : &accuracy->chosen) = i;
-    if (option->error <= accuracy->options[accuracy->reference].error)
+      *(isnan(option->beyond) ? &open : &accuracy->chosen) = i;
+    if (resolution_of(option) <= resolution_of(&accuracy->options[accuracy->reference]))
       accuracy->reference = i;
   }
   if (in_time && accuracy->chosen == accuracy->count)
@@ -275,7 +280,7 @@ double accuracy_least(const struct accuracy *accuracy, double point_s, bool *ope
   double least[2] = {NAN, NAN}; /* of options with a limit, without one */
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
-    const bool is_open = option->open && !option->guessed;
+    const bool is_open = isnan(option->beyond);
     least[is_open] = fmin(least[is_open], total_of(option, seeds_in(option, point_s)));
   }
   *open = isnan(least[0]);
@@ -301,15 +306,18 @@ static status read_study(struct finding *finding, struct store *store, const str
   finding->store = store;
   finding->scene = scene;
   finding->beyond = 0;
+  finding->unstudied = 0;
   TRY(ask_doubts_results(store, quantity.column, finding->results, error));
   TRY(store_point_find(store, scene, &point, error));
-  const bool share = quantity.row && field_is_share(quantity.row);
+  finding->share = quantity.row && field_is_share(quantity.row);
   for (size_t pass = 0; point && pass < sizeof passes / sizeof passes[0]; pass++) {
     ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, error);
     for (struct convergence_row row; ask_convergence_next(&levels, &row);)
       TRY(passes[pass](finding, &row, error));
     TRY(answer_end(&levels));
-    finding->accuracy->most = share ? fmax(finding->accuracy->mean, 1 - finding->accuracy->mean) : HUGE_VAL;
+    if (finding->unstudied > 0)
+      finding->beyond = NAN;
+    finding->accuracy->most = most_of(finding->share, finding->accuracy->mean);
   }
   return STATUS_OK;
 }
@@ -349,7 +357,6 @@ status accuracy_find(const struct campaign *campaign, const char *path, const ch
   if (accuracy->count == 0)
     return no_study(campaign, path, store_path, error);
   choose(accuracy);
-  accuracy->open = finding.open[0];
   return STATUS_OK;
 }
 
@@ -396,12 +403,19 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
   snprintf(setting, sizeof setting, "%.6g", value * finer);
   const double run_s = finest->run_s * work_at(campaign, knob, setting) / work_at(campaign, knob, finest->setting);
   progress_duration(run_s, time, sizeof time);
+  char own[64];
+  ladder_setting(knob, campaign->scene, own, sizeof own);
+  const double levels[] = {value / finer, value, value * finer, strtod(own, NULL)}; /* the last one's error is wanted */
   text_append(
       next, size,
       "The results show no limit in %s up to %.4g%s: no value of it is known to be enough, and more seeds alone "
-      "do not help. Finer levels may show a limit%s%s%s: `clast converge %s --knob %s=%.4g%s,%.4g%s,%.4g%s`",
+      "do not help. Finer levels may show a limit%s%s%s: `clast converge %s --knob %s=",
       knob->name, value, unit, run_s > 0 ? " (a run of the finest takes " : "", run_s > 0 ? time : "",
-      run_s > 0 ? ")" : "", accuracy->path, knob->name, value / finer, unit, value, unit, value * finer, unit);
+      run_s > 0 ? ")" : "", accuracy->path, knob->name);
+  for (size_t i = 0; i < 4; i++)
+    if (i < 3 || (levels[i] != levels[0] && levels[i] != levels[1] && levels[i] != levels[2]))
+      text_append(next, size, "%s%.4g%s", i ? "," : "", levels[i], unit);
+  text_append(next, size, "`");
 }
 
 /* More seeds: how many, and what they take at all levels. */
@@ -438,7 +452,7 @@ static void name_option(const struct campaign *campaign, const struct accuracy_o
 static status out_of_reach(const struct accuracy *accuracy, const struct campaign *campaign, struct error *error) {
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
-  const double seeds = ceil((double)accuracy->n * pow(best->error / accuracy->within, 2));
+  const double least = resolution_of(best), seeds = ceil((double)accuracy->n * pow(least / accuracy->within, 2));
   char next[600] = "", share[32] = "", more[64] = "", chosen[256];
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
@@ -454,13 +468,13 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   else
     text_append(next, sizeof next,
                 "More than %d seeds of the study would be needed, so no setting is known to reach it", STUDY_SEEDS);
-  if (1.3 * best->error < fmin(fabs(accuracy->mean), accuracy->most) && 1.3 * best->error > accuracy->within)
-    text_append(more, sizeof more, "allow more, such as %.2g; or ", 1.3 * best->error);
+  if (1.3 * least < fmin(fabs(accuracy->mean), accuracy->most) && 1.3 * least > accuracy->within)
+    text_append(more, sizeof more, "allow more, such as %.2g; or ", 1.3 * least);
   return status_fail(error, STATUS_CONTENT,
                      "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g (%" PRId64
                      " seeds). The smallest error is "
                      "%.2g%s, with %s. %s. Or %sask for the least error in a time: `clast plan %s --within 10min`",
-                     quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n, best->error,
+                     quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n, least,
                      best->open ? " or more, as no limit is seen" : "", chosen, next, more, path);
 }
 
@@ -483,24 +497,33 @@ status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign
 static status print_alternatives(const struct accuracy *accuracy, const struct campaign *campaign,
                                  enum table_format format, FILE *out, struct error *error) {
   const struct accuracy_option *reference = &accuracy->options[accuracy->reference];
+  const bool people = table_for_people(format);
+  bool guessed = !people; /* people see the guesses if there are any */
+  for (size_t i = 0; i < accuracy->count; i++)
+    guessed |= accuracy->options[i].beyond > 0;
   TABLE table = table_new(format, out);
-  table_columns(table, (const char *const[]){"choice", "knob", "setting", "error", "known", "seeds", "total", NULL});
+  table_columns(table, (const char *const[]){"choice", "knob", "setting", "error", "known", NULL});
+  if (guessed)
+    table_column(table, "beyond", NULL);
+  table_columns(table, (const char *const[]){"seeds", "total", NULL});
   table_column(table, "run_cpu", "s");
   table_column(table, "point_cpu", "s");
   table_column(table, "run_cost", NULL);
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
-    char setting[160];
-    const struct knob *knob = table_for_people(format) ? knob_of(campaign, option->knob) : NULL;
+    char setting[160], text[UNCERTAINTY_TEXT];
+    const struct knob *knob = people ? knob_of(campaign, option->knob) : NULL;
     study_show_setting(campaign->scene->kind, knob, option->setting, setting, sizeof setting);
     table_text(table, i == accuracy->chosen ? "chosen" : "");
     table_text(table, option->own ? "" : option->knob);
     table_text(table, option->own ? "the scene's own" : setting);
-    table_real(table, option->error);
-    table_text(table, option->guessed        ? "no limit"
-                      : option->open         ? "at least"
-                      : option->extrapolated ? "extrapolated"
-                                             : "yes");
+    if (people)
+      table_text(table, study_show_error(option->error, option->open, text));
+    else
+      table_real(table, option->error);
+    table_text(table, option->open ? "at least" : option->extrapolated ? "extrapolated" : "yes");
+    if (guessed)
+      table_real(table, option->beyond);
     if (option->seeds)
       table_integer(table, option->seeds);
     else
@@ -511,49 +534,49 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
   return table_end(table, error);
 }
 
-/* What is chosen for the time, which error it gives, and what half and twice the time would give. */
+/* What is chosen, which error it gives, and for a time what half and twice of it would give. `timed`: with the time by
+ * the runs of the study; `plan` predicts it below by its own. */
 static void print_choice(const struct accuracy *accuracy, const struct campaign *campaign, const char *before,
-                         FILE *out) {
+                         bool timed, FILE *out) {
   if (accuracy->chosen == accuracy->count)
     return;
   const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
-  char time[32], chosen[256];
+  const bool in_time = !isnan(accuracy->point_s);
+  char time[32], allowed[32], chosen[256], cost[120] = "";
   name_option(campaign, option, chosen, sizeof chosen);
-  if (option->guessed)
-    words_print(
-        out, before,
-        "no limit is seen in %s: the error has what a law of order %g would leave beyond the finest level, which "
-        "is a guess and no bound",
-        accuracy->open ? accuracy->open->name : "a setting", LIMIT_ORDER_LEAST);
+  if (option->beyond > 0)
+    words_print(out, before,
+                "no limit is seen in %s: total adds what a law of order %g would leave beyond the finest level, which "
+                "is a guess and no bound",
+                accuracy->open ? accuracy->open->name : "a setting", LIMIT_ORDER_LEAST);
   if (*option->marks)
     words_print(out, before, "the results of this choice are in doubt (!), %s (`clast explain` and the word)",
                 option->marks);
-  if (isnan(accuracy->point_s)) {
-    progress_duration(option->cpu_s, time, sizeof time);
-    words_print(out, before, "%s \xc2\xb1 %.2g with %s and %" PRId64 " seeds a point: %s of processor time",
-                campaign->accuracy_quantity, accuracy->within, chosen, option->seeds, time);
-    return;
-  }
   if (option->total >= accuracy->most)
     words_print(out, before,
                 "Such an error says nothing of a share with the mean %.2g: no setting of the study is "
                 "near enough",
                 accuracy->mean);
+  progress_duration(option->cpu_s * (in_time ? campaign->accuracy_time / accuracy->point_s : 1), time, sizeof time);
+  progress_duration(campaign->accuracy_time, allowed, sizeof allowed);
+  if (timed)
+    snprintf(cost, sizeof cost, ": %s of processor time", time);
+  if (in_time)
+    text_append(cost, sizeof cost, timed ? " (%s allowed)" : " (%s of processor time allowed)", allowed);
+  const char *const or_more[] = {"", " or more"}, *more = or_more[isnan(option->beyond)];
+  words_print(out, before,
+              "%s \xc2\xb1 %.2g%s, resolution %.2g%s and the rest seeds, with %s and %" PRId64 " seeds a point%s",
+              campaign->accuracy_quantity, option->total, more, resolution_of(option), more, chosen, option->seeds,
+              cost);
+  if (!in_time)
+    return;
   bool open[2];
   const double half = accuracy_least(accuracy, accuracy->point_s / 2, &open[0]),
                twice = accuracy_least(accuracy, accuracy->point_s * 2, &open[1]);
-  const char *const or_more[] = {"", " or more"}, *more = or_more[option->open && !option->guessed];
-  char in_half[48] = "no result", allowed[32];
-  progress_duration(option->cpu_s * campaign->accuracy_time / accuracy->point_s, time, sizeof time);
-  progress_duration(campaign->accuracy_time, allowed, sizeof allowed);
-  words_print(out, before,
-              "%s \xc2\xb1 %.2g%s with %s and %" PRId64 " seeds a point: %s of processor time (%s allowed)",
-              campaign->accuracy_quantity, option->total, more, chosen, option->seeds, time, allowed);
+  char in_half[48] = "no result";
   if (!isnan(half))
     snprintf(in_half, sizeof in_half, "\xc2\xb1 %.2g%s", half, or_more[open[0]]);
-  words_print(out, before,
-              "%.2g%s of it is resolution, the rest seeds. In half of the time: %s; in twice: \xc2\xb1 %.2g%s",
-              option->error, more, in_half, twice, or_more[open[1]]);
+  words_print(out, before, "In half of the time: %s; in twice: \xc2\xb1 %.2g%s", in_half, twice, or_more[open[1]]);
 }
 
 static status alternatives_json(const struct accuracy *accuracy, const struct campaign *campaign, char **json,
@@ -585,14 +608,16 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
   if (print == ACCURACY_JSON)
     TRY(alternatives_json(&accuracy, campaign, json, error));
   if (print == ACCURACY_NOTE)
-    print_choice(&accuracy, campaign, "clast: ", stderr);
+    print_choice(&accuracy, campaign, "clast: ", true, stderr);
   if (print == ACCURACY_TEXT) {
+    char within[48] = "";
     if (isnan(accuracy.point_s))
-      words_print(stdout, "accuracy  ",
-                  "%s within %.3g. total: error of resolution and 95 %% interval together. run_cost: against "
-                  "the smallest error",
-                  campaign->accuracy_quantity, accuracy.within);
-    print_choice(&accuracy, campaign, "accuracy  ", stdout);
+      snprintf(within, sizeof within, " within %.3g", accuracy.within);
+    words_print(stdout, "accuracy  ",
+                "%s%s. error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
+                "point_cpu: by the runs of the study. run_cost: against the smallest error",
+                campaign->accuracy_quantity, within);
+    print_choice(&accuracy, campaign, "accuracy  ", false, stdout);
     TRY(print_alternatives(&accuracy, campaign, TABLE_TEXT, stdout, error));
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
       words_print(stdout, "",

@@ -15,15 +15,16 @@ struct accuracy_option {
   char knob[64], setting[64];
   bool own;          /* the scene's own settings */
   bool extrapolated; /* finer than any level that was run: error by the law, cost by the engine's measure of work */
-  bool open;         /* the results show no limit */
-  bool guessed;      /* open, and `error` has what the slowest law would leave beyond the finest level. Without it the
-                        error may be too small, and the option is chosen for a time only, if no other can be run */
-  double error;      /* change by finer settings of all knobs together, in the quantity's SI unit */
-  double deviation;  /* standard deviation between seeds */
-  int64_t seeds;     /* of a point: the fewest that reach the accuracy, or as many as the time allows; 0: none do */
-  double total;      /* error and half width of the 95 % interval of the mean of so many seeds; NaN when seeds is 0 */
-  double run_s;      /* processor time of a run, s */
-  double cpu_s;      /* processor time of one point (`seeds` runs), s; NaN when seeds is 0 */
+  bool open;         /* the error is no bound */
+  double error;      /* change by finer settings of all knobs together, in the quantity's SI unit, as on every screen */
+  double beyond;    /* if open: what the slowest law would leave beyond the finest levels, a guess. NaN: not known; then
+                       the option is chosen for a time only, if no other can be run. Else 0 */
+  double deviation; /* standard deviation between seeds */
+  int64_t seeds;    /* of a point: the fewest that reach the accuracy, or as many as the time allows; 0: none do */
+  double total;     /* error, beyond if known, and half width of the 95 % interval of the mean of so many seeds; NaN
+                       when seeds is 0 */
+  double run_s;     /* processor time of a run, s */
+  double cpu_s;     /* processor time of one point (`seeds` runs), s; NaN when seeds is 0 */
 
   char marks[ACCURACY_MARKS]; /* of the level's runs, of an extrapolated one those of the finest: "3 of 4 runs of the
                                  study: cut"; "": none */

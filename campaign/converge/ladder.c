@@ -184,6 +184,13 @@ static int by_value(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+static void sort_levels(struct ladder *ladder) {
+  if (ladder->knob->step_power != 0)
+    qsort(ladder->level, ladder->count, sizeof *ladder->level, by_step);
+  else if (ladder->knob->factors[0] > 0)
+    qsort(ladder->level, ladder->count, sizeof *ladder->level, by_value);
+}
+
 /* Makes all levels of a knob that sets inputs, in order, and marks the reference: the finest level, but for models the
  * scene's own, which may be missing among the user's settings. */
 static status add_all_levels(struct making *making, const char *settings, struct error *error) {
@@ -203,10 +210,7 @@ static status add_all_levels(struct making *making, const char *settings, struct
   }
   if (ladder->count < 2)
     return status_fail(error, STATUS_CONTENT, "%s has fewer than two levels in this scene", knob->name);
-  if (knob->step_power != 0)
-    qsort(ladder->level, ladder->count, sizeof *ladder->level, by_step);
-  else if (knob->factors[0] > 0)
-    qsort(ladder->level, ladder->count, sizeof *ladder->level, by_value);
+  sort_levels(ladder);
   size_t reference = ladder->count - 1;
   for (size_t i = 0; knob->group == KNOB_MODEL && i < ladder->count; i++)
     if (ladder->level[i].base)
@@ -226,6 +230,19 @@ status ladder_make(const struct knob *knob, const struct scene *base, const char
   if (code != STATUS_OK)
     ladder_clear(ladder);
   return code;
+}
+
+status ladder_add_own(struct ladder *ladder, const struct scene *base, struct error *error) {
+  struct making making = {.knob = ladder->knob, .base = base, .ladder = ladder};
+  const size_t asked = ladder->count;
+  if (ladder->knob->group != KNOB_RESOLUTION || asked == KNOB_LEVELS)
+    return STATUS_OK;
+  TRY(find_inputs(&making, error));
+  TRY(add_level(&making, &making.own[0], error));
+  if (ladder->count > asked)
+    ladder->level[asked].unasked = true;
+  sort_levels(ladder);
+  return STATUS_OK;
 }
 
 status ladder_turn(const struct knob *knob, struct scene *scene, const char *setting, struct error *error) {

@@ -42,6 +42,7 @@ status study_add(struct study *study, const struct scene *base, struct ladder *l
   *levels = (struct ladder){0};
   for (size_t l = 0; l < ladder->levels.count; l++) {
     ladder->cpu[l] = ladder->wall[l] = NAN;
+    ladder->left_out[l] = ladder->levels.level[l].unasked;
     TRY(memory_array(&ladder->ran[l], room, sizeof *ladder->ran[l], "a study", error));
     for (size_t q = 0; q < study->quantity_count; q++) {
       TRY(memory_array(&ladder->values[q][l], room, sizeof(double), "a study", error));
@@ -154,39 +155,32 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
   const bool share = result && field_is_share(result);
   struct limit_law law;
   size_t place[KNOB_LEVELS];
+  struct limit_point own = {.step = NAN};
   *found = (struct study_found){.count = ladder->levels.count, .adds = ladder->levels.knob->group == KNOB_RESOLUTION};
+  for (size_t l = 0; l < found->count; l++)
+    if (ladder->levels.level[l].base)
+      own.step = ladder->levels.level[l].step;
   for (size_t l = 0; l < found->count; l++) {
     struct convergence_row *row = &found->rows[l];
     field_defaults(&convergence_table, row);
     snprintf(row->knob, sizeof row->knob, "%s", ladder->levels.knob->name);
     snprintf(row->quantity, sizeof row->quantity, "%s", column);
     snprintf(row->setting, sizeof row->setting, "%s", ladder->levels.level[l].setting);
-    find_level(ladder, quantity, share, l, n, row);
+    const bool no_level = ladder->levels.level[l].unasked && ladder->left_out[l]; /* though it may have some runs */
+    find_level(ladder, quantity, share, l, no_level ? 0 : n, row);
   }
   field_defaults(&convergence_limit_table, &found->limit);
   snprintf(found->limit.knob, sizeof found->limit.knob, "%s", ladder->levels.knob->name);
   snprintf(found->limit.quantity, sizeof found->limit.quantity, "%s", column);
-  study_law(study, ladder, quantity, &law, place, 0, NULL);
+  study_law(study, ladder, quantity, &law, place, own.step > 0, &own);
   convergence_limit_fill(&law, &found->limit);
   convergence_resolve(found->count, found->rows, &law, place, bound_of(n, ladder->values[quantity][reference], share));
-  for (size_t l = 0; l < found->count; l++) {
+  convergence_resolve_own(found->count, found->rows, &law, place, &own);
+  for (size_t l = 0; l < found->count && !found->adds; l++) {
     struct convergence_row *row = &found->rows[l];
-    const enum knob_group group = ladder->levels.knob->group;
-    const bool own = group == KNOB_MODEL || group == KNOB_SETTINGS;
-    row->error = own ? fabs(row->bias) + row->bias_half_width : row->resolution;
-    if (!found->adds) {
-      row->resolution = row->distance = row->distance_half_width = NOTHING;
-      row->open = false;
-    }
+    row->resolution = row->distance = row->distance_half_width = NOTHING;
+    row->open = false;
   }
-}
-
-/* Error of the knob at the scene's own setting; 0 when that setting was not run. */
-static double error_at_base(const struct study_found *found) {
-  for (size_t l = 0; l < found->count; l++)
-    if (found->rows[l].base && isfinite(found->rows[l].error))
-      return found->rows[l].error;
-  return 0;
 }
 
 static void mark_frontier(size_t count, struct study_found *found) {
@@ -204,53 +198,6 @@ static void mark_frontier(size_t count, struct study_found *found) {
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++)
       found[i].rows[l].frontier = on[n++];
-}
-
-/* Error of the knob at its value in this scene; without such a level, at the scene's own setting. */
-static double error_at(const struct study_ladder *ladder, const struct study_found *found, const struct scene *scene) {
-  char setting[64];
-  ladder_setting(ladder->levels.knob, scene, setting, sizeof setting);
-  for (size_t l = 0; l < found->count; l++)
-    if (strcmp(found->rows[l].setting, setting) == 0 && isfinite(found->rows[l].error))
-      return found->rows[l].error;
-  return error_at_base(found);
-}
-
-/* Named settings set all knobs. The error of their reference adds to the bias against it. Without a study of the
- * resolution knobs this error is not known. */
-static void add_reference_error(const struct study_ladder *ladders, size_t count, size_t of,
-                                struct study_found *found) {
-  const struct study_ladder *ladder = &ladders[of];
-  const struct scene *reference = ladder->levels.level[study_reference(ladder)].scene;
-  double error = 0;
-  bool studied = false, open = false;
-  for (size_t i = 0; i < count; i++) {
-    if (!found[i].adds)
-      continue;
-    studied = true;
-    error += error_at(&ladders[i], &found[i], reference);
-    for (size_t l = 0; l < found[i].count; l++)
-      open |= found[i].rows[l].open;
-  }
-  for (size_t l = 0; l < found[of].count; l++) {
-    found[of].rows[l].error = studied ? found[of].rows[l].error + error : NOTHING;
-    found[of].rows[l].open = open;
-  }
-}
-
-/* Gives each level the errors of all knobs: for the other knobs, their errors at the scene's own setting. */
-static void combine(const struct study_ladder *ladders, size_t count, struct study_found *found) {
-  double own[LIMITS_STUDY_KNOBS] = {0};
-  for (size_t i = 0; i < count; i++)
-    if (ladders[i].levels.knob->group == KNOB_SETTINGS)
-      add_reference_error(ladders, count, i, found);
-  for (size_t i = 0; i < count; i++)
-    own[i] = found[i].adds ? error_at_base(&found[i]) : 0;
-  for (size_t i = 0; i < count; i++)
-    for (size_t other = 0; other < count; other++)
-      for (size_t l = 0; ladders[i].levels.knob->group != KNOB_SETTINGS && other != i && l < found[i].count; l++)
-        found[i].rows[l].error += own[other];
-  mark_frontier(count, found);
 }
 
 /* Skewness, and the two modes of a level that has two. */
@@ -272,8 +219,41 @@ size_t study_of_scene(const struct study *study, size_t from, size_t quantity, s
       study_find(study, &study->ladder[i], quantity, &found[count]);
       find_shapes(&study->ladder[i], quantity, &found[count++]);
     }
-  combine(&study->ladder[from], count, found);
   return count;
+}
+
+status study_errors(const struct study *study, size_t from, size_t quantity, struct store *store, size_t count,
+                    struct study_found *found, struct error *error) {
+  const struct study_ladder *first = &study->ladder[from];
+  ANSWER levels = ask_convergence_levels(store, first->base_point, first->base->kind->results_version,
+                                         study->quantity[quantity].column, error);
+  for (struct convergence_row stored; ask_convergence_next(&levels, &stored);)
+    for (size_t i = 0; i < count; i++)
+      for (size_t l = 0; l < found[i].count; l++) {
+        struct convergence_row *row = &found[i].rows[l];
+        if (strcmp(row->knob, stored.knob) != 0 || strcmp(row->setting, stored.setting) != 0)
+          continue;
+        row->error = stored.error;
+        row->at_least = stored.at_least;
+      }
+  mark_frontier(count, found);
+  return answer_end(&levels);
+}
+
+/* Writes the rows of a scene for a quantity. */
+static status store_rows(const struct study *study, size_t from, size_t count, const struct study_found *found,
+                         struct store *store, struct error *error) {
+  for (size_t i = 0; i < count; i++) {
+    const struct study_ladder *ladder = &study->ladder[from + i];
+    const struct store_convergence rows = {.base_point_id = ladder->base_point,
+                                           .results_version = ladder->base->kind->results_version,
+                                           .count = found[i].count,
+                                           .point_ids = ladder->point,
+                                           .rows = found[i].rows,
+                                           .limit = &found[i].limit};
+    TRY(store_set_convergence(store, &rows, error));
+  }
+  return STATUS_OK;
 }
 
 status study_store(const struct study *study, struct store *store, struct error *error) {
@@ -282,16 +262,9 @@ status study_store(const struct study *study, struct store *store, struct error 
   for (size_t from = 0, count = 0; from < study->ladder_count; from += count)
     for (size_t q = 0; q < study->quantity_count; q++) {
       count = study_of_scene(study, from, q, found);
-      for (size_t i = 0; i < count; i++) {
-        const struct study_ladder *ladder = &study->ladder[from + i];
-        const struct store_convergence rows = {.base_point_id = ladder->base_point,
-                                               .results_version = ladder->base->kind->results_version,
-                                               .count = found[i].count,
-                                               .point_ids = ladder->point,
-                                               .rows = found[i].rows,
-                                               .limit = &found[i].limit};
-        TRY(store_set_convergence(store, &rows, error));
-      }
+      TRY(store_rows(study, from, count, found, store, error)); /* from these the store tells the errors */
+      TRY(study_errors(study, from, q, store, count, found, error));
+      TRY(store_rows(study, from, count, found, store, error));
     }
   return STATUS_OK;
 }

@@ -11,6 +11,7 @@
 #include "campaign/converge/ladder.h"
 #include "campaign/document/campaign.h"
 #include "campaign/launch/launch.h"
+#include "campaign/terminal/table.h"
 #include "schemas/limits.h"
 
 /* The quantity of a study: a result of every run, or an exponent fitted to all runs of a point. */
@@ -73,15 +74,18 @@ struct study_found {
   struct convergence_row rows[KNOB_LEVELS];
   size_t count;
   struct convergence_limit_row limit;
-  bool adds; /* its error is one of resolution, which adds to the errors of the other knobs' levels */
+  bool adds; /* its error is one of resolution: a part of the error of every setting */
 };
-/* Results of one ladder: the member `error` of its rows is that of its knob alone. */
+/* Results of one ladder, without the members `error`, `at_least` and `frontier` of its rows. */
 void study_find(const struct study *study, const struct study_ladder *ladder, size_t quantity,
                 struct study_found *found);
-/* Results of all ladders of one scene, beginning with ladder `from`; `found` has LIMITS_STUDY_KNOBS elements. Each
- * level's error includes the errors of the other knobs at the scene's own setting; the frontier is over all ladders.
- * Returns the number of ladders. */
+/* The same of all ladders of one scene, beginning with ladder `from`; `found` has LIMITS_STUDY_KNOBS elements. Returns
+ * the number of ladders. */
 size_t study_of_scene(const struct study *study, size_t from, size_t quantity, struct study_found *found);
+/* Fills these members: the errors are those of the store, to which all studies of the scene add; the frontier is over
+ * the ladders of this study. */
+status study_errors(const struct study *study, size_t from, size_t quantity, struct store *store, size_t count,
+                    struct study_found *found, struct error *error);
 
 /* The limit of a ladder from all its levels with runs. `place` (KNOB_LEVELS numbers): the index of each level in
  * law->distance; LIMIT_LEVELS for a level that was left out. points: as for limit_infer(). */
@@ -108,6 +112,8 @@ status study_launch(const struct study_request *request, const struct command_li
 /* A setting of a knob with the digits and the unit that people need. knob NULL, or not a number: as it is. */
 void study_show_setting(const struct engine_kind *kind, const struct knob *knob, const char *setting, char *text,
                         size_t size);
+/* The error of a setting as on every screen: "0.061", or ">= 0.061" when it is no bound. Returns text. */
+const char *study_show_error(double error, bool at_least, char text[UNCERTAINTY_TEXT]);
 /* The table of knobs of every engine. */
 status study_print_knobs(enum table_format format, struct error *error);
 /* For people a table per scene and quantity, with a sentence per knob and, unless `quiet`, a legend on stderr. For

@@ -86,30 +86,24 @@ void study_show_setting(const struct engine_kind *kind, const struct knob *knob,
   snprintf(text, size, number >= 1e6 ? "%.0f%s%s" : "%.6g%s%s", number, *unit ? " " : "", unit);
 }
 
-/* The rows of a quantity, for print. No error of a share is larger than its distance from the farther end of 0 to 1;
- * the store keeps the sum of errors, from which `accuracy` takes those of finer levels. */
-static size_t find_shown(const struct study *study, size_t from, size_t quantity, struct study_found *found) {
-  const struct field *result = study->quantity[quantity].row;
-  const size_t count = study_of_scene(study, from, quantity, found);
-  for (size_t i = 0; i < count && result && field_is_share(result); i++)
-    for (size_t l = 0; l < found[i].count; l++) {
-      struct convergence_row *row = &found[i].rows[l];
-      const double most = fmax(row->mean, 1 - row->mean);
-      if (row->error > most) {
-        row->error = most;
-        row->open = false; /* a bound, if a weak one */
-      }
-    }
-  return count;
+/* The rows of a quantity, for print. */
+static status find_shown(const struct printing *printing, size_t from, size_t quantity, size_t *count,
+                         struct study_found *found, struct error *error) {
+  *count = study_of_scene(printing->study, from, quantity, found);
+  return study_errors(printing->study, from, quantity, printing->store, *count, found, error);
 }
 
-static void print_level(const struct printing *printing, struct table *table, const struct study_ladder *ladder,
-                        const struct convergence_row *row, const struct ask_doubts *doubts) {
-  char setting[160];
+const char *study_show_error(double error, bool at_least, char text[UNCERTAINTY_TEXT]) {
+  uncertainty_resolution_cell(at_least ? ASK_RESOLUTION_AT_LEAST : ASK_RESOLUTION_KNOWN, error, text);
+  return text;
+}
+
+static void print_level(struct table *table, const struct study_ladder *ladder, const struct convergence_row *row,
+                        const struct ask_doubts *doubts) {
+  char setting[160], text[UNCERTAINTY_TEXT];
   /* Of runs that differ in their last bits only. */
-  const bool rounding = table_for_people(printing->format) && fabs(row->bias) < 1e-12 * fabs(row->mean) &&
-                        row->bias_half_width < 1e-12 * fabs(row->mean);
-  if (row->n == 0)
+  const bool rounding = fabs(row->bias) < 1e-12 * fabs(row->mean) && row->bias_half_width < 1e-12 * fabs(row->mean);
+  if (row->n == 0 && !(row->base && isfinite(row->error)))
     return; /* left out by the budget, or every run failed: print_limit names it */
   study_show_setting(ladder->base->kind, ladder->levels.knob, row->setting, setting, sizeof setting);
   text_append(setting, sizeof setting, "%s%s", row->base ? " *" : "", row->reference ? " ref" : "");
@@ -123,11 +117,10 @@ static void print_level(const struct printing *printing, struct table *table, co
   table_reals(table, 2, (const double[]){rounding ? 0 : row->bias, rounding ? 0 : row->bias_half_width});
   table_reals(table, 3, (const double[]){row->correlation, row->correlation_low, row->correlation_high});
   table_real(table, row->break_even);
-  if (table_for_people(printing->format) && row->open && isfinite(row->error)) { /* no bound */
-    snprintf(setting, sizeof setting, ">= %.3g", row->error);
-    table_text(table, setting);
-  } else
-    table_real(table, row->error);
+  if (isfinite(row->error))
+    table_text(table, study_show_error(row->error, row->at_least, text));
+  else
+    table_missing(table);
   table_text(table, row->frontier ? "yes" : "");
 }
 
@@ -168,31 +161,7 @@ static void print_change(const struct knob *knob, const struct study_found *foun
           knob->inputs[0].path);
 }
 
-static void print_distance(const struct knob *knob, const struct study_found *found, const struct convergence_row *row,
-                           FILE *out) {
-  char text[UNCERTAINTY_TEXT];
-  switch ((enum limit_verdict)found->limit.verdict) {
-  case LIMIT_SEEN:
-    uncertainty_distance(row->distance, row->distance_half_width, "its limit", text);
-    fprintf(out, "%s", text);
-    break;
-  case LIMIT_NOT_SEEN: print_change(knob, found, out); break;
-  case LIMIT_CONSTANT:
-    if (isnan(row->resolution))
-      fprintf(out, "all runs are equal, so that the limit cannot be told");
-    else
-      fprintf(out, "all runs are equal, so that the mean may be off by up to %.2g", row->resolution);
-    break;
-  case LIMIT_TOO_FEW: /* here of a knob without a step; others are told together */
-    uncertainty_distance(row->bias, row->bias_half_width, "the finest level", text);
-    fprintf(out, "%s", text);
-    break;
-  case LIMIT_VERDICTS: return;
-  }
-  fprintf(out, " (%s)", knob->name);
-}
-
-/* "M_1/M = 0.218 +- 0.026 (seeds, 95 %), 0.03 +- 0.02 below its limit (particles)". */
+/* "M_1/M = 0.218 +- 0.026 (seeds, 95 %). Error of the resolution: >= 0.09 (grains >= 0.05, time_step 0.04)." */
 static void print_sentence(const struct study *study, size_t from, size_t quantity, size_t count,
                            const struct study_found *found, FILE *out) {
   const struct field *field = study->quantity[quantity].row;
@@ -201,7 +170,7 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
     return;
   const struct study_ladder *ladder = &study->ladder[from + knob];
   const struct convergence_row *told = &found[knob].rows[level];
-  char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT], few[256] = "";
+  char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT];
   charts_label(study->quantity[quantity].name, label);
   struct sample_summary mean = sample_summarise((size_t)ladder->seeds, ladder->values[quantity][level], 0.95);
   if (field && field_is_share(field))
@@ -209,28 +178,29 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
   uncertainty_seeds(&mean, text);
   if (!told->base)
     fprintf(out, "%s = %s: ", told->knob, told->setting);
-  fprintf(out, "%s = %s", label, text);
+  fprintf(out, "%s = %s.", label, text);
+  if (isfinite(told->error))
+    fprintf(out, " Error of the resolution: %s", study_show_error(told->error, told->at_least, text));
+  double rest = told->error;
+  const char *before = " (";
   for (size_t i = 0; i < count; i++) {
     const struct convergence_row *row = i == knob ? told : NULL;
     for (size_t l = 0; l < found[i].count && told->base; l++)
       if (found[i].rows[l].base)
         row = &found[i].rows[l];
-    if (!found[i].adds || !row || row->n == 0)
+    if (!row || !(row->resolution > 0))
       continue;
-    const char *const name = study->ladder[from + i].levels.knob->name;
-    const bool few_levels = found[i].limit.verdict == LIMIT_TOO_FEW, stepless = isnan(row->step);
-    if (few_levels && stepless && fabs(row->bias) + row->bias_half_width <= 1e-12 * fabs(row->mean))
-      continue; /* the finest level, or one with the same results */
-    if (few_levels && !(stepless && isfinite(row->bias_half_width))) {
-      text_append(few, sizeof few, "%s%s", *few ? ", " : "", name);
-      continue;
-    }
-    fprintf(out, ", ");
-    print_distance(study->ladder[from + i].levels.knob, &found[i], row, out);
+    fprintf(out, "%s%s %s", before, row->knob, study_show_error(row->resolution, row->open, text));
+    before = ", ";
+    rest -= row->resolution;
   }
-  if (*few)
-    fprintf(out, ", no limit inferred, which needs three levels and three seeds (%s)", few);
-  fputc('\n', out);
+  if (rest < -1e-9 * told->error)
+    fprintf(out, "; a share cannot move farther");
+  else if (rest > 1e-9 * told->error) {
+    fprintf(out, "%sother studies %s", before, study_show_error(rest, false, text));
+    before = ", ";
+  }
+  fprintf(out, "%s%s\n", *before == ',' ? ")" : "", isfinite(told->error) ? "." : "");
 }
 
 /* The law of a knob, which levels it leaves out and why, and why the knob has no more runs. */
@@ -248,7 +218,10 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
             ": the three finest levels do not follow limit + a step^p with p from 0.5 to 2 (if they did, chance would "
             "put them this far off in %.2g %% of studies); ",
             100 * limit->fit);
-  }
+  } else if (limit->verdict == LIMIT_CONSTANT)
+    fprintf(out, "all runs are equal, so that the limit cannot be told; ");
+  else if (!isnan(found->rows[0].step))
+    fprintf(out, "no limit inferred, which needs three levels and three seeds; ");
   int64_t dropped = limit->verdict == LIMIT_SEEN ? limit->dropped : 0;
   for (size_t l = 0; l < found->count && dropped > 0; l++)
     if (found->rows[l].n > 0) {
@@ -263,7 +236,10 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
   before = "; without";
   for (size_t l = 0; l < found->count; l++)
     if (found->rows[l].n == 0) {
-      fprintf(out, "%s %s", before, found->rows[l].setting);
+      fprintf(out, "%s %s%s", before, found->rows[l].setting,
+              !found->rows[l].base  ? ""
+              : found->rows[l].open ? " *"
+                                    : " *, whose error follows from the law");
       before = ",";
     }
   fputc('\n', out);
@@ -333,7 +309,7 @@ static status print_quantity(const struct printing *printing, size_t from, size_
     for (size_t l = 0; l < found[i].count; l++) {
       struct ask_doubts doubts;
       TRY(read_doubts(printing, &study->ladder[from + i], l, quantity, &doubts, error));
-      print_level(printing, table, &study->ladder[from + i], &found[i].rows[l], &doubts);
+      print_level(table, &study->ladder[from + i], &found[i].rows[l], &doubts);
     }
   TRY(table_end(table, error));
   free(sentences);
@@ -372,6 +348,9 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
         print_value(table, &convergence_table.rows[c], &found[i].rows[l]);
       for (size_t c = OF_LIMIT; c < convergence_limit_table.count; c++)
         print_value(table, &convergence_limit_table.rows[c], &found[i].limit);
+      table_text(table, ask_resolution_names[isnan(found[i].rows[l].error) ? ASK_RESOLUTION_NOT_STUDIED
+                                             : found[i].rows[l].at_least   ? ASK_RESOLUTION_AT_LEAST
+                                                                           : ASK_RESOLUTION_KNOWN]);
       table_doubt_cells(table, &doubts);
     }
   return STATUS_OK;
@@ -379,10 +358,12 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
 
 static const char legend[] =
     "knob: the setting that is changed. *: the scene's own level; a knob's levels are compared with the seeds that all "
-    "of them have, so that n and mean "
-    "of * differ between knobs. ref: what bias is measured against. bias: mean minus that of ref, with the half width "
-    "of its 95 % interval. error: largest distance to the limit (none seen: |bias| + half width, perhaps too small), "
-    "and those of the other knobs of group resolution at *. best for its cost: no level is both cheaper and nearer.";
+    "of them have, so that n and mean of * differ between knobs. ref: what bias is measured against. bias: mean minus "
+    "that of ref, with the half width of its 95 % interval. error: how far finer settings may move the mean, summed "
+    "over all knobs of group resolution, as in `clast estimates` and `clast plan`; other knobs than that of the row "
+    "are at *. A knob leaves its largest distance to the limit by the law of all seeds, which is not this mean minus "
+    "the limit (none seen: |bias| + half width, which is no bound: >=). best for its cost: no level is both cheaper "
+    "and nearer.";
 static const char legend_of_all[] =
     "correlation: of the runs of a seed with those at the next finer level; from \"pays from correlation\" on, the "
     "coarse level as a control variate would save time. share of upper mode: of the runs, where their values have two "
@@ -400,10 +381,12 @@ status study_print(const struct study *study, enum table_format format, bool qui
   for (size_t c = OF_LIMIT; table && c < convergence_limit_table.count; c++)
     table_column(table, convergence_limit_table.rows[c].path, convergence_limit_table.rows[c].unit);
   if (table)
+    table_column(table, "error_verdict", NULL);
+  if (table)
     table_doubt_columns(table);
   for (size_t from = 0, count = 0; from < study->ladder_count; from += count)
     for (size_t q = 0; q < study->quantity_count; q++) {
-      count = find_shown(study, from, q, found);
+      TRY(find_shown(&printing, from, q, &count, found, error));
       TRY(table ? print_rows(&printing, from, q, count, found, table, error)
                 : print_quantity(&printing, from, q, count, found, error));
     }
@@ -422,7 +405,7 @@ status study_print(const struct study *study, enum table_format format, bool qui
   for (size_t q = 0; q < study->quantity_count; q++)
     main |= strcmp(study->quantity[q].name, OUTCOME_DEFAULT) == 0;
   if (main)
-    fprintf(stderr, "clast: next: `clast estimates %s` now has this error beside M_1/M of each level, and ",
+    fprintf(stderr, "clast: next: `clast estimates %s --studies` has this error beside M_1/M of each level, and ",
             study->limits.store);
   fprintf(stderr,
           main ? "`accuracy: {within: ...}` in a campaign chooses settings by it\n"
@@ -523,8 +506,9 @@ status study_print_picture(const struct study *study, bool of_errors, const char
   STORE store = NULL;
   TRY(memory_array(&drawing, 1, sizeof *drawing, "the picture of a study", error));
   TRY(store_open_reader(study->limits.store, &store, error));
-  const size_t knobs = find_shown(study, 0, 0, drawing->found);
   const struct printing printing = {.study = study, .store = store};
+  size_t knobs = 0;
+  TRY(find_shown(&printing, 0, 0, &knobs, drawing->found, error));
   for (size_t i = 0; i < knobs; i++)
     for (size_t l = 0; l < drawing->found[i].count; l++) {
       struct ask_doubts doubts;

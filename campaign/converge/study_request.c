@@ -151,6 +151,8 @@ static status add_knob(struct study_subject *subject, const struct scene *scene,
     *error = (struct error){0};
     return STATUS_OK;
   }
+  if (code == STATUS_OK)
+    code = ladder_add_own(&levels, scene, error);
   return code == STATUS_OK ? study_add(&subject->study, scene, &levels, error) : code;
 }
 

@@ -77,7 +77,9 @@ static double wall_time(const struct rounds *rounds, const struct study_ladder *
  * level stays as long as another one can go, because its error is what the study is for. Returns the number of levels
  * that remain. */
 static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladder, int64_t seeds) {
-  size_t count = ladder->levels.count, waiting = 0;
+  size_t count = 0, waiting = 0;
+  for (size_t l = 0; l < ladder->levels.count; l++)
+    count += !ladder->left_out[l];
   for (size_t i = 0; i < rounds->study->ladder_count; i++)
     waiting += rounds->study->ladder[i].seeds == 0 && !rounds->study->ladder[i].done;
   const double share = fmax(0, seconds_left(rounds)) / (double)waiting;
@@ -97,7 +99,15 @@ static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladde
   return count;
 }
 
+/* The scene's own level that was not asked for is a level like the others if the store has its runs all the same. */
 static void end_ladder(struct study_ladder *ladder, const char *why) {
+  for (size_t l = 0; l < ladder->levels.count; l++) {
+    int64_t ran = 0;
+    for (int64_t s = 0; s < ladder->seeds; s++)
+      ran += ladder->ran[l][s];
+    if (ladder->levels.level[l].unasked && ran > 0 && ran == ladder->seeds)
+      ladder->left_out[l] = false;
+  }
   ladder->done = true;
   ladder->end = why;
 }
@@ -171,9 +181,9 @@ static status make_campaign(const struct rounds *rounds, struct campaign **out, 
   const struct scene *base = rounds->ladder->base;
   const struct field_table *inputs = base->kind->inputs;
   const struct ladder_level *level[KNOB_LEVELS];
-  size_t axes = 0, points = 0, cheapest = 0;
-  for (size_t l = 1; l < levels->count; l++)
-    if (work_of(levels->level[l].scene) < work_of(levels->level[cheapest].scene))
+  size_t axes = 0, points = 0, cheapest = levels->level[0].unasked;
+  for (size_t l = cheapest + 1; l < levels->count; l++)
+    if (!levels->level[l].unasked && work_of(levels->level[l].scene) < work_of(levels->level[cheapest].scene))
       cheapest = l;
   for (size_t l = 0; l < levels->count; l++)
     if (rounds->probe ? l == cheapest : !rounds->ladder->left_out[l])

@@ -119,6 +119,9 @@ static void print_summary(const struct driver_summary *summary, const char *stor
   if (summary->runs_censored)
     fprintf(stderr, "%" PRId64 " run%s ended at stop.end_time: fragments may still have been breaking\n",
             summary->runs_censored, text_plural(summary->runs_censored));
+  if (summary->runs_surplus)
+    fprintf(stderr, "%" PRId64 " run%s beyond the stopping rule: stored, but not counted (surplus)\n",
+            summary->runs_surplus, text_plural(summary->runs_surplus));
   uncertainty_excluded(summary->runs_excluded, store);
   if (summary->runs_doubtful)
     fprintf(stderr, "%" PRId64 " run%s in doubt (!); means and stopping rules count %s\n", summary->runs_doubtful,
@@ -135,9 +138,7 @@ static status print_means(struct store *store, const char *path, int64_t campaig
                           enum table_format format, bool quiet, struct error *error) {
   struct ask_column axes[LIMITS_AXES_OF_POOL];
   size_t count;
-  char number[24], by[LIMITS_AXES_OF_POOL * sizeof axes->name] = "", pooled[ASK_GROUP_POOLED] = "";
-  snprintf(number, sizeof number, "%" PRId64, campaign);
-  TRY(ask_choose(store, &(struct ask_choice){.campaign = number}, error));
+  char by[LIMITS_AXES_OF_POOL * sizeof axes->name] = "", pooled[ASK_GROUP_POOLED] = "";
   TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_POOL, axes, &count, error));
   for (size_t i = 0; i < count; i++)
     text_append(by, sizeof by, "%s%s", i ? "," : "", axes[i].name);
@@ -156,10 +157,13 @@ static status print_answers(const char *path, int64_t campaign, const char *quan
   STORE store = NULL;
   const struct ask_points_choice choice = {.campaign = campaign};
   int64_t points = 0;
+  char number[24];
+  snprintf(number, sizeof number, "%" PRId64, campaign);
   TRY(store_open_reader(path, &store, error));
   TRY(ask_points_count(store, &choice, &points, error));
   if (!table_for_people(format))
     return print_estimates(store, &choice, format, !quiet, error);
+  TRY(ask_choose(store, &(struct ask_choice){.campaign = number}, error)); /* what is told below tables is of it, too */
   if (points > MANY_POINTS)
     fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
             campaign);

@@ -536,6 +536,15 @@ struct cell {
 };
 
 /* Keeps a cell for people, with its mark. Of a half width, its value's cell becomes "value +- half width". */
+/* Gives a kept cell another text. */
+static void replace(struct table *table, struct kept *kept, const char *text, size_t digits) {
+  free(kept->text);
+  kept->text = copy(table, text);
+  kept->digits = digits;
+  if (!kept->text)
+    kept->text = strdup("");
+}
+
 static void keep(struct table *table, const struct cell *cell) {
   const struct column *column = &table->columns[table->cell];
   char text[2 * UNCERTAINTY_TEXT + 16];
@@ -553,22 +562,23 @@ static void keep(struct table *table, const struct cell *cell) {
   if (!kept->text)
     return;
   table->kept_count++;
+  if (table->cell > 0 && !table->asked && ends_in(column->name, "_resolution_verdict") && isfinite(kept[-1].number)) {
+    uncertainty_resolution_cell(ask_resolution_verdict(cell->text), kept[-1].number, text);
+    replace(table, kept - 1, text, strlen(text)); /* ">= 0.04" */
+  }
   struct kept *value = kept - table->cell + column->value;
   if (column->role != ERROR || !(cell->number > 0) || !isfinite(value->number) || !isfinite(cell->number))
     return;
-  if (ends_in(column->name, "_weak"))
+  char number[UNCERTAINTY_TEXT];
+  if (ends_in(column->name, "_weak")) {
     snprintf(text, sizeof text, "%.*s~%.*s", (int)value->digits, value->text, UNCERTAINTY_TEXT,
              value->text + value->digits);
-  else {
-    char number[UNCERTAINTY_TEXT];
-    (column->share ? uncertainty_share_cell : uncertainty_number)(value->number, cell->number, number);
-    snprintf(text, sizeof text, "%s%.*s", number, UNCERTAINTY_TEXT, value->text + value->digits);
-    value->digits = strlen(number);
+    replace(table, value, text, value->digits);
+    return;
   }
-  free(value->text);
-  value->text = copy(table, text);
-  if (!value->text)
-    value->text = strdup("");
+  (column->share ? uncertainty_share_cell : uncertainty_number)(value->number, cell->number, number);
+  snprintf(text, sizeof text, "%s%.*s", number, UNCERTAINTY_TEXT, value->text + value->digits);
+  replace(table, value, text, strlen(number));
 }
 
 static void print_csv(struct table *table, const struct cell *cell) {

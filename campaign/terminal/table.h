@@ -103,21 +103,17 @@ void uncertainty_excluded(int64_t count, const char *store);
 /* Says on stderr that so many points of studies and searches are left out; nothing for 0. */
 void uncertainty_left_out(int64_t points);
 
-/* "0.01 to 0.05 below its limit", or "from 0.01 below to 0.02 above its limit", of a mean less `of`: the whole 95 %
- * interval, as its middle is no better known than its ends. */
-void uncertainty_distance(double distance, double half_width, const char *of, char text[UNCERTAINTY_TEXT]);
-
 /* "0.349 ± 0.003 (seeds, 95 %)", or "(seeds, 95 %, weak)"; "0.11 (0 to 0.27; seeds, 95 %)"; "1 (all 30 runs; 0.905 to
  * 1)" when all values of a share are equal; "0.349" without an interval. */
 void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_TEXT]);
 
-/* "0.03 ± 0.02 below its limit (resolution: particles)", "± 0.06 (resolution: particles)", "up to ± 0.06
- * (resolution: particles); studied at 2 of 9 points, `clast converge COMMAND` studies others", "± 0.06 or more
- * (resolution: particles)", "resolution: not studied; `clast converge COMMAND` measures it", or "resolution: does not
- * converge (`clast converge COMMAND`)". The knobs are those that were studied. */
+/* "± 0.06 (resolution: particles)", "up to ± 0.06 (resolution: particles); studied at 2 of 9 points, `clast converge
+ * COMMAND` studies others", ">= 0.06 (resolution: particles)", "resolution: not studied; `clast converge COMMAND`
+ * measures it", or "resolution: does not converge (`clast converge COMMAND`)". The knobs are those that were studied.
+ */
 void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]);
 
-/* The same for the cell of a table: "0.06", ">= 0.06", "diverges", or "not studied". */
+/* The same for the cell of a table: "0.06", ">= 0.06" where no limit is known, or "not studied". */
 void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double half_width, char text[UNCERTAINTY_TEXT]);
 
 #define UNCERTAINTY_MARK " !"

@@ -74,17 +74,6 @@ void uncertainty_left_out(int64_t points) {
             points, points == 1 ? "" : "s", points == 1 ? "it" : "them");
 }
 
-void uncertainty_distance(double distance, double half_width, const char *of, char text[UNCERTAINTY_TEXT]) {
-  const double width = fmax(half_width, 0), ends[2] = {distance - width, distance + width};
-  const bool across = ends[0] < 0 && ends[1] > 0, below = ends[1] <= 0;
-  const double near = fabs(ends[below]), far = fabs(ends[!below]);
-  text[0] = 0;
-  if (width > 0)
-    text_append(text, UNCERTAINTY_TEXT, near < 100 ? "%s%.2g%s to " : "%s%.4g%s to ", across ? "from " : "", near,
-                across ? " below" : "");
-  text_append(text, UNCERTAINTY_TEXT, far < 100 ? "%.2g %s %s" : "%.4g %s %s", far, below ? "below" : "above", of);
-}
-
 void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_TEXT]) {
   const double half_width = mean->half_width;
   const char *weak = mean->weak ? ", weak" : "";
@@ -122,14 +111,9 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
   case ASK_RESOLUTION_KNOWN:
   case ASK_RESOLUTION_AT_LEAST: break;
   }
-  if (resolution->verdict == ASK_RESOLUTION_KNOWN && isfinite(resolution->distance)) {
-    uncertainty_distance(resolution->distance, resolution->distance_half_width, "its limit", text);
-    text_append(text, UNCERTAINTY_TEXT, " (resolution: %s)", resolution->knobs);
-    return;
-  }
-  text_append(text, UNCERTAINTY_TEXT, "%s\xc2\xb1 %.2g%s (resolution: %s)", resolution->points > 1 ? "up to " : "",
-              resolution->half_width, resolution->verdict == ASK_RESOLUTION_AT_LEAST ? " or more" : "",
-              resolution->knobs);
+  const bool known = resolution->verdict == ASK_RESOLUTION_KNOWN;
+  text_append(text, UNCERTAINTY_TEXT, "%s%s %.2g (resolution: %s)", known && resolution->points > 1 ? "up to " : "",
+              known ? "\xc2\xb1" : ">=", resolution->half_width, resolution->knobs);
   if (resolution->studied < resolution->points)
     text_append(text, UNCERTAINTY_TEXT, "; studied at %lld of %lld points, %s studies others",
                 (long long)resolution->studied, (long long)resolution->points, converge);
@@ -138,8 +122,8 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
 void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double half_width, char text[UNCERTAINTY_TEXT]) {
   switch (verdict) {
   case ASK_RESOLUTION_KNOWN: snprintf(text, UNCERTAINTY_TEXT, "%.2g", half_width); return;
-  case ASK_RESOLUTION_AT_LEAST: snprintf(text, UNCERTAINTY_TEXT, ">= %.2g", half_width); return;
-  case ASK_RESOLUTION_DIVERGES: snprintf(text, UNCERTAINTY_TEXT, "diverges"); return;
+  case ASK_RESOLUTION_AT_LEAST:
+  case ASK_RESOLUTION_DIVERGES: snprintf(text, UNCERTAINTY_TEXT, ">= %.2g", half_width); return;
   case ASK_RESOLUTION_NOT_STUDIED: snprintf(text, UNCERTAINTY_TEXT, "not studied"); return;
   }
 }

@@ -327,10 +327,7 @@ static status find_command(struct store *store, long long id, const char *quanti
 
 status ask_resolution(struct store *store, int64_t point_id, const char *quantity, struct ask_resolution *out,
                       struct error *error) {
-  *out = (struct ask_resolution){.verdict = ASK_RESOLUTION_NOT_STUDIED,
-                                 .half_width = NAN,
-                                 .distance = NAN,
-                                 .distance_half_width = NAN};
+  *out = (struct ask_resolution){.verdict = ASK_RESOLUTION_NOT_STUDIED, .half_width = NAN};
   if (!store)
     return STATUS_OK;
   const long long id = point_id;
@@ -340,8 +337,8 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
 
   ANSWER found = answer_to(
       store, error,
-      "SELECT count(*), count(half_width), max(half_width), max(verdict = 'diverges'), max(verdict = 'at-least'),"
-      " max(distance), max(distance_half_width) FROM (SELECT point_id, max(results_version) AS results_version FROM "
+      "SELECT count(*), count(half_width), max(half_width), max(verdict = 'diverges'), max(verdict = 'at-least') "
+      "FROM (SELECT point_id, max(results_version) AS results_version FROM "
       "point_total"
       "   WHERE runs > 0 AND %lld IN (0, point_id) GROUP BY point_id)"
       " LEFT JOIN (SELECT * FROM resolution WHERE quantity = %Q) USING (point_id, results_version)",
@@ -354,10 +351,6 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
       out->verdict = answer_integer(&found, 3)   ? ASK_RESOLUTION_DIVERGES
                      : answer_integer(&found, 4) ? ASK_RESOLUTION_AT_LEAST
                                                  : ASK_RESOLUTION_KNOWN;
-    if (out->points == 1) {
-      out->distance = answer_real(&found, 5);
-      out->distance_half_width = answer_real(&found, 6);
-    }
   }
   TRY(answer_end(&found));
   if (out->studied == 0)
@@ -389,12 +382,13 @@ struct answer ask_convergence_levels(struct store *store, int64_t base_point, in
   for (size_t i = 0; i < convergence_table.count; i++) {
     char name[FIELD_TEXT_SIZE];
     field_column_name(convergence_table.rows[i].path, name, sizeof name);
-    sqlite3_str_appendf(columns, "%s\"%w\"", i ? ", " : "", name);
+    sqlite3_str_appendf(columns, "%sc.\"%w\"", i ? ", " : "", name);
   }
   char *list = sqlite3_str_finish(columns); /* NULL, no memory, is an empty list: the question then fails */
   return answer_to(store, error,
-                   "SELECT %z FROM convergence WHERE base_point_id = %lld AND results_version = %d AND quantity = %Q "
-                   "ORDER BY knob, level",
+                   "SELECT %z, r.half_width, r.verdict FROM convergence c LEFT JOIN resolution r USING (point_id, "
+                   "results_version, quantity) WHERE c.base_point_id = %lld AND c.results_version = %d AND "
+                   "c.quantity = %Q ORDER BY c.knob, c.level",
                    list, (long long)base_point, results_version, quantity);
 }
 
@@ -410,6 +404,8 @@ bool ask_convergence_next(struct answer *answer, struct convergence_row *row) {
       field_copy_text(value.text, stored.kind == QUERY_TEXT ? stored.text : "");
     field_set_unchecked(field, row, &value);
   }
+  row->error = answer_real(answer, convergence_table.count);
+  row->at_least = ask_resolution_verdict(answer_text(answer, convergence_table.count + 1)) > ASK_RESOLUTION_KNOWN;
   return true;
 }
 

@@ -183,9 +183,8 @@ struct ask_resolution {
   enum ask_resolution_verdict verdict;
   double half_width; /* 95 % bound on the change of the quantity with finer resolution, in its unit: the largest of the
                         points; NaN: not known */
-  double distance, distance_half_width; /* of the mean to its limit (mean less limit), of one point; NaN: not known */
-  int64_t points, studied;              /* requested points with runs, and how many of them were studied */
-  char knobs[128];   /* settings studied: "particles, time_step"; other settings may also change the quantity */
+  int64_t points, studied; /* requested points with runs, and how many of them were studied */
+  char knobs[128];         /* settings studied: "particles, time_step"; other settings may also change the quantity */
   char command[200]; /* what `clast converge` takes to study these points: "impact.yaml --store other.db -Q broken";
                         "" when several files made them */
 };
@@ -208,7 +207,7 @@ status ask_resolution_of_exponents(struct store *store, bool *studied, struct er
 /* ---- Results of convergence studies: the rows of table convergence. ---- */
 
 /* The levels of all knobs of the scene that was studied as `base_point`, for one quantity (a column of the view runs),
- * knob by knob, coarse to fine. No rows for a scene without a study. */
+ * knob by knob, coarse to fine, each with its error of the view resolution. No rows for a scene without a study. */
 struct answer ask_convergence_levels(struct store *store, int64_t base_point, int results_version, const char *quantity,
                                      struct error *error);
 /* The next level. False at the end and after an error; then answer_end(). */

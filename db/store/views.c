@@ -303,12 +303,33 @@ static void write_runs(struct view *view) {
   fputs(";\n", view->out);
 }
 
-/* For every point and quantity with a study: the sum over the knobs of the error that each knob leaves, taken at the
- * point or, when the point is no level of the knob, at the scene's own setting. Among several studies, the one with the
- * largest error counts. */
+/* Names of the columns that are shares, as rows of VALUES. */
+static void write_shares(const struct field_table *table, const char *before, FILE *out) {
+  for (size_t i = 0; i < table->count; i++) {
+    char name[FIELD_TEXT_SIZE];
+    if (!field_is_share(&table->rows[i]))
+      continue;
+    field_column_name(table->rows[i].path, name, sizeof name);
+    SQL_TEXT sql = sql_format("%s(%Q)", before, name);
+    fputs(sql, out);
+    before = ", ";
+  }
+}
+
+/* The one place that knows the error of a setting; every screen asks this view. For every point and quantity with a
+ * study: the sum over the knobs of the error that each knob leaves, taken at the point or, when the point is no level
+ * of the knob, at the scene's own setting. Where that setting has no error, the largest one of the knob's levels counts
+ * and is no bound. Named settings: the error of their reference, which takes the knobs at its own values, and how far
+ * they are from it. Among several studies, the one with the largest error counts. No error of a share is larger than
+ * its distance from the farther end of 0 to 1. */
 static void write_resolution(struct view *view) {
-  fputs("resolution AS -- what finer settings may change in a result, for every point that was studied\n", view->out);
-  fprintf(view->out, "%s\n", views_resolution_sql);
+  fputs("resolution AS -- what finer settings may change in a result, for every point that was studied\n"
+        "WITH share (quantity) AS (VALUES ",
+        view->out);
+  write_shares(&outcome_table, "", view->out);
+  for (size_t i = 0; i < engine_count(); i++)
+    write_shares(engine_at(i)->results, ", ", view->out);
+  fprintf(view->out, "),\n%s\n", views_resolution_sql);
 }
 
 static void write_points(struct view *view) {

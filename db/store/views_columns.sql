@@ -26,9 +26,7 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
   ('resolution', 'results_version', NULL, 'version of the engine''s results that was studied'),
   ('resolution', 'quantity', NULL, 'the result, as a column of the view runs; beta or beta_METHOD_WINDOW: an exponent of all runs of a point'),
   ('resolution', 'half_width', NULL, 'how far finer settings may move the result, in its unit: all knobs that were studied'),
-  ('resolution', 'verdict', NULL, 'known; at least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge'),
-  ('resolution', 'distance', NULL, 'mean less its limit; NULL: a knob that was studied has none'),
-  ('resolution', 'distance_half_width', NULL, 'half width of the 95 % interval of distance');
+  ('resolution', 'verdict', NULL, 'known; at least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge');
 INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
   SELECT 'points', d.column_name || s.column1, d.unit, s.column2 || d.meaning
   FROM column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '),

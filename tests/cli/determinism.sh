@@ -72,6 +72,8 @@ sed '/^seeds/d; /threshold.angle/d' one.yaml >until.yaml
 echo "seeds: {until: {quantity: largest_fraction, half_width: 0.03, minimum: 10, batch: 5}, max: 60}" >>until.yaml
 expect 0 "$clast" run until.yaml -j 1 --store until-one.db
 expect 0 "$clast" run until.yaml -j 3 --store until-three.db
+ahead=$(surplus until-three.db)
+[ "$ahead" -eq 0 ] || says "$ahead run$([ "$ahead" -eq 1 ] || echo s) beyond the stopping rule: stored, but not counted"
 expect 0 mpirun -n 3 --oversubscribe "$clast" run until.yaml -j 2 --store until-ranks.db
 for store in until-one until-three until-ranks; do echo "  $store: $(dump $store.db), $(surplus $store.db) surplus"; done
 ahead=$(($(surplus until-one.db) + $(surplus until-three.db) + $(surplus until-ranks.db)))

@@ -296,7 +296,9 @@ def marks(browser):
     browser.open(f"{marked}.html#points=1.2")
     wait_shown(browser, 1)
     why = " !: in doubt, 6 of 12 runs. step: fidelity.time_step over the longest stable step is above 0.25: energy may drift; give a"
-    assert why in text(browser, "#plane-chart figcaption"), text(browser, "#plane-chart figcaption")
+    caption = text(browser, "#plane-chart figcaption")
+    assert why in caption and "that was studied at 1 point: >= 0.042." in caption, caption
+    assert re.search(r", [0-9]+ grains, 3 seeds a point", text(browser, "#made")), text(browser, "#made")
     assert why.replace("6 of 12", "3 of 6") in text(browser, "#seeds figcaption"), text(browser, "#seeds figcaption")
     assert why.replace("6 of 12", "3 of 6") in text(browser, "#spectrum figcaption"), text(browser, "#spectrum figcaption")
     table = "[...document.querySelectorAll('%s tbody tr')].map((r) => [...r.cells].map((c) => c.textContent.trim()))"

@@ -109,6 +109,22 @@ static void levels_of_ones_own(void **state) {
   assert_string_equal(ladder.level[0].setting, "1000");
   assert_true(ladder.level[2].base && ladder.level[2].reference);
   assert_true(fabs(ladder.level[0].step - 0.1) < 1e-12);
+  assert_int_equal(ladder_add_own(&ladder, scene, &error), STATUS_OK);
+  assert_true(ladder.count == 3 && !ladder.level[2].unasked);
+  ladder_clear(&ladder);
+  free(notes);
+
+  /* A study adds the scene's own level, though not to run: its error is wanted. Not so of a model. */
+  assert_int_equal(ladder_make(knob_of("sph", "particles"), scene, "1000,3000", &ladder, &notes, &error), STATUS_OK);
+  assert_int_equal(ladder.count, 2);
+  assert_int_equal(ladder_add_own(&ladder, scene, &error), STATUS_OK);
+  assert_true(ladder.count == 3 && ladder.level[2].base && ladder.level[2].unasked);
+  assert_true(ladder.level[1].reference && !ladder.level[2].reference && !ladder.level[0].unasked);
+  ladder_clear(&ladder);
+  free(notes);
+  assert_int_equal(ladder_make(knob_of("sph", "smoothing"), scene, "1,2", &ladder, &notes, &error), STATUS_OK);
+  assert_int_equal(ladder_add_own(&ladder, scene, &error), STATUS_OK);
+  assert_int_equal(ladder.count, 2);
   ladder_clear(&ladder);
   free(notes);
 
@@ -243,8 +259,6 @@ static void level_of(struct store *store, int64_t base, int64_t point, const cha
   strcpy(row.quantity, "largest_fraction");
   strcpy(limit.quantity, "largest_fraction");
   row.resolution = resolution;
-  row.distance = -resolution / 2; /* an interval from -resolution to 0 */
-  row.distance_half_width = resolution / 2;
   row.open = open;
   row.base = base == 0;
   limit.verdict = verdict;
@@ -276,9 +290,6 @@ static void a_point_has_the_errors_of_its_knobs(void **state) {
   assert_string_equal(found.knobs, "grains, time_step"); /* not "contact law": it has no error here */
   assert_int_equal(ask_resolution(store, 0, "largest_fraction", &found, &error), STATUS_OK);
   assert_true(fabs(found.half_width - 0.06) < 1e-12 && found.points == 2 && found.studied == 1);
-  assert_true(isnan(found.distance)); /* of two points */
-  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
-  assert_true(fabs(found.distance + 0.03) < 1e-12 && fabs(found.distance_half_width - 0.03) < 1e-12);
   assert_true(fabs(number(store, "SELECT largest_fraction_resolution FROM points WHERE point_id = 1") - 0.06) < 1e-12);
   assert_int_equal(integer(store, "SELECT count(*) FROM points WHERE largest_fraction_resolution_verdict = "
                                   "'not-studied'"),
@@ -304,11 +315,26 @@ static void a_level_has_the_errors_of_the_other_knobs(void **state) {
   assert_int_equal(fixture_populate(store, 2, 1, 3, false, &error), STATUS_OK);
   const int64_t point = integer(store, "SELECT min(point_id) FROM run"), finer = point + 1;
   studied(store, point, "grains", 0.05, false, LIMIT_SEEN);
-  level_of(store, point, finer, "time_step", 0, false, LIMIT_SEEN); /* the scene's own step was not run */
+  level_of(store, point, finer, "time_step", 0.01, false, LIMIT_SEEN); /* the scene's own step was not run */
   assert_int_equal(ask_resolution(store, finer, "largest_fraction", &found, &error), STATUS_OK);
-  assert_true(found.verdict == ASK_RESOLUTION_KNOWN && fabs(found.half_width - 0.05) < 1e-12);
+  assert_true(found.verdict == ASK_RESOLUTION_KNOWN && fabs(found.half_width - 0.06) < 1e-12);
+  /* Its own error is not known, and not told as smaller than that of the level. */
   assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
-  assert_true(found.verdict == ASK_RESOLUTION_AT_LEAST && fabs(found.half_width - 0.05) < 1e-12);
+  assert_true(found.verdict == ASK_RESOLUTION_AT_LEAST && fabs(found.half_width - 0.06) < 1e-12);
+  /* The levels have the same error, as studies of other knobs change it later, too. */
+  studied(store, point, "grains", 0.08, false, LIMIT_SEEN);
+  ANSWER levels = ask_convergence_levels(store, point, fixture_kind.results_version, "largest_fraction", &error);
+  struct convergence_row row;
+  assert_true(ask_convergence_next(&levels, &row));
+  assert_true(row.base && row.at_least && fabs(row.error - 0.09) < 1e-12);
+  assert_true(ask_convergence_next(&levels, &row));
+  assert_true(!row.base && !row.at_least && fabs(row.error - 0.09) < 1e-12);
+  assert_false(ask_convergence_next(&levels, &row));
+  assert_int_equal(answer_end(&levels), STATUS_OK);
+  /* No error of a share is larger than its distance from the farther end. */
+  studied(store, point, "grains", 3, true, LIMIT_NOT_SEEN);
+  assert_int_equal(ask_resolution(store, finer, "largest_fraction", &found, &error), STATUS_OK);
+  assert_true(found.verdict == ASK_RESOLUTION_KNOWN && found.half_width == 1);
   assert_int_equal(store_close(store, &error), STATUS_OK);
 }
 

@@ -102,9 +102,39 @@ static void resolutions(void **state) {
   assert_true(level[2].resolution == 0 && !level[2].open);
 }
 
+/* The scene's own level without runs has the error of the law at its step; beyond the law, the largest and no bound. */
+static void own_level_without_runs(void **state) {
+  (void)state;
+  const size_t place[] = {0, LIMIT_LEVELS, 1, 2};
+  const struct limit_point own = {.step = 0.8, .distance = {0.1, -0.02, 0.2}};
+  struct limit_law law = {.verdict = LIMIT_SEEN};
+  struct convergence_row level[4] = {{.step = 1, .resolution = 0.3},
+                                     {.step = 0.8, .resolution = NAN, .base = true},
+                                     {.step = 0.5, .resolution = 0.15},
+                                     {.step = 0.25, .resolution = 0.1, .reference = true}};
+  convergence_resolve_own(4, level, &law, place, &own);
+  NEAR(level[1].resolution, 0.2, 1e-12);
+  NEAR(level[1].distance, 0.09, 1e-12);
+  assert_true(!level[1].open && level[2].resolution == 0.15);
+
+  law.dropped = 1; /* the law begins at a step of 0.5 */
+  convergence_resolve_own(4, level, &law, place, &own);
+  assert_true(level[1].resolution == 0.3 && level[1].open);
+  law = (struct limit_law){.verdict = LIMIT_NOT_SEEN};
+  convergence_resolve_own(4, level, &law, place, &own);
+  assert_true(level[1].resolution == 0.3 && level[1].open);
+
+  const size_t all[] = {0, 1, 2, 3}; /* with runs it is a level like the others */
+  level[1].resolution = 0.17;
+  level[1].open = false;
+  convergence_resolve_own(4, level, &law, all, &own);
+  assert_true(level[1].resolution == 0.17 && !level[1].open);
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(biases), cmocka_unit_test(correlations),
-                                     cmocka_unit_test(frontiers), cmocka_unit_test(resolutions)};
+                                     cmocka_unit_test(frontiers), cmocka_unit_test(resolutions),
+                                     cmocka_unit_test(own_level_without_runs)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
