@@ -31,8 +31,11 @@ bool condition_has(const char *words, const char *word) {
 }
 
 /* Columns of a run that tell how it was computed: they are right whatever the conditions say. */
-static const char facts[] = "wall_time cpu_time peak_memory steps time time_step total_mass target_mass particles "
-                            "energy_error momentum_error angular_momentum_error";
+static const char
+    facts[] = "wall_time cpu_time peak_memory steps time time_step total_mass target_mass projectile_mass particles "
+              "energy_input limited.courant limited.force limited.energy limited.density "
+              "limited.distention limited.damage "
+              "energy_error momentum_error angular_momentum_error";
 
 /* Is one of the names one of the results? NULL: all but the facts. */
 static bool rests_on(const char *names, const char *results) {

@@ -530,6 +530,15 @@ status unit_read(const char *text, const char *expected_unit, double *si, struct
   return STATUS_OK;
 }
 
+status unit_read_whole(const char *text, const char *expected_unit, double *si, struct error *error) {
+  const char *usual = unit_usual(expected_unit);
+  if (!unit_is_bare(text) || strtod(text, NULL) == 0 || strcmp(expected_unit, "1") == 0)
+    return unit_read(text, expected_unit, si, error);
+  return status_fail(error, STATUS_CONTENT, "%.*s has no unit; write '%.*s %s'%s%.*s%s%s%s", QUOTE, text, QUOTE, text,
+                     expected_unit, usual ? " or '" : "", usual ? QUOTE : 0, text, usual ? " " : "", usual ? usual : "",
+                     usual ? "'" : "");
+}
+
 const char *unit_of(const char *text) {
   text += strspn(text, " ");
   const struct decimal number = scan(text);

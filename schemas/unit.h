@@ -36,6 +36,9 @@ const char *unit_usual(const char *unit);
  * to the exact decimal value whenever the unit is a power of ten of SI. */
 status unit_read(const char *text, const char *expected_unit, double *si, struct error *error);
 
+/* The same of an option. A number other than 0 without its unit is refused, unless it has none. */
+status unit_read_whole(const char *text, const char *expected_unit, double *si, struct error *error);
+
 /* The part of such a text that is its unit: "km/s" in "5 km/s"; "" without a unit or a number. */
 const char *unit_of(const char *text);
 

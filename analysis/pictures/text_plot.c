@@ -63,7 +63,7 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
   }
   line[place(scale, log10(bin->value))] = bin->lower < complete_from(form, series) ? INCOMPLETE : POINT;
 
-  fprintf(out, "%10.3g %8lld %10.3g", bin->lower, (long long)bin->count, bin->value);
+  fprintf(out, "%10.3g %7lld %11.3g", bin->lower, (long long)bin->count, bin->value);
   char percent[24] = "";
   text_append_fixed(percent, sizeof percent, 100 * bin->half_width / bin->value, 0);
   if (isfinite(bin->half_width))
@@ -79,9 +79,9 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
 }
 
 /* Writes the decades above the grid lines, as many as fit. */
-static void heading(FILE *out, const struct scale *scale, const char *mass_unit, const char *value) {
+static void heading(FILE *out, const struct scale *scale, bool sizes, const char *mass_unit, const char *value) {
   char unit[32], line[MOST_PLOT + 16];
-  snprintf(unit, sizeof unit, "from %s", mass_unit);
+  snprintf(unit, sizeof unit, "%c [%s]", sizes ? 'L' : 'm', mass_unit);
   memset(line, ' ', sizeof line);
   int free_from = 0;
   for (int decade = (int)ceil(scale->low); decade <= scale->high; decade++) {
@@ -98,7 +98,7 @@ static void heading(FILE *out, const struct scale *scale, const char *mass_unit,
   while (end > 0 && line[end - 1] == ' ')
     end--;
   line[end] = 0;
-  fprintf(out, "%10s %8s %10s %5s  %s\n", unit, "count", value, "+-95%", line);
+  fprintf(out, "%10s %7s %11s %5s  %s\n", unit, "count", value, "+-95%", line);
 }
 
 /* Without unicode, beta and plus-minus are spelt out, and other characters beyond ASCII are left out. */
@@ -133,7 +133,7 @@ void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *unit, 
   if (columns < LEAST_COLUMNS)
     columns = LEAST_COLUMNS;
   scale.columns = columns - FRONT < MOST_PLOT ? columns - FRONT : MOST_PLOT;
-  heading(out, &scale, unit, value);
+  heading(out, &scale, form->size.density > 0, unit, value);
   for (size_t b = 0; b < series->count; b++)
     if (series->bins[b].value > 0)
       row(out, &scale, unicode, form, &series->bins[b], series);

@@ -247,8 +247,9 @@ function commandOf() {
   const quantity = state.quantity === 'beta' ? 'beta' : state.quantity;
   const from = shellFile(store().name);
   if (!state.x) return `clast stats ${from} --quantity ${quantity}`;
-  if (state.y) return `clast map ${from} map.png -x ${state.x} -y ${state.y} -Q ${quantity}`;
-  return `clast plot ${from} plot.png -x ${state.x} -Q ${quantity}`;
+  const numeric = (column) => plane.rows.some((row) => typeof row[column] === 'number');
+  if (state.y && numeric(state.x) && numeric(state.y)) return `clast map ${from} map.png -x ${state.x} -y ${state.y} -Q ${quantity}`;
+  return `clast plot ${from} plot.png -x ${state.x}${state.y ? ` --by ${state.y}` : ''} -Q ${quantity}`;
 }
 
 const WHAT_ERRORS = '±, which the table of points has too, is the half width of the 95 % interval over seeds. It does not hold the error of the resolution';
@@ -306,9 +307,9 @@ export function showPoints() {
 }
 
 export function showChoices() {
-  const {axes, quantities} = store();
+  const {varied, quantities} = store();
   const options = (columns) => columns.map((column) => [column, label(state.stores, column)]);
-  const columns = axes.map((axis) => axis.column_name);
+  const columns = varied.map((axis) => axis.column_name);
   const set = (key) => (value) => {
     state[key] = value;
     if (key === 'x' && state.y === value) state.y = columns.find((column) => column !== value) ?? null;

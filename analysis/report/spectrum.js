@@ -106,9 +106,9 @@ export async function showSpectrum() {
   const told = drawn.map((curve, i) => marked(`${curve.name}${fits[i] ? `: ${fits[i].text}` : ''}`, of(curve).some((cell) => cell.doubt) && {withheld: 0})).join('; ');
   await draw(figure, {data: {values: rows}, height: 340, layer}, {
     name: 'spectrum', description: `Fragment mass spectrum of ${told}`,
-    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood; p (clast exponents): below 0.1 a power law does not fit.${complete ? ` Pale marks: below ${number(complete, 2)} ${kg} fragments are missing (too few particles or grains).` : ''}${doubtSentence(drawn[0].from, drawn.flatMap(of), 'beta')}`,
+    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood without the largest fragment of each run, which the marks have, so that they lie higher; p (clast exponents): below 0.1 a power law does not fit.${complete ? ` Pale marks: below ${number(complete, 2)} ${kg} fragments are missing (too few particles or grains).` : ''}${doubtSentence(drawn[0].from, drawn.flatMap(of), 'beta')}`,
     command: commandOf(drawn),
-    columns: ['point', 'lower_kg', 'upper_kg', 'fragments', 'density', 'density_hw95'],
+    columns: ['point', 'lower_kg', 'upper_kg', 'fragments', 'number_density', 'number_density_hw95'],
     rows: rows.map((row) => [row.name, row.lower, row.upper, row.count, row.density, row.hw95]),
   });
 }

@@ -35,10 +35,10 @@ export function readAddress() {
 
 // Fills in what is not chosen, or not known in this store.
 export function complete() {
-  const {axes, quantities, facts, points} = store();
+  const {varied, quantities, facts, points} = store();
   const known = [...quantities.main, ...quantities.others, 'beta'];
   if (!known.includes(state.quantity)) state.quantity = known.includes(facts.default_quantity) ? facts.default_quantity : known[0];
-  const columns = axes.map((axis) => axis.column_name);
+  const columns = varied.map((axis) => axis.column_name);
   if (!columns.includes(state.x)) state.x = columns[0] ?? null;
   if ((state.y && !columns.includes(state.y)) || state.y === state.x || state.y === null)
     state.y = state.y === '' ? '' : columns.find((column) => column !== state.x) ?? null;

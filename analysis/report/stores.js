@@ -77,6 +77,9 @@ function describe(store) {
   store.doubtful = store.runColumns.has('doubtful') ? 'doubtful' : store.runColumns.has('warnings') ? "warnings <> ''" : '0'; // of older stores
   store.points = newest(ask(store, questions.points(store.axes.map((axis) => axis.column_name),
     store.pointColumns.includes('excluded') ? ', excluded' : ''))); // an older store has no such column
+  const values = (column) => new Set(store.points.map((point) => point[column]));
+  const varied = store.axes.filter((axis) => [...values(axis.column_name)].filter((value) => value !== null).length > 1);
+  store.varied = varied.length || store.points.length > 1 ? varied : store.axes; // of inputs with one value there is no picture
   store.quantities = quantitiesOf(store);
   store.canned = read('question', questions.canned);
   return store;

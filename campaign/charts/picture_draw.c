@@ -171,7 +171,7 @@ static status choose_look(const struct picture_choice *options, struct picture_l
     return STATUS_OK;
   if (look->view != PICTURE_CUT)
     return status_fail(error, STATUS_USAGE, "--at is the place of a cut: give --view cut, too");
-  return unit_read(options->at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
+  return unit_read_whole(options->at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
 }
 
 static void name_look(const char *fields, const struct movie *movie, const struct picture_look *look,

@@ -59,7 +59,8 @@ static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct cu
   const double runs = (double)pool->data.runs.count;
   label_fit(curve, headline.fit.beta, headline.interval.half_width);
   const bool sizes = curve->form.size.density > 0;
-  text_append(curve->fit_label, sizeof curve->fit_label, "; %zu fragments from %.2g %s on", headline.fit.n,
+  text_append(curve->fit_label, sizeof curve->fit_label,
+              "; %zu fragments from %.2g %s on, the largest of each run left out", headline.fit.n,
               sizes ? spectrum_size_of(&curve->form.size, headline.fit.lower) : headline.fit.lower,
               sizes ? "m" : ask_pool_mass_unit(pool->data.dimensions));
   curve->fit = (struct picture_fit){NULL,
@@ -179,6 +180,11 @@ static void write_caption(struct store *store, const struct curves *curves, char
   char untold[400] = "";
   for (size_t i = 0; i < curves->count; i++)
     pooled_exponent_tell(curves->curve[i].untold, untold, sizeof untold);
+  bool lines = false;
+  for (size_t i = 0; i < curves->count; i++)
+    lines |= isfinite(curves->curve[i].fit.beta);
+  if (lines && !choice->cumulative)
+    text_append(caption, CAPTION, ". Lines leave out the largest fragment of each run, marks have it: they lie higher");
   text_append(caption, CAPTION, "%s%s", *untold ? ". No line: " : "", untold);
   charts_doubts(&curves->doubts, caption, CAPTION);
 }
@@ -223,10 +229,11 @@ static void print_plots(const struct curves *curves, bool ascii) {
   for (size_t i = 0; i < curves->count; i++) {
     const struct curve *curve = &curves->curve[i];
     const struct picture_series series = series_of(curve);
+    const char *per_mass = curve->form.size.dimensions == 2 ? "F(m) [m/kg]" : "F(m) [1/kg]";
     printf("%s%s\n", i ? "\n" : "", curve->label);
     text_plot_spectrum(stdout, COLUMNS, !ascii, sizes ? "m" : ask_pool_mass_unit(curve->form.size.dimensions),
-                       curve->form.cumulative ? (sizes ? "N(>L)" : "N(>m)") : (sizes ? "F(L)" : "F(m)"), &curve->form,
-                       &series);
+                       curve->form.cumulative ? (sizes ? "N(>L)" : "N(>m)") : (sizes ? "F(L) [1/m]" : per_mass),
+                       &curve->form, &series);
     print_rivals(&curve->rivals);
   }
 }

@@ -7,6 +7,14 @@ struct options {
   struct option_list set;
 };
 
+/* The scene as a command names it: with the inputs that were set. */
+static void write_reference(const char *name, const struct option_list *set, char *text, size_t size) {
+  text[0] = '\0';
+  text_append(text, size, "%s", name);
+  for (size_t i = 0; i < set->count; i++)
+    text_append(text, size, strpbrk(set->items[i], " '\"$*") ? " --set '%s'" : " --set %s", set->items[i]);
+}
+
 static status simulate(const struct scene *scene, const char *reference, const struct one_run_options *options,
                        enum table_format format, struct error *error) {
   RUN_RESULT result = {0};
@@ -36,7 +44,9 @@ static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   SCENE scene = NULL;
   TRY(option_load_scene(line->arguments[0], &options->set, &scene, error));
-  return simulate(scene, line->arguments[0], &options->run, line->format, error);
+  char reference[1000];
+  write_reference(line->arguments[0], &options->set, reference, sizeof reference);
+  return simulate(scene, reference, &options->run, line->format, error);
 }
 
 static const struct option_row rows[] = {

@@ -35,8 +35,10 @@ static status ask(struct store *store, const struct command_line *line, struct e
                                    .cumulative = options->cumulative,
                                    .runs = options->runs};
   __attribute__((cleanup(measured_release))) struct measured measured = {0};
-  if (options->size && (unit_read(options->size, "kg/m^3", &choice.density, error) || !(choice.density > 0)))
-    return status_fail(error, STATUS_USAGE, "--size is a density such as 2700 kg/m^3, not '%s'", options->size);
+  struct error why = {.message = "it is not above 0"};
+  if (options->size && (unit_read_whole(options->size, "kg/m^3", &choice.density, &why) || !(choice.density > 0)))
+    return status_fail(error, STATUS_USAGE, "--size is a density such as '2700 kg/m^3', not '%s': %s", options->size,
+                       why.message);
   if (options->with)
     TRY(spectrum_curves_measured(store, options->with, &choice, &measured, error));
   return print(store, options, &choice, line->format, error);

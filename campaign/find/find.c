@@ -148,7 +148,7 @@ static status find_bracket(struct find *find, const struct find_request *request
 static status read_above_zero(const char *option, const char *text, const char *unit, double *number,
                               struct error *error) {
   struct error why = {.message = "expected a number above 0"};
-  if (unit_read(text, unit, number, &why) != STATUS_OK || !(*number > 0))
+  if (unit_read_whole(text, unit, number, &why) != STATUS_OK || !(*number > 0))
     return status_fail(error, STATUS_USAGE, "--%s %s: %s", option, text, why.message);
   return STATUS_OK;
 }

@@ -167,6 +167,7 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
 static status print_bins(const struct find *find, struct error *error) {
   struct bin bins[2 * BINS + 2];
   size_t count;
+  bool any_weak = false;
   char text[FIND_TEXT], mean[2 * UNCERTAINTY_TEXT], from[FIELD_TEXT_SIZE + 8], of[FIELD_TEXT_SIZE + 8], above[128];
   TRY(make_bins(find, bins, &count, error));
   show_level(find, text);
@@ -181,11 +182,20 @@ static status print_bins(const struct find *find, struct error *error) {
     table_integer(table, (int64_t)bins[i].n);
     const bool share = field_is_share(find->quantity.row);
     (share ? uncertainty_share_cell : uncertainty_number)(bins[i].mean.mean, bins[i].mean.half_width, mean);
+    any_weak |= bins[i].mean.weak;
+    if (bins[i].mean.weak)
+      text_append(mean, sizeof mean, "~");
     uncertainty_mark(&bins[i].doubts, mean + strlen(mean));
     table_text(table, mean);
     table_fixed(table, (double)bins[i].above / (double)bins[i].n, 2);
   }
-  return table_end(table, error);
+  TRY(table_end(table, error));
+  fflush(stdout);
+  words_print(stderr, "",
+              "clast: runs of neighbouring values are one row, from its least to its largest value, with the mean over "
+              "them and its 95 %% interval%s",
+              any_weak ? "; ~: weak, too few runs" : "");
+  return STATUS_OK;
 }
 
 /* ---- rows for programs ---- */

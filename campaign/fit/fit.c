@@ -181,11 +181,35 @@ static bool seeds_differ(const struct fit *fit, size_t datum) {
   return false;
 }
 
+/* Fails if no point has two runs with a value of a datum, and says what withholds them. */
+static status check_scatter(const struct fit *fit, size_t datum, struct error *error) {
+  const size_t d = fit->observed->datum_count, r = fit->replicates;
+  const struct ask_doubts *doubts = &fit->doubts[datum];
+  char label[2 * FIELD_TEXT_SIZE], why[400] = "give more seeds (seeds.per_point), or another quantity";
+  for (size_t i = 0; i < fit->points; i++) {
+    size_t values = 0;
+    for (size_t j = 0; j < r; j++)
+      values += isfinite(fit->values[(i * d + datum) * r + j]) != 0;
+    if (values > 1)
+      return STATUS_OK;
+  }
+  observed_label(fit->observed, datum, label, sizeof label);
+  for (size_t k = 0; k < doubts->count; k++)
+    if (doubts->word[k].row && doubts->word[k].row->withheld)
+      snprintf(why, sizeof why,
+               "it is withheld in %lld of %lld runs: %s (clast explain %s); %s, or take another quantity",
+               (long long)doubts->word[k].runs, (long long)doubts->runs, doubts->word[k].word, doubts->word[k].word,
+               doubts->word[k].row->remedy);
+  return status_fail(error, STATUS_CONTENT,
+                     "%s: no point has two runs with a value, so its scatter over seeds is not known: %s", label, why);
+}
+
 status fit_errors(struct fit *fit, struct error *error) {
   char label[2 * FIELD_TEXT_SIZE];
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct observed_datum *from = &fit->observed->data[k];
     const double slope = slope_of(from);
+    TRY(check_scatter(fit, k, error));
     fit->data[k].error = from->error * slope;
     fit->exact[k] = !(from->error > 0) && !(fit->data[k].resolution > 0) && !seeds_differ(fit, k);
     if (!fit->exact[k])

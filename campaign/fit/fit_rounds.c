@@ -200,6 +200,46 @@ static status end_round(void *context, const struct scheduler *scheduler, struct
   return after_ensemble(fit, error);
 }
 
+/* ---- what the inputs tell before any run ---- */
+
+/* The condition on the inputs that withholds the datum, if one does at each member; else NULL. */
+static const struct condition *find_withheld(struct fit *fit, const struct observed_datum *datum) {
+  const struct condition *found = NULL;
+  fit->shot = datum->shot;
+  for (size_t j = 0; j < fit->members; j++) {
+    struct error invalid = {0};
+    SCENE scene = scene_of(fit, fit->place + j * fit->inputs, &invalid);
+    const struct condition *list = scene ? scene->kind->conditions : NULL;
+    const uint64_t broken = scene ? condition_before(list, scene->inputs, NULL) : 0;
+    if (!scene)
+      continue; /* a point that cannot run has no values */
+    found = NULL;
+    for (size_t k = 0; broken >> k; k++) {
+      const struct condition one[2] = {list[k], {.word = NULL}};
+      if (broken >> k & 1 && condition_mark(one, one[0].word, ask_specimens_result(&datum->ask)) == CONDITION_WITHHELD)
+        found = &list[k];
+    }
+    if (!found)
+      break;
+  }
+  fit->shot = 0;
+  return found;
+}
+
+static status check_withheld(struct fit *fit, struct error *error) {
+  for (size_t k = 0; k < fit->observed->datum_count; k++) {
+    const struct condition *row = find_withheld(fit, &fit->observed->data[k]);
+    char label[2 * FIELD_TEXT_SIZE], says[CONDITION_SAYS];
+    if (!row)
+      continue;
+    observed_label(fit->observed, k, label, sizeof label);
+    return status_fail(error, STATUS_CONTENT,
+                       "%s: every run withholds it: %s (clast explain %s); %s, or take another quantity", label,
+                       condition_says(row, says), row->word, row->remedy);
+  }
+  return STATUS_OK;
+}
+
 /* ---- from the documents to the report ---- */
 
 struct launching { /* the two documents, and what is made from them */
@@ -248,5 +288,6 @@ status fit_rounds_launch(const struct command_line *line, const struct fit_launc
   if (options->store)
     snprintf(campaign->store, sizeof campaign->store, "%s", options->store);
   TRY(fit_create(campaign, launching.observed, &rule, scene, &launching.fit, error));
+  TRY(check_withheld(launching.fit, error));
   return run_fit(launching.fit, options, line, error);
 }

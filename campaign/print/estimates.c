@@ -225,7 +225,8 @@ static void print_legend(const struct printing *printing, FILE *out) {
     text_append(text, sizeof text, ". runs 19/20: one of 20 failed");
   if (seen->beta)
     text_append(text, sizeof text,
-                ". beta: exponent of F(m) ~ m^-beta, of the n fragments that all runs of a point have in the window. "
+                ". beta: exponent of F(m) ~ m^-beta, of the n fragments that all runs of a point have in the window, "
+                "without the largest of each run (ML). "
                 "`clast explain WORD` tells of beta, ML, LSQ, window%s",
                 seen->weak ? ", weak" : "");
   if (*seen->untold)

@@ -225,9 +225,11 @@ static status print_for_people(const struct scene *scene, const char *reference,
     return table_flush(stdout, error);
   }
   TRY(ask_resolution(NULL, 0, OUTCOME_DEFAULT, &resolution, error));
-  snprintf(resolution.command, sizeof resolution.command, "%.199s", reference);
+  if (strlen(reference) < sizeof resolution.command) /* a part of it would be another scene */
+    snprintf(resolution.command, sizeof resolution.command, "%s", reference);
   uncertainty_resolution(&resolution, text);
-  printf("errors: one run alone has no interval; `clast run` with several seeds gives one\n%s\n", text);
+  puts("errors: one run alone has no interval; `clast run` with several seeds gives one");
+  words_print(stdout, "", "%s", text);
   if (format == TABLE_ALL) {
     putchar('\n');
     TRY(print_long(scene->kind, result, format, error));
@@ -291,8 +293,8 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   if (!choice->cumulative)
     table_column(table, "upper", unit);
   table_columns(table, (const char *const[]){"runs", "fragments", NULL});
-  table_column(table, choice->cumulative ? "number" : "density", per_unit);
-  table_column(table, choice->cumulative ? "number_hw95" : "density_hw95", per_unit);
+  table_column(table, choice->cumulative ? "number" : "number_density", per_unit);
+  table_column(table, choice->cumulative ? "number_hw95" : "number_density_hw95", per_unit);
   table_column(table, "mass_share", NULL);
   table_doubt_columns(table);
   struct ask_doubts sum = {0};
@@ -398,11 +400,13 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   if (table_for_people(format)) {
     uncertainty_doubts(&sum, stderr);
     fprintf(stderr,
-            "clast: the measured and all simulated spectra are complete from %.3g %s on; from: the first measured %s "
-            "there. distance: Kolmogorov's, of %s. runs_as_far: share of the runs that are as far from the others as "
+            "clast: the measured and all simulated spectra are complete from %.3g %s on; from: %s. distance: "
+            "Kolmogorov's, of %s. runs_as_far: share of the runs that are as far from the "
+            "others as "
             "the measured one (one experiment is one specimen; below 0.05 speaks against the point; -: fewer than 20 "
             "runs of two fragments). One measured fragment or class has no shape, and no distance\n",
-            complete, kg, measured->single ? "mass" : "class", measured->weighed ? "the shares of mass" : "the shapes");
+            complete, kg, measured->single ? "this mass" : "the first measured class there",
+            measured->weighed ? "the shares of mass" : "the shapes");
     if (nothing)
       fprintf(stderr,
               "clast: no distance: from there on there is no simulated fragment, or only one measured %s. The heaviest "

@@ -681,8 +681,7 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
       stderr, "",
       "clast: shares of the variance that an input explains alone, with 95 %% intervals, of %zu points%s; what the "
       "shares leave is of inputs together%s. The whole is that of inputs which do not move together by chance, as "
-      "those "
-      "of these points do; `clast scatter --split` divides by the variance of the points as they are. rank: inputs "
+      "those of these points do. rank: inputs "
       "with "
       "overlapping intervals share it. Four times the points halve the intervals",
       p.data.points,

@@ -118,19 +118,39 @@ struct parse {
   const struct command *command;
   void *options; /* the command's struct */
   struct shared_options shared;
+  bool given[LIMITS_OPTIONS + 2];
   struct option names[LIMITS_OPTIONS + 2]; /* for getopt_long */
   char letters[2 * LIMITS_OPTIONS + 4];
 };
+
+/* An option given twice. One of several names takes those of both; of any other, one would be lost. */
+static status take_again(const struct option_row *row, const char **slot, const char *text, struct error *error) {
+  static char both[4][1000]; /* the options of a command line live as long as the program */
+  static size_t used;
+  const bool names = strcmp(row->argument, "NAMES") == 0 || strcmp(row->argument, "AXES") == 0;
+  if (!names || used == sizeof both / sizeof both[0] || strlen(*slot) + strlen(text) + 2 > sizeof both[0])
+    return status_fail(error, STATUS_USAGE, "--%s is given twice, as \"%.64s\" and \"%.64s\": leave one of them out",
+                       row->name, *slot, text);
+  both[used][0] = '\0';
+  text_append(both[used], sizeof both[0], "%s,%s", *slot, text);
+  *slot = both[used++];
+  return STATUS_OK;
+}
 
 static status take_value(struct parse *parse, size_t index, const char *text, struct error *error) {
   const struct option_row *row = option_row(parse->command, index);
   char *base = index < parse->command->option_count ? parse->options : (char *)&parse->shared;
   void *slot = base + row->offset;
+  const bool again = parse->given[index];
   switch (row->kind) {
   case OPTION_FLAG: *(bool *)slot = true; return STATUS_OK;
   case OPTION_TEXT:
   case OPTION_OUTPUT:
-  case OPTION_PICTURE: *(const char **)slot = text; return STATUS_OK;
+  case OPTION_PICTURE:
+    if (again && strcmp(*(const char **)slot, text) != 0)
+      return take_again(row, slot, text, error);
+    *(const char **)slot = text;
+    return STATUS_OK;
   case OPTION_LIST: {
     struct option_list *list = slot;
     if (list->count == sizeof list->items / sizeof list->items[0])
@@ -138,7 +158,15 @@ static status take_value(struct parse *parse, size_t index, const char *text, st
     list->items[list->count++] = text;
     return STATUS_OK;
   }
-  case OPTION_INTEGER: return take_integer(parse->command, row, text, slot, error);
+  case OPTION_INTEGER: {
+    const int64_t before = *(int64_t *)slot;
+    TRY(take_integer(parse->command, row, text, slot, error));
+    if (again && *(int64_t *)slot != before)
+      return status_fail(error, STATUS_USAGE,
+                         "--%s is given twice, as %" PRId64 " and %" PRId64 ": leave one of them out", row->name,
+                         before, *(int64_t *)slot);
+    return STATUS_OK;
+  }
   }
   return status_fail(error, STATUS_INTERNAL, "option --%s has no kind", row->name);
 }
@@ -220,7 +248,9 @@ static status take_option(struct parse *parse, int given, const char *word, stru
     return status_fail(error, STATUS_INTERNAL, "option table of %s", command->name);
   if (given == ':')
     return status_fail(error, STATUS_USAGE, "--%s needs a value: --%s %s", row->name, row->name, row->argument);
-  return take_value(parse, index, optarg, error);
+  const status code = take_value(parse, index, optarg, error);
+  parse->given[index] = true;
+  return code;
 }
 
 /* Counts the words of the command's arguments: see `arguments` of struct command. */

@@ -116,7 +116,7 @@ for signal in USR1 USR2 XCPU; do # of batch systems
   same $code 75 "stopped by SIG$signal"
   [ -s disc.bin ] || fail "no restart file after SIG$signal"
 done
-expect 65 "$clast" "${run[@]}" --json --restart run.bin --seed 4
+expect 65 "$clast" "${run[@]/#3/4}" --json --restart run.bin
 says "of seed 3"
 expect 65 "$clast" "${run[@]}" --json --restart run.bin --set fidelity.cfl=0.2
 says "another scene"

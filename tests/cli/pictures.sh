@@ -6,7 +6,7 @@ tiny small
 expect 0 "$clast" run small.yaml -j 2
 
 expect 0 "$clast" spectrum small.db --point 1 --plot
-prints "from kg/m"
+prints "m [kg/m]"
 prints "●"
 expect 0 "$clast" spectrum small.db --point 1 --plot --ascii
 prints "*"
@@ -29,7 +29,7 @@ db = sqlite3.connect("small.db")
 (n,) = db.execute("select sum(fragment_count) from runs where counts and threshold_strain < 0.03 and replicate > 0").fetchone()
 assert sum(int(r["fragments"]) for r in rows) == n, n
 drawn = [float(l.split()[1]) for l in open("chosen.dat").read().split("\n\n\n")[0].splitlines() if l and l[0] not in "#" and "NaN" not in l.split()[1]]
-assert len(drawn) == len(rows) and all(abs(d / float(r["density"]) - 1) < 1e-5 for d, r in zip(drawn, rows)), (drawn, rows)
+assert len(drawn) == len(rows) and all(abs(d / float(r["number_density"]) - 1) < 1e-5 for d, r in zip(drawn, rows)), (drawn, rows)
 json.dump(n, open("number", "w"))
 PY
 ok "a condition and an input choose the same runs for table and picture"

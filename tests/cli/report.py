@@ -85,6 +85,11 @@ def look_at_start(browser):
     assert table == [["threshold.angle", "2, 6", "deg"], ["threshold.strain", "2, 5", "%"]], table
     assert "angle 2 deg, strain 2 %" in text(browser, "#spectrum figcaption"), text(browser, "#spectrum figcaption")
     done("it says what was asked and computed, in the units of the campaign")
+    commands = browser.js("[...document.querySelectorAll('figure code')].map((c) => c.textContent)")
+    assert len(commands) == 3, commands
+    for command in commands:
+        subprocess.run([clast, *shlex.split(command)[1:]], check=True, capture_output=True)
+    done("the commands below the charts work")
 
 
 def brush(browser):
@@ -98,8 +103,8 @@ def brush(browser):
     assert after != before and "Chosen: point" in text(browser, "#chosen"), (before, after)
     drawn = list(csv.DictReader(io.StringIO(taken(browser, "#spectrum", "CSV"))))
     table = [row for row in rows_of(["spectrum", store, "--csv"]) if int(row["point_id"]) in chosen(browser)]
-    got = sorted((float(r["lower_kg"]), float(r["density"]), float(r["density_hw95"] or 0)) for r in drawn)
-    want = sorted((float(r["lower"]), float(r["density"]), float(r["density_hw95"] or 0)) for r in table)
+    got = sorted((float(r["lower_kg"]), float(r["number_density"]), float(r["number_density_hw95"] or 0)) for r in drawn)
+    want = sorted((float(r["lower"]), float(r["number_density"]), float(r["number_density_hw95"] or 0)) for r in table)
     assert len(got) == len(want) > 10, (len(got), len(want))
     for a, b in zip(got, want):
         assert all(abs(u - v) <= 2e-6 * abs(v) for u, v in zip(a, b)), (a, b)
@@ -223,7 +228,7 @@ def whole_store(browser):
     table = rows_of(["spectrum", other, "--by", "", "--csv"])
     assert len(drawn) == len(table) > 10, (len(drawn), len(table))
     for a, b in zip(drawn, table):
-        for got, want in ((a["lower_kg"], b["lower"]), (a["density"], b["density"]), (a["density_hw95"], b["density_hw95"])):
+        for got, want in ((a["lower_kg"], b["lower"]), (a["number_density"], b["number_density"]), (a["number_density_hw95"], b["number_density_hw95"])):
             assert bool(got) == bool(want), (a, b)  # equal counts have no interval
             assert abs(float(got or 0) - float(want or 0)) <= 1e-9 * abs(float(want or 0)), (a, b)
     count = shown(browser)

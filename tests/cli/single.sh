@@ -50,7 +50,7 @@ expect 0 "$clast" simulate ./disc-explosion.yaml --seed 7 "${small[@]}" --json
 cmp -s out first.json || fail "a built-in scene and its own document differ"
 ok "the built-in scene and its document give the same bits"
 expect 0 "$clast" simulate ./disc-explosion.yaml --seed 7 "${small[@]}"
-prints '`clast converge ./disc-explosion.yaml`'
+tr '\n' ' ' <out | grep -qF '`clast converge ./disc-explosion.yaml --set ' || fail "the study of another scene is offered"
 expect 0 "$clast" simulate disc-explosion --seed 8 "${small[@]}" --json
 if cmp -s out first.json; then fail "another seed gives the same result"; fi
 expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --fields end.h5 --snapshots 3 --picture end.png

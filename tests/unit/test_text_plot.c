@@ -38,7 +38,7 @@ static void rows_and_columns(void **state) {
   struct picture_series series = {.label = "all", .count = 5, .bins = bins, .fits = 1, .fit = &fit};
   char *text = plot(100, false, &series), *line = strtok(text, "\n");
   int last = 1000, rows = 0;
-  assert_non_null(strstr(line, "from kg/m"));
+  assert_non_null(strstr(line, "m [kg/m]"));
   assert_non_null(strstr(line, "10^8"));
   assert_true(strlen(line) <= 100);
   long column_of_8 = strstr(line, "10^8") - line;

@@ -708,7 +708,8 @@ const struct condition sph_conditions[] = {
             "benchmarks of impact codes ask for 10 to 20 (Pierazzo and others 2008, Meteorit. Planet. Sci. 43, 1917)",
         .remedy = "take more particles; or, of a scene that is not graded, set fidelity: {graded: true, "
                   "spacings_per_radius: 5, "
-                  "projectile_spacing: 1}",
+                  "projectile_spacing: 1}, with as many particles as the message about them says (basalt-sphere: 7700 "
+                  "or more)",
         .results = ALL_OF_AN_IMPACT, .before = spacings),
     CONDITION("wall", .number = "the number of particle spacings through the wall of colliding rings or cylinders",
               .bound = 4, .least = true,

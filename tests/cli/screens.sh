@@ -1,0 +1,93 @@
+# What screens say beside their numbers: units, names and marks, commands that are offered, and options given twice.
+. "$(dirname "$0")/lib.bash"
+
+tiny small
+expect 0 "$clast" run small.yaml -j 2 --quiet
+
+# A density without its unit, a place without its unit.
+expect 64 "$clast" spectrum small.db --size 2.7
+says "2.7 has no unit; write '2.7 kg/m^3' or '2.7 g/cm^3'"
+expect 0 "$clast" spectrum small.db --point 4 --size "2.7 g/cm^3" --plot
+prints "L [m]"; prints "F(L) [1/m]"
+expect 0 "$clast" spectrum small.db --point 4 --plot
+prints "m [kg/m]"; prints "F(m) [m/kg]"
+# Two meanings, two names: fragments per kg and run here, the share of the fragments per kg in the view spectra.
+expect 0 "$clast" spectrum small.db --point 4 --csv
+python - <<'PY' || fail "number_density"
+import csv, sqlite3
+view = dict(sqlite3.connect('file:small.db?mode=ro', uri=True).execute('select round(lower, 9), count_mean / (upper - lower) from spectra where point_id = 4'))
+rows = list(csv.DictReader(open('out')))
+assert rows and 'density' not in rows[0] and all(abs(float(r['number_density']) / view[round(float(r['lower']), 9)] - 1) < 1e-9 for r in rows), rows
+PY
+printf '%s\n' '# source: made up' 'mass (kg), count' 0.1,3 0.4,6 1.5,4 6,1 >measured.csv
+expect 0 "$clast" spectrum small.db --point 4 --with measured.csv
+says "on; from: the first measured class there"
+printf '%s\n' '# source: made up' 'mass (kg)' 0.4 1.5 1.6 6 >measured.csv
+expect 0 "$clast" spectrum small.db --point 4 --with measured.csv
+says "on; from: this mass"
+same "$(tr '\n' ' ' <err | sed 's/.*complete from \([^ ]*\) .*/\1/')" "$("$clast" spectrum small.db --point 4 --with measured.csv --csv 2>err | python -c 'import csv, sys; print("%.3g" % float(next(csv.DictReader(sys.stdin))["from"]))')" "where the comparison begins"
+# A fit leaves the largest fragments out, and the marks have them.
+expect 0 "$clast" run small.yaml --seeds 40 --store many.db -j 2 --quiet
+expect 0 "$clast" spectrum many.db --point 4 --picture many.png --keep-script
+grep -q 'the largest of each run left out' many.gp && tr '\n' ' ' <many.gp | sed "s/'\.\"[^ ]*\"\.'/ /g" | grep -q 'Lines leave out the largest fragment of each run' || fail "no word on the largest fragments"
+expect 0 "$clast" estimates many.db
+says "without the largest of each run (ML)"
+
+# Options given twice: names together, anything else not.
+expect 0 "$clast" stats small.db --by strain --quantity largest_fraction --quantity second_fraction --csv
+cp out both.csv
+expect 0 "$clast" stats small.db --by strain --quantity largest_fraction,second_fraction --csv
+cmp -s out both.csv || fail "two options --quantity are not those of one"
+expect 64 "$clast" plot small.db m.png -x strain --by angle -Q dust_fraction -Q largest_fraction
+says "--quantity is given twice, as \"dust_fraction\" and \"largest_fraction\": leave one of them out"
+expect 64 "$clast" estimates small.db --point 1 --point 2
+says "--point is given twice, as 1 and 2"
+expect 0 "$clast" estimates small.db --point 1 --point 1
+
+# The marks of a search are those of stats, and the table says what its rows are.
+cat >search.yaml <<'YAML'
+name: search
+scene: disc-explosion
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.least_time: 1 ms}
+vary: {threshold.strain: {log_uniform: [1 %, 8 %]}}
+design: {kind: latin_hypercube, points: 8, seed: 3}
+seeds: {per_point: 3}
+YAML
+expect 0 "$clast" find search.yaml --level 0.25 --max-runs 20 --store found.db --quiet
+weak=$(grep -c '~' out || true)
+says "one row, from its least to its largest value"
+[ "$weak" -gt 0 ] || fail "no weak mean is marked"
+says "~: weak, too few runs"
+ok "$weak weak means"
+
+# One run: the command that is offered studies this scene. Settings and inputs carry no mark, results do.
+expect 0 "$clast" simulate basalt-sphere --set fidelity.particles=1200 --set 'impact.speed=3 km/s' --all
+tr '\n' ' ' <out | grep -qF "\`clast converge basalt-sphere --set fidelity.particles=1200 --set 'impact.speed=3 km/s'\` measures it" || fail "another scene is offered"
+for fact in target_mass projectile_mass energy_input limited.courant; do
+  grep -qE "^$fact +[0-9.e-]+( |$)" out && ! grep -qE "^$fact +[^ ]+ !" out || fail "$fact is marked"
+done
+grep -qE '^largest_fraction +[0-9.]+ !' out || fail "a result in doubt is not marked"
+ok "marks are on results"
+
+# A measured quantity that every run withholds is refused before any run, one without a value is named.
+cat >unknown.yaml <<'YAML'
+name: unknown
+scene: basalt-sphere
+set: {fidelity.particles: 1000}
+vary: {weibull.m: {uniform: [7, 10]}}
+design: {kind: latin_hypercube, points: 8, seed: 3}
+seeds: {per_point: 2}
+store: fit.db
+YAML
+measured() { printf 'name: m\nsource: made up\nshots:\n  - name: fast\n    measured:\n      - {quantity: %s, value: 0.4, error: 0.05, resolution: 0.02}\n' "$1" >shots.yaml; }
+measured dust_fraction
+expect 65 "$clast" fit shots.yaml unknown.yaml --quiet
+says "dust_fraction: every run withholds it: fragments.dust_mass in particles is below 2 (clast explain dust)"
+[ ! -e fit.db ] || fail "runs were computed"
+sed 's/basalt-sphere/disc-explosion/; s/set: .*/set: {body.diameter: 6 cm, charge.energy: 1 kJ\/m, stop.end_time: 1 ms}/; s/vary: .*/vary: {threshold.strain: {uniform: [1 %, 8 %]}}/' unknown.yaml >disc.yaml
+measured poisson_ratio
+expect 65 "$clast" fit shots.yaml disc.yaml --quiet -j 2
+says "poisson_ratio: no point has two runs with a value"
+measured largest_fraction
+expect 0 "$clast" fit shots.yaml disc.yaml --rounds 3 --quiet -j 2
+done_after 23
