@@ -353,6 +353,9 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   largest_speed REAL, -- [m/s] Speed of the largest fragment's centre of mass. Off when that has fewer than 100 particles.
   second_mass REAL, -- [kg] Mass of the second largest fragment; off when there is only one.
   second_angle REAL, -- [rad] Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.
+  fragments_shaped INTEGER, -- [1] Number of fragments of at least 60 particles, without the largest: those whose shapes count.
+  fragments_b_over_a REAL, -- [1] Middle over longest length of fragments of at least 60 particles, without the largest: the mean over the fragments. Lengths are those between plates across the fragment's principal axes. Off without such a fragment.
+  fragments_c_over_a REAL, -- [1] Shortest over longest length of the same fragments.
   ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target leaving faster than crater.ejection_speed and crater.escape_speed. Times target_mass: their mass. `clast spectrum STORE --ejecta` shows it over the speed.
   ejecta_momentum REAL, -- [kg m/s] Impact: momentum of the ejecta along the outward normal.
   ejecta_momentum_enhancement REAL, -- [1] Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed; all matter counts that is faster than crater.escape_speed.
@@ -492,6 +495,9 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   "result_sph"."largest_speed" AS "largest_speed",
   "result_sph"."second_mass" AS "second_mass",
   "result_sph"."second_angle" AS "second_angle",
+  "result_sph"."fragments_shaped" AS "fragments_shaped",
+  (SELECT "result_sph"."fragments_b_over_a" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', shapes,')))) IS NOT TRUE) AS "fragments_b_over_a",
+  (SELECT "result_sph"."fragments_c_over_a" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', shapes,')))) IS NOT TRUE) AS "fragments_c_over_a",
   "result_sph"."ejecta_mass_fraction" AS "ejecta_mass_fraction",
   "result_sph"."ejecta_momentum" AS "ejecta_momentum",
   "result_sph"."ejecta_momentum_enhancement" AS "ejecta_momentum_enhancement",
@@ -1276,6 +1282,12 @@ INSERT INTO column_doc VALUES ('result_sph', 'flaws', '1', 'Number of explicit f
 
 INSERT INTO column_doc VALUES ('result_sph', 'fracture_ceased', NULL, 'Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time.', 1);
 
+INSERT INTO column_doc VALUES ('result_sph', 'fragments_b_over_a', '1', 'Middle over longest length of fragments of at least 60 particles, without the largest: the mean over the fragments. Lengths are those between plates across the fragment''s principal axes. Off without such a fragment.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'fragments_c_over_a', '1', 'Shortest over longest length of the same fragments.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'fragments_shaped', '1', 'Number of fragments of at least 60 particles, without the largest: those whose shapes count.', 1);
+
 INSERT INTO column_doc VALUES ('result_sph', 'frequency', '1/s', 'Vibration: frequency of the first mode, from its zero crossings.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_middle', '1', 'Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment. Off when that has fewer than 100 particles.', 1);
@@ -1541,6 +1553,12 @@ INSERT INTO column_doc VALUES ('runs', 'flaws', '1', 'Number of explicit flaws i
 INSERT INTO column_doc VALUES ('runs', 'fracture_ceased', NULL, 'Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'fragment_count', '1', 'Fragments of any size, single grains (dust) included.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'fragments_b_over_a', '1', 'Middle over longest length of fragments of at least 60 particles, without the largest: the mean over the fragments. Lengths are those between plates across the fragment''s principal axes. Off without such a fragment.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'fragments_c_over_a', '1', 'Shortest over longest length of the same fragments.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'fragments_shaped', '1', 'Number of fragments of at least 60 particles, without the largest: those whose shapes count.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'frequency', '1/s', 'Vibration: frequency of the first mode, from its zero crossings.', 0);
 

@@ -422,6 +422,61 @@ static void shape_and_ejecta(void **state) {
   sph_particles_free(p);
 }
 
+/* A particle of the lattice at integer places, turned by the angles of 3-4-5 triangles about two axes. */
+static void put_turned(struct sph_particles *p, double a, double b, double c) {
+  const size_t i = p->n++;
+  const double x = 0.6 * a - 0.8 * b, y = 0.8 * a + 0.6 * b;
+  p->density[i] = 1;
+  p->x[i] = x;
+  p->y[i] = 0.28 * y - 0.96 * c;
+  p->z[i] = 0.96 * y + 0.28 * c;
+}
+
+static void expect_lengths(struct sph_particles *p, const double length[3], double tolerance) {
+  struct sph_fragments_options o = sph_fragments_default();
+  o.link_length = 1.1;
+  struct sph_fragments f = find(p, &o);
+  assert_int_equal(f.count, 1);
+  for (int a = 0; a < 3; a++)
+    if (!(fabs(f.fragments[0].length[a] - length[a]) <= tolerance))
+      fail_msg("length %d: %g, expected %g +- %g", a, f.fragments[0].length[a], length[a], tolerance);
+  sph_fragments_clear(&f);
+  sph_particles_free(p);
+}
+
+/* Lengths between plates of bodies whose particles are one apart and one wide: a box of known sides and a line, turned,
+ * and spheres. Fewer than 60 particles have none. */
+static void lengths(void **state) {
+  (void)state;
+  struct sph_particles *p = make(12 * 7 * 4, 0);
+  p->n = 0;
+  for (int a = 0; a < 12; a++)
+    for (int b = 0; b < 7; b++)
+      for (int c = 0; c < 4; c++)
+        put_turned(p, a, b, c);
+  expect_lengths(p, (const double[]){12, 7, 4}, 1e-9);
+  p = make(60, 0);
+  p->n = 0;
+  for (int a = 0; a < 60; a++)
+    put_turned(p, a, 0, 0);
+  expect_lengths(p, (const double[]){60, 1, 1}, 1e-9);
+  p = make(59, 0);
+  p->n = 0;
+  for (int a = 0; a < 59; a++)
+    put_turned(p, a, 0, 0);
+  expect_lengths(p, (const double[]){0, 0, 0}, 0);
+  for (int radius = 3; radius < 12; radius += 8) { /* the outline of a lattice: a layer at both ends */
+    p = make(10000, 0);
+    p->n = 0;
+    for (int a = -radius; a <= radius; a++)
+      for (int b = -radius; b <= radius; b++)
+        for (int c = -radius; c <= radius; c++)
+          if (a * a + b * b + c * c <= radius * radius)
+            put_turned(p, a, b, c);
+    expect_lengths(p, (const double[]){2 * radius + 1, 2 * radius + 1, 2 * radius + 1}, 1);
+  }
+}
+
 static void periodic_box(void **state) {
   (void)state;
   /* a rod across the boundary x = 0 that turns about z, and a bar that spans the box along y */
@@ -533,6 +588,7 @@ int main(void) {
       cmocka_unit_test(bodies_touch_or_are_left_out),
       cmocka_unit_test(turning_pieces),
       cmocka_unit_test(shape_and_ejecta),
+      cmocka_unit_test(lengths),
       cmocka_unit_test(periodic_box),
       cmocka_unit_test(far_flung_and_not_finite),
       cmocka_unit_test(nothing_all_dust_all_one),

@@ -111,6 +111,22 @@ static void report_second(const struct sph_run *run, const struct sph_fragments 
   results->second.angle = sph_results_finite(acos(cosine));
 }
 
+/* The largest fragment is left out: it is what is left of the body, with the body's shape. */
+static void report_shapes(const struct sph_fragments *found, struct sph_results *results) {
+  double middle = 0, shortest = 0;
+  results->shapes.shaped = 0;
+  for (size_t k = 1; k < found->count; k++) {
+    const double *length = found->fragments[k].length;
+    if (found->fragments[k].count < SPH_FRAGMENTS_SHAPED)
+      continue;
+    results->shapes.shaped++;
+    middle += length[1] / length[0];
+    shortest += length[2] / length[0];
+  }
+  results->shapes.b_over_a = sph_results_share(middle, (double)results->shapes.shaped);
+  results->shapes.c_over_a = sph_results_share(shortest, (double)results->shapes.shaped);
+}
+
 /* Means over the target by mass. */
 static void report_damage(const struct sph_run *run, struct sph_results *results) {
   const struct sph_particles *p = run->now;
@@ -274,6 +290,7 @@ static status fill_results(const struct sph_run *run, const struct sph_ledger *l
     results->cease_time = run->state.quiet_since;
   report_damage(run, results);
   report_second(run, found, results);
+  report_shapes(found, results);
   report_ledger(run, ledger, input, results);
   report_steps(run, ledger, results);
   TRY(report_largest(run, found, results, error));

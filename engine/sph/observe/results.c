@@ -56,6 +56,16 @@ static const struct field rows[] = {
          .doc = "Impact: angle between the directions from the centre of mass to the point of impact and to the second "
                 "largest fragment. pi is the antipode. Off when that has fewer than 100 particles.",
          .source = "BA95 section 5.2"),
+    RESULT_COUNT(fragments.shaped, shapes.shaped,
+                 .doc = "Number of fragments of at least 60 particles, without the largest: those whose shapes count."),
+    RESULT_SHARE(fragments.b_over_a, shapes.b_over_a,
+                 .doc =
+                     "Middle over longest length of fragments of at least 60 particles, without the largest: the mean "
+                     "over the fragments. Lengths are those between plates across the fragment's principal axes. Off "
+                     "without such a fragment.",
+                 .source = "as measured by Michikami and others 2016"),
+    RESULT_SHARE(fragments.c_over_a, shapes.c_over_a, .doc = "Shortest over longest length of the same fragments.",
+                 .source = "as measured by Michikami and others 2016"),
     SHARE(ejecta.mass_fraction,
           .doc = "Impact: mass share of the target leaving faster than crater.ejection_speed and crater.escape_speed. "
                  "Times target_mass: their mass. `clast spectrum STORE --ejecta` shows it over the speed.",

@@ -25,6 +25,10 @@ struct sph_results {
     double mass, angle;
   } second;
   struct {
+    int64_t shaped;
+    double b_over_a, c_over_a;
+  } shapes; /* rows fragments.* */
+  struct {
     double mass_fraction, momentum, momentum_enhancement;
   } ejecta;
   struct ejecta ejecta_over_speed; /* table ejecta; its sums are those of ejecta.*. No row: engine_kind.ejecta */

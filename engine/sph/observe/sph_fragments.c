@@ -489,6 +489,76 @@ static void measure_shape(const struct search *s, double ratio[2]) {
   ratio[1] = sqrt(shortest / longest);
 }
 
+/* A fragment's inertia, then the range of its particles along its axes. */
+struct shape {
+  double tensor[6], axis[3][3], low[3], high[3];
+  double volume; /* m^3 */
+};
+
+static void add_inertia(struct shape *shape, double m, const double r[3]) {
+  shape->tensor[0] += m * (r[1] * r[1] + r[2] * r[2]);
+  shape->tensor[1] -= m * r[0] * r[1];
+  shape->tensor[2] -= m * r[0] * r[2];
+  shape->tensor[3] += m * (r[2] * r[2] + r[0] * r[0]);
+  shape->tensor[4] -= m * r[1] * r[2];
+  shape->tensor[5] += m * (r[0] * r[0] + r[1] * r[1]);
+}
+
+static void add_range(struct shape *shape, const double r[3]) {
+  for (int a = 0; a < 3; a++) {
+    const double along = r[0] * shape->axis[a][0] + r[1] * shape->axis[a][1] + r[2] * shape->axis[a][2];
+    shape->low[a] = fmin(shape->low[a], along);
+    shape->high[a] = fmax(shape->high[a], along);
+  }
+}
+
+/* Calliper lengths: as if the fragment lay between plates across each of its principal axes. A particle is as wide as
+ * the cube root of the fragment's mean volume per particle. */
+static status measure_lengths(struct search *s, struct error *error) {
+  struct fragment *fragments = s->out->fragments;
+  size_t end = 0; /* behind the last fragment that is measured */
+  for (size_t f = 0; f < s->out->count; f++)
+    end = fragments[f].count >= SPH_FRAGMENTS_SHAPED ? f + 1 : end;
+  OWNED struct shape *shapes = calloc(end + 1, sizeof *shapes);
+  if (!shapes)
+    return status_fail(error, STATUS_MEMORY, "no memory for the shapes of %zu fragments", end);
+  for (int pass = 0; pass < 2; pass++) {
+    for (size_t k = 0; k < s->members; k++) {
+      const size_t f = s->label[k], i = s->particle[k];
+      if (f >= end || fragments[f].count < SPH_FRAGMENTS_SHAPED)
+        continue;
+      double r[3];
+      for (int d = 0; d < 3; d++)
+        r[d] = s->member[k].position[d] - fragments[f].position[d];
+      if (pass == 1) {
+        add_range(&shapes[f], r);
+        continue;
+      }
+      add_inertia(&shapes[f], s->member[k].mass, r);
+      shapes[f].volume += s->member[k].mass / s->p->density[i];
+    }
+    for (size_t f = 0; f < end; f++) {
+      const double width = cbrt(shapes[f].volume / fragments[f].count);
+      double value[3], *length = fragments[f].length;
+      if (fragments[f].count < SPH_FRAGMENTS_SHAPED)
+        continue;
+      if (pass == 0)
+        fragments_principal(shapes[f].tensor, value, shapes[f].axis); /* the least inertia is about the longest axis */
+      else
+        for (int a = 0; a < 3; a++)
+          length[a] = shapes[f].high[a] - shapes[f].low[a] + width;
+      for (int a = 0; pass == 1 && a < 2; a++) /* nearly equal axes can come in another order */
+        for (int b = 0; b < 2 - a; b++)
+          if (length[b] < length[b + 1]) {
+            const double shorter = length[b];
+            length[b] = length[b + 1];
+            length[b + 1] = shorter;
+          }
+    }
+  }
+  return STATUS_OK;
+}
+
 static void note_core(struct sph_fragments *out, double core) {
   if (core > out->core_second)
     out->core_second = core;
@@ -556,7 +626,7 @@ static status find(struct search *s, struct error *error) {
   TRY(stop_endless_spins(s, error));
   sum_up(s);
   measure_shape(s, s->out->axis_ratio);
-  return STATUS_OK;
+  return measure_lengths(s, error);
 }
 
 status sph_fragments_find(const struct sph_particles *p, const struct sph_fragments_options *options,
