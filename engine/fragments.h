@@ -16,10 +16,9 @@ struct fragment {
   double spin[3]; /* rad/s: inverse moment of inertia times angular momentum, about the centre of mass (2D: z only) */
   double moment_of_inertia; /* kg m^2, about the centre of mass (2D: about z; 3D: trace/3 of the tensor) */
   double kinetic_energy;    /* J: translation, rotation and internal motion */
-  double
-      length[3];  /* m, longest first: calliper lengths along its principal axes; 0: too few particles, or not known */
-  uint32_t count; /* grains or particles in it */
-  uint32_t first; /* its lowest member index */
+  double length[3];         /* m, longest first: between plates across its principal axes; 0: not measured */
+  uint32_t count;           /* grains or particles in it */
+  uint32_t first;           /* its lowest member index */
 };
 
 /* Union-find over `links` (pairs of indices below n). label[i] = fragment number, fragments numbered by descending
