@@ -7,6 +7,7 @@ of dicts), lists of numbers are numpy arrays (else array.array). Units are SI; S
     store = clast.run("demo.yaml")      # or clast.open("demo.db")
     store.points()                      # a row for each point: inputs, and means with their 95 % intervals
     store.fragments(17)                 # all masses of run 17, descending, kg
+    store.lengths(17)                   # three lengths of each of its larger fragments, m (sph)
 """
 import array
 import ctypes
@@ -156,18 +157,27 @@ class Store:
 
     def fragments(self, run):
         """Masses of all fragments of a run, descending, kg (kg/m in the plane)."""
-        row = self.connection.execute("SELECT masses FROM fragment_mass WHERE run_id = ?", (int(run),)).fetchone()
+        return self._numbers(run, "masses")
+
+    def lengths(self, run):
+        """Three lengths of each fragment, m, longest first, one fragment after another: in the order of `fragments`, up to
+        the last that was measured, 0 for others. Empty: the run measured none."""
+        return self._numbers(run, "lengths")
+
+    def _numbers(self, run, column):
+        row = self.connection.execute(f"SELECT {column} FROM fragment_mass WHERE run_id = ?", (int(run),)).fetchone()
         if not row:
             raise Error(f"{self.path}: there is no run {run} with fragments", 66)
-        if not isinstance(row[0], bytes) or len(row[0]) % 8:
-            raise Error(f"{self.path}: the masses of run {run} are damaged", 65)
+        held = b"" if row[0] is None and column == "lengths" else row[0]
+        if not isinstance(held, bytes) or len(held) % (24 if column == "lengths" else 8):
+            raise Error(f"{self.path}: the {column} of run {run} are damaged", 65)
         if numpy:
-            return numpy.frombuffer(row[0], dtype="<f8")
-        masses = array.array("d")
-        masses.frombytes(row[0])
+            return numpy.frombuffer(held, dtype="<f8")
+        numbers = array.array("d")
+        numbers.frombytes(held)
         if sys.byteorder == "big":
-            masses.byteswap()
-        return masses
+            numbers.byteswap()
+        return numbers
 
     def snapshot(self, run, path=None):
         """The body at the end of a run: a dict of arrays, such as ["grains/position"]. Rows of tables come one after

@@ -113,7 +113,8 @@ CREATE INDEX run_statistics ON run (point_id, results_version, counts, replicate
 
 CREATE TABLE fragment_mass ( -- Fragment masses: any spectrum can be made from them without a new run.
   run_id INTEGER PRIMARY KEY REFERENCES run (run_id), -- the run
-  masses BLOB NOT NULL -- [kg] mass of every fragment, descending: little-endian float64, 8 bytes each
+  masses BLOB NOT NULL, -- [kg] mass of every fragment, descending: little-endian float64, 8 bytes each
+  lengths BLOB -- [m] three lengths of each fragment, longest first, in the order of the masses up to the last that was measured, 0 for others: little-endian float64; NULL: none was measured
 ) STRICT;
 
 CREATE TABLE bin ( -- Edges of the mass bins in use.
@@ -945,6 +946,8 @@ INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Standard err
 INSERT INTO column_doc VALUES ('estimates', 'upper', 'kg', 'upper edge, outside the bin', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'window', NULL, 'Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10', 0);
+
+INSERT INTO column_doc VALUES ('fragment_mass', 'lengths', 'm', 'three lengths of each fragment, longest first, in the order of the masses up to the last that was measured, 0 for others: little-endian float64; NULL: none was measured', 0);
 
 INSERT INTO column_doc VALUES ('fragment_mass', 'masses', 'kg', 'mass of every fragment, descending: little-endian float64, 8 bytes each', 0);
 

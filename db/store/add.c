@@ -386,10 +386,25 @@ static status add_ejecta(struct store *store, int64_t run_id, const struct store
   return STATUS_OK;
 }
 
+/* Lengths of fragments as the value of a row: NULL if none was measured. `list` is the value's memory: owned by the
+ * caller. */
+static struct sql_value lengths_of(const struct store_run *run, double **list) {
+  size_t count = run->fragment_count;
+  while (count > 0 && !(run->fragments[count - 1].length[0] > 0))
+    count--;
+  if (count == 0)
+    return (struct sql_value){.type = SQLITE_NULL};
+  const size_t size = sizeof run->fragments->length;
+  *list = memory_small(count, size);
+  for (size_t i = 0; i < count; i++)
+    memcpy(*list + 3 * i, run->fragments[i].length, size);
+  return sql_of_bytes(*list, count * size);
+}
+
 /* The digest of the rows of a run that is about to be stored. digest_rows() computes the same from the
  * rows. */
 static void digest_run(const struct store *store, const struct store_kind *kind, const struct store_run *run,
-                       uint8_t digest[16]) {
+                       struct sql_value lengths, uint8_t digest[16]) {
   struct digest sum = {0};
   digest_add(&sum, digest_name("run", "identity"), 0, sql_of_bytes(run->identity, sizeof run->identity));
   digest_add(&sum, digest_name("run", "replicate"), 0, sql_of_integer(run->replicate));
@@ -401,6 +416,7 @@ static void digest_run(const struct store *store, const struct store_kind *kind,
   if (run->result)
     digest_add_fields(&sum, kind->names, run->kind->results, 0, run->result);
   digest_add(&sum, digest_name("fragment_mass", "masses"), 0, masses_of(store, run));
+  digest_add(&sum, digest_name("fragment_mass", "lengths"), 0, lengths);
   for (size_t i = 0; i < run->estimate_count; i++)
     digest_add_fields(&sum, store->estimate_names, &estimates_table, i, &run->estimates[i]);
   const struct ejecta *ejecta = ejecta_of(run);
@@ -414,15 +430,15 @@ static void digest_run(const struct store *store, const struct store_kind *kind,
   digest_write(sum, digest);
 }
 
-static status add_row(struct store *store, const struct store_kind *kind, const struct store_run *run, int64_t *run_id,
-                      struct error *error) {
+static status add_row(struct store *store, const struct store_kind *kind, const struct store_run *run,
+                      struct sql_value lengths, int64_t *run_id, struct error *error) {
   uint8_t digest[16];
   TRY(sql_prepare_insert(
       store->db, &store->run, "run",
       "point_id, session_id, identity, replicate, seed, results_version, surplus, counts, attempt, "
       "wall_time, cpu_time, peak_memory, host, rank, finished_at, fields_path, fields_digest, digest",
       &outcome_table, 1, adding_run, error));
-  digest_run(store, kind, run, digest);
+  digest_run(store, kind, run, lengths, digest);
   const int behind = SQL_BIND(store->run, sql_of_integer(run->point_id), sql_of_key(run->session_id),
                               sql_of_bytes(run->identity, sizeof run->identity), sql_of_integer(run->replicate),
                               sql_of_integer((int64_t)run->seed), sql_of_integer(run->kind->results_version),
@@ -448,7 +464,9 @@ static status add_run(struct store *store, const struct store_run *run, struct e
   TRY(make_room(store, run->fragment_count, error));
   for (size_t i = 0; i < run->fragment_count; i++)
     store->masses[i] = run->fragments[i].mass;
-  TRY(add_row(store, kind, run, &run_id, error));
+  OWNED double *list = NULL;
+  const struct sql_value lengths = lengths_of(run, &list);
+  TRY(add_row(store, kind, run, lengths, &run_id, error));
   if (run->result) {
     sql_bind_fields(kind->insert, SQL_BIND(kind->insert, sql_of_integer(run_id)), run->kind->results, run->result);
     TRY(sql_run(kind->insert, adding_run, error));
@@ -456,9 +474,9 @@ static status add_run(struct store *store, const struct store_run *run, struct e
       TRY(views_regenerate(store->db, error));
     kind->first = false;
   }
-  TRY(sql_prepare_once(store->db, &store->mass_row, "INSERT INTO fragment_mass (run_id, masses) VALUES (?1, ?2)",
-                       adding_run, error));
-  SQL_BIND(store->mass_row, sql_of_integer(run_id), masses_of(store, run));
+  TRY(sql_prepare_once(store->db, &store->mass_row,
+                       "INSERT INTO fragment_mass (run_id, masses, lengths) VALUES (?1, ?2, ?3)", adding_run, error));
+  SQL_BIND(store->mass_row, sql_of_integer(run_id), masses_of(store, run), lengths);
   TRY(sql_run(store->mass_row, adding_run, error));
   const struct sums_run sums = {run->point_id, run->kind->results_version, store_run_counts(run),
                                 run->outcome->state == OUTCOME_END_TIME, run->surplus};

@@ -98,6 +98,10 @@ static const struct schema_column run[] = {
 static const struct schema_column fragment_mass[] = {
     {"run_id", "INTEGER PRIMARY KEY REFERENCES run (run_id)", NULL, "the run"},
     {"masses", "BLOB NOT NULL", "kg", "mass of every fragment, descending: little-endian float64, 8 bytes each"},
+    {"lengths", "BLOB", "m",
+     "three lengths of each fragment, longest first, in the order of the masses up to the last that was measured, 0 "
+     "for "
+     "others: little-endian float64; NULL: none was measured"},
 };
 
 static const struct schema_column bin[] = {
@@ -421,6 +425,7 @@ bool schema_has_column(sqlite3 *db, const char *table, const char *column) {
 
 bool schema_may_lack(const char *table, const char *column) {
   return strcmp(table, "table_digest") == 0 || strcmp(table, "ejecta") == 0 ||
+         (strcmp(table, "fragment_mass") == 0 && strcmp(column, "lengths") == 0) ||
          (strcmp(table, "run") == 0 && (strcmp(column, "fields_digest") == 0 || strncmp(column, "excluded", 8) == 0));
 }
 

@@ -32,6 +32,7 @@ with clast.open("example.db") as store:
     masses = store.fragments(3)
     assert bytes(masses.tobytes()) == raw and len(masses) == runs[2]["fragment_count"]
     assert abs(masses[0] / runs[2]["total_mass"] - runs[2]["largest_fraction"]) < 1e-12
+    assert len(store.lengths(3)) == 0  # dem measures none
     # spectra: all fragments of the point's runs
     for point in points:
         own = [row for row in runs if row["point_id"] == point["point_id"] and row["counts"]]

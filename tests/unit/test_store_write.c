@@ -33,6 +33,9 @@ static void every_value_comes_back(void **state) {
   f.run.fields_path = "fields/4.h5";
   f.run.rank = 2;
   f.run.seed = UINT64_MAX;
+  const double lengths[2][3] = {{0.3, 0.2, 0.1}, {0.2, 0.2, 0.1}}; /* of the second fragment and the fourth of five */
+  memcpy(f.fragments[1].length, lengths[0], sizeof lengths[0]);
+  memcpy(f.fragments[3].length, lengths[1], sizeof lengths[1]);
   OK(store_add_run(store, &f.run, &error));
   OK(store_flush(store, &error));
   assert_near(number(store, "SELECT total_mass FROM run"), f.outcome.total_mass, 0);
@@ -55,8 +58,11 @@ static void every_value_comes_back(void **state) {
 
   /* masses: little-endian float64, descending */
   sqlite3_stmt *statement;
-  sqlite3_prepare_v2(store->db, "SELECT masses FROM fragment_mass", -1, &statement, NULL);
+  sqlite3_prepare_v2(store->db, "SELECT masses, lengths FROM fragment_mass", -1, &statement, NULL);
   assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
+  const double stored[4][3] = {{0}, {0.3, 0.2, 0.1}, {0}, {0.2, 0.2, 0.1}};
+  assert_int_equal(sqlite3_column_bytes(statement, 1), sizeof stored);
+  assert_memory_equal(sqlite3_column_blob(statement, 1), stored, sizeof stored);
   double masses[5];
   memcpy(masses, sqlite3_column_blob(statement, 0), sizeof masses);
   for (int i = 0; i < 5; i++)
