@@ -663,7 +663,7 @@ FROM (
 ) e JOIN point p ON p.point_id = e.point_id;
 
 CREATE VIEW resolution AS -- what finer settings may change in a result, for every point that was studied
-WITH share (quantity) AS (VALUES ('dust_fraction'), ('largest_fraction'), ('second_fraction'), ('broken_share'), ('largest_loss'), ('upright_share'), ('mean_damage'), ('undamaged_fraction'), ('largest_bare_fraction'), ('largest_veneer_fraction'), ('largest_dynamic_fraction'), ('largest_axis_middle'), ('largest_axis_short'), ('ejecta_mass_fraction'), ('crater_compaction_share'), ('density_held_share'), ('limited_courant'), ('limited_force'), ('limited_energy'), ('limited_density'), ('limited_distention'), ('limited_damage'), ('compaction_mass_fraction')),
+WITH share (quantity) AS (VALUES ('dust_fraction'), ('largest_fraction'), ('second_fraction'), ('broken_share'), ('largest_loss'), ('upright_share'), ('mean_damage'), ('undamaged_fraction'), ('largest_bare_fraction'), ('largest_veneer_fraction'), ('largest_dynamic_fraction'), ('largest_axis_middle'), ('largest_axis_short'), ('fragments_b_over_a'), ('fragments_c_over_a'), ('ejecta_mass_fraction'), ('crater_compaction_share'), ('density_held_share'), ('limited_courant'), ('limited_force'), ('limited_energy'), ('limited_density'), ('limited_distention'), ('limited_damage'), ('compaction_mass_fraction')),
 level AS (SELECT * FROM convergence WHERE (resolution IS NOT NULL OR open) AND knob <> 'settings'),
 of_knob AS (SELECT base_point_id, results_version, quantity, knob, max(iif(base, resolution, NULL)) AS at_base,
     max(iif(base, open, NULL)) AS base_open, max(resolution) AS largest,
