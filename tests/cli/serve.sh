@@ -73,6 +73,7 @@ says "0 runs computed"
 cat >long.yaml <<'YAML'
 name: long
 scene: disc-explosion
+set: {fidelity.time_step: 0.25 us}
 vary: {threshold.strain: [2 %, 5 %]}
 seeds: {per_point: 1}
 limits: {time: 100 s}
