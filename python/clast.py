@@ -376,4 +376,7 @@ def _walk(path, found):
 
 
 if __name__ == "__main__":
-    sys.exit(_send_hdf5(sys.argv[1]))
+    result = _send_hdf5(sys.argv[1])
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(result)  # HDF5's own exit can crash on a strange file

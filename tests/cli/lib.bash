@@ -34,11 +34,13 @@ fail() {
 }
 ok() { checks=$((checks + 1)); echo "ok $checks: $*"; }
 
-# expect CODE COMMAND...: runs it (stdout to ./out, stderr to ./err) and compares its exit code.
+# expect CODE COMMAND...: runs it (stdout to ./out, stderr to ./err) and compares its exit code. Its standard input is empty,
+# but that of `python -` is the script.
 expect() {
-  local want=$1 got=0
+  local want=$1 got=0 input=/dev/null
   shift
-  timeout 480 "$@" >out 2>err </dev/null || got=$?
+  [ "${1-} ${2-}" != "python -" ] || input=/dev/stdin
+  timeout 480 "$@" >out 2>err <"$input" || got=$?
   [ "$got" -eq "$want" ] || fail "exit $got, expected $want: $*"
   ok "exit $want: $(echo "$*" | sed "s|$build/||; s|$work/||g" | cut -c1-100)"
 }

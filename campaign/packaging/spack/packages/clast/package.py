@@ -11,7 +11,7 @@ DEBIAN = {
     "libfyaml-dev": "libfyaml", "libopenmpi-dev": "mpi", "libsqlite3-dev": "sqlite", "libhdf5-dev": "hdf5", "libgsl-dev": "gsl",
     "librandom123-dev": "random123", "libcairo2-dev": "cairo", "zlib1g-dev": "zlib-api",
     "libcmocka-dev": "cmocka", "libqhull-dev": "qhull", "uthash-dev": "uthash", "libmicrohttpd-dev": "libmicrohttpd",
-    "libjansson-dev": "jansson", "gnuplot-nox": "gnuplot",
+    "libjansson-dev": "jansson", "nettle-dev": "nettle", "gnuplot-nox": "gnuplot",
 }
 
 
@@ -41,6 +41,7 @@ class Clast(CMakePackage):
     depends_on("uthash", type="build")
     depends_on("libmicrohttpd")
     depends_on("jansson")
+    depends_on("nettle")
     depends_on("gnuplot", type="run")
 
     conflicts("platform=windows")
