@@ -175,11 +175,8 @@ static void head(struct snapshot_file *f, const struct engine_kind *engine, uint
   attribute(f, "run", "time", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1, &time);
 }
 
-status snapshot_file_open(const struct engine_kind *engine, uint64_t seed, const void *inputs,
-                          const struct outcome *outcome, const void *results, struct snapshot_file **out,
-                          struct error *error) {
+static struct snapshot_file *begin(void) {
   struct snapshot_file *f = memory_small(1, sizeof *f);
-  *out = NULL;
   H5dont_atexit(); /* HDF5's exit handler prints when a damaged file could not be closed */
   H5Eget_auto2(H5E_DEFAULT, &f->printing, &f->printing_to);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
@@ -187,18 +184,33 @@ status snapshot_file_open(const struct engine_kind *engine, uint64_t seed, const
   f->access = checked(f, H5Pcreate(H5P_FILE_ACCESS));
   f->failed |= H5Pset_fapl_core(f->access, 1 << 20, 0) < 0; /* in memory, never written by HDF5 itself */
   f->file = checked(f, H5Fcreate("fields", H5F_ACC_TRUNC, H5P_DEFAULT, f->access));
+  return f;
+}
+
+static status check_begun(struct snapshot_file *f, struct snapshot_file **out, struct error *error) {
+  *out = f->failed ? NULL : f;
+  if (*out)
+    return STATUS_OK;
+  const bool memory = f->memory;
+  snapshot_file_close(f);
+  return status_fail(error, memory ? STATUS_MEMORY : STATUS_INTERNAL, "cannot begin a fields file%s",
+                     memory ? ": no memory" : "");
+}
+
+status snapshot_file_open_plain(struct snapshot_file **out, struct error *error) {
+  return check_begun(begin(), out, error);
+}
+
+status snapshot_file_open(const struct engine_kind *engine, uint64_t seed, const void *inputs,
+                          const struct outcome *outcome, const void *results, struct snapshot_file **out,
+                          struct error *error) {
+  struct snapshot_file *f = begin();
   if (!f->failed)
     head(f, engine, seed, inputs, outcome->time);
-  if (f->failed) {
-    const bool memory = f->memory;
-    snapshot_file_close(f);
-    return status_fail(error, memory ? STATUS_MEMORY : STATUS_INTERNAL, "cannot begin a fields file%s",
-                       memory ? ": no memory" : "");
-  }
+  TRY(check_begun(f, out, error));
   add_table(f, "inputs", engine->inputs, inputs);
   add_table(f, "outcome", &outcome_table, outcome);
   add_table(f, "results", engine->results, results);
-  *out = f;
   return STATUS_OK;
 }
 

@@ -50,6 +50,7 @@
   ENTRY(map)                                                                                                           \
   ENTRY(extremes)                                                                                                      \
   ENTRY(picture)                                                                                                       \
+  ENTRY(handoff)                                                                                                       \
   ENTRY(report)                                                                                                        \
   /* the store */ ENTRY(exclude)                                                                                       \
   ENTRY(check)                                                                                                         \

@@ -40,4 +40,11 @@ status export_crate(struct store *store, const char *store_path, const struct ex
  * be read. STATUS_USAGE: the store has no run with fields. STATUS_MISSING: no gnuplot. STATUS_IO. */
 status export_cinema(struct store *store, const char *folder, struct error *error);
 
+/* ---- one run for other programs ---- */
+
+/* Reads a fields file and writes, by the ending of `target`: fragments as CSV (.csv) or as the lines that REBOUND reads
+ * (.txt), particles as the HDF5 of miluphcuda, which OpenSPH reads, too (.h5). STATUS_USAGE: another ending.
+ * STATUS_CONTENT: the file has no such bodies, or is damaged. STATUS_IO, STATUS_MISSING, STATUS_MEMORY. */
+status export_run(const char *fields, const char *target, struct error *error);
+
 #endif

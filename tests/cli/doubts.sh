@@ -139,6 +139,8 @@ PY
   picture) expect 0 "$clast" simulate disc-explosion --set fidelity.time_step='4 us' --set stop.end_time='20 us' --fields body.hdf
     expect 0 "$clast" picture body.hdf body.png
     says "marked (!), 1 of 1 runs: step: fidelity.time_step over the longest stable step is above 0.25" ;;
+  handoff) expect 0 "$clast" handoff body.hdf body.csv # after picture, which makes the file
+    says "marked (!), 1 of 1 runs: step: fidelity.time_step over" ;;
   serve) "$clast" serve marked.yaml --store marked.db --port 0 2>serve.err &
     pid=$!
     for _ in $(seq 200); do
@@ -261,4 +263,4 @@ for name in idle acts alone; do
     "$([ $name != idle ] || echo 'no effect in these runs: friction')" "inputs without effect of $name"
 done
 ok "inputs without effect"
-done_after 116
+done_after 117

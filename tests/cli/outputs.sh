@@ -29,9 +29,9 @@ def read(name):
         return file.read()
 
 
-# Stores are also called like pictures. A hard link and a symbolic link lead to the other store.
+# Stores are also called like pictures and tables. A hard link and a symbolic link lead to the other store.
 kept = {}
-for ending in (".db", ".png"):
+for ending in (".db", ".png", ".csv"):
     for name in ("self", "other"):
         if ending != ".db":
             shutil.copy(name + ".db", name + ending)
@@ -44,7 +44,7 @@ for name, copy in (("self.yaml", "campaign.png"), ("scene.yaml", "scene.png")):
 fields = "self-fields/" + sorted(os.listdir("self-fields"))[-1]
 for name in ("measured.yaml", "fields.h5", "masses.csv", fields):
     kept[name] = None
-kept = {name: read(name) for name in list(kept) + ["hard.db", "soft.db", "hard.png", "soft.png"]}
+kept = {name: read(name) for name in list(kept) + ["hard.db", "soft.db", "hard.png", "soft.png", "hard.csv", "soft.csv"]}
 os.mkdir("folder")
 
 
@@ -58,7 +58,7 @@ def attempt(words, victim, must):
     except subprocess.TimeoutExpired:
         code, message = "none in 60 s", ""
     changed = [name for name in kept if not os.path.isfile(name) or read(name) != kept[name]]
-    for link in ("soft.db", "soft.png"):
+    for link in ("soft.db", "soft.png", "soft.csv"):
         if not os.path.islink(link):
             changed.append(link + " (no link any more)")
     if changed or (must and code not in must):
@@ -84,21 +84,21 @@ def attempt(words, victim, must):
 INPUTS = {"STORE": "self.db", "A": "self.db", "B": "other.db", "STORE...": "self.db", "CAMPAIGN.yaml": "self.yaml",
           "MEASURED.yaml": "measured.yaml", "SCENE": "scene.yaml", "SCENE|CAMPAIGN.yaml": "scene.yaml",
           "FIELDS.hdf": "fields.h5", "FIELDS.hdf[.series": "fields.h5", "RUN": "1", "scene|campaign": "scene", "SHELL": "bash"}
-OUTPUTS = {"PICTURE.png": "drawn.png", "TARGET": "made"}
+OUTPUTS = {"PICTURE.png": "drawn.png", "TARGET.csv": "made.csv", "TARGET": "made"}
 OWN = {"sensitivity": ["self.db", "self.yaml"], "merge": ["merged.db", "self.db"]}  # a store or a new file: their own rules
 NEEDED = {"plot": ["-x", "strain"], "map": ["-x", "strain", "-y", "angle"], "export": ["--per", "run"]}
 NONE = {"NAME", "WORD...", "RUN...", "PATH|WORD|SCENE", "NAME|FILE", "COMMAND", "SQL"}
 
 
-def victims(picture, reads):
+def victims(picture, reads, ending=None):
     """Files that stand in the way of an output, and the exit codes that are right. Names of documents end in .yaml; a
     document with another name is known by the command that reads it."""
-    ending = ".png" if picture else ".db"
+    ending = ending or (".png" if picture else ".db")
     for name in ("self", "other", "hard", "soft", "./other", "folder/../hard", os.path.abspath("other")):
         yield name + ending, {74}
     yield fields, {64, 74} if picture else {74}
     for name, copy in (("self.yaml", "campaign.png"), ("scene.yaml", "scene.png")):
-        yield name, {64, 74} if picture else {74}
+        yield name, {64, 74} if ending != ".db" else {74}
         if name in reads:
             yield copy, {74}
 
@@ -124,7 +124,7 @@ for command in commands:
             operands.append(word if command in OWN else {**INPUTS, **OUTPUTS}[word])
     base = NEEDED.get(command, [])
     for place, word in places:
-        for victim, must in victims(word == "PICTURE.png", operands):
+        for victim, must in victims(word == "PICTURE.png", operands, ".csv" if word == "TARGET.csv" else None):
             line = with_inputs(operands, victim)
             line[place] = victim
             attempt([command, *base, *line], victim, must)
