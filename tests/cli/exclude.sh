@@ -118,7 +118,7 @@ same "$(number until.db 'select counts from run where run_id = 1')" 0 "after the
 expect 0 "$clast" check until.db
 
 # One choice of runs for all questions: each command of the results that reads a store has it.
-without="query picture" # SQL of one's own; a file
+without="query picture handoff" # SQL of one's own; files
 for command in $("$clast" help | sed -n '/^results:/,/^the store:/s/^  \([a-z]*\) .*/\1/p'); do
   case " $without " in *" $command "*) continue ;; esac
   "$clast" "$command" --help >out
