@@ -387,18 +387,20 @@ static status add_ejecta(struct store *store, int64_t run_id, const struct store
 }
 
 /* Lengths of fragments as the value of a row: NULL if none was measured. `list` is the value's memory: owned by the
- * caller. */
-static struct sql_value lengths_of(const struct store_run *run, double **list) {
+ * caller. STATUS_MEMORY. */
+static status find_lengths(const struct store_run *run, double **list, struct sql_value *value, struct error *error) {
   size_t count = run->fragment_count;
   while (count > 0 && !(run->fragments[count - 1].length[0] > 0))
     count--;
+  *value = (struct sql_value){.type = SQLITE_NULL};
   if (count == 0)
-    return (struct sql_value){.type = SQLITE_NULL};
+    return STATUS_OK;
   const size_t size = sizeof run->fragments->length;
-  *list = memory_small(count, size);
+  TRY(memory_array(list, count, size, "the lengths of fragments", error));
   for (size_t i = 0; i < count; i++)
     memcpy(*list + 3 * i, run->fragments[i].length, size);
-  return sql_of_bytes(*list, count * size);
+  *value = sql_of_bytes(*list, count * size);
+  return STATUS_OK;
 }
 
 /* The digest of the rows of a run that is about to be stored. digest_rows() computes the same from the
@@ -465,7 +467,8 @@ static status add_run(struct store *store, const struct store_run *run, struct e
   for (size_t i = 0; i < run->fragment_count; i++)
     store->masses[i] = run->fragments[i].mass;
   OWNED double *list = NULL;
-  const struct sql_value lengths = lengths_of(run, &list);
+  struct sql_value lengths;
+  TRY(find_lengths(run, &list, &lengths, error));
   TRY(add_row(store, kind, run, lengths, &run_id, error));
   if (run->result) {
     sql_bind_fields(kind->insert, SQL_BIND(kind->insert, sql_of_integer(run_id)), run->kind->results, run->result);

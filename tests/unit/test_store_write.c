@@ -71,6 +71,32 @@ static void every_value_comes_back(void **state) {
   OK(store_close(store, &error));
 }
 
+/* In a graded body thousands of coarse single particles can be heavier than the lightest fragment that is measured. */
+static void lengths_behind_many_fragments(void **state) {
+  (void)state;
+  enum { MANY = 5000 };
+  static struct fragment fragments[MANY];
+  struct fixture_run f;
+  char path[64];
+  struct store *store = writer(fixture_path(path, "lengths"));
+  struct fixture_inputs inputs;
+  struct scene scene = fixture_scene(&inputs, 9, 1e33);
+  int64_t campaign, session, point;
+  OK(store_add_campaign(store, "c", "text", "{}", &campaign, &error));
+  OK(store_begin_session(store, "{}", &session, &error));
+  OK(store_add_point(store, campaign, &scene, 2, fixture_axes, &point, &error));
+  fixture_fill(&f, &scene, point, session, 1, 5);
+  for (size_t i = 0; i < MANY; i++)
+    fragments[i] = (struct fragment){.mass = 1, .count = 1};
+  fragments[MANY - 1].length[0] = 3;
+  f.run.fragments = fragments;
+  f.run.fragment_count = MANY;
+  OK(store_add_run(store, &f.run, &error));
+  OK(store_flush(store, &error));
+  assert_near(number(store, "SELECT length(lengths) FROM fragment_mass"), MANY * 24, 0);
+  OK(store_close(store, &error));
+}
+
 static void same_run_is_stored_once(void **state) {
   (void)state;
   char path[64];
@@ -269,10 +295,15 @@ static void estimates_are_replaced(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_value_comes_back),        cmocka_unit_test(same_run_is_stored_once),
-      cmocka_unit_test(a_full_disk_takes_no_campaign), cmocka_unit_test(batches_commit_by_count_and_close),
-      cmocka_unit_test(sums_are_those_of_the_rows),    cmocka_unit_test(failed_and_censored_are_counted_apart),
-      cmocka_unit_test(runs_of_a_point_in_order),      cmocka_unit_test(estimates_are_replaced),
+      cmocka_unit_test(every_value_comes_back),
+      cmocka_unit_test(lengths_behind_many_fragments),
+      cmocka_unit_test(same_run_is_stored_once),
+      cmocka_unit_test(a_full_disk_takes_no_campaign),
+      cmocka_unit_test(batches_commit_by_count_and_close),
+      cmocka_unit_test(sums_are_those_of_the_rows),
+      cmocka_unit_test(failed_and_censored_are_counted_apart),
+      cmocka_unit_test(runs_of_a_point_in_order),
+      cmocka_unit_test(estimates_are_replaced),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
