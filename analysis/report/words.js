@@ -94,5 +94,5 @@ export function csv(columns, rows) {
     const text = typeof value === 'string' && /^\s*[=+\-@]/.test(value) && Number.isNaN(Number(value)) ? `'${bare}` : bare;
     return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
   };
-  return [columns, ...rows].map((row) => row.map(cell).join(',')).join('\r\n') + '\r\n';
+  return [columns, ...rows].map((row) => row.map(cell).join(',')).join('\n') + '\n';
 }

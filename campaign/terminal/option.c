@@ -31,7 +31,8 @@ static const struct option_row choice_rows[] = {
 };
 static const struct option_row table_rows[] = {
     OPTION_ROW_FLAG("json", 0, struct shared_options, json, .doc = "Print JSON: one array of objects, SI units."),
-    OPTION_ROW_FLAG("csv", 0, struct shared_options, csv, .doc = "Print CSV with a header line, SI units."),
+    OPTION_ROW_FLAG("csv", 0, struct shared_options, csv,
+                    .doc = "Print CSV with a header line, SI units; lines end with LF."),
     OPTION_ROW_FLAG("all", 'a', struct shared_options, all,
                     .doc = "Print all columns or lines, also those that are rarely wanted."),
 };

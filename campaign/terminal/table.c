@@ -506,7 +506,7 @@ static void header(struct table *table) {
   if (table->format == TABLE_CSV) {
     for (size_t c = 0; c < table->column_count; c++) {
       print_csv_text(table, table->columns[c].name);
-      fputs(c + 1 < table->column_count ? "," : "\r\n", table->out);
+      fputs(c + 1 < table->column_count ? "," : "\n", table->out);
     }
   } else if (table->format == TABLE_JSON) {
     fputc('[', table->out);
@@ -586,7 +586,7 @@ static void print_csv(struct table *table, const struct cell *cell) {
     print_csv_text(table, cell->text);
   else if (cell->kind == CELL_NUMBER)
     fputs(cell->text, table->out);
-  fputs(table->cell + 1 < table->column_count ? "," : "\r\n", table->out);
+  fputs(table->cell + 1 < table->column_count ? "," : "\n", table->out);
 }
 
 static void print_json(struct table *table, const struct cell *cell) {

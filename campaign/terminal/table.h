@@ -1,5 +1,5 @@
-/* Rows on stdout: a table for people; CSV (RFC 4180), JSON (one array of objects) and JSON Lines (one object on each
- * line) for programs.
+/* Rows on stdout: a table for people; CSV (RFC 4180, but lines end with LF, as shells and Unix tools need), JSON (one
+ * array of objects) and JSON Lines (one object on each line) for programs.
  *
  * Cells are added in column order, row after row. Formats for programs are written row by row immediately, with all
  * columns; numbers read back as the same bits. Missing values and NaN: empty in CSV, null in JSON, "-" for people. In

@@ -69,7 +69,7 @@ YAML
   local line
   for line in "$@"; do echo "$line" >>"$name.yaml"; done
 }
-number() { "$clast" query "$1" "$2" --csv | tail -n 1 | tr -d '\r'; } # number STORE SQL
+number() { "$clast" query "$1" "$2" --csv | tail -n 1; } # number STORE SQL
 # The deterministic content of a store: the same for any way of computing it.
 bits() { "$clast" export "$1" "$1.bits" --bits 2>>err || fail "no bits of $1"; [ -s "$1.bits" ] || fail "empty bits"; cat "$1.bits"; }
 same_bits() { # same_bits STORE REFERENCE.bits WHAT

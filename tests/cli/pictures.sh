@@ -254,7 +254,7 @@ assert row['pairs'] == '3' and abs(float(row['difference']) - mean) < 1e-12, (ro
 PY
 expect 0 "$clast" compare small.db small.db:small --csv
 [ "$(grep -c . out)" -eq 5 ] || fail "four points beside themselves are four rows"
-[ "$(cut -d, -f1 out | tr -d '\r\n')" = point_a1234 ] || fail "the pairs are not in the order of their points"
+[ "$(cut -d, -f1 out | tr -d '\n')" = point_a1234 ] || fail "the pairs are not in the order of their points"
 expect 0 "$clast" compare small.db:1 small.db:4
 prints "b: strain" # what differs, in the campaign's units
 expect 64 "$clast" stats small.db --by threshold # a section with both inputs

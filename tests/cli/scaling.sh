@@ -55,7 +55,7 @@ for name, exact in {"critical": 20, "nu": 1, "beta/nu": 0.2, "gamma/nu": 1.6}.it
 PY
 ok "known exponents"
 expect 0 "$clast" scaling law.db --size diameter --control speed -Q largest_fraction --csv
-same "$(head -1 out | tr -d "\r")" "name,value,value_hw95,shift,meaning,answer,doubtful,doubts" "columns"
+same "$(head -1 out)" "name,value,value_hw95,shift,meaning,answer,doubtful,doubts" "columns"
 if command -v gnuplot >/dev/null; then
   expect 0 "$clast" scaling law.db --picture collapse.svg --keep-script
   grep -q 'diameter\|elements' collapse.svg && grep -q '! in doubt' collapse.gp || fail "the picture"

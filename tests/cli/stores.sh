@@ -73,7 +73,7 @@ impact: {speed: 1 km/s}
 stop: {end_time: 15 us}
 fidelity: {particles: 200}
 YAML
-m_of() { "$clast" query "$1" "select group_concat(value, ' ') from (select value from point_input where path = 'target.material.weibull.m' order by point_id)" --csv | tail -1 | tr -d '\r'; }
+m_of() { "$clast" query "$1" "select group_concat(value, ' ') from (select value from point_input where path = 'target.material.weibull.m' order by point_id)" --csv | tail -1; }
 printf 'name: rocks\nscene: ./rock.yaml\nvary: {target.material.name: [basalt, gabbro]}\nseeds: {per_point: 1}\n' >rocks.yaml
 expect 0 "$clast" run rocks.yaml -j 1 --quiet
 same "$(m_of rocks.db)" "8.5 3.0" "Weibull's m of basalt and gabbro"

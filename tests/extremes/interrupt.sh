@@ -19,7 +19,7 @@ start() {
   pid=$!
   local i
   for i in $(seq 300); do
-    if [ "$("$clast" query "$store" 'select count(*) from run' --csv 2>/dev/null | tail -n 1 | tr -d '\r')" -ge 1 ] 2>/dev/null; then return; fi
+    if [ "$("$clast" query "$store" 'select count(*) from run' --csv 2>/dev/null | tail -n 1)" -ge 1 ] 2>/dev/null; then return; fi
     sleep 0.05
   done
   fail "no run after 15 s"

@@ -60,7 +60,7 @@ prints 4
 expect 0 "$clast" check ab.db
 
 # Bits belong to a CPU class: a replay in another class differs, and replay gives the reason.
-class=$("$clast" query ab.db "select json_extract(facts, '$.cpu_class') from session" --csv | tail -n 1 | tr -d '\r')
+class=$("$clast" query ab.db "select json_extract(facts, '$.cpu_class') from session" --csv | tail -n 1)
 expect 0 "$clast" replay ab.db 1
 if [ "$class" = baseline ]; then
   ok "no other class of CPU here"
@@ -95,7 +95,7 @@ for time in first again; do
   expect 1 "$clast" run graded.yaml
   expect 0 "$clast" check graded.db
 done
-same "$("$clast" query graded.db "select count(*) from run where fields_path is not null" --csv | tail -n 1 | tr -d '\r')" 0 "fields of invalid runs"
+same "$("$clast" query graded.db "select count(*) from run where fields_path is not null" --csv | tail -n 1)" 0 "fields of invalid runs"
 expect 0 "$clast" replay graded.db 1 --fields graded.h5
 says "has no fields"
 done_after 37

@@ -33,7 +33,7 @@ static char *print_rows(enum table_format format, int rows) {
 static void test_csv(void **state) {
   (void)state;
   char *text = print_rows(TABLE_CSV, 2);
-  assert_string_equal(text, "name,speed,n\r\n\"a \"\"b\"\", c\",0.1,0\r\nplain,,-1\r\n");
+  assert_string_equal(text, "name,speed,n\n\"a \"\"b\"\", c\",0.1,0\nplain,,-1\n");
   free(text);
 }
 
@@ -123,7 +123,7 @@ static void test_csv_is_harmless(void **state) {
     table_text(table, cases[i].text);
     assert_int_equal(table_end(table, NULL), STATUS_OK);
     fclose(out);
-    snprintf(expected, sizeof expected, "%s\r\n%s\r\n", cases[i].cell, cases[i].cell);
+    snprintf(expected, sizeof expected, "%s\n%s\n", cases[i].cell, cases[i].cell);
     assert_string_equal(text, expected);
     assert_int_equal(csv_text(&csv, "t", text, size, NULL), STATUS_OK);
     assert_int_equal(csv_next(&csv), CSV_NAMES);
