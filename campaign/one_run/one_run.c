@@ -171,13 +171,14 @@ static status snapshots_look(struct snapshots *s, const struct engine_kind *kind
 /* A run that ends before its longest time has fewer snapshots than were asked for. */
 static void tell_missing(const struct snapshots *s, double time) {
   int64_t written = 0;
+  const double digit = pow(10, floor(log10(time)) - 3); /* a time before the end would cut the run */
   for (int64_t k = 0; k < s->count; k++)
     written += !isnan(s->time[k]);
   if (written < s->count)
     fprintf(stderr,
             "clast: %lld of %lld snapshots written: they divide the longest time that the run may take, and it ended "
-            "before. `--set stop.end_time='%.4g s'`, the time of its end, gives all (scenes that have this input)\n",
-            (long long)written, (long long)s->count, time);
+            "before. `--set stop.end_time='%.4g s'`, just after its end, gives all (scenes that have this input)\n",
+            (long long)written, (long long)s->count, digit * (floor(time / digit) + 1));
 }
 
 /* ---- the run ---- */
