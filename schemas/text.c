@@ -277,6 +277,17 @@ bool text_append(char *text, size_t size, const char *format, ...) {
   return false;
 }
 
+bool text_append_word(char *text, size_t size, const char *word) {
+  static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_./=,:%+@";
+  bool fits = text_append(text, size, " ");
+  if (*word && word[strspn(word, plain)] == '\0')
+    return fits && text_append(text, size, "%s", word);
+  fits = fits && text_append(text, size, "'");
+  for (; *word && fits; word++)
+    fits = *word == '\'' ? text_append(text, size, "'\\''") : text_append(text, size, "%c", *word);
+  return fits && text_append(text, size, "'");
+}
+
 void text_append_fixed(char *text, size_t size, double number, int decimals) {
   if (fabs(number) > 1e6)
     text_append(text, size, "%.5g", number);

@@ -43,6 +43,8 @@ bool text_is_one_of(const char *text, const char *const *words);
  * Returns whether all of it fitted. Every text that is made of parts is made with it: an offset computed from what
  * snprintf returns is beyond the array once a text was cut. */
 bool text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The same with a blank and a word of a command line, as a shell reads it back: " demo.db", " 'a b'". */
+bool text_append_word(char *text, size_t size, const char *word);
 
 /* Appends a number with so many decimals, or with five digits and an exponent ("1e+308") from a million on, where
  * people do not count digits. */

@@ -11,8 +11,10 @@ struct options {
 static void write_reference(const char *name, const struct option_list *set, char *text, size_t size) {
   text[0] = '\0';
   text_append(text, size, "%s", name);
-  for (size_t i = 0; i < set->count; i++)
-    text_append(text, size, strpbrk(set->items[i], " '\"$*") ? " --set '%s'" : " --set %s", set->items[i]);
+  for (size_t i = 0; i < set->count; i++) {
+    text_append(text, size, " --set");
+    text_append_word(text, size, set->items[i]);
+  }
 }
 
 static status simulate(const struct scene *scene, const char *reference, const struct one_run_options *options,

@@ -307,22 +307,61 @@ static bool is_unstudied(const struct fit *fit, size_t k) {
   return isnan(fit->observed->data[k].resolution) && fit->resolution[k].verdict == ASK_RESOLUTION_NOT_STUDIED;
 }
 
-/* Names the data whose error of resolution is unknown. */
+/* A number or a share of fragments above a mass is no result that `clast converge` knows. */
+static bool has_study(const struct observed_datum *datum) {
+  return datum->ask.kind != ASK_SPECIMENS_COUNT && datum->ask.kind != ASK_SPECIMENS_SHARE;
+}
+
+/* The command that studies the data of a shot, with the inputs that campaign and shot set. */
+static void tell_study(const struct fit *fit, size_t s, FILE *out) {
+  const struct observed_shot *shot = &fit->observed->shots[s];
+  const struct field_table *inputs = shot->scene->kind->inputs;
+  char command[PARAGRAPH] = "", names[PARAGRAPH] = "", value[FIELD_TEXT_SIZE], set[LABEL];
+  size_t count = 0;
+  for (size_t k = 0; k < fit->observed->datum_count && count < LIMITS_STUDY_QUANTITIES; k++) {
+    const struct observed_datum *datum = &fit->observed->data[k];
+    if (datum->shot == s && is_unstudied(fit, k) && has_study(datum))
+      text_append(names, sizeof names, "%s%s", count++ ? "," : "",
+                  datum->ask.row ? datum->ask.row->path : datum->quantity);
+  }
+  if (count == 0)
+    return;
+  text_append_word(command, sizeof command, fit->scene_reference);
+  for (size_t i = 0; i < inputs->count; i++) {
+    struct field_value given;
+    if (!shot->scene->overridden[i])
+      continue;
+    field_get(&inputs->rows[i], shot->scene->inputs, &given);
+    field_print(&inputs->rows[i], &given, value, sizeof value);
+    snprintf(set, sizeof set, "%s=%s", inputs->rows[i].path, value);
+    text_append(command, sizeof command, " --set");
+    text_append_word(command, sizeof command, set);
+  }
+  text_append(command, sizeof command, " -Q %s --store", names);
+  text_append_word(command, sizeof command, fit->campaign->store);
+  words_print(out, "", "RESOLUTION: a study tells it%s%s: `clast converge%s`",
+              fit->observed->shot_count > 1 ? " of " : "", fit->observed->shot_count > 1 ? shot->name : "", command);
+}
+
+/* Names the data whose error of resolution is unknown, and what tells it. */
 static void tell_not_studied(const struct fit *fit, FILE *out) {
   char names[PARAGRAPH] = "", label[LABEL];
+  bool none = false;
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     if (!is_unstudied(fit, k))
       continue;
     observed_label(fit->observed, k, label, sizeof label);
     text_append(names, sizeof names, "%s %s", *names ? "," : "", label);
+    none |= !has_study(&fit->observed->data[k]);
   }
-  if (*names)
-    words_print(
-        out, "",
-        "RESOLUTION: what a finer resolution would change is not known and counts as 0 for%s. The intervals are too "
-        "narrow. Give `resolution` with the value, or study it: `clast converge %s --store %s` with what the campaign "
-        "sets (--set).",
-        names, fit->scene_reference, fit->campaign->store);
+  if (!*names)
+    return;
+  words_print(out, "",
+              "RESOLUTION: what a finer resolution would change is not known and counts as 0 for%s. The intervals are "
+              "too narrow. Give `resolution` with the value%s.",
+              names, none ? "; no study tells it of fragments above a mass" : "");
+  for (size_t s = 0; s < fit->observed->shot_count; s++)
+    tell_study(fit, s, out);
 }
 
 static void tell_errors(const struct fit *fit, FILE *out) {

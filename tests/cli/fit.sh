@@ -105,6 +105,19 @@ prints "weak: fragments above"
 same "$(number two.db "select count(distinct value) from point_input where path = 'charge.energy'")" 2 "energies of two shots"
 same "$(number two.db "select count(*) from axis where path = 'charge.energy'")" 1 "an input that differs between shots is a column"
 
+# The studies that it offers are whole commands, and tell what it lacks; of numbers above a mass there is none.
+sed 's/, resolution: [0-9.]*//' two.yaml >unstudied.yaml
+expect 0 "$clast" fit unstudied.yaml disc.yaml --rounds 3 --store two.db -j 2
+tr '\n' ' ' <out | grep -qF 'Give `resolution` with the value; no study tells it of fragments above a mass.' || fail "counts have no study"
+tr '\n' ' ' <out | grep -o '`clast converge [^`]*`' | tr -d '`' >studies
+same "$(wc -l <studies)" 2 "studies offered, one a shot"
+while read -r study; do
+  eval "expect 0 '$clast' ${study#clast} --knob time_step --seeds 2 --within off -j 2 --quiet"
+done <studies
+expect 0 "$clast" fit unstudied.yaml disc.yaml --rounds 3 --store two.db -j 2
+tr '\n' ' ' <out | grep -qF 'counts as 0 for weak: fragments above 0.05 M, weak: mass share above 0.05 M.' || fail "a study that is offered tells nothing"
+grep -qF 'a study tells it' out && fail "a study that was made is offered"
+
 # Numbers above a share of the body are those of the masses in the store: priors so narrow that all points are alike. The
 # surface may tilt by a part of the scatter that three seeds leave in it.
 sed 's/\[1 %, 8 %\]/[3.99 %, 4.01 %]/; s/\[1 deg, 8 deg\]/[3.99 deg, 4.01 deg]/' disc.yaml >narrow.yaml
@@ -169,4 +182,4 @@ expect 64 "$clast" fit one.yaml
 expect 64 "$clast" fit one.yaml disc.yaml --rounds 2
 expect 0 "$clast" fit --help
 prints "From 3 to 10"
-done_after 24
+done_after 29
