@@ -465,7 +465,7 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
                      panels->count ? label : NULL, error);
 }
 
-/* Decimals of a value in tables, -1: only its leading digits count. */
+/* Decimals of a value in tables, below -1: its digits, -1: three of them. */
 static int decimals_of(const struct row *row, bool share) {
   char text[UNCERTAINTY_TEXT];
   if (!(row->half_width > 0))
@@ -474,7 +474,8 @@ static int decimals_of(const struct row *row, bool share) {
     return -1;
   (share ? uncertainty_share_cell : uncertainty_number)(row->value, row->half_width, text);
   text[strcspn(text, " ")] = '\0';
-  return strchr(text, '.') ? (int)strlen(strchr(text, '.') + 1) : 0;
+  const int decimals = strchr(text, '.') ? (int)strlen(strchr(text, '.') + 1) : 0;
+  return text[0] == '(' ? -1 - decimals : decimals; /* (2.5 +- 0.1)e-05 */
 }
 
 /* The panel of a row; rows come in order of their inputs, so panels are in order of the third one. */

@@ -1,12 +1,12 @@
 # A quantity over two inputs: one tile for each pair of values. scattered > 0: a mark for each point on two scales; its
-# only block of data is x, y, value, 1 for one in doubt, decimals (-1: three digits), 1 where there is no value.
+# only block of data is x, y, value, 1 for one in doubt, decimals (-1: three digits, -4: four), 1 where there is no value.
 # Blocks of the data: 0 the tiles (column, row, value, 1 for one in doubt, decimals, 0 a value, 1 none, 2 between panels), 1 the
 # values of the columns, 2 the values of the rows. panels > 0: panels of panel_columns columns side by side, a panel_label above each.
 # Cividis: readable in grey and without colour vision.
 set palette defined (0 '#00224e', 1 '#123570', 2 '#3b496c', 3 '#575d6d', 4 '#707173', 5 '#8a8779', 6 '#a69d75', 7 '#c4b56c', 8 '#e4cf5b', 9 '#fee838')
 set cbrange [low:high]
 set cblabel quantity noenhanced offset 1
-number(value, doubtful, decimals) = sprintf(decimals < 0 ? '%.3g' : sprintf('%%.%df', decimals), value) . (doubtful > 0 ? ' !' : '')
+number(value, doubtful, decimals) = sprintf(decimals == -1 ? '%.3g' : sprintf(decimals < 0 ? '%%.%dg' : '%%.%df', abs(decimals)), value) . (doubtful > 0 ? ' !' : '')
 if (scattered > 0) {
   if (log_x) { set logscale x }
   if (log_y) { set logscale y }
