@@ -2,6 +2,7 @@
 #include "engine/condition.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "schemas/text.h"
@@ -46,7 +47,8 @@ static bool rests_on(const char *names, const char *results) {
 }
 
 bool condition_broken(const struct condition *c, double number) {
-  return c->least ? number < c->bound : number > c->bound;
+  const double rounding = 1e-12; /* dust of just two particles is 1.999999999999999 of them */
+  return c->least ? number < c->bound * (1 - rounding) : number > c->bound * (1 + rounding);
 }
 
 uint64_t condition_before(const struct condition *list, const void *inputs, FILE *out) {
@@ -60,13 +62,22 @@ uint64_t condition_before(const struct condition *list, const void *inputs, FILE
     if (!out)
       continue;
     fprintf(out, "%s: %s", c->word, c->fact ? c->fact : c->number);
-    if (!c->fact)
-      fprintf(out, " is %.3g, %s %g", number, c->least ? "below" : "above", c->bound);
+    if (!c->fact) {
+      char text[32]; /* with the digits that tell it from the bound */
+      for (int digits = 3; digits < 18; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, number);
+        if (strtod(text, NULL) != c->bound)
+          break;
+      }
+      fprintf(out, " is %s, %s %g", text, c->least ? "below" : "above", c->bound);
+    }
     if (c->both) {
       double both[2];
       c->both(inputs, both);
       fprintf(out, ": %.3g and %.3g %s", both[0], both[1], c->unit);
     }
+    if (c->beside)
+      c->beside(inputs, out);
     fprintf(out, " (clast explain %s)\n", c->word);
   }
   return set;

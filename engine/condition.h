@@ -44,13 +44,14 @@ struct condition {
   /* The two numbers whose ratio `before` is, and their unit; told beside it. NULL: none. */
   void (*both)(const void *inputs, double both[2]);
   const char *unit;
+  void (*beside)(const void *inputs, FILE *out); /* prints what else is told there, ": ..." or nothing. NULL: none */
 };
 
 /* A row of an engine's list. */
 #define CONDITION(word_, ...)                                                                                          \
   { .word = word_, __VA_ARGS__ }
 
-/* Is a number beyond the bound? Not when it is NaN. */
+/* Is a number beyond the bound, by more than rounding? Not when it is NaN. */
 bool condition_broken(const struct condition *condition, double number);
 
 /* The conditions that the inputs alone break: bit k is the k-th row of `list`, which ends with a word of NULL. Prints a

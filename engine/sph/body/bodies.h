@@ -143,6 +143,8 @@ status sph_irregular_fill(const struct sph_lattice *lattice, const struct sph_sh
  * times the uniform one of so many particles. Needs the volume of the shape; grading.growth is not used. */
 double sph_irregular_finest(struct sph_grading grading, const struct sph_shape *shape, double particles,
                             double coarsest);
+/* The fewest particles with which that is grading.fine. */
+double sph_irregular_least(struct sph_grading grading, const struct sph_shape *shape, double coarsest);
 /* STATUS_CONTENT: the grading cannot give so many particles. */
 status sph_irregular_check(struct sph_grading grading, const struct sph_shape *shape, double particles,
                            struct error *error);

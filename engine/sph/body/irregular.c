@@ -369,23 +369,39 @@ static status check_range(struct sph_grading *g, double particles, struct shells
   return STATUS_OK;
 }
 
+/* The number of particles with the steepest growth that leaves no spacing of the body above `largest`. */
+static double count_bounded(struct sph_grading grading, struct shells *shells, double largest) {
+  int last = SHELLS - 1;
+  while (last > 0 && shells->open[last] == 0)
+    last--;
+  const double far = fmax(0, shells->r[last + 1] - grading.radius);
+  grading.growth = fmin(steepest, (largest - grading.fine) * (far + 4 * grading.fine) / (far * far));
+  return count(&grading, shells);
+}
+
 double sph_irregular_finest(struct sph_grading grading, const struct sph_shape *shape, double particles,
                             double coarsest) {
   OWNED struct shells *shells = memory_small(1, sizeof *shells);
   cut_shells(&grading, shape, shells);
-  int last = SHELLS - 1;
-  while (last > 0 && shells->open[last] == 0)
-    last--;
   const double uniform = cbrt(sph_shape_volume(shape) / particles);
-  const double far = fmax(0, shells->r[last + 1] - grading.radius);
   double low = fmin(grading.fine, uniform), high = uniform;
   for (int k = 0; k < 50 && low < high; k++) {
     grading.fine = k == 0 ? low : 0.5 * (low + high);
-    const double growth = (coarsest * uniform - grading.fine) * (far + 4 * grading.fine) / (far * far);
-    grading.growth = fmin(steepest, growth);
-    *(count(&grading, shells) > particles ? &low : &high) = grading.fine;
+    *(count_bounded(grading, shells, coarsest * uniform) > particles ? &low : &high) = grading.fine;
   }
   return high;
+}
+
+double sph_irregular_least(struct sph_grading grading, const struct sph_shape *shape, double coarsest) {
+  OWNED struct shells *shells = memory_small(1, sizeof *shells);
+  cut_shells(&grading, shape, shells);
+  const double volume = sph_shape_volume(shape);
+  double low = 1, high = volume / (grading.fine * grading.fine * grading.fine); /* a uniform body of this spacing */
+  for (int k = 0; k < 50 && ceil(low) < ceil(high); k++) {
+    const double particles = sqrt(low * high);
+    *(count_bounded(grading, shells, coarsest * cbrt(volume / particles)) > particles ? &low : &high) = particles;
+  }
+  return ceil(high);
 }
 
 status sph_irregular_check(struct sph_grading grading, const struct sph_shape *shape, double particles,

@@ -711,10 +711,8 @@ const struct condition sph_conditions[] = {
         .reason =
             "benchmarks of impact codes ask for 10 to 20 (Pierazzo and others 2008, Meteorit. Planet. Sci. 43, 1917)",
         .remedy = "take more particles; or, of a scene that is not graded, set fidelity: {graded: true, "
-                  "spacings_per_radius: 5, "
-                  "projectile_spacing: 1}, with as many particles as the message about them says (basalt-sphere: 7700 "
-                  "or more)",
-        .results = ALL_OF_AN_IMPACT, .before = spacings),
+                  "spacings_per_radius: 5, projectile_spacing: 1}; if it takes more particles, a message says how many",
+        .results = ALL_OF_AN_IMPACT, .before = spacings, .beside = sph_derived_tell_unkept),
     CONDITION("wall", .number = "the number of particle spacings through the wall of colliding rings or cylinders",
               .bound = 4, .least = true,
               .doubt = "the wall is not resolved, and the speed of the rebound moves with the particles",

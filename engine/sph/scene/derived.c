@@ -204,6 +204,20 @@ double sph_derived_asked_spacing(const struct sph_inputs *in) {
   return sph_irregular_finest(grading, &target, (double)in->fidelity.particles, in->fidelity.coarsest);
 }
 
+void sph_derived_tell_unkept(const void *inputs, FILE *out) {
+  const struct sph_inputs *in = inputs;
+  const double asked = sph_derived_projectile_radius(in) / in->fidelity.spacings_per_radius;
+  const struct sph_shape target = sph_derived_target(in);
+  if (!(in->kind == SPH_IMPACT && in->fidelity.graded && in->fidelity.coarsest > 0 &&
+        in->fidelity.fine_spacing > asked * (1 + 1e-9)))
+    return;
+  struct sph_grading grading = sph_derived_grading(in, &target);
+  grading.fine = asked;
+  fprintf(out, ": fidelity.coarsest %.3g allows the %.3g of spacings_per_radius from %.0f particles on",
+          in->fidelity.coarsest, in->fidelity.spacings_per_radius,
+          sph_irregular_least(grading, &target, in->fidelity.coarsest));
+}
+
 double sph_derived_smallest_spacing(const struct sph_inputs *in) {
   double fine = sph_derived_fine_spacing(in);
   return sph_derived_has_projectile(in) ? fmin(fine, fine * in->fidelity.projectile_spacing) : fine;

@@ -33,6 +33,8 @@ double sph_derived_spacing(const struct sph_inputs *inputs);         /* m, of th
 double sph_derived_fine_spacing(const struct sph_inputs *inputs);    /* m, of the target where the projectile hits */
 /* m, the fine spacing of fidelity.spacings_per_radius, or what fidelity.coarsest leaves of it */
 double sph_derived_asked_spacing(const struct sph_inputs *inputs);
+/* Prints ": why this is coarser than fidelity.spacings_per_radius asks, and from how many particles on it is not". */
+void sph_derived_tell_unkept(const void *inputs, FILE *out);
 /* About the point of impact on a target that is graded. */
 struct sph_grading sph_derived_grading(const struct sph_inputs *inputs, const struct sph_shape *target);
 double sph_derived_particles(const struct sph_inputs *inputs); /* of all bodies; an estimate for plans */

@@ -171,8 +171,12 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
     shape("projectile", &projectile, &in->projectile, sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing,
           false, out);
     if (in->fidelity.graded)
-      fprintf(out, "  graded: spacing %.3g m within %.3g m of the point of impact\n", in->fidelity.fine_spacing,
+      fprintf(out, "  graded: spacing %.3g m within %.3g m of the point of impact", in->fidelity.fine_spacing,
               in->fidelity.fine_radius);
+    if (in->fidelity.graded) {
+      sph_derived_tell_unkept(in, out);
+      fputc('\n', out);
+    }
   }
 }
 
