@@ -15,10 +15,12 @@ status plan_campaign(const char *path, const struct campaign_option *changes, co
   CAMPAIGN campaign = NULL;
   OWNED char *alternatives = NULL;
   const int at_a_time = launch_slots(slots);
+  char words[1000];
+  option_words(path, &changes->set, store, words, sizeof words);
   TRY(option_load_campaign(path, changes, at_a_time, &campaign, error));
   struct plan plan;
   struct plan_options options = {.store_path = store, .no_trial = no_trial, .slots = at_a_time, .all = json};
-  TRY(accuracy_settle(campaign, path, store ? store : campaign->store, json ? ACCURACY_JSON : ACCURACY_TEXT,
+  TRY(accuracy_settle(campaign, words, store ? store : campaign->store, json ? ACCURACY_JSON : ACCURACY_TEXT,
                       &alternatives, error));
   TRY(plan_make(campaign, &options, &plan, error));
   plan.alternatives = alternatives;

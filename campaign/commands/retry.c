@@ -41,8 +41,10 @@ static status run(const struct command_line *line, struct error *error) {
   }
   TRY(campaign_parse_stored(name, document, options->folder, &campaign, error));
   TRY(campaign_raise(campaign, options->time, options->memory, attempts, error));
+  char words[1000];
+  option_words("CAMPAIGN.yaml", &(struct option_list){0}, path, words, sizeof words);
   if (!launch_other_rank())
-    TRY(accuracy_settle(campaign, "CAMPAIGN.yaml", path, ACCURACY_SILENT, NULL, error));
+    TRY(accuracy_settle(campaign, words, path, ACCURACY_SILENT, NULL, error));
   return launch_campaign(campaign, path, &options->launch, line->format, line, error);
 }
 

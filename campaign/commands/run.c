@@ -18,8 +18,10 @@ static status run(const struct command_line *line, struct error *error) {
   CAMPAIGN campaign = NULL;
   TRY(option_load_campaign(path, &options->campaign, launch_slots(options->launch.slots), &campaign, error));
   const char *store = options->store ? options->store : campaign->store;
+  char words[1000];
+  option_words(path, &options->campaign.set, options->store, words, sizeof words);
   if (!launch_other_rank()) { /* only the manager takes runs from the campaign */
-    TRY(accuracy_settle(campaign, path, store, options->launch.quiet ? ACCURACY_SILENT : ACCURACY_NOTE, NULL, error));
+    TRY(accuracy_settle(campaign, words, store, options->launch.quiet ? ACCURACY_SILENT : ACCURACY_NOTE, NULL, error));
     campaign_warn(campaign, "clast: warning: ", stderr);
   }
   return launch_campaign(campaign, store, &options->launch, line->format, line, error);

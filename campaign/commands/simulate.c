@@ -7,16 +7,6 @@ struct options {
   struct option_list set;
 };
 
-/* The scene as a command names it: with the inputs that were set. */
-static void write_reference(const char *name, const struct option_list *set, char *text, size_t size) {
-  text[0] = '\0';
-  text_append(text, size, "%s", name);
-  for (size_t i = 0; i < set->count; i++) {
-    text_append(text, size, " --set");
-    text_append_word(text, size, set->items[i]);
-  }
-}
-
 static status simulate(const struct scene *scene, const char *reference, const struct one_run_options *options,
                        enum table_format format, struct error *error) {
   RUN_RESULT result = {0};
@@ -47,7 +37,7 @@ static status run(const struct command_line *line, struct error *error) {
   SCENE scene = NULL;
   TRY(option_load_scene(line->arguments[0], &options->set, &scene, error));
   char reference[1000];
-  write_reference(line->arguments[0], &options->set, reference, sizeof reference);
+  option_words(line->arguments[0], &options->set, NULL, reference, sizeof reference);
   return simulate(scene, reference, &options->run, line->format, error);
 }
 

@@ -336,9 +336,8 @@ static status read_points(struct finding *finding, struct store *store, struct e
 
 static status no_study(const struct campaign *campaign, const char *path, const char *store, struct error *error) {
   return status_fail(error, STATUS_CONTENT,
-                     "accuracy: %s has no study of %s for this campaign. Make it: `clast converge %s --quantity %s "
-                     "--store %s`",
-                     store, campaign->accuracy_quantity, path, campaign->accuracy_quantity, store);
+                     "accuracy: %s has no study of %s for this campaign. Make it: `clast converge %s --quantity %s`",
+                     store, campaign->accuracy_quantity, path, campaign->accuracy_quantity);
 }
 
 status accuracy_find(const struct campaign *campaign, const char *path, const char *store_path,

@@ -41,13 +41,13 @@ struct accuracy {
   double most;    /* no error of a share is larger than its distance from the farther end; else infinite */
   const struct knob *open; /* of resolution, without a limit; NULL: none */
   char left_out[160];      /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
-  const char *path;        /* the campaign's file; borrowed */
+  const char *path;        /* the campaign's file with --set and --store of the command (option_words()); borrowed */
   size_t reference;        /* the option with the smallest error; costs are relative to it */
 };
 
 /* Finds the options of a campaign with the key `accuracy`. Looks for a study of the campaign's scene, then of its
  * points: one study is used for all points. Levels of inputs that the campaign varies are no options. STATUS_CONTENT:
- * the store has no study; *error names the command that makes it, with `path`, the campaign's file. STATUS_MISSING:
+ * the store has no study; *error names the command that makes it, with `path` as in struct accuracy. STATUS_MISSING:
  * there is no store. */
 status accuracy_find(const struct campaign *campaign, const char *path, const char *store, struct accuracy *accuracy,
                      struct error *error);

@@ -147,3 +147,24 @@ char *campaign_write_list(const struct campaign *campaign, const char *scene_ref
   fputs("\n", out);
   return text_close(out, &text);
 }
+
+bool campaign_write_study(const struct scene *scene, const char *scene_reference, const char *quantities,
+                          const char *store, char *text, size_t size) {
+  char value[FIELD_TEXT_SIZE], set[2 * FIELD_TEXT_SIZE];
+  text[0] = '\0';
+  bool fits = text_append(text, size, "%s", scene_reference);
+  for (size_t i = 0; i < scene->kind->inputs->count; i++) {
+    const struct field *row = &scene->kind->inputs->rows[i];
+    struct field_value given;
+    if (!scene->overridden[i])
+      continue;
+    field_get(row, scene->inputs, &given);
+    field_print(row, &given, value, sizeof value);
+    snprintf(set, sizeof set, "%s=%s", row->path, value);
+    fits = fits && text_append(text, size, " --set") && text_append_word(text, size, set);
+  }
+  fits = fits && text_append(text, size, " -Q %s --store", quantities) && text_append_word(text, size, store);
+  if (!fits)
+    text[0] = '\0';
+  return fits;
+}

@@ -241,6 +241,35 @@ static status print_rows(const struct find *find, enum table_format format, stru
   return table_end(table, error);
 }
 
+/* The error of the resolution where the answer is: at the point of the search that is nearest to it. */
+static status tell_resolution(const struct find *find, struct error *error) {
+  const double answer = find->found.kind == CROSSING_FOUND ? find->found.at : 0.5;
+  double x = HUGE_VAL;
+  int64_t point = 0;
+  struct ask_resolution resolution;
+  struct field_value place;
+  char column[FIELD_TEXT_SIZE], at[FIND_TEXT], text[UNCERTAINTY_TEXT];
+  STORE store = NULL;
+  for (size_t i = 0; i < find->runs; i++)
+    if (isfinite(find->y[i]) && fabs(find->x[i] - answer) < fabs(x - answer))
+      x = find->x[i];
+  if (!isfinite(x))
+    return STATUS_OK;
+  find_value(find, x, &place);
+  SCENE scene = campaign_point_scene_from(find->base, &find->limits, &place, error);
+  if (!scene)
+    return STATUS_CONTENT;
+  TRY(store_open_reader(find->limits.store, &store, error));
+  TRY(store_point_find(store, scene, &point, error));
+  field_column_name(find->quantity.row->path, column, sizeof column);
+  TRY(ask_resolution(point ? store : NULL, point, column, &resolution, error));
+  campaign_write_study(scene, find->reference, column, find->limits.store, resolution.command,
+                       sizeof resolution.command);
+  uncertainty_resolution(&resolution, text);
+  fprintf(stderr, "clast: %s at %s = %s: %s\n", column, find->input->path, show(find, x, at), text);
+  return STATUS_OK;
+}
+
 status find_print(const struct find *find, enum table_format format, struct error *error) {
   char text[SENTENCE];
   if (!table_for_people(format))
@@ -254,12 +283,7 @@ status find_print(const struct find *find, enum table_format format, struct erro
   uncertainty_doubts(&find->doubts, stderr);
   if (find->failed)
     fprintf(stderr, "clast: %zu of %zu runs have no such result and are left out\n", find->failed, find->runs);
-  char column[FIELD_TEXT_SIZE];
-  STORE store = NULL;
-  TRY(store_open_reader(find->limits.store, &store, error));
-  field_column_name(find->quantity.row->path, column, sizeof column);
-  quantity_tell_resolution(store, column, "");
-  return STATUS_OK;
+  return tell_resolution(find, error);
 }
 
 /* ---- the picture ---- */

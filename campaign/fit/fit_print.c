@@ -315,8 +315,7 @@ static bool has_study(const struct observed_datum *datum) {
 /* The command that studies the data of a shot, with the inputs that campaign and shot set. */
 static void tell_study(const struct fit *fit, size_t s, FILE *out) {
   const struct observed_shot *shot = &fit->observed->shots[s];
-  const struct field_table *inputs = shot->scene->kind->inputs;
-  char command[PARAGRAPH] = "", names[PARAGRAPH] = "", value[FIELD_TEXT_SIZE], set[LABEL];
+  char command[PARAGRAPH] = "", names[PARAGRAPH] = "";
   size_t count = 0;
   for (size_t k = 0; k < fit->observed->datum_count && count < LIMITS_STUDY_QUANTITIES; k++) {
     const struct observed_datum *datum = &fit->observed->data[k];
@@ -326,21 +325,9 @@ static void tell_study(const struct fit *fit, size_t s, FILE *out) {
   }
   if (count == 0)
     return;
-  text_append_word(command, sizeof command, fit->scene_reference);
-  for (size_t i = 0; i < inputs->count; i++) {
-    struct field_value given;
-    if (!shot->scene->overridden[i])
-      continue;
-    field_get(&inputs->rows[i], shot->scene->inputs, &given);
-    field_print(&inputs->rows[i], &given, value, sizeof value);
-    snprintf(set, sizeof set, "%s=%s", inputs->rows[i].path, value);
-    text_append(command, sizeof command, " --set");
-    text_append_word(command, sizeof command, set);
-  }
-  text_append(command, sizeof command, " -Q %s --store", names);
-  text_append_word(command, sizeof command, fit->campaign->store);
-  words_print(out, "", "RESOLUTION: a study tells it%s%s: `clast converge%s`",
-              fit->observed->shot_count > 1 ? " of " : "", fit->observed->shot_count > 1 ? shot->name : "", command);
+  if (campaign_write_study(shot->scene, fit->scene_reference, names, fit->campaign->store, command, sizeof command))
+    words_print(out, "", "RESOLUTION: a study tells it%s%s: `clast converge %s`",
+                fit->observed->shot_count > 1 ? " of " : "", fit->observed->shot_count > 1 ? shot->name : "", command);
 }
 
 /* Names the data whose error of resolution is unknown, and what tells it. */

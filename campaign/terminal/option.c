@@ -336,6 +336,18 @@ status option_load_scene(const char *name, const struct option_list *set, struct
   return option_set_inputs(*scene, set, error);
 }
 
+void option_words(const char *file, const struct option_list *set, const char *store, char *text, size_t size) {
+  snprintf(text, size, "%s", file);
+  for (size_t i = 0; i < set->count; i++) {
+    text_append(text, size, " --set");
+    text_append_word(text, size, set->items[i]);
+  }
+  if (store) {
+    text_append(text, size, " --store");
+    text_append_word(text, size, store);
+  }
+}
+
 status option_load_campaign(const char *path, const struct campaign_option *option, int slots,
                             struct campaign **campaign, struct error *error) {
   struct campaign_changes changes = {option->set.count, option->set.items, option->seeds, 0};

@@ -168,6 +168,8 @@ struct campaign_option {
                              "so much time on the slots, such as 2h; needs a study (`clast converge`).")
 
 /* campaign_load with the changes. slots: runs at a time, for `within`. STATUS_USAGE when a change is wrong. */
+/* What a command takes again, for advice: "FILE --set 'a=2 cm' --store x.db"; store NULL: without. */
+void option_words(const char *file, const struct option_list *set, const char *store, char *text, size_t size);
 status option_load_campaign(const char *path, const struct campaign_option *option, int slots,
                             struct campaign **campaign, struct error *error);
 

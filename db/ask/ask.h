@@ -185,7 +185,7 @@ struct ask_resolution {
                         points; NaN: not known */
   int64_t points, studied; /* requested points with runs, and how many of them were studied */
   char knobs[128];         /* settings studied: "particles, time_step"; other settings may also change the quantity */
-  char command[200]; /* what `clast converge` takes to study these points: "impact.yaml --store other.db -Q broken";
+  char command[300]; /* what `clast converge` takes to study these points: "impact.yaml --store other.db -Q broken";
                         "" when several files made them */
 };
 

@@ -90,4 +90,61 @@ expect 65 "$clast" fit shots.yaml disc.yaml --quiet -j 2
 says "poisson_ratio: no point has two runs with a value"
 measured largest_fraction
 expect 0 "$clast" fit shots.yaml disc.yaml --rounds 3 --quiet -j 2
-done_after 23
+
+# The error of the resolution below a search is that of its own point nearest to the answer, and the study offered is of it.
+expect 0 "$clast" find search.yaml --level 0.25 --max-runs 20 --store found.db --quiet
+study=$(tr '\n' ' ' <err | grep -o '`clast converge [^`]*`' | tr -d '`')
+says "largest_fraction at threshold.strain = "
+eval "expect 0 '$clast' ${study#clast} --knob time_step --seeds 2 --within off --quiet"
+expect 0 "$clast" find search.yaml --level 0.25 --max-runs 20 --store found.db --quiet
+says "(resolution: time_step)"
+grep -qF "studied at" err && fail "a search tells of points that are not its own"
+
+# Advice keeps the store and the inputs of the command.
+sed '/^seeds/d' small.yaml >near.yaml
+echo 'accuracy: {quantity: largest_fraction, within: 0.01}' >>near.yaml
+expect 65 "$clast" plan near.yaml --set body.diameter='7 cm' --store other.db
+says "\`clast converge near.yaml --set 'body.diameter=7 cm' --store other.db --quantity largest_fraction\`"
+eval "expect 0 '$clast' converge near.yaml --set 'body.diameter=7 cm' --store other.db --quantity largest_fraction --knob time_step --seeds 2 --within off --quiet"
+"$clast" plan near.yaml --set body.diameter='7 cm' --store other.db --no-trial >out 2>err || true
+same "$(tr '\n' ' ' <err | grep -o '`clast [^`]*`' | grep -cv "clast [a-z]* near.yaml --set 'body.diameter=7 cm' --store other.db " || true)" 0 "advice without its store"
+
+# Graded scenes: fewer particles than are needed are refused with the number that is enough. Where fidelity.coarsest makes
+# the zone coarser than asked, its message says from which number on it does not.
+zone=(basalt-sphere --set graded=true --set spacings_per_radius=5 --set projectile_spacing=1)
+expect 65 "$clast" explain "${zone[@]}" --set particles=2000
+least=$(sed -n 's/.* gives \([0-9]*\) to .*/\1/p' err)
+expect 0 "$clast" explain "${zone[@]}" --set particles="$least"
+prints "5 spacings in its radius"; prints "in doubt: nothing"
+expect 0 "$clast" explain coarse
+tr '\n' ' ' <out | grep -qF "a message says" || fail "no word on the number of particles"
+grep -qF 7700 out && fail "another number of particles"
+expect 0 "$clast" explain porous-ice --set particles=3000
+least=$(tr '\n' ' ' <out | sed -n 's/.*below 5: fidelity.coarsest 4 allows the 5 of spacings_per_radius from \([0-9]*\) particles on.*/\1/p')
+expect 0 "$clast" explain porous-ice --set particles="$least"
+prints "; 5 spacings in its radius"
+grep -qF "fidelity.coarsest 4 allows" out && fail "the number is not enough"
+expect 0 "$clast" explain porous-ice --set particles=$((least - 20))
+prints "fidelity.coarsest 4 allows"
+
+# A number at its bound is not beyond it, and one near it has the digits that tell them apart.
+cat >dusty.yaml <<'YAML'
+name: dusty
+scene: basalt-sphere
+set: {particles: 2000}
+vary: {weibull.m: [8, 9]}
+YAML
+expect 0 "$clast" plan dusty.yaml --no-trial
+grep -qF "dust_mass in particles" out && fail "two particles are below two"
+expect 0 "$clast" plan dusty.yaml --no-trial --set particles=1999
+tr '\n' ' ' <out | grep -qF "particles is 1.999, below 2" || fail "2, below 2"
+
+# A map has the digits of the table.
+expect 0 "$clast" map many.db small.svg -x strain -y angle -Q energy_error
+grep -qE '>0\.0+( !)?<' small.svg && fail "a map shows nothing of a small number"
+grep -qE '>0\.000[0-9]{2}( !)?<' small.svg || fail "no small number on the map"
+
+expect 0 "$clast" explain withheld
+prints '"-" in tables'
+
+done_after 39
