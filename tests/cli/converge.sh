@@ -137,7 +137,7 @@ accuracy: {within: 0.05}
 store: sharp.db
 YAML
 expect 65 "$clast" run sharp.yaml
-says "\`clast converge sharp.yaml --quantity largest_fraction --store sharp.db"
+says "\`clast converge sharp.yaml --quantity largest_fraction\`"
 expect 0 "$clast" converge sharp.yaml --knob time_step --seeds 8 --max-seeds 8 --store sharp.db -j 2
 expect 0 "$clast" plan sharp.yaml --json
 python - <<'PY'
