@@ -143,6 +143,8 @@ static status add_option(struct finding *finding, const struct convergence_row *
   if (option->open) /* the error is no larger than a share can move, as the store tells it */
     option->beyond = isnan(finding->beyond) ? (double)NAN
                                             : fmin(finding->beyond, most_of(finding->share, row->mean) - option->error);
+  const double middle = fabs(isnan(row->distance) ? row->bias : row->distance);
+  option->middle = row->resolution > 0 && middle < row->resolution ? middle / row->resolution : 1;
   option->deviation = row->deviation;
   option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(row->deviation, accuracy->within - resolution_of(option))
                                            : seeds_in(option, accuracy->point_s);
@@ -417,8 +419,18 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
   text_append(next, size, "`");
 }
 
-/* More seeds: how many, and what they take at all levels. */
-static void advise_seeds(const struct accuracy *accuracy, double seeds, char *next, size_t size) {
+/* More seeds: how many, and what they take at all levels. They narrow the interval of the distance to the limit, and
+ * leave its middle. */
+static void advise_seeds(const struct accuracy *accuracy, const struct accuracy_option *best, char *next, size_t size) {
+  const double error = resolution_of(best), middle = best->middle * error;
+  const double seeds = ceil((double)accuracy->n * pow((error - middle) / (accuracy->within - middle), 2));
+  if (middle >= accuracy->within || seeds > STUDY_SEEDS) {
+    text_append(next, size,
+                "More seeds are not likely to reach it: its interval has the middle %.2g, and the study has %" PRId64
+                " seeds; no setting is known to be enough",
+                middle, accuracy->n);
+    return;
+  }
   double time_s = 0;
   char time[32], knobs[512] = "";
   for (size_t i = 0; i < accuracy->count; i++) {
@@ -430,10 +442,10 @@ static void advise_seeds(const struct accuracy *accuracy, double seeds, char *ne
   }
   progress_duration(time_s, time, sizeof time);
   text_append(next, size,
-              "The error shrinks with the seeds of the study, which has %" PRId64
-              "; about %.0f at every level are needed, which take %s of processor time: `clast converge %s "
-              "--knob %s --max-seeds %.0f --within off --seeds %.0f`",
-              accuracy->n, seeds, time, accuracy->path, knobs, seeds, seeds);
+              "More seeds narrow the interval of this error. The study has %" PRId64
+              "; if its middle stays at %.2g, about %.0f at every level are needed, which take %s of processor time: "
+              "`clast converge %s --knob %s --max-seeds %.0f --within off --seeds %.0f`",
+              accuracy->n, middle, seeds, time, accuracy->path, knobs, seeds, seeds);
 }
 
 /* "particles = 40000", "stop = 0.0012 s", "the scene's own settings". */
@@ -451,7 +463,7 @@ static void name_option(const struct campaign *campaign, const struct accuracy_o
 static status out_of_reach(const struct accuracy *accuracy, const struct campaign *campaign, struct error *error) {
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
-  const double least = resolution_of(best), seeds = ceil((double)accuracy->n * pow(least / accuracy->within, 2));
+  const double least = resolution_of(best);
   char next[600] = "", share[32] = "", more[64] = "", chosen[256];
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
@@ -462,11 +474,8 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
                 accuracy->left_out, path, quantity);
   else if (finest)
     advise_levels(accuracy, campaign, finest, next, sizeof next);
-  else if (seeds <= STUDY_SEEDS)
-    advise_seeds(accuracy, seeds, next, sizeof next);
   else
-    text_append(next, sizeof next,
-                "More than %d seeds of the study would be needed, so no setting is known to reach it", STUDY_SEEDS);
+    advise_seeds(accuracy, best, next, sizeof next);
   if (1.3 * least < fmin(fabs(accuracy->mean), accuracy->most) && 1.3 * least > accuracy->within)
     text_append(more, sizeof more, "allow more, such as %.2g; or ", 1.3 * least);
   return status_fail(error, STATUS_CONTENT,

@@ -161,6 +161,13 @@ static void print_change(const struct knob *knob, const struct study_found *foun
           knob->inputs[0].path);
 }
 
+static bool has_runs(const struct study_found *found) {
+  int64_t n = 0;
+  for (size_t l = 0; l < found->count; l++)
+    n += found->rows[l].n;
+  return n > 0;
+}
+
 /* "M_1/M = 0.218 +- 0.026 (seeds, 95 %). Error of the resolution: >= 0.09 (grains >= 0.05, time_step 0.04)." */
 static void print_sentence(const struct study *study, size_t from, size_t quantity, size_t count,
                            const struct study_found *found, FILE *out) {
@@ -200,7 +207,14 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
     fprintf(out, "%sother studies %s", before, study_show_error(rest, false, text));
     before = ", ";
   }
-  fprintf(out, "%s%s\n", *before == ',' ? ")" : "", isfinite(told->error) ? "." : "");
+  fprintf(out, "%s%s", *before == ',' ? ")" : "", isfinite(told->error) ? "." : "");
+  before = " Not studied, and not in this error: ";
+  for (size_t i = 0; i < count; i++)
+    if (found[i].adds && !has_runs(&found[i])) {
+      fprintf(out, "%s%s", before, found[i].rows[0].knob);
+      before = ", ";
+    }
+  fprintf(out, "%s\n", *before == ',' ? "." : "");
 }
 
 /* The law of a knob, which levels it leaves out and why, and why the knob has no more runs. */

@@ -72,22 +72,20 @@ static double wall_time(const struct rounds *rounds, const struct study_ladder *
   return seconds / fmax(1, rounds->slots);
 }
 
-/* Leaves out the most expensive levels until the first round fits into the ladder's share of the time left. All ladders
- * that wait for their first round have equal shares. Levels whose runs exist cost nothing and stay; the scene's own
- * level stays as long as another one can go, because its error is what the study is for. Returns the number of levels
- * that remain. */
-static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladder, int64_t seeds) {
-  size_t count = 0, waiting = 0;
-  for (size_t l = 0; l < ladder->levels.count; l++)
+/* Leaves out the most expensive levels until the first round fits into the time. Levels whose runs exist cost nothing and
+ * stay; so does the scene's own level, `own`, as long as another one can go. Returns the number of levels that remain. */
+static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladder, int64_t seeds, double seconds,
+                       bool own) {
+  size_t count = 0;
+  for (size_t l = 0; l < ladder->levels.count; l++) {
+    ladder->left_out[l] = ladder->levels.level[l].unasked;
     count += !ladder->left_out[l];
-  for (size_t i = 0; i < rounds->study->ladder_count; i++)
-    waiting += rounds->study->ladder[i].seeds == 0 && !rounds->study->ladder[i].done;
-  const double share = fmax(0, seconds_left(rounds)) / (double)waiting;
-  for (; wall_time(rounds, ladder, seeds) > share; count--) {
+  }
+  for (; wall_time(rounds, ladder, seeds) > seconds; count--) {
     size_t worst = 0;
     double most = 0;
     for (size_t l = 0; l < ladder->levels.count; l++) {
-      const bool stays = ladder->left_out[l] || (ladder->levels.level[l].base && count > 1);
+      const bool stays = ladder->left_out[l] || (own && ladder->levels.level[l].base && count > 1);
       const double cost = stays ? 0 : cost_of(rounds, ladder, l, seeds);
       if (cost > most) {
         worst = l;
@@ -97,6 +95,25 @@ static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladde
     ladder->left_out[worst] = true;
   }
   return count;
+}
+
+/* The first round of a ladder. All that wait for theirs have equal shares of the time left; a knob of resolution may take
+ * half of it for the three levels that a law needs, as the error rests on it. A ladder that needs more waits until the
+ * others have had their round; then it may take all that is left, and go without the scene's own level, whose error
+ * follows from the law of the others. */
+static bool begin_ladder(const struct rounds *rounds, struct study_ladder *ladder, int64_t seeds) {
+  const double left = fmax(0, seconds_left(rounds));
+  size_t waiting = 0;
+  for (size_t i = 0; i < rounds->study->ladder_count; i++)
+    waiting += rounds->study->ladder[i].seeds == 0 && !rounds->study->ladder[i].done;
+  size_t count = fit_levels(rounds, ladder, seeds, left / (double)waiting, true);
+  if (count < 3 && ladder->levels.knob->group == KNOB_RESOLUTION && waiting > 1)
+    count = fit_levels(rounds, ladder, seeds, left / 2, true);
+  if (count < 2 && ladder->waits)
+    count = fit_levels(rounds, ladder, seeds, left, true);
+  if (count < 2 && ladder->waits)
+    count = fit_levels(rounds, ladder, seeds, left, false);
+  return count >= 2;
 }
 
 /* The scene's own level that was not asked for is a level like the others if the store has its runs all the same. */
@@ -112,15 +129,19 @@ static void end_ladder(struct study_ladder *ladder, const char *why) {
   ladder->end = why;
 }
 
-static const char budget[] = "the time given is spent";
+static void end_by_time(const struct rounds *rounds, struct study_ladder *ladder) {
+  end_ladder(ladder, rounds->study->budget_spent ? "the time given is spent" : "more does not fit into the time given");
+}
 
-/* Next number of seeds of the ladder. 0: the ladder is done. */
+/* Next number of seeds of the ladder. 0: the ladder is done, or waits. */
 static int64_t next_seeds(const struct rounds *rounds, struct study_ladder *ladder) {
   const struct study_rule *rule = &rounds->study->rule;
   if (ladder->seeds == 0) {
-    if (fit_levels(rounds, ladder, rule->first_seeds) >= 2)
+    if (begin_ladder(rounds, ladder, rule->first_seeds))
       return rule->first_seeds;
-    end_ladder(ladder, budget);
+    if (ladder->waits)
+      end_by_time(rounds, ladder);
+    ladder->waits = true;
     return 0;
   }
   int64_t seeds = 2 * ladder->seeds < rule->most_seeds ? 2 * ladder->seeds : rule->most_seeds;
@@ -128,29 +149,34 @@ static int64_t next_seeds(const struct rounds *rounds, struct study_ladder *ladd
     seeds--;
   if (seeds > ladder->seeds)
     return seeds;
-  end_ladder(ladder, budget);
+  end_by_time(rounds, ladder);
   return 0;
 }
 
-/* The ladder with the fewest seeds that is not done, and its next number of seeds. NULL: all are done. */
+static int64_t turn_of(const struct study_ladder *ladder) {
+  return ladder->seeds == 0 ? ladder->waits : 1 + ladder->seeds;
+}
+
+/* The ladder with the fewest seeds that is not done, and its next number of seeds. One that waits comes after those that
+ * begin. NULL: all are done. */
 static struct study_ladder *choose_ladder(struct rounds *rounds) {
   for (;;) {
     struct study_ladder *next = NULL;
     for (size_t i = 0; i < rounds->study->ladder_count; i++) {
       struct study_ladder *ladder = &rounds->study->ladder[i];
-      if (!ladder->done && (!next || ladder->seeds < next->seeds))
+      if (!ladder->done && (!next || turn_of(ladder) < turn_of(next)))
         next = ladder;
     }
     if (!next)
       return NULL;
     rounds->probe = isnan(predict(rounds, next, 0));
     if (rounds->probe && rounds->study->budget_spent)
-      end_ladder(next, budget); /* no time to find out what a run takes */
+      end_by_time(rounds, next); /* no time to find out what a run takes */
     else if (rounds->probe)
       rounds->seeds = 1;
     else
       rounds->seeds = next_seeds(rounds, next);
-    if (!next->done)
+    if (rounds->seeds > 0 && !next->done)
       return next;
   }
 }
@@ -235,7 +261,7 @@ static void judge(struct rounds *rounds) {
     end_ladder(ladder,
                isnan(study->rule.within) ? "one round was asked for" : "every bias is known to the wanted width");
   else if (study->budget_spent)
-    end_ladder(ladder, budget);
+    end_by_time(rounds, ladder);
   else if (ladder->seeds >= study->rule.most_seeds)
     end_ladder(ladder, "the largest number of seeds has run");
 }

@@ -27,4 +27,4 @@ largest AS (SELECT point_id, results_version, quantity, max(error) AS error, max
   FROM of_point p WHERE error IS NOT NULL GROUP BY point_id, results_version, quantity)
 SELECT point_id, results_version, quantity, min(error, most) AS half_width,
   CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN open THEN 'at-least' ELSE 'known' END AS verdict
-FROM largest;
+FROM largest WHERE error > 0 OR NOT open; -- at least 0 tells nothing
