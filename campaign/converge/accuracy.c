@@ -42,6 +42,7 @@ struct finding {
   size_t levels;
   double step[KNOB_LEVELS], change[KNOB_LEVELS];
   char marks[ACCURACY_MARKS]; /* of the level that becomes an option */
+  struct convergence_row finest; /* the reference of the last knob that has one, for levels finer than it */
   bool studied, share;
   int unstudied; /* knobs of resolution with levels, but without the scene's own one */
   int rank;      /* of the level that gave the mean */
@@ -109,7 +110,8 @@ static status take_open(struct finding *finding, const struct convergence_row *r
     finding->step[finding->levels] = row->step;
     finding->change[finding->levels++] = fabs(row->bias) + row->bias_half_width;
   }
-  if (resolution && row->n == 0 && !row->base && ran && !*finding->accuracy->left_out) /* finer than a level that ran */
+  const bool left_out = row->n == 0 && !row->base && isnan(row->resolution) && ran; /* finer than a level that ran */
+  if (resolution && left_out && !*finding->accuracy->left_out)
     snprintf(finding->accuracy->left_out, sizeof finding->accuracy->left_out, "%.64s = %.64s", row->knob, row->setting);
   return STATUS_OK;
 }
@@ -167,23 +169,6 @@ static double work_at(const struct campaign *campaign, const struct knob *knob, 
                                                                                     : kind->work(scene->inputs);
 }
 
-/* Levels finer than the finest one, `row`. The law's distance to the limit shrinks at least as the least order. */
-static status add_finer(struct finding *finding, const struct knob *knob, const struct convergence_row *row,
-                        struct error *error) {
-  static const double finer[] = {2, 4, 8};
-  const double work = work_at(finding->campaign, knob, row->setting);
-  for (size_t i = 0; i < sizeof finer / sizeof finer[0]; i++) {
-    const double factor = knob->step_power < 0 ? finer[i] : 1 / finer[i];
-    const double share = pow(pow(factor, knob->step_power), LIMIT_ORDER_LEAST);
-    struct accuracy_option option = {.extrapolated = true, .error = row->error - (1 - share) * row->resolution};
-    snprintf(option.setting, sizeof option.setting, "%.6g", strtod(row->setting, NULL) * factor);
-    option.run_s = row->cpu * work_at(finding->campaign, knob, option.setting) / work;
-    if (option.run_s > 0)
-      TRY(add_option(finding, row, &option, error));
-  }
-  return STATUS_OK;
-}
-
 /* Marks of the result in runs of the studied scene with this setting; knob NULL: with its own settings. */
 static status read_doubts(const struct finding *finding, const struct knob *knob, const char *setting,
                           struct ask_doubts *doubts, struct error *error) {
@@ -207,6 +192,8 @@ static status is_marked(struct finding *finding, const struct knob *knob, const 
   TRY(read_doubts(finding, knob, setting, &here, error));
   TRY(read_doubts(finding, NULL, NULL, &own, error));
   *is = false;
+  if (here.runs == 0) /* of an extrapolated level: those of the finest stay */
+    return STATUS_OK;
   snprintf(finding->marks, sizeof finding->marks, here.count ? "%" PRId64 " of %" PRId64 " runs of the study:" : "",
            here.doubtful, here.runs);
   for (size_t k = 0; k < here.count; k++) {
@@ -223,27 +210,36 @@ static status is_marked(struct finding *finding, const struct knob *knob, const 
 static status take_option(struct finding *finding, const struct convergence_row *row, struct error *error) {
   struct accuracy *accuracy = finding->accuracy;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
+  const bool extrapolated = row->n == 0 && !row->base && isfinite(row->resolution) && finding->finest.n > 0 &&
+                            strcmp(finding->finest.knob, row->knob) == 0;
   /* Models and parts of one are not chosen by cost. */
   if (!knob || knob->group == KNOB_MODEL || knob->group == KNOB_PART || !isfinite(row->error) ||
-      !isfinite(row->deviation))
+      !(isfinite(row->deviation) || extrapolated))
     return STATUS_OK;
+  if (row->reference)
+    finding->finest = *row;
   bool there = false; /* every knob has the scene's own settings as a level */
   for (size_t i = 0; row->base && i < accuracy->count; i++)
     there |= accuracy->options[i].own;
+  bool marked = false;
   if (!row->base && is_varied(finding->campaign, knob, row->setting))
     return STATUS_OK;
-  bool marked = false;
   TRY(is_marked(finding, knob, row->setting, &marked, error));
-  if (marked && !row->base)
+  if (there || (marked && !row->base))
     return STATUS_OK;
 
-  struct accuracy_option option = {.own = row->base, .open = row->at_least, .error = row->error, .run_s = row->cpu};
+  struct accuracy_option option = {.own = row->base,
+                                   .extrapolated = extrapolated,
+                                   .open = row->at_least,
+                                   .error = row->error,
+                                   .run_s = row->cpu};
   snprintf(option.setting, sizeof option.setting, "%.63s", row->setting);
-  if (!there)
-    TRY(add_option(finding, row, &option, error));
-  const bool finest = row->reference && !option.open && knob->group == KNOB_RESOLUTION && row->step > 0 &&
-                      row->error < most_of(finding->share, row->mean);
-  return finest && !is_varied(finding->campaign, knob, row->setting) ? add_finer(finding, knob, row, error) : STATUS_OK;
+  if (!extrapolated)
+    return add_option(finding, row, &option, error);
+  const struct convergence_row *finest = &finding->finest;
+  option.run_s = finest->cpu * work_at(finding->campaign, knob, row->setting) /
+                 work_at(finding->campaign, knob, finest->setting);
+  return option.run_s > 0 ? add_option(finding, finest, &option, error) : STATUS_OK;
 }
 
 static int by_total(const void *a, const void *b) {
