@@ -41,7 +41,7 @@ struct finding {
   char ran[64];  /* the knob of the last level with runs, and its levels so far */
   size_t levels;
   double step[KNOB_LEVELS], change[KNOB_LEVELS];
-  char marks[ACCURACY_MARKS]; /* of the level that becomes an option */
+  char marks[ACCURACY_MARKS];    /* of the level that becomes an option */
   struct convergence_row finest; /* the reference of the last knob that has one, for levels finer than it */
   bool studied, share;
   int unstudied; /* knobs of resolution with levels, but without the scene's own one */
@@ -421,10 +421,11 @@ static void advise_seeds(const struct accuracy *accuracy, const struct accuracy_
   const double error = resolution_of(best), middle = best->middle * error;
   const double seeds = ceil((double)accuracy->n * pow((error - middle) / (accuracy->within - middle), 2));
   if (middle >= accuracy->within || seeds > STUDY_SEEDS) {
-    text_append(next, size,
-                "More seeds are not likely to reach it: its interval has the middle %.2g, and the study has %" PRId64
-                " seeds; no setting is known to be enough",
-                middle, accuracy->n);
+    if (middle < accuracy->within)
+      text_append(next, size, "More than %d seeds at every level would be needed", STUDY_SEEDS);
+    else
+      text_append(next, size, "More seeds are not likely to reach it: the middle of its interval is %.2g", middle);
+    text_append(next, size, "; no setting is known to be enough");
     return;
   }
   double time_s = 0;

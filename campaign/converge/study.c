@@ -269,7 +269,24 @@ static status add_finer(const struct study_ladder *ladder, const struct study_fo
   return STATUS_OK;
 }
 
-/* Writes the rows of a scene for a quantity. */
+/* Does the store's study have every level of this one, with more seeds than were asked for now? Then this one would
+ * only take runs away. */
+static status is_smaller(const struct study_ladder *ladder, const struct study_found *found, struct store *store,
+                         bool *smaller, struct error *error) {
+  ANSWER levels = ask_convergence_levels(store, ladder->base_point, ladder->base->kind->results_version,
+                                         found->rows[0].quantity, error);
+  size_t asked = 0, there = 0;
+  for (size_t l = 0; l < found->count; l++)
+    asked += found->rows[l].n > 0;
+  for (struct convergence_row stored; ask_convergence_next(&levels, &stored);)
+    for (size_t l = 0; l < found->count; l++)
+      there += found->rows[l].n > 0 && stored.n > ladder->seeds && strcmp(stored.knob, found->rows[l].knob) == 0 &&
+               strcmp(stored.setting, found->rows[l].setting) == 0;
+  *smaller = there == asked;
+  return answer_end(&levels);
+}
+
+/* Writes the rows of a scene for a quantity. A smaller study does not replace a larger one. */
 static status store_rows(const struct study *study, size_t from, size_t count, const struct study_found *found,
                          struct store *store, struct error *error) {
   OWNED struct convergence_row *levels = memory_small(KNOB_LEVELS + FINER, sizeof *levels);
@@ -282,6 +299,10 @@ static status store_rows(const struct study *study, size_t from, size_t count, c
                                      .point_ids = points,
                                      .rows = levels,
                                      .limit = &found[i].limit};
+    bool smaller = false;
+    TRY(is_smaller(ladder, &found[i], store, &smaller, error));
+    if (smaller)
+      continue;
     memcpy(levels, found[i].rows, found[i].count * sizeof *levels);
     memcpy(points, ladder->point, found[i].count * sizeof *points);
     TRY(add_finer(ladder, &found[i], store, &rows.count, levels, points, error));

@@ -204,7 +204,7 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
   if (rest < -1e-9 * told->error)
     fprintf(out, "; a share cannot move farther");
   else if (rest > 1e-9 * told->error) {
-    fprintf(out, "%sother studies %s", before, study_show_error(rest, false, text));
+    fprintf(out, "%sother or larger studies %s", before, study_show_error(rest, false, text));
     before = ", ";
   }
   fprintf(out, "%s%s", *before == ',' ? ")" : "", isfinite(told->error) ? "." : "");

@@ -72,10 +72,11 @@ static double wall_time(const struct rounds *rounds, const struct study_ladder *
   return seconds / fmax(1, rounds->slots);
 }
 
-/* Leaves out the most expensive levels until the first round fits into the time. Levels whose runs exist cost nothing and
- * stay; so does the scene's own level, `own`, as long as another one can go. Returns the number of levels that remain. */
+/* Leaves out the most expensive levels until the first round fits into the time. Levels whose runs exist cost nothing
+ * and stay; so does the scene's own level, `own`, as long as another one can go. Returns the number of levels that
+ * remain. */
 static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladder, int64_t seeds, double seconds,
-                       bool own) {
+                         bool own) {
   size_t count = 0;
   for (size_t l = 0; l < ladder->levels.count; l++) {
     ladder->left_out[l] = ladder->levels.level[l].unasked;
@@ -97,9 +98,9 @@ static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladde
   return count;
 }
 
-/* The first round of a ladder. All that wait for theirs have equal shares of the time left; a knob of resolution may take
- * half of it for the three levels that a law needs, as the error rests on it. A ladder that needs more waits until the
- * others have had their round; then it may take all that is left, and go without the scene's own level, whose error
+/* The first round of a ladder. All that wait for theirs have equal shares of the time left; a knob of resolution may
+ * take half of it for the three levels that a law needs, as the error rests on it. A ladder that needs more waits until
+ * the others have had their round; then it may take all that is left, and go without the scene's own level, whose error
  * follows from the law of the others. */
 static bool begin_ladder(const struct rounds *rounds, struct study_ladder *ladder, int64_t seeds) {
   const double left = fmax(0, seconds_left(rounds));
@@ -157,8 +158,8 @@ static int64_t turn_of(const struct study_ladder *ladder) {
   return ladder->seeds == 0 ? ladder->waits : 1 + ladder->seeds;
 }
 
-/* The ladder with the fewest seeds that is not done, and its next number of seeds. One that waits comes after those that
- * begin. NULL: all are done. */
+/* The ladder with the fewest seeds that is not done, and its next number of seeds. One that waits comes after those
+ * that begin. NULL: all are done. */
 static struct study_ladder *choose_ladder(struct rounds *rounds) {
   for (;;) {
     struct study_ladder *next = NULL;

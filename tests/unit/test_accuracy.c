@@ -44,7 +44,7 @@ static struct campaign *campaign_of(const char *text) {
 
 struct level {
   const char *setting;
-  double resolution, deviation, cpu;
+  double resolution, deviation, cpu; /* cpu NaN: finer than the finest level with runs */
   bool base, open;
   double step;
 };
@@ -73,7 +73,12 @@ static void add_study(struct store *store, const struct campaign *campaign, cons
     rows[i].base = levels[i].base;
     rows[i].open = levels[i].open;
     rows[i].step = levels[i].step > 0 ? levels[i].step : (double)NAN;
-    rows[i].reference = i + 1 == count;
+    rows[i].reference = i + 1 == count || (!isnan(levels[i].cpu) && isnan(levels[i + 1].cpu));
+    if (isnan(levels[i].cpu)) {
+      rows[i].n = 0;
+      rows[i].mean = rows[i].bias = rows[i].bias_half_width = NAN;
+      rows[i].reference = false;
+    }
     SCENE scene = scene_copy(campaign->scene);
     if (!levels[i].base)
       assert_int_equal(ladder_turn(engine_knob(scene->kind, knob, &error), scene, levels[i].setting, &error),
@@ -147,13 +152,15 @@ static void finer_than_any_level(void **state) {
   struct store *store = NULL;
   struct accuracy accuracy;
   assert_int_equal(store_open_writer(fixture_path(path, "finer"), &store, NULL, 0, &error), STATUS_OK);
-  add_study(store, campaign, "time_step", 2,
+  add_study(store, campaign, "time_step", 4,
             (const struct level[]){{"2e-6", 0.03, 1e-4, 5, false, false, 2e-6},
-                                   {"1e-6", 0.02, 1e-4, 10, true, false, 1e-6}});
+                                   {"1e-6", 0.02, 1e-4, 10, true, false, 1e-6},
+                                   {"5e-07", 0.02 * sqrt(0.5), NAN, NAN, false, false, 5e-7},
+                                   {"2.5e-07", 0.02 * 0.5, NAN, NAN, false, false, 2.5e-7}});
   add_study(store, campaign, "grains", 1, (const struct level[]){{"0.01069", 0.005, 1e-4, 10, true, false, 0}});
   assert_int_equal(store_close(store, &error), STATUS_OK);
   assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
-  assert_int_equal(accuracy.count, 5);
+  assert_int_equal(accuracy.count, 4);
   const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
   assert_true(chosen->extrapolated && !chosen->own); /* 0.005 + 0.02 sqrt(1/2) = 0.0191 is within 0.02; no level is */
   assert_string_equal(chosen->setting, "5e-07");
@@ -175,7 +182,7 @@ static void levels_that_differ_little_are_enough(void **state) {
   add_study(store, campaign, "time_step", 3,
             (const struct level[]){{"2e-6", 0.012, 1e-4, 5, false, true, 2e-6},
                                    {"1e-6", 0.004, 1e-4, 10, true, true, 1e-6},
-                                   {"5e-7", 0, 1e-4, 20, false, true, 5e-7}});
+                                   {"5e-7", 0.004, 1e-4, 20, false, true, 5e-7}});
   assert_int_equal(store_close(store, &error), STATUS_OK);
   assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
   const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
@@ -198,9 +205,12 @@ static void a_finer_setting_that_would_be_marked_is_none(void **state) {
   struct store *store = NULL;
   struct accuracy accuracy;
   assert_int_equal(store_open_writer(fixture_path(path, "grains"), &store, NULL, 0, &error), STATUS_OK);
-  add_study(store, campaign, "grains", 2,
+  add_study(store, campaign, "grains", 5,
             (const struct level[]){{"0.0112", 0.03, 1e-4, 5, true, false, 0.0112},
-                                   {"0.008", 0.02, 1e-4, 10, false, false, 0.008}});
+                                   {"0.008", 0.02, 1e-4, 10, false, false, 0.008},
+                                   {"0.004", 0.014, NAN, NAN, false, false, 0.004},
+                                   {"0.002", 0.01, NAN, NAN, false, false, 0.002},
+                                   {"0.001", 0.007, NAN, NAN, false, false, 0.001}});
   assert_int_equal(store_close(store, &error), STATUS_OK);
   assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
   assert_int_equal(accuracy.count, 3);
