@@ -469,8 +469,8 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   "result_dem"."energy_friction" AS "energy_friction",
   "result_dem"."energy_broken_beam" AS "energy_broken_beam",
   "result_dem"."energy_external_work" AS "energy_external_work",
-  "result_dem"."young_modulus" AS "young_modulus",
-  "result_dem"."poisson_ratio" AS "poisson_ratio",
+  (SELECT "result_dem"."young_modulus" WHERE (r.warnings <> '' AND (p.engine = 'dem' AND (instr(', ' || r.warnings || ',', ', broken,')))) IS NOT TRUE) AS "young_modulus",
+  (SELECT "result_dem"."poisson_ratio" WHERE (r.warnings <> '' AND (p.engine = 'dem' AND (instr(', ' || r.warnings || ',', ', broken,')))) IS NOT TRUE) AS "poisson_ratio",
   (SELECT "result_dem"."strength" WHERE (r.warnings <> '' AND (p.engine = 'dem' AND (instr(', ' || r.warnings || ',', ', event,') OR instr(', ' || r.warnings || ',', ', elastic,')))) IS NOT TRUE) AS "strength",
   (SELECT "result_dem"."failure_strain" WHERE (r.warnings <> '' AND (p.engine = 'dem' AND (instr(', ' || r.warnings || ',', ', event,') OR instr(', ' || r.warnings || ',', ', elastic,')))) IS NOT TRUE) AS "failure_strain",
   "result_dem"."final_strain" AS "final_strain",
@@ -501,7 +501,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   (SELECT "result_sph"."fragments_c_over_a" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', shapes,')))) IS NOT TRUE) AS "fragments_c_over_a",
   "result_sph"."ejecta_mass_fraction" AS "ejecta_mass_fraction",
   "result_sph"."ejecta_momentum" AS "ejecta_momentum",
-  "result_sph"."ejecta_momentum_enhancement" AS "ejecta_momentum_enhancement",
+  (SELECT "result_sph"."ejecta_momentum_enhancement" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', flown,')))) IS NOT TRUE) AS "ejecta_momentum_enhancement",
   (SELECT "result_sph"."crater_depth" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', moved,') OR instr(', ' || r.warnings || ',', ', wide,') OR instr(', ' || r.warnings || ',', ', gone,')))) IS NOT TRUE) AS "crater_depth",
   (SELECT "result_sph"."crater_radius" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', moved,') OR instr(', ' || r.warnings || ',', ', wide,') OR instr(', ' || r.warnings || ',', ', gone,')))) IS NOT TRUE) AS "crater_radius",
   (SELECT "result_sph"."crater_volume" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', moved,') OR instr(', ' || r.warnings || ',', ', wide,') OR instr(', ' || r.warnings || ',', ', gone,')))) IS NOT TRUE) AS "crater_volume",
@@ -526,7 +526,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   (SELECT "result_sph"."peak_strain" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', event,')))) IS NOT TRUE) AS "peak_strain",
   (SELECT "result_sph"."peak_time" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', event,')))) IS NOT TRUE) AS "peak_time",
   "result_sph"."cracks" AS "cracks",
-  (SELECT "result_sph"."frequency" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', cracked,')))) IS NOT TRUE) AS "frequency",
+  (SELECT "result_sph"."frequency" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', cracked,') OR instr(', ' || r.warnings || ',', ', samples,')))) IS NOT TRUE) AS "frequency",
   (SELECT "result_sph"."rebound" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', apart,')))) IS NOT TRUE) AS "rebound",
   "result_sph"."shock_speed" AS "shock_speed",
   "result_sph"."shock_speed_exact" AS "shock_speed_exact",
@@ -693,7 +693,7 @@ largest AS (SELECT point_id, results_version, quantity, max(error) AS error, max
   FROM of_point p WHERE error IS NOT NULL GROUP BY point_id, results_version, quantity)
 SELECT point_id, results_version, quantity, min(error, most) AS half_width,
   CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN open THEN 'at-least' ELSE 'known' END AS verdict
-FROM largest;
+FROM largest WHERE error > 0 OR NOT open;
 
 INSERT INTO column_doc VALUES ('attempt', 'attempt_id', NULL, 'number of the failed attempt', 0);
 

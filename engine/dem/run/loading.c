@@ -192,13 +192,17 @@ static void pattern(const struct dem_run *run, struct dem_results *results) {
                                                               : (double)NAN;
 }
 
+double dem_loading_slope_end(const struct dem_run *run) {
+  return run->inputs.kind == DEM_COMPRESSION ? 0.5 * run->state.strain_peak : HUGE_VAL;
+}
+
 void dem_loading_results(const struct dem_run *run, struct dem_results *results) {
   const struct dem_state *s = &run->state;
   if (s->frame.samples == 0)
     return;
   results->final_strain = fabs(run->sample[s->frame.samples - 1].strain);
   /* from a tenth of the final strain on, after the first vibrations; in compression up to half of the failure strain */
-  double highest = run->inputs.kind == DEM_COMPRESSION ? 0.5 * s->strain_peak : HUGE_VAL;
+  double highest = dem_loading_slope_end(run);
   double reference = run->inputs.kind == DEM_COMPRESSION ? s->strain_peak : run->inputs.loading.strain_end;
   results->young_modulus = slope(run, false, 0.1 * reference, highest);
   results->poisson_ratio = -slope(run, true, 0.1 * reference, highest);

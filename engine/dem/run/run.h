@@ -65,8 +65,9 @@ status dem_protocol_start(struct dem_run *run, struct error *error);
 
 /* loading.c: blocks between two moving sides. */
 status dem_loading_start(struct dem_run *run, struct error *error);
-void dem_loading_drive(struct dem_run *run);  /* before a step */
-void dem_loading_record(struct dem_run *run); /* after it */
+void dem_loading_drive(struct dem_run *run);             /* before a step */
+void dem_loading_record(struct dem_run *run);            /* after it */
+double dem_loading_slope_end(const struct dem_run *run); /* largest strain of the slopes that are results */
 void dem_loading_results(const struct dem_run *run, struct dem_results *results);
 
 /* report.c; `results`: struct dem_results */

@@ -14,7 +14,10 @@
 #include "engine/sph/scene/inputs.h"
 #include "engine/sph/step/system.h"
 
-enum { SPH_RUN_BODIES = 2 };
+enum {
+  SPH_RUN_BODIES = 2,
+  SPH_SAMPLES = 400 /* of a protocol over the whole run: a sample costs about a tenth of a step */
+};
 
 /* One point of the curve that a protocol records: stress against strain (stretch), the mode's amplitude (vibration), or
  * the places of the fronts (piston). */

@@ -251,15 +251,14 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error) {
 
 /* Records of stretch, vibration and piston during a run, at equal intervals of simulated time. */
 
-enum { SAMPLES = 400 }; /* over the whole run: a sample costs about a tenth of a step */
 
 status sph_protocol_record_start(struct sph_run *run, struct error *error) {
   if (run->inputs.kind != SPH_STRETCH && run->inputs.kind != SPH_VIBRATION && run->inputs.kind != SPH_PISTON)
     return STATUS_OK;
   if (run->inputs.kind == SPH_PISTON)
     TRY(sph_plate_start(run, error));
-  run->sample_interval = run->inputs.stop.end_time / SAMPLES;
-  run->sample_capacity = SAMPLES + 2;
+  run->sample_interval = run->inputs.stop.end_time / SPH_SAMPLES;
+  run->sample_capacity = SPH_SAMPLES + 2;
   run->sample = memory_small(run->sample_capacity, sizeof *run->sample);
   return STATUS_OK;
 }
