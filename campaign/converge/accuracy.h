@@ -17,9 +17,9 @@ struct accuracy_option {
   bool extrapolated; /* finer than any level that was run: error by the law, cost by the engine's measure of work */
   bool open;         /* the error is no bound */
   double error;      /* change by finer settings of all knobs together, in the quantity's SI unit, as on every screen */
-  double middle;    /* share of the error that more seeds leave: the middle of the knob's interval over its farther end */
-  double beyond;    /* if open: what the slowest law would leave beyond the finest levels, a guess. NaN: not known; then
-                       the option is chosen for a time only, if no other can be run. Else 0 */
+  double middle; /* share of the error that more seeds leave: the middle of the knob's interval over its farther end */
+  double beyond; /* if open: what the slowest law would leave beyond the finest levels, a guess. NaN: not known; then
+                    the option is chosen for a time only, if no other can be run. Else 0 */
   double deviation; /* standard deviation between seeds */
   int64_t seeds;    /* of a point: the fewest that reach the accuracy, or as many as the time allows; 0: none do */
   double total;     /* error, beyond if known, and half width of the 95 % interval of the mean of so many seeds; NaN

@@ -41,7 +41,7 @@ struct study_ladder {
   bool *ran[KNOB_LEVELS];                               /* by seed: its run is in the store. Owned */
   double cpu[KNOB_LEVELS], wall[KNOB_LEVELS];           /* means of the runs, s; NaN: none */
   bool narrow;                                          /* every bias of every quantity is known to the wanted width */
-  bool waits; /* its first round needs more than its share of the time */
+  bool waits;                                           /* its first round needs more than its share of the time */
   bool done;
   const char *end; /* why no more seeds are added: a sentence without full stop */
 };

@@ -251,7 +251,6 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error) {
 
 /* Records of stretch, vibration and piston during a run, at equal intervals of simulated time. */
 
-
 status sph_protocol_record_start(struct sph_run *run, struct error *error) {
   if (run->inputs.kind != SPH_STRETCH && run->inputs.kind != SPH_VIBRATION && run->inputs.kind != SPH_PISTON)
     return STATUS_OK;
