@@ -674,7 +674,8 @@ asked AS (SELECT DISTINCT base_point_id, results_version, quantity, point_id, fa
   UNION ALL SELECT base_point_id, results_version, quantity, point_id, true FROM convergence
     WHERE knob = 'settings' AND reference),
 of_study AS (SELECT a.*, sum(coalesce(l.resolution, k.at_base, k.largest)) AS error, max(k.diverges) AS diverges,
-    max(coalesce(l.open, k.base_open, 1) OR coalesce(l.resolution, k.at_base) IS NULL) AS open
+    max(iif(k.largest IS NULL, 2, coalesce(l.open, k.base_open, 1) OR coalesce(l.resolution, k.at_base) IS NULL))
+      AS open
   FROM asked a JOIN of_knob k USING (base_point_id, results_version, quantity)
     LEFT JOIN level l ON l.base_point_id = a.base_point_id AND l.results_version = a.results_version
     AND l.quantity = a.quantity AND l.knob = k.knob AND (l.point_id = a.point_id OR a.named AND NOT l.base AND NOT EXISTS
@@ -693,7 +694,7 @@ largest AS (SELECT point_id, results_version, quantity, max(error) AS error, max
   FROM of_point p WHERE error IS NOT NULL GROUP BY point_id, results_version, quantity)
 SELECT point_id, results_version, quantity, min(error, most) AS half_width,
   CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN open THEN 'at-least' ELSE 'known' END AS verdict
-FROM largest WHERE error > 0 OR NOT open;
+FROM largest WHERE error > 0 OR open < 2;
 
 INSERT INTO column_doc VALUES ('attempt', 'attempt_id', NULL, 'number of the failed attempt', 0);
 
