@@ -40,7 +40,7 @@ export const ranges = (names) => `SELECT ${names.map((n, i) => `min(${name(n)}) 
 // With the reason why tables and pictures leave an exponent out (pooled_exponent_untold() in C). A page has it; of a whole
 // store, the fragments of a single run tell the standard error, and those of several runs do not.
 const untold = 'SELECT reason FROM untold u WHERE u.point_id = e.point_id AND u.results_version = e.results_version';
-const untoldOfStore = `CASE WHEN n < 5 THEN 'fewer than 5 fragments' WHEN beta IS NULL THEN 'no fit'
+const untoldOfStore = `CASE WHEN n < 5 THEN 'fewer than 5 fragments' WHEN beta IS NULL THEN 'fewer than 5 different masses'
   WHEN hw95 >= 2 THEN 'an interval of ± 2 or wider' WHEN hw95 IS NULL AND coalesce((SELECT max(r.standard_error) FROM estimates r
     WHERE r.point_id = e.point_id AND r.results_version = e.results_version AND r.run_id IS NOT NULL AND r.counts AND r.headline
     HAVING count(*) = 1), 1) >= 1 THEN 'no interval' END`;

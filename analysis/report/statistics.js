@@ -16,7 +16,7 @@ export function student(degrees) {
 export function interval(mean, sd, n, share = false) {
   const none = {hw95: null, low95: null, high95: null, weak: null};
   if (!(n > 1) || sd === null) return none;
-  if (!(sd > 1e-12 * Math.abs(mean))) {
+  if (!(sd > 1e-14 * Math.abs(mean))) {
     const seen = 0.05 ** (1 / n);
     return share ? {...none, low95: mean * seen, high95: 1 - (1 - mean) * seen} : none;
   }

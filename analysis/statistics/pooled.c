@@ -53,6 +53,26 @@ static double window_of(const struct pooled_runs *runs, size_t r, double lower, 
   return largest;
 }
 
+/* Do the windows of all runs have five different masses? Fewer tell no exponent, however many fragments there are. */
+static bool differ(const struct pooled_runs *runs, double lower) {
+  const double alike = 1e-6; /* share of a mass: rounding, far below the mass of a particle or grain */
+  double seen[EXPONENT_LEAST_FRAGMENTS];
+  size_t count = 0, begin, end;
+  for (size_t r = 0; r < runs->count; r++) {
+    window_of(runs, r, lower, &begin, &end);
+    for (size_t i = begin; i < end; i++) {
+      bool is_new = true;
+      for (size_t k = 0; k < count && is_new; k++)
+        is_new = fabs(runs->masses[i] - seen[k]) > alike * seen[k];
+      if (is_new)
+        seen[count++] = runs->masses[i];
+      if (count == EXPONENT_LEAST_FRAGMENTS)
+        return true;
+    }
+  }
+  return false;
+}
+
 /* The statistics of a run in its window; weight 0: no fragment is in it. */
 static struct power_law_group group_of(enum power_law_kind kind, const struct pooled_runs *runs, size_t r,
                                        double lower) {
@@ -126,10 +146,10 @@ static void fit_bins(struct prepared *p, size_t begin, size_t end, struct expone
     fit->beta = fit->standard_error = NAN;
 }
 
-static void fit_groups(const struct prepared *p, struct exponent *fit) {
+static void fit_groups(const struct prepared *p, const struct pooled_runs *runs, double lower, struct exponent *fit) {
   const double weight = total_weight(p->runs, p->groups);
   fit->n = (int64_t)weight;
-  if (weight < EXPONENT_LEAST_FRAGMENTS)
+  if (weight < EXPONENT_LEAST_FRAGMENTS || !differ(runs, lower))
     return;
   const struct power_law plain = power_law_fit(p->runs, p->groups);
   fit->beta = plain.beta;
@@ -193,7 +213,7 @@ static status fit_all(struct prepared *p, const struct pooled_runs *runs, enum e
   TRY(check(runs, lower, error));
   TRY(prepare(p, runs, lower, error));
   if (p->groups)
-    fit_groups(p, fit);
+    fit_groups(p, runs, lower, fit);
   else
     fit_bins(p, 0, 0, fit);
   return isfinite(fit->beta) ? leave_out(p, groups, each, theta, error) : STATUS_OK;
@@ -220,7 +240,8 @@ const char *pooled_exponent_untold(const struct pooled_exponent *exponent) {
   if (exponent->fit.n < EXPONENT_LEAST_FRAGMENTS)
     return "fewer than 5 fragments";
   if (!isfinite(exponent->fit.beta))
-    return exponent->fit.method == EXPONENT_LEAST_SQUARES ? "a bin without a fragment" : "no fit";
+    return exponent->fit.method == EXPONENT_LEAST_SQUARES ? "a bin without a fragment"
+                                                          : "fewer than 5 different masses";
   if (isfinite(half))
     return half / 2 < 1 ? NULL : "an interval of \xc2\xb1 2 or wider"; /* half: about two standard errors */
   return exponent->fit.standard_error < 1 ? NULL : "no interval and a standard error of 1 or more";
@@ -288,7 +309,7 @@ status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled
     groups[r] = group_of(POWER_LAW_PURE, runs, r, lower);
   out->n = (int64_t)total_weight(runs->count, groups);
   struct power_law pure = {.beta = NAN};
-  if (out->n >= EXPONENT_LEAST_FRAGMENTS)
+  if (out->n >= EXPONENT_LEAST_FRAGMENTS && differ(runs, lower))
     pure = power_law_fit(runs->count, groups);
   out->beta = pure.beta;
   if (isfinite(pure.beta)) {
@@ -649,7 +670,7 @@ status pooled_goodness(const struct pooled_runs *runs, double lower, size_t draw
   TRY(make_draw(&windows, &found, error));
   take_runs(runs, lower, &windows, &found);
   out->n = windows.fragments;
-  if (windows.fragments >= EXPONENT_LEAST_FRAGMENTS)
+  if (windows.fragments >= EXPONENT_LEAST_FRAGMENTS && differ(runs, lower))
     out->distance = distance_of(&windows, &found, &beta);
   if (isfinite(out->distance))
     bootstrap(&windows, beta, draws, out, &failed);

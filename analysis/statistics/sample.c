@@ -127,7 +127,7 @@ struct sample_interval sample_jackknife_of(size_t runs, double level, double est
     variance += deviation * deviation / (h - 1) / (double)groups;
   }
   interval.standard_error = sqrt(variance);
-  if (interval.standard_error > SAMPLE_ROUNDING * fabs(estimate)) /* else the runs are equal */
+  if (interval.standard_error > SAMPLE_FIT_ROUNDING * fabs(estimate)) /* else the runs are equal */
     interval.half_width = sample_student(groups, level) * interval.standard_error;
   return interval;
 }

@@ -259,7 +259,7 @@ static struct scatter_part part_of(struct split *s, const uint32_t *all, const s
                                isnan(share.half_width) ? share.half_width : fmax(share.half_width, of_alike)};
 }
 
-status scatter_split(const struct scatter_table *t, struct scatter_part *parts, struct error *error) {
+static status split_about_mean(const struct scatter_table *t, struct scatter_part *parts, struct error *error) {
   if (t->points < 2 || t->runs < 2)
     return status_fail(error, STATUS_USAGE,
                        "splitting a variance needs at least two points with two runs each, not %zu points with %zu",
@@ -294,6 +294,21 @@ status scatter_split(const struct scatter_table *t, struct scatter_part *parts, 
       parts[s.part] = part_of(&s, all, &alike);
   parts[SCATTER_WHOLE] = (struct scatter_part){parts[SCATTER_INPUTS].variance + parts[SCATTER_SEEDS].variance, 1, NAN};
   return STATUS_OK;
+}
+
+/* Values less their mean have the same parts, and squares of small differences are not lost in those of the mean. */
+status scatter_split(const struct scatter_table *t, struct scatter_part *parts, struct error *error) {
+  OWNED double *value = NULL;
+  const size_t count = t->points * t->runs;
+  struct scatter_table about_mean = *t;
+  double mean = 0;
+  TRY(memory_array(&value, count, sizeof *value, "the parts of a variance", error));
+  for (size_t i = 0; i < count; i++)
+    mean += t->value[i] / (double)count;
+  for (size_t i = 0; i < count; i++)
+    value[i] = t->value[i] - mean;
+  about_mean.value = value;
+  return split_about_mean(&about_mean, parts, error);
 }
 
 /* ---- The dip of a sample, and its distribution by chance. ---- */

@@ -38,7 +38,8 @@ struct sample_summary {
   double low, high;  /* the interval. A share: within 0 and 1, and a bound also when all values are equal */
   bool weak;         /* a share only: few runs, of a kind whose interval often misses the mean */
 };
-#define SAMPLE_ROUNDING 1e-12
+#define SAMPLE_ROUNDING     1e-14
+#define SAMPLE_FIT_ROUNDING 1e-12 /* the same of numbers that a fit has found */
 /* NaN values are left out; n counts the others. level: 0.95 for a 95 % interval. Undefined results are NaN: everything
  * for n = 0, the scatter for n = 1. Two passes avoid cancellation. */
 struct sample_summary sample_summarise(size_t n, const double *values, double level);

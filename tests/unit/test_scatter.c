@@ -159,6 +159,14 @@ static void split_of_a_variance(void **state) {
   }
   assert_true(fabs(mean) < 0.08);
   assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 1, 2, level, value}, parts, NULL), STATUS_USAGE);
+  /* A mean of 1e9 takes nothing from parts of 1e-3: the seeds, which all points share, are all. */
+  for (uint32_t p = 0; p < POINTS; p++)
+    for (uint64_t r = 0; r < 3; r++)
+      value[p * 3 + r] = 1e9 + 1e-3 * normal(7, 0, r);
+  assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 3, 2, level, value}, parts, NULL), STATUS_OK);
+  for (int i = 0; i < 3; i++)
+    assert_true(fabs(parts[i].share) < 1e-6);
+  assert_true(fabs(parts[3].share - 1) < 1e-6);
   /* Every point has its own value: no grid, no part of an axis. */
   for (uint32_t p = 0; p < POINTS; p++)
     level[2 * p] = p;

@@ -84,6 +84,35 @@ static void least_squares_pools_too(void **state) {
   assert_true(again.interval.half_width == ls.interval.half_width);
 }
 
+/* Fewer than five different masses below the largest of each run tell no exponent, and no p. */
+static void equal_masses_tell_nothing(void **state) {
+  (void)state;
+  enum { FEW = 5, EACH = 40 };
+  static double masses[FEW * EACH];
+  size_t first[FEW + 1];
+  const struct pooled_runs runs = {FEW, first, masses};
+  for (int different = 3; different <= 6; different++) {
+    for (size_t r = 0; r <= FEW; r++)
+      first[r] = r * EACH;
+    for (size_t i = 0; i < FEW * EACH; i++) {
+      const double place = (double)(i % EACH) * different / EACH; /* steps down, each of several fragments */
+      masses[i] = (10 + different - floor(place)) * (1 - 1e-12 * (double)(i % EACH));
+    }
+    struct pooled_exponent exponent;
+    struct pooled_rivals rivals;
+    struct pooled_goodness goodness;
+    assert_int_equal(pooled_exponent(&runs, EXPONENT_MASSES, 1, 0.95, &exponent, NULL), STATUS_OK);
+    assert_int_equal(pooled_rivals(&runs, 1, &rivals, NULL), STATUS_OK);
+    assert_int_equal(pooled_goodness(&runs, 1, 20, &goodness, NULL), STATUS_OK);
+    assert_true(exponent.fit.n > 100 && goodness.n == (size_t)exponent.fit.n);
+    const bool told = different >= EXPONENT_LEAST_FRAGMENTS;
+    assert_true(isfinite(exponent.fit.beta) == told && isfinite(rivals.cutoff_p) == told);
+    assert_true(isfinite(goodness.p) == told && isfinite(rivals.beta) == told);
+    if (!told)
+      assert_string_equal(pooled_exponent_untold(&exponent), "fewer than 5 different masses");
+  }
+}
+
 static void cutoffs_are_told_apart(void **state) {
   (void)state;
   enum { ENSEMBLES = 60 };
@@ -314,6 +343,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(true_exponent_with_an_interval),
       cmocka_unit_test(least_squares_pools_too),
+      cmocka_unit_test(equal_masses_tell_nothing),
       cmocka_unit_test(cutoffs_are_told_apart),
       cmocka_unit_test(spectrum_density_and_error),
       cmocka_unit_test(spectrum_forms),

@@ -34,6 +34,9 @@ static void summaries_are_exact(void **state) {
   assert_true(s.n == 1 && s.mean == 1e9 + 1 && isnan(s.standard_deviation) && isnan(s.half_width));
   s = sample_summarise(0, NULL, 0.95);
   assert_true(s.n == 0 && isnan(s.mean));
+  /* Small differences at a large mean are no rounding. */
+  s = sample_summarise(4, (const double[]){1e9, 1e9 + 1e-3, 1e9 + 2e-3, 1e9 + 1e-3}, 0.95);
+  assert_true(fabs(s.half_width / (3.182446305 * 1e-3 / sqrt(6)) - 1) < 1e-3);
 
   struct sample_moments moments = {0};
   s = sample_summarise_moments(&moments, 0.95);
