@@ -596,11 +596,11 @@ WITH first AS (
   FROM moment
 ), width AS (
   SELECT *,
-    iif(d0 > 1e-12 * abs(m0), t0 * d0 / sqrt(n0) * (1 + 0.375 * min(sqrt(n0), d0 / max(min(m0, 1 - m0), 1e-300)) * min(1, sqrt(25.0 / n0))), NULL) AS h0,
-    iif(d1 > 1e-12 * abs(m1), t1 * d1 / sqrt(n1) * (1 + 0.375 * min(sqrt(n1), d1 / max(min(m1, 1 - m1), 1e-300)) * min(1, sqrt(25.0 / n1))), NULL) AS h1,
-    iif(d2 > 1e-12 * abs(m2), t2 * d2 / sqrt(n2), NULL) AS h2,
-    iif(d3 > 1e-12 * abs(m3), t3 * d3 / sqrt(n3) * (1 + 0.375 * min(sqrt(n3), d3 / max(min(m3, 1 - m3), 1e-300)) * min(1, sqrt(25.0 / n3))), NULL) AS h3,
-    iif(d4 > 1e-12 * abs(m4), t4 * d4 / sqrt(n4), NULL) AS h4
+    iif(d0 > 1e-14 * abs(m0), t0 * d0 / sqrt(n0) * (1 + 0.375 * min(sqrt(n0), d0 / max(min(m0, 1 - m0), 1e-300)) * min(1, sqrt(25.0 / n0))), NULL) AS h0,
+    iif(d1 > 1e-14 * abs(m1), t1 * d1 / sqrt(n1) * (1 + 0.375 * min(sqrt(n1), d1 / max(min(m1, 1 - m1), 1e-300)) * min(1, sqrt(25.0 / n1))), NULL) AS h1,
+    iif(d2 > 1e-14 * abs(m2), t2 * d2 / sqrt(n2), NULL) AS h2,
+    iif(d3 > 1e-14 * abs(m3), t3 * d3 / sqrt(n3) * (1 + 0.375 * min(sqrt(n3), d3 / max(min(m3, 1 - m3), 1e-300)) * min(1, sqrt(25.0 / n3))), NULL) AS h3,
+    iif(d4 > 1e-14 * abs(m4), t4 * d4 / sqrt(n4), NULL) AS h4
   FROM scatter
 )
 , unresolved AS MATERIALIZED (SELECT point_id, results_version,
