@@ -14,6 +14,7 @@
 #include "db/ask/ask.h"
 #include "engine/grow.h"
 #include "engine/scene.h"
+#include "schemas/memory.h"
 #include "schemas/text.h"
 
 enum {
@@ -80,6 +81,39 @@ static double left_beyond(const struct finding *finding, double step) {
   return most;
 }
 
+/* Is the setting a level that a study of the knob has without a word of the user? */
+static bool is_usual(const struct finding *finding, const struct knob *knob, const char *setting) {
+  struct error ignored;
+  struct ladder ladder;
+  OWNED char *notes = NULL;
+  bool is = false;
+  if (ladder_make(knob, finding->scene, NULL, &ladder, &notes, &ignored) != STATUS_OK)
+    return false;
+  for (size_t l = 0; l < ladder.count; l++)
+    is |= strcmp(ladder.level[l].setting, setting) == 0;
+  ladder_clear(&ladder);
+  return is;
+}
+
+/* SI unit of a knob's levels, as the user writes it behind them. */
+static const char *unit_of(const struct campaign *campaign, const struct knob *knob) {
+  const struct field *row = field_find(campaign->scene->kind->inputs, knob->inputs[0].path, NULL);
+  return row && row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
+}
+
+/* The levels of the study, for advice that goes on with it. */
+static void note_level(struct finding *finding, const struct knob *knob, const struct convergence_row *row) {
+  struct accuracy *accuracy = finding->accuracy;
+  char *levels = accuracy->levels, *unusual = accuracy->unusual;
+  if (strcmp(finding->ran, row->knob) == 0)
+    text_append(levels, sizeof accuracy->levels, ",");
+  else
+    text_append(levels, sizeof accuracy->levels, "%s%s=", *levels ? " " : "", row->knob);
+  text_append(levels, sizeof accuracy->levels, "%s%s", row->setting, unit_of(finding->campaign, knob));
+  if (knob->group != KNOB_SETTINGS && !condition_has(unusual, row->knob) && !is_usual(finding, knob, row->setting))
+    text_append(unusual, sizeof accuracy->unusual, "%s%s", *unusual ? "," : "", row->knob);
+}
+
 /* First pass: finds the knobs without a limit at the scene's own setting. */
 static status take_open(struct finding *finding, const struct convergence_row *row, struct error *error) {
   (void)error;
@@ -105,6 +139,8 @@ static status take_open(struct finding *finding, const struct convergence_row *r
     finding->beyond = NAN;
   if (resolution)
     finding->unstudied += row->reference - (row->base && (row->n > 0 || isfinite(row->resolution)));
+  if (row->n > 0 && knob)
+    note_level(finding, knob, row);
   if (row->n > 0 && finding->levels < KNOB_LEVELS) {
     snprintf(finding->ran, sizeof finding->ran, "%.63s", row->knob);
     finding->step[finding->levels] = row->step;
@@ -394,8 +430,7 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
                           const struct accuracy_option *finest, char *next, size_t size) {
   const struct knob *knob = accuracy->open;
   const double value = strtod(finest->setting, NULL), finer = knob->step_power < 0 ? 2 : 0.5;
-  const struct field *row = field_find(campaign->scene->kind->inputs, knob->inputs[0].path, NULL);
-  const char *unit = row && row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
+  const char *unit = unit_of(campaign, knob);
   char setting[64], time[32];
   snprintf(setting, sizeof setting, "%.6g", value * finer);
   const double run_s = finest->run_s * work_at(campaign, knob, setting) / work_at(campaign, knob, finest->setting);
@@ -429,19 +464,27 @@ static void advise_seeds(const struct accuracy *accuracy, const struct accuracy_
     return;
   }
   double time_s = 0;
-  char time[32], knobs[512] = "";
+  char time[32], seen[512] = "", knobs[sizeof accuracy->levels + 512] = "";
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
     if (!option->extrapolated)
       time_s += (seeds - (double)accuracy->n) * option->run_s;
-    if (!condition_has(knobs, option->knob))
-      text_append(knobs, sizeof knobs, "%s%s", *knobs ? "," : "", option->knob);
+    if (condition_has(seen, option->knob))
+      continue;
+    text_append(seen, sizeof seen, "%s%s", *seen ? "," : "", option->knob);
+    const int length = (int)strlen(option->knob);
+    const char *levels = accuracy->levels;
+    while (levels && (strncmp(levels, option->knob, (size_t)length) != 0 || levels[length] != '='))
+      levels = (levels = strchr(levels, ' ')) ? levels + 1 : NULL;
+    const bool kept = levels && condition_has(accuracy->unusual, option->knob);
+    text_append(knobs, sizeof knobs, " --knob %.*s", kept ? (int)strcspn(levels, " ") : length,
+                kept ? levels : option->knob);
   }
   progress_duration(time_s, time, sizeof time);
   text_append(next, size,
               "More seeds narrow the interval of this error. The study has %" PRId64
               "; if its middle stays at %.2g, about %.0f at every level are needed, which take %s of processor time: "
-              "`clast converge %s --knob %s --max-seeds %.0f --within off --seeds %.0f`",
+              "`clast converge %s%s --max-seeds %.0f --within off --seeds %.0f`",
               accuracy->n, middle, seeds, time, accuracy->path, knobs, seeds, seeds);
 }
 
@@ -461,7 +504,7 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double least = resolution_of(best);
-  char next[600] = "", share[32] = "", more[64] = "", chosen[256];
+  char next[1600] = "", share[32] = "", more[64] = "", chosen[256];
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
     snprintf(share, sizeof share, "%.3g %% (", 100 * campaign->accuracy_within);

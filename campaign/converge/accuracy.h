@@ -42,6 +42,8 @@ struct accuracy {
   double most;    /* no error of a share is larger than its distance from the farther end; else infinite */
   const struct knob *open; /* of resolution, without a limit; NULL: none */
   char left_out[160];      /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
+  char levels[2000];       /* with runs: "grains=0.01,0.005 time_step=0.4,0.2" */
+  char unusual[256];       /* knobs among these that have other levels than their own: "grains,time_step"; "": none */
   const char *path;        /* the campaign's file with --set and --store of the command (option_words()); borrowed */
   size_t reference;        /* the option with the smallest error; costs are relative to it */
 };

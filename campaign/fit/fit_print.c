@@ -49,10 +49,12 @@ static double shown_unit(const struct fit *fit, size_t i, char text[64]) {
   return good ? unit.factor : 1;
 }
 
-/* Decimals of numbers between which a person sees a difference: two digits of it. */
+/* Decimals of numbers between which a person sees a difference: two digits of it. -1: small numbers have exponents. */
 static int decimals_of(double low, double high) {
   const double spread = fabs(high - low);
-  return spread > 0 && spread < 1e15 ? (int)fmin(fmax(1 - floor(log10(spread)), 0), 15) : -1;
+  return spread > 0 && spread < 1e15 && fmax(fabs(low), fabs(high)) >= 1e-4
+             ? (int)fmin(fmax(1 - floor(log10(spread)), 0), 15)
+             : -1;
 }
 
 static void quantiles_of(const struct fit *fit, size_t i, double unit, double quantile[3]) {

@@ -256,13 +256,21 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
   else
     columns_for_programs(&printing);
   ANSWER points = ask_points_rows(store, choice, true, printing.axes, inputs, error);
-  for (struct ask_points_row row; !table_broken(table) && ask_points_next(&points, &row);)
-    TRY(print_point(&printing, &row, error));
+  size_t idle = 0; /* points without runs, such as finer settings that only a study knows */
+  for (struct ask_points_row row; !table_broken(table) && ask_points_next(&points, &row);) {
+    if (table_for_people(format) && row.n == 0 && row.failed == 0)
+      idle++;
+    else
+      TRY(print_point(&printing, &row, error));
+  }
   TRY(answer_end(&points));
   TRY(table_end(table, error));
   if (!table_for_people(format))
     return STATUS_OK;
   fflush(stdout); /* what follows comes below the table */
+  if (idle)
+    fprintf(stderr, "clast: left out: %zu point%s without runs (--csv and --json have %s)\n", idle,
+            idle == 1 ? "" : "s", idle == 1 ? "it" : "them");
   const struct ask_doubts_choice doubts = {.campaign = choice->campaign};
   TRY(quantity_tell_doubts(store, &doubts, OUTCOME_DEFAULT ",beta", error));
   if (legend)

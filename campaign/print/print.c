@@ -250,7 +250,7 @@ status print_results(const struct scene *scene, const char *reference, int64_t s
 /* Prints the bins of a pool, or with run_id those of one of its runs. */
 static status print_bins(struct table *table, const struct spectrum_choice *choice, const struct ask_pools *pools,
                          const struct ask_pool *pool, const struct pooled_runs *runs, const int64_t *run_id,
-                         const struct ask_doubts *doubts, struct error *error) {
+                         const struct ask_doubts *doubts, bool people, bool *any_incomplete, struct error *error) {
   struct pooled_form form = ask_pool_form(pool, choice->cumulative, choice->density);
   OWNED struct pooled_bin *bins = NULL;
   size_t count;
@@ -261,9 +261,13 @@ static status print_bins(struct table *table, const struct spectrum_choice *choi
   for (size_t b = 0; b < count; b++)
     mass = form.cumulative ? fmax(mass, bins[b].mass) : mass + bins[b].mass;
   for (size_t b = 0; b < count && !table_broken(table); b++) {
+    const bool incomplete = bins[b].lower < spectrum_size_of(&form.size, pool->data.complete_mass);
+    *any_incomplete |= incomplete;
     print_pool_cells(table, pools, pool);
     if (run_id)
       table_integer(table, *run_id);
+    if (people)
+      table_text(table, incomplete ? "no" : "yes");
     table_real(table, bins[b].lower);
     if (!form.cumulative)
       table_real(table, bins[b].upper);
@@ -278,7 +282,7 @@ static status print_bins(struct table *table, const struct spectrum_choice *choi
 
 status print_spectrum(struct store *store, const struct spectrum_choice *choice, enum table_format format,
                       struct error *error) {
-  const bool sizes = choice->density > 0;
+  const bool sizes = choice->density > 0, people = table_for_people(format);
   int dimensions;
   TRY(ask_pool_dimensions(store, &dimensions, error));
   const char *unit = sizes ? "m" : ask_pool_mass_unit(dimensions);
@@ -289,6 +293,8 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   print_pool_columns(table, &pools);
   if (choice->runs)
     table_column(table, "run_id", NULL);
+  if (people)
+    table_column(table, "complete", NULL);
   table_column(table, "lower", unit);
   if (!choice->cumulative)
     table_column(table, "upper", unit);
@@ -298,22 +304,25 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   table_column(table, "mass_share", NULL);
   table_doubt_columns(table);
   struct ask_doubts sum = {0};
+  bool incomplete = false;
   for (const struct ask_pool *pool; !table_broken(table) && (pool = ask_pools_next(&pools));) {
     const struct pooled_runs *runs = &pool->data.runs;
     ask_doubts_add(&sum, &pool->doubts);
     if (!choice->runs)
-      TRY(print_bins(table, choice, &pools, pool, runs, NULL, &pool->doubts, error));
+      TRY(print_bins(table, choice, &pools, pool, runs, NULL, &pool->doubts, people, &incomplete, error));
     for (size_t r = 0; choice->runs && r < runs->count && !table_broken(table); r++) {
       struct ask_doubts doubts = {0};
       TRY(ask_doubts(store, &(struct ask_doubts_choice){.run = pool->data.run_id[r]}, OUTCOME_NAME(mean_fragment_mass),
                      &doubts, error));
       TRY(print_bins(table, choice, &pools, pool, &(struct pooled_runs){1, runs->first + r, runs->masses},
-                     &pool->data.run_id[r], &doubts, error));
+                     &pool->data.run_id[r], &doubts, people, &incomplete, error));
     }
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));
-  if (table_for_people(format))
+  if (people && incomplete)
+    words_print(stderr, "", "clast: complete no: lighter fragments than the mass from which the spectrum is complete");
+  if (people)
     uncertainty_doubts(&sum, stderr);
   return STATUS_OK;
 }

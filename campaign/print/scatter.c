@@ -602,6 +602,14 @@ static void write_answer(const struct from_points *p) {
   text_wrap(text, 0, 0, COLUMNS, stdout);
 }
 
+/* Are shares of the variance of the means told? The scatter over seeds may be all of it. */
+static bool tells_means(const struct from_points *p) {
+  bool tells = false;
+  for (size_t a = 0; a < p->cells.axes; a++)
+    tells |= isfinite(p->index[a].of_means.estimate);
+  return tells;
+}
+
 static void print_index(const struct from_points *p, size_t a, struct table *table) {
   const struct sensitivity_point *index = &p->index[a];
   const bool seeds = a == p->cells.axes;
@@ -633,14 +641,14 @@ static void print_index(const struct from_points *p, size_t a, struct table *tab
 
 static status print_indices(struct from_points *p, enum table_format format, struct error *error) {
   TABLE table = table_new(format, stdout);
-  const bool several = p->data.most > 1;
+  const bool means = p->data.most > 1 && tells_means(p);
   table_column(table, "input", NULL);
   for (int s = 0; s < 2; s++)
     for (int c = 0; c < 3; c++) {
       static const char *const names[2][3] = {{"of_means", "means_low", "means_high"},
                                               {"of_runs", "runs_low", "runs_high"}};
       table_column(table, names[s][c], NULL);
-      if (s == 0 ? !several : several && c > 0)
+      if (s == 0 ? !means : means && c > 0)
         table_rare(table);
     }
   table_columns(table, (const char *const[]){"rank", "not_told", NULL});
@@ -690,6 +698,10 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
             "their scatter over seeds"
           : " with one seed each",
       p.data.most > 1 ? "" : " and of the scatter over seeds");
+  if (p.data.most > 1 && is_told(&p, p.order[0]) && !tells_means(&p))
+    words_print(stderr, "",
+                "clast: shares of means are not told: the variance between the means cannot be told from the scatter "
+                "over seeds. More points or more seeds may tell them");
   uncertainty_doubts(&p.cells.doubts, stderr);
   return STATUS_OK;
 }

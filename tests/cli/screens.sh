@@ -144,7 +144,52 @@ expect 0 "$clast" map many.db small.svg -x strain -y angle -Q energy_error
 grep -qE '>0\.0+( !)?<' small.svg && fail "a map shows nothing of a small number"
 grep -qE '>0\.000[0-9]{2}( !)?<' small.svg || fail "no small number on the map"
 
+# Means that the scatter over seeds hides: the table has the interval of the sentence, and a note says why.
+cat >noise.yaml <<'YAML'
+name: noise
+scene: disc-explosion
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.end_time: 1 ms}
+vary: {threshold.strain: {uniform: [3 %, 3.4 %]}, threshold.angle: {uniform: [4 deg, 4.3 deg]}}
+design: {kind: latin_hypercube, points: 16, seed: 3}
+seeds: {per_point: 2}
+YAML
+expect 0 "$clast" run noise.yaml --quiet -j 2
+expect 0 "$clast" sensitivity noise.db
+prints "of single runs"
+says "shares of means are not told"
+grep -q '^input .*runs_low  runs_high' out || fail "the table hides the interval"
+
+# Bins below the mass from which the spectrum is complete are marked for people.
+expect 0 "$clast" spectrum small.db --point 4
+says "complete no: "
+complete=$(number small.db "select max(complete_mass) from runs where point_id = 4")
+awk -v c="$complete" '$1 == 4 && ($2 == "no") != ($3 < c * 0.99999) { exit 1 }' out || fail "bins are not marked as the picture marks them"
+
+# Small quantiles have their digits.
+sed -i 's/quantity: .*/quantity: first_break, value: 11 us, error: 1 us, resolution: 0 s}/' shots.yaml
+expect 0 "$clast" fit shots.yaml disc.yaml --rounds 3 --quiet -j 2
+grep -q '^first_break .* [0-9.]*e-06 .* [0-9.]*e-05' out || fail "quantiles of a small number"
+
+# Advice of more seeds keeps the levels of the study, and can be typed. Points without runs are no rows for people.
+cat >levels.yaml <<'YAML'
+name: levels
+scene: disc-explosion
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.end_time: 1 ms}
+accuracy: {quantity: largest_fraction, within: 0.1}
+YAML
+expect 0 "$clast" converge levels.yaml --knob grains=10.69mm,8mm,6mm,5mm --seeds 16 --max-seeds 16 --within off --quiet -j 2
+expect 0 "$clast" estimates levels.db --studies
+says "without runs"
+grep -qE '^ +[0-9]+ +[^ ]+ +0 ' out && fail "a point without runs is a row"
+expect 0 "$clast" estimates levels.db --studies --csv
+python -c 'import csv; assert any(r["n"] == "0" for r in csv.DictReader(open("out")))' || fail "programs lack points without runs"
+expect 65 "$clast" plan levels.yaml --no-trial
+says "--knob grains=0.01069m,0.008m,0.006m,0.005m --max-seeds "
+advice=$(tr '\n' ' ' <err | grep -o '`clast converge [^`]*`' | tr -d '`' | sed -E 's/seeds [0-9]+/seeds 18/g')
+eval "expect 0 '$clast' ${advice#clast} --quiet -j 2"
+same "$(number levels.db "select count(*) from convergence where n = 18")" 4 "levels of the larger study"
+
 expect 0 "$clast" explain withheld
 prints '"-" in tables'
 
-done_after 39
+done_after 49
