@@ -97,7 +97,8 @@ static bool is_usual(const struct finding *finding, const struct knob *knob, con
 
 /* SI unit of a knob's levels, as the user writes it behind them. */
 static const char *unit_of(const struct campaign *campaign, const struct knob *knob) {
-  const struct field *row = field_find(campaign->scene->kind->inputs, knob->inputs[0].path, NULL);
+  const char *path = knob->inputs[0].path; /* NULL: named settings of the scene */
+  const struct field *row = path ? field_find(campaign->scene->kind->inputs, path, NULL) : NULL;
   return row && row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
 }
 
@@ -464,7 +465,7 @@ static void advise_seeds(const struct accuracy *accuracy, const struct accuracy_
     return;
   }
   double time_s = 0;
-  char time[32], seen[512] = "", knobs[sizeof accuracy->levels + 512] = "";
+  char time[32], seen[512] = "", knobs[512] = "", own[sizeof accuracy->levels + 128] = "";
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
     if (!option->extrapolated)
@@ -476,16 +477,17 @@ static void advise_seeds(const struct accuracy *accuracy, const struct accuracy_
     const char *levels = accuracy->levels;
     while (levels && (strncmp(levels, option->knob, (size_t)length) != 0 || levels[length] != '='))
       levels = (levels = strchr(levels, ' ')) ? levels + 1 : NULL;
-    const bool kept = levels && condition_has(accuracy->unusual, option->knob);
-    text_append(knobs, sizeof knobs, " --knob %.*s", kept ? (int)strcspn(levels, " ") : length,
-                kept ? levels : option->knob);
+    if (levels && condition_has(accuracy->unusual, option->knob))
+      text_append(own, sizeof own, " --knob %.*s", (int)strcspn(levels, " "), levels);
+    else
+      text_append(knobs, sizeof knobs, "%s%s", *knobs ? "," : " --knob ", option->knob);
   }
   progress_duration(time_s, time, sizeof time);
   text_append(next, size,
               "More seeds narrow the interval of this error. The study has %" PRId64
               "; if its middle stays at %.2g, about %.0f at every level are needed, which take %s of processor time: "
-              "`clast converge %s%s --max-seeds %.0f --within off --seeds %.0f`",
-              accuracy->n, middle, seeds, time, accuracy->path, knobs, seeds, seeds);
+              "`clast converge %s%s%s --max-seeds %.0f --within off --seeds %.0f`",
+              accuracy->n, middle, seeds, time, accuracy->path, knobs, own, seeds, seeds);
 }
 
 /* "particles = 40000", "stop = 0.0012 s", "the scene's own settings". */

@@ -46,29 +46,14 @@ static const struct {
   const char *name;
   enum role role;
 } rules[] = {
-    {"point_id", KEY},
-    {"run_id", KEY},
-    {"campaign", KEY},
-    {"engine", SAME},
-    {"results_version", SAME},
-    {"failed", ZERO},
-    {"censored", ZERO},
-    {"surplus", ZERO},
-    {"excluded", ZERO},
-    {"failed_attempts", ZERO},
-    {"without_result", ZERO},
-    {"warned", ZERO},
-    {"last_started", RARE},
-    {"last_ended", RARE},
-    {"command", RARE},
-    {"_mean", MEAN},
-    {"_sd", RARE},
-    {"_se", RARE},
-    {"_low95", RARE},
-    {"_high95", RARE},
-    {"_weak", ZERO},
-    {"_resolution", ZERO},
-    {"_resolution_verdict", SAME},
+    {"point_id", KEY},  {"run_id", KEY},           {"campaign", KEY},
+    {"engine", SAME},   {"complete", SAME},        {"results_version", SAME},
+    {"failed", ZERO},   {"censored", ZERO},        {"surplus", ZERO},
+    {"excluded", ZERO}, {"failed_attempts", ZERO}, {"without_result", ZERO},
+    {"warned", ZERO},   {"last_started", RARE},    {"last_ended", RARE},
+    {"command", RARE},  {"_mean", MEAN},           {"_sd", RARE},
+    {"_se", RARE},      {"_low95", RARE},          {"_high95", RARE},
+    {"_weak", ZERO},    {"_resolution", ZERO},     {"_resolution_verdict", SAME},
 };
 enum { RULES = sizeof rules / sizeof rules[0] };
 
