@@ -349,7 +349,7 @@ static double flown(const struct condition_run *r) {
     }
   const double kept = mass > 0 ? momentum / mass : 0;
   for (size_t i = projectile.first; i < projectile.first + projectile.n; i++)
-    if (!(now->vz[i] > 0))
+    if (!(now->vz[i] > 0) && !(sph_crater_speed(now, i) < in->crater.escape_speed)) /* slower matter falls back */
       beyond += now->mass[i] * (now->vz[i] - kept);
   return fabs(beyond) / (projectile.mass * in->impact.speed * cos(in->impact.angle));
 }
