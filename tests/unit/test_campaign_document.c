@@ -360,7 +360,7 @@ static void examples_are_ready_to_run(void **state) {
     seen++;
   }
   closedir(folder);
-  assert_int_equal(seen, 12);
+  assert_int_equal(seen, 13);
 }
 
 /* Documents and scenes of stores from before units were required. */
