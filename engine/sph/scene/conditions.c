@@ -332,8 +332,8 @@ static double shaped(const struct condition_run *r) {
   return results_of(r)->shapes.shaped ? (double)results_of(r)->shapes.shaped : (double)NAN;
 }
 
-/* Momentum along the normal that the projectile's kept matter has beyond that of a part of the target, over what the
- * projectile brought: this matter is no ejecta, and counts as if it moved with the target. */
+/* The momentum enhancement takes matter of the projectile that does not fly back as if it moved with the rest of the
+ * target. The momentum along the normal that this matter has beyond that, over what the projectile brought. */
 static double flown(const struct condition_run *r) {
   const struct sph_run *run = run_of(r);
   const struct sph_inputs *in = &run->inputs;

@@ -170,10 +170,9 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
     projectile = sph_derived_projectile(in);
     shape("projectile", &projectile, &in->projectile, sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing,
           false, out);
-    if (in->fidelity.graded)
+    if (in->fidelity.graded) {
       fprintf(out, "  graded: spacing %.3g m within %.3g m of the point of impact", in->fidelity.fine_spacing,
               in->fidelity.fine_radius);
-    if (in->fidelity.graded) {
       sph_derived_tell_unkept(in, out);
       fputc('\n', out);
     }
