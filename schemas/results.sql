@@ -570,27 +570,27 @@ WITH first AS (
     r.counts = 1 CROSS JOIN point p ON p.point_id = f.point_id
 ), moment AS (
   SELECT point_id, results_version,
-    k0, count(a0) AS n0, total(a0) AS s0, total(a0 * a0) AS q0,
-    k1, count(a1) AS n1, total(a1) AS s1, total(a1 * a1) AS q1,
-    k2, count(a2) AS n2, total(a2) AS s2, total(a2 * a2) AS q2,
-    k3, count(a3) AS n3, total(a3) AS s3, total(a3 * a3) AS q3,
-    k4, count(a4) AS n4, total(a4) AS s4, total(a4 * a4) AS q4
+    k0, count(a0) AS n0, total(a0) AS s0, total(a0 * a0) AS q0, max(abs(a0)) AS x0,
+    k1, count(a1) AS n1, total(a1) AS s1, total(a1 * a1) AS q1, max(abs(a1)) AS x1,
+    k2, count(a2) AS n2, total(a2) AS s2, total(a2 * a2) AS q2, max(abs(a2)) AS x2,
+    k3, count(a3) AS n3, total(a3) AS s3, total(a3 * a3) AS q3, max(abs(a3)) AS x3,
+    k4, count(a4) AS n4, total(a4) AS s4, total(a4 * a4) AS q4, max(abs(a4)) AS x4
   FROM away GROUP BY point_id, results_version
 ), scatter AS (
   SELECT *,
-    k0 + s0 / n0 AS m0, sqrt(max(0, (q0 - s0 * s0 / n0) / (n0 - 1))) AS d0,
+    k0 + s0 / n0 AS m0, iif(x0 > 1e150 OR (x0 < 1e-130 AND x0 > 0), NULL, sqrt(max(0, (q0 - s0 * s0 / n0) / (n0 - 1)))) AS d0,
     CASE WHEN (n0 - 1) = 1 THEN 12.706204736174 WHEN (n0 - 1) = 2 THEN 4.302652729749 WHEN (n0 - 1) = 3 THEN 3.182446305284 WHEN (n0 - 1) = 4 THEN 2.776445105198 WHEN (n0 - 1) = 5 THEN 2.570581835636 WHEN (n0 - 1) = 6 THEN 2.446911851145 WHEN (n0 - 1) = 7 THEN 2.364624251593 WHEN (n0 - 1) = 8 THEN 2.306004135204 WHEN (n0 - 1) = 9 THEN 2.262157162798 WHEN (n0 - 1) = 10 THEN 2.228138851986
       WHEN (n0 - 1) > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 / (n0 - 1)) / (n0 - 1)) / (n0 - 1)) / (n0 - 1) END AS t0,
-    k1 + s1 / n1 AS m1, sqrt(max(0, (q1 - s1 * s1 / n1) / (n1 - 1))) AS d1,
+    k1 + s1 / n1 AS m1, iif(x1 > 1e150 OR (x1 < 1e-130 AND x1 > 0), NULL, sqrt(max(0, (q1 - s1 * s1 / n1) / (n1 - 1)))) AS d1,
     CASE WHEN (n1 - 1) = 1 THEN 12.706204736174 WHEN (n1 - 1) = 2 THEN 4.302652729749 WHEN (n1 - 1) = 3 THEN 3.182446305284 WHEN (n1 - 1) = 4 THEN 2.776445105198 WHEN (n1 - 1) = 5 THEN 2.570581835636 WHEN (n1 - 1) = 6 THEN 2.446911851145 WHEN (n1 - 1) = 7 THEN 2.364624251593 WHEN (n1 - 1) = 8 THEN 2.306004135204 WHEN (n1 - 1) = 9 THEN 2.262157162798 WHEN (n1 - 1) = 10 THEN 2.228138851986
       WHEN (n1 - 1) > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 / (n1 - 1)) / (n1 - 1)) / (n1 - 1)) / (n1 - 1) END AS t1,
-    k2 + s2 / n2 AS m2, sqrt(max(0, (q2 - s2 * s2 / n2) / (n2 - 1))) AS d2,
+    k2 + s2 / n2 AS m2, iif(x2 > 1e150 OR (x2 < 1e-130 AND x2 > 0), NULL, sqrt(max(0, (q2 - s2 * s2 / n2) / (n2 - 1)))) AS d2,
     CASE WHEN (n2 - 1) = 1 THEN 12.706204736174 WHEN (n2 - 1) = 2 THEN 4.302652729749 WHEN (n2 - 1) = 3 THEN 3.182446305284 WHEN (n2 - 1) = 4 THEN 2.776445105198 WHEN (n2 - 1) = 5 THEN 2.570581835636 WHEN (n2 - 1) = 6 THEN 2.446911851145 WHEN (n2 - 1) = 7 THEN 2.364624251593 WHEN (n2 - 1) = 8 THEN 2.306004135204 WHEN (n2 - 1) = 9 THEN 2.262157162798 WHEN (n2 - 1) = 10 THEN 2.228138851986
       WHEN (n2 - 1) > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 / (n2 - 1)) / (n2 - 1)) / (n2 - 1)) / (n2 - 1) END AS t2,
-    k3 + s3 / n3 AS m3, sqrt(max(0, (q3 - s3 * s3 / n3) / (n3 - 1))) AS d3,
+    k3 + s3 / n3 AS m3, iif(x3 > 1e150 OR (x3 < 1e-130 AND x3 > 0), NULL, sqrt(max(0, (q3 - s3 * s3 / n3) / (n3 - 1)))) AS d3,
     CASE WHEN (n3 - 1) = 1 THEN 12.706204736174 WHEN (n3 - 1) = 2 THEN 4.302652729749 WHEN (n3 - 1) = 3 THEN 3.182446305284 WHEN (n3 - 1) = 4 THEN 2.776445105198 WHEN (n3 - 1) = 5 THEN 2.570581835636 WHEN (n3 - 1) = 6 THEN 2.446911851145 WHEN (n3 - 1) = 7 THEN 2.364624251593 WHEN (n3 - 1) = 8 THEN 2.306004135204 WHEN (n3 - 1) = 9 THEN 2.262157162798 WHEN (n3 - 1) = 10 THEN 2.228138851986
       WHEN (n3 - 1) > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 / (n3 - 1)) / (n3 - 1)) / (n3 - 1)) / (n3 - 1) END AS t3,
-    k4 + s4 / n4 AS m4, sqrt(max(0, (q4 - s4 * s4 / n4) / (n4 - 1))) AS d4,
+    k4 + s4 / n4 AS m4, iif(x4 > 1e150 OR (x4 < 1e-130 AND x4 > 0), NULL, sqrt(max(0, (q4 - s4 * s4 / n4) / (n4 - 1)))) AS d4,
     CASE WHEN (n4 - 1) = 1 THEN 12.706204736174 WHEN (n4 - 1) = 2 THEN 4.302652729749 WHEN (n4 - 1) = 3 THEN 3.182446305284 WHEN (n4 - 1) = 4 THEN 2.776445105198 WHEN (n4 - 1) = 5 THEN 2.570581835636 WHEN (n4 - 1) = 6 THEN 2.446911851145 WHEN (n4 - 1) = 7 THEN 2.364624251593 WHEN (n4 - 1) = 8 THEN 2.306004135204 WHEN (n4 - 1) = 9 THEN 2.262157162798 WHEN (n4 - 1) = 10 THEN 2.228138851986
       WHEN (n4 - 1) > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 / (n4 - 1)) / (n4 - 1)) / (n4 - 1)) / (n4 - 1) END AS t4
   FROM moment

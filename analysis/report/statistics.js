@@ -37,8 +37,10 @@ export function quantile(sorted, p) {
 
 export function summary(values, share = false) {
   const n = values.length;
-  const mean = values.reduce((sum, value) => sum + value, 0) / n;
-  const sd = n > 1 ? Math.sqrt(values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (n - 1)) : null;
+  const largest = values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+  const scale = largest > 1e60 ? 2 ** -900 : largest < 1e-60 ? 2 ** 900 : 1; // so that sums and squares fit
+  const mean = values.reduce((sum, value) => sum + value * scale, 0) / n / scale;
+  const sd = n > 1 ? Math.sqrt(values.reduce((sum, value) => sum + ((value - mean) * scale) ** 2, 0) / (n - 1)) / scale : null;
   const sorted = Float64Array.from(values).sort();
   return {n, mean, sd, ...interval(mean, sd, n, share), least: sorted[0], quarter: quantile(sorted, 0.25), median: quantile(sorted, 0.5),
     threeQuarters: quantile(sorted, 0.75), largest: sorted[n - 1]};

@@ -22,13 +22,41 @@ double sample_student(size_t n, double level) {
   return gsl_cdf_tdist_Pinv(0.5 + level / 2, (double)(n - 1));
 }
 
+double sample_scale(double largest) {
+  const double size = fabs(largest);
+  int power;
+  if (size > 1e-60 && size < 1e60)
+    return 1;
+  (void)frexp(size, &power);
+  return size > 0 && power > -1000 ? ldexp(1, -power) : 0x1p1000;
+}
+
+status sample_squares_fit(size_t n, const double *values, struct error *error) {
+  double largest = 0;
+  for (size_t i = 0; i < n; i++)
+    largest = fmax(largest, fabs(values[i]));
+  if (largest > 0 && fabs(sample_scale(largest) - 1) > 0)
+    return status_fail(error, STATUS_USAGE,
+                       "values of %.3g have a variance that no double-precision number holds: take a unit in which "
+                       "they are between 1e-60 and 1e60",
+                       largest);
+  return STATUS_OK;
+}
+
 void sample_add(struct sample_moments *moments, double value) {
   if (isnan(value))
     return;
-  double deviation = value - moments->mean;
+  const double scale = sample_scale(value);
+  if (moments->n == 0)
+    moments->scale = scale;
+  if (scale < moments->scale) {
+    moments->squares *= scale / moments->scale * (scale / moments->scale);
+    moments->scale = scale;
+  }
+  const double scaled = value * moments->scale, deviation = scaled - moments->mean * moments->scale;
   moments->n++;
-  moments->mean += deviation / (double)moments->n;
-  moments->squares += deviation * (value - moments->mean);
+  moments->mean += deviation / (double)moments->n / moments->scale;
+  moments->squares += deviation * (scaled - moments->mean * moments->scale);
 }
 
 struct sample_summary sample_summarise_moments(const struct sample_moments *moments, double level) {
@@ -38,7 +66,7 @@ struct sample_summary sample_summarise_moments(const struct sample_moments *mome
   if (summary.n < 2 || isnan(moments->squares)) /* NaN: a value is infinite */
     return summary;
   double n = (double)summary.n;
-  summary.standard_deviation = sqrt(fmax(moments->squares, 0) / (n - 1));
+  summary.standard_deviation = sqrt(fmax(moments->squares, 0) / (n - 1)) / moments->scale;
   summary.standard_error = summary.standard_deviation / sqrt(n);
   if (!(summary.standard_deviation > SAMPLE_ROUNDING * fabs(summary.mean)))
     return summary;
@@ -72,22 +100,25 @@ void sample_of_share(struct sample_summary *summary, double level) {
 /* Computes the mean first, then the deviations from it. */
 static struct sample_moments moments_in_two_passes(size_t n, const double *values) {
   struct sample_moments moments = {0};
-  double sum = 0, rest = 0;
+  double largest = 0, sum = 0, rest = 0;
+  for (size_t i = 0; i < n; i++)
+    largest = fmax(largest, fabs(values[i])); /* leaves out NaN */
+  const double scale = moments.scale = sample_scale(largest);
   for (size_t i = 0; i < n; i++) {
     if (isnan(values[i]))
       continue;
     moments.n++;
-    sum += values[i];
+    sum += values[i] * scale;
   }
   if (moments.n == 0)
     return moments;
 
-  double number = (double)moments.n;
-  moments.mean = sum / number;
+  double number = (double)moments.n, mean = sum / number;
+  moments.mean = mean / scale;
   for (size_t i = 0; i < n; i++) {
     if (isnan(values[i]))
       continue;
-    double deviation = values[i] - moments.mean;
+    double deviation = values[i] * scale - mean;
     moments.squares += deviation * deviation;
     rest += deviation; /* zero except for the rounding of the mean */
   }
@@ -178,8 +209,9 @@ bool sample_may_stop(size_t n, const double *values, double half_width, double l
     return false; /* failed runs do not count */
 
   /* t^2 (s^2 + (SAMPLE_GUARD half_width)^2 / n) / n <= half_width^2 */
+  half_width *= moments.scale; /* so that no square leaves the range of double */
   double number = (double)moments.n, t = sample_student(moments.n, level), guard = SAMPLE_GUARD * half_width;
-  double deviation = sample_summarise_moments(&moments, level).standard_deviation;
+  double deviation = sample_summarise_moments(&moments, level).standard_deviation * moments.scale;
   double variance = deviation * deviation + guard * guard / number;
   return t * t * variance <= half_width * half_width * number;
 }
@@ -192,18 +224,19 @@ bool sample_could_stop(size_t n, double level) {
 
 /* Student's t with the degrees of freedom of Welch and Satterthwaite. */
 static double welch(const struct sample_moments side[2], double level) {
+  const double scale = fmin(side[0].scale, side[1].scale);
   double share[2], degrees = 0;
   for (int k = 0; k < 2; k++) {
     if (side[k].n < 2)
       return NAN;
-    const double freedom = (double)side[k].n - 1;
-    share[k] = side[k].squares / freedom / (double)side[k].n;
+    const double freedom = (double)side[k].n - 1, less = scale / side[k].scale;
+    share[k] = side[k].squares * less * less / freedom / (double)side[k].n;
     degrees += share[k] * share[k] / freedom;
   }
   const double variance = share[0] + share[1];
   if (!(degrees > 0)) /* neither sample varies */
     return NAN;
-  return gsl_cdf_tdist_Pinv(0.5 + level / 2, variance * variance / degrees) * sqrt(variance);
+  return gsl_cdf_tdist_Pinv(0.5 + level / 2, variance * variance / degrees) * sqrt(variance) / scale;
 }
 
 /* Moments of the first and second values with seeds that both sides have, and of their differences; in order of

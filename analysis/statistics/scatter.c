@@ -44,7 +44,7 @@ bool scatter_in_steps(size_t n, const double *sorted) {
       return false;
     sample_add(&moments, sorted[i]);
   }
-  return n > 1 && moments.squares / (double)(n - 1) < 4 * (double)n;
+  return n > 1 && moments.scale >= 1 && moments.squares / (double)(n - 1) < 4 * (double)n;
 }
 
 /* Splits the ascending values into two classes with the smallest sum of squares within them. */
@@ -82,13 +82,17 @@ status scatter_make(size_t n, const double *values, struct scatter *out, struct 
                           .upper_low = NAN,
                           .upper_high = NAN};
   TRY(memory_array(&out->sorted, n, sizeof *out->sorted, "the values of runs", error));
+  double largest = 0, two = 0, three = 0; /* moments */
   for (size_t i = 0; i < n; i++)
-    if (isfinite(values[i]))
+    if (isfinite(values[i])) {
       out->sorted[out->n++] = values[i];
+      largest = fmax(largest, fabs(values[i]));
+    }
   out->mean = sample_summarise(out->n, out->sorted, 0.95);
-  double two = 0, three = 0; /* moments */
+  const double scale = sample_scale(largest); /* 1, but for values near the ends of double */
   for (size_t i = 0; i < out->n; i++) {
-    const double d = out->sorted[i] - out->mean.mean;
+    out->sorted[i] *= scale;
+    const double d = out->sorted[i] - out->mean.mean * scale;
     two += d * d / (double)out->n;
     three += d * d * d / (double)out->n;
   }
@@ -102,6 +106,14 @@ status scatter_make(size_t n, const double *values, struct scatter *out, struct 
   out->dip_share = known ? scatter_dip_share(out->n, out->dip) : (double)NAN;
   if (out->dip_share < 0.05)
     scatter_find_modes(out);
+  for (size_t i = 0; i < out->n; i++)
+    out->sorted[i] /= scale;
+  for (int q = 0; q < SCATTER_QUANTILES; q++)
+    out->quantile[q] = (struct scatter_quantile){out->quantile[q].value / scale, out->quantile[q].low / scale,
+                                                 out->quantile[q].high / scale};
+  out->lower_mode /= scale;
+  out->upper_mode /= scale;
+  out->between /= scale;
   return STATUS_OK;
 }
 
@@ -302,6 +314,7 @@ status scatter_split(const struct scatter_table *t, struct scatter_part *parts, 
   const size_t count = t->points * t->runs;
   struct scatter_table about_mean = *t;
   double mean = 0;
+  TRY(sample_squares_fit(count, t->value, error));
   TRY(memory_array(&value, count, sizeof *value, "the parts of a variance", error));
   for (size_t i = 0; i < count; i++)
     mean += t->value[i] / (double)count;

@@ -164,6 +164,7 @@ status sensitivity_sobol(const struct sensitivity_table *t, struct sensitivity_i
   if (t->blocks < 2 || t->seeds < 1 || t->inputs < 1)
     return status_fail(error, STATUS_USAGE, "Sobol indices need at least two blocks of points with a result, not %zu",
                        t->blocks);
+  TRY(sample_squares_fit(n, t->value, error));
   OWNED double *centred = NULL;
   OWNED uint32_t *all = NULL, *in_groups = NULL;
   double mean = 0;

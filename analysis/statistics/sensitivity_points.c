@@ -368,6 +368,7 @@ static status make(struct fit *f, struct sensitivity_point *index, struct error 
   double of_means = 0, variance = 0, mean = 0, whole = 0, *of_whole = f->influence + (k + 1) * n;
   bool moving = false;
   TRY(read_values(f, &terms[k], &of_means, error));
+  TRY(sample_squares_fit(n, f->y, error));
   for (size_t j = 0; j < n; j++)
     mean += f->y[j] / (double)n;
   for (size_t j = 0; j < n; j++)

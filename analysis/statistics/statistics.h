@@ -27,7 +27,13 @@ int sample_descending(const void *a, const void *b);
 struct sample_moments {
   size_t n;
   double mean, squares;
+  double scale; /* the squares are those of the values times this: sample_scale() of the largest one */
 };
+/* A power of two that brings values of up to this size to where their squares fit in a double: 1 for sizes from 1e-60
+ * to 1e60, so that these keep their bits. */
+double sample_scale(double largest);
+/* Where variances are wanted, not their roots. STATUS_USAGE: no double holds them. */
+status sample_squares_fit(size_t n, const double *values, struct error *error);
 void sample_add(struct sample_moments *moments, double value); /* NaN is left out */
 
 struct sample_summary {

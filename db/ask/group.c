@@ -184,7 +184,7 @@ static void write_points(FILE *out, const struct names *axes, const struct names
   for (size_t i = 0; i < quantities->count; i++) {
     const char *q = quantities->name[i];
     fprintf(out,
-            ",\n  count(iif(counts, \"%1$s\", NULL)) AS r%2$zu, avg(iif(counts, \"%1$s\", NULL)) AS p%2$zu, "
+            ",\n  count(iif(counts, \"%1$s\", NULL)) AS r%2$zu, mean(iif(counts, \"%1$s\", NULL)) AS p%2$zu, "
             "stdev(iif(counts, \"%1$s\", NULL)) AS o%2$zu, count(iif(counts, w%2$zu, NULL)) AS b%2$zu, "
             "words(iif(counts, w%2$zu, NULL)) AS w%2$zu",
             q, i);
@@ -241,7 +241,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
         out);
   for (size_t i = 0; i < quantities->count; i++) { /* in parts, as in views_statistics_columns() */
     fprintf(out,
-            ",\n  avg(p%1$zu) AS m%1$zu, iif(count(p%1$zu) > 1, count(p%1$zu), sum(r%1$zu)) AS u%1$zu, "
+            ",\n  mean(p%1$zu) AS m%1$zu, iif(count(p%1$zu) > 1, count(p%1$zu), sum(r%1$zu)) AS u%1$zu, "
             "iif(count(p%1$zu) > 1, stdev(p%1$zu), max(o%1$zu)) AS d%1$zu,\n  ",
             i);
     fprintf(out,

@@ -1,6 +1,7 @@
 /* The small file of a page: tables that are copied from the store, statistics of points, facts, labels, pictures. */
 #include "db/ask/ask.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -50,6 +51,12 @@ static const struct {
                   "ORDER BY point_id, ordinal"},
 };
 
+/* To single precision, if it has the number. */
+static double single(double number) {
+  const double size = fabs(number);
+  return size < (double)FLT_MIN || size > (double)FLT_MAX ? number : (double)(float)number;
+}
+
 /* Makes a table of the rows of an answer. Real numbers from column `rounded` (counted from 0) on are rounded to single
  * precision: 7 digits, and they compress well. */
 enum { EXACT = 1000 }; /* no column is rounded */
@@ -72,7 +79,7 @@ static status copy(struct ask_page *page, struct answer asked, const char *table
     for (size_t i = 0; i < count; i++) {
       struct sql_value value = sql_of_column(answer.statement, (int)i);
       if (i >= rounded)
-        value.real = (double)(float)value.real;
+        value.real = single(value.real);
       sql_bind(insert, (int)i + 1, value);
     }
     TRY(sql_run(insert, doing, answer.error));
@@ -173,9 +180,8 @@ static struct sample_summary summary_of(const struct column *column) {
   return summary;
 }
 
-/* To single precision, as copy() does. NaN is NULL. */
-static struct sql_value rounded(double number) {
-  return sql_of_real((double)(float)number);
+static struct sql_value rounded(double number) { /* NaN is NULL */
+  return sql_of_real(single(number));
 }
 
 static status add_mean(struct reading *reading, const struct column *column, struct error *error) {

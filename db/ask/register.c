@@ -1,4 +1,5 @@
 /* SQL functions on our own connection: SQLite has no median, no standard deviation and none of our statistics. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,17 +10,31 @@
 #include "engine/grow.h"
 #include "schemas/text.h"
 
-static void stdev_step(sqlite3_context *context, int count, sqlite3_value **values) {
+/* mean(values): the bits of avg(), but where the sum leaves the range of double. */
+struct mean {
+  double sum;
+  struct sample_moments moments;
+};
+
+static void mean_step(sqlite3_context *context, int count, sqlite3_value **values) {
   (void)count;
-  struct sample_moments *moments = sqlite3_aggregate_context(context, sizeof *moments);
-  if (moments && sqlite3_value_type(values[0]) != SQLITE_NULL)
-    sample_add(moments, sqlite3_value_double(values[0]));
+  struct mean *mean = sqlite3_aggregate_context(context, sizeof *mean);
+  if (!mean || sqlite3_value_type(values[0]) == SQLITE_NULL)
+    return;
+  mean->sum += sqlite3_value_double(values[0]);
+  sample_add(&mean->moments, sqlite3_value_double(values[0]));
+}
+
+static void mean_final(sqlite3_context *context) {
+  const struct mean *mean = sqlite3_aggregate_context(context, 0);
+  if (mean && mean->moments.n > 0)
+    sqlite3_result_double(context, isfinite(mean->sum) ? mean->sum / (double)mean->moments.n : mean->moments.mean);
 }
 
 static void stdev_final(sqlite3_context *context) {
-  const struct sample_moments *moments = sqlite3_aggregate_context(context, 0);
-  if (moments && moments->n > 1)
-    sqlite3_result_double(context, sample_summarise_moments(moments, 0.95).standard_deviation);
+  const struct mean *mean = sqlite3_aggregate_context(context, 0);
+  if (mean && mean->moments.n > 1)
+    sqlite3_result_double(context, sample_summarise_moments(&mean->moments, 0.95).standard_deviation);
 }
 
 /* pooled_hw95(runs, count, squares): pooled_spectrum_count_hw95(). SQLite turns NaN into NULL. */
@@ -161,7 +176,8 @@ static const struct {
   void (*step)(sqlite3_context *, int, sqlite3_value **); /* of an aggregate */
   void (*final)(sqlite3_context *);
 } functions[] = {
-    {"stdev", 1, NULL, stdev_step, stdev_final},
+    {"mean", 1, NULL, mean_step, mean_final},
+    {"stdev", 1, NULL, mean_step, stdev_final},
     {"median", 1, NULL, median_step, median_final},
     {"hist_sum", 1, NULL, hist_sum_step, hist_sum_final},
     {"pooled_hw95", 3, pooled_hw95, NULL, NULL},

@@ -155,13 +155,15 @@ void views_statistics_write(size_t count, const char *const *names, FILE *out) {
         "), moment AS (\n  SELECT point_id, results_version",
         out);
   for (size_t i = 0; i < count; i++)
-    fprintf(out, ",\n    k%1$zu, count(a%1$zu) AS n%1$zu, total(a%1$zu) AS s%1$zu, total(a%1$zu * a%1$zu) AS q%1$zu",
+    fprintf(out,
+            ",\n    k%1$zu, count(a%1$zu) AS n%1$zu, total(a%1$zu) AS s%1$zu, total(a%1$zu * a%1$zu) AS q%1$zu, "
+            "max(abs(a%1$zu)) AS x%1$zu",
             i);
   fputs("\n  FROM away GROUP BY point_id, results_version\n), scatter AS (\n  SELECT *", out);
   for (size_t i = 0; i < count; i++) {
     fprintf(out,
-            ",\n    k%1$zu + s%1$zu / n%1$zu AS m%1$zu, sqrt(max(0, (q%1$zu - s%1$zu * s%1$zu / n%1$zu) / (n%1$zu - "
-            "1))) AS d%1$zu,\n    ",
+            ",\n    k%1$zu + s%1$zu / n%1$zu AS m%1$zu, iif(x%1$zu > 1e150 OR (x%1$zu < 1e-130 AND x%1$zu > 0), NULL, "
+            "sqrt(max(0, (q%1$zu - s%1$zu * s%1$zu / n%1$zu) / (n%1$zu - 1)))) AS d%1$zu,\n    ",
             i);
     snprintf(degrees, sizeof degrees, "(n%zu - 1)", i);
     views_statistics_student(degrees, out);

@@ -40,11 +40,27 @@ static void too_few_values_have_no_interval(void **state) {
   assert_true(isnan(sample_difference(3, equal, 3, other, 0.95).half_width));
 }
 
+/* Values near the ends of double have the interval of ordinary ones, times the same power of two. */
+static void ends_of_double(void **state) {
+  (void)state;
+  static const double first[] = {1, 2, 3, 4}, second[] = {2, 4, 6, 8};
+  static const int powers[] = {-1000, -560, 560, 1015};
+  for (size_t k = 0; k < 4; k++) {
+    struct difference_value a[4], b[4];
+    for (int i = 0; i < 4; i++) {
+      a[i] = (struct difference_value){1 + i, ldexp(first[i], powers[k])};
+      b[i] = (struct difference_value){5 + i, ldexp(second[i], powers[k])};
+    }
+    assert_true(fabs(ldexp(sample_difference(4, a, 4, b, 0.95).half_width, -powers[k]) - 3.8641672155) < 1e-6);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(pairs_are_used),
       cmocka_unit_test(independent_sides_are_welch),
       cmocka_unit_test(too_few_values_have_no_interval),
+      cmocka_unit_test(ends_of_double),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -175,6 +175,51 @@ static void split_of_a_variance(void **state) {
   free(value);
 }
 
+/* Values near the ends of double: every number is that of ordinary values times the same power of two, bit for bit. */
+static void at_the_ends_of_double(void **state) {
+  (void)state;
+  enum { N = 60 };
+  double x[N], y[N];
+  for (uint64_t i = 0; i < N; i++)
+    x[i] = (i % 3 ? 0.6 : -0.6) + 0.05 * normal(11, 1, i);
+  SCATTER of = {0};
+  assert_int_equal(scatter_make(N, x, &of, NULL), STATUS_OK);
+  assert_true(of.dip_share < 0.05 && of.mean.half_width > 0);
+  static const int powers[] = {-1020, -800, -565, -250, 250, 533, 800, 1024};
+  for (size_t k = 0; k < sizeof powers / sizeof *powers; k++) {
+    const int power = powers[k];
+    struct sample_moments moments = {0}, ordinary = {0};
+    sample_add(&moments, 0); /* larger and larger values come */
+    sample_add(&ordinary, 0);
+    for (size_t i = 0; i < N; i++) {
+      y[i] = ldexp(x[i], power);
+      sample_add(&moments, y[i]);
+      sample_add(&ordinary, x[i]);
+    }
+    const struct sample_summary running = sample_summarise_moments(&moments, 0.95),
+                                usual = sample_summarise_moments(&ordinary, 0.95);
+    const double s = of.mean.standard_deviation;
+    assert_true(fabs(ldexp(running.mean, -power) - usual.mean) < 1e-15);
+    assert_true(fabs(ldexp(running.standard_deviation, -power) - usual.standard_deviation) < 1e-15 * s);
+    SCATTER there = {0};
+    assert_int_equal(scatter_make(N, y, &there, NULL), STATUS_OK);
+    assert_true(there.mean.mean == ldexp(of.mean.mean, power) && there.mean.standard_deviation == ldexp(s, power));
+    assert_true(there.mean.half_width == ldexp(of.mean.half_width, power));
+    assert_true(fabs(there.skewness - of.skewness) < 1e-12 && there.dip == of.dip);
+    assert_true(there.quantile[1].value == ldexp(of.quantile[1].value, power) &&
+                there.sorted[7] == ldexp(of.sorted[7], power));
+    assert_true(there.between == ldexp(of.between, power) && there.upper_share == of.upper_share);
+    assert_true(there.lower_mode == ldexp(of.lower_mode, power) && there.upper_mode == ldexp(of.upper_mode, power));
+    for (double width = 0.5; width < 8; width *= 2)
+      assert_true(sample_may_stop(N, y, ldexp(width * s, power), 0.95, 30) ==
+                  sample_may_stop(N, x, width * s, 0.95, 30));
+  }
+  uint32_t level[] = {0, 1};
+  struct scatter_part parts[1 + SCATTER_PARTS];
+  const double huge[] = {1e160, 2e160, 3e160, 4e160};
+  assert_int_equal(scatter_split(&(struct scatter_table){2, 2, 1, level, huge}, parts, NULL), STATUS_USAGE);
+}
+
 /* Small tables: variances and covariances over n - 1, products over all pairs of different runs. */
 static void split_by_hand(void **state) {
   (void)state;
@@ -230,13 +275,9 @@ static void shares_of_few_seeds(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(known_samples),
-                                     cmocka_unit_test(two_modes),
-                                     cmocka_unit_test(counts_in_few_steps),
-                                     cmocka_unit_test(runs_for_an_interval),
-                                     cmocka_unit_test(coverage),
-                                     cmocka_unit_test(split_of_a_variance),
-                                     cmocka_unit_test(split_by_hand),
-                                     cmocka_unit_test(shares_of_few_seeds)};
+  const struct CMUnitTest tests[] =
+      {cmocka_unit_test(known_samples),         cmocka_unit_test(two_modes),     cmocka_unit_test(counts_in_few_steps),
+       cmocka_unit_test(runs_for_an_interval),  cmocka_unit_test(coverage),      cmocka_unit_test(split_of_a_variance),
+       cmocka_unit_test(at_the_ends_of_double), cmocka_unit_test(split_by_hand), cmocka_unit_test(shares_of_few_seeds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

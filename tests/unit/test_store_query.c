@@ -149,7 +149,7 @@ static void interval_is_that_in_c(void **state) {
     struct rows rows = {.count = 0};
     OK(ask(store, sql, &rows));
     free(sql);
-    struct sample_moments moments = {n, mean, deviation * deviation * ((double)n - 1)};
+    struct sample_moments moments = {n, mean, deviation * deviation * ((double)n - 1), 1};
     struct sample_summary s = sample_summarise_moments(&moments, 0.95);
     if (share)
       sample_of_share(&s, 0.95);
@@ -175,6 +175,31 @@ static void spread_of_equal_values_is_zero(void **state) {
   assert_near(number(store, "SELECT count(fragment_count_hw95) FROM points"), 0, 0); /* no +- 0 */
   assert_near(number(store, "SELECT min(fragment_count_mean) FROM points"), FIXTURE_FRAGMENTS, 0);
   store_close(store, NULL);
+}
+
+/* Deviations whose squares no double holds: SQL has no standard deviation and no interval of them. */
+static void squares_beyond_double_are_withheld(void **state) {
+  (void)state;
+  static const char *const factors[] = {"1e-170", "1e170", "1"};
+  char path[64];
+  for (size_t k = 0; k < 3; k++) {
+    struct store *store = NULL;
+    sqlite3 *db = NULL;
+    char sql[128];
+    OK(store_open_writer(fixture_path(path, "ends"), &store, NULL, 0, &error));
+    OK(fixture_populate(store, 2, 2, 3, false, &error));
+    OK(store_close(store, &error));
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    snprintf(sql, sizeof sql, "UPDATE run SET mean_fragment_mass = (1 + 0.1 * replicate) * %s", factors[k]);
+    assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
+    sqlite3_close(db);
+    OK(store_open_reader(path, &store, &error));
+    assert_near(number(store, "SELECT count(mean_fragment_mass_mean) FROM points"), 4, 0);
+    assert_near(number(store, "SELECT count(mean_fragment_mass_sd) FROM points"), k < 2 ? 0 : 4, 0);
+    assert_near(number(store, "SELECT count(mean_fragment_mass_hw95) FROM points"), k < 2 ? 0 : 4, 0);
+    store_close(store, NULL);
+  }
+  fixture_path(path, "ends");
 }
 
 static void spectra_are_densities(void **state) {
@@ -327,6 +352,9 @@ static void our_aggregates(void **state) {
   assert_near(number(store, "SELECT stdev(value) FROM json_each('[2,4,4,4,5,5,7,9]')"), sqrt(32.0 / 7), 1e-14);
   assert_near(number(store, "SELECT median(value) FROM json_each('[5,1,4,2]')"), 3, 0);
   assert_near(number(store, "SELECT median(value) FROM json_each('[5,1,4]')"), 4, 0);
+  assert_near(number(store, "SELECT mean(value) = avg(value) FROM json_each('[0.1,0.7,0.3,11,1e9]')"), 1, 0);
+  assert_near(number(store, "SELECT mean(value) FROM json_each('[1.6e308,1.7e308]')"), 1.65e308, 1e294);
+  assert_near(number(store, "SELECT mean(NULL) IS NULL AND stdev(value) > 0 FROM json_each('[1e-170,2e-170]')"), 1, 0);
   assert_near(number(store, "SELECT stdev(1) IS NULL AND median(NULL) IS NULL"), 1, 0);
   assert_near(number(store,
                      "SELECT count(*) FROM (SELECT value->>0 AS bin, value->>1 AS count FROM json_each((SELECT "
@@ -451,6 +479,7 @@ int main(void) {
       cmocka_unit_test(student_is_students),
       cmocka_unit_test(interval_is_that_in_c),
       cmocka_unit_test(spread_of_equal_values_is_zero),
+      cmocka_unit_test(squares_beyond_double_are_withheld),
       cmocka_unit_test(spectra_are_densities),
       cmocka_unit_test(groups_say_what_they_pool),
       cmocka_unit_test(the_same_seeds_are_seen),
