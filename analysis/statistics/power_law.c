@@ -264,7 +264,8 @@ static double reach(enum power_law_kind kind, double k, double s, double span) {
 
 double power_law_log_normalisation(enum power_law_kind kind, double k, double s, double span, double mean[2],
                                    double covariance[3]) {
-  double end = reach(kind, k, s, span), peak = exponent_at(kind, k, s, place_of_maximum(kind, k, s, span));
+  const double top = place_of_maximum(kind, k, s, span), top_h = factor(kind, top), peak = exponent_at(kind, k, s, top);
+  double end = reach(kind, k, s, span);
   /* Panels are short compared with the scale of u (about 1/|k|, and 1 for e^u): the error of 16 points is then below
    * 1e-12 (tested). */
   double length = 2 / (1 + fabs(k) / 4);
@@ -276,6 +277,8 @@ double power_law_log_normalisation(enum power_law_kind kind, double k, double s,
       int j = i / 2;
       double u = (p + 0.5 * (1 + (i % 2 ? node[j] : -node[j]))) * length, h = factor(kind, u);
       double f = node_weight[j] * exp(-k * u - s * h - peak);
+      u -= top; /* deviations from the maximum, so that the covariances do not cancel */
+      h -= top_h;
       sum[0] += f;
       sum[1] += f * u;
       sum[2] += f * h;
@@ -285,12 +288,13 @@ double power_law_log_normalisation(enum power_law_kind kind, double k, double s,
     }
   }
   if (mean) {
-    mean[0] = sum[1] / sum[0];
-    mean[1] = sum[2] / sum[0];
+    const double off = sum[1] / sum[0], off_h = sum[2] / sum[0];
+    mean[0] = top + off;
+    mean[1] = top_h + off_h;
     if (covariance) {
-      covariance[0] = sum[3] / sum[0] - mean[0] * mean[0];
-      covariance[1] = sum[4] / sum[0] - mean[0] * mean[1];
-      covariance[2] = sum[5] / sum[0] - mean[1] * mean[1];
+      covariance[0] = sum[3] / sum[0] - off * off;
+      covariance[1] = sum[4] / sum[0] - off * off_h;
+      covariance[2] = sum[5] / sum[0] - off_h * off_h;
     }
   }
   return peak + log(sum[0] * length / 2);

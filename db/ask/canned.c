@@ -32,10 +32,12 @@ static const struct query_canned queries[] = {
      "Exponent beta of F(m) ~ m^-beta by method and window: pooled over each point's runs, with its error.",
      "SELECT * FROM estimates WHERE run_id IS NULL ORDER BY point_id, ordinal", ""},
     {"run-exponents", "Mean and scatter over runs of the exponent that each run gave, by point, method and window.",
-     "SELECT point_id, results_version, method, \"window\", count(beta) AS n, avg(beta) AS beta_mean, sqrt(max(0, "
-     "(total(beta * beta) - count(beta) * avg(beta) * avg(beta)) / (count(beta) - 1))) AS beta_sd,\n"
+     "SELECT point_id, results_version, method, \"window\", count(beta) AS n, avg(beta) AS beta_mean, "
+     "sqrt(total((beta - mean) * (beta - mean)) / (max(count(beta), 1) - 1)) AS beta_sd,\n"
      "  avg(standard_error) AS standard_error_mean\n"
-     "FROM estimates WHERE counts = 1 GROUP BY point_id, results_version, method, \"window\" ORDER BY point_id, "
+     "FROM (SELECT *, avg(beta) OVER (PARTITION BY point_id, results_version, method, \"window\") AS mean FROM "
+     "estimates WHERE counts = 1)\n"
+     "GROUP BY point_id, results_version, method, \"window\" ORDER BY point_id, "
      "min(ordinal)",
      ""},
     {"scatter", "How much the seed matters: relative scatter of the main results per point.", canned_scatter_sql, ""},

@@ -202,6 +202,32 @@ static void squares_beyond_double_are_withheld(void **state) {
   fixture_path(path, "ends");
 }
 
+/* Exponents of runs that differ by 1e-9 scatter by 1e-9: nothing cancels. */
+static void scatter_of_exponents(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  sqlite3 *db = NULL;
+  struct rows rows;
+  OK(store_open_writer(fixture_path(path, "near"), &store, NULL, 0, &error));
+  OK(fixture_populate(store, 1, 1, 3, false, &error));
+  OK(store_close(store, &error));
+  assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+  assert_int_equal(sqlite3_exec(db,
+                                "UPDATE estimate SET beta = 2 + 1e-9 * (SELECT replicate FROM run r WHERE r.run_id = "
+                                "estimate.run_id), standard_error = 0.1",
+                                NULL, NULL, NULL),
+                   SQLITE_OK);
+  sqlite3_close(db);
+  OK(store_open_reader(path, &store, &error));
+  OK(ask(store, ask_canned_find("run-exponents", NULL)->sql, &rows));
+  assert_true(rows.count > 0);
+  if (!strstr(rows.text, ",3,2,1e-09,0.1\n"))
+    fail_msg("%s", rows.text);
+  store_close(store, NULL);
+  fixture_path(path, "near");
+}
+
 static void spectra_are_densities(void **state) {
   (void)state;
   struct store *store = reader();
@@ -480,6 +506,7 @@ int main(void) {
       cmocka_unit_test(interval_is_that_in_c),
       cmocka_unit_test(spread_of_equal_values_is_zero),
       cmocka_unit_test(squares_beyond_double_are_withheld),
+      cmocka_unit_test(scatter_of_exponents),
       cmocka_unit_test(spectra_are_densities),
       cmocka_unit_test(groups_say_what_they_pool),
       cmocka_unit_test(the_same_seeds_are_seen),

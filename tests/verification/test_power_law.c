@@ -103,6 +103,19 @@ static void moments_are_derivatives(void **state) {
   }
 }
 
+/* A narrow lognormal far from 0: its variance is 1/(2 s), that of h = u^2 is 2 u0^2/s + 1/(2 s^2), exact to rounding
+ * although the squares of the means are a million times as large. */
+static void covariances_do_not_cancel(void **state) {
+  (void)state;
+  const double s = 3e3, u0 = 12;
+  double mean[2], covariance[3];
+  power_law_log_normalisation(POWER_LAW_LOGNORMAL, -2 * s * u0, s, HUGE_VAL, mean, covariance);
+  assert_true(fabs(mean[0] - u0) < 1e-12 * u0 && fabs(mean[1] - u0 * u0 - 0.5 / s) < 1e-12 * u0 * u0);
+  assert_true(fabs(covariance[0] * 2 * s - 1) < 1e-11);
+  assert_true(fabs(covariance[1] * s / u0 - 1) < 1e-11);
+  assert_true(fabs(covariance[2] / (2 * u0 * u0 / s + 0.5 / s / s) - 1) < 1e-11);
+}
+
 static void pure_sample_needs_no_factor(void **state) {
   (void)state;
   /* Evenly spaced quantiles of a pure law with its upper tail thickened: s = 0 must be returned as such. */
@@ -211,6 +224,7 @@ int main(void) {
       cmocka_unit_test(groups_are_one_sample),
       cmocka_unit_test(normalisation_is_incomplete_gamma),
       cmocka_unit_test(moments_are_derivatives),
+      cmocka_unit_test(covariances_do_not_cancel),
       cmocka_unit_test(pure_sample_needs_no_factor),
       cmocka_unit_test(near_equal_masses_have_no_exponent),
       cmocka_unit_test(units_do_not_matter),
