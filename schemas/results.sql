@@ -1046,11 +1046,11 @@ INSERT INTO column_doc VALUES ('points', 'doubtful', '1', 'runs behind the means
 
 INSERT INTO column_doc VALUES ('points', 'doubts', NULL, 'warnings of these runs, each different text once; clast explain WORD says what a word means', 0);
 
-INSERT INTO column_doc VALUES ('points', 'dust_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal to 14 digits: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'dust_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal to 14 digits: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'dust_fraction_low95', '1', 'lower end of this interval; of a share also when all runs are equal: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_low95', '1', 'lower end of this interval; of a share also when all runs are equal to 14 digits: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_mean', '1', 'mean over runs: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
@@ -1072,11 +1072,11 @@ INSERT INTO column_doc VALUES ('points', 'failed', '1', 'runs that gave no usabl
 
 INSERT INTO column_doc VALUES ('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers', 0);
 
-INSERT INTO column_doc VALUES ('points', 'fragment_count_high95', '1', 'upper end of this interval; of a share also when all runs are equal: Fragments of any size, single grains (dust) included.', 0);
+INSERT INTO column_doc VALUES ('points', 'fragment_count_high95', '1', 'upper end of this interval; of a share also when all runs are equal to 14 digits: Fragments of any size, single grains (dust) included.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'fragment_count_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: Fragments of any size, single grains (dust) included.', 0);
+INSERT INTO column_doc VALUES ('points', 'fragment_count_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal to 14 digits: Fragments of any size, single grains (dust) included.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'fragment_count_low95', '1', 'lower end of this interval; of a share also when all runs are equal: Fragments of any size, single grains (dust) included.', 0);
+INSERT INTO column_doc VALUES ('points', 'fragment_count_low95', '1', 'lower end of this interval; of a share also when all runs are equal to 14 digits: Fragments of any size, single grains (dust) included.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'fragment_count_mean', '1', 'mean over runs: Fragments of any size, single grains (dust) included.', 0);
 
@@ -1090,11 +1090,11 @@ INSERT INTO column_doc VALUES ('points', 'fragment_count_se', '1', 'standard err
 
 INSERT INTO column_doc VALUES ('points', 'fragment_count_weak', '1', '1: too few runs of this kind for the interval of this share: Fragments of any size, single grains (dust) included.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal to 14 digits: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal to 14 digits: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_low95', '1', 'lower end of this interval; of a share also when all runs are equal: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_low95', '1', 'lower end of this interval; of a share also when all runs are equal to 14 digits: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_mean', '1', 'mean over runs: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
@@ -1108,11 +1108,11 @@ INSERT INTO column_doc VALUES ('points', 'largest_fraction_se', '1', 'standard e
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_high95', 'kg', 'upper end of this interval; of a share also when all runs are equal: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_high95', 'kg', 'upper end of this interval; of a share also when all runs are equal to 14 digits: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_hw95', 'kg', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_hw95', 'kg', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal to 14 digits: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_low95', 'kg', 'lower end of this interval; of a share also when all runs are equal: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_low95', 'kg', 'lower end of this interval; of a share also when all runs are equal to 14 digits: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_mean', 'kg', 'mean over runs: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
@@ -1134,11 +1134,11 @@ INSERT INTO column_doc VALUES ('points', 'results_version', NULL, 'version of th
 
 INSERT INTO column_doc VALUES ('points', 'scene', NULL, 'name of the scene the inputs started from', 0);
 
-INSERT INTO column_doc VALUES ('points', 'second_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'second_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal to 14 digits: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'second_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'second_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal to 14 digits: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'second_fraction_low95', '1', 'lower end of this interval; of a share also when all runs are equal: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'second_fraction_low95', '1', 'lower end of this interval; of a share also when all runs are equal to 14 digits: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'second_fraction_mean', '1', 'mean over runs: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
@@ -1774,7 +1774,7 @@ INSERT INTO column_doc VALUES ('spectra', 'bin', NULL, 'number of a mass bin: te
 
 INSERT INTO column_doc VALUES ('spectra', 'count', '1', 'fragments in the bin, of all runs', 0);
 
-INSERT INTO column_doc VALUES ('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student); NULL: one run, or all are equal', 0);
+INSERT INTO column_doc VALUES ('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student); NULL: one run, or all are equal to 14 digits', 0);
 
 INSERT INTO column_doc VALUES ('spectra', 'count_mean', '1', 'fragments in the bin per run', 0);
 

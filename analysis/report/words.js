@@ -42,7 +42,7 @@ export function between(value, low, high) {
 
 // A mean with its interval; of equal shares, what they bound.
 export function withInterval({mean, hw95, low95, high95, weak}) {
-  if (hw95 === null && typeof low95 === 'number') return `${number(mean)} (all equal: ${number(low95, 3)} to ${number(high95, 3)})`;
+  if (hw95 === null && typeof low95 === 'number') return `${number(mean)} (all equal to 14 digits: ${number(low95, 3)} to ${number(high95, 3)})`;
   const cut = typeof low95 === 'number' && hw95 > 0 && (low95 - (mean - hw95) > 1e-6 || mean + hw95 - high95 > 1e-6);
   const last = cut && lastDecade(Math.max(high95 - mean, mean - low95)), places = mean < 2 * 10 ** last ? 1 - last : -last;
   const told = cut ? `${fixed(mean, places)} (${low95 > 0 ? fixed(low95, places) : 0} to ${high95 < 1 ? fixed(high95, places) : 1})` : withError(mean, hw95); // a share

@@ -225,7 +225,7 @@ void quantity_tell_resolution(struct store *store, const char *name, const char 
   if (ask_resolution(store, 0, name, &resolution, NULL))
     return;
   uncertainty_resolution(&resolution, text);
-  fprintf(stderr, "clast: %s: intervals are over %s (95 %%; none where all are equal); %s\n", name,
+  fprintf(stderr, "clast: %s: intervals are over %s (95 %%; none where all are equal to 14 digits); %s\n", name,
           *pooled ? "points" : "seeds", text);
 }
 

@@ -59,7 +59,8 @@ static status run(const struct command_line *line, struct error *error) {
             "runs. It does not hold the error of the resolution\n",
             options->quantity);
     if (equal)
-      fputs("clast: no interval where all runs, or all differences, are equal: other seeds may differ\n", stderr);
+      fputs("clast: no interval where all runs, or all differences, are equal to 14 digits: other seeds may differ\n",
+            stderr);
   }
   return STATUS_OK;
 }

@@ -20,7 +20,7 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
   ('spectra', 'mass', 'kg', 'their mass'),
   ('spectra', 'count_mean', '1', 'fragments in the bin per run'),
   ('spectra', 'count_sd', '1', 'standard deviation of the count between runs'),
-  ('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student); NULL: one run, or all are equal'),
+  ('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student); NULL: one run, or all are equal to 14 digits'),
   ('spectra', 'density', '1/kg', 'fragment number density F(m): share of all fragments per unit mass; its integral over mass is 1'),
   ('resolution', 'point_id', NULL, 'the point: the scene of a study, or one of its levels'),
   ('resolution', 'results_version', NULL, 'version of the engine''s results that was studied'),
@@ -31,9 +31,9 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
   SELECT 'points', d.column_name || s.column1, d.unit, s.column2 || d.meaning
   FROM column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '),
     ('_se', 'standard error of the mean: '),
-    ('_hw95', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal: '),
-    ('_low95', 'lower end of this interval; of a share also when all runs are equal: '),
-    ('_high95', 'upper end of this interval; of a share also when all runs are equal: '),
+    ('_hw95', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal to 14 digits: '),
+    ('_low95', 'lower end of this interval; of a share also when all runs are equal to 14 digits: '),
+    ('_high95', 'upper end of this interval; of a share also when all runs are equal to 14 digits: '),
     ('_weak', '1: too few runs of this kind for the interval of this share: '),
     ('_resolution', 'how far finer settings may move the mean (view resolution): '),
     ('_resolution_verdict', 'known, at least, diverges, or not studied: ')) s
