@@ -78,7 +78,8 @@ uint64_t condition_before(const struct condition *list, const void *inputs, FILE
     }
     if (c->beside)
       c->beside(inputs, out);
-    fprintf(out, " (clast explain %s)\n", c->word);
+    fprintf(out, "%s%s (clast explain %s)\n", c->should ? "; it counts should " : "", c->should ? c->should : "",
+            c->word);
   }
   return set;
 }
