@@ -1,7 +1,9 @@
 /* The list of commands, and how one is run. */
 #include "campaign/commands/commands.h"
 
+#include <inttypes.h>
 #include <signal.h>
+#include <stdio.h>
 #include <unistd.h>
 
 #include "campaign/farm/farm.h"
@@ -37,9 +39,15 @@ status commands_ask(const struct command_line *line,
   TRY(store_open_reader(line->arguments[0], &store, error));
   TRY(ask_choose(store, &line->choice, error));
   TRY(ask(store, line, error));
-  int64_t excluded = 0;
+  int64_t excluded = 0, others = 0;
   if (line->chooses_runs)
     TRY(ask_run_excluded_count(store, &excluded, error));
+  TRY(ask_choice_others(store, &others, error));
+  if (others > 0)
+    fprintf(stderr,
+            "clast: campaign %s: runs at its points count, whoever computed them; other campaigns computed %" PRId64
+            " of them\n",
+            line->choice.campaign, others);
   uncertainty_excluded(excluded, line->arguments[0]);
   uncertainty_left_out(ask_choice_left_out(store));
   return STATUS_OK;

@@ -23,7 +23,8 @@ static const struct option_row choice_rows[] = {
     OPTION_ROW_INTEGER("point", 'p', "N", struct shared_options, choice.point, 0, INT64_MAX, "0",
                        .doc = "Only this point (point_id in the view points); 0: all."),
     OPTION_ROW_TEXT("campaign", 0, "CAMPAIGN", struct shared_options, choice.campaign, NULL,
-                    .doc = "Only the points of this campaign: its number or its name (`clast status` lists them)."),
+                    .doc = "Only the points of this campaign, with all their runs, also those that other campaigns "
+                           "computed: its number or its name (`clast status` lists them)."),
     OPTION_ROW_TEXT("where", 'w', "SQL", struct shared_options, choice.where, NULL,
                     .doc = "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\"."),
     OPTION_ROW_FLAG("studies", 0, struct shared_options, studies,

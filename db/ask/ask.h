@@ -28,6 +28,8 @@ status ask_choose(struct store *store, const struct ask_choice *choice, struct e
 const char *ask_chosen(const struct store *store);
 /* Points that campaigns_alone left out. */
 int64_t ask_choice_left_out(const struct store *store);
+/* Runs at the points of the chosen campaign that others computed: they count. 0: no campaign is chosen. */
+status ask_choice_others(struct store *store, int64_t *runs, struct error *error);
 /* Fits the exponents of the points whose runs were chosen by a condition: the view estimates has them from then on. */
 status ask_choose_estimates(struct store *store, struct error *error);
 

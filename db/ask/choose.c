@@ -129,6 +129,18 @@ const char *ask_chosen(const struct store *store) {
   return store->chosen;
 }
 
+status ask_choice_others(struct store *store, int64_t *runs, struct error *error) {
+  int64_t chosen = 0;
+  *runs = 0;
+  TRY(sql_integer(store->db, "SELECT count(*) FROM temp.sqlite_schema WHERE name = 'chosen_campaign'", 0, &chosen,
+                  error));
+  return chosen ? sql_integer(store->db,
+                              "SELECT count(*) FROM run JOIN session USING (session_id) WHERE counts AND campaign_id "
+                              "NOT IN (SELECT campaign_id FROM temp.chosen_campaign)",
+                              0, runs, error)
+                : STATUS_OK;
+}
+
 int64_t ask_choice_left_out(const struct store *store) {
   return store->left_out;
 }

@@ -130,6 +130,16 @@ ok "every question chooses runs"
 same "$("$clast" stats one.db --by strain --where 'replicate < 2' --csv 2>/dev/null | cut -d, -f4,5 | tail -n 1)" "2,4" "points and runs"
 same "$("$clast" estimates one.db --where 'replicate = 1' --csv 2>/dev/null | grep -c ',from_2,')" 4 "points with the second seed"
 same "$("$clast" estimates one.db --campaign one --point 2 --csv 2>/dev/null | wc -l)" 4 "rows of a point"
+# A campaign's points count with all their runs: what another campaign computed there is told.
+for part in 1 2; do
+  sed "s/^name: .*/name: b$part/; s/^seeds: .*/seeds: {per_point: 3, first: $part}/; s/^store: .*/store: b$part.db/" one.yaml >b$part.yaml
+  "$clast" run b$part.yaml -j 2 --quiet >out 2>err || fail "b$part"
+done
+expect 0 "$clast" stats b1.db --campaign b1
+grep -q "whoever computed" err && fail "a campaign alone has runs of others"
+"$clast" merge b1.db b2.db >out 2>err || fail "merge of b1 and b2"
+expect 0 "$clast" stats b1.db --campaign b1
+says "clast: campaign b1: runs at its points count, whoever computed them; other campaigns computed 4 of them"
 expect 64 "$clast" map one.db no.svg -x strain -y angle --campaign two
 says "the store has no campaign 'two'"
 expect 64 "$clast" stats one.db --where "no_such > 1"
@@ -192,4 +202,4 @@ says "stop.end_time (0.001 s there, 0.0009 s here) differs, and is a varied inpu
 expect 0 "$clast" stats fresh.db --by end_time --csv
 same "$(cut -d, -f1 out | tail -n +2 | tr '\n' ' ')" "0.0009 0.001 " "settings"
 expect 0 "$clast" check fresh.db
-done_after 96
+done_after 98
