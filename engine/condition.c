@@ -51,14 +51,14 @@ bool condition_broken(const struct condition *c, double number) {
   return c->least ? number < c->bound * (1 - rounding) : number > c->bound * (1 + rounding);
 }
 
-uint64_t condition_before(const struct condition *list, const void *inputs, FILE *out) {
-  uint64_t set = 0;
+condition_set condition_before(const struct condition *list, const void *inputs, FILE *out) {
+  condition_set set = 0;
   for (size_t k = 0; list && list[k].word; k++) {
     const struct condition *c = &list[k];
     const double number = c->before ? c->before(inputs) : (double)NAN;
     if (!condition_broken(c, number))
       continue;
-    set |= UINT64_C(1) << k;
+    set |= (condition_set)1 << k;
     if (!out)
       continue;
     fprintf(out, "%s: %s", c->word, c->fact ? c->fact : c->number);
@@ -162,8 +162,9 @@ void condition_sentence(const struct condition *c, FILE *out) {
   fprintf(out, "%s (clast explain %s)\n", condition_says(c, says), c->word);
 }
 
-void condition_tell(const struct condition *list, const char *words, uint64_t told, const char *before, FILE *out) {
-  bool said[64] = {false};
+void condition_tell(const struct condition *list, const char *words, condition_set told, const char *before,
+                    FILE *out) {
+  bool said[CONDITION_MOST] = {false};
   for (size_t k = 0; list && list[k].word; k++)
     said[k] = told >> k & 1;
   for (size_t k = 0; list && list[k].word; k++) {

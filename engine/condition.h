@@ -55,10 +55,14 @@ struct condition {
 /* Is a number beyond the bound, by more than rounding? Not when it is NaN. */
 bool condition_broken(const struct condition *condition, double number);
 
+/* A set of rows of a list. */
+typedef unsigned __int128 condition_set;
+enum { CONDITION_MOST = 128 };
+
 /* The conditions that the inputs alone break: bit k is the k-th row of `list`, which ends with a word of NULL. Prints a
  * line for each, with number, bound and where to read more, to `out` (NULL: prints nothing). A list of NULL has no
  * rows. */
-uint64_t condition_before(const struct condition *list, const void *inputs, FILE *out);
+condition_set condition_before(const struct condition *list, const void *inputs, FILE *out);
 
 /* Judges a run at its end; a run that goes on by its inputs and by conditions with .lasting. Writes the words of broken
  * conditions, separated by ", ", into `words`. */
@@ -79,7 +83,7 @@ enum condition_mark condition_next(const struct condition *list, const char **wo
                                    char word[CONDITION_WORD], const struct condition **row);
 
 /* Prints "word: " and condition_sentence() for each of the words that `told`, a set of condition_before(), has not. */
-void condition_tell(const struct condition *list, const char *words, uint64_t told, const char *before, FILE *out);
+void condition_tell(const struct condition *list, const char *words, condition_set told, const char *before, FILE *out);
 
 /* Is a word one of some words? */
 bool condition_has(const char *words, const char *word);

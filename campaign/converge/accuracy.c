@@ -201,7 +201,7 @@ static double work_at(const struct campaign *campaign, const struct knob *knob, 
   SCENE scene = scene_copy(campaign->scene);
   if (!kind->work || ladder_turn(knob, scene, setting, &ignored) != STATUS_OK)
     return NAN;
-  const uint64_t marks = condition_before(kind->conditions, scene->inputs, NULL);
+  const condition_set marks = condition_before(kind->conditions, scene->inputs, NULL);
   return marks & ~condition_before(kind->conditions, campaign->scene->inputs, NULL) ? (double)NAN
                                                                                     : kind->work(scene->inputs);
 }

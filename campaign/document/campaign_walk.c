@@ -33,11 +33,11 @@ struct scene *campaign_walk_scene(const struct campaign_walk *walk, struct error
 
 /* ---- Collects the engine's warnings about the first points of a campaign ---- */
 
-enum { LOOKED_AT = 1000, LINE = 500, CONDITIONS = 64 /* most of an engine */ };
+enum { LOOKED_AT = 1000, LINE = 500 };
 
 struct doubts {
-  size_t points, count[CONDITIONS];
-  char first[CONDITIONS][LINE]; /* the engine's text for the first point with this warning */
+  size_t points, count[CONDITION_MOST];
+  char first[CONDITION_MOST][LINE]; /* the engine's text for the first point with this warning */
 };
 
 /* The engine writes its lines in the order of the bits. */
@@ -45,9 +45,9 @@ static void add(struct doubts *doubts, const struct scene *scene) {
   OWNED char *text = NULL;
   FILE *out = text_open(&text);
   doubts->points++;
-  const uint64_t set = condition_before(scene->kind->conditions, scene->inputs, out);
+  const condition_set set = condition_before(scene->kind->conditions, scene->inputs, out);
   const char *line = text_close_small(out, &text);
-  for (size_t k = 0; k < CONDITIONS; k++) {
+  for (size_t k = 0; k < CONDITION_MOST; k++) {
     if (!(set >> k & 1))
       continue;
     const size_t length = strcspn(line, "\n");
@@ -58,7 +58,7 @@ static void add(struct doubts *doubts, const struct scene *scene) {
 }
 
 static void print(const struct doubts *doubts, const char *before, bool counted, FILE *out) {
-  for (size_t k = 0; k < CONDITIONS; k++) {
+  for (size_t k = 0; k < CONDITION_MOST; k++) {
     if (doubts->count[k] == 0)
       continue;
     char text[LINE + 64] = "";

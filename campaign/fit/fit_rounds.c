@@ -210,11 +210,11 @@ static const struct condition *find_withheld(struct fit *fit, const struct obser
     struct error invalid = {0};
     SCENE scene = scene_of(fit, fit->place + j * fit->inputs, &invalid);
     const struct condition *list = scene ? scene->kind->conditions : NULL;
-    const uint64_t broken = scene ? condition_before(list, scene->inputs, NULL) : 0;
+    const condition_set broken = scene ? condition_before(list, scene->inputs, NULL) : 0;
     if (!scene)
       continue; /* a point that cannot run has no values */
     found = NULL;
-    for (size_t k = 0; broken >> k; k++) {
+    for (size_t k = 0; k < CONDITION_MOST && broken >> k; k++) {
       const struct condition one[2] = {list[k], {.word = NULL}};
       if (broken >> k & 1 && condition_mark(one, one[0].word, ask_specimens_result(&datum->ask)) == CONDITION_WITHHELD)
         found = &list[k];

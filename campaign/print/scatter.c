@@ -431,7 +431,7 @@ static void release_points(struct from_points *p) {
 /* Does a condition `effect` of the scene say so of the input? */
 static bool has_no_effect(const struct scene *scene, const char *column) {
   const struct condition *list = scene->kind->conditions;
-  const uint64_t broken = condition_before(list, scene->inputs, NULL);
+  const condition_set broken = condition_before(list, scene->inputs, NULL);
   const struct field *row = field_of_column(scene->kind->inputs, column);
   for (size_t k = 0; row && list && list[k].word; k++)
     if (broken >> k & 1 && list[k].inputs && condition_has(list[k].inputs, row->path))

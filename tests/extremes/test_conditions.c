@@ -54,7 +54,7 @@ static void rows_are_well_formed(void **state) {
         if (strcmp(other->word, c->word) == 0 && strcmp(other[-1].word, c->word) != 0)
           fail_msg("rows of %s do not stand together", c->word);
     }
-    assert_true(count <= 64);
+    assert_true(count <= CONDITION_MOST);
   }
 }
 
@@ -113,9 +113,9 @@ static void bounds_are_exclusive_and_the_end_decides(void **state) {
   char *text = NULL, words[100];
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
-  const uint64_t set = condition_before(rows, NULL, out);
+  const condition_set set = condition_before(rows, NULL, out);
   fclose(out);
-  assert_int_equal(set, 1 | 8);
+  assert_true(set == (1 | 8));
   assert_string_equal(text, "high: n is 5, above 4 (clast explain high)\n"
                             "told: n is 5, above 4; it counts should it break (clast explain told)\n");
   free(text);
@@ -616,7 +616,7 @@ static bool is_marked(const struct twin *twin, const char *const *more) {
   scene_free(scene);
   const struct ran ran = run_case_run(kind, &inputs, 1);
   free(ran.fragments);
-  const uint64_t told = condition_before(kind->conditions, &inputs, NULL);
+  const condition_set told = condition_before(kind->conditions, &inputs, NULL);
   for (size_t k = 0; kind->conditions[k].word; k++) { /* what is told before is so at the end, or may be so */
     const struct condition *c = &kind->conditions[k];
     if (told >> k & 1 && c->after && !c->should && !has_word(ran.outcome.warnings, c->word))
@@ -628,6 +628,39 @@ static bool is_marked(const struct twin *twin, const char *const *more) {
         !*kind->conditions[k].results)
       return true;
   return has_word(ran.outcome.warnings, twin->word);
+}
+
+/* A set holds as many rows as an engine may have. */
+static void many_rows(void **state) {
+  (void)state;
+  static struct condition list[CONDITION_MOST + 1];
+  static char names[CONDITION_MOST][8];
+  for (size_t k = 0; k < CONDITION_MOST; k++) {
+    snprintf(names[k], sizeof names[k], "w%c%c", (char)('a' + k / 26), (char)('a' + k % 26));
+    list[k] = (struct condition){.word = names[k],
+                                 .number = "n",
+                                 .bound = k == 1 || k == 65 || k == 127 ? 4 : 9,
+                                 .doubt = "d",
+                                 .remedy = "r",
+                                 .before = five};
+  }
+  char *text = NULL, words[100];
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  const condition_set set = condition_before(list, NULL, out);
+  fclose(out);
+  for (size_t k = 0; k < CONDITION_MOST; k++)
+    assert_int_equal((int)(set >> k & 1), k == 1 || k == 65 || k == 127);
+  assert_string_equal(text, "wab: n is 5, above 4 (clast explain wab)\nwcn: n is 5, above 4 (clast explain wcn)\n"
+                            "wex: n is 5, above 4 (clast explain wex)\n");
+  free(text);
+  condition_after(list, &(struct condition_run){0}, words, sizeof words);
+  assert_string_equal(words, "wab, wcn, wex");
+  out = open_memstream(&text, &size);
+  condition_tell(list, words, set & ((condition_set)1 << 65), "", out);
+  fclose(out);
+  assert_string_equal(text, "wab: n is above 4 (clast explain wab)\nwex: n is above 4 (clast explain wex)\n");
+  free(text);
 }
 
 static void runs_beyond_a_bound_are_marked_and_their_twins_are_not(void **state) {
@@ -647,6 +680,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rows_are_well_formed),
       cmocka_unit_test(bounds_are_exclusive_and_the_end_decides),
+      cmocka_unit_test(many_rows),
       cmocka_unit_test(runs_beyond_a_bound_are_marked_and_their_twins_are_not),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -134,7 +134,7 @@ static void steps_that_collapse_end_a_run(void **state) {
 /* The words that the inputs alone give, "coarse dust ". */
 static const char *known(const struct engine_kind *kind, const void *inputs) {
   static char words[200];
-  const uint64_t set = condition_before(kind->conditions, inputs, NULL);
+  const condition_set set = condition_before(kind->conditions, inputs, NULL);
   *words = 0;
   for (size_t k = 0; kind->conditions[k].word; k++)
     if (set >> k & 1)
