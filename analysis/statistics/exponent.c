@@ -111,6 +111,18 @@ static size_t select_sorted(size_t n, const double *masses, struct exponent_wind
   return m;
 }
 
+bool exponent_masses_differ(size_t n, const double *masses, size_t *count, double seen[EXPONENT_LEAST_FRAGMENTS]) {
+  const double alike = 1e-6; /* share of a mass: rounding, far below the mass of a particle or grain */
+  for (size_t i = 0; i < n && *count < EXPONENT_LEAST_FRAGMENTS; i++) {
+    bool is_new = true;
+    for (size_t k = 0; k < *count && is_new; k++)
+      is_new = fabs(masses[i] - seen[k]) > alike * seen[k];
+    if (is_new)
+      seen[(*count)++] = masses[i];
+  }
+  return *count == EXPONENT_LEAST_FRAGMENTS;
+}
+
 /* Fits the pure power law on the window of *out; masses: descending. */
 static void fit_pure(size_t n, const double *masses, double upper, struct exponent *out) {
   const struct power_law_group group = power_law_group_of(POWER_LAW_PURE, n, masses, out->lower, upper);
@@ -149,9 +161,13 @@ status exponent_fit(enum exponent_method method, size_t n, const double *masses,
   TRY(memory_array(&inside, n, sizeof *inside, "the masses of an exponent", error));
   const size_t count = select_sorted(n, masses, window, inside);
   out->n = (int64_t)count;
-  if (count >= EXPONENT_LEAST_FRAGMENTS && method == EXPONENT_MASSES)
+  double seen[EXPONENT_LEAST_FRAGMENTS];
+  size_t different = 0;
+  if (!exponent_masses_differ(count, inside, &different, seen))
+    return STATUS_OK;
+  if (method == EXPONENT_MASSES)
     fit_pure(count, inside, window.upper, out);
-  else if (count >= EXPONENT_LEAST_FRAGMENTS)
+  else
     fit_with_cutoff(count, inside, window.upper, out);
   return STATUS_OK;
 }

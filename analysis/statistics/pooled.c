@@ -53,24 +53,19 @@ static double window_of(const struct pooled_runs *runs, size_t r, double lower, 
   return largest;
 }
 
-/* Do the windows of all runs have five different masses? Fewer tell no exponent, however many fragments there are. */
-static bool differ(const struct pooled_runs *runs, double lower) {
-  const double alike = 1e-6; /* share of a mass: rounding, far below the mass of a particle or grain */
+/* Do the windows of all runs but from .. to - 1 have five different masses? Fewer tell no exponent, however many
+ * fragments there are. */
+static bool differ(const struct pooled_runs *runs, double lower, size_t from, size_t to) {
   double seen[EXPONENT_LEAST_FRAGMENTS];
   size_t count = 0, begin, end;
-  for (size_t r = 0; r < runs->count; r++) {
+  bool enough = false;
+  for (size_t r = 0; r < runs->count && !enough; r++) {
+    if (r >= from && r < to)
+      continue;
     window_of(runs, r, lower, &begin, &end);
-    for (size_t i = begin; i < end; i++) {
-      bool is_new = true;
-      for (size_t k = 0; k < count && is_new; k++)
-        is_new = fabs(runs->masses[i] - seen[k]) > alike * seen[k];
-      if (is_new)
-        seen[count++] = runs->masses[i];
-      if (count == EXPONENT_LEAST_FRAGMENTS)
-        return true;
-    }
+    enough = exponent_masses_differ(end - begin, runs->masses + begin, &count, seen);
   }
-  return false;
+  return enough;
 }
 
 /* The statistics of a run in its window; weight 0: no fragment is in it. */
@@ -149,7 +144,7 @@ static void fit_bins(struct prepared *p, size_t begin, size_t end, struct expone
 static void fit_groups(const struct prepared *p, const struct pooled_runs *runs, double lower, struct exponent *fit) {
   const double weight = total_weight(p->runs, p->groups);
   fit->n = (int64_t)weight;
-  if (weight < EXPONENT_LEAST_FRAGMENTS || !differ(runs, lower))
+  if (weight < EXPONENT_LEAST_FRAGMENTS || !differ(runs, lower, 0, 0))
     return;
   const struct power_law plain = power_law_fit(p->runs, p->groups);
   fit->beta = plain.beta;
@@ -158,14 +153,16 @@ static void fit_groups(const struct prepared *p, const struct pooled_runs *runs,
 }
 
 /* theta[g]: beta without the g-th group of `each` runs; there are `groups` of them. */
-static status leave_out(struct prepared *p, size_t groups, size_t each, double *theta, struct error *error) {
+static status leave_out(struct prepared *p, const struct pooled_runs *runs, double lower, size_t groups, size_t each,
+                        double *theta, struct error *error) {
   if (p->groups && !power_law_leave_out(p->runs, p->groups, each, theta))
     return status_fail(error, STATUS_MEMORY, "no memory for %s", for_runs);
   const double weight = total_weight(p->groups ? p->runs : 0, p->groups);
   for (size_t g = 0; g < groups; g++) {
     const size_t begin = g * each, end = g + 1 < groups ? begin + each : p->runs;
     if (p->groups) {
-      if (weight - total_weight(end - begin, p->groups + begin) < EXPONENT_LEAST_FRAGMENTS)
+      if (weight - total_weight(end - begin, p->groups + begin) < EXPONENT_LEAST_FRAGMENTS ||
+          !differ(runs, lower, begin, end))
         theta[g] = NAN;
       continue;
     }
@@ -216,7 +213,7 @@ static status fit_all(struct prepared *p, const struct pooled_runs *runs, enum e
     fit_groups(p, runs, lower, fit);
   else
     fit_bins(p, 0, 0, fit);
-  return isfinite(fit->beta) ? leave_out(p, groups, each, theta, error) : STATUS_OK;
+  return isfinite(fit->beta) ? leave_out(p, runs, lower, groups, each, theta, error) : STATUS_OK;
 }
 
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
@@ -309,7 +306,7 @@ status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled
     groups[r] = group_of(POWER_LAW_PURE, runs, r, lower);
   out->n = (int64_t)total_weight(runs->count, groups);
   struct power_law pure = {.beta = NAN};
-  if (out->n >= EXPONENT_LEAST_FRAGMENTS && differ(runs, lower))
+  if (out->n >= EXPONENT_LEAST_FRAGMENTS && differ(runs, lower, 0, 0))
     pure = power_law_fit(runs->count, groups);
   out->beta = pure.beta;
   if (isfinite(pure.beta)) {
@@ -670,7 +667,7 @@ status pooled_goodness(const struct pooled_runs *runs, double lower, size_t draw
   TRY(make_draw(&windows, &found, error));
   take_runs(runs, lower, &windows, &found);
   out->n = windows.fragments;
-  if (windows.fragments >= EXPONENT_LEAST_FRAGMENTS && differ(runs, lower))
+  if (windows.fragments >= EXPONENT_LEAST_FRAGMENTS && differ(runs, lower, 0, 0))
     out->distance = distance_of(&windows, &found, &beta);
   if (isfinite(out->distance))
     bootstrap(&windows, beta, draws, out, &failed);

@@ -228,6 +228,9 @@ struct exponent {
   double log_likelihood; /* of ln(m), natural logarithm; NaN for least squares */
 };
 
+/* Adds masses that differ from those `seen` to them. True when there are EXPONENT_LEAST_FRAGMENTS: fewer tell no
+ * exponent, however many fragments there are. */
+bool exponent_masses_differ(size_t n, const double *masses, size_t *count, double seen[EXPONENT_LEAST_FRAGMENTS]);
 /* An empty result: the given window, n = 0, everything else NaN. */
 struct exponent exponent_unknown(enum exponent_method method, struct exponent_window window);
 

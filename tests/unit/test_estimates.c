@@ -10,6 +10,29 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 
+/* Few different masses tell no exponent, however many fragments there are: of one run, of runs together, and of what is
+ * left without one run. */
+static void few_masses_tell_nothing(void **state) {
+  (void)state;
+  double masses[200];
+  for (size_t i = 0; i < 200; i++)
+    masses[i] = i < 20 ? 40 : i < 90 ? 20 : 10 * (1 + 1e-9 * (double)(i % 2));
+  struct exponent fit;
+  for (int method = EXPONENT_MASSES; method <= EXPONENT_UPPER_CUTOFF; method++) {
+    assert_int_equal(exponent_fit((enum exponent_method)method, 200, masses, (struct exponent_window){5, 50}, &fit,
+                                  NULL),
+                     STATUS_OK);
+    assert_true(fit.n == 200 && isnan(fit.beta) && isnan(fit.standard_error));
+  }
+  for (size_t i = 0; i < 40; i++) /* only the first of four runs has more */
+    masses[i] = 60 - (double)i;
+  const size_t first[] = {0, 50, 100, 150, 200};
+  struct pooled_exponent pooled;
+  assert_int_equal(pooled_exponent(&(struct pooled_runs){4, first, masses}, EXPONENT_MASSES, 5, 0.95, &pooled, NULL),
+                   STATUS_OK);
+  assert_true(isfinite(pooled.fit.beta) && isnan(pooled.interval.half_width));
+}
+
 static void rows_of_a_run(void **state) {
   (void)state;
   /* 60 resolved fragments of 100/1..100/60 x 3 grains each, 140 grains of dust; every grain 2 kg. */
@@ -118,8 +141,11 @@ static void bad_windows_are_refused(void **state) {
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rows_of_a_run),           cmocka_unit_test(nothing_to_fit),
-      cmocka_unit_test(least_squares_by_hand),   cmocka_unit_test(equal_masses_have_no_exponent),
+      cmocka_unit_test(few_masses_tell_nothing),
+      cmocka_unit_test(rows_of_a_run),
+      cmocka_unit_test(nothing_to_fit),
+      cmocka_unit_test(least_squares_by_hand),
+      cmocka_unit_test(equal_masses_have_no_exponent),
       cmocka_unit_test(bad_windows_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
