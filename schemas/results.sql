@@ -526,7 +526,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   (SELECT "result_sph"."peak_strain" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', event,')))) IS NOT TRUE) AS "peak_strain",
   (SELECT "result_sph"."peak_time" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', event,')))) IS NOT TRUE) AS "peak_time",
   "result_sph"."cracks" AS "cracks",
-  (SELECT "result_sph"."frequency" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', cracked,') OR instr(', ' || r.warnings || ',', ', samples,')))) IS NOT TRUE) AS "frequency",
+  (SELECT "result_sph"."frequency" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', cracked,') OR instr(', ' || r.warnings || ',', ', samples,') OR instr(', ' || r.warnings || ',', ', uneven,')))) IS NOT TRUE) AS "frequency",
   (SELECT "result_sph"."rebound" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', apart,')))) IS NOT TRUE) AS "rebound",
   "result_sph"."shock_speed" AS "shock_speed",
   "result_sph"."shock_speed_exact" AS "shock_speed_exact",
