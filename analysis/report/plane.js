@@ -7,7 +7,7 @@ import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
 import {interval} from './statistics.js';
 import {ask, exponents, has, newest} from './stores.js';
-import {inUnit, isShare, label, marked, number, plural, shellFile, withInterval} from './words.js';
+import {inUnit, isShare, label, marked, number, plural, shell, shellFile, withInterval} from './words.js';
 
 const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
 
@@ -101,6 +101,22 @@ function resolutionText({resolution, verdict}) {
 export const modesText = ({modes, judged}) => (modes ? `two: ${number(modes.lower_mode, 3)} and ${number(modes.upper_mode, 3)}, the upper one in ` +
   `${number(100 * modes.upper_share, 2)} % of the runs (${number(100 * modes.upper_low, 2)} to ${number(100 * modes.upper_high, 2)} %)` : judged ? 'not two' : 'not judged');
 
+// Where several points share a cell of the map, it shows one value of each other input: that of a chosen point at first.
+// Empty: every point has a cell of its own.
+function slice() {
+  if (!state.y) return {};
+  const {points, varied} = store(), cellOf = (point) => JSON.stringify([point[state.x], point[state.y]]);
+  if (new Set(points.map(cellOf)).size === points.length) return {};
+  const others = varied.map((axis) => axis.column_name).filter((column) => column !== state.x && column !== state.y);
+  const first = chosenPoints()[0] ?? points[0];
+  return Object.fromEntries(others.map((column) => [column,
+    points.some((point) => point[column] === state.at[column]) ? state.at[column] : first[column] ?? null]));
+}
+
+const inSlice = (row, at) => Object.entries(at).every(([column, value]) => (row[column] ?? null) === value);
+const sliceText = (at) => Object.entries(at).map(([column, value]) => `${label(state.stores, column)} = ${valueText(column, value)}`).join(', ');
+const valueText = (column, value) => (value === null ? 'none' : String(placeOf(column, value)));
+
 function data(quantity) {
   return cells(store(), quantity).map((cell) => ({
     ...cell,
@@ -192,7 +208,7 @@ function within(place, row) {
   return Object.entries(place).every(([column, range]) => {
     if (!Array.isArray(range)) return true;
     const value = row[column];
-    const ends = range.length === 2 && range.every((end) => typeof end === 'number') && !axisOf(column, plane.rows, '').discrete;
+    const ends = range.length === 2 && range.every((end) => typeof end === 'number') && !axisOf(column, plane.shown, '').discrete;
     const inLine = state.y === '' || state.y === null;
     if (ends || (inLine && range.length === 2 && typeof value === 'number')) return value >= Math.min(...range) && value <= Math.max(...range);
     return range.includes(value);
@@ -204,13 +220,13 @@ export function choose(ids) {
   changed('chosen');
 }
 
-const plane = {view: null, rows: [], waiting: 0};
+const plane = {view: null, rows: [], shown: [], waiting: 0}; // shown: the rows that the chart has
 
 function listen(view) {
   view.addSignalListener('brush', (_, place) => {
     clearTimeout(plane.waiting);
     plane.waiting = setTimeout(() => {
-      if (place && Object.keys(place).length) choose(plane.rows.filter((row) => within(place, row)).map((row) => row.point_id));
+      if (place && Object.keys(place).length) choose(plane.shown.filter((row) => within(place, row)).map((row) => row.point_id));
     }, 80);
   });
   view.addEventListener('click', (_, item) => {
@@ -243,13 +259,15 @@ function takeKeys(figure, rows) {
   });
 }
 
-function commandOf() {
+function commandOf(at) {
   const quantity = state.quantity === 'beta' ? 'beta' : state.quantity;
   const from = shellFile(store().name);
   if (!state.x) return `clast stats ${from} --quantity ${quantity}`;
   const numeric = (column) => plane.rows.some((row) => typeof row[column] === 'number');
-  if (state.y && numeric(state.x) && numeric(state.y)) return `clast map ${from} map.png -x ${state.x} -y ${state.y} -Q ${quantity}`;
-  return `clast plot ${from} plot.png -x ${state.x}${state.y ? ` --by ${state.y}` : ''} -Q ${quantity}`;
+  const sql = Object.entries(at).map(([column, value]) => `${column} IS ${typeof value === 'string' ? `'${value.replace(/'/g, "''")}'` : value}`).join(' AND ');
+  const where = sql && ` --where ${shell(sql)}`;
+  if (state.y && numeric(state.x) && numeric(state.y)) return `clast map ${from} map.png -x ${state.x} -y ${state.y} -Q ${quantity}${where}`;
+  return `clast plot ${from} plot.png -x ${state.x}${state.y ? ` --by ${state.y}` : ''} -Q ${quantity}${where}`;
 }
 
 const WHAT_ERRORS = '±, which the table of points has too, is the half width of the 95 % interval over seeds. It does not hold the error of the resolution';
@@ -264,12 +282,15 @@ function resolutionSentence(rows) {
 export async function showPlane() {
   const figure = document.getElementById('plane-chart');
   const title = label(state.stores, state.quantity);
-  const rows = (plane.rows = data(state.quantity));
+  const at = slice();
+  state.at = {...state.at, ...at};
+  plane.rows = data(state.quantity);
+  const rows = (plane.shown = plane.rows.filter((row) => inSlice(row, at)));
   const known = rows.filter((row) => row.mean !== null);
   const untold = [...new Set(rows.map((row) => row.untold).filter(Boolean))].join(', or ');
   const reason = untold ? ` -: not known to a whole number: ${untold}.` : '';
   if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence(store(), rows)}`);
-  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${doubtSentence(store(), rows)}`;
+  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${doubtSentence(store(), rows)}`;
   if (!state.x) {
     nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows)}${doubtSentence(store(), rows)}`);
     return;
@@ -278,7 +299,7 @@ export async function showPlane() {
   const view = await draw(figure, state.y ? planeSpec(rows, title) : lineSpec(known, title), {
     name: 'plane', description: `${title} over ${inputs.map((input) => label(state.stores, input)).join(' and ')}. Arrow keys move, the space bar chooses; the table of points below has the numbers`,
     keys: true,
-    caption, command: commandOf(), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'low95', 'high95', 'weak', 'untold', 'resolution', 'doubtful', 'doubts'],
+    caption, command: commandOf(at), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'low95', 'high95', 'weak', 'untold', 'resolution', 'doubtful', 'doubts'],
     rows: rows.map((row) => [row.point_id, ...inputs.map((input) => row[input]), row.n, row.mean, row.hw95, row.low95, row.high95, row.weak, row.untold, row.resolution, row.doubt?.doubtful ?? 0, wordsOf(row.doubt).join(', ')]),
   });
   plane.view = view;
@@ -320,10 +341,18 @@ export function showChoices() {
     parts.push(select('store', 'Store', state.stores.map((one, i) => [String(i), one.name]), String(state.active), (value) => {
       state.active = Number(value);
       state.chosen = new Set();
+      state.at = {};
       changed('store');
     }));
   parts.push(select('quantity', 'Quantity', options([...quantities.main, 'beta', ...quantities.others]), state.quantity, set('quantity')));
   if (columns.length > 0) parts.push(select('x', 'x axis', options(columns), state.x, set('x')));
   if (columns.length > 1) parts.push(select('y', 'y axis', [['', '(nothing: a line)'], ...options(columns.filter((column) => column !== state.x))], state.y ?? '', set('y')));
+  for (const [column, value] of Object.entries(slice())) { // the other inputs of a map
+    const values = [...new Set(store().points.map((point) => point[column] ?? null))].sort((a, b) => (a < b ? -1 : 1));
+    parts.push(select(`at-${column}`, label(state.stores, column), values.map((one) => [JSON.stringify(one), valueText(column, one)]), JSON.stringify(value), (text) => {
+      state.at = {...state.at, [column]: JSON.parse(text)};
+      changed('plane');
+    }));
+  }
   fill(document.getElementById('choices'), ...parts);
 }

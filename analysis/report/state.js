@@ -3,7 +3,7 @@
 import {widestSpectrum} from './questions.js';
 import {ask} from './stores.js';
 
-export const state = {stores: [], active: 0, quantity: null, x: null, y: null, chosen: new Set(), sql: null};
+export const state = {stores: [], active: 0, quantity: null, x: null, y: null, at: {}, chosen: new Set(), sql: null}; // at: values of other inputs by column
 
 export const store = () => state.stores[state.active];
 export const chosenPoints = () => store().points.filter((point) => state.chosen.has(point.point_id));
@@ -21,6 +21,7 @@ export function writeAddress() {
   const words = new URLSearchParams();
   if (state.active) words.set('store', state.active);
   for (const key of ['quantity', 'x', 'y', 'sql']) if (state[key]) words.set(key, state[key]);
+  if (Object.keys(state.at).length) words.set('at', JSON.stringify(state.at));
   if (state.chosen.size && state.chosen.size <= 200) words.set('points', [...state.chosen].join('.'));
   history.replaceState(null, '', String(words) ? `#${words}` : location.pathname); // an address that ends in # confuses Vega's links
 }
@@ -29,6 +30,12 @@ export function readAddress() {
   const words = new URLSearchParams(location.hash.slice(1));
   state.active = Math.min(Math.max(0, Number(words.get('store')) || 0), state.stores.length - 1);
   for (const key of ['quantity', 'x', 'y', 'sql']) state[key] = words.get(key);
+  try {
+    const at = JSON.parse(words.get('at') ?? '{}');
+    state.at = Object.fromEntries(store().varied.map(({column_name: column}) => [column, at[column]]).filter(([, value]) => value !== undefined));
+  } catch {
+    state.at = {};
+  }
   const known = new Set(store().points.map((point) => point.point_id));
   state.chosen = new Set((words.get('points') ?? '').split('.').map(Number).filter((id) => known.has(id)));
 }

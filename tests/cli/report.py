@@ -1,7 +1,7 @@
-"""The page of `clast report` in headless Chromium, as a reader uses it. usage: report.py SUPPORT CLAST PAGE STORE OTHER MARKED
+"""The page of `clast report` in headless Chromium, as a reader uses it. usage: report.py SUPPORT CLAST PAGE STORE OTHER MARKED THREE
 
 STORE is what the page was made from, OTHER is a store to drop on it. MARKED.html is
-the page of MARKED.db, of which the points 2 and 4 are in doubt."""
+the page of MARKED.db, of which the points 2 and 4 are in doubt. THREE.html is the page of THREE.db with three varied inputs."""
 import base64
 import csv
 import gzip
@@ -15,7 +15,7 @@ import sqlite3
 import subprocess
 import sys
 
-support, clast, page, store, other, marked = sys.argv[1:7]
+support, clast, page, store, other, marked, three = sys.argv[1:8]
 sys.path.insert(0, support)
 from browser import Browser  # noqa: E402
 
@@ -324,6 +324,30 @@ def marks(browser):
     done("a dropped store is marked by the words of its runs")
 
 
+def slices(browser):
+    """Where several points share a cell of the map, it shows one value of the other input; a click chooses no hidden point."""
+    browser.open(f"{three}.html#points=1&x=threshold_strain&y=threshold_angle")
+    wait_shown(browser, 1)
+    keep_downloads(browser)
+    of_value = []
+    for value in ("1000", "2000"):
+        count = shown(browser)
+        browser.js(f"{{ const box = document.querySelector('[name=at-charge_energy]'); box.value = '{value}'; box.dispatchEvent(new Event('change')); }} 0")
+        wait_shown(browser, count + 1)
+        assert f"= {int(value) // 1000}. " in text(browser, "#plane-chart figcaption"), text(browser, "#plane-chart figcaption")
+        rows = list(csv.DictReader(io.StringIO(taken(browser, "#plane-chart", "CSV"))))
+        assert len({(row["threshold_strain"], row["threshold_angle"]) for row in rows}) == len(rows) == 4, rows
+        of_value.append({int(row["point_id"]) for row in rows})
+        command = shlex.split(text(browser, "#plane-chart code"))
+        assert command[-2:] == ["--where", f"charge_energy IS {value}"], command
+        subprocess.run([clast, *command[1:]], check=True, capture_output=True)
+        with sqlite3.connect(f"{three}.db") as db:
+            wanted = {row[0] for row in db.execute("SELECT point_id FROM points WHERE charge_energy = ?", (float(value),))}
+        assert of_value[-1] == wanted, (of_value, wanted)
+    assert len(set.union(*of_value)) == 8, of_value
+    done("a map of three inputs shows one value of the third")
+
+
 def widths(browser):
     for width in (1280, 768, 390):
         browser.size(width, 900)
@@ -348,6 +372,7 @@ with Browser() as browser:
     drop(browser)
     widths(browser)
     marks(browser)
+    slices(browser)
     assert browser.complaints == [], browser.complaints
     outside = [url for url in browser.requests if not url.startswith(("file:", "blob:", "data:", "about:"))]
     assert outside == [], outside
