@@ -42,13 +42,13 @@ struct row {
 
 struct quantity {
   bool exponent;
-  size_t axes;                   /* 1 to AXES */
-  char column[AXES][256];        /* the axes' columns in the views */
-  char name[256];                /* column of the quantity, or the exponent's name */
-  char pooled[ASK_GROUP_POOLED]; /* other varied inputs that the means average over, with points as units; "": none */
-  char untold[400];              /* why some exponents are not told: their values are NaN */
-  bool sampled;                  /* every point has its own values of the inputs that are not drawn */
-  struct row *row;               /* owned */
+  size_t axes;                     /* 1 to AXES */
+  char column[AXES][256];          /* the axes' columns in the views */
+  char name[256];                  /* column of the quantity, or the exponent's name */
+  char pooled[ASK_GROUP_POOLED];   /* other varied inputs that the means average over, with points as units; "": none */
+  char untold[400];                /* why some exponents are not told: their values are NaN */
+  char changing[ASK_GROUP_POOLED]; /* varied inputs that are not drawn and change from point to point; "": none */
+  struct row *row;                 /* owned */
   size_t count, room;
   struct ask_column written[LIMITS_AXES_OF_TABLE]; /* the varied inputs, in the units that the campaign gives */
   size_t written_count;
@@ -169,7 +169,7 @@ static status read_quantity(struct store *store, const char *const inputs[AXES],
   ANSWER groups = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : name, quantity->pooled, error);
   TRY(answer_status(&groups));
   TRY(read_names(quantity, &groups, refusal, error));
-  quantity->sampled = !*quantity->pooled && quantity->written_count > quantity->axes;
+  TRY(ask_group_changing(store, by, quantity->changing, error));
   if (!quantity->exponent)
     return read_groups(quantity, &groups, error);
   quantity->pooled[0] = '\0'; /* exponents belong to single points */
@@ -351,18 +351,10 @@ static void label_lines(struct plot *plot, const char *by) {
   }
 }
 
-/* In a caption and on stderr: every point has values of its own of the other inputs, as a sample has. */
-static void tell_sampled(const struct quantity *quantity, char *caption, size_t size) {
-  char others[400] = "", sentence[500];
-  for (size_t i = 0; i < quantity->written_count; i++) {
-    const char *name = quantity->written[i].name;
-    bool drawn = false;
-    for (size_t a = 0; a < quantity->axes; a++)
-      drawn |= strcmp(name, quantity->column[a]) == 0;
-    if (!drawn)
-      text_append(others, sizeof others, "%s%s", *others ? ", " : "", name);
-  }
-  charts_labels(others, sentence, sizeof sentence);
+/* In a caption and on stderr: from point to point other inputs change, too, as in a sample or in two campaigns. */
+static void tell_changing(const struct quantity *quantity, char *caption, size_t size) {
+  char sentence[ASK_GROUP_POOLED + 100];
+  charts_labels(quantity->changing, sentence, sizeof sentence);
   text_append(caption, size, "; from mark to mark %s changes, too", sentence);
   fprintf(
       stderr,
@@ -391,7 +383,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
     curves[i].places = plot->places;
     curves[i].place = plot->place;
     curves[i].mean = plot->line[i].means;
-    curves[i].scattered = quantity->sampled;
+    curves[i].scattered = *quantity->changing;
   }
   charts_label(quantity->name, name);
   charts_label(quantity->column[0], over);
@@ -404,8 +396,8 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   snprintf(caption, sizeof caption, "Bars: %s; %s", intervals, resolution);
   if (*quantity->untold)
     text_append(caption, sizeof caption, "; no mark: %s", quantity->untold);
-  if (quantity->sampled)
-    tell_sampled(quantity, caption, sizeof caption);
+  if (*quantity->changing)
+    tell_changing(quantity, caption, sizeof caption);
   TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
   return picture_curves(page, &(struct picture_words){title, caption, x, y}, plot->count, curves, error);
 }
@@ -430,9 +422,9 @@ struct panels {
   char text[MOST_PANELS][CHARTS_LABEL + INPUT_TEXT];
 };
 
-/* An interval must not shrink by rounding. */
-static double two_digits_up(double half_width) {
-  const double last = pow(10, floor(log10(half_width)) - 1);
+/* An interval must not shrink by rounding. With a digit more than in tables, whose digits it rounds to. */
+static double three_digits_up(double half_width) {
+  const double last = pow(10, floor(log10(half_width)) - 2);
   return last * ceil(half_width / last * (1 - 1e-12));
 }
 
@@ -453,8 +445,8 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
   charts_intervals(quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "", resolution, sizeof resolution);
   if (widest > 0)
-    snprintf(caption, sizeof caption, "The widest of the %s is \xc2\xb1 %.2g, `clast %s` has all; %s", intervals,
-             two_digits_up(widest), quantity->exponent ? "estimates" : "stats", resolution);
+    snprintf(caption, sizeof caption, "The widest of the %s is \xc2\xb1 %.3g, `clast %s` has all; %s", intervals,
+             three_digits_up(widest), quantity->exponent ? "estimates" : "stats", resolution);
   else
     snprintf(caption, sizeof caption, "No interval: %s; %s",
              quantity->exponent ? "too few runs or fragments" : "one run a point", resolution);
@@ -520,8 +512,8 @@ static status make_tiles(struct store *store, const struct quantity *quantity, s
                                           .doubtful = row->doubtful,
                                           .decimals = decimals_of(row, views_is_share(quantity->name)),
                                           .panel = panel};
-    if (isfinite(row->value))
-      widest = fmax(widest, row->half_width); /* NaN: no interval */
+    if (isfinite(row->value) && row->half_width > 0) /* of a share within 0 and 1 the larger distance to an end */
+      widest = fmax(widest, fmax(row->upper - row->value, row->value - row->lower));
   }
   TRY(check_told(quantity, error));
   return draw_tiles(store, quantity, count, tile, &panels, widest, page, error);

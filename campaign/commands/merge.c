@@ -25,19 +25,57 @@ static status merge_source(struct store *store, const char *target, const char *
   return STATUS_OK;
 }
 
+/* Inputs in which campaigns of one scene differ become varied inputs, as when they are run into one store: tables show
+ * them. An input whose default follows from others is left out, as its value may follow from theirs. */
+static status show_inputs(struct store *store, const char *target, struct error *error) {
+  const struct field *rows[LIMITS_AXES_OF_POOL];
+  char names[1024] = "";
+  size_t count = 0;
+  ANSWER different = ask_campaign_different_inputs(store, error);
+  while (answer_next(&different) && count < LIMITS_AXES_OF_POOL) {
+    const struct engine_kind *kind = engine_find(answer_text(&different, 0), NULL);
+    const struct field *row = kind ? field_find(kind->inputs, answer_text(&different, 1), NULL) : NULL;
+    if (!row || row->flags & FIELD_DERIVED)
+      continue;
+    rows[count++] = row;
+    text_append(names, sizeof names, "%s%s", *names ? ", " : "", row->path);
+  }
+  TRY(answer_end(&different));
+  for (size_t i = 0; i < count; i++)
+    TRY(store_add_axis(store, rows[i], strcmp(rows[i]->unit ? rows[i]->unit : "", "rad") == 0 ? "deg" : "", error));
+  if (count)
+    fprintf(stderr,
+            "clast: warning: campaigns of one scene differ in %s: %s of %s from now on (--by). `clast stats %s "
+            "--campaign NAME` takes one campaign alone\n",
+            names, count == 1 ? "it is a varied input" : "they are varied inputs", target, target);
+  return STATUS_OK;
+}
+
 static status merge(struct store *store, const struct command_line *line, int64_t *disagreeing, struct error *error) {
   for (size_t i = 1; i < line->count; i++) {
     int64_t differing;
     TRY(merge_source(store, line->arguments[0], line->arguments[i], &differing, error));
     *disagreeing += differing;
   }
+  TRY(show_inputs(store, line->arguments[0], error));
   return pooling_store(store, 0, error);
+}
+
+/* A missing source, or one that is no store, is told before the target is made. */
+static status check_sources(const struct command_line *line, struct error *error) {
+  for (size_t i = 1; i < line->count; i++) {
+    struct store *source = NULL;
+    TRY(store_open_reader(line->arguments[i], &source, error));
+    TRY(store_close(source, error));
+  }
+  return STATUS_OK;
 }
 
 static status run(const struct command_line *line, struct error *error) {
   struct store *store = NULL;
   int64_t disagreeing = 0;
   char warning[512] = "";
+  TRY(check_sources(line, error));
   TRY(store_open_writer(line->arguments[0], &store, warning, sizeof warning, error));
   if (*warning)
     fprintf(stderr, "clast: %s\n", warning);

@@ -43,10 +43,13 @@ static status warn_of_twins(struct store *store, struct error *error) {
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const char *quantity = strcmp(options->quantity, "main") == 0 ? NULL : options->quantity;
-  char pooled[ASK_GROUP_POOLED] = "";
+  char pooled[ASK_GROUP_POOLED] = "", changing[ASK_GROUP_POOLED] = "";
   TRY(table_answer(ask_group(store, options->by, quantity, pooled, error), true, line->format, stdout));
   if (*pooled)
     fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
+  TRY(ask_group_changing(store, options->by, changing, error));
+  if (*changing)
+    fprintf(stderr, "clast: from row to row the value of %s changes, too (--by)\n", changing);
   const int64_t levels = *pooled ? ask_campaign_levels(store) : 0;
   if (levels > 0)
     fprintf(stderr,

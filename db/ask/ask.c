@@ -108,6 +108,17 @@ struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, 
       (long long)campaign, (long long)campaign, (long long)point, (long long)point);
 }
 
+struct answer ask_campaign_different_inputs(struct store *store, struct error *error) {
+  return answer_to(store, error,
+                   "WITH known AS (SELECT engine, scene_name, first FROM (SELECT min(point_id) AS first FROM "
+                   "campaign_point GROUP BY "
+                   "campaign_id) JOIN point ON point_id = first) SELECT DISTINCT engine, path FROM known JOIN "
+                   "point_input ON point_id "
+                   "= first WHERE path NOT IN (SELECT path FROM axis) GROUP BY engine, scene_name, path HAVING "
+                   "count(DISTINCT value) "
+                   "> 1 ORDER BY engine, path");
+}
+
 /* The runs of each campaign with their class: safe (usable, no warnings), warned (usable, with warnings), refused
  * (another state). `question` has no format. */
 static struct answer ask_judged(struct store *store, const char *question, struct error *error) {

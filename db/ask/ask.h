@@ -72,6 +72,8 @@ struct answer ask_campaign_documents(struct store *store, struct error *error);
  * and that no campaign of the store varies, so that tables do not show them. A row per input: path, value of the last
  * such campaign that differs (SI; NULL: the input does not apply there). */
 struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, int64_t point, struct error *error);
+/* The same of all campaigns of one scene, as after a merge. A row per input: engine, path. */
+struct answer ask_campaign_different_inputs(struct store *store, struct error *error);
 
 /* A row per campaign: runs, safe, warned, refused, runs given up without a result, the largest energy_error of usable
  * runs, and the number of usable runs with an error above 1 % and no warning. */
@@ -375,6 +377,10 @@ bool ask_specimens_next(struct answer *answer, const struct ask_specimens_quanti
 enum { ASK_GROUP_POOLED = 512 };
 struct answer ask_group(struct store *store, const char *by, const char *quantities, char pooled[ASK_GROUP_POOLED],
                         struct error *error);
+
+/* The varied inputs that are none of `by` and change from group to group, though in no group ("": none): the rows of
+ * ask_group() differ in more than their axes, as those of two campaigns do. */
+status ask_group_changing(struct store *store, const char *by, char changing[ASK_GROUP_POOLED], struct error *error);
 
 /* The full name of one result column of the view runs from a unique ending of it. STATUS_USAGE names the known ones. */
 enum { ASK_GROUP_NAME = 128 };

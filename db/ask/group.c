@@ -33,22 +33,34 @@ struct choice { /* possible meanings of a word */
   size_t matches;
   bool exact;
   char near[NAME], known[4096], matching[1024];
-  char alike[512]; /* names with a word of it, of many the first ones */
-  int similar;
+  char alike[512]; /* names with most words of it, of many the first ones */
+  int similar, alike_words;
 };
 
 static void append(char *list, size_t size, const char *name) {
   text_append(list, size, "%s%s", *list ? ", " : "", name);
 }
 
-/* Has `name` one of the words of `wanted`, such as "mass" of mass_largest? */
-static bool is_alike(const char *name, const char *wanted) {
+/* How many of the words of `wanted` has `name`, such as "mass" of mass_largest? */
+static int words_alike(const char *name, const char *wanted) {
   char words[NAME], *rest = words;
+  int count = 0;
   snprintf(words, sizeof words, "%s", wanted);
   for (const char *word; (word = strsep(&rest, "._ "));)
-    if (strlen(word) > 2 && strstr(name, word))
-      return true;
-  return false;
+    count += strlen(word) > 2 && strstr(name, word);
+  return count;
+}
+
+/* Keeps the names that have most words of it. */
+static void keep_alike(struct choice *choice, const char *name) {
+  const int words = words_alike(name, choice->wanted);
+  if (words > choice->alike_words) {
+    choice->alike_words = words;
+    choice->similar = 0;
+    choice->alike[0] = '\0';
+  }
+  if (words > 0 && words == choice->alike_words && choice->similar++ < NAMED)
+    append(choice->alike, sizeof choice->alike, name);
 }
 
 static void consider(struct choice *choice, const char *column, const char *path) {
@@ -59,8 +71,7 @@ static void consider(struct choice *choice, const char *column, const char *path
     choice->guess.nearest = choice->near;
   }
   append(choice->known, sizeof choice->known, name);
-  if (is_alike(name, choice->wanted) && choice->similar++ < NAMED)
-    append(choice->alike, sizeof choice->alike, name);
+  keep_alike(choice, name);
   bool exact = strcmp(column, choice->wanted) == 0 || (path && strcmp(path, choice->wanted) == 0);
   if (choice->exact || !(exact || text_ends_in_words(column, choice->wanted, "_.") ||
                          (path && text_ends_in_words(path, choice->wanted, "_.")) ||
@@ -98,7 +109,7 @@ static status look_for(struct store *store, const char *columns_sql, const char 
     choice->wanted = forms[i];
     choice->sections = i + 1 == sizeof forms / sizeof forms[0];
     choice->known[0] = choice->alike[0] = '\0';
-    choice->similar = 0;
+    choice->similar = choice->alike_words = 0;
     ANSWER answer = answer_to(store, error, "%s", columns_sql);
     while (answer_next(&answer))
       consider(choice, answer_text(&answer, 0), answer_count(&answer) > 1 ? answer_text(&answer, 1) : NULL);
@@ -140,11 +151,12 @@ static status judge_input(struct store *store, const char *name, const struct ch
   if (!differs)
     return status_fail(error, STATUS_USAGE, "%s has one value in all points. Known are: %s.", path,
                        choice->known[0] ? choice->known : "none");
-  return status_fail(error, STATUS_USAGE,
-                     "%s is no axis of this store: --by takes inputs that a campaign varies, and those that differ "
-                     "between campaigns of one scene name that were run into this store (names here: %s). --campaign "
-                     "chooses one campaign. Known are: %s.",
-                     path, scenes, choice->known[0] ? choice->known : "none");
+  if (strchr(scenes, ','))
+    return status_fail(error, STATUS_USAGE,
+                       "%s differs between scenes (%s) and is no axis: --campaign chooses one campaign. Known are: %s.",
+                       path, scenes, choice->known[0] ? choice->known : "none");
+  return status_fail(error, STATUS_USAGE, "%s is no axis of this store: no campaign varies it. Known are: %s.", path,
+                     choice->known[0] ? choice->known : "none");
 }
 
 static status resolve(struct store *store, const char *list, const char *what, const char *columns_sql,
@@ -263,19 +275,35 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   return text_close_small(out, &sql);
 }
 
+/* The points with runs, and the number `grp` of the group that each belongs to. The caller frees it. */
+static char *grouped_sql(const struct names *axes) {
+  char *sql = NULL;
+  FILE *out = text_open(&sql);
+  fputs("WITH grouped AS (SELECT point_id, dense_rank() OVER (ORDER BY ", out);
+  write_names(out, axes);
+  fputs("engine, results_version) AS grp FROM points WHERE n > 0)", out);
+  return text_close_small(out, &sql);
+}
+
+/* The first NAMED of the answer's names. */
+static status take_first_names(struct answer *answer, char list[ASK_GROUP_POOLED]) {
+  size_t count = 0;
+  for (list[0] = '\0'; answer_next(answer); count++)
+    if (count < NAMED)
+      append(list, ASK_GROUP_POOLED, answer_text(answer, 0));
+  if (count > NAMED)
+    text_append(list, ASK_GROUP_POOLED, " and %zu more inputs", count - NAMED);
+  return answer_end(answer);
+}
+
 /* What differs within a group: `scene`, and the varied inputs or, when the points of a group differ in none of them,
  * all others. The first NAMED are named. */
 static status find_pooled(struct store *store, const struct names *axes, char pooled[ASK_GROUP_POOLED],
                           struct error *error) {
-  sqlite3_str *order = sqlite3_str_new(NULL);
-  pooled[0] = '\0';
-  for (size_t i = 0; i < axes->count; i++)
-    sqlite3_str_appendf(order, "\"%w\", ", axes->name[i]);
+  OWNED char *grouped = grouped_sql(axes);
   ANSWER answer = answer_to(
       store, error,
-      "WITH grouped AS (SELECT point_id, dense_rank() OVER (ORDER BY %zengine, results_version) AS grp FROM points "
-      "WHERE "
-      "n > 0),\n"
+      "%s,\n"
       "differing AS (SELECT path FROM (SELECT grp, a.path, count(*) AS points, count(i.value) AS given, "
       "count(DISTINCT i.value) AS kinds FROM grouped g CROSS JOIN axis a LEFT JOIN point_input i ON i.point_id = "
       "g.point_id AND i.path = a.path GROUP BY grp, a.path) WHERE kinds > 1 OR (kinds = 1 AND given < points))\n"
@@ -285,14 +313,8 @@ static status find_pooled(struct store *store, const struct names *axes, char po
       "UNION ALL SELECT DISTINCT i.path FROM grouped g JOIN point_input i USING (point_id) WHERE NOT EXISTS (SELECT 1 "
       "FROM differing) GROUP BY grp, i.path HAVING count(DISTINCT i.value) > 1 OR count(*) < (SELECT count(*) FROM "
       "grouped h WHERE h.grp = g.grp)",
-      sqlite3_str_finish(order));
-  size_t count = 0;
-  for (; answer_next(&answer); count++)
-    if (count < NAMED)
-      append(pooled, ASK_GROUP_POOLED, answer_text(&answer, 0));
-  if (count > NAMED)
-    text_append(pooled, ASK_GROUP_POOLED, " and %zu more inputs", count - NAMED);
-  return answer_end(&answer);
+      grouped);
+  return take_first_names(&answer, pooled);
 }
 
 static const char axes_sql[] = "SELECT column_name, path FROM axis ORDER BY path";
@@ -349,6 +371,27 @@ struct answer ask_group(struct store *store, const char *by, const char *quantit
   }
   OWNED char *sql = group_sql(&axes, &results);
   return answer_to(store, error, "%s", sql);
+}
+
+/* The axes of `by` are constant within a group, too: they are left out by their columns' names. */
+status ask_group_changing(struct store *store, const char *by, char changing[ASK_GROUP_POOLED], struct error *error) {
+  struct names axes = {.count = 0};
+  TRY(resolve(store, by, "Axis", axes_sql, &axes, error));
+  OWNED char *grouped = grouped_sql(&axes);
+  sqlite3_str *shown = sqlite3_str_new(NULL);
+  for (size_t i = 0; i < axes.count; i++)
+    sqlite3_str_appendf(shown, "%s%Q", i ? ", " : "", axes.name[i]);
+  char *columns = sqlite3_str_finish(shown);
+  ANSWER answer = answer_to(
+      store, error,
+      "%s\nSELECT path FROM (SELECT a.path AS path, grp, count(*) AS points, count(i.value) AS given, count(DISTINCT "
+      "i.value) AS kinds, min(i.value) AS value FROM grouped g CROSS JOIN axis a LEFT JOIN point_input i ON i.point_id "
+      "= g.point_id AND i.path = a.path WHERE a.column_name NOT IN (%s) GROUP BY a.path, grp) GROUP BY path HAVING "
+      "max(kinds) = 1 AND max(given > 0 AND given < points) = 0 AND (count(DISTINCT value) > 1 OR count(value) < "
+      "count(*))",
+      grouped, columns ? columns : "");
+  sqlite3_free(columns);
+  return take_first_names(&answer, changing);
 }
 
 /* Points are compared input by input only where their varied inputs agree; other points differ anyway. */

@@ -321,4 +321,20 @@ says "no line joins the points"
 same "$(sed '/^$/,$d' sampled.dat | grep -c '^NaN')" 8 "gaps between the points of a sample"
 expect 0 "$clast" plot small.db grid.png -x strain --by angle --keep-script
 same "$(sed '/^$/,$d' grid.dat | grep -c '^NaN' || true)" 0 "gaps between the points of a grid"
-done_after 109
+# Two campaigns in one store: from point to point the body changes, too, and chart and table say so.
+tiny second
+sed -i 's/diameter: 8 cm/diameter: 6 cm/; s/strain: .*/strain: [3 %, 4 %]/' second.yaml
+expect 0 "$clast" run second.yaml -j 2 --quiet
+expect 0 "$clast" merge both.db small.db second.db
+expect 0 "$clast" plot both.db both.png -x strain
+says "from one to the next diameter of the body changes, too"
+expect 0 "$clast" stats both.db --by strain
+says "from row to row the value of body.diameter changes, too"
+expect 0 "$clast" stats both.db --by strain,diameter
+grep -q "from row to row" err && fail "a change that is none"
+expect 0 "$clast" stats small.db --by strain
+grep -q "from row to row" err && fail "a change that is none"
+expect 66 "$clast" merge new.db small.db nosuch.db
+[ ! -e new.db ] || fail "a failed merge left a store behind"
+ok "two campaigns in one store"
+done_after 117
