@@ -226,8 +226,9 @@ void field_json_value(const struct field *row, const struct field_value *value, 
 /* Canonical identity text: sorted lines `path=%a\n` of the active rows (text and choices by name), without those that
  * have their value of absence. The caller frees it. Never NULL, as above. */
 char *field_identity(const struct field_table *table, const void *object);
-/* `clast explain`: one row, or every row under a prefix ("" = all), as text for people. Returns how many rows. */
-size_t field_explain(const struct field_table *table, const char *prefix, FILE *out);
+/* `clast explain`: one row, or every row under a prefix ("" = all), as text for people. Results have no defaults.
+ * Returns how many rows. */
+size_t field_explain(const struct field_table *table, const char *prefix, bool results, FILE *out);
 
 /* Table-driven byte encoding: little-endian, rows in table order, preceded by a hash of the table's names and kinds, so
  * that a reader with other rows refuses the bytes instead of misreading them. */

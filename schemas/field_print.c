@@ -191,8 +191,8 @@ static void explain_choices(const struct field *row, FILE *out) {
   }
 }
 
-/* " in m, above 0 m, or off" */
-static void explain_range(const struct field *row, FILE *out) {
+/* " in m, above 0 m, or off"; of a result " in m, above 0 m, or no value" */
+static void explain_range(const struct field *row, bool result, FILE *out) {
   char range[160];
   const struct field shown = in_degrees(row);
   field_describe_range(&shown, range, sizeof range);
@@ -203,7 +203,7 @@ static void explain_range(const struct field *row, FILE *out) {
   if (strncmp(range, "a number", 8) != 0)
     fprintf(out, ", %s", range);
   if (row->flags & FIELD_MAY_BE_OFF)
-    fputs(", or off", out);
+    fputs(result ? ", or no value" : ", or off", out);
 }
 
 static void explain_default(const struct field *row, FILE *out) {
@@ -222,12 +222,15 @@ static void explain_default(const struct field *row, FILE *out) {
   fprintf(out, row->kind == FIELD_TEXT ? "; default \"%s\"\n" : "; default %s\n", text);
 }
 
-static void explain_row(const struct field *row, FILE *out) {
+static void explain_row(const struct field *row, bool result, FILE *out) {
   static const char *const kinds[] = {"real", "integer", "true or false", "choice", "text"};
   fprintf(out, "%s: %s", row->path, kinds[row->kind]);
   if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER)
-    explain_range(row, out);
-  explain_default(row, out);
+    explain_range(row, result, out);
+  if (result)
+    fputc('\n', out);
+  else
+    explain_default(row, out);
   if (row->doc && *row->doc)
     text_wrap(row->doc, 0, INDENT, WIDTH, out);
   if (row->kind == FIELD_CHOICE)
@@ -241,7 +244,7 @@ static void explain_row(const struct field *row, FILE *out) {
     fprintf(out, "%*sSource: %s\n", INDENT, "", row->source);
 }
 
-size_t field_explain(const struct field_table *table, const char *prefix, FILE *out) {
+size_t field_explain(const struct field_table *table, const char *prefix, bool results, FILE *out) {
   size_t length = strlen(prefix), count = 0;
   char *text = NULL;
   FILE *rows = text_open(&text);
@@ -251,7 +254,7 @@ size_t field_explain(const struct field_table *table, const char *prefix, FILE *
     const char *path = table->rows[i].path;
     if (strncmp(path, prefix, length) != 0 || (length && path[length] != 0 && path[length] != '.'))
       continue;
-    explain_row(&table->rows[i], rows);
+    explain_row(&table->rows[i], results, rows);
     count++;
   }
   text_close_small(rows, &text);

@@ -204,6 +204,22 @@ static bool has_prefix(const struct field_table *table, const char *prefix) {
   return false;
 }
 
+/* Results, outcome and estimates have no defaults. */
+static bool has_results(const struct field_table *table) {
+  bool is = table == &outcome_table || table == &estimates_table;
+  for (size_t i = 0; i < engine_count(); i++)
+    is |= table == engine_at(i)->results;
+  return is;
+}
+
+/* Another row with the last part of the path that `first` has. */
+static void explain_another(const struct field_table *table, const struct field *first, const struct field *row) {
+  if (first->doc && row->doc && strcmp(first->doc, row->doc) == 0)
+    printf("%s: the same of another body or law\n", row->path);
+  else
+    field_explain(table, row->path, has_results(table), stdout);
+}
+
 /* Prints what the paths of all tables say about `path`. Returns how many tables know it. */
 static size_t explain_rows(const char *path, struct text_guess *guess) {
   const struct field_table *list[TABLES_MAXIMUM];
@@ -221,13 +237,13 @@ static size_t explain_rows(const char *path, struct text_guess *guess) {
     fputs(found++ ? "\n" : "", stdout);
     words_print(stdout, "", "%s: %s", list[i]->name, list[i]->doc);
     if (row || first) {
-      field_explain(list[i], row ? row->path : first->path, stdout);
+      field_explain(list[i], row ? row->path : first->path, has_results(list[i]), stdout);
       explain_doubts_of(list[i], row ? row->path : first->path);
     }
     if (section)
-      field_explain(list[i], path, stdout);
+      field_explain(list[i], path, has_results(list[i]), stdout);
     for (const struct field *next = first; next && (next = field_ending(list[i], path, next));)
-      printf("%s: the same of another body or law\n", next->path);
+      explain_another(list[i], first, next);
   }
   return found;
 }
@@ -235,7 +251,7 @@ static size_t explain_rows(const char *path, struct text_guess *guess) {
 static void explain_table(const struct field_table *table, const char *before) {
   fputs(before, stdout);
   words_print(stdout, "", "%s: %s", table->name, table->doc);
-  field_explain(table, "", stdout);
+  field_explain(table, "", has_results(table), stdout);
 }
 
 /* A word for a whole table: campaign, results, outcome, estimates, or an engine's name. */
@@ -300,7 +316,7 @@ static status explain_path(const char *path, struct error *error) {
     printf("%s: %s\n%s: %s\n%s", campaign_table.name, campaign_table.doc, key->name, key->doc, key->forms);
     if (key->table) {
       putchar('\n');
-      field_explain(key->table, "", stdout);
+      field_explain(key->table, "", has_results(key->table), stdout);
     }
     return STATUS_OK;
   }

@@ -460,8 +460,9 @@ static void advise_seeds(const struct accuracy *accuracy, const struct accuracy_
     if (middle < accuracy->within)
       text_append(next, size, "More than %d seeds at every level would be needed", STUDY_SEEDS);
     else
-      text_append(next, size, "More seeds are not likely to reach it: the middle of its interval is %.2g", middle);
-    text_append(next, size, "; no setting is known to be enough");
+      text_append(next, size,
+                  "More seeds are not likely to help: the resolution alone makes a difference of about %.2g", middle);
+    text_append(next, size, ". No setting that was studied is enough");
     return;
   }
   double time_s = 0;
@@ -523,9 +524,10 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   return status_fail(error, STATUS_CONTENT,
                      "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g (%" PRId64
                      " seeds). The smallest error is "
-                     "%.2g%s, with %s. %s. Or %sask for the least error in a time: `clast plan %s --within 10min`",
-                     quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n, least,
-                     best->open ? " or more, as no limit is seen" : "", chosen, next, more, path);
+                     "%s%.2g%s, with %s. %s. Or %sask for the least error in a time: `clast plan %s --within 10min`",
+                     quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n,
+                     best->open ? "about " : "", least, best->open ? " (a guess, as no limit is seen)" : "", chosen,
+                     next, more, path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {

@@ -206,6 +206,13 @@ static void check_accuracy(document_node *root, struct campaign *campaign) {
                     "out");
 }
 
+static bool is_share_of(const struct campaign *campaign, const char *name) {
+  struct error error;
+  bool of_outcome;
+  const struct field *row = campaign_quantity(campaign->scene->kind, name, &of_outcome, &error);
+  return row && field_is_share(row);
+}
+
 static void check_quantity(document_node *node, const char *path, const char *name, const struct campaign *campaign) {
   struct error error;
   bool of_outcome;
@@ -247,6 +254,14 @@ static void check_quantities(document_node *root, struct campaign *campaign) {
   check_quantity(quantity ? quantity : document_key(root, "scene"), "quantity", campaign->quantity, campaign);
   if (until)
     check_quantity(until, "seeds.until.quantity", campaign->until_quantity, campaign);
+  document_node *half_width = key_of(key_of(key_of(root, "seeds"), "until"), "half_width");
+  if (half_width && !campaign->until_of_value && campaign->until_half_width >= 1 &&
+      is_share_of(campaign, campaign->until_quantity))
+    document_report(
+        half_width, "seeds.until.half_width",
+        "%s is a share between 0 and 1, so no interval is as wide as %g; %g per cent of the mean is written "
+        "'%g %%'",
+        campaign->until_quantity, campaign->until_half_width, campaign->until_half_width, campaign->until_half_width);
 }
 
 /* Tries every point of a small design, or the first ones of a large one. The driver writes notes about the others. A

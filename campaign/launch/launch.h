@@ -20,9 +20,9 @@ struct launch_options {
                       .doc = "Compute runs in the slot's own process. Faster for runs of a few milliseconds, but a "   \
                              "crash ends the slot "                                                                    \
                              "too."),                                                                                  \
-      OPTION_ROW_FLAG(                                                                                                 \
-          "quiet", 'q', type_, member_.quiet,                                                                          \
-          .doc = "Print no progress and no remarks on stderr (none on ~ ! ?). Warnings and errors are printed.")
+      OPTION_ROW_FLAG("quiet", 'q', type_, member_.quiet,                                                              \
+                      .doc = "Print no progress and no remarks on stderr but on numbers in doubt (!). Warnings and "   \
+                             "errors are printed.")
 
 /* Context of launch_note, which prints remarks for the user. */
 struct launch_notes {

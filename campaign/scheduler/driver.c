@@ -513,7 +513,8 @@ static double time_left(struct driver *driver, double now) {
     if (!run->scene || run->replay)
       continue;
     const struct point *point = run->place;
-    const double predicted = point_cost_predict(&driver->cost, &point->cost), had = now - run->started;
+    const double predicted = point_cost_predict(&driver->cost, &point->cost);
+    const double had = isnan(run->started) ? 0 : now - run->started;
     left.under_way_s += fmin(had, predicted);
     left.longest_s = fmax(left.longest_s, predicted - had);
   }

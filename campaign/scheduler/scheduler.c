@@ -87,6 +87,19 @@ static status next_run(struct scheduler *scheduler, struct scheduler_run *run, s
   }
 }
 
+/* The farm sends a slot its next run before it has finished: of the runs that are out, as many run as there are slots.
+ * A run that waits has the start NaN. */
+static void start_waiting(struct scheduler *scheduler) {
+  int running = 0;
+  for (size_t i = 0; i < scheduler->places; i++)
+    running += scheduler->out[i].scene && !isnan(scheduler->out[i].started);
+  for (size_t i = 0; i < scheduler->places && running < scheduler->options.slots; i++)
+    if (scheduler->out[i].scene && isnan(scheduler->out[i].started)) {
+      scheduler->out[i].started = clock_s();
+      running++;
+    }
+}
+
 static status send(struct scheduler *scheduler, struct farm_task *task, struct error *error) {
   struct scheduler_run run;
   char path[LIMITS_PATH] = "";
@@ -112,8 +125,9 @@ static status send(struct scheduler *scheduler, struct farm_task *task, struct e
   scheduler->task = run_encode_task(&request, &task->size);
   if (!scheduler->task)
     return status_fail(error, STATUS_MEMORY, "no memory for a task");
-  run.started = clock_s();
+  run.started = NAN;
   scheduler->out[place] = run;
+  start_waiting(scheduler);
   task->id = place;
   task->bytes = scheduler->task;
   return STATUS_OK;
@@ -341,6 +355,7 @@ static status take_report(void *context, const struct farm_report *report, struc
     return status_fail(error, STATUS_INTERNAL, "the farm reported a task that it was not given");
   const struct scheduler_run run = scheduler->out[report->id];
   scheduler->out[report->id].scene = NULL;
+  start_waiting(scheduler);
   TRY(take_held(scheduler, 0, error));
   if (scheduler->held || !store_begin_within(scheduler->store, 0))
     return hold(scheduler, &run, report, error);

@@ -37,7 +37,7 @@ struct scheduler_run {       /* a run that a planner asks for */
   /* By the scheduler. */
   uint8_t identity[16];
   int attempt;    /* 1.. */
-  double started; /* s, clock_s() */
+  double started; /* s, clock_s(); NaN: it waits behind another run of its slot */
 };
 
 enum scheduler_ending {

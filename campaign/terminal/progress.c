@@ -71,7 +71,7 @@ static void facts(const struct progress_state *state, char *buffer, size_t size)
     snprintf(failed, sizeof failed, ", %lld failed", (long long)state->failed);
   if (state->rate > 0)
     snprintf(rate, sizeof rate, state->rate < 10 ? ", %.2g runs/s" : ", %.0f runs/s", state->rate);
-  if (state->seconds_left >= 0)
+  if (state->seconds_left > 0) /* 0: what runs has taken longer than predicted */
     snprintf(time, sizeof time, ", %s left", left);
   if (state->quantity && isfinite(state->mean.mean)) {
     char both[UNCERTAINTY_TEXT];

@@ -392,7 +392,7 @@ says "(resolution: grains)"
 # More seeds: no number when the middle of the interval is out of reach. A smaller study does not replace a larger one.
 sed 's/within: 0.17/within: 0.03/' finer.yaml >tight.yaml
 expect 65 "$clast" plan tight.yaml --store finer.db
-says "More seeds are not likely to reach it: the middle of its interval is 0.0"
+says "More seeds are not likely to help: the resolution alone makes a difference of about 0.0"
 expect 0 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 same "$(number finer.db "select max(n) from convergence")" 32 "seeds of the larger study"
 

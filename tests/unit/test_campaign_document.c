@@ -285,6 +285,8 @@ static void bad_documents_are_told_what_to_do(void **state) {
   bad(HEAD "seeds: {until: {quantity: largest_fraction}}\n", "'half_width' is missing");
   bad(HEAD "seeds: {until: {half_width: 0.1}, max: 20}\n",
       "20 replicates at most, but the first decision comes after 30");
+  bad(HEAD "seeds: {until: {half_width: 8, quantity: largest_fraction}}\n", "8 per cent of the mean is written '8 %'");
+  campaign_free(good(HEAD "seeds: {until: {half_width: 8, quantity: fragment_count}}\n"));
   bad(HEAD "seeds: {until: {half_width: 0.1, quantity: largest_fractoin}}\n", "did you mean 'largest_fraction'?");
   bad(HEAD "quantity: message\n", "no number");
   bad(HEAD "keep: {fields: last 3}\n", "expected {fields: none | all | extremes | first N}, got 'last 3'");

@@ -451,9 +451,9 @@ static void explains(void **state) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
-  assert_int_equal(field_explain(&table, "body.length", out), 1);
-  assert_int_equal(field_explain(&table, "law", out), 1); /* a word, not a prefix of letters */
-  assert_int_equal(field_explain(&table, "law_of.angle", out), 1);
+  assert_int_equal(field_explain(&table, "body.length", false, out), 1);
+  assert_int_equal(field_explain(&table, "law", false, out), 1); /* a word, not a prefix of letters */
+  assert_int_equal(field_explain(&table, "law_of.angle", false, out), 1);
   fclose(out);
   assert_string_equal(text,
                       "body.length: real in m, above 0 m; default 0.4 m\n"
@@ -469,9 +469,9 @@ static void explains(void **state) {
                       "    Only when law is weak or strong\n");
   free(text);
   out = open_memstream(&text, &size);
-  assert_int_equal(field_explain(&table, "", out), ROWS);
-  assert_int_equal(field_explain(&table, "body", out), 3);
-  assert_int_equal(field_explain(&table, "nothing", out), 0);
+  assert_int_equal(field_explain(&table, "", false, out), ROWS);
+  assert_int_equal(field_explain(&table, "body", false, out), 3);
+  assert_int_equal(field_explain(&table, "nothing", false, out), 0);
   fclose(out);
   free(text);
 }
