@@ -390,7 +390,11 @@ static struct scene *create(const struct engine_kind *kind) {
 static const struct engine_kind *read_engine(document_node *root) {
   document_node *engine = document_key(root, "engine");
   if (!engine) {
-    document_report(root, "engine", "is missing; say which engine runs this scene, such as 'engine: dem'");
+    document_report(root, "engine",
+                    document_key(root, "material")
+                        ? "is missing: this looks like the file of a material; `clast materials FILE` "
+                          "checks it, and a scene names it, such as target.material: ./FILE"
+                        : "is missing; say which engine runs this scene, such as 'engine: dem'");
     return NULL;
   }
   const char *name = document_scalar(engine);

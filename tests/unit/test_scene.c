@@ -150,6 +150,8 @@ static void errors_come_together(void **state) {
                       "t:1:1: error: engine: is missing; say which engine runs this scene, such as 'engine: dem'\n"
                       "  kind: ball\n"
                       "  ^");
+  assert_int_equal(scene_parse("t", "material: tuff\n", &scene, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "engine: is missing: this looks like the file of a material"));
   assert_int_equal(scene_parse("t", "engine: [tiny]\n", &scene, &error), STATUS_CONTENT);
   assert_int_equal(scene_parse("t", "engine: sph\n", &scene, &error), STATUS_CONTENT);
   assert_string_equal(error.message, "t:1:9: error: engine: there is no engine 'sph'; known are: tiny\n"
