@@ -34,8 +34,9 @@ void launch_tell_runs(const char *store, int64_t computed, int64_t found, double
   fputc('\n', stderr);
 }
 
-void launch_tell_series(const struct launch *launch, status code, const char *store,
-                        const struct series_summary *summary, bool found) {
+void launch_tell_series(struct launch *launch, status code, const char *store, const struct series_summary *summary,
+                        bool found) {
+  launch_end_progress(launch);
   STORE answers = NULL;
   int64_t excluded = 0; /* a run can belong to several campaigns of the series */
   if (launch->manager && store_open_reader(store, &answers, NULL) == STATUS_OK &&
@@ -68,10 +69,23 @@ status launch_begin(struct launch *launch, const struct campaign *limits, const 
                                                  .note = launch_note,
                                                  .note_context = &launch->notes,
                                                  .slots = slots};
+  const enum progress_style style = progress_style_of(stderr);
+  const char *no_colour = getenv("NO_COLOR");
+  if (launch->manager && !options->quiet)
+    launch->notes.progress = launch->scheduler.progress = progress_create(stderr, style,
+                                                                          style == PROGRESS_BAR &&
+                                                                              !(no_colour && *no_colour),
+                                                                          0);
   return launch->facts ? STATUS_OK : status_fail(error, STATUS_MEMORY, "out of memory");
 }
 
+void launch_end_progress(struct launch *launch) {
+  progress_free(launch->notes.progress);
+  launch->notes.progress = launch->scheduler.progress = NULL;
+}
+
 void launch_end(struct launch *launch) {
+  launch_end_progress(launch);
   farm_stop(launch->farm);
   free(launch->facts);
 }
@@ -179,17 +193,11 @@ status launch_campaign(const struct campaign *campaign, const char *store, const
   LAUNCH launch = {0};
   TRY(launch_begin(&launch, campaign, options, line, error));
   const bool quiet = options->quiet;
-  const enum progress_style style = progress_style_of(stderr);
-  const char *no_colour = getenv("NO_COLOR");
-  const bool colour = style == PROGRESS_BAR && !(no_colour && *no_colour);
-  struct progress *progress = launch.manager && !quiet ? progress_create(stderr, style, colour, 0) : NULL;
   struct driver_summary summary = {0};
-  launch.notes.progress = launch.scheduler.progress = progress;
   launch.scheduler.store_path = store;
   const status code = driver_run(campaign, launch.farm, &launch.scheduler, &summary, error);
   const double wall_s = clock_s() - launch.begin_s;
-  launch.notes.progress = NULL;
-  progress_free(progress);
+  launch_end_progress(&launch);
   if (!launch.manager)
     return code;
 

@@ -547,9 +547,11 @@ static void tick(void *context, int running, bool last) {
       .total_is_minimum = driver->campaign->per_point == 0 && open_points > 0,
       .rate = rated ? (double)driver->started_done / elapsed : NOTHING,
       .seconds_left = last ? NOTHING : time_left(driver, now),
-      .quantity = last ? NULL : driver->row->path, /* the table has the mean of the runs that count */
+      /* The table has the mean of the runs that count; those of a study differ in their settings. */
+      .quantity = last || !driver->alone ? NULL : driver->row->path,
       .mean = mean,
       .doubtful = summary->runs_doubtful > 0,
+      .part = !driver->alone,
   };
   progress_update(progress, &state, now, last);
 }

@@ -11,6 +11,8 @@
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
+#define SOON 2.0 /* s */
+
 struct progress {
   FILE *out;
   enum progress_style style;
@@ -78,9 +80,9 @@ static void facts(const struct progress_state *state, char *buffer, size_t size)
     uncertainty_seeds(&state->mean, both);
     snprintf(mean, sizeof mean, ", %.60s %.60s%s", state->quantity, both, state->doubtful ? " !" : "");
   }
-  snprintf(buffer, size, "%lld of %s%lld runs%s, %d running%s%s%s", (long long)state->done,
-           state->total_is_minimum ? "at least " : "", (long long)state->total, failed, (int)state->running, rate, time,
-           mean);
+  snprintf(buffer, size, "%lld of %s%lld runs%s%s, %d running%s%s%s", (long long)state->done,
+           state->total_is_minimum ? "at least " : "", (long long)state->total, state->part ? " of this round" : "",
+           failed, (int)state->running, rate, time, mean);
 }
 
 static double share_of(const struct progress_state *state) {
@@ -128,8 +130,9 @@ void progress_update(struct progress *progress, const struct progress_state *sta
   bool first = progress->last_share < 0; /* the first update prints no line */
   if (first)
     progress->last_time = now;
-  if (!last && (first || share <= progress->last_share) && now - progress->last_time < 60) {
-    if (first)
+  const bool soon = state->part && now - progress->last_time < SOON;
+  if ((!last || state->part) && (first || soon || share <= progress->last_share) && now - progress->last_time < 60) {
+    if (first || share < progress->last_share) /* the next campaign of a study */
       progress->last_share = share;
     return;
   }

@@ -19,6 +19,7 @@ struct progress_state {
   const char *quantity;       /* the main quantity's name */
   struct sample_summary mean; /* of `quantity` over the runs so far; without an interval for runs of several points */
   bool doubtful;              /* some of these runs are in doubt: "!" behind the mean */
+  bool part;                  /* one of several campaigns, as of a study: plain lines come two seconds apart or later */
 };
 
 enum progress_style { PROGRESS_PLAIN, PROGRESS_BAR };

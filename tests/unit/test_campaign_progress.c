@@ -71,6 +71,28 @@ static void a_log_gets_a_line_per_twentieth_or_minute(void **state) {
   free(text);
 }
 
+/* A study runs one campaign after the other: each tells its progress, in lines two seconds apart. */
+static void a_log_tells_of_each_part_of_a_study(void **state) {
+  (void)state;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  struct progress *progress = progress_create(out, PROGRESS_PLAIN, false, 0);
+  for (int part = 0; part < 3; part++)
+    for (int i = 0; i <= 1000; i++) { /* 10 s each */
+      struct progress_state now = of(i);
+      now.part = true;
+      progress_update(progress, &now, part * 10 + i * 0.01, false);
+    }
+  progress_free(progress);
+  fclose(out);
+  int lines = 0;
+  for (char *c = text; *c; c++)
+    lines += *c == '\n';
+  assert_in_range(lines, 3 * 4, 3 * 5);
+  free(text);
+}
+
 static void a_bar_is_redrawn_ten_times_a_second_and_fits(void **state) {
   (void)state;
   char *text = NULL;
@@ -111,6 +133,7 @@ static void a_bar_is_redrawn_ten_times_a_second_and_fits(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(durations),
                                      cmocka_unit_test(a_log_gets_a_line_per_twentieth_or_minute),
+                                     cmocka_unit_test(a_log_tells_of_each_part_of_a_study),
                                      cmocka_unit_test(a_bar_is_redrawn_ten_times_a_second_and_fits)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
