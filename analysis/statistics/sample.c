@@ -25,10 +25,10 @@ double sample_student(size_t n, double level) {
 double sample_scale(double largest) {
   const double size = fabs(largest);
   int power;
-  if (size > 1e-60 && size < 1e60)
+  if (!(size > 0) || isinf(size) || (size > 1e-60 && size < 1e60))
     return 1;
   (void)frexp(size, &power);
-  return size > 0 && power > -1000 ? ldexp(1, -power) : 0x1p1000;
+  return power > -1000 ? ldexp(1, -power) : 0x1p1000;
 }
 
 status sample_squares_fit(size_t n, const double *values, struct error *error) {
@@ -47,7 +47,7 @@ void sample_add(struct sample_moments *moments, double value) {
   if (isnan(value))
     return;
   const double scale = sample_scale(value);
-  if (moments->n == 0)
+  if (moments->n == 0 || !(fabs(moments->mean) > 0 || moments->squares > 0)) /* zeros fit every scale */
     moments->scale = scale;
   if (scale < moments->scale) {
     moments->squares *= scale / moments->scale * (scale / moments->scale);

@@ -97,12 +97,18 @@ static void stopping_keeps_its_level(void **state) {
 static void stopping_waits(void **state) {
   (void)state;
   double equal[100], scattered[100];
+  const double zeros[100] = {0}, tiny[4] = {0, 0, 1e-170, 3e-170};
   for (int i = 0; i < 100; i++) {
     equal[i] = 0.25;
     scattered[i] = i % 2;
   }
   assert_int_equal(stopping_prefix(29, equal, 0.01, 30), 0);
   assert_int_equal(stopping_prefix(100, equal, 0.01, 30), 50); /* 20 t = 40.4 */
+  assert_int_equal(stopping_prefix(100, zeros, 0.01, 30), 50); /* zeros are as equal */
+  struct sample_moments moments = {0};
+  for (int i = 0; i < 4; i++)
+    sample_add(&moments, tiny[i]); /* zeros before the first value do not hide its scatter */
+  assert_true(fabs(sample_summarise_moments(&moments, 0.95).standard_deviation - sqrt(2) * 1e-170) < 1e-180);
   assert_int_equal(stopping_prefix(100, scattered, 0.01, 30), 0);
   equal[3] = NAN; /* a failed run: 29 values in 30 replicates */
   assert_int_equal(stopping_prefix(100, equal, 0.01, 30), 50);
