@@ -50,7 +50,7 @@ struct driver {
   double begin, last_left, seconds_left;
   int64_t fields_missing; /* fields files of stored runs that no longer exist, or are damaged */
   int64_t wanted;         /* runs that the points met so far need */
-  bool alone;             /* no series, whose campaigns differ on purpose */
+  bool in_series;         /* one of several campaigns, which differ on purpose */
 };
 
 struct driver *driver_new(const struct campaign *campaign) {
@@ -264,7 +264,7 @@ static status tell_hidden_inputs(struct driver *driver, const struct scene *scen
   for (size_t i = 0; i < count; i++)
     TRY(store_add_axis(driver->scheduler->store, differs[i],
                        strcmp(differs[i]->unit ? differs[i]->unit : "", "rad") == 0 ? "deg" : "", error));
-  if (count == 0 || !driver->alone) /* the campaigns of a series differ on purpose */
+  if (count == 0 || driver->in_series) /* the campaigns of a series differ on purpose */
     return STATUS_OK;
   snprintf(text, sizeof text,
            "warning: the store has other points of this campaign or scene: %s%s differs, and is a varied input of this "
@@ -548,10 +548,10 @@ static void tick(void *context, int running, bool last) {
       .rate = rated ? (double)driver->started_done / elapsed : NOTHING,
       .seconds_left = last ? NOTHING : time_left(driver, now),
       /* The table has the mean of the runs that count; those of a study differ in their settings. */
-      .quantity = last || !driver->alone ? NULL : driver->row->path,
+      .quantity = last || driver->in_series ? NULL : driver->row->path,
       .mean = mean,
       .doubtful = summary->runs_doubtful > 0,
-      .part = !driver->alone,
+      .part = driver->in_series,
   };
   progress_update(progress, &state, now, last);
 }
@@ -605,7 +605,6 @@ struct scheduler_planner driver_planner(struct driver *driver) {
 status driver_run(const struct campaign *campaign, struct farm *farm, const struct scheduler_options *options,
                   struct driver_summary *summary, struct error *error) {
   struct driver *driver = driver_new(campaign);
-  driver->alone = true;
   const struct scheduler_planner planner = driver_planner(driver);
   const status code = scheduler_compute(&planner, farm, options, error);
   *summary = driver->summary;
@@ -637,6 +636,7 @@ static status begin_campaign(struct running *running, struct error *error) {
   if (running->finished)
     return STATUS_OK;
   struct driver *driver = driver_new(running->campaign);
+  driver->in_series = true;
   const status code = begin(driver, running->scheduler, error);
   if (code == STATUS_OK)
     running->driver = driver;
