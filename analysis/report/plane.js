@@ -283,12 +283,12 @@ export async function showPlane() {
   const figure = document.getElementById('plane-chart');
   const title = label(state.stores, state.quantity);
   const at = slice();
-  state.at = {...state.at, ...at};
   plane.rows = data(state.quantity);
   const rows = (plane.shown = plane.rows.filter((row) => inSlice(row, at)));
   const known = rows.filter((row) => row.mean !== null);
   const untold = [...new Set(rows.map((row) => row.untold).filter(Boolean))].join(', or ');
   const reason = untold ? ` -: not known to a whole number: ${untold}.` : '';
+  if (rows.length === 0) return nothing(figure, `No point has ${sliceText(at)}: choose another value above.`);
   if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence(store(), rows)}`);
   const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${doubtSentence(store(), rows)}`;
   if (!state.x) {

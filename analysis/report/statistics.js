@@ -38,7 +38,8 @@ export function quantile(sorted, p) {
 export function summary(values, share = false) {
   const n = values.length;
   const largest = values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
-  const scale = largest > 1e60 ? 2 ** -900 : largest < 1e-60 ? 2 ** 900 : 1; // so that sums and squares fit
+  const ordinary = largest === 0 || (largest > 1e-60 && largest < 1e60);
+  const scale = ordinary ? 1 : 2 ** Math.min(1000, -Math.floor(Math.log2(largest)) - 1); // so that sums and squares fit
   const mean = values.reduce((sum, value) => sum + value * scale, 0) / n / scale;
   const sd = n > 1 ? Math.sqrt(values.reduce((sum, value) => sum + ((value - mean) * scale) ** 2, 0) / (n - 1)) / scale : null;
   const sorted = Float64Array.from(values).sort();

@@ -134,27 +134,21 @@ static status judge(const struct choice *choice, const char *what, const char *n
 
 /* An input of the points that is no axis: says why. */
 static status judge_input(struct store *store, const char *name, const struct choice *choice, struct error *error) {
-  char path[NAME] = "", scenes[256] = "";
+  char path[NAME] = "";
   ANSWER found = answer_to(store, error,
-                           "SELECT path, (SELECT group_concat(DISTINCT scene_name) FROM point), count(DISTINCT value) "
+                           "SELECT path, count(DISTINCT value) "
                            "FROM point_input WHERE path = %Q OR path LIKE '%%.' || %Q GROUP BY path LIMIT 1",
                            name, name);
   const bool is_input = answer_next(&found);
-  if (is_input) {
+  if (is_input)
     snprintf(path, sizeof path, "%s", answer_text(&found, 0));
-    snprintf(scenes, sizeof scenes, "%s", answer_text(&found, 1));
-  }
-  const bool differs = is_input && answer_integer(&found, 2) > 1;
+  const bool differs = is_input && answer_integer(&found, 1) > 1;
   TRY(answer_end(&found));
   if (!is_input)
     return STATUS_OK;
   if (!differs)
     return status_fail(error, STATUS_USAGE, "%s has one value in all points. Known are: %s.", path,
                        choice->known[0] ? choice->known : "none");
-  if (strchr(scenes, ','))
-    return status_fail(error, STATUS_USAGE,
-                       "%s differs between scenes (%s) and is no axis: --campaign chooses one campaign. Known are: %s.",
-                       path, scenes, choice->known[0] ? choice->known : "none");
   return status_fail(error, STATUS_USAGE, "%s is no axis of this store: no campaign varies it. Known are: %s.", path,
                      choice->known[0] ? choice->known : "none");
 }

@@ -178,13 +178,24 @@ db.execute('update result_dem set grains = grains + 1 where run_id = (select min
 db.commit()
 PY
   expect 0 "$clast" report marked.db
+  # The page's own mean and standard deviation do not depend on the unit.
+  echo '{"type": "module"}' >package.json
+  cp "$source/analysis/report/statistics.js" .
+  cat >units.js <<'JS'
+import {summary} from './statistics.js';
+for (const unit of [1e-300, 1e-170, 1e-100, 1e-61, 1e61, 1e100, 1e160, 1e300]) {
+  const {mean, sd} = summary([1, 2, 3, 4].map((value) => value * unit));
+  if (!(Math.abs(mean / unit - 2.5) < 1e-12 && Math.abs(sd / unit - Math.sqrt(5 / 3)) < 1e-12)) throw new Error(`${unit}: ${mean}, ${sd}`);
+}
+JS
+  expect 0 node units.js
   tiny three # two points share each cell of a map
   sed -i 's/, charge.energy: 2 kJ.m//; s/^vary:/vary:\n  charge.energy: [1 kJ\/m, 2 kJ\/m]/' three.yaml
   expect 0 "$clast" run three.yaml -j 2 --quiet
   expect 0 "$clast" report three.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 39
+  done_after 40
 else
   done_after 33
 fi
