@@ -78,8 +78,7 @@ condition_set condition_before(const struct condition *list, const void *inputs,
     }
     if (c->beside)
       c->beside(inputs, out);
-    fprintf(out, "%s%s (clast explain %s)\n", c->should ? "; it counts should " : "", c->should ? c->should : "",
-            c->word);
+    fprintf(out, "%s%s (clast explain %s)\n", c->if_so ? "; this counts if " : "", c->if_so ? c->if_so : "", c->word);
   }
   return set;
 }

@@ -32,11 +32,11 @@ struct condition {
   const char *reason; /* where the bound comes from */
   const char *remedy; /* what to do */
   const char
-      *results;  /* the results that rest on it: paths, separated by spaces. NULL: all; "": none, it is only told */
-  bool withheld; /* beyond the bound these results have no meaning */
-  bool lasting;  /* `after` tells at any time of a run: what it finds does not go away later */
-  bool absent;   /* and nothing is wrong: the scene does not ask for them. The run does not count as one in doubt */
-  const char *should; /* what the end may find: "the body break"; told before the run. NULL: the end finds the same */
+      *results;      /* the results that rest on it: paths, separated by spaces. NULL: all; "": none, it is only told */
+  bool withheld;     /* beyond the bound these results have no meaning */
+  bool lasting;      /* `after` tells at any time of a run: what it finds does not go away later */
+  bool absent;       /* and nothing is wrong: the scene does not ask for them. The run does not count as one in doubt */
+  const char *if_so; /* what the end may find: "the body breaks"; told before the run. NULL: the end finds the same */
   const char *inputs; /* of the word "effect": the inputs that then have none; paths, separated by spaces */
   /* The number; NaN where the condition does not apply. At least one of the two. A condition with both is judged at the
    * end by `after` alone. */

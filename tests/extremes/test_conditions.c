@@ -85,7 +85,7 @@ static const struct condition rows[] = {
      .doubt = "d",
      .remedy = "r",
      .results = "",
-     .should = "it break",
+     .if_so = "it breaks",
      .before = five},
     {.word = "end",
      .number = "n",
@@ -117,7 +117,7 @@ static void bounds_are_exclusive_and_the_end_decides(void **state) {
   fclose(out);
   assert_true(set == (1 | 8));
   assert_string_equal(text, "high: n is 5, above 4 (clast explain high)\n"
-                            "told: n is 5, above 4; it counts should it break (clast explain told)\n");
+                            "told: n is 5, above 4; this counts if it breaks (clast explain told)\n");
   free(text);
   condition_after(rows, &(struct condition_run){.going = true}, words, sizeof words);
   assert_string_equal(words, "high, drift"); /* a snapshot: nothing of the end */
@@ -624,7 +624,7 @@ static bool is_marked(const struct twin *twin, const char *const *more) {
   const condition_set told = condition_before(kind->conditions, &inputs, NULL);
   for (size_t k = 0; kind->conditions[k].word; k++) { /* what is told before is so at the end, or may be so */
     const struct condition *c = &kind->conditions[k];
-    if (told >> k & 1 && c->after && !c->should && !has_word(ran.outcome.warnings, c->word))
+    if (told >> k & 1 && c->after && !c->if_so && !has_word(ran.outcome.warnings, c->word))
       fail_msg("%s, %s: %s is told before the run, the end has '%s'", twin->word, twin->scene, c->word,
                ran.outcome.warnings);
   }

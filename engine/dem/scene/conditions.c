@@ -316,7 +316,7 @@ const struct condition dem_conditions[] = {
                   "those of 25 x 40 grains (2 seeds) 2, 11 and 18 % at 7, 5 and 4 than at 14, where they may be "
                   "8 % stronger than at 30",
               .remedy = "lower loading.rate", .results = "strength failure_strain upright_share end_triangle_share",
-              .should = "the block fail", .before = crossings_at_most, .after = crossings_to_failure),
+              .if_so = "the block fails", .before = crossings_at_most, .after = crossings_to_failure),
     CONDITION(
         "quiet",
         .number = "the longer of stop.quiet_time and stop.least_time over the time in which a wave crosses the body",
