@@ -201,19 +201,22 @@ double sample_alike_half(const struct sample_alike *v, double share, bool of_see
   return half;
 }
 
+bool sample_may_stop_with(size_t n, double deviation, double half_width, double level) {
+  /* t^2 (s^2 + (SAMPLE_GUARD half_width)^2 / n) / n <= half_width^2 */
+  double number = (double)n, t = sample_student(n, level), guard = SAMPLE_GUARD * half_width;
+  double variance = deviation * deviation + guard * guard / number;
+  return t * t * variance <= half_width * half_width * number;
+}
+
 bool sample_may_stop(size_t n, const double *values, double half_width, double level, size_t n0) {
   if (n < n0 || !(half_width > 0))
     return false;
   struct sample_moments moments = moments_in_two_passes(n, values);
   if (moments.n < n0 || moments.n < 2)
     return false; /* failed runs do not count */
-
-  /* t^2 (s^2 + (SAMPLE_GUARD half_width)^2 / n) / n <= half_width^2 */
-  half_width *= moments.scale; /* so that no square leaves the range of double */
-  double number = (double)moments.n, t = sample_student(moments.n, level), guard = SAMPLE_GUARD * half_width;
-  double deviation = sample_summarise_moments(&moments, level).standard_deviation * moments.scale;
-  double variance = deviation * deviation + guard * guard / number;
-  return t * t * variance <= half_width * half_width * number;
+  /* Scaled, so that no square leaves the range of double. */
+  const double deviation = sample_summarise_moments(&moments, level).standard_deviation * moments.scale;
+  return sample_may_stop_with(moments.n, deviation, half_width * moments.scale, level);
 }
 
 bool sample_could_stop(size_t n, double level) {

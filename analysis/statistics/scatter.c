@@ -122,25 +122,64 @@ void scatter_release(struct scatter *scatter) {
   *scatter = (struct scatter){0};
 }
 
-size_t scatter_runs_needed(double standard_deviation, double half_width) {
-  if (!(standard_deviation >= 0) || !(half_width > 0) || isinf(standard_deviation))
+/* ---- How many runs an interval needs ---- */
+
+/* Is the interval of the mean of n runs with this standard deviation narrow enough? */
+struct wanted {
+  double mean, deviation, half_width;
+  bool (*is_narrow)(const struct wanted *wanted, size_t n);
+};
+
+static bool student_is_narrow(const struct wanted *wanted, size_t n) {
+  return !(sample_student(n, 0.95) * wanted->deviation / wanted->half_width > sqrt((double)n));
+}
+
+static bool share_is_narrow(const struct wanted *wanted, size_t n) {
+  struct sample_summary of = {.n = n, .mean = wanted->mean, .standard_deviation = wanted->deviation};
+  of.half_width = wanted->deviation > 0 ? sample_student(n, 0.95) * wanted->deviation / sqrt((double)n) : (double)NAN;
+  sample_of_share(&of, 0.95);
+  const double widest = isnan(of.half_width) ? fmax(of.high - of.mean, of.mean - of.low) : of.half_width;
+  return widest <= wanted->half_width;
+}
+
+static bool rule_is_narrow(const struct wanted *wanted, size_t n) {
+  return sample_may_stop_with(n, wanted->deviation, wanted->half_width, 0.95);
+}
+
+/* The smallest of `least`, `least` + `step`, ... that is enough. More runs are never less enough. 0: not known. */
+static size_t fewest(const struct wanted *wanted, size_t least, size_t step) {
+  const double ratio = wanted->deviation / wanted->half_width;
+  if (!(wanted->deviation >= 0) || !(wanted->half_width > 0) || isinf(wanted->deviation) || !(ratio * ratio < 1e8))
     return 0;
-  const double most = 1e9, ratio = standard_deviation / half_width;
-  if (!(ratio * ratio < most / 10))
-    return 0;
-  size_t low = 1, high = 2;
-  while (sample_student(high, 0.95) * ratio > sqrt((double)high)) {
+  if (wanted->is_narrow(wanted, least))
+    return least;
+  size_t low = 0, high = 1; /* steps: `low` are too few, `high` are enough */
+  while (!wanted->is_narrow(wanted, least + high * step)) {
+    if (high > (size_t)1e9)
+      return 0;
     low = high;
     high *= 2;
   }
-  while (high - low > 1) { /* invariant: `low` runs are too few, `high` are enough */
+  while (high - low > 1) {
     const size_t middle = low + (high - low) / 2;
-    if (sample_student(middle, 0.95) * ratio > sqrt((double)middle))
-      low = middle;
-    else
+    if (wanted->is_narrow(wanted, least + middle * step))
       high = middle;
+    else
+      low = middle;
   }
-  return high;
+  return least + high * step;
+}
+
+size_t scatter_runs_needed(double deviation, double half_width) {
+  return fewest(&(struct wanted){0, deviation, half_width, student_is_narrow}, 2, 1);
+}
+
+size_t scatter_runs_of_share(double mean, double deviation, double half_width) {
+  return isnan(mean) ? 0 : fewest(&(struct wanted){mean, deviation, half_width, share_is_narrow}, 2, 1);
+}
+
+size_t scatter_runs_of_rule(double deviation, double half_width) {
+  return fewest(&(struct wanted){0, deviation, half_width, rule_is_narrow}, SAMPLE_FIRST, SAMPLE_BATCH);
 }
 
 struct scatter_histogram scatter_histogram_of(const struct scatter *s) {

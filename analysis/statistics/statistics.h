@@ -145,6 +145,8 @@ enum { SAMPLE_FIRST = 30, SAMPLE_BATCH = 10, SAMPLE_GUARD = 20 };
 /* values[r] of replicate r; NaN (a failed run) is left out of the statistics. True when a campaign may stop at the
  * prefix of length n. */
 bool sample_may_stop(size_t n, const double *values, double half_width, double level, size_t n0);
+/* The same of n values with this standard deviation. */
+bool sample_may_stop_with(size_t n, double deviation, double half_width, double level);
 /* Are n values enough to stop if all are equal? From 41 on at a level of 0.95. */
 bool sample_could_stop(size_t n, double level);
 
@@ -592,6 +594,11 @@ void scatter_find_modes(struct scatter *scatter);
 /* The number of runs for a 95 % interval of the mean with at most this half width, given this standard deviation. 0:
  * not known. */
 size_t scatter_runs_needed(double deviation, double half_width);
+/* The same of a share (sample_of_share()): what an interval of a table needs. */
+size_t scatter_runs_of_share(double mean, double deviation, double half_width);
+/* The number of runs at which the stopping rule (sample_may_stop()) ends a point with this standard deviation, with its
+ * first prefix and its batch as they are by default. */
+size_t scatter_runs_of_rule(double deviation, double half_width);
 
 /* Edges of a histogram: Freedman and Diaconis's width 2 (q75 - q25)/n^(1/3), rounded to 1, 2 or 5 times a power of ten;
  * 1 to SCATTER_BINS bins. */

@@ -32,15 +32,21 @@ static void row(const struct printing *printing, const char *name, double value,
   table_doubt_cells(printing->table, &printing->pool->doubts);
 }
 
-/* Number of runs for the wanted interval, from the standard deviation. NaN: not known. */
-static double needed(double deviation, double half_width) {
-  const size_t runs = scatter_runs_needed(deviation, half_width);
-  return runs ? (double)runs : (double)NAN;
+/* Runs that the mean needs for the wanted interval, in a table and by the rule of a campaign, from the standard
+ * deviation. */
+static void print_runs_needed(const struct printing *printing, const struct sample_summary *mean) {
+  const struct scatter_choice *choice = printing->choice;
+  const double wanted = choice->half_width * (choice->relative ? fabs(mean->mean) : 1);
+  const size_t runs = printing->pools->share ? scatter_runs_of_share(mean->mean, mean->standard_deviation, wanted)
+                                             : scatter_runs_needed(mean->standard_deviation, wanted);
+  const size_t by_rule = scatter_runs_of_rule(mean->standard_deviation, wanted);
+  row(printing, "runs needed", runs ? (double)runs : (double)NAN, NAN, NAN);
+  row(printing, "runs needed, seeds.until", by_rule ? (double)by_rule : (double)NAN, NAN, NAN);
 }
 
 static void print_scatter(const struct printing *printing, struct scatter *s) {
   static const char *const names[SCATTER_QUANTILES] = {"q05", "q25", "median", "q75", "q95"};
-  const double wanted = printing->choice->half_width, deviation = s->mean.standard_deviation;
+  const double deviation = s->mean.standard_deviation;
   if (printing->pools->share)
     sample_of_share(&s->mean, 0.95);
   row(printing, "runs", (double)s->n, NAN, NAN);
@@ -61,9 +67,8 @@ static void print_scatter(const struct printing *printing, struct scatter *s) {
     row(printing, "upper mode", s->upper_mode, s->between, s->sorted[s->n - 1]);
     row(printing, "share of upper mode", s->upper_share, s->upper_low, s->upper_high);
   }
-  if (isfinite(wanted))
-    row(printing, "runs needed", needed(deviation, printing->choice->relative ? wanted * fabs(s->mean.mean) : wanted),
-        NAN, NAN);
+  if (isfinite(printing->choice->half_width))
+    print_runs_needed(printing, &s->mean);
 }
 
 status print_scatter_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,
@@ -94,6 +99,11 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
         "p of one peak below 0.05: the runs have two. Fewer than %d runs tell neither modes nor skewness",
         SCATTER_SHAPE_RUNS);
   }
+  if (table_for_people(format) && isfinite(choice->half_width))
+    words_print(stderr, "",
+                "clast: runs needed: for this half width in a table, if the scatter stays as it is. seeds.until needs "
+                "more, as it looks for the width in steps of %d runs from %d on and must not end by chance",
+                SAMPLE_BATCH, SAMPLE_FIRST);
   if (several)
     fputs("clast: pooled over points: the scatter holds that of the inputs; the intervals take the runs as "
           "independent\n",

@@ -295,6 +295,7 @@ import csv, math
 rows = {r["statistic"]: r for r in csv.DictReader(open("out"))}
 wanted = 0.05 * float(rows["mean"]["value"]) # Student's t is at least 1.96
 assert float(rows["runs needed"]["value"]) >= (1.96 * float(rows["standard deviation"]["value"]) / wanted) ** 2, rows
+assert float(rows["runs needed, seeds.until"]["value"]) % 10 == 0, rows # prefixes of 30, 40, ... runs
 PY
 expect 64 "$clast" scatter small.db --split --point 1
 says "at least two points"

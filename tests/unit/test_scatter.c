@@ -101,6 +101,42 @@ static void runs_for_an_interval(void **state) {
   assert_true(fabs(n - pow(1.959963985 / 0.001, 2)) < 5);
 }
 
+/* The number is where the interval of a table first is narrow enough, and where the rule ends a point. */
+static void runs_for_an_interval_are_those_of_tables_and_of_the_rule(void **state) {
+  (void)state;
+  enum { MOST = 4000 };
+  const double mean = 0.12, widths[] = {0.03, 0.01, 0.004};
+  double x[MOST];
+  for (int w = 0; w < 3; w++) {
+    const double half_width = widths[w], s = 0.1;
+    const size_t share = scatter_runs_of_share(mean, s, half_width), plain = scatter_runs_needed(s, half_width);
+    assert_true(share > plain && share < 2 * plain);
+    for (size_t n = share - 1; n <= share; n++) {
+      struct sample_summary of = {.n = n, .mean = mean, .standard_deviation = s};
+      of.half_width = sample_student(n, 0.95) * s / sqrt((double)n);
+      sample_of_share(&of, 0.95);
+      assert_int_equal(of.half_width <= half_width, n == share);
+    }
+    const size_t rule = scatter_runs_of_rule(s, half_width);
+    assert_true(rule >= SAMPLE_FIRST && (rule - SAMPLE_FIRST) % SAMPLE_BATCH == 0 && rule > plain);
+    size_t n = SAMPLE_FIRST;
+    for (; n < MOST; n += SAMPLE_BATCH) { /* values with this standard deviation, whatever n is */
+      for (size_t i = 0; i < n; i++)
+        x[i] = mean + (i % 2 ? s : -s) * sqrt((double)(n - 1) / (double)n);
+      if (sample_may_stop(n, x, half_width, 0.95, SAMPLE_FIRST))
+        break;
+    }
+    assert_int_equal(n, rule);
+  }
+  /* Equal runs: Student's t knows no width, a share has one, and the guard of the rule ends it at 50. */
+  assert_int_equal(scatter_runs_of_rule(0, 0.02), 50);
+  const size_t n = scatter_runs_of_share(0.9, 0, 0.02); /* 0.9 (1 - 0.05^(1/n)) <= 0.02: n = 134 */
+  assert_int_equal(n, 134);
+  assert_int_equal(scatter_runs_of_share(NAN, 1, 1), 0);
+  assert_int_equal(scatter_runs_of_share(0.5, NAN, 1), 0);
+  assert_int_equal(scatter_runs_of_rule(NAN, 1), 0);
+}
+
 /* 95 % intervals of the median hold it in 95 % of the samples, of a normal and of a skewed law. */
 static void coverage(void **state) {
   (void)state;
@@ -275,9 +311,15 @@ static void shares_of_few_seeds(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] =
-      {cmocka_unit_test(known_samples),         cmocka_unit_test(two_modes),     cmocka_unit_test(counts_in_few_steps),
-       cmocka_unit_test(runs_for_an_interval),  cmocka_unit_test(coverage),      cmocka_unit_test(split_of_a_variance),
-       cmocka_unit_test(at_the_ends_of_double), cmocka_unit_test(split_by_hand), cmocka_unit_test(shares_of_few_seeds)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(known_samples),
+                                     cmocka_unit_test(two_modes),
+                                     cmocka_unit_test(counts_in_few_steps),
+                                     cmocka_unit_test(runs_for_an_interval),
+                                     cmocka_unit_test(runs_for_an_interval_are_those_of_tables_and_of_the_rule),
+                                     cmocka_unit_test(coverage),
+                                     cmocka_unit_test(split_of_a_variance),
+                                     cmocka_unit_test(at_the_ends_of_double),
+                                     cmocka_unit_test(split_by_hand),
+                                     cmocka_unit_test(shares_of_few_seeds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
