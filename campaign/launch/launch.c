@@ -2,6 +2,7 @@
 #include "campaign/launch/launch.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -9,6 +10,7 @@
 #include "campaign/charts/charts.h"
 #include "campaign/print/print.h"
 #include "campaign/scheduler/run.h"
+#include "campaign/terminal/words.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"
 
@@ -126,9 +128,6 @@ static void print_summary(const struct driver_summary *summary, const char *stor
     fprintf(stderr,
             ": %" PRIu64 " with the interval that was asked for, %" PRIu64 " with seeds.max runs and a wider one",
             summary->points_interval_met, summary->points_cap_reached);
-  if (summary->points_cap_reached)
-    fprintf(stderr, summary->points_cap_reached > 1 ? " (point %" PRId64 " and others)" : " (point %" PRId64 ")",
-            summary->capped_point);
   fputc('\n', stderr);
   if (summary->runs_censored)
     fprintf(stderr, "%" PRId64 " run%s ended at stop.end_time: fragments may still have been breaking\n",
@@ -145,6 +144,29 @@ static void print_summary(const struct driver_summary *summary, const char *stor
             text_plural(summary->attempts_failed), store);
   if (code == STATUS_STOPPED)
     fputs("stopped; the same command goes on\n", stderr);
+}
+
+/* Points that ended at seeds.max without the interval that was asked for. */
+static void warn_too_wide(const struct campaign *campaign, const struct driver_summary *summary) {
+  char asked[FIELD_TEXT_SIZE], width[UNCERTAINTY_TEXT] = "not known", runs[64] = "";
+  const uint64_t wide = summary->points_cap_reached;
+  if (wide == 0)
+    return;
+  snprintf(asked, sizeof asked, campaign->until_of_value ? "%g %% of the mean" : "%g",
+           campaign->until_half_width * (campaign->until_of_value ? 100 : 1));
+  if (isfinite(summary->widest_half_width))
+    snprintf(width, sizeof width, "± %.2g%s",
+             summary->widest_half_width * (campaign->until_of_value ? 100 / fabs(summary->widest_mean) : 1),
+             campaign->until_of_value ? " %" : "");
+  if (summary->widest_runs)
+    snprintf(runs, sizeof runs, " and needs about %zu runs", summary->widest_runs);
+  words_print(stderr, "",
+              "clast: warning: %" PRIu64 " of %" PRIu64 " points ha%s seeds.max runs (%" PRId64
+              ") and a wider interval "
+              "of %s than seeds.until asks (± %s): the widest, of point %" PRId64 ", is %s%s. Raise seeds.max, or ask "
+              "for less, and the same command goes on",
+              wide, summary->points, wide == 1 ? "s" : "ve", campaign->maximum, campaign->until_quantity, asked,
+              summary->widest_point, width, runs);
 }
 
 /* Means of the campaign's main quantity. */
@@ -206,6 +228,7 @@ status launch_campaign(const struct campaign *campaign, const char *store, const
     print_summary(&summary, store, wall_s, code);
   if (!done)
     return code;
+  warn_too_wide(campaign, &summary);
   const status printed = print_answers(store, summary.campaign_id, campaign->quantity, format, quiet,
                                        code ? NULL : error);
   return printed ? printed : code;

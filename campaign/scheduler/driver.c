@@ -190,6 +190,23 @@ static status admit(struct driver *driver, struct point *point, struct error *er
   return any ? store_set_prefix(driver->scheduler->store, point->id, prefix, error) : STATUS_OK;
 }
 
+/* Keeps the point if it needs the most runs of those that reached the cap. */
+static void count_wide(struct driver *driver, const struct point *point) {
+  const struct campaign *campaign = driver->campaign;
+  struct driver_summary *summary = &driver->summary;
+  struct sample_summary mean = sample_summarise((size_t)point->prefix, point->values, 0.95);
+  const double wanted = campaign->until_half_width * (campaign->until_of_value ? fabs(mean.mean) : 1);
+  const size_t runs = scatter_runs_of_rule(mean.standard_deviation, wanted);
+  if (summary->widest_point && (summary->widest_runs == 0 || (runs && runs <= summary->widest_runs)))
+    return;
+  if (field_is_share(driver->row))
+    sample_of_share(&mean, 0.95);
+  summary->widest_point = point->id;
+  summary->widest_half_width = mean.half_width;
+  summary->widest_mean = mean.mean;
+  summary->widest_runs = runs;
+}
+
 /* Judges the point's prefixes and updates the prefix in the store. When the point is decided, marks the runs whose
  * fields are wanted. */
 static status judge(struct driver *driver, struct point *point, struct error *error) {
@@ -202,7 +219,7 @@ static status judge(struct driver *driver, struct point *point, struct error *er
     driver->summary.points_interval_met += point->verdict == DESIGN_INTERVAL_MET;
     driver->summary.points_cap_reached += point->verdict == DESIGN_CAP_REACHED;
     if (point->verdict == DESIGN_CAP_REACHED)
-      driver->summary.capped_point = point->id;
+      count_wide(driver, point);
     point_want_fields(point, driver->campaign);
   }
   return admit(driver, point, error);
@@ -587,6 +604,8 @@ static status end(void *context, status code, struct error *error) {
   const char *outcome = code == STATUS_OK || code == STATUS_FAILED_RUNS ? "finished"
                         : code == STATUS_STOPPED                        ? "stopped"
                                                                         : "failed";
+  if (code == STATUS_OK && driver->campaign->per_point == 0)
+    code = store_set_session_too_wide(store, summary->session_id, (int64_t)summary->points_cap_reached, error);
   const status session = store_end_session(store, summary->session_id, outcome, code == STATUS_OK ? error : NULL);
   return code != STATUS_OK ? code : session;
 }

@@ -155,8 +155,11 @@ struct driver_summary {
   int64_t fields_written;  /* HDF5 files kept */
   int64_t attempts_failed; /* attempts that failed in this invocation */
   uint64_t points_interval_met, points_cap_reached; /* with `until` */
-  int64_t capped_point;                             /* the last one that reached the cap */
-  double cpu_s;                                     /* processor time of the runs computed now */
+  int64_t widest_point;     /* of those that reached the cap, the one that needs the most runs, and how many (0: not */
+  double widest_half_width; /* known); its 95 % half width as in tables (NaN: none) and its mean */
+  double widest_mean;
+  size_t widest_runs;
+  double cpu_s; /* processor time of the runs computed now */
 };
 
 /* Computes a campaign; every rank calls it. STATUS_OK; STATUS_FAILED_RUNS: finished with failed runs, or stopped

@@ -207,6 +207,25 @@ same "$(number both.db 'select count(*) from runs')" 12 "merged runs"
 ok "merged store holds the same bits"
 expect 0 "$clast" check both.db
 
+# points that reach seeds.max with a wider interval than asked are told at the end, also with --quiet, and in the status
+tiny wide 'quantity: largest_fraction'
+sed -i 's/^seeds: .*/seeds: {until: {quantity: largest_fraction, half_width: 0.0001}, max: 60}/; /^store:/d' wide.yaml
+echo 'store: wide.db' >>wide.yaml
+expect 0 "$clast" run wide.yaml --quiet
+says "warning: 4 of 4 points have seeds.max runs (60) and a wider interval of largest_fraction than seeds.until asks"
+says "the widest, of point"
+says "Raise seeds.max, or ask for less"
+expect 0 "$clast" status wide.db
+prints "too_wide"
+expect 0 "$clast" status wide.db --json
+prints '"too_wide": 4'
+sed -i 's/half_width: 0.0001/half_width: 50 %/' wide.yaml
+expect 0 "$clast" run wide.yaml --quiet
+grep -q "seeds.max" err && fail "a rule that is met is warned of"
+expect 0 "$clast" status wide.db --json
+prints '"too_wide": 0'
+ok "points whose interval stays wider than asked"
+
 # a reader that closes the pipe early is no error
 { got=0; "$clast" query tiny.db --csv "with recursive c(x) as (select 1 union all select x + 1 from c limit 300000) select x from c" 2>err || got=$?; echo "$got" >code; } | head -n 1 >/dev/null
 same "$(cat code)" 0 "exit code when the reader goes away"
@@ -226,4 +245,4 @@ expect 64 "$clast" query tiny.db "select :x"
 says "give --with x=VALUE"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 62
+done_after 68
