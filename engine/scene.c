@@ -657,6 +657,17 @@ static void set_back(struct scene *scene, size_t row) {
     scene->kind->complete(scene->inputs, scene->given);
 }
 
+bool scene_follows(const struct scene *scene, const struct field *row) {
+  if (!(row->flags & FIELD_DERIVED))
+    return false;
+  struct field_value value, completed;
+  SCENE without = scene_copy(scene);
+  set_back(without, (size_t)(row - scene->kind->inputs->rows));
+  field_get(row, scene->inputs, &value);
+  field_get(row, without->inputs, &completed);
+  return field_same_value(row, &value, &completed);
+}
+
 status scene_check(struct scene *scene, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
   for (size_t i = 0; i < table->count; i++) {

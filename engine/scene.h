@@ -72,6 +72,10 @@ status scene_settings_use(struct scene *scene, const char *name, struct error *e
  * not given; an override without effect is refused; conditions across fields are checked. */
 status scene_check(struct scene *scene, struct error *error);
 
+/* Does the row's value follow from the other inputs (FIELD_DERIVED)? True when the scene completes to the same value
+ * without it, whether or not it was given. */
+bool scene_follows(const struct scene *scene, const struct field *row);
+
 /* Lists the shape files that active inputs name (FIELD_FILE) and returns their number. The inputs hold the SHA-256 of a
  * file's content, so a run's identity depends on the content. Files that were not read are left out. */
 enum { SCENE_FILES_MOST = 4 }; /* inputs of one engine with FIELD_FILE */

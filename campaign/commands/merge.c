@@ -26,7 +26,7 @@ static status merge_source(struct store *store, const char *target, const char *
 }
 
 /* Inputs in which campaigns of one scene differ become varied inputs, as when they are run into one store: tables show
- * them. An input whose default follows from others is left out, as its value may follow from theirs. */
+ * them. A value that follows from other inputs in all campaigns is left out: it differs because those do. */
 static status show_inputs(struct store *store, const char *target, struct error *error) {
   const struct field *rows[LIMITS_AXES_OF_POOL];
   char names[1024] = "";
@@ -35,14 +35,14 @@ static status show_inputs(struct store *store, const char *target, struct error 
   while (answer_next(&different) && count < LIMITS_AXES_OF_POOL) {
     const struct engine_kind *kind = engine_find(answer_text(&different, 0), NULL);
     const struct field *row = kind ? field_find(kind->inputs, answer_text(&different, 1), NULL) : NULL;
-    if (!row || row->flags & FIELD_DERIVED)
+    if (!row || (count > 0 && rows[count - 1] == row) || scheduler_follows(answer_text(&different, 2), row))
       continue;
     rows[count++] = row;
     text_append(names, sizeof names, "%s%s", *names ? ", " : "", row->path);
   }
   TRY(answer_end(&different));
   for (size_t i = 0; i < count; i++)
-    TRY(store_add_axis(store, rows[i], strcmp(rows[i]->unit ? rows[i]->unit : "", "rad") == 0 ? "deg" : "", error));
+    TRY(scheduler_show_input(store, rows[i], error));
   if (count)
     fprintf(stderr,
             "clast: warning: campaigns of one scene differ in %s: %s of %s from now on (--by). `clast stats %s "

@@ -236,14 +236,6 @@ static status resume(struct driver *driver, struct point *point, struct error *e
   return admit(driver, point, error); /* a fixed number of replicates may cover runs that an older rule left out */
 }
 
-/* Did the document give the value, or is it the default? Other values follow from other inputs. */
-static bool is_chosen(const struct scene *scene, const struct field *row) {
-  struct field_value value, usual;
-  field_get(row, scene->inputs, &value);
-  field_default(row, &usual);
-  return scene->given[row - scene->kind->inputs->rows] || field_same_value(row, &value, &usual);
-}
-
 /* Appends "PATH (VALUE there, VALUE here)". */
 static void write_hidden(const struct scene *scene, const struct field *row, const struct query_value *theirs,
                          char *text, size_t size) {
@@ -271,16 +263,17 @@ static status tell_hidden_inputs(struct driver *driver, const struct scene *scen
   while (answer_next(&hidden)) {
     const struct field *row = field_find(inputs, answer_text(&hidden, 0), NULL);
     const struct query_value theirs = answer_value(&hidden, 1);
-    if (!row || !is_chosen(scene, row) || count == LIMITS_AXES_OF_POOL)
+    if (!row || count == LIMITS_AXES_OF_POOL)
       continue;
+    if (!scene->given[row - inputs->rows] && scheduler_follows(answer_text(&hidden, 2), row))
+      continue; /* it differs because others do */
     differs[count] = row;
     if (count++ < NAMED)
       write_hidden(scene, row, &theirs, names, sizeof names);
   }
   TRY(answer_end(&hidden));
   for (size_t i = 0; i < count; i++)
-    TRY(store_add_axis(driver->scheduler->store, differs[i],
-                       strcmp(differs[i]->unit ? differs[i]->unit : "", "rad") == 0 ? "deg" : "", error));
+    TRY(scheduler_show_input(driver->scheduler->store, differs[i], error));
   if (count == 0 || driver->in_series) /* the campaigns of a series differ on purpose */
     return STATUS_OK;
   snprintf(text, sizeof text,

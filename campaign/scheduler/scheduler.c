@@ -38,6 +38,20 @@ status scheduler_announce(struct scheduler *scheduler, const struct campaign *ca
   return STATUS_OK;
 }
 
+status scheduler_show_input(struct store *store, const struct field *row, struct error *error) {
+  const char *unit = row->unit && strcmp(row->unit, "rad") == 0 ? "deg" : "";
+  return store_add_axis(store, row, unit, error);
+}
+
+bool scheduler_follows(const char *scene_json, const struct field *row) {
+  struct error error;
+  SCENE scene = NULL;
+  if (!(row->flags & FIELD_DERIVED) || scene_parse_json("stored scene", scene_json, &scene, &error) != STATUS_OK)
+    return false;
+  const struct field *own = field_find(scene->kind->inputs, row->path, NULL);
+  return own && scene_follows(scene, own);
+}
+
 int64_t scheduler_replicate(const struct campaign *campaign, const struct scene *scene,
                             const struct ask_run_of_point *run) {
   const int64_t r = campaign->independent ? run->replicate : (int64_t)(run->seed - (uint64_t)campaign->first_seed);

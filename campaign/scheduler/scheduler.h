@@ -128,6 +128,11 @@ int scheduler_attempts(const struct scheduler *scheduler, const uint8_t identity
  * point's estimates as soon as a run is added to the point. */
 status pooling_store(struct store *store, int64_t campaign_id, struct error *error);
 
+/* Makes an input in which campaigns of a store differ a varied input of the store. People see angles in degrees. */
+status scheduler_show_input(struct store *store, const struct field *row, struct error *error);
+/* Does the input follow from the others in a stored scene (JSON)? False also for a scene that no longer reads. */
+bool scheduler_follows(const char *scene_json, const struct field *row);
+
 /* The parts of scheduler_compute, for tests that take the farm's place. */
 struct farm_manager scheduler_manager(struct scheduler *scheduler);
 /* After the farm has ended with `code`: the last tick, and commits the open batch. Returns the status to go on with,

@@ -102,21 +102,23 @@ struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, 
       "%lld) OR (SELECT engine || scene_name FROM point WHERE point_id = first) = (SELECT engine || scene_name FROM "
       "point WHERE "
       "point_id = %lld))"
-      " SELECT mine.path, theirs.value, max(other.campaign_id) FROM other JOIN point_input mine ON mine.point_id = %lld"
+      " SELECT mine.path, theirs.value, (SELECT scene FROM point WHERE point_id = other.first), max(other.campaign_id) "
+      "FROM other JOIN point_input mine ON mine.point_id = %lld"
       " LEFT JOIN point_input theirs ON theirs.point_id = other.first AND theirs.path = mine.path WHERE theirs.value IS"
       " NOT mine.value AND mine.path NOT IN (SELECT path FROM axis) GROUP BY mine.path ORDER BY mine.path",
       (long long)campaign, (long long)campaign, (long long)point, (long long)point);
 }
 
 struct answer ask_campaign_different_inputs(struct store *store, struct error *error) {
-  return answer_to(store, error,
-                   "WITH known AS (SELECT engine, scene_name, first FROM (SELECT min(point_id) AS first FROM "
-                   "campaign_point GROUP BY "
-                   "campaign_id) JOIN point ON point_id = first) SELECT DISTINCT engine, path FROM known JOIN "
-                   "point_input ON point_id "
-                   "= first WHERE path NOT IN (SELECT path FROM axis) GROUP BY engine, scene_name, path HAVING "
-                   "count(DISTINCT value) "
-                   "> 1 ORDER BY engine, path");
+  return answer_to(
+      store, error,
+      "WITH known AS (SELECT DISTINCT first, engine, scene_name, scene FROM (SELECT min(point_id) AS first "
+      "FROM campaign_point GROUP BY campaign_id) JOIN point ON point_id = first), different AS (SELECT "
+      "engine, scene_name, path FROM known JOIN point_input ON point_id = first WHERE path NOT IN (SELECT "
+      "path FROM axis) GROUP BY engine, scene_name, path HAVING count(DISTINCT value) > 1) SELECT engine, "
+      "path, scene FROM different JOIN known USING (engine, scene_name) WHERE EXISTS (SELECT 1 FROM "
+      "point_input AS its WHERE point_id = first AND its.path = different.path) ORDER BY engine, path, "
+      "first");
 }
 
 /* The runs of each campaign with their class: safe (usable, no warnings), warned (usable, with warnings), refused

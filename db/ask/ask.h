@@ -70,9 +70,11 @@ struct answer ask_campaign_documents(struct store *store, struct error *error);
 
 /* Inputs that differ between the point and the first points of other campaigns with the name or the scene of this one,
  * and that no campaign of the store varies, so that tables do not show them. A row per input: path, value of the last
- * such campaign that differs (SI; NULL: the input does not apply there). */
+ * such campaign that differs (SI; NULL: the input does not apply there), and the scene of its first point
+ * (JSON). */
 struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, int64_t point, struct error *error);
-/* The same of all campaigns of one scene, as after a merge. A row per input: engine, path. */
+/* The same of all campaigns of one scene, as after a merge. A row per input and first point of a campaign in which it
+ * applies: engine, path, scene of the point (JSON). */
 struct answer ask_campaign_different_inputs(struct store *store, struct error *error);
 
 /* A row per campaign: runs, safe, warned, refused, runs given up without a result, the largest energy_error of usable

@@ -207,6 +207,33 @@ same "$(number both.db 'select count(*) from runs')" 12 "merged runs"
 ok "merged store holds the same bits"
 expect 0 "$clast" check both.db
 
+# an input whose default follows from others is an axis where a campaign chose it, not where it only follows
+derived() { # derived NAME SCENE SET
+  printf 'name: %s\nscene: %s\nset: {%s}\nseeds: {per_point: 1}\nstore: %s.db\n' "$1" "$2" "$3" "$1" >"$1.yaml"
+  "$clast" run "$1.yaml" --quiet >out 2>err || fail "run $1"
+}
+axes() { number "$1" "select group_concat(path, ' ') from (select path from axis order by path)"; }
+disc='body.diameter: 6 cm, stop.end_time: 0.2 ms'
+derived soft disc-explosion "$disc, grain.young_modulus: 1 GPa"
+derived stiff disc-explosion "$disc, grain.young_modulus: 3 GPa"
+derived brisk disc-explosion "$disc, grain.young_modulus: 3 GPa, fidelity.time_step: 0.3 us"
+for rock in 8 9; do derived "weibull$rock" basalt-sphere "fidelity.particles: 300, stop.end_time: 4 us, target.material.weibull.m: $rock"; done
+derived usual basalt-sphere "fidelity.particles: 300, stop.end_time: 4 us"
+expect 0 "$clast" merge followed.db soft.db stiff.db
+same "$(axes followed.db)" grain.young_modulus "axes of campaigns of other grains"
+expect 0 "$clast" merge chosen.db stiff.db brisk.db
+same "$(axes chosen.db)" fidelity.time_step "axes with a chosen step"
+expect 0 "$clast" merge rock.db weibull8.db weibull9.db
+same "$(axes rock.db)" target.material.weibull.m "axes of two rocks"
+expect 0 "$clast" stats rock.db --by target.material.weibull.m --csv
+prints target_material_weibull_m
+expect 0 "$clast" merge half.db usual.db weibull9.db
+same "$(axes half.db)" target.material.weibull.m "axes of a rock beside its own"
+derived weibull9 basalt-sphere "fidelity.particles: 300, stop.end_time: 4 us, target.material.weibull.m: 9"
+expect 0 "$clast" run usual.yaml --store weibull9.db --quiet
+says "target.material.weibull.m (9 there"
+same "$(axes weibull9.db)" target.material.weibull.m "axes of a run beside a rock"
+
 # points that reach seeds.max with a wider interval than asked are told at the end, also with --quiet, and in the status
 tiny wide 'quantity: largest_fraction'
 sed -i 's/^seeds: .*/seeds: {until: {quantity: largest_fraction, half_width: 0.0001}, max: 60}/; /^store:/d' wide.yaml
@@ -245,4 +272,4 @@ expect 64 "$clast" query tiny.db "select :x"
 says "give --with x=VALUE"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 68
+done_after 79
