@@ -1,6 +1,7 @@
 /* The points of a campaign, one after the other; warnings about them; a list of them as a document. */
 #include "campaign/document/campaign.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 #include "campaign/terminal/words.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
+#include "schemas/unit.h"
 
 status campaign_walk_begin(struct campaign_walk *walk, const struct campaign *campaign, struct error *error) {
   *walk = (struct campaign_walk){.campaign = campaign};
@@ -148,6 +150,25 @@ char *campaign_write_list(const struct campaign *campaign, const char *scene_ref
   return text_close(out, &text);
 }
 
+/* Writes the value as a person would: the shortest text that reads back as the same value, with the row's unit, the
+ * one that tables show, or a common multiple of it. */
+static void write_for_people(const struct field *row, const struct field_value *value, char text[FIELD_TEXT_SIZE]) {
+  static const char *const units[] = {"deg", "um", "mm", "cm", "km", "us", "ms", "km/s", "kJ/m", "MPa", "GPa"};
+  char other[FIELD_TEXT_SIZE];
+  struct error error;
+  field_print(row, value, text, FIELD_TEXT_SIZE);
+  for (size_t i = 0; row->unit && value->kind == FIELD_REAL && i < sizeof units / sizeof units[0]; i++) {
+    struct unit unit;
+    struct field_value read;
+    if (!isfinite(value->number) || unit_parse(units[i], &unit, NULL) != STATUS_OK)
+      continue;
+    snprintf(other, sizeof other, "%.10g %s", value->number / unit.factor, units[i]);
+    if (strlen(other) < strlen(text) && field_parse(row, other, &read, &error) == STATUS_OK &&
+        field_same_value(row, &read, value))
+      snprintf(text, FIELD_TEXT_SIZE, "%s", other);
+  }
+}
+
 bool campaign_write_study(const struct scene *scene, const char *scene_reference, const char *quantities,
                           const char *store, char *text, size_t size) {
   char value[FIELD_TEXT_SIZE], set[2 * FIELD_TEXT_SIZE];
@@ -159,7 +180,7 @@ bool campaign_write_study(const struct scene *scene, const char *scene_reference
     if (!scene->overridden[i])
       continue;
     field_get(row, scene->inputs, &given);
-    field_print(row, &given, value, sizeof value);
+    write_for_people(row, &given, value);
     snprintf(set, sizeof set, "%s=%s", row->path, value);
     fits = fits && text_append(text, size, " --set") && text_append_word(text, size, set);
   }

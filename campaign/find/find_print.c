@@ -241,32 +241,49 @@ static status print_rows(const struct find *find, enum table_format format, stru
   return table_end(table, error);
 }
 
-/* The error of the resolution where the answer is: at the point of the search that is nearest to it. */
-static status tell_resolution(const struct find *find, struct error *error) {
-  const double answer = find->found.kind == CROSSING_FOUND ? find->found.at : 0.5;
-  double x = HUGE_VAL;
+/* The study of the point with this value of the input, and the command that makes it. */
+static status read_resolution(const struct find *find, struct store *store, const struct field_value *place,
+                              const char *column, struct ask_resolution *resolution, struct error *error) {
   int64_t point = 0;
-  struct ask_resolution resolution;
+  SCENE scene = campaign_point_scene_from(find->base, &find->limits, place, error);
+  if (!scene)
+    return STATUS_CONTENT;
+  TRY(store_point_find(store, scene, &point, error));
+  TRY(ask_resolution(point ? store : NULL, point, column, resolution, error));
+  campaign_write_study(scene, find->reference, column, find->limits.store, resolution->command,
+                       sizeof resolution->command);
+  return STATUS_OK;
+}
+
+/* The error of the resolution at the answer, as the sentence has it. If no study was made there, that at the point of
+ * the search that is nearest to it counts. */
+static status tell_resolution(const struct find *find, struct error *error) {
+  const struct crossing *found = &find->found;
+  const bool one = found->kind == CROSSING_FOUND;
+  double x = HUGE_VAL;
+  struct ask_resolution resolution, nearest;
   struct field_value place;
-  char column[FIELD_TEXT_SIZE], at[FIND_TEXT], text[UNCERTAINTY_TEXT];
+  char column[FIELD_TEXT_SIZE], at[FIND_TEXT] = "", text[UNCERTAINTY_TEXT];
   STORE store = NULL;
   for (size_t i = 0; i < find->runs; i++)
-    if (isfinite(find->y[i]) && fabs(find->x[i] - answer) < fabs(x - answer))
+    if (isfinite(find->y[i]) && fabs(find->x[i] - (one ? found->at : 0.5)) < fabs(x - (one ? found->at : 0.5)))
       x = find->x[i];
   if (!isfinite(x))
     return STATUS_OK;
-  find_value(find, x, &place);
-  SCENE scene = campaign_point_scene_from(find->base, &find->limits, &place, error);
-  if (!scene)
-    return STATUS_CONTENT;
-  TRY(store_open_reader(find->limits.store, &store, error));
-  TRY(store_point_find(store, scene, &point, error));
   field_column_name(find->quantity.row->path, column, sizeof column);
-  TRY(ask_resolution(point ? store : NULL, point, column, &resolution, error));
-  campaign_write_study(scene, find->reference, column, find->limits.store, resolution.command,
-                       sizeof resolution.command);
+  TRY(store_open_reader(find->limits.store, &store, error));
+  find_value(find, x, &place);
+  show(find, x, at);
+  TRY(read_resolution(find, store, &place, column, &nearest, error));
+  if (one && nearest.verdict == ASK_RESOLUTION_NOT_STUDIED) {
+    find_show_within(find, found->at, found->low, found->high, at);
+    TRY(field_parse(find->input, at, &place, error));
+    TRY(read_resolution(find, store, &place, column, &resolution, error));
+  } else {
+    resolution = nearest;
+  }
   uncertainty_resolution(&resolution, text);
-  fprintf(stderr, "clast: %s at %s = %s: %s\n", column, find->input->path, show(find, x, at), text);
+  fprintf(stderr, "clast: %s at %s = %s: %s\n", column, find->input->path, at, text);
   return STATUS_OK;
 }
 

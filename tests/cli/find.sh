@@ -22,6 +22,15 @@ head -2 out | paste -sd ' ' | grep -qE '^The share of runs with largest_fraction
 ok "the first line answers"
 grep -oE '[0-9.]+ ± [0-9.]+' out | awk '$1 - $3 < 0 || $1 + $3 > 1 { exit 1 }' || fail "an interval of a share beyond 0 or 1"
 says "at most 400 runs"; says "resolution: not studied"; prints "share above 0.5"
+python - <<'PY' # the study is one of the crossing, in the units of the campaign
+import re
+at = re.search(r'at threshold.strain = ([0-9.]+) %', ' '.join(open('out').read().split())).group(1)
+said = ' '.join(open('err').read().split())
+assert f'largest_fraction at threshold.strain = {at} %: resolution: not studied' in said, (at, said)
+study = re.search(r'`clast converge ([^`]*)`', said).group(1)
+assert f"threshold.strain={at} %" in study and "body.diameter=8 cm" in study, study
+PY
+ok "the study advised is at the crossing"
 runs=$(number disc.db "select count(*) from run")
 expect 0 "$clast" status disc.db # its rounds are one row, with a name that can be typed
 grep -q '^ *-  disc find threshold.strain ' out || fail "the rounds are no row of their name"
@@ -125,4 +134,4 @@ expect 64 "$clast" find two.yaml --level 0.5 --input strain
 says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
 expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
 prints "The mean of largest_fraction"
-done_after 37
+done_after 38
