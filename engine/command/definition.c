@@ -44,7 +44,8 @@ static const struct field setting_rows[] = {
             .doc = "Mass of the smallest piece that the program can tell, such as one grain: single pieces are "
                    "unresolved, and exponents leave them out. off: the lightest fragment of a run."),
     SETTING(fragments.complete_mass, FIELD_REAL, "kg", .maximum = 1e30,
-            .doc = "The spectrum of fragments is complete from this mass on."),
+            .doc = "The spectrum of fragments is complete from this mass on. Exponents begin midway between this "
+                   "element and the next, as masses may be whole numbers of elements."),
     SETTING(fragments.dust_mass, FIELD_REAL, "kg", .maximum = 1e30, .doc = "Lighter fragments are dust."),
 };
 static const struct field_table settings_table = FIELD_TABLE(setting_rows, struct definition_settings, "command",

@@ -108,6 +108,17 @@ says "has no fields"
 (echo 'keep: {fields: all}'; cat mark-runs.yaml) >keep.yaml
 expect 65 "$clast" run keep.yaml $word
 
+# ---- a spectrum of whole grains, N(>= k) = 1 / (k - 1/2), complete from five: its exponent is 2 ----
+for element in "element_mass: 0.1 kg, " ""; do # without it: the lightest fragment
+  scene grains "fragments: {name: m, unit: kg, ${element}complete_mass: 0.5 kg}" <<'SH'
+awk 'BEGIN { for (i = 0.5; i < 3000; i++) m = m sprintf(", %.17g", 0.1 * int(0.5 + 1500 / i)); print "{\"x\": 1, \"m\": [" substr(m, 2) "]}" }'
+SH
+  rm -f grains.db
+  expect 0 "$clast" run grains-runs.yaml $word
+  number grains.db "select abs(complete_mass - 0.55) < 1e-12 and abs(beta - 2) < 0.03 from run natural join estimate where method = 'masses' and window = 'from_5'" >right
+  same "$(cat right)" 1 "window and exponent of whole grains"
+done
+
 # ---- inputs, templates, units, results ----
 scene all 'templates: {in.txt: "speed {{speed}} law {{law}} wet {{wet}} n {{n}} seed {{seed}} {{small_seed}} {brace} ${{speed}}"}' \
   'results: {x: {unit: J, written_in: kJ, name: deep.x, doc: A.}, y: {doc: B.}}' 'output: out.json' \
@@ -322,4 +333,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 119
+done_after 123
