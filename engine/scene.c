@@ -391,7 +391,7 @@ static const struct engine_kind *read_engine(document_node *root) {
   document_node *engine = document_key(root, "engine");
   if (!engine) {
     document_report(root, "engine",
-                    document_key(root, "material")
+                    document_key(root, "material") || document_key(root, "like")
                         ? "is missing: this looks like the file of a material; `clast materials FILE` "
                           "checks it, and a scene names it, such as target.material: ./FILE"
                         : "is missing; say which engine runs this scene, such as 'engine: dem'");

@@ -276,10 +276,13 @@ static status tell_hidden_inputs(struct driver *driver, const struct scene *scen
     TRY(scheduler_show_input(driver->scheduler->store, differs[i], error));
   if (count == 0 || driver->in_series) /* the campaigns of a series differ on purpose */
     return STATUS_OK;
-  snprintf(text, sizeof text,
-           "warning: the store has other points of this campaign or scene: %s%s differs, and is a varied input of this "
-           "store from now on (--by). For one campaign alone, name another store or ask with --campaign %lld",
-           names, count > NAMED ? " and more" : "", (long long)driver->summary.campaign_id);
+  snprintf(
+      text, sizeof text,
+      "warning: the store has other points of this campaign or scene: %s%s %s of this store from now on (--by). For "
+      "one campaign alone, name another store or ask with --campaign %lld",
+      names, count > NAMED ? " and more" : "",
+      count > 1 ? "differ, and are varied inputs" : "differs, and is a varied input",
+      (long long)driver->summary.campaign_id);
   scheduler_note(driver->scheduler, text);
   return STATUS_OK;
 }

@@ -150,6 +150,8 @@ static void errors_come_together(void **state) {
                       "t:1:1: error: engine: is missing; say which engine runs this scene, such as 'engine: dem'\n"
                       "  kind: ball\n"
                       "  ^");
+  assert_int_equal(scene_parse("t", "like: basalt\n", &scene, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "looks like the file of a material"));
   assert_int_equal(scene_parse("t", "material: tuff\n", &scene, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "engine: is missing: this looks like the file of a material"));
   assert_int_equal(scene_parse("t", "engine: [tiny]\n", &scene, &error), STATUS_CONTENT);
