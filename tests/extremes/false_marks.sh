@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sound runs that a condition marks: at most 2 %. Sound are scenes with exact answers in the ranges where tests/verification finds
-# them right, and usual runs of grains. Long form, with all scenes as they ship: CLAST_FULL=1. Most impact scenes are `coarse`
-# then, which is right: their runs are printed, and not judged.
+# them right, and usual runs of grains. Long form, with all scenes as they ship: CLAST_FULL=1 (20 minutes of a core). Some of them
+# are marked with right: the words are listed below with their reasons, and each other word is a false mark.
 . "$(dirname "$0")/../cli/lib.bash"
 
 campaign() { # campaign SCENE SET VARY [SEEDS]
@@ -27,13 +27,25 @@ fi
 same "$(number "$store" 'select count(*) from runs where not counts')" 0 "runs without a result"
 python - <<'PY'
 import json
+right = {  # words of the scenes as they ship
+    ("basalt-sphere", "coarse"), ("disruption", "coarse"), ("gabbro-crater", "coarse"), ("pumice-sphere", "coarse"),
+    ("basalt-sphere", "flown"),  # the projectile leaves the target
+    ("colliding-cylinders", "welded"),  # the scene is the published one, which has no contact of bodies
+    ("colliding-cylinders", "shapes"), ("disruption", "shapes"),  # fewer than five large fragments
+    ("porous-ice", "growing"),  # the crater is not final at stop.end_time
+    ("porous-target", "uncracked"),  # the published scene has no flaws
+    ("pumice-sphere", "front"),  # the shock is wider than a tenth of the body
+    ("solid-ice", "box"),  # cracks reach the damped sides
+    ("tensile-rod", "strength"),  # without fracture.cell it is stronger than the law
+}
 runs = marked = 0
 for row in json.load(open("words.json")):
-    if row["warnings"]:
+    words = {(row["scene"], word) for word in row["warnings"].split(", ") if word}
+    if words:
         print(row["scene"], row["runs"], "runs:", row["warnings"])
-    if "coarse" not in row["warnings"].split(", "):
+    if words - right or not words:
         runs += row["runs"]
-        marked += row["runs"] * bool(row["warnings"])
+        marked += row["runs"] * bool(words)
 print(f"{marked} of {runs} sound runs are marked")
 assert runs >= 80 and marked <= 0.02 * runs
 PY
