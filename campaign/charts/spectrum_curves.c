@@ -134,7 +134,7 @@ static void print_rivals(const struct pooled_rivals *rivals) {
     printf("beta %.2f, cut-off mass %.3g, 2 dlnL %.1f, p %.2g\n", rivals->cutoff_beta, rivals->cutoff_mass,
            rivals->cutoff_ratio, rivals->cutoff_p);
   else
-    printf("none\n");
+    printf("none seen below the largest fragments; with them p %.2g (small p: needed)\n", rivals->open_cutoff_p);
   printf("  lognormal: 2 dlnL %.1f, p %.2g (small p: better than the pure power law)\n", rivals->lognormal_ratio,
          rivals->lognormal_p);
 }

@@ -1,5 +1,7 @@
 /* `clast exponents STORE`: the exponent of every point under its four names, and a test of the power law. */
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/words.h"
@@ -10,10 +12,17 @@ struct options {
 
 enum { UNTOLD = 400 };
 
+static double with_two_digits(double number) {
+  char text[32];
+  snprintf(text, sizeof text, "%.2g", number);
+  return strtod(text, NULL);
+}
+
 /* Prints a point's exponent under its four names, with the goodness of its fit by `draws` samples of the bootstrap.
- * Points without estimates have no row. */
+ * Points without estimates have no row. *flat becomes true if beta is 1 or less: numbers above a mass are no power law
+ * then. */
 static status print_pool(struct table *table, size_t draws, bool people, const struct ask_pool *pool, char *untold,
-                         struct error *error) {
+                         bool *flat, struct error *error) {
   const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
   struct pooled_exponent fit;
   struct pooled_goodness goodness;
@@ -32,17 +41,19 @@ static status print_pool(struct table *table, size_t draws, bool people, const s
   if (people && pooled_exponent_untold(&fit))
     fit.fit.beta = NAN;
   const double any = 1; /* a density: the exponents by size do not depend on it */
+  *flat |= fit.fit.beta <= 1;
   for (int form = 0; form < 4; form++) {
     const struct pooled_form named = ask_pool_form(pool, form % 2, form / 2 ? any : 0);
+    const bool none = people && form % 2 && fit.fit.beta <= 1;
     table_rests_on(table, &pool->doubts);
-    table_fixed(table, pooled_spectrum_exponent(&named, fit.fit.beta), 2);
+    table_fixed(table, none ? (double)NAN : pooled_spectrum_exponent(&named, fit.fit.beta), 2);
     if (form == 0 || form == 3)
-      table_fixed(table, pooled_spectrum_half_width(&named, fit.interval.half_width), 2);
+      table_fixed(table, none ? (double)NAN : pooled_spectrum_half_width(&named, fit.interval.half_width), 2);
   }
   const double tests[] = {goodness.distance, goodness.p, rivals.cutoff_p, rivals.open_cutoff_p, rivals.lognormal_p};
   for (size_t k = 0; k < sizeof tests / sizeof tests[0]; k++) {
     table_rests_on(table, &pool->doubts);
-    table_real(table, tests[k]);
+    table_real(table, people ? with_two_digits(tests[k]) : tests[k]);
   }
   table_doubt_cells(table, &pool->doubts);
   return STATUS_OK;
@@ -61,24 +72,27 @@ static status ask(struct store *store, const struct command_line *line, struct e
                                              "N(>L)_hw95", "distance", NULL});
   table_rare(table);
   table_columns(table, (const char *const[]){"p", "cutoff_p", "open_cutoff_p", NULL});
-  table_rare(table);
   table_column(table, "lognormal_p", NULL);
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
   char untold[UNTOLD] = "";
+  bool flat = false;
   ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, NULL, error);
   for (const struct ask_pool *pool; !table_broken(table) && (pool = ask_pools_next(&pools));) {
     ask_doubts_add(&doubts, &pool->doubts);
-    TRY(print_pool(table, (size_t)options->draws, table_for_people(line->format), pool, untold, error));
+    TRY(print_pool(table, (size_t)options->draws, table_for_people(line->format), pool, untold, &flat, error));
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));
   if (table_for_people(line->format)) {
     uncertainty_doubts(&doubts, stderr);
-    words_print(stderr, "",
-                "clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete "
-                "mass. p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better%s%s",
-                *untold ? ". -: " : "", untold);
+    words_print(
+        stderr, "",
+        "clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete "
+        "mass. p below 0.1: a power law does not fit. cutoff_p below 0.05: one with an exponential cut-off fits "
+        "better; open_cutoff_p: the same with the largest fragments, where they belong to the law%s%s%s",
+        *untold ? ". -: " : "", untold,
+        flat ? ". N(>m), N(>L) -: numbers above a mass follow no power law where F(m) is at most 1" : "");
   }
   return STATUS_OK;
 }

@@ -119,6 +119,24 @@ SH
   same "$(cat right)" 1 "window and exponent of whole grains"
 done
 
+# A flat spectrum: the numbers above a mass are no power law, so tables for people have no exponent of them.
+scene flat 'fragments: {name: m, unit: kg}' <<'SH'
+awk 'BEGIN { for (i = 1; i < 300; i++) m = m sprintf(", %.17g", 1 + (i / 30) ^ 3); print "{\"x\": 1, \"m\": [" substr(m, 2) ", 2000]}" }'
+SH
+expect 0 "$clast" run flat-runs.yaml $word
+expect 0 "$clast" exponents flat.db --draws 100
+says "numbers above a mass follow no power law"
+same "$(awk '$1 == 1 {print $6, $8}' out)" "- -" "exponents of a flat spectrum"
+expect 0 "$clast" exponents grains.db --draws 100
+! grep -q 'follow no power law' err || fail "an exponent of 2 is called flat"
+# A power law that ends at 20 kg: windows that end at the largest fragment hide it.
+scene ends 'fragments: {name: m, unit: kg}' <<'SH'
+awk 'BEGIN { for (i = 0.5; i < 2000; i++) m = m sprintf(", %.17g", 1 / (i / 2000 + 0.05)); print "{\"x\": 1, \"m\": [" substr(m, 2) ", 19, 19.2, 19.4, 19.6]}" }'
+SH
+expect 0 "$clast" run ends-runs.yaml $word
+expect 0 "$clast" spectrum ends.db --plot
+prints "exponential cut-off: none seen below the largest fragments; with them p"
+
 # ---- inputs, templates, units, results ----
 scene all 'templates: {in.txt: "speed {{speed}} law {{law}} wet {{wet}} n {{n}} seed {{seed}} {{small_seed}} {brace} ${{speed}}"}' \
   'results: {x: {unit: J, written_in: kJ, name: deep.x, doc: A.}, y: {doc: B.}}' 'output: out.json' \
@@ -333,4 +351,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 123
+done_after 129
