@@ -322,9 +322,33 @@ static void add_fits(struct work *work, size_t dropped, double low, double high,
 
 /* What an interval is of: the law at a step (0: the limit alone), with the limit or without it, plus noise. */
 struct quantity {
-  double limit, step; /* limit: 1, or 0 for the distance from it */
-  double noise;       /* added share of the finest level's variance */
+  double limit, step;  /* limit: 1, or 0 for the distance from it */
+  double noise;        /* added share of the finest level's variance */
+  const size_t *level; /* the level with this step; NULL: none */
+  size_t dropped;      /* laws describe no level before this one */
 };
+
+/* The distance of a level that the law leaves out: measured as far as the finest level, from there by the law. The law
+ * at the coarse step is no value of this level. The scatter that both levels share cancels. */
+static void measure(const struct work *work, const struct fit *fit, size_t level, double mean[DRAWS],
+                    double deviation[DRAWS]) {
+  const struct data *data = &work->data;
+  const size_t finest = data->levels - 1;
+  for (size_t d = 0; d < DRAWS; d++) {
+    const struct noise *noise = &work->noise[d];
+    const double coarse = noise->sigma[level], fine = noise->sigma[finest];
+    double variance = 0;
+    mean[d] = data->mean[level] - data->mean[finest];
+    for (size_t i = 1; i < fit->terms; i++) {
+      mean[d] += fit->found[d][i];
+      for (size_t j = 1; j < fit->terms; j++)
+        variance += fit->covariance[d][i][j];
+    }
+    /* The errors of both parts may be of one sign, as both rest on the finest level. */
+    deviation[d] = sqrt(fmax(variance, 0)) +
+                   sqrt(fmax(coarse * coarse + fine * fine - 2 * noise->rho * coarse * fine, 0) / (double)data->seeds);
+  }
+}
 
 /* The values and deviations of a quantity under one fit, for all draws. */
 static void evaluate(const struct work *work, const struct fit *fit, const struct quantity *q, double mean[DRAWS],
@@ -380,7 +404,10 @@ static struct limit_range range_of(const struct work *work, const struct quantit
     double mean[DRAWS], deviation[DRAWS];
     if (fit->deviance >= rejected)
       continue;
-    evaluate(work, fit, q, mean, deviation);
+    if (q->level && (*q->level < fit->dropped || *q->level < q->dropped))
+      measure(work, fit, *q->level, mean, deviation);
+    else
+      evaluate(work, fit, q, mean, deviation);
     const double tail = gsl_cdf_ugaussian_Q(sqrt(rejected - fit->deviance)), likelihood = exp(-fit->deviance / 2);
     extend(mean, deviation, fit->weight, tail, &range.low);
     extend(mean, deviation, fit->weight, 1 - tail, &range.high);
@@ -474,20 +501,19 @@ static void find_ranges(const struct limit_ladder *ladder, const struct work *wo
                         struct limit_law *law, size_t count, struct limit_point *points) {
   const struct data *data = &work->data;
   find_orders(work, rejected, &law->order);
-  law->limit = range_of(work, &(struct quantity){1, 0, 0}, rejected);
+  law->limit = range_of(work, &(struct quantity){.limit = 1}, rejected);
   cut(ladder->least, ladder->most, &law->limit);
-  for (size_t l = law->dropped; l < data->levels; l++)
-    law->distance[l] = range_of(work, &(struct quantity){0, data->step[l], 0}, rejected);
-  for (size_t l = law->dropped; l < data->levels; l++) /* no farther than the limit can be */
+  for (size_t l = 0; l < data->levels; l++) {
+    const struct quantity distance = {.step = data->step[l], .level = &l, .dropped = law->dropped};
+    law->distance[l] = range_of(work, &distance, rejected);
+    /* no farther than the limit can be */
     cut(data->mean[l] - ladder->most, data->mean[l] - ladder->least, &law->distance[l]);
-  for (size_t l = 0; l < law->dropped; l++)
-    law->distance[l] = (struct limit_range){data->mean[l] - law->limit.value, data->mean[l] - law->limit.high,
-                                            data->mean[l] - law->limit.low};
+  }
   for (size_t i = 0; i < count; i++) {
     const double step = points[i].step, own = 1 / (double)data->seeds;
-    points[i].mean = range_of(work, &(struct quantity){1, step, 0}, rejected);
-    points[i].sample = range_of(work, &(struct quantity){1, step, own}, rejected);
-    points[i].distance = range_of(work, &(struct quantity){0, step, 0}, rejected);
+    points[i].mean = range_of(work, &(struct quantity){.limit = 1, .step = step}, rejected);
+    points[i].sample = range_of(work, &(struct quantity){.limit = 1, .step = step, .noise = own}, rejected);
+    points[i].distance = range_of(work, &(struct quantity){.step = step}, rejected);
     cut(ladder->least, ladder->most, &points[i].mean);
     cut(ladder->least, ladder->most, &points[i].sample);
   }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/statistics.h"
 #include "campaign/terminal/words.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
@@ -59,6 +60,29 @@ static void add(struct doubts *doubts, const struct scene *scene) {
   }
 }
 
+static void print_line(const char *text, const char *before, FILE *out) {
+  if (out == stderr)
+    fprintf(out, "%s%s\n", before, text); /* wrapped on a terminal, see words.h */
+  else
+    words_print(out, before, "%s", text);
+}
+
+/* A rule that no point can meet before seeds.max. */
+static void warn_rule(const struct campaign *campaign, const char *before, FILE *out) {
+  if (campaign->per_point || sample_could_stop((size_t)campaign->maximum, campaign->until_level))
+    return;
+  int64_t least = campaign->until_minimum;
+  while (!sample_could_stop((size_t)least, campaign->until_level))
+    least += campaign->until_batch;
+  char text[LINE];
+  snprintf(
+      text, sizeof text,
+      "seeds.max is %lld: seeds.until ends no point before %lld runs, so that every point takes %lld, whatever its "
+      "interval; raise seeds.max",
+      (long long)campaign->maximum, (long long)least, (long long)campaign->maximum);
+  print_line(text, before, out);
+}
+
 static void print(const struct doubts *doubts, const char *before, bool counted, FILE *out) {
   for (size_t k = 0; k < CONDITION_MOST; k++) {
     if (doubts->count[k] == 0)
@@ -67,10 +91,7 @@ static void print(const struct doubts *doubts, const char *before, bool counted,
     if (counted)
       text_append(text, sizeof text, "%zu of %zu points: ", doubts->count[k], doubts->points);
     text_append(text, sizeof text, "%s", doubts->first[k]);
-    if (out == stderr)
-      fprintf(out, "%s%s\n", before, text); /* wrapped on a terminal, see words.h */
-    else
-      words_print(out, before, "%s", text);
+    print_line(text, before, out);
   }
 }
 
@@ -90,6 +111,7 @@ void campaign_warn(const struct campaign *campaign, const char *before, FILE *ou
       if (scene)
         add(&doubts, scene);
     }
+  warn_rule(campaign, before, out);
   print(&doubts, before, doubts.points > 1, out);
 }
 

@@ -242,6 +242,11 @@ expect 0 "$clast" run wide.yaml --quiet
 says "warning: 4 of 4 points have seeds.max runs (60) and a wider interval of largest_fraction than seeds.until asks"
 says "the widest, of point"
 says "Raise seeds.max, or ask for less"
+sed 's/max: 60/max: 40/' wide.yaml >short.yaml
+expect 0 "$clast" plan short.yaml --no-trial
+tr -s '\n ' ' ' <out | grep -qF "seeds.until ends no point before 50 runs, so that every point takes 40" || fail "a rule that cannot be met is not told"
+expect 0 "$clast" plan wide.yaml --no-trial
+! grep -q "ends no point before" out || fail "a rule that can be met is told as one that cannot"
 expect 0 "$clast" status wide.db
 prints "too_wide"
 expect 0 "$clast" status wide.db --json
@@ -272,4 +277,4 @@ expect 64 "$clast" query tiny.db "select :x"
 says "give --with x=VALUE"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 79
+done_after 81

@@ -76,6 +76,7 @@ static double value_of(const struct law *law, double step, double at_break) {
 struct sample {
   double values[LIMIT_LEVELS][MOST_SEEDS];
   struct limit_ladder ladder;
+  double distance[LIMIT_LEVELS]; /* true mean less the limit, which is 0 */
   double finer_step, finer_mean; /* at FINER times the finest level, with noise of the same seeds */
 };
 
@@ -99,6 +100,7 @@ static void draw_sample(const struct law *law, double noise, struct drawing *dra
     }
     sample->finer_step = step;
     if (l < levels) {
+      sample->distance[l] = value_of(law, step, at_break);
       sample->ladder.step[l] = step;
       sample->ladder.values[l] = sample->values[l];
     }
@@ -108,7 +110,8 @@ static void draw_sample(const struct law *law, double noise, struct drawing *dra
 /* Counts of a law with one noise. */
 struct row {
   size_t n, seen, held, predicted, dropped;
-  double wider; /* median width over that of the known order */
+  size_t levels, held_levels; /* of all ladders with a limit: distances, and those held */
+  double wider;               /* median width over that of the known order */
 };
 
 static bool holds(const struct limit_range *range, double value) {
@@ -132,6 +135,9 @@ static struct row try_law(size_t l, size_t noise, size_t n) {
     row.held += holds(&law.limit, 0);
     row.predicted += holds(&finer.sample, sample.finer_mean);
     row.dropped += law.dropped > 0;
+    row.levels += sample.ladder.levels;
+    for (size_t k = 0; k < sample.ladder.levels; k++)
+      row.held_levels += holds(&law.distance[k], sample.distance[k]);
     sample.ladder.order_least = sample.ladder.order_most = laws[l].p;
     assert_true(limit_infer(&sample.ladder, 0.95, &known, 0, NULL));
     wider[row.seen++] = (law.limit.high - law.limit.low) / (known.limit.high - known.limit.low);
@@ -149,7 +155,7 @@ static double share(size_t part, size_t of) {
 
 /* Sums over noises and laws. */
 struct sum {
-  size_t n, seen, held, predicted;
+  size_t n, seen, held, predicted, levels, held_levels;
 };
 
 static void add(struct sum *sum, const struct sum *more) {
@@ -157,6 +163,8 @@ static void add(struct sum *sum, const struct sum *more) {
   sum->seen += more->seen;
   sum->held += more->held;
   sum->predicted += more->predicted;
+  sum->levels += more->levels;
+  sum->held_levels += more->held_levels;
 }
 
 /* Pass within four errors of a count. */
@@ -164,8 +172,11 @@ static void judge(const char *what, const struct sum *sum, double least_held, do
                   double most_unseen) {
   const double held = share(sum->held, sum->seen), predicted = share(sum->predicted, sum->seen);
   const double unseen = 1 - share(sum->seen, sum->n);
-  printf("%s: limit held %.3f, prediction held %.3f, no limit %.3f of %zu\n", what, held, predicted, unseen, sum->n);
+  const double levels = share(sum->held_levels, sum->levels);
+  printf("%s: limit held %.3f, distances held %.3f, prediction held %.3f, no limit %.3f of %zu\n", what, held, levels,
+         predicted, unseen, sum->n);
   assert_true(held >= least_held - 4 * sqrt(least_held * (1 - least_held) / (double)sum->seen));
+  assert_true(levels >= least_held - 4 * sqrt(least_held * (1 - least_held) / (double)sum->seen));
   assert_true(predicted >= least_predicted - 4 * sqrt(least_predicted * (1 - least_predicted) / (double)sum->seen));
   assert_true(unseen <= most_unseen + 4 * sqrt(most_unseen * (1 - most_unseen) / (double)sum->n));
 }
@@ -174,15 +185,17 @@ static void ladders(void **state) {
   (void)state;
   const size_t n = run_case_full() ? 250 : 8;
   struct sum tuned = {0}, held_back = {0};
-  printf("| law | noise | limit held | no limit | false | width | prediction held | levels dropped |\n");
+  printf(
+      "| law | noise | limit held | no limit | false | width | distances held | prediction held | levels dropped |\n");
   for (size_t l = 0; l < LAWS; l++) {
     struct sum of_law = {0};
     for (size_t z = 0; z < NOISES; z++) {
       const struct row row = try_law(l, z, n);
-      printf("| %s%s | %g | %.3f | %.3f | %.3f | %.1f | %.3f | %.2f |\n", laws[l].name,
+      printf("| %s%s | %g | %.3f | %.3f | %.3f | %.1f | %.3f | %.3f | %.2f |\n", laws[l].name,
              laws[l].held_back ? " (held back)" : "", noises[z], share(row.held, row.seen), 1 - share(row.seen, n),
-             share(row.seen - row.held, n), row.wider, share(row.predicted, row.seen), share(row.dropped, n));
-      add(&of_law, &(struct sum){n, row.seen, row.held, row.predicted});
+             share(row.seen - row.held, n), row.wider, share(row.held_levels, row.levels),
+             share(row.predicted, row.seen), share(row.dropped, n));
+      add(&of_law, &(struct sum){n, row.seen, row.held, row.predicted, row.levels, row.held_levels});
     }
     if (laws[l].form == POWER)
       add(laws[l].held_back ? &held_back : &tuned, &of_law);
