@@ -30,7 +30,9 @@ export const points = (axes, counts) => `SELECT point_id, scene, results_version
 export const mainStatistics = (quantity) => `SELECT point_id, results_version, n, ${name(`${quantity}_mean`)} AS mean,
   ${name(`${quantity}_sd`)} AS sd FROM points ORDER BY results_version`;
 export const otherStatistics = 'SELECT point_id, results_version, n, mean, sd FROM means WHERE quantity = :quantity ORDER BY results_version';
-export const otherQuantities = 'SELECT DISTINCT quantity FROM means';
+// The complete mass is there for the spectrum, also if it has one value.
+export const otherQuantities = `SELECT quantity FROM means GROUP BY quantity
+  HAVING quantity <> 'complete_mass' OR min(mean) < max(mean)`;
 // Of a whole store, which has no table of means: two moments about the first value.
 export const statisticsOfRuns = (quantity) => `SELECT point_id, results_version, count(${name(quantity)}) AS n,
   avg(${name(quantity)}) AS mean, sqrt(max(0, avg(d * d) - avg(d) * avg(d)) * count(d) / (count(d) - 1)) AS sd

@@ -291,18 +291,23 @@ static status tell_elements(struct reading *reading, struct error *error) {
   return ask_page_fact(reading->page, "elements", text, error);
 }
 
+/* The spectrum draws masses below it as incomplete. */
+static bool spectrum_needs(const char *name) {
+  return strcmp(name, OUTCOME_NAME(complete_mass)) == 0;
+}
+
 /* Removes results with the same value everywhere, and the last rows beyond the limit. */
 static status thin_means(struct reading *reading, struct error *error) {
   sqlite3 *db = reading->page->store.db;
   TRY(tell_elements(reading, error));
   int64_t rows = 0, points = 0;
   for (size_t i = 0; i < reading->count; i++)
-    if (reading->column[i].number && !reading->column[i].varies)
+    if (reading->column[i].number && !reading->column[i].varies && !spectrum_needs(reading->column[i].name))
       TRY(sql_executef(db, doing, error, "DELETE FROM means WHERE quantity = %Q", reading->column[i].name));
   TRY(sql_integer(db, "SELECT count(*) FROM means", 0, &rows, error));
   TRY(sql_integer(db, "SELECT count(DISTINCT point_id) FROM means", 0, &points, error));
   for (size_t i = reading->count; rows > MEANS && i-- > 0;) {
-    if (reading->column[i].main || !reading->column[i].varies)
+    if (reading->column[i].main || !reading->column[i].varies || spectrum_needs(reading->column[i].name))
       continue;
     TRY(sql_executef(db, doing, error, "DELETE FROM means WHERE quantity = %Q", reading->column[i].name));
     rows -= points;

@@ -72,6 +72,11 @@ static void check_means(struct store *store, sqlite3 *db) {
               1e-6 * fabs(all.mean));
   assert_near(asked(db, "SELECT hw95 FROM means WHERE quantity = 'hardest' AND point_id = 2"), all.half_width,
               1e-6 * all.half_width);
+  /* All runs have the same: the spectrum needs it all the same, to draw lighter fragments as incomplete. */
+  const char *const complete = "SELECT count(DISTINCT complete_mass) FROM runs WHERE counts";
+  assert_near(number(store, complete), 1, 0);
+  assert_near(asked(db, "SELECT count(*) FROM means WHERE quantity = 'complete_mass'"),
+              number(store, "SELECT count(*) FROM points"), 0);
 }
 
 static void test_a_small_store_is_whole(void **state) {
