@@ -179,6 +179,15 @@ char *text_close_small(FILE *out, char **text) {
   return *text;
 }
 
+/* A command in `...` is one word, so that it can be copied: half of a command may be another valid one. */
+static size_t through_quotation(const char *text, size_t word) {
+  bool open = false;
+  for (size_t i = 0; i < word; i++)
+    open ^= text[i] == '`';
+  const char *end = open ? strchr(text + word, '`') : NULL;
+  return end ? (size_t)(end - text) + strcspn(end, " \n") : word;
+}
+
 void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *out) {
   fprintf(out, "%*s", (int)(indent - at), "");
   size_t column = indent;
@@ -188,6 +197,7 @@ void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *o
     while (word && isdigit((unsigned char)text[word - 1]) && text[word] == ' ' &&
            strspn(text + word + 1, "0123456789") == 3)
       word += 1 + strcspn(text + word + 1, " \n"); /* 4 660 000 is one number */
+    word = through_quotation(text, word);
     if (column > indent && column + 1 + word > width) {
       fprintf(out, "\n%*s", (int)indent, "");
       column = indent;

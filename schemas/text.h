@@ -92,7 +92,8 @@ char *text_close(FILE *out, char **text);
 char *text_close_small(FILE *out, char **text) __attribute__((returns_nonnull));
 
 /* Writes the words of `text` in lines of at most `width` columns, each line indented, and ends the last line. The
- * cursor is at column `at`, which is at most `indent`. */
+ * cursor is at column `at`, which is at most `indent`. A command in `...` is one word, which may be longer than a line.
+ */
 void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *out);
 
 /* Wraps each line of a text by itself; a line that begins with blanks keeps them. */

@@ -57,15 +57,21 @@ static void test_fixed_has_few_digits(void **state) {
   }
 }
 
-static void test_wrap_keeps_numbers(void **state) {
-  (void)state;
+static void assert_wrapped(const char *text, size_t width, const char *lines) {
   char *wrapped;
   size_t size;
   FILE *out = open_memstream(&wrapped, &size);
-  text_wrap("the last at (4 660 000 Pa)", 0, 0, 18, out);
+  text_wrap(text, 0, 0, width, out);
   fclose(out);
-  assert_string_equal(wrapped, "the last at\n(4 660 000 Pa)\n");
+  assert_string_equal(wrapped, lines);
   free(wrapped);
+}
+
+static void test_wrap_keeps_numbers_and_commands(void **state) {
+  (void)state;
+  assert_wrapped("the last at (4 660 000 Pa)", 18, "the last at\n(4 660 000 Pa)\n");
+  assert_wrapped("next: (`clast run a.yaml`), then go", 20, "next:\n(`clast run a.yaml`),\nthen go\n");
+  assert_wrapped("`a b` `c d` an odd ` of one", 9, "`a b`\n`c d` an\nodd ` of\none\n");
 }
 
 static void test_hexadecimal(void **state) {
@@ -93,9 +99,12 @@ static void test_numbers_for_people(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_append_stays_in_its_array), cmocka_unit_test(test_append_cuts_whole_characters),
-      cmocka_unit_test(test_fixed_has_few_digits),      cmocka_unit_test(test_hexadecimal),
-      cmocka_unit_test(test_wrap_keeps_numbers),        cmocka_unit_test(test_numbers_for_people),
+      cmocka_unit_test(test_append_stays_in_its_array),
+      cmocka_unit_test(test_append_cuts_whole_characters),
+      cmocka_unit_test(test_fixed_has_few_digits),
+      cmocka_unit_test(test_hexadecimal),
+      cmocka_unit_test(test_wrap_keeps_numbers_and_commands),
+      cmocka_unit_test(test_numbers_for_people),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
