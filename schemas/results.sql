@@ -548,7 +548,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   "result_sph"."precursor_distention" AS "precursor_distention",
   "result_sph"."precursor_distention_exact" AS "precursor_distention_exact",
   "result_sph"."energy_contact" AS "result_sph_energy_contact",
-  r.warnings NOT IN ('', 'elastic') AS doubtful,
+  r.warnings NOT IN ('', 'elastic', 'shapes') AS doubtful,
   lower(hex(r.identity)) AS identity
 FROM run r JOIN point p ON p.point_id = r.point_id
   LEFT JOIN "result_dem" ON "result_dem".run_id = r.run_id
@@ -613,8 +613,8 @@ WITH first AS (
 SELECT p.point_id, p.engine, p.scene_name AS scene,
   t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS failed,
   ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts = 0 AND r.surplus > 1) AS excluded, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS failed_attempts,
-  (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings NOT IN ('', 'elastic')) AS doubtful,
-  ifnull((SELECT group_concat(words, '; ') FROM (SELECT DISTINCT r.warnings AS words FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings NOT IN ('', 'elastic') ORDER BY words)), '') AS doubts,
+  (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings NOT IN ('', 'elastic', 'shapes')) AS doubtful,
+  ifnull((SELECT group_concat(words, '; ') FROM (SELECT DISTINCT r.warnings AS words FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings NOT IN ('', 'elastic', 'shapes') ORDER BY words)), '') AS doubts,
   m0 AS "largest_fraction_mean", d0 AS "largest_fraction_sd", d0 / sqrt(n0) AS "largest_fraction_se", h0 AS "largest_fraction_hw95",
   iif(h0 IS NULL, iif(n0 > 1, m0 * pow(0.05, 1.0 / n0), NULL), max(m0 - h0, 0.0)) AS "largest_fraction_low95",
   iif(h0 IS NULL, iif(n0 > 1, 1 - (1 - m0) * pow(0.05, 1.0 / n0), NULL), min(m0 + h0, 1.0)) AS "largest_fraction_high95",

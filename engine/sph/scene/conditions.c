@@ -429,6 +429,17 @@ static double weakest(const void *inputs) {
              : (double)NAN;
 }
 
+/* Twice the stress of the target's rotation, over that at which its weakest flaw opens. A body that begins to turn at
+ * once rings, and reaches up to twice the stress of a steady rotation, which is about 0.4 rho omega^2 R^2 at the centre
+ * of a sphere (Love 1927, section 127, Poisson's ratio of rock). */
+static double spun(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  const struct sph_body_inputs *target = &in->target;
+  const double radius = sph_derived_crossing(in) * sph_derived_wave_speed(target) / 2;
+  const double turn = 0.4 * sph_derived_density(target) * pow(target->spin * radius, 2);
+  return turn > 0 ? 2 * turn / (sph_material_young_modulus(&target->material) * weakest(in)) : (double)NAN;
+}
+
 /* The last stress over the largest one: near 1 the rod still bears its load. */
 static double unbroken(const struct condition_run *r) {
   const struct sph_run *run = run_of(r);
@@ -436,6 +447,17 @@ static double unbroken(const struct condition_run *r) {
   if (run->inputs.kind != SPH_STRETCH || samples == 0)
     return NAN;
   return run->sample[samples - 1].stress / run->state.peak_stress;
+}
+
+/* What the material of a rod without flaws bears, von Mises' stress or the tension limit of its pressure, over the peak
+ * stress of a rod that failed. */
+static double clumped(const struct condition_run *r) {
+  const struct sph_inputs *in = r->inputs;
+  const struct sph_material *material = &in->target.material;
+  if (sph_derived_cracks(&in->target) || !(unbroken(r) < 0.9))
+    return NAN;
+  const double pressure = material->tension_limit.pressure, shear = material->yield.stress;
+  return fmin(fmin(shear, 3 * pressure), HUGE_VAL) / run_of(r)->state.peak_stress;
 }
 
 static int by_number(const void *a, const void *b) {
@@ -778,6 +800,14 @@ const struct condition sph_conditions[] = {
               .results = "fragment_count single_count second_fraction dust_fraction mean_fragment_mass "
                          "mean_fragment_mass_rest",
               .after = pieces),
+    CONDITION("clumped", .number = "the strength of the material, over the peak stress of a rod without flaws,",
+              .bound = 1.1, .doubt = "its particles have parted by an instability of the method in tension",
+              .reason = "a rod that breaks by its tension limit has 1.06", .remedy = "raise method.artificial_stress",
+              .results = "peak.stress peak.strain peak.time cracks largest_fraction", .after = clumped),
+    CONDITION("spin", .number = "twice the stress of the target's rotation, over that which opens its weakest flaw,",
+              .bound = 1, .doubt = "it begins to turn without the stress of rotation, rings, and may break by that",
+              .reason = "a sphere of basalt reached 1.8 times the stress of its steady rotation, and broke",
+              .remedy = "lower target.spin", .results = ALL_OF_A_BODY, .before = spun),
     CONDITION("ideal", .number = "the elastic strain that would hold all the energy put in, of a target without flaws,",
               .bound = 0.1, .doubt = "it cannot crack, and counts as whole: no solid bears so much",
               .reason = "a perfect solid bears about a tenth of its modulus (Orowan's estimate)",
@@ -952,7 +982,7 @@ const struct condition sph_conditions[] = {
               .reason = "our choice: 46 fragments of basalt-sphere scatter by 0.16 in b/a and 0.11 in c/a, means of 5 "
                         "by 0.07 and 0.05",
               .remedy = "take more particles", .results = "fragments.b_over_a fragments.c_over_a", .withheld = true,
-              .after = shaped),
+              .absent = true, .after = shaped),
     CONDITION("attached", .fact = "matter moves out of the target, which is in one piece",
               .doubt = "nothing has come off: a part of the body moves outwards", .reason = "a fragment that is one",
               .remedy = "raise crater.ejection_speed, or give a longer stop.end_time",
