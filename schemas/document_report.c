@@ -7,7 +7,7 @@
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
-enum { SHOWN = 120, BEFORE = 70 }; /* shown bytes of a long line, and how many of them precede the error */
+enum { SHOWN = 92, BEFORE = 54 }; /* shown bytes of a long line, and how many of them precede the error */
 
 static void add(struct document *document, size_t start, size_t end, bool put, const char *path, const char *format,
                 va_list arguments) {

@@ -9,6 +9,7 @@
 
 #include "schemas/text.h"
 
+#define ERROR ": error: "
 enum { WIDTH = 100, PARAGRAPH = 4096, PIECE = 1024 };
 
 void words_print(FILE *out, const char *head, const char *format, ...) {
@@ -23,9 +24,11 @@ void words_print(FILE *out, const char *head, const char *format, ...) {
 
 struct line {
   size_t column;
-  bool quoted; /* in a command */
-  bool blank;  /* a blank at the end of the last piece waits for the next word */
-  bool whole;  /* an error that a program may read, and the indented lines below it */
+  bool quoted;  /* in a command */
+  bool blank;   /* a blank at the end of the last piece waits for the next word */
+  bool excerpt; /* of a document, below its error: a marker stands under its place */
+  int joined;   /* blanks of ERROR that are still to come */
+  bool located; /* an error of a document: indented lines below it are an excerpt */
 };
 
 static size_t columns_of_stderr(void) {
@@ -37,18 +40,23 @@ static size_t columns_of_stderr(void) {
 /* Makes line ends of blanks. */
 static void wrap_piece(struct line *line, char *text, size_t size) {
   const size_t room = columns_of_stderr();
-  const bool terminal = isatty(STDERR_FILENO);
   char *blank = NULL;
   size_t after = 0; /* column behind it */
   for (char *at = text; at < text + size; at++) {
     if (*at == '\n' || *at == '\r') {
-      *line = (struct line){.whole = line->whole};
+      *line = (struct line){.located = line->located, .excerpt = line->excerpt};
       blank = NULL;
       continue;
     }
     if (line->column == 0)
-      line->whole &= *at == ' ';
-    line->whole |= !terminal && strncmp(at, ": error: ", strlen(": error: ")) == 0;
+      line->excerpt = line->located && *at == ' ';
+    if (line->column == 0 && !line->excerpt)
+      line->located = false;
+    if (strncmp(at, ERROR, strlen(ERROR)) == 0) { /* what is before it stays on the first line */
+      line->located = true;
+      line->joined = 2;
+      blank = NULL;
+    }
     if (*at == '\033') { /* a colour */
       while (at + 1 < text + size && *at != 'm' && *at != 'K')
         at++;
@@ -57,10 +65,13 @@ static void wrap_piece(struct line *line, char *text, size_t size) {
     line->quoted ^= *at == '`';
     if (((unsigned char)*at & 0xC0) != 0x80)
       line->column++;
-    if (*at == ' ' && !line->quoted && line->column <= room + 1) {
+    if (*at == ' ' && line->joined) {
+      line->joined--;
+    } else if (*at == ' ' && !line->quoted) {
       blank = at;
       after = line->column;
-    } else if (line->column > room && blank && !line->whole) {
+    }
+    if (line->column > room + (blank == at) && blank && !line->excerpt) {
       *blank = '\n';
       blank = NULL;
       line->column -= after;

@@ -8,8 +8,8 @@
 void words_print(FILE *out, const char *head, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /* From now on, all that is printed on stderr has lines of at most 100 columns, or the terminal's if that is narrower.
- * Commands in `...` stay whole, so that they can be copied. Where stderr is no terminal, an error ("FILE:LINE:COL:
- * error: ...") stays on its line: programs read it. stderr has no fileno() from now on. */
+ * Commands in `...` stay whole, so that they can be copied. So do the place before an error, "FILE:LINE:COL: error: ",
+ * which programs read, and the lines of a document below it. stderr has no fileno() from now on. */
 void words_wrap_stderr(void);
 
 #endif

@@ -54,7 +54,7 @@ def attempt(words, victim, must):
     tried += 1
     try:
         done = run(*words)
-        code, message = done.returncode, done.stderr.strip().split("\n")[-1]
+        code, message = done.returncode, " ".join(done.stderr.rpartition("clast: error: ")[2].split("\n")).strip()
     except subprocess.TimeoutExpired:
         code, message = "none in 60 s", ""
     changed = [name for name in kept if not os.path.isfile(name) or read(name) != kept[name]]
